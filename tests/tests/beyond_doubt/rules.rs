@@ -4,7 +4,7 @@ use halfrow::result::{Answer, Check, CheckName, Finding, NotExercised, Outcome, 
 use halfrow::run::{Part, Plan, Selection};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
-use halfrow_protocol::message::{Refusal, RowOut, TrappedRow};
+use halfrow_protocol::message::{Refusal, RowOut, Status, TrappedRow};
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{System, failed_check, judge_by_plan, open};
@@ -168,22 +168,67 @@ fn upset_packets(step: usize) {
     }
 }
 
-/// It may be the link that loses the same each time, but what was asked is said.
-#[test]
-fn a_board_that_says_nothing_where_it_must_refuse_is_told_of() {
-    let report = saying(|packet| {
-        let is_row = refusal(&packet).is_some_and(|refusal| refusal.kind == Kind::RowIn.code());
-        (!is_row).then_some(packet)
-    });
+/// What must be said and is not, by the report.
+fn unsaid(report: &Report) -> (Rule, &Answer) {
+    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
     let Finding::WrongOverDoubtfulLink { found, .. } = &report.finding else {
         panic!("{}", report.headline())
     };
-    assert!(
-        matches!(**found, Finding::RuleBroken { found: Answer::Nothing {}, .. }),
-        "{}",
-        report.headline()
-    );
-    assert_eq!(report.verdict, Verdict::Error);
+    match &**found {
+        Finding::RuleBroken { rule, right, found: Answer::Nothing {}, .. } => (*rule, right),
+        other => panic!("{}", other.sentence()),
+    }
+}
+
+/// It may be the link that loses the same each time, but what was asked is said.
+#[test]
+fn a_board_that_says_nothing_where_it_must_refuse_is_told_of() {
+    for kind in [Kind::RowIn, Kind::TableCrc, Kind::TableRead, Kind::Commit, Kind::Records] {
+        let report = saying(move |packet| {
+            let is_lost = refusal(&packet).is_some_and(|refusal| refusal.kind == kind.code());
+            (!is_lost).then_some(packet)
+        });
+        assert!(matches!(unsaid(&report).1, Answer::Refused { .. }), "{}", report.headline());
+    }
+}
+
+/// As often as a request is asked.
+const TRIES: usize = 8;
+
+#[test]
+fn a_link_that_loses_all_that_a_board_says_for_a_while_makes_no_sound_board_fail() {
+    for kind in [Kind::TableCrc, Kind::TableRead, Kind::Records, Kind::Configure, Kind::Reset] {
+        let mut lost = 0;
+        let report = saying(move |packet| {
+            let begins = refusal(&packet).is_some_and(|refusal| refusal.kind == kind.code());
+            let is_lost = (begins || lost > 0) && lost < TRIES;
+            lost += usize::from(is_lost);
+            (!is_lost).then_some(packet)
+        });
+        assert!(matches!(unsaid(&report).1, Answer::Refused { .. }), "{}", report.headline());
+    }
+}
+
+/// Nobody who runs `verify` is told to run it.
+#[test]
+fn a_row_that_does_not_come_back_behind_what_was_refused_is_told_of() {
+    let report = saying(|packet| {
+        let row = |row: RowOut<'_>| (row.place.frame, row.place.row);
+        let is_lost = matches!(packet.reply(), Some(Reply::RowOut(out)) if row(out) == (FRAME, 1));
+        (!is_lost).then_some(packet)
+    });
+    assert_eq!(unsaid(&report), (Rule::Rows, &Answer::Row { row: 1, frame: FRAME }));
+    assert!(!report.headline().contains("halfrow verify"), "{}", report.headline());
+}
+
+#[test]
+fn a_board_that_took_a_row_and_says_that_none_is_inside_is_told_of() {
+    let report = saying(|packet| match packet.reply() {
+        Some(Reply::Status(status)) => Some(packet.saying(&Reply::Status(Status { core_busy: 0, ..status }))),
+        _ => Some(packet),
+    });
+    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert!(report.headline().contains("0 rows inside the core, and it is 1"), "{}", report.headline());
 }
 
 /// Both copies of a request may be lost as well, and then nothing is said of the board.

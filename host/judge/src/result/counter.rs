@@ -26,6 +26,8 @@ pub enum Counter {
     Refusals,
     /// Packets of another session.
     ForeignPackets,
+    /// Whether a row is inside the core.
+    CoreBusy,
 }
 
 impl Counter {
@@ -43,6 +45,7 @@ impl Counter {
             Self::RowsUnneeded => "rows that were not needed",
             Self::Refusals => "refusals",
             Self::ForeignPackets => "packets of another session",
+            Self::CoreBusy => "rows inside the core",
         }
     }
 }

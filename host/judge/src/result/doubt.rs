@@ -22,6 +22,8 @@ pub enum Doubt {
     },
     /// The board does not tell how many packets came to it.
     PacketsUncounted {},
+    /// What the board was asked and must have said did not come back, however often it was asked for.
+    AnswerLost {},
 }
 
 impl Doubt {

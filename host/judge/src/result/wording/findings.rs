@@ -234,6 +234,7 @@ pub(crate) fn because(doubt: Doubt) -> String {
             format!("the board counts {}, and {} were sent to it", count(counted, "packet"), grouped(sent))
         }
         Doubt::PacketsUncounted {} => "the board does not tell how many packets came to it".to_owned(),
+        Doubt::AnswerLost {} => "a link can lose the same packet each time".to_owned(),
     }
 }
 

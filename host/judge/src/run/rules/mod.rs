@@ -26,7 +26,8 @@ use super::plan::Segment;
 use super::steps::Run;
 use crate::board::{BoardError, Capabilities, RowTiming, Said};
 use crate::progress::Step;
-use crate::result::{Answer, CheckName, Finding, Outcome, Rule};
+use crate::result::{Answer, CheckName, Doubt, Finding, Outcome, Rule};
+use crate::verdict::Cause;
 use compared::Compared;
 pub(super) use price::price;
 use small::Small;
@@ -116,19 +117,17 @@ impl<'a, 'run> Rules<'a, 'run> {
                 return Ok(());
             }
             Ok(said) => answer(&said),
-            Err(error @ BoardError::NoAnswer { .. }) => self.nothing(&error)?,
-            Err(error) => return Err(End::board(CheckName::Rules, &error)),
+            Err(BoardError::NoAnswer { heard, .. }) if heard.damaged == 0 && self.had_it_each_time() => {
+                return Err(unanswered(rule, kind, answer(right)));
+            }
+            Err(error) => return Err(of_board(error)),
         };
         Err(broken(rule, kind, answer(right), found))
     }
 
-    /// What stands in place of an answer that did not come: nothing, if the board had the request each time and answers others.
-    fn nothing(&mut self, silence: &BoardError) -> Result<Answer, End> {
-        let damaged = self.run.board.tally().damaged_in;
-        let status = self.run.board.status(false).map_err(|_| End::board(CheckName::Rules, silence))?;
-        let is_whole =
-            self.run.board.had_each_packet_once(&status) && damaged == self.run.board.tally().damaged_in;
-        if is_whole { Ok(Answer::Nothing {}) } else { Err(End::board(CheckName::Rules, silence)) }
+    /// Whether the board answers, and had all that was sent to it: then what it did not answer can be told.
+    fn had_it_each_time(&mut self) -> bool {
+        self.run.board.status(false).is_ok_and(|status| self.run.board.had_each_packet_once(&status))
     }
 
     /// Asks what must be refused.
@@ -175,7 +174,7 @@ impl<'a, 'run> Rules<'a, 'run> {
     /// Streams frames, which must come back as `compared` has them.
     fn frames(&mut self, rule: Rule, mut compared: Compared) -> Result<(), End> {
         let given = mem::take(&mut self.given);
-        self.run.board.stream_given(given, &mut compared).map_err(of_board)?;
+        self.run.board.stream_given(given, &mut compared).map_err(|error| of_rows(rule, error))?;
         match compared.wrong {
             None => Ok(()),
             Some((row, frame)) => Err(other_row(rule, row, frame)),
@@ -188,9 +187,31 @@ fn of_board(error: BoardError) -> End {
     End::board(CheckName::Rules, &error)
 }
 
+/// Where rows are waited for that must come back.
+fn of_rows(rule: Rule, error: BoardError) -> End {
+    match error {
+        BoardError::RowMissing { place, .. } => {
+            let right = Answer::Row { row: place.row.into(), frame: place.frame };
+            unanswered(rule, Kind::RowIn, right)
+        }
+        error => of_board(error),
+    }
+}
+
 fn broken(rule: Rule, kind: Kind, right: Answer, found: Answer) -> End {
-    let request = kind.to_string();
-    End::failed(CheckName::Rules, Finding::RuleBroken { rule, request, right, found })
+    End::failed(CheckName::Rules, rule_broken(rule, kind, right, found))
+}
+
+/// What must be said did not come, however often it was asked for: of silence alone no board is wrong, since a link can lose
+/// the same packet each time, or all of them for a while.
+fn unanswered(rule: Rule, kind: Kind, right: Answer) -> End {
+    let found = Box::new(rule_broken(rule, kind, right, Answer::Nothing {}));
+    let finding = Finding::WrongOverDoubtfulLink { found, doubt: Doubt::AnswerLost {} };
+    End::error(CheckName::Rules, Cause::Station, finding)
+}
+
+fn rule_broken(rule: Rule, kind: Kind, right: Answer, found: Answer) -> Finding {
+    Finding::RuleBroken { rule, request: kind.to_string(), right, found }
 }
 
 fn other_row(rule: Rule, row: usize, frame: u16) -> End {

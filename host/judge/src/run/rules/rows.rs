@@ -6,13 +6,14 @@ use halfrow_protocol::message::{Commit, RefusalCode, Request, RowIn, RowPlace};
 use halfrow_protocol::samples::pack;
 
 use super::compared::Compared;
-use super::{FIRST_FACTOR, Rules, of_board, other_row};
+use super::{FIRST_FACTOR, Rules, of_board, of_rows, other_row};
 use crate::board::BoardError;
 use crate::reference::correct;
 use crate::result::{CheckName, Counter, Finding, Rule};
 use crate::run::Generation;
 use crate::run::at_speed::{BY_TURNS, fit};
 use crate::run::findings::End;
+use crate::verdict::Cause;
 
 /// The generation that rows are made with.
 pub(super) const GENERATION: u8 = 0x96;
@@ -112,16 +113,24 @@ impl Rules<'_, '_> {
         self.given = self.given.max(u32::from(row) + 1);
     }
 
-    /// Gives row 0, and waits until it is inside the core.
+    /// Gives row 0, and waits until it is inside the core. How long a row waits in front of it is not the wire's to say, so one that
+    /// does not enter makes no board wrong.
     fn enter(&mut self) -> Result<(), End> {
+        let place = self.place(0);
+        let mut has_come = false;
         for _ in 0..LOOKS {
             self.give(0);
-            if self.run.board.status(false).map_err(of_board)?.core_busy == 1 {
+            let status = self.run.board.status(false).map_err(of_board)?;
+            if status.core_busy == 1 {
                 return Ok(());
             }
+            has_come = status.next_row_in > place.row_sequence;
         }
-        let place = self.place(0);
-        Err(of_board(BoardError::RowMissing { place, attempts: LOOKS }))
+        if !has_come {
+            return Err(of_rows(Rule::Inside, BoardError::RowMissing { place, attempts: LOOKS }));
+        }
+        let finding = Finding::CounterWrong { counter: Counter::CoreBusy, counted: 0, right: 1 };
+        Err(End::error(CheckName::Rules, Cause::Station, finding))
     }
 
     /// With row 0 inside: other rows than row 1, and all that must wait until it has left.
@@ -189,7 +198,7 @@ impl Rules<'_, '_> {
         let rows = [(&first, frame.row(0)), (&second, frame.row(1))];
         let retries = self.run.board.tally().retries;
         for repeats in 0..=AGAIN {
-            let came = self.run.board.again(rows, repeats).map_err(of_board)?;
+            let came = self.run.board.again(rows, repeats).map_err(|error| of_rows(Rule::Again, error))?;
             let is_right = right.as_ref().is_none_or(|right| right.row(0) == came.samples);
             let is_counted = came.repeats == repeats || !self.is_calm(retries)?;
             if !is_right || !is_counted || came.generation != GENERATION {
