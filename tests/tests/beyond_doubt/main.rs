@@ -7,6 +7,7 @@
 mod at_speed;
 mod capabilities;
 mod conduct;
+mod echoes;
 mod exercised;
 mod lost_rows;
 mod recordings;

@@ -4,6 +4,7 @@ use halfrow_protocol::message::{RefusalCode, Reply};
 use halfrow_protocol::{Header, Kind, Packet};
 
 use super::BoardError;
+use super::asked::Asking;
 
 /// A packet that was kept.
 pub(super) struct Kept {
@@ -14,6 +15,13 @@ pub(super) struct Kept {
 impl Kept {
     pub(super) fn packet(&self) -> Packet<'_> {
         Packet { header: self.header, payload: &self.payload }
+    }
+
+    /// Whether it is what was asked under the header `sent`, and no answer: a board's window is ahead of the host's.
+    pub(super) fn is_echo_of(&self, sent: &Header, asking: &Asking<'_>) -> bool {
+        let mut payload = Vec::new();
+        asking.write(&mut payload);
+        self.header == *sent && self.payload == payload
     }
 }
 

@@ -206,16 +206,15 @@ impl Conversation {
     }
 
     fn queue_packet(&mut self, kind: Kind, sequence: u16, write_payload: impl FnOnce(&mut Vec<u8>)) {
-        let header = Header {
-            kind: kind.code(),
-            sequence,
-            reply: false,
-            session: if kind == Kind::Hello { 0 } else { self.session },
-            window: self.acknowledged,
-        };
+        let header = self.header(kind, sequence);
         let queued = self.encoder.encode(&header, write_payload, &mut self.outgoing);
         debug_assert!(queued.is_ok(), "a request is built to fit a packet");
         self.tally.packets_out += 1;
+    }
+
+    fn header(&self, kind: Kind, sequence: u16) -> Header {
+        let session = if kind == Kind::Hello { 0 } else { self.session };
+        Header { kind: kind.code(), sequence, reply: false, session, window: self.acknowledged }
     }
 
     /// Counts a retry. Those after which nothing turned out to be lost are no sign of a poor link.
@@ -325,7 +324,7 @@ impl Conversation {
             let mut deadline = self.waited + self.wait_for(step, attempt, bytes);
             while let Some(wait) = deadline.checked_sub(self.waited).filter(|wait| !wait.is_zero()) {
                 let late = self.tally.late;
-                if let Some(answer) = self.answer_within(wait, kind, sequence, &accept)? {
+                if let Some(answer) = self.answer_within(wait, asking, sequence, &accept)? {
                     self.took(attempt, self.since(begun));
                     return Ok(answer);
                 }
@@ -343,25 +342,29 @@ impl Conversation {
     fn answer_within(
         &mut self,
         wait: Duration,
-        kind: Kind,
+        asking: &Asking<'_>,
         sequence: u16,
         accept: impl Fn(&Packet<'_>) -> bool,
     ) -> Result<Option<Kept>, BoardError> {
         let (mut answer, mut rows) = (None, 0);
-        let doing = || format!("waiting for the answer to {kind}");
+        let doing = || format!("waiting for the answer to {}", asking.kind());
         self.exchange(wait, doing, |packet| {
             let header = packet.header;
             // Rows are numbered by the board.
             let is_row = header.kind == Kind::RowOut.code();
             rows += u64::from(is_row);
             if !is_row && header.sequence == sequence && accept(packet) {
-                answer = Some(Kept { header, payload: packet.payload.to_vec() });
+                answer.get_or_insert_with(|| Kept { header, payload: packet.payload.to_vec() });
             }
         })?;
         let unwanted = rows.min(self.unwanted.into());
         self.unwanted -= unwanted as u32;
         self.tally.strays += rows - unwanted;
-        Ok(answer)
+        let sent = self.header(asking.kind(), sequence);
+        match answer {
+            Some(answer) if answer.is_echo_of(&sent, asking) => Err(BoardError::Echoed),
+            answer => Ok(answer),
+        }
     }
 
     /// Takes note of how long it took until something came that was asked for `again` times more.

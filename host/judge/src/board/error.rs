@@ -43,7 +43,7 @@ pub enum BoardError {
     NotABoard,
     /// What was sent came back as it was.
     #[error(
-        "the line sends back what is sent to it, and no board answers; look for a loopback plug, for TX and RX that \
+        "the line sends back what is sent to it, in place of a board's answer; look for a loopback plug, for TX and RX that \
          touch, and for a port that echoes"
     )]
     Echoed,

@@ -336,11 +336,6 @@ fn greet(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welco
         // A stale reply has another nonce; anything else that carries our number is for us.
         !matches!(Reply::read(packet), Ok(Reply::Hello(welcome)) if welcome.nonce != hello.nonce)
     })?;
-    let mut sent = Vec::new();
-    request.write(&mut sent);
-    if answer.packet().payload == sent {
-        return Err(BoardError::Echoed);
-    }
     let welcome = take_reply(Kind::Hello, &answer, |reply| match reply {
         Reply::Hello(welcome) => Some(welcome),
         _ => None,

@@ -61,11 +61,14 @@ impl Run<'_> {
         }
         let status = match self.board.status(false) {
             Ok(status) => status,
-            Err(BoardError::NoAnswer { .. } | BoardError::TooPoor { .. }) => {
-                return Some(Doubt::PacketsUncounted {});
-            }
             // A run that is stopped, or whose board is gone, has seen what it has seen.
-            Err(_) => return None,
+            Err(
+                BoardError::Stopped(_)
+                | BoardError::Timeout { .. }
+                | BoardError::Link { .. }
+                | BoardError::SessionLost,
+            ) => return None,
+            Err(_) => return Some(Doubt::PacketsUncounted {}),
         };
         let (counted, sent) = (u64::from(status.packets), self.board.packets_since_clear());
         let counters_alone = check == CheckName::Counters;

@@ -1,0 +1,86 @@
+//! Lines that begin to echo in the middle of a run, in the board's place or beside it: what was sent is no answer to it.
+
+use std::time::Duration;
+
+use halfrow::link::{Candidate, Link, LinkError};
+use halfrow::result::Report;
+use halfrow::run::{Part, Plan, Selection};
+use halfrow::verdict::Verdict;
+use halfrow_tests::system::{System, judge_by_plan, open};
+
+/// Said of a line that echoes.
+const SAID: &str = "the line sends back what is sent to it";
+
+/// A link whose line echoes as soon as so many bytes have been sent.
+struct Echoes {
+    link: Box<dyn Link>,
+    left: usize,
+    /// Whether the board gets all the same what is sent.
+    beside: bool,
+}
+
+impl Link for Echoes {
+    fn exchange(&mut self, out: &[u8], back: &mut Vec<u8>, wait: Duration) -> Result<usize, LinkError> {
+        if self.left > 0 {
+            let taken = self.link.exchange(out, back, wait)?;
+            self.left = self.left.saturating_sub(taken);
+            return Ok(taken);
+        }
+        if !self.beside && !out.is_empty() {
+            back.extend(out);
+            return Ok(out.len());
+        }
+        let mut said = Vec::new();
+        let taken = self.link.exchange(out, &mut said, wait)?;
+        back.extend(&out[..taken]);
+        back.extend(said);
+        Ok(taken)
+    }
+
+    fn now(&self) -> Duration {
+        self.link.now()
+    }
+
+    fn bytes_per_second(&self) -> Option<f64> {
+        None
+    }
+
+    fn name(&self) -> String {
+        "a line that echoes".to_owned()
+    }
+}
+
+/// The report on a sound board, with the wire's rules, whose line echoes from there on.
+fn echoing(behind: usize, beside: bool) -> Report {
+    let plan = Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() };
+    let candidate = open("mock");
+    let link = Box::new(Echoes { link: candidate.link, left: behind, beside });
+    judge_by_plan(&plan, Candidate { link, ..candidate })
+}
+
+#[test]
+fn a_line_that_begins_to_echo_makes_no_sound_board_fail() {
+    for beside in [false, true] {
+        let (mut named, mut errors) = (0, 0);
+        for behind in (3_000..).step_by(4_001) {
+            let report = echoing(behind, beside);
+            let what = format!("behind {behind} bytes, beside: {beside}: {}", report.headline());
+            assert_ne!(report.verdict, Verdict::Fail, "{what}");
+            if report.verdict == Verdict::Pass {
+                break;
+            }
+            errors += 1;
+            named += usize::from(report.headline().contains(SAID));
+        }
+        // In the middle of rows it is rows that are missing.
+        assert!(errors > 15 && 2 * named > errors, "beside: {beside}: {named} of {errors}");
+    }
+}
+
+#[test]
+fn a_line_that_echoes_from_the_first_is_named_with_a_board_and_without() {
+    for beside in [false, true] {
+        let report = echoing(0, beside);
+        assert!(report.headline().contains(SAID), "beside: {beside}: {}", report.headline());
+    }
+}
