@@ -18,6 +18,8 @@ pub(crate) struct ReplayLink {
     place: usize,
     now: Duration,
     sent: u64,
+    /// Whether the host waited where the recorded one sent.
+    waited: bool,
 }
 
 impl ReplayLink {
@@ -30,7 +32,16 @@ impl ReplayLink {
         let bytes_per_second = recording.bytes_per_second()?;
         let exclusive = recording.is_exclusive()?;
         let place = recording.start();
-        Ok(Self { name, bytes_per_second, exclusive, recording, place, now: Duration::ZERO, sent: 0 })
+        Ok(Self {
+            name,
+            bytes_per_second,
+            exclusive,
+            recording,
+            place,
+            now: Duration::ZERO,
+            sent: 0,
+            waited: false,
+        })
     }
 }
 
@@ -47,9 +58,16 @@ impl Link for ReplayLink {
         incoming: &mut Vec<u8>,
         _wait: Duration,
     ) -> Result<usize, LinkError> {
-        let Some(exchange) = self.recording.next(&mut self.place) else {
+        let mut behind = self.place;
+        let Some(exchange) = self.recording.next(&mut behind) else {
             return Err(self.ended());
         };
+        // Whoever waits by the clock ends sooner or later than it did, since a recording has none between its exchanges.
+        let waits = outgoing.is_empty() && !exchange.taken.is_empty();
+        if waits && !std::mem::replace(&mut self.waited, waits) {
+            return Ok(0);
+        }
+        (self.place, self.waited) = (behind, false);
         let same = exchange.taken.iter().zip(outgoing).take_while(|(then, now)| then == now).count();
         let others = exchange.taken.len() - same;
         if others > 0 {

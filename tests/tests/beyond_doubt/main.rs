@@ -12,6 +12,7 @@ mod exercised;
 mod lost_rows;
 mod recordings;
 mod rules;
+mod slow_clocks;
 mod soak;
 mod stale_packets;
 mod stalls;

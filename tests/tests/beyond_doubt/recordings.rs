@@ -93,6 +93,38 @@ fn a_recording_of_numbers_that_no_run_has_is_no_recording_of_this_run() {
     }
 }
 
+/// The link that repeats these exchanges: what was taken, and what was received.
+fn replayed(folder: &Folder, exchanges: &[(&[u8], &[u8])]) -> Box<dyn Link> {
+    let mut recording =
+        b"halfrow recording 1\n{\"link\":\"\",\"bytes_per_second\":null,\"run\":{}}\n".to_vec();
+    for (taken, received) in exchanges {
+        recording.extend(0_u64.to_le_bytes());
+        recording.extend([taken, received].map(|bytes| (bytes.len() as u32).to_le_bytes()).concat());
+        recording.extend([*taken, *received].concat());
+    }
+    folder.write("made.rec", &recording);
+    halfrow::link::open(&format!("replay:{}", folder.path().join("made.rec").display()).parse().unwrap())
+        .unwrap()
+        .link
+}
+
+/// When a wait by the clock is over, a recording has no clock to say; whoever waits on without a word says something else.
+#[test]
+fn whoever_waits_once_where_the_recorded_host_sent_says_the_same_as_it() {
+    let folder = Folder::new();
+    let (mut came, wait) = (Vec::new(), Duration::from_millis(1));
+    // More than a host says to take its leave.
+    let more = [7; 200];
+    let mut link = replayed(&folder, &[(&[], &[0]), (&[1, 2], &[3]), (&more, &[])]);
+    assert_eq!(link.exchange(&[], &mut came, wait).unwrap(), 0);
+    assert_eq!(link.exchange(&[], &mut came, wait).unwrap(), 0);
+    assert_eq!(link.exchange(&[1, 2], &mut came, wait).unwrap(), 2);
+    assert_eq!(came, [0, 3]);
+    assert_eq!(link.exchange(&[], &mut came, wait).unwrap(), 0);
+    let error = link.exchange(&[], &mut came, wait).unwrap_err();
+    assert!(matches!(error, LinkError::OtherConversation { byte: 2 }), "{error}");
+}
+
 /// A link whose clock goes back at every other look.
 struct Backwards {
     link: Box<dyn Link>,
