@@ -1,9 +1,12 @@
 //! Boards that say of themselves what no board can be: refused, by name, and never judged.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use halfrow::verdict::Cause;
-use halfrow_protocol::Reply;
 use halfrow_protocol::message::{Capabilities, Grids, Welcome};
-use halfrow_tests::altered::{Passing, judge_claims, judge_claims_by, judge_each};
+use halfrow_protocol::{Kind, Reply};
+use halfrow_tests::altered::{Passing, Toward, judge_claims, judge_claims_by, judge_each};
 use halfrow_tests::system::{System, streamed};
 
 /// A capability by its name in WIRE.md, and what it is set to.
@@ -105,5 +108,48 @@ fn a_greeting_that_no_board_answers_with_is_refused() {
         });
         assert_eq!(report.cause, Cause::Refused, "{}", report.headline());
         assert!(report.headline().contains(said), "{}", report.headline());
+    }
+}
+
+/// The list of a CAPABILITIES reply with `value` for `tag`, or without it.
+fn with(list: &[u8], tag: u8, value: Option<&[u8]>) -> Vec<u8> {
+    let (mut rest, mut other) = (list, Vec::new());
+    while let [of, length, after @ ..] = rest {
+        let (own, behind) = after.split_at(usize::from(*length));
+        if let Some(own) = if *of == tag { value } else { Some(own) } {
+            other.extend([*of, own.len() as u8]);
+            other.extend(own);
+        }
+        rest = behind;
+    }
+    other
+}
+
+/// RESET's level that closes a session.
+const CLOSES: u8 = 1;
+
+#[test]
+fn a_board_whose_capabilities_cannot_be_read_is_refused_and_left_free() {
+    let spoilt: [(u8, Option<&[u8]>, &str); 4] = [
+        (0x05, None, "taps"),
+        (0x20, Some(&[0]), "nature"),
+        (0x20, Some(&[4]), "nature"),
+        (0x10, Some(&[1, 0]), ""),
+    ];
+    for (tag, value, name) in spoilt {
+        let closed = Arc::new(AtomicBool::new(false));
+        let seen = Arc::clone(&closed);
+        let report = judge_each(&System::TINY, move |toward, packet| {
+            if toward == Toward::Board && packet.is(Kind::Reset) && packet.payload[0] == CLOSES {
+                seen.store(true, Ordering::Relaxed);
+            }
+            if toward == Toward::Host && packet.is(Kind::Capabilities) {
+                return Passing { payload: with(&packet.payload, tag, value), ..packet };
+            }
+            packet
+        });
+        assert_eq!(report.cause, Cause::Refused, "{tag:#x}: {}", report.headline());
+        assert!(report.headline().contains(name), "{}", report.headline());
+        assert!(closed.load(Ordering::Relaxed), "{tag:#x}: the session stays open");
     }
 }

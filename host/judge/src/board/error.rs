@@ -216,7 +216,9 @@ impl BoardError {
         match self {
             Self::Held { .. } => Cause::Busy,
             Self::Link { source, .. } if matches!(**source, LinkError::InUse { .. }) => Cause::Busy,
-            Self::NotABoard | Self::Version { .. } => Cause::Refused,
+            Self::NotABoard | Self::Version { .. } | Self::Malformed { kind: Kind::Capabilities, .. } => {
+                Cause::Refused
+            }
             Self::Stopped(by) => Cause::Stopped(*by),
             _ => Cause::Station,
         }

@@ -89,22 +89,25 @@ impl Board {
     /// then comes with it.
     pub fn open(link: Box<dyn Link>, options: &OpenOptions) -> Result<Self, (BoardError, Box<Tally>)> {
         let mut conversation = Conversation::new(link, options.retry_limit, options.stop.clone());
-        let mut open = || {
-            let welcome = greet_or_take_over(&mut conversation, options)?;
-            let counted_from = conversation.tally.packets_out;
-            let capabilities =
-                conversation.request(&Request::Capabilities, Step::Request, |reply| match reply {
-                    Reply::Capabilities(capabilities) => Some(capabilities),
-                    _ => None,
-                })?;
-            Ok((welcome, capabilities, counted_from))
+        let welcome = match greet_or_take_over(&mut conversation, options) {
+            Ok(welcome) => welcome,
+            Err(error) => return Err((error, Box::new(conversation.tally))),
         };
-        match open() {
-            Ok((welcome, capabilities, counted_from)) => {
+        let counted_from = conversation.tally.packets_out;
+        let capabilities = conversation.request(&Request::Capabilities, Step::Request, |reply| match reply {
+            Reply::Capabilities(capabilities) => Some(capabilities),
+            _ => None,
+        });
+        match capabilities {
+            Ok(capabilities) => {
                 let (options, shapes) = (options.clone(), [None; 2]);
                 Ok(Self { conversation, counted_from, welcome, capabilities, options, shapes })
             }
-            Err(error) => Err((error, Box::new(conversation.tally))),
+            Err(error) => {
+                let tally = Box::new(conversation.tally);
+                close(&mut conversation);
+                Err((error, tally))
+            }
         }
     }
 
@@ -284,12 +287,7 @@ impl Board {
     /// Closes the session, so that another host finds the board free, also when the run was stopped. Waits for the board's
     /// answer, but not for ever: one that does not answer is free after 10 s of silence.
     pub fn close(&mut self) {
-        self.conversation.disregard_stop();
-        match self.reset(ResetLevel::Session, Step::Close) {
-            // A session that is lost is closed: what a board says when the reply to its RESET was lost.
-            Ok(()) | Err(BoardError::SessionLost) => {}
-            Err(error) => tracing::debug!("the session was not closed: {error}"),
-        }
+        close(&mut self.conversation);
     }
 
     fn reset(&mut self, level: ResetLevel, step: Step) -> Result<(), BoardError> {
@@ -299,14 +297,30 @@ impl Board {
     }
 
     fn reset_to(&mut self, reset: Reset, step: Step) -> Result<(), BoardError> {
-        let Reset { level, next_row } = reset;
-        let reset = Request::Reset(reset);
-        self.conversation.request(&reset, step, |reply| matches!(reply, Reply::Reset).then_some(()))?;
-        self.conversation.acknowledged = next_row;
+        let level = reset.level;
+        reset_to(&mut self.conversation, reset, step)?;
         if level == ResetLevel::Tables {
             self.shapes = [None; 2];
         }
         Ok(())
+    }
+}
+
+fn reset_to(conversation: &mut Conversation, reset: Reset, step: Step) -> Result<(), BoardError> {
+    let next_row = reset.next_row;
+    let reset = Request::Reset(reset);
+    conversation.request(&reset, step, |reply| matches!(reply, Reply::Reset).then_some(()))?;
+    conversation.acknowledged = next_row;
+    Ok(())
+}
+
+fn close(conversation: &mut Conversation) {
+    conversation.disregard_stop();
+    let reset = Reset { level: ResetLevel::Session, next_row: conversation.credit() };
+    match reset_to(conversation, reset, Step::Close) {
+        // A session that is lost is closed: what a board says when the reply to its RESET was lost.
+        Ok(()) | Err(BoardError::SessionLost) => {}
+        Err(error) => tracing::debug!("the session was not closed: {error}"),
     }
 }
 
