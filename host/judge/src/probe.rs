@@ -15,8 +15,8 @@ pub fn probe(target: &Target) -> Answer {
         Ok(candidate) => candidate,
         Err(error) => return not_opened(&error),
     };
-    let Draws { nonce, host } = Draws::draw();
-    let options = OpenOptions { nonce, host, polite: true, ..OpenOptions::default() };
+    let Draws { nonce, host, sequence } = Draws::draw();
+    let options = OpenOptions { nonce, host, sequence, polite: true, ..OpenOptions::default() };
     match Board::open(candidate.link, &options) {
         Ok(mut board) => {
             let (name, datapath) = (board.capabilities.name.clone(), board.capabilities.datapath);

@@ -6,9 +6,11 @@ use std::time::Duration;
 
 use halfrow::board::{Board, OpenOptions};
 use halfrow::link_test;
+use halfrow::progress::Silent;
 use halfrow::result::{CheckName, Outcome, Report};
+use halfrow::run::{Circumstances, Draws, RunOptions, verify};
 use halfrow::verdict::Verdict;
-use halfrow_protocol::message::Status;
+use halfrow_protocol::message::{Refusal, RefusalCode, Status};
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge};
 use halfrow_tests::system::System;
@@ -125,4 +127,24 @@ fn no_check_of_a_doubtful_session_is_told_of_the_next_one() {
     let told: Vec<_> = told.map(|check| (check.name, check.outcome)).collect();
     let passed = [CheckName::Judge, CheckName::Identity].map(|name| (name, Outcome::Passed));
     assert_eq!(told, [&passed[..], &[(CheckName::Link, Outcome::Error)]].concat());
+}
+
+/// Every program's first packet would be its number 1 otherwise, and a refusal names no nonce.
+#[test]
+fn a_refusal_that_an_earlier_program_was_told_is_not_this_one_s() {
+    let draws = Draws { nonce: 5, host: 6, sequence: 0xfffe };
+    let alter = |toward, packet: Passing| {
+        if toward == Toward::Board || !packet.is(Kind::Hello) {
+            return vec![packet];
+        }
+        let refusal = Refusal { code: RefusalCode::Held, kind: Kind::Hello.code(), detail: 37 };
+        let mut stale = packet.saying(&Reply::Refusal(refusal));
+        (stale.header.kind, stale.header.sequence) = (Kind::Refusal.code(), 1);
+        vec![stale, packet]
+    };
+    let candidate = Altered::new(&halfrow_mock::Options::default(), alter).candidate();
+    let circumstances = Circumstances { draws, ..Circumstances::default() };
+    let options = RunOptions { circumstances, ..RunOptions::default() };
+    let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
 }

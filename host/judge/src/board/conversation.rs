@@ -9,7 +9,7 @@ use super::answer::{Kept, take_reply};
 use super::asked::{Asking, LastAsked, Stray};
 use super::conduct::Conduct;
 use super::deadlines::{RetryLimit, Step};
-use super::{BoardError, Heard, Stop};
+use super::{BoardError, Heard, OpenOptions, Stop};
 use crate::link::{LineErrors, Link, LinkError, Severed};
 
 /// The most that an exchange counts as a wait that moved something, and so did not wait to the end: all the rest may be that
@@ -91,19 +91,19 @@ pub(super) struct Conversation {
 }
 
 impl Conversation {
-    pub(super) fn new(link: Box<dyn Link>, limit: RetryLimit, stop: Stop) -> Self {
+    pub(super) fn new(link: Box<dyn Link>, options: &OpenOptions) -> Self {
         Self {
             link,
             encoder: Encoder::new(),
             decoder: Decoder::new(),
             outgoing: Vec::new(),
             incoming: Vec::new(),
-            sequence: 0,
+            sequence: options.sequence,
             session: 0,
             window: 0,
             acknowledged: 0,
             tally: Tally::default(),
-            limit,
+            limit: options.retry_limit,
             waited: Duration::ZERO,
             conduct: Conduct::default(),
             repeated_changes: 0,
@@ -112,7 +112,7 @@ impl Conversation {
             asked: LastAsked::default(),
             slowest: Duration::ZERO,
             heard_at: Duration::ZERO,
-            stop,
+            stop: options.stop.clone(),
         }
     }
 

@@ -47,6 +47,9 @@ pub struct OpenOptions {
     pub nonce: u32,
     /// Drawn at random for this program's run.
     pub host: u32,
+    /// The number in front of its first packet's, drawn as well: a refusal that an earlier program was told, and did not wait for,
+    /// names no nonce.
+    pub sequence: u16,
     /// Take the board from whoever holds it.
     pub take_over: bool,
     /// Leave it to its holder even over a link that is this program's alone: a board can have two links.
@@ -88,7 +91,7 @@ impl Board {
     /// [`BoardError`]: nobody answers, no halfrow board, another version, held by another host. What the link did up to
     /// then comes with it.
     pub fn open(link: Box<dyn Link>, options: &OpenOptions) -> Result<Self, (BoardError, Box<Tally>)> {
-        let mut conversation = Conversation::new(link, options.retry_limit, options.stop.clone());
+        let mut conversation = Conversation::new(link, options);
         let welcome = match greet_or_take_over(&mut conversation, options) {
             Ok(welcome) => welcome,
             Err(error) => return Err((error, Box::new(conversation.tally))),

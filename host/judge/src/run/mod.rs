@@ -82,6 +82,9 @@ pub struct Draws {
     pub nonce: u32,
     /// This host.
     pub host: u32,
+    /// The number in front of the first packet's. A recording that does not say so begins with 1.
+    #[serde(default)]
+    pub sequence: u16,
 }
 
 impl Draws {
@@ -90,8 +93,9 @@ impl Draws {
     pub fn draw() -> Self {
         use std::hash::{BuildHasher, RandomState};
         // A hasher's keys come from the operating system.
-        let drawn = RandomState::new().hash_one(std::process::id());
-        Self { nonce: drawn as u32, host: (drawn >> 32) as u32 }
+        let keys = RandomState::new();
+        let (drawn, sequence) = (keys.hash_one(std::process::id()), keys.hash_one("sequence") as u16);
+        Self { nonce: drawn as u32, host: (drawn >> 32) as u32, sequence }
     }
 }
 
@@ -141,10 +145,11 @@ fn judge(
 }
 
 fn open_options(options: &RunOptions) -> OpenOptions {
-    let Draws { nonce, host } = options.circumstances.draws;
+    let Draws { nonce, host, sequence } = options.circumstances.draws;
     OpenOptions {
         nonce,
         host,
+        sequence,
         take_over: options.take_over,
         polite: false,
         retry_limit: options.retry_limit,
