@@ -233,25 +233,6 @@ fn a_plan_gets_no_number_that_nobody_signed_who_is_trusted() {
 }
 
 #[test]
-fn nothing_is_published_behind_the_greatest_number() {
-    let made = Published::new();
-    made.publish("engel.key");
-    made.server
-        .client("plant")
-        .batch_execute(
-            "UPDATE publication SET number = 9223372036854775807,
-             statement = replace(statement, '\"number\":1', '\"number\":9223372036854775807')",
-        )
-        .unwrap();
-    made.plan("2", 2);
-    let last = made.publish("engel.key");
-    assert!(
-        last.code == Some(3) && last.complained.contains("look at `halfrow-station plan published`"),
-        "{last:?}"
-    );
-}
-
-#[test]
 fn what_was_kept_is_looked_at_again_whenever_it_is_used() {
     let made = Published::new();
     made.publish("engel.key");
