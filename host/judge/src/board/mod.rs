@@ -78,7 +78,7 @@ pub struct Board {
     pub welcome: Welcome,
     /// What it can do.
     pub capabilities: Capabilities,
-    /// How the session was opened.
+    /// How the session was opened, and the next one is.
     options: OpenOptions,
     /// The shapes of the tables of the last commit, and of the other bank.
     shapes: [Option<GridShape>; 2],
@@ -114,24 +114,17 @@ impl Board {
         }
     }
 
-    /// Opens another session over the same link. Whatever is still under way of the one before means nothing in it.
+    /// Opens another session over the same link, by a nonce that none before had. Whatever is still under way of the one before means
+    /// nothing in it.
     ///
     /// # Errors
     /// [`BoardError`] as of [`Self::open`].
-    pub(crate) fn greet_again(&mut self, options: &OpenOptions) -> Result<(), BoardError> {
+    pub(crate) fn open_another_session(&mut self, nonce: u32) -> Result<(), BoardError> {
+        self.options.nonce = nonce;
         self.conversation.leave_session();
-        self.welcome = greet_or_take_over(&mut self.conversation, options)?;
+        self.welcome = greet_or_take_over(&mut self.conversation, &self.options)?;
         self.counted_from = self.conversation.tally.packets_out;
         Ok(())
-    }
-
-    /// The same, as the host that opened the first one.
-    ///
-    /// # Errors
-    /// [`BoardError`] as of [`Self::open`].
-    pub(crate) fn open_another_session(&mut self) -> Result<(), BoardError> {
-        self.options.nonce = self.options.nonce.wrapping_add(1);
-        self.greet_again(&self.options.clone())
     }
 
     /// What the board did with rows in this session that no link can do.

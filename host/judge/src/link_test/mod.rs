@@ -43,7 +43,7 @@ pub fn run(board: &mut Board, seconds: Duration, seed: u64) -> Result<Figures, L
     let to_board = test.outward()?;
     let damaged_before = test.damaged_out()?;
     // A late copy of what was written would make a sound board's tables wrong from then on.
-    test.board.open_another_session()?;
+    test.board.open_another_session(test.board.welcome.nonce.wrapping_add(1))?;
     let (to_host, wrong_reads) = test.inward()?;
     let together = test.together()?;
     let damaged_out = damaged_before + test.damaged_out()?;

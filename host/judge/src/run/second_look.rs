@@ -5,7 +5,7 @@
 
 use super::findings::End;
 use super::steps::Run;
-use crate::board::{BoardError, OpenOptions};
+use crate::board::BoardError;
 use crate::progress::Step;
 use crate::result::{CheckName, Doubt, Finding};
 use crate::verdict::Cause;
@@ -49,8 +49,7 @@ impl Run<'_> {
     /// Opens a session in which no copy of an earlier one's requests means anything, `number` of those of the run, from 1.
     pub(super) fn open_session(&mut self, number: u32) -> Result<(), End> {
         let nonce = self.way_back.options.nonce.wrapping_add(NONCE + number);
-        let options = OpenOptions { nonce, ..self.way_back.options.clone() };
-        self.board.greet_again(&options).map_err(|error| End::board(CheckName::Link, &error))
+        self.board.open_another_session(nonce).map_err(|error| End::board(CheckName::Link, &error))
     }
 
     /// Why the board may not be as the host made it in this session, although it is sound and `check` found something.
