@@ -15,8 +15,7 @@ pub fn probe(target: &Target) -> Answer {
         Ok(candidate) => candidate,
         Err(error) => return not_opened(&error),
     };
-    let Draws { nonce, host, sequence } = Draws::draw();
-    let options = OpenOptions { nonce, host, sequence, polite: true, ..OpenOptions::default() };
+    let options = OpenOptions { polite: true, ..Draws::draw().into() };
     match Board::open(candidate.link, &options) {
         Ok(mut board) => {
             let (name, datapath) = (board.capabilities.name.clone(), board.capabilities.datapath);

@@ -156,15 +156,11 @@ impl BoardArguments {
         settings: &Settings,
         draws: Option<Draws>,
     ) -> Result<OpenOptions, Failure> {
-        let Draws { nonce, host, sequence } = draws.unwrap_or_else(Draws::draw);
         Ok(OpenOptions {
-            nonce,
-            host,
-            sequence,
             take_over: self.take_over,
-            polite: false,
             retry_limit: self.retry_limit(settings),
             stop: self.stop(settings)?.limited(self.timeout(settings)?),
+            ..draws.unwrap_or_else(Draws::draw).into()
         })
     }
 

@@ -167,8 +167,7 @@ fn greet(target: &Target) -> Result<BoardReport, (Failure, bool)> {
         let may_change = error.class() != Class::Call;
         (error.into(), may_change)
     })?;
-    let Draws { nonce, host, sequence } = Draws::draw();
-    let options = OpenOptions { nonce, host, sequence, polite: true, ..OpenOptions::default() };
+    let options = OpenOptions { polite: true, ..Draws::draw().into() };
     let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| {
         let failure = Failure::from(error);
         let may_change = failure.exit == Exit::Error;

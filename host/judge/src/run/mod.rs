@@ -87,6 +87,12 @@ pub struct Draws {
     pub sequence: u16,
 }
 
+impl From<Draws> for OpenOptions {
+    fn from(Draws { nonce, host, sequence }: Draws) -> Self {
+        Self { nonce, host, sequence, ..Self::default() }
+    }
+}
+
 impl Draws {
     /// Draws them from the operating system's randomness.
     #[must_use]
@@ -145,15 +151,11 @@ fn judge(
 }
 
 fn open_options(options: &RunOptions) -> OpenOptions {
-    let Draws { nonce, host, sequence } = options.circumstances.draws;
     OpenOptions {
-        nonce,
-        host,
-        sequence,
         take_over: options.take_over,
-        polite: false,
         retry_limit: options.retry_limit,
         stop: options.stop.clone().limited(options.timeout),
+        ..options.circumstances.draws.into()
     }
 }
 

@@ -268,9 +268,8 @@ impl Common<'_> {
 
     fn open(&self, within: Duration) -> Result<(Board, BoardKind), Box<Try>> {
         let candidate = self.candidate()?;
-        let Draws { nonce, host, sequence } = Draws::draw();
         let stop = self.stop.clone().limited(Some(within)).within(Some(within));
-        let options = OpenOptions { nonce, host, sequence, stop, ..OpenOptions::default() };
+        let options = OpenOptions { stop, ..Draws::draw().into() };
         let board = Board::open(candidate.link, &options)
             .map_err(|(error, _)| Box::new(Try::error(error.cause(), &error)))?;
         let kind = candidate.kind.confirmed_by(board.capabilities.nature);
