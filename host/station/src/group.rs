@@ -12,7 +12,7 @@ const FIRST: Duration = Duration::from_millis(1);
 const LONGEST: Duration = Duration::from_millis(10);
 
 /// How long what was killed is waited for.
-pub(crate) const KILLED: Duration = Duration::from_secs(10);
+const KILLED: Duration = Duration::from_secs(10);
 
 /// How a process ended, if it does within `limit`.
 pub(crate) fn waited(child: &mut Child, limit: Duration) -> Option<ExitStatus> {

@@ -19,9 +19,12 @@ impl Kept {
 
     /// Whether it is what was asked under the header `sent`, and no answer: a board's window is ahead of the host's.
     pub(super) fn is_echo_of(&self, sent: &Header, asking: &Asking<'_>) -> bool {
-        let mut payload = Vec::new();
-        asking.write(&mut payload);
-        self.header == *sent && self.payload == payload
+        let asked = || {
+            let mut payload = Vec::new();
+            asking.write(&mut payload);
+            payload
+        };
+        self.header == *sent && self.payload == asked()
     }
 }
 

@@ -141,6 +141,7 @@ pub(super) fn tagged(value: &impl Serialize) -> (String, Parameters) {
     let parameters = value.get("parameters").and_then(Value::as_object).cloned().unwrap_or_default();
     (code, parameters)
 }
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -244,9 +244,10 @@ impl Run<'_> {
                 active = place;
             }
         }
-        match tables.first() {
-            Some(first) if active > 0 => self.activate(first)?,
-            _ => {}
+        if active > 0
+            && let Some(first) = tables.first()
+        {
+            self.activate(first)?;
         }
         Ok(tables)
     }
