@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use jiff::tz::TimeZone;
 use jiff::{Timestamp, Zoned};
@@ -17,6 +17,26 @@ const ZONES: &str = "/usr/share/zoneinfo";
 pub(crate) fn now_ms() -> i64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     i64::try_from(since.as_millis()).unwrap_or(i64::MAX)
+}
+
+/// Another computer's clock, as it was heard.
+#[derive(Clone, Copy, Debug)]
+pub struct HeardClock {
+    ms: i64,
+    heard: Instant,
+}
+
+impl HeardClock {
+    /// It shows `ms`, milliseconds since 1970, UTC, at this moment.
+    #[must_use]
+    pub fn shows(ms: i64) -> Self {
+        Self { ms, heard: Instant::now() }
+    }
+
+    /// What it shows by now, however the own clock was set since.
+    pub(crate) fn now_ms(&self) -> i64 {
+        self.ms.saturating_add(i64::try_from(self.heard.elapsed().as_millis()).unwrap_or(i64::MAX))
+    }
 }
 
 /// This moment as a clock on the station's wall shows it.

@@ -94,6 +94,8 @@ codes::codes! {
         Newer [path, found, known] => "database-newer",
         Older [path, found, known] => "database-older",
         OtherSchema [path, version] => "database-of-other-schema",
+        ClockApart [minutes] => "clocks-apart",
+        DatedAhead [minutes] => "last-run-dated-ahead",
         NotOpen [run] => "run-not-open",
         ReadsOtherwise [run] => "run-reads-otherwise",
         = Blob,

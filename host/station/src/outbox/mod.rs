@@ -15,6 +15,7 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+pub use crate::clock::HeardClock;
 pub use plant::PlantSink;
 pub use sinks::{SinkError, SinkSettingsError, open};
 
@@ -45,8 +46,11 @@ pub trait Sink: Send {
     /// [`Undelivered`]
     fn take(&mut self, parcel: &Parcel) -> Result<(), Undelivered>;
 
-    /// So much is to be sent to it, and so much of that waits for a person.
-    fn beat(&mut self, _unsent: u32, _dead: u32) {}
+    /// So much is to be sent to it, and so much of that waits for a person. Returns the clock by which it orders what several
+    /// stations send, if it does and is there.
+    fn beat(&mut self, _unsent: u32, _dead: u32) -> Option<HeardClock> {
+        None
+    }
 
     /// There is nothing to do for now.
     fn rest(&mut self) {}
@@ -178,7 +182,9 @@ pub enum OutboxError {
 fn beat(store: &SharedStore, sink: &mut dyn Sink) {
     let unsent = store.with(|store| Snapshot::take(store.folder())?.unsent()).unwrap_or_default();
     let ours = unsent.iter().find(|unsent| unsent.sink == sink.name());
-    sink.beat(ours.map_or(0, |ours| ours.entries), ours.map_or(0, |ours| ours.dead));
+    if let Some(clock) = sink.beat(ours.map_or(0, |ours| ours.entries), ours.map_or(0, |ours| ours.dead)) {
+        store.with(|store| store.heard_plant(clock));
+    }
 }
 
 /// Sends until the outbox is closed.

@@ -1,6 +1,7 @@
 //! The plant as a sink.
 
 use super::{Sink, Undelivered};
+use crate::clock::HeardClock;
 use crate::said::Said;
 use crate::store::{Parcel, Plant, PlantAddress, PlantError, Presence};
 
@@ -10,8 +11,8 @@ pub struct PlantSink {
     address: PlantAddress,
     station: Presence,
     plant: Option<Plant>,
-    /// Whether the plant knows that this station is who it says since the connection came about.
-    is_known: bool,
+    /// The plant's clock, once it knows that this station is who it says since the connection came about.
+    clock: Option<HeardClock>,
 }
 
 impl PlantSink {
@@ -21,17 +22,16 @@ impl PlantSink {
     /// The plant at `address`, which hears of `station`.
     #[must_use]
     pub fn new(address: PlantAddress, station: Presence) -> Self {
-        Self { address, station, plant: None, is_known: false }
+        Self { address, station, plant: None, clock: None }
     }
 
     /// The plant, which has heard of this station.
     fn plant(&mut self) -> Result<&mut Plant, PlantError> {
         let plant = match self.plant.take() {
-            Some(plant) if self.is_known => plant,
+            Some(plant) if self.clock.is_some() => plant,
             kept => {
                 let mut plant = kept.map_or_else(|| Plant::connect(&self.address), Ok)?;
-                plant.see(&self.station)?;
-                self.is_known = true;
+                self.clock = Some(plant.see(&self.station)?);
                 plant
             }
         };
@@ -58,12 +58,13 @@ impl Sink for PlantSink {
         })
     }
 
-    fn beat(&mut self, unsent: u32, dead: u32) {
-        (self.station.unsent, self.station.dead, self.is_known) = (unsent, dead, false);
+    fn beat(&mut self, unsent: u32, dead: u32) -> Option<HeardClock> {
+        (self.station.unsent, self.station.dead, self.clock) = (unsent, dead, None);
         if let Err(error) = self.plant() {
             // What is to be sent will say so, too.
             tracing::debug!("the plant has not heard of this station: {}", Said::of(&error));
         }
+        self.clock
     }
 
     fn rest(&mut self) {

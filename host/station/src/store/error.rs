@@ -129,6 +129,24 @@ pub enum StoreError {
         /// The version.
         version: i64,
     },
+    /// The station's clock and the plant's show different times.
+    #[error(
+        "the station's clock and the plant's are {minutes} min apart, and the plant tells by them which judgement of a unit is the \
+         last one; set the one that is wrong"
+    )]
+    ClockApart {
+        /// How far.
+        minutes: u64,
+    },
+    /// A run that was kept here began later than this moment.
+    #[error(
+        "the last run here is dated {minutes} min ahead of the station's clock, and the plant would take each run from now on for \
+         as late; set the clock if it is slow, or else give the station a new folder once all is sent (docs/plant.md)"
+    )]
+    DatedAhead {
+        /// How far.
+        minutes: u64,
+    },
     /// The run is not open any more, or somebody else's.
     #[error("the run {run} is no longer this program's to finish; its lane was taken over")]
     NotOpen {

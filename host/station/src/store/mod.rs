@@ -14,6 +14,7 @@ mod again;
 mod audit;
 mod bindings;
 mod database;
+mod dated;
 mod error;
 mod keeping;
 mod migrations;
@@ -55,8 +56,9 @@ pub use snapshot::{Rebuilt, Snapshot, TABLES};
 pub use table::{Key, Row, Rows};
 pub use waivers::{NoWaiver, Waiver};
 
+use crate::clock::{self, HeardClock};
+use crate::ids;
 use crate::record::{Blobs, PlanRecord, Record, RunHead};
-use crate::{clock, ids};
 
 /// How long a reader waits for a writer.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -169,6 +171,8 @@ pub struct Store {
     admitted: BTreeMap<String, String>,
     /// To whom all is sent on.
     sinks: Arc<[String]>,
+    /// The plant's, if it was heard since the start.
+    plant_clock: Option<HeardClock>,
     _lock: File,
 }
 
@@ -208,6 +212,7 @@ impl Store {
             writer,
             admitted: BTreeMap::new(),
             sinks: Arc::default(),
+            plant_clock: None,
             _lock: lock,
         })
     }
@@ -245,8 +250,10 @@ impl Store {
     /// Enters an open run. Only then may its board be touched. Returns its head with the unit's id and the fence.
     ///
     /// # Errors
-    /// [`StoreError`] when the lane or the unit has an open run already, or the database does not take it.
+    /// [`StoreError`] when the lane or the unit has an open run already, the database does not take it, or it is dated otherwise
+    /// than the plant would date it.
     pub fn begin(&mut self, run: RunHead, plan: &PlanRecord) -> Result<RunHead, StoreError> {
+        self.is_dated(&run)?;
         let (unit_id, fence) = self.change("to begin a run", |to| rows::open(to, &run, plan))?;
         Ok(RunHead { unit_id, fence, ..run })
     }

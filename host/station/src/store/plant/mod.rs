@@ -25,7 +25,7 @@ use std::path::PathBuf;
 
 use super::database::{Database, DatabaseError, values};
 use super::{Parcel, StoreError, migrations, statements as sql};
-use crate::clock;
+use crate::clock::{self, HeardClock};
 
 /// A delivery that did not come about.
 #[derive(Debug, thiserror::Error)]
@@ -186,16 +186,17 @@ impl Plant {
         }
     }
 
-    /// Enters that this station is there.
+    /// Enters that this station is there. Returns the plant's clock.
     ///
     /// # Errors
     /// [`PlantError::OtherStation`] when another station has its name.
-    pub fn see(&mut self, station: &Presence) -> Result<(), PlantError> {
+    pub fn see(&mut self, station: &Presence) -> Result<HeardClock, PlantError> {
         let Presence { name, origin, program, plans, unsent, dead } = station;
-        let changed = self.carry_out("to hear of a station", |to| {
-            to.execute(sql::SEEN, values![name, origin, program, plans, *unsent, *dead])
+        let seen_ms = self.carry_out("to hear of a station", |to| {
+            let of = values![name, origin, program, plans, *unsent, *dead];
+            to.first(sql::SEEN, of, |row| row.get(0))
         })?;
-        if changed == 1 { Ok(()) } else { Err(PlantError::OtherStation { name: name.clone() }) }
+        seen_ms.map(HeardClock::shows).ok_or_else(|| PlantError::OtherStation { name: name.clone() })
     }
 
     /// Forgets which folder the station of this name has, so that it may have another one; the audit keeps who said so, and

@@ -8,7 +8,7 @@ use halfrow_station::record::{
     Attachment, BoardSeen, Conclusion, DeviceSeen, JobClaim, PlanRecord, Record, RunCause, RunHead, SCHEMA,
     StepOutcome, StepRecord, SuspectRecord, judged,
 };
-use halfrow_station::store::{Folder, Snapshot, Store};
+use halfrow_station::store::{Folder, Snapshot, Store, StoreError};
 use tempfile::TempDir;
 
 /// 1 November 2026, midnight UTC.
@@ -137,9 +137,14 @@ impl Made {
 
     /// Begins a run.
     pub(crate) fn begin(&mut self, run: &Run) -> (RunHead, PlanRecord) {
+        self.try_begin(run).unwrap()
+    }
+
+    /// As [`Self::begin`], if the store takes it.
+    pub(crate) fn try_begin(&mut self, run: &Run) -> Result<(RunHead, PlanRecord), StoreError> {
         self.entered += 1;
         let plan = plan(run.plan);
-        (self.store.begin(self.head(run), &plan).unwrap(), plan)
+        Ok((self.store.begin(self.head(run), &plan)?, plan))
     }
 
     /// Ends it.

@@ -1,6 +1,7 @@
 //! The plant, on a real PostgreSQL server, and what comes to it from stations.
 
 mod checked;
+mod clocks;
 mod cut;
 mod figures;
 mod late;

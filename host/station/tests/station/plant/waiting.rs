@@ -8,7 +8,7 @@ use crate::common::plant_settings;
 use crate::lanes::floor::{SERIALS, Station};
 
 /// A station of this name whose settings have this under `[plant]`.
-fn station(server: &Server, name: &str, more: &str) -> Station {
+pub(crate) fn station(server: &Server, name: &str, more: &str) -> Station {
     let station = Station::with(&["mock"], "");
     let path = station.path("station.toml");
     let text = fs::read_to_string(&path).unwrap();

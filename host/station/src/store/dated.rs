@@ -1,0 +1,37 @@
+//! Whether a run is dated as those of other stations are: a plant tells which of two judgements of a unit is the later one by
+//! when they began.
+
+use super::{Store, StoreError};
+use crate::clock::HeardClock;
+use crate::ids;
+use crate::outbox::PlantSink;
+use crate::record::RunHead;
+
+/// How far a date may be off: less than a board takes from one station to another.
+const TOLERATED_MS: i64 = 5 * 60_000;
+const MINUTE_MS: u64 = 60_000;
+
+impl Store {
+    /// The plant's clock was heard.
+    pub fn heard_plant(&mut self, clock: HeardClock) {
+        self.plant_clock = Some(clock);
+    }
+
+    /// Refuses a run that a plant would take for an earlier or later one than it is. Whoever sends nothing to a plant may date
+    /// runs as it likes: they are in order among themselves.
+    pub(super) fn is_dated(&self, run: &RunHead) -> Result<(), StoreError> {
+        if !self.sinks.iter().any(|sink| sink == PlantSink::NAME) {
+            return Ok(());
+        }
+        let minutes = |ms: i64| ms.unsigned_abs().div_ceil(MINUTE_MS);
+        let apart_ms = self.plant_clock.map_or(0, |plant| run.started_ms.saturating_sub(plant.now_ms()));
+        if apart_ms.abs() > TOLERATED_MS {
+            return Err(StoreError::ClockApart { minutes: minutes(apart_ms) });
+        }
+        let ahead_ms = ids::made_ms(&run.id).saturating_sub(run.started_ms);
+        if ahead_ms > TOLERATED_MS {
+            return Err(StoreError::DatedAhead { minutes: minutes(ahead_ms) });
+        }
+        Ok(())
+    }
+}

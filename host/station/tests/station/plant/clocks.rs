@@ -1,0 +1,63 @@
+//! Runs that a plant would take for earlier or later than they are.
+
+use std::fs;
+
+use halfrow_station::outbox::{PlantSink, Sink as _};
+use halfrow_station::store::StoreError;
+
+use super::sent::presence;
+use super::server::Server;
+use super::waiting::station;
+use crate::common::now_ms;
+use crate::history::made::{End, HOUR_MS, Made, Run};
+use crate::lanes::floor::SERIALS;
+
+/// The server's clock is an hour fast for whoever connects from now on.
+const FAST: &str = "CREATE FUNCTION public.clock_timestamp() RETURNS timestamptz LANGUAGE sql
+    AS $$ SELECT pg_catalog.clock_timestamp() + interval '1 hour' $$;
+    ALTER DATABASE plant SET search_path = public, pg_catalog";
+
+fn now_of(serial: &str) -> Run {
+    Run { started_ms: now_ms(), ..Run::of(serial, End::Pass) }
+}
+
+/// What the store says of a run that begins at this moment.
+fn begun(made: &mut Made, serial: &str) -> Result<(), StoreError> {
+    made.try_begin(&now_of(serial)).map(drop)
+}
+
+#[test]
+fn no_run_begins_while_the_clocks_of_station_and_plant_are_apart() {
+    let server = Server::prepared();
+    let mut made = Made::new();
+    let origin = made.store.origin().unwrap();
+    let mut sink = PlantSink::new(server.address(), presence("station 7", origin));
+    made.store.sends_to(vec![PlantSink::NAME.to_owned()]).unwrap();
+    // The control: clocks that agree.
+    made.store.heard_plant(sink.beat(0, 0).unwrap());
+    made.run(&now_of("S1"));
+    server.client("plant").batch_execute(FAST).unwrap();
+    sink.rest();
+    made.store.heard_plant(sink.beat(0, 0).unwrap());
+    let refused = begun(&mut made, "S2").unwrap_err();
+    assert!(matches!(refused, StoreError::ClockApart { minutes: 60 }), "{refused}");
+    // Whoever sends to others alone is in order with itself.
+    made.store.sends_to(vec!["mes".to_owned()]).unwrap();
+    begun(&mut made, "S3").unwrap();
+}
+
+#[test]
+fn no_run_begins_behind_one_that_is_dated_ahead() {
+    let server = Server::prepared();
+    let of_plant = station(&server, "12", "");
+    let mut made = Made::new();
+    made.run(&Run { started_ms: now_ms() + HOUR_MS, ..Run::of("S1", End::Pass) });
+    fs::rename(made.closed().keep(), of_plant.path("data")).unwrap();
+    let mut running = of_plant.start();
+    running.scan(SERIALS[0]);
+    running.state("1", "RUNNING");
+    let lane = running.state("1", "READY");
+    assert!(lane["note"].to_string().contains("dated 60 min ahead of the station's clock"), "{lane}");
+    assert_eq!(of_plant.query("SELECT count(*) FROM run"), ["1"]);
+    assert_eq!(running.end().0, Some(0));
+}
