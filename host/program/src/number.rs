@@ -1,6 +1,7 @@
 //! Options that take a number of something, within limits.
 
 use std::ops::RangeInclusive;
+use std::str::FromStr;
 use std::time::Duration;
 
 use clap::builder::{NonEmptyStringValueParser, TypedValueParser};
@@ -12,6 +13,14 @@ pub fn number(unit: &'static str, within: RangeInclusive<f64>) -> impl TypedValu
         let number = text.parse().ok().filter(|number| within.contains(number));
         number.ok_or_else(|| format!("give a number of {unit}, {} to {}", within.start(), within.end()))
     })
+}
+
+/// Such a number as `wanted` names; what it may be depends on more than itself.
+#[must_use]
+pub fn any<T: FromStr + Clone + Send + Sync + 'static>(
+    wanted: &'static str,
+) -> impl TypedValueParser<Value = T> {
+    NonEmptyStringValueParser::new().try_map(move |text| text.parse().map_err(|_| format!("give {wanted}")))
 }
 
 /// A whole number, as a seed is.

@@ -42,6 +42,8 @@ fn a_negative_number_is_refused_by_its_option() {
         &["verify", "--within", "-1"],
         "give a number of seconds, more than 0 and at most 1000000",
     );
+    refused(&folder, &["verify", "--at-speed", "x"], "give a number of seconds");
+    refused(&folder, &["verify", "--width", "6.4"], "give a whole number of samples");
     refused(&folder, &["verify", "--retry-limit", "-1"], "give a number of percent, 0 to 100");
     refused(
         &folder,

@@ -8,7 +8,7 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Arg, Args};
 
 use halfrow_mock::Streamed;
-use halfrow_program::number::number;
+use halfrow_program::number::{any, number};
 
 use super::run::seconds;
 use super::{CallError, Failure};
@@ -30,7 +30,7 @@ pub(super) struct BoardArguments {
     #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD", help = help(Replays::No, MOCK), value_parser = target())]
     board: Option<Target>,
     /// The longest that the run may take, in seconds: of this computer's clock or the link's, whichever is over first
-    #[arg(long, value_name = "SECONDS", env = "HALFROW_TIMEOUT")]
+    #[arg(long, value_name = "SECONDS", env = "HALFROW_TIMEOUT", value_parser = any::<f64>("a number of seconds"))]
     timeout: Option<f64>,
     /// Packets that may be sent again, in percent of those sent, beyond 16; above it the link is too poor [default: 5]
     #[arg(long, value_name = "PERCENT", env = "HALFROW_RETRY_LIMIT", value_parser = number("percent", 0.0..=100.0))]

@@ -7,6 +7,7 @@ use anyhow::{Context as _, bail};
 use clap::builder::{OsStringValueParser, TypedValueParser as _};
 use clap::{Args, ValueEnum};
 use halfrow_model::{BitDepth, Equidistant, Geometry, Kernel, LensError, Phase};
+use halfrow_program::number::any;
 
 use super::{CallError, Failure};
 use halfrow::kernels;
@@ -24,9 +25,11 @@ const DEFAULT_PITCH: f64 = 2.2;
 pub(super) struct LensArguments {
     /// Columns, even, 64 to 2592 [default: 1920, or those of the lens file's pictures]
     #[arg(long, value_name = "SAMPLES")]
+    #[arg(value_parser = any::<usize>("a whole number of samples"))]
     width: Option<usize>,
     /// Rows, 1 to 2048 [default: 1080, or those of the lens file's pictures]
     #[arg(long, value_name = "ROWS")]
+    #[arg(value_parser = any::<usize>("a whole number of rows"))]
     height: Option<usize>,
     /// Bits a sample: 8, 10 or 12
     #[arg(long, default_value = "12", value_parser = depth)]
@@ -42,6 +45,7 @@ pub(super) struct LensArguments {
     /// Distance between two pixels of the camera that the lens file was made with, in micrometres: takes the lens alone from
     /// it, scaled to --pixel-pitch, with its axis in the middle of the frame
     #[arg(long, value_name = "UM")]
+    #[arg(value_parser = any::<f64>("a number of micrometres"))]
     lens_pitch: Option<f64>,
     /// How the row factors are found [default: fitted for a lens file, equation-9 otherwise]
     #[arg(long, value_enum)]
@@ -52,24 +56,31 @@ pub(super) struct LensArguments {
     projection: Option<Projection>,
     /// The most entries of a grid, as many as the board has room for [default: 2048, which every one has]
     #[arg(long, value_name = "ENTRIES", requires = "projection")]
+    #[arg(value_parser = any::<usize>("a whole number of entries"))]
     entries: Option<usize>,
     /// Radius of the image of 180 degrees, in pixels, instead of focal length and pixel pitch
     #[arg(long, value_name = "PIXELS", conflicts_with_all = ["focal_length", "pixel_pitch", "field_of_view"])]
+    #[arg(value_parser = any::<f64>("a number of pixels"))]
     radius: Option<f64>,
     /// Focal length of the lens, in millimetres
     #[arg(long, default_value_t = 1.55, value_name = "MM")]
+    #[arg(value_parser = any::<f64>("a number of millimetres"))]
     focal_length: f64,
     /// Distance between two pixels, in micrometres [default: 2.2]
     #[arg(long, value_name = "UM")]
+    #[arg(value_parser = any::<f64>("a number of micrometres"))]
     pixel_pitch: Option<f64>,
     /// Field of view of the whole image circle, in degrees [default: 180]
     #[arg(long, value_name = "DEGREES")]
+    #[arg(value_parser = any::<f64>("a number of degrees"))]
     field_of_view: Option<f64>,
     /// Column of the optical centre [default: the lens file's, or the middle]
     #[arg(long, value_name = "COLUMN")]
+    #[arg(value_parser = any::<f64>("a column, such as 319.5"))]
     centre_x: Option<f64>,
     /// Row of the optical centre [default: the lens file's, or the middle]
     #[arg(long, value_name = "ROW")]
+    #[arg(value_parser = any::<f64>("a row, such as 239.5"))]
     centre_y: Option<f64>,
 }
 

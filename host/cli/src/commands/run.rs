@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
-use halfrow_program::number::whole_number;
+use halfrow_program::number::{any, whole_number};
 
 use super::board::BoardArguments;
 use super::files::Files;
@@ -39,7 +39,7 @@ pub(super) struct RunArguments {
     operator: Option<String>,
     /// Go on when the board goes away and comes back within so many seconds [30 if no number is given]
     #[arg(long, value_name = "SECONDS", num_args = 0..=1, require_equals = true, default_missing_value = "30")]
-    #[arg(env = "HALFROW_RECONNECT")]
+    #[arg(env = "HALFROW_RECONNECT", value_parser = any::<f64>("a number of seconds"))]
     reconnect: Option<f64>,
     /// Replace what an earlier run has written
     #[arg(long, value_name = "YES|NO", num_args = 0..=1, require_equals = true, default_missing_value = "yes")]

@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use halfrow_program::number::any;
 
 use super::board::{self, MOCK, Replays};
 use super::given::{Decider, Given};
@@ -33,7 +34,7 @@ pub(super) struct Arguments {
     repeat: u32,
     /// Let the board make frames at its full pixel clock for so many seconds of that clock, 0 for none
     /// [default: 3 on hardware, three frames on any other board]
-    #[arg(long, value_name = "SECONDS", env = "HALFROW_AT_SPEED")]
+    #[arg(long, value_name = "SECONDS", env = "HALFROW_AT_SPEED", value_parser = any::<f64>("a number of seconds"))]
     at_speed: Option<f64>,
     /// Take of the run what finds most faults a second, for so many seconds in all
     #[arg(long, value_name = "SECONDS", value_parser = within, conflicts_with_all = ["record", "list"])]
