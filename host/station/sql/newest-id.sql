@@ -1,2 +1,2 @@
--- The greatest id of a run or of a change of a binding, which is in the audit.
-SELECT max(id) FROM (SELECT max(id) AS id FROM run UNION ALL SELECT max(id) FROM audit) AS newest;
+-- The greatest id of a run or of a change of a binding, which is in the audit. Other lines there are in no order with runs.
+SELECT max(id) FROM (SELECT max(id) AS id FROM run UNION ALL SELECT max(id) FROM audit WHERE act = 'rebind') AS newest;

@@ -41,6 +41,11 @@ fn a_clock_that_is_set_back_puts_no_run_in_front_of_an_earlier_one() {
     assert!(id > first, "{id}");
     made.run_as(id, &back);
     assert_eq!((last(&made).as_deref(), faults(&made)), (Some("FAIL"), 0));
+    // Who logged in while the clock was ahead is in no order with runs.
+    let database = Connection::open(made.folder().database()).unwrap();
+    let ahead = super::made::id(BEGIN_MS + 24 * HOUR_MS, 0);
+    let line = "INSERT INTO audit VALUES (?1, ?2, 'weber', 'login', 'weber', '')";
+    assert_eq!(database.execute(line, (&ahead, BEGIN_MS + 24 * HOUR_MS)).unwrap(), 1);
     // A clock that goes on is what it was.
     let later = made.store.new_id(BEGIN_MS + HOUR_MS).unwrap().to_string();
     assert_eq!(later[..13], super::made::id(BEGIN_MS + HOUR_MS, 0)[..13]);
