@@ -166,11 +166,6 @@ impl Conversation {
         step.wait(attempt, bytes, self.link.bytes_per_second(), self.slowest)
     }
 
-    /// Whether all that was queued has left.
-    pub(super) fn is_drained(&self) -> bool {
-        self.outgoing.is_empty()
-    }
-
     /// Bytes that wait to be written.
     pub(super) fn queued(&self) -> usize {
         self.outgoing.len()
@@ -203,6 +198,20 @@ impl Conversation {
         let sequence = self.next_sequence();
         self.rows_sent = self.rows_sent.max(place.row_sequence.saturating_add(1));
         self.queue_packet(Kind::RowIn, sequence, |payload| RowIn::write_samples(place, samples, payload));
+    }
+
+    /// Queues `request` once for each byte that its packet has on the wire between two zeros, with a bit of that byte flipped.
+    pub(super) fn queue_damaged(&mut self, request: &Request<'_>) {
+        let from = self.outgoing.len();
+        self.queue(request, self.sequence);
+        // What is damaged is no packet.
+        self.tally.packets_out -= 1;
+        let whole = self.outgoing.split_off(from);
+        for place in 1..whole.len().saturating_sub(1) {
+            self.outgoing.extend_from_slice(&whole);
+            let byte = self.outgoing.iter_mut().rev().nth(place);
+            byte.into_iter().for_each(|byte| *byte ^= 1 << (place % 8));
+        }
     }
 
     fn queue_packet(&mut self, kind: Kind, sequence: u16, write_payload: impl FnOnce(&mut Vec<u8>)) {
@@ -316,7 +325,7 @@ impl Conversation {
                 self.repeated_changes += u64::from(self.asked.asked_again());
                 self.count_retry()?;
             }
-            if attempt == 0 || self.is_drained() {
+            if attempt == 0 || self.queued() == 0 {
                 self.queue_packet(kind, sequence, |payload| asking.write(payload));
             }
             // The reply may be as long as the longest packet.

@@ -65,6 +65,21 @@ impl Board {
         self.conversation.queue_row(place, samples);
     }
 
+    /// Sends `request` damaged, in each way in which a link can flip a bit of one byte, and waits for nothing.
+    pub(crate) fn give_damaged(&mut self, request: &Request<'_>) {
+        self.conversation.queue_damaged(request);
+    }
+
+    /// What came to the board and back more often than it was sent has its reason by now, and casts no doubt on what was found.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board does not set its counters back.
+    pub(crate) fn excuse_repeats(&mut self) -> Result<(), BoardError> {
+        self.status(true)?;
+        self.conversation.repeated_changes = 0;
+        Ok(())
+    }
+
     /// Streams frames of which the first `given` rows were given, and hands back every row.
     ///
     /// # Errors

@@ -18,6 +18,8 @@ pub enum Rule {
     Entry,
     /// An entry is written where it belongs, and read from there.
     Address,
+    /// A packet with a flipped bit has no effect.
+    Damage,
     /// A commit of tables that read back otherwise is refused.
     CommitCrc,
     /// A commit that names tables which are active or pending is answered, generation 0 is refused, and another is not both.

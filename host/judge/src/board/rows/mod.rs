@@ -161,7 +161,7 @@ impl<'a> Stream<'a> {
             self.send(self.sent);
             self.sent += 1;
         }
-        if self.conversation.is_drained() && self.acknowledgement_sent < self.missing() {
+        if self.conversation.queued() == 0 && self.acknowledgement_sent < self.missing() {
             self.acknowledge();
         }
     }

@@ -5,6 +5,7 @@
 mod bursts;
 mod commits;
 mod compared;
+mod damage;
 mod grids;
 mod power_up;
 mod price;
@@ -92,6 +93,7 @@ impl<'a, 'run> Rules<'a, 'run> {
         self.drop_rows()?;
         self.requests()?;
         self.tables()?;
+        self.damage()?;
         self.commits()?;
         self.rows()?;
         self.wide()?;
