@@ -2,16 +2,19 @@
 //! never PASS.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
-use halfrow::board::{Board, OpenOptions};
+use halfrow::board::{Board, OpenOptions, Stop};
+use halfrow::link::{Candidate, Link, LinkError};
 use halfrow::link_test;
 use halfrow::progress::Silent;
-use halfrow::result::{CheckName, Outcome, Report};
+use halfrow::result::{CheckName, Finding, Outcome, Report};
 use halfrow::run::{Circumstances, Draws, RunOptions, verify};
-use halfrow::verdict::Verdict;
-use halfrow_protocol::message::{Refusal, RefusalCode, Status};
-use halfrow_protocol::{Kind, Reply};
+use halfrow::verdict::{StoppedBy, Verdict};
+use halfrow_protocol::message::{Refusal, RefusalCode, RowOut, Status};
+use halfrow_protocol::{Kind, Packet, Reply, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge};
 use halfrow_tests::system::System;
 
@@ -93,6 +96,158 @@ fn wrong_of_link(broken: bool) -> (u64, bool) {
     let mut board = Board::open(link, &OpenOptions::default()).map_err(|(error, _)| error).unwrap();
     let figures = link_test::run(&mut board, Duration::from_millis(50), 1).unwrap();
     (figures.errors.wrong, delivered.try_recv().is_ok())
+}
+
+/// What comes between a host that has found something and the answer to the STATUS by which it asks whether that is a link's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ends {
+    /// Nothing.
+    Never,
+    /// The link is cut.
+    Cut,
+    /// The run is stopped.
+    Stopped,
+    /// The board has lost the session.
+    SessionLost,
+}
+
+/// A link that breaks when it is told to.
+struct Breakable {
+    link: Box<dyn Link>,
+    is_cut: Arc<AtomicBool>,
+}
+
+impl Link for Breakable {
+    fn exchange(
+        &mut self,
+        outgoing: &[u8],
+        incoming: &mut Vec<u8>,
+        wait: Duration,
+    ) -> Result<usize, LinkError> {
+        if self.is_cut.load(Ordering::Relaxed) {
+            return Err(LinkError::Closed { link: self.name(), at: self.now() });
+        }
+        self.link.exchange(outgoing, incoming, wait)
+    }
+
+    fn now(&self) -> Duration {
+        self.link.now()
+    }
+
+    fn bytes_per_second(&self) -> Option<f64> {
+        self.link.bytes_per_second()
+    }
+
+    fn name(&self) -> String {
+        self.link.name()
+    }
+}
+
+/// What a link does to the first session with a board.
+struct FirstSession {
+    /// Whether it delivers a copy of an old CONFIGURE behind the one with gaps, and loses the answer to that copy. Else
+    /// all rows behind that one are wrong.
+    is_stale: bool,
+    /// The STATUS with which the run ends, from 1, and how.
+    ends: (usize, Ends),
+    is_cut: Arc<AtomicBool>,
+    is_stopped: Arc<AtomicBool>,
+    /// How often STATUS was asked for in it.
+    asked: Arc<AtomicUsize>,
+    greetings: usize,
+    before: Option<Passing>,
+    /// The number of the CONFIGURE in front of the one with gaps.
+    old: Option<u16>,
+}
+
+impl FirstSession {
+    fn alter(&mut self, toward: Toward, packet: Passing) -> Vec<Passing> {
+        self.greetings += usize::from(toward == Toward::Board && packet.is(Kind::Hello));
+        match toward {
+            _ if self.greetings > 1 => vec![packet],
+            Toward::Board => self.request(packet),
+            Toward::Host => self.answer(packet),
+        }
+    }
+
+    fn request(&mut self, packet: Passing) -> Vec<Passing> {
+        if packet.is(Kind::Status) {
+            self.asked.fetch_add(1, Ordering::Relaxed);
+        }
+        let read = Request::read(&Packet { header: packet.header, payload: &packet.payload });
+        let Ok(Request::Configure(configuration)) = read else { return vec![packet] };
+        let before = self.before.replace(packet.clone()).filter(|_| configuration.gap_seed != 0);
+        self.old = self.old.or(before.as_ref().map(|before| before.header.sequence));
+        [packet].into_iter().chain(before.filter(|_| self.is_stale)).collect()
+    }
+
+    /// Ends the run in place of its answer to STATUS.
+    fn end(&self, packet: &Passing) -> Vec<Passing> {
+        let refusal = Refusal { code: RefusalCode::Session, kind: Kind::Status.code(), detail: 0 };
+        let mut lost = packet.saying(&Reply::Refusal(refusal));
+        lost.header.kind = Kind::Refusal.code();
+        self.is_cut.store(self.ends.1 == Ends::Cut, Ordering::Relaxed);
+        self.is_stopped.store(self.ends.1 == Ends::Stopped, Ordering::Relaxed);
+        Vec::from_iter((self.ends.1 == Ends::SessionLost).then_some(lost))
+    }
+
+    fn answer(&self, packet: Passing) -> Vec<Passing> {
+        let ends = self.ends.0 == self.asked.load(Ordering::Relaxed) && packet.is(Kind::Status);
+        match packet.reply() {
+            Some(Reply::Status(_)) if ends => self.end(&packet),
+            Some(Reply::Configure) if self.is_stale && self.old == Some(packet.header.sequence) => Vec::new(),
+            Some(Reply::RowOut(row)) if self.old.is_some() && !self.is_stale => {
+                let mut packed = row.packed.to_vec();
+                packed[0] ^= 1;
+                vec![packet.saying(&Reply::RowOut(RowOut { packed: &packed, ..row }))]
+            }
+            _ => vec![packet],
+        }
+    }
+}
+
+/// The report on a board behind such a link, and how often STATUS was asked for in the first session.
+fn first_session(is_stale: bool, ends: (usize, Ends)) -> (Report, usize) {
+    let [is_cut, is_stopped] = [(); 2].map(|()| Arc::new(AtomicBool::new(false)));
+    let asked = Arc::new(AtomicUsize::new(0));
+    let mut first = FirstSession {
+        is_stale,
+        ends,
+        is_cut: Arc::clone(&is_cut),
+        is_stopped: Arc::clone(&is_stopped),
+        asked: Arc::clone(&asked),
+        greetings: 0,
+        before: None,
+        old: None,
+    };
+    let alter = move |toward, packet: Passing| first.alter(toward, packet);
+    let candidate = Altered::new(&halfrow_mock::Options::default(), alter).candidate();
+    let link = Box::new(Breakable { link: candidate.link, is_cut });
+    let stop = Stop::when(move || is_stopped.load(Ordering::Relaxed).then_some(StoppedBy::Person));
+    let options = RunOptions { stop, ..RunOptions::default() };
+    let report = verify(&System::TINY.plan(), Candidate { link, ..candidate }, &options, &Silent);
+    (report.unwrap().report, asked.load(Ordering::Relaxed))
+}
+
+/// The last STATUS of the first session is the one by which it is asked whether a request came twice.
+#[test]
+fn an_end_amid_the_question_whether_a_request_came_twice_makes_no_sound_board_fail() {
+    let (report, last) = first_session(true, (0, Ends::Never));
+    let is_known = matches!(report.finding, Finding::RightInAnotherSession { .. });
+    assert!(is_known, "{}", report.headline());
+    for ends in [Ends::Cut, Ends::Stopped, Ends::SessionLost] {
+        let (report, _) = first_session(true, (last, ends));
+        assert_eq!(report.verdict, Verdict::Error, "{ends:?}: {}", report.headline());
+    }
+}
+
+/// Whoever stops a run leaves the board answering.
+#[test]
+fn a_stop_amid_that_question_makes_no_error_of_a_board_that_is_wrong() {
+    let (report, last) = first_session(false, (0, Ends::Never));
+    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+    let (report, _) = first_session(false, (last, Ends::Stopped));
+    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
 }
 
 #[test]

@@ -151,9 +151,12 @@ impl Conversation {
         self.link.is_exclusive()
     }
 
-    /// From now on nothing but a deadline ends a wait.
-    pub(super) fn disregard_stop(&mut self) {
-        self.stop = Stop::default();
+    /// Does `act`, in which nothing but a deadline ends a wait.
+    pub(super) fn disregarding_stop<T>(&mut self, act: impl FnOnce(&mut Self) -> T) -> T {
+        let stop = std::mem::take(&mut self.stop);
+        let done = act(self);
+        self.stop = stop;
+        done
     }
 
     /// The time since `then`; none if the link's clock went back, as that of a spoilt recording does.

@@ -199,15 +199,24 @@ impl Board {
     /// # Errors
     /// [`BoardError`] when no answer comes.
     pub fn status(&mut self, clear: bool) -> Result<Status, BoardError> {
-        let status =
-            self.conversation.request(&Request::Status { clear }, Step::Request, |reply| match reply {
-                Reply::Status(status) => Some(status),
-                _ => None,
-            })?;
+        let status = status(&mut self.conversation, clear, Step::Request)?;
         if clear {
             self.counted_from = self.conversation.tally.packets_out;
         }
         Ok(status)
+    }
+
+    /// The board's counters, although the run was stopped: then they are waited for as the end of a session is.
+    ///
+    /// # Errors
+    /// [`BoardError`] when no answer comes.
+    pub(crate) fn status_although_stopped(&mut self) -> Result<Status, BoardError> {
+        match self.status(false) {
+            Err(BoardError::Stopped(_) | BoardError::Timeout { .. }) => {
+                self.conversation.disregarding_stop(|conversation| status(conversation, false, Step::Close))
+            }
+            status => status,
+        }
     }
 
     /// The packets that were sent since the board's counters were set back, all tries counted.
@@ -302,6 +311,13 @@ impl Board {
     }
 }
 
+fn status(conversation: &mut Conversation, clear: bool, step: Step) -> Result<Status, BoardError> {
+    conversation.request(&Request::Status { clear }, step, |reply| match reply {
+        Reply::Status(status) => Some(status),
+        _ => None,
+    })
+}
+
 fn reset_to(conversation: &mut Conversation, reset: Reset, step: Step) -> Result<(), BoardError> {
     let next_row = reset.next_row;
     let reset = Request::Reset(reset);
@@ -311,9 +327,8 @@ fn reset_to(conversation: &mut Conversation, reset: Reset, step: Step) -> Result
 }
 
 fn close(conversation: &mut Conversation) {
-    conversation.disregard_stop();
     let reset = Reset { level: ResetLevel::Session, next_row: conversation.credit() };
-    match reset_to(conversation, reset, Step::Close) {
+    match conversation.disregarding_stop(|conversation| reset_to(conversation, reset, Step::Close)) {
         // A session that is lost is closed: what a board says when the reply to its RESET was lost.
         Ok(()) | Err(BoardError::SessionLost) => {}
         Err(error) => tracing::debug!("the session was not closed: {error}"),

@@ -5,7 +5,6 @@
 
 use super::findings::End;
 use super::steps::Run;
-use crate::board::BoardError;
 use crate::progress::Step;
 use crate::result::{CheckName, Doubt, Finding};
 use crate::verdict::Cause;
@@ -58,16 +57,9 @@ impl Run<'_> {
         if repeated > 0 {
             return Some(Doubt::RequestsTwice { requests: repeated });
         }
-        let status = match self.board.status(false) {
-            Ok(status) => status,
-            // A run that is stopped, or whose board is gone, has seen what it has seen.
-            Err(
-                BoardError::Stopped(_)
-                | BoardError::Timeout { .. }
-                | BoardError::Link { .. }
-                | BoardError::SessionLost,
-            ) => return None,
-            Err(_) => return Some(Doubt::PacketsUncounted {}),
+        // Without an answer nothing tells what the link did before, whatever keeps it away.
+        let Ok(status) = self.board.status_although_stopped() else {
+            return Some(Doubt::PacketsUncounted {});
         };
         let (counted, sent) = (u64::from(status.packets), self.board.packets_since_clear());
         let counters_alone = check == CheckName::Counters;
