@@ -160,6 +160,21 @@ fn a_board_that_reorders_rows_is_told_from_a_link_that_does() {
     passes(&reorders(false));
 }
 
+/// In the order in which they were sent, and with each other's numbers.
+#[test]
+fn of_two_rows_with_each_other_s_numbers_the_earlier_one_left_late() {
+    let report = judge_each(&System::TINY, |_, mut packet| {
+        match place(&packet) {
+            Some(at) if at.row == 4 => packet.header.sequence += 1,
+            Some(at) if at.row == 5 => packet.header.sequence -= 1,
+            _ => {}
+        }
+        packet
+    });
+    let sentence = "the board reorders rows: row 4 of frame 0 left it behind a later row";
+    fails(&report, CheckName::Frames, sentence);
+}
+
 /// STATUS with another value in one counter.
 fn with_counter(change: fn(&mut halfrow_protocol::message::Status)) -> Report {
     judge_each(&System::TINY, move |_, packet| match packet.reply() {

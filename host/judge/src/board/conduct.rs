@@ -40,7 +40,7 @@ pub(crate) enum Misconduct {
 /// A ROW_OUT packet that came.
 struct Came {
     number: u16,
-    row_sequence: u32,
+    place: RowPlace,
     repeats: u16,
     digest: u32,
 }
@@ -75,20 +75,19 @@ impl Conduct {
 
     /// Takes a row in the packet `number` of the board's count, when rows before `sent` were sent.
     fn row(&mut self, number: u16, row: &RowOut<'_>, sent: u32) {
-        let (place, row_sequence) = (row.place, row.place.row_sequence);
-        if row_sequence >= sent {
+        let place = row.place;
+        if place.row_sequence >= sent {
             self.note(Misconduct::NeverSent { place });
         }
         let digest = digest(row);
-        let came = Came { number, row_sequence, repeats: row.repeats, digest };
+        let came = Came { number, place, repeats: row.repeats, digest };
         if self.packets.iter().any(|earlier| earlier.is_another(&came)) {
             self.note(Misconduct::NumberedTwice { place, number });
         }
-        if let Some(late) = self.packets.iter().find_map(|earlier| earlier.misordered(&came)) {
-            let place = if late == row_sequence { place } else { RowPlace { row_sequence: late, ..place } };
+        if let Some(place) = self.packets.iter().find_map(|earlier| earlier.misordered(&came)) {
             self.note(Misconduct::OutOfOrder { place });
         }
-        if *self.rows.entry(row_sequence).or_insert(digest) != digest {
+        if *self.rows.entry(place.row_sequence).or_insert(digest) != digest {
             self.note(Misconduct::CopyDiffers { place });
         }
         if self.rows.len() > ROWS {
@@ -104,21 +103,22 @@ impl Conduct {
 impl Came {
     /// Whether two packets have one number and are not the same packet, delivered twice.
     fn is_another(&self, other: &Self) -> bool {
-        let same = (self.row_sequence, self.repeats, self.digest)
-            == (other.row_sequence, other.repeats, other.digest);
+        let same = (self.place.row_sequence, self.repeats, self.digest)
+            == (other.place.row_sequence, other.repeats, other.digest);
         self.number == other.number && !same
     }
 
     /// Of two rows that left for the first time, the one whose packet was numbered behind that of a later row.
-    fn misordered(&self, other: &Self) -> Option<u32> {
-        if self.repeats > 0 || other.repeats > 0 || self.row_sequence == other.row_sequence {
+    fn misordered(&self, other: &Self) -> Option<RowPlace> {
+        let [own, others] = [self, other].map(|came| came.place.row_sequence);
+        if self.repeats > 0 || other.repeats > 0 || own == others {
             return None;
         }
         // Numbers wrap, and all that is compared lies close together.
         let numbered_before = other.number.wrapping_sub(self.number) < 1 << 15;
-        let is_before = self.row_sequence < other.row_sequence;
-        (self.number != other.number && numbered_before != is_before)
-            .then(|| self.row_sequence.min(other.row_sequence))
+        let is_before = own < others;
+        let earlier = if is_before { self.place } else { other.place };
+        (self.number != other.number && numbered_before != is_before).then_some(earlier)
     }
 }
 
@@ -176,6 +176,14 @@ mod tests {
         assert!(is(&[(0, 0, 0, 1), (1, 0, 1, 2)], |found| matches!(found, Misconduct::CopyDiffers { .. })));
         assert!(is(&[(0, 0, 0, 1), (0, 1, 0, 1)], |found| matches!(found, Misconduct::NumberedTwice { .. })));
         assert!(is(&[(0, 9, 0, 1)], |found| matches!(found, Misconduct::NeverSent { .. })));
-        assert!(is(&[(0, 1, 0, 1), (1, 0, 0, 1)], |found| matches!(found, Misconduct::OutOfOrder { .. })));
+    }
+
+    /// Whichever of the two came first.
+    #[test]
+    fn of_two_rows_that_left_the_wrong_way_round_the_earlier_one_is_told() {
+        for rows in [[(0, 1, 0, 1), (1, 0, 0, 1)], [(1, 0, 0, 1), (0, 1, 0, 1)]] {
+            let place = RowPlace { row_sequence: 0, frame: 0, row: 0, width: 2, last: false };
+            assert_eq!(found(&rows), Some(Misconduct::OutOfOrder { place }));
+        }
     }
 }
