@@ -30,6 +30,8 @@ pub struct Tally {
     pub packets_out: u64,
     /// Packets read whole.
     pub packets_in: u64,
+    /// Requests that were answered by what they ask for.
+    pub answered: u64,
     /// Packets that came damaged since the session began.
     pub damaged_in: u64,
     /// Packets sent again.
@@ -48,6 +50,7 @@ impl std::ops::AddAssign for Tally {
         self.bytes_in += other.bytes_in;
         self.packets_out += other.packets_out;
         self.packets_in += other.packets_in;
+        self.answered += other.answered;
         self.damaged_in += other.damaged_in;
         self.retries += other.retries;
         self.late += other.late;
@@ -338,6 +341,7 @@ impl Conversation {
                 let late = self.tally.late;
                 if let Some(answer) = self.answer_within(wait, asking, sequence, &accept)? {
                     self.took(attempt, self.since(begun));
+                    self.tally.answered += u64::from(answer.header.kind == kind.code());
                     return Ok(answer);
                 }
                 if self.tally.late > late {

@@ -72,8 +72,8 @@ pub struct RowTiming {
 /// An open session with a board.
 pub struct Board {
     conversation: Conversation,
-    /// Packets that had been sent when the board's counters were set back.
-    counted_from: u64,
+    /// What the link had done when the board's counters were set back.
+    counted_from: Tally,
     /// Its answer to the greeting.
     pub welcome: Welcome,
     /// What it can do.
@@ -96,7 +96,7 @@ impl Board {
             Ok(welcome) => welcome,
             Err(error) => return Err((error, Box::new(conversation.tally))),
         };
-        let counted_from = conversation.tally.packets_out;
+        let counted_from = conversation.tally;
         let capabilities = conversation.request(&Request::Capabilities, Step::Request, |reply| match reply {
             Reply::Capabilities(capabilities) => Some(capabilities),
             _ => None,
@@ -123,7 +123,7 @@ impl Board {
         self.options.nonce = nonce;
         self.conversation.leave_session();
         self.welcome = greet_or_take_over(&mut self.conversation, &self.options)?;
-        self.counted_from = self.conversation.tally.packets_out;
+        self.counted_from = self.conversation.tally;
         Ok(())
     }
 
@@ -201,7 +201,7 @@ impl Board {
     pub fn status(&mut self, clear: bool) -> Result<Status, BoardError> {
         let status = status(&mut self.conversation, clear, Step::Request)?;
         if clear {
-            self.counted_from = self.conversation.tally.packets_out;
+            self.counted_from = self.conversation.tally;
         }
         Ok(status)
     }
@@ -222,7 +222,13 @@ impl Board {
     /// The packets that were sent since the board's counters were set back, all tries counted.
     #[must_use]
     pub(crate) fn packets_since_clear(&self) -> u64 {
-        self.conversation.tally.packets_out.saturating_sub(self.counted_from)
+        self.tally().packets_out.saturating_sub(self.counted_from.packets_out)
+    }
+
+    /// The requests that were answered since the board's counters were set back.
+    #[must_use]
+    pub(crate) fn answered_since_clear(&self) -> u64 {
+        self.tally().answered.saturating_sub(self.counted_from.answered)
     }
 
     /// Whether every packet that was sent since the board's counters were set back came to it whole, and once.

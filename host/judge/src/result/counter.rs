@@ -24,6 +24,8 @@ pub enum Counter {
     RowsUnneeded,
     /// Requests that were refused.
     Refusals,
+    /// Packets that came to the board whole.
+    Packets,
     /// Packets of another session.
     ForeignPackets,
     /// Whether a row is inside the core.
@@ -44,8 +46,18 @@ impl Counter {
             Self::RowsRepeated => "rows sent again",
             Self::RowsUnneeded => "rows that were not needed",
             Self::Refusals => "refusals",
+            Self::Packets => "packets that came to it",
             Self::ForeignPackets => "packets of another session",
             Self::CoreBusy => "rows inside the core",
+        }
+    }
+
+    /// What stands before the right figure in a sentence, where the host knows only a bound.
+    #[must_use]
+    pub(super) const fn bound(self) -> &'static str {
+        match self {
+            Self::Packets => "at least ",
+            _ => "",
         }
     }
 }

@@ -176,6 +176,7 @@ pub fn not_exercised() -> Vec<NotExercised> {
         NotExercised::TableChangeAtSpeed {},
         NotExercised::Rules {},
         NotExercised::Grids {},
+        NotExercised::CountersOfPoorLinks {},
         NotExercised::Depths { bits: vec![8, 10] },
     ]
 }

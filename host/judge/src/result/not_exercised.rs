@@ -67,6 +67,9 @@ pub enum NotExercised {
     Rules {},
     /// Rows that a grid corrects, on a board that takes grids.
     Grids {},
+    /// Counters that are compared over a sound link alone, of a board that counts damaged packets, or others than were sent, where
+    /// the host saw nothing go wrong.
+    CountersOfPoorLinks {},
     /// Depths of the board that no frame had.
     Depths {
         /// Bits of a sample, each.

@@ -1,12 +1,12 @@
-//! What is judged when the last row has come back.
+//! What is judged when the last row has come back, but for the counters.
 
 use super::findings::End;
 use super::judge::{Seen, WrongEntry};
 use super::plan::{DECOY, Generation};
 use super::steps::Run;
-use crate::board::{Bank, Status};
+use crate::board::Bank;
 use crate::diagnosis::{self, Case, Uploaded};
-use crate::result::{Account, CheckName, Counter, Defect, Finding, LatencyReport, Suspect};
+use crate::result::{Account, CheckName, Defect, Finding, Suspect};
 
 impl Run<'_> {
     /// Judges what was seen, the tables and the counters. The first that is wrong ends the run; what else is wrong
@@ -24,6 +24,7 @@ impl Run<'_> {
         self.findings.lap(CheckName::Frames);
         // Counters are of rows that came back as they should; a run that ends early leaves rows inside.
         let counters = frames.is_ok().then(|| self.counters(&status));
+        self.findings.leaves_counters_out = self.leaves_counters_out(&status);
         let latency = latency(&self.findings.seen);
         let mut ends = Vec::new();
         let results = [
@@ -103,43 +104,6 @@ impl Run<'_> {
         Err(End::Failed { check: CheckName::Frames, finding, suspects })
     }
 
-    /// Compares what the board counts with what the host saw. What is compared over any link must agree however poor that
-    /// is; the rest only where nothing was lost or late.
-    fn counters(&self, status: &Status) -> Result<Finding, End> {
-        let (seen, rows) = (&self.findings.seen, self.findings.rows_counted);
-        let expected = u32::try_from(rows).unwrap_or(u32::MAX);
-        let generation = seen.frames.last().map_or(0, |frame| frame.generation.into());
-        let next_row = self.board.acknowledged();
-        let tally = self.board.tally();
-        let repeated = status.rows_repeated.max(self.findings.repeats_counted);
-        let damaged = status.crc_errors.saturating_add(status.framing_errors);
-        let is_calm = tally.retries + tally.strays + tally.damaged_in + u64::from(damaged) == 0
-            && self.board.had_each_packet_once(status);
-        let pairs = [
-            (Counter::RowsIn, status.rows_in, expected, true),
-            (Counter::RowsOut, status.rows_out, expected, true),
-            (Counter::SamplesOver, status.samples_over, 0, true),
-            (Counter::NextRowIn, status.next_row_in, next_row, true),
-            (Counter::NextRowOut, status.next_row_out, next_row, true),
-            (Counter::Generation, status.generation, generation, true),
-            (Counter::RowsRepeated, status.rows_repeated, repeated, true),
-            (Counter::RowsRepeated, status.rows_repeated, 0, is_calm),
-            (Counter::RowsUnneeded, status.rows_unneeded, 0, is_calm),
-            (Counter::Refusals, status.refusals, 0, is_calm),
-            (Counter::ForeignPackets, status.foreign_packets, 0, is_calm),
-        ];
-        let wrong = pairs.into_iter().find(|(_, counted, right, compared)| *compared && counted != right);
-        if let Some((counter, counted, right, _)) = wrong {
-            return Err(miscounted(Finding::CounterWrong { counter, counted, right }));
-        }
-        latencies_counted(status, seen)?;
-        if let Some(finding) = &seen.wrong_pauses {
-            return Err(miscounted(finding.clone()));
-        }
-        let damaged_unseen = if tally.retries == 0 { damaged } else { 0 };
-        Ok(Finding::CountersRight { rows, damaged_unseen })
-    }
-
     fn diagnose(&self) -> Vec<Suspect> {
         let uploaded: Vec<_> = self
             .generations
@@ -176,18 +140,4 @@ fn latency(seen: &Seen) -> Result<Finding, End> {
     };
     let rows = seen.latency.map_or(0, |latency| latency.wrong_rows);
     Err(End::failed(CheckName::Latency, first.finding(rows)))
-}
-
-fn latencies_counted(status: &Status, seen: &Seen) -> Result<(), End> {
-    let (counted_least, counted_most) = (status.least_latency, status.most_latency);
-    match seen.latency {
-        Some(LatencyReport { least, most, .. }) if (counted_least, counted_most) != (least, most) => {
-            Err(miscounted(Finding::LatencyMiscounted { least, most, counted_least, counted_most }))
-        }
-        _ => Ok(()),
-    }
-}
-
-fn miscounted(finding: Finding) -> End {
-    End::failed(CheckName::Counters, finding)
 }

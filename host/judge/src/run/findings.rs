@@ -82,6 +82,8 @@ pub(super) struct Findings {
     pub(super) repeats_counted: u32,
     /// What was left untouched of a board that is right.
     pub(super) not_exercised: Vec<NotExercised>,
+    /// Whether counters were not compared for what the board alone says of its link.
+    pub(super) leaves_counters_out: bool,
     /// What was left untouched at the full pixel clock.
     pub(super) untested_at_speed: Vec<NotExercised>,
     /// Tables that frames in corners were made with, at the full pixel clock.
@@ -113,6 +115,7 @@ impl Findings {
             rows_counted: 0,
             repeats_counted: 0,
             not_exercised: Vec::new(),
+            leaves_counters_out: false,
             untested_at_speed: Vec::new(),
             corners: Vec::new(),
             whole_at_speed: Vec::new(),
@@ -157,6 +160,7 @@ impl Findings {
         (self.seen, self.rows_counted, self.repeats_counted) = (Seen::default(), 0, 0);
         self.checks.retain(|check| matches!(check.name, CheckName::Judge | CheckName::Identity));
         self.not_exercised.clear();
+        self.leaves_counters_out = false;
         self.untested_at_speed.clear();
         self.corners.clear();
         self.whole_at_speed.clear();

@@ -5,6 +5,7 @@
 mod after;
 mod at_speed;
 mod conclude;
+mod counters;
 mod exercised;
 mod findings;
 mod finished;

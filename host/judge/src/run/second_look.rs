@@ -3,6 +3,7 @@
 //! A link that delivers a copy of an old request behind newer ones can leave a sound board with old tables, counters or
 //! settings. In a session of its own no copy of an earlier session means anything.
 
+use super::counters::is_contradictory;
 use super::findings::End;
 use super::steps::Run;
 use crate::progress::Step;
@@ -61,6 +62,10 @@ impl Run<'_> {
         let Ok(status) = self.board.status_although_stopped() else {
             return Some(Doubt::PacketsUncounted {});
         };
+        if is_contradictory(&status) {
+            // Such a board is wrong whatever the link did.
+            return None;
+        }
         let (counted, sent) = (u64::from(status.packets), self.board.packets_since_clear());
         let counters_alone = check == CheckName::Counters;
         let is_doubtful = counted > sent || counters_alone && counted != sent;

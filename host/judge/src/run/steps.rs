@@ -125,6 +125,7 @@ impl Run<'_> {
             self.generations.iter().filter_map(|generation| self.used_of(generation)).collect();
         let generations: Vec<_> = used.iter().chain(&self.findings.corners).collect();
         let has_grid = generations.iter().any(|generation| generation.tables.shape().is_some());
+        let leaves_counters_out = self.findings.leaves_counters_out;
         let no_grid = board.identity.is_some() && grids(&self.board.capabilities).is_some() && !has_grid;
         self.findings.not_exercised = board
             .identity
@@ -134,6 +135,9 @@ impl Run<'_> {
         let untried = !self.findings.has_passed(CheckName::Rules);
         self.findings.not_exercised.extend(untried.then_some(NotExercised::Rules {}));
         self.findings.not_exercised.extend(no_grid.then_some(NotExercised::Grids {}));
+        self.findings
+            .not_exercised
+            .extend(leaves_counters_out.then_some(NotExercised::CountersOfPoorLinks {}));
     }
 
     /// The rows of `generation` that frames were made with, if there were any.

@@ -102,7 +102,7 @@ fn of_board(finding: &Finding) -> String {
             }
         }
         Finding::CounterWrong { counter, counted, right } => {
-            format!("the board counts {counted} {}, and it is {right}", counter.words())
+            format!("the board counts {counted} {}, and it is {}{right}", counter.words(), counter.bound())
         }
         Finding::GapsMiscounted { row, frame, counted, expected } => format!(
             "row {row} of frame {frame} was kept waiting by gaps for {counted} board clocks by the board's count, and the gaps \

@@ -34,6 +34,9 @@ pub fn not_exercised(part: &NotExercised) -> String {
         }
         NotExercised::Rules {} => "what the board must refuse, keep and end".to_owned(),
         NotExercised::Grids {} => "grids, which are datapath 2".to_owned(),
+        NotExercised::CountersOfPoorLinks {} => {
+            "counters that a poor link moves as well, since the board counts damaged packets, or others than were sent".to_owned()
+        }
         NotExercised::Depths { bits } => {
             let depths: Vec<_> = bits.iter().map(u32::to_string).collect();
             format!("samples of {} bits", depths.join(" or "))

@@ -1,0 +1,96 @@
+//! What the board counts, beside what the host saw.
+
+use super::findings::End;
+use super::judge::Seen;
+use super::steps::Run;
+use crate::board::Status;
+use crate::result::{CheckName, Counter, Finding, LatencyReport};
+
+impl Run<'_> {
+    /// Compares what the board counts with what the host saw. What is compared over any link must agree however poor that
+    /// is; the rest only where nothing was lost or late.
+    pub(super) fn counters(&self, status: &Status) -> Result<Finding, End> {
+        let (seen, rows) = (&self.findings.seen, self.findings.rows_counted);
+        let expected = u32::try_from(rows).unwrap_or(u32::MAX);
+        let generation = seen.frames.last().map_or(0, |frame| frame.generation.into());
+        let next_row = self.board.acknowledged();
+        let repeated = status.rows_repeated.max(self.findings.repeats_counted);
+        let is_calm = self.is_calm(status);
+        let pairs = [
+            (Counter::RowsIn, status.rows_in, expected, true),
+            (Counter::RowsOut, status.rows_out, expected, true),
+            (Counter::SamplesOver, status.samples_over, 0, true),
+            (Counter::NextRowIn, status.next_row_in, next_row, true),
+            (Counter::NextRowOut, status.next_row_out, next_row, true),
+            (Counter::Generation, status.generation, generation, true),
+            (Counter::RowsRepeated, status.rows_repeated, repeated, true),
+            (Counter::RowsRepeated, status.rows_repeated, 0, is_calm),
+            (Counter::RowsUnneeded, status.rows_unneeded, 0, is_calm),
+            (Counter::Refusals, status.refusals, 0, is_calm),
+            (Counter::ForeignPackets, status.foreign_packets, 0, is_calm),
+        ];
+        let wrong = pairs.into_iter().find(|(_, counted, right, compared)| *compared && counted != right);
+        if let Some((counter, counted, right, _)) = wrong {
+            return Err(miscounted(Finding::CounterWrong { counter, counted, right }));
+        }
+        packets_counted(status, self.board.answered_since_clear())?;
+        latencies_counted(status, seen)?;
+        if let Some(finding) = &seen.wrong_pauses {
+            return Err(miscounted(finding.clone()));
+        }
+        let damaged_unseen = if self.board.tally().retries == 0 { damaged(status) } else { 0 };
+        Ok(Finding::CountersRight { rows, damaged_unseen })
+    }
+
+    /// Whether nothing was lost or late, by the host and by the board.
+    fn is_calm(&self, status: &Status) -> bool {
+        self.saw_no_trouble() && damaged(status) == 0 && self.board.had_each_packet_once(status)
+    }
+
+    fn saw_no_trouble(&self) -> bool {
+        let tally = self.board.tally();
+        tally.retries + tally.strays + tally.damaged_in == 0
+    }
+
+    /// Whether it is the board alone that says that its link is too poor for some of its counters to be compared.
+    pub(super) fn leaves_counters_out(&self, status: &Status) -> bool {
+        self.saw_no_trouble() && !self.is_calm(status)
+    }
+}
+
+/// Whether a board counts fewer packets than its other counters tell of, which no link brings about.
+pub(super) fn is_contradictory(status: &Status) -> bool {
+    packets_counted(status, 1).is_err()
+}
+
+/// Each row that was taken or not needed, each refusal and each of the `answered` requests came in a packet of its own. What is
+/// foreign is refused, or an acknowledgement.
+fn packets_counted(status: &Status, answered: u64) -> Result<(), End> {
+    let not_answered = [status.rows_in, status.rows_unneeded, status.refusals.max(status.foreign_packets)];
+    let least = answered + not_answered.into_iter().map(u64::from).sum::<u64>();
+    let right = u32::try_from(least).unwrap_or(u32::MAX);
+    if status.packets >= right {
+        return Ok(());
+    }
+    let (counter, counted) = (Counter::Packets, status.packets);
+    Err(miscounted(Finding::CounterWrong { counter, counted, right }))
+}
+
+/// Packets that the board calls damaged.
+fn damaged(status: &Status) -> u32 {
+    status.crc_errors.saturating_add(status.framing_errors)
+}
+
+fn latencies_counted(status: &Status, seen: &Seen) -> Result<(), End> {
+    let (counted_least, counted_most) = (status.least_latency, status.most_latency);
+    match seen.latency {
+        Some(LatencyReport { least, most, .. }) if (counted_least, counted_most) != (least, most) => {
+            Err(miscounted(Finding::LatencyMiscounted { least, most, counted_least, counted_most }))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn miscounted(finding: Finding) -> End {
+    End::failed(CheckName::Counters, finding)
+}
