@@ -175,6 +175,27 @@ fn of_two_rows_with_each_other_s_numbers_the_earlier_one_left_late() {
     fails(&report, CheckName::Frames, sentence);
 }
 
+/// The report on a board whose ROW_OUT packets have the numbers that `number` makes of the right ones.
+fn numbered(number: fn(u16) -> u16) -> Report {
+    judge_each(&System::TINY, move |_, mut packet| {
+        if packet.is(Kind::RowOut) {
+            packet.header.sequence = number(packet.header.sequence);
+        }
+        packet
+    })
+}
+
+#[test]
+fn numbers_of_packets_that_were_never_sent_are_the_board_s_fault() {
+    for number in [
+        (|right| right.wrapping_mul(3).wrapping_add(777)) as fn(u16) -> u16,
+        |right| right.wrapping_add(1),
+        |right| if right < 5 { right } else { right.wrapping_add(1) },
+    ] {
+        fails(&numbered(number), CheckName::Counters, "ROW_OUT packets by their numbers, and it is");
+    }
+}
+
 /// STATUS with another value in one counter.
 fn with_counter(change: fn(&mut Status)) -> Report {
     judge_each(&System::TINY, move |_, packet| match packet.reply() {

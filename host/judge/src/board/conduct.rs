@@ -45,12 +45,28 @@ struct Came {
     digest: u32,
 }
 
+/// The row of the greatest number that came, of those that left for the first time.
+struct Furthest {
+    row_sequence: u32,
+    /// The board's count of its packet, which does not wrap as the header's does.
+    count: i64,
+}
+
+impl Furthest {
+    /// The next one, whose packet is numbered less than half the numbers behind this one's.
+    fn then(&self, came: &Came) -> Self {
+        let step = came.number.wrapping_sub(self.count as u16) as i16;
+        Self { row_sequence: came.place.row_sequence, count: self.count + i64::from(step) }
+    }
+}
+
 /// What a session's rows have shown.
 #[derive(Default)]
 pub(super) struct Conduct {
     packets: VecDeque<Came>,
     /// The digest of each of the last rows, by the row's number, what may differ from copy to copy left out.
     rows: BTreeMap<u32, u32>,
+    furthest: Option<Furthest>,
     misconduct: Option<Misconduct>,
 }
 
@@ -58,6 +74,22 @@ impl Conduct {
     /// The first rule that was broken.
     pub(super) fn misconduct(&self) -> Option<Misconduct> {
         self.misconduct
+    }
+
+    /// The fewest ROW_OUT packets that the board has sent in this session, by its own numbers.
+    pub(super) fn packets_numbered(&self) -> u32 {
+        let count = self.furthest.as_ref().map_or(0, |furthest| furthest.count + 1);
+        u32::try_from(count.max(0)).unwrap_or(u32::MAX)
+    }
+
+    /// Takes note of a row that is further than all before. A copy that a link held back for long has a number that has come round.
+    fn go_further(&mut self, came: &Came) {
+        let row_sequence = came.place.row_sequence;
+        let is_further = self.furthest.as_ref().is_none_or(|furthest| furthest.row_sequence < row_sequence);
+        if came.repeats == 0 && is_further {
+            let first = || Furthest { row_sequence, count: came.number.into() };
+            self.furthest = Some(self.furthest.as_ref().map_or_else(first, |furthest| furthest.then(came)));
+        }
     }
 
     fn note(&mut self, misconduct: Misconduct) {
@@ -96,6 +128,7 @@ impl Conduct {
         if self.packets.len() == PACKETS {
             self.packets.pop_front();
         }
+        self.go_further(&came);
         self.packets.push_back(came);
     }
 }
@@ -141,6 +174,10 @@ mod tests {
     use super::*;
 
     fn found(rows: &[(u16, u32, u16, u8)]) -> Option<Misconduct> {
+        conduct(rows).misconduct()
+    }
+
+    fn conduct(rows: &[(u16, u32, u16, u8)]) -> Conduct {
         let mut conduct = Conduct::default();
         for &(number, row_sequence, repeats, sample) in rows {
             let place = RowPlace { row_sequence, frame: 0, row: row_sequence as u16, width: 2, last: false };
@@ -158,7 +195,7 @@ mod tests {
             };
             conduct.row(number, &row, 9);
         }
-        conduct.misconduct()
+        conduct
     }
 
     #[test]
@@ -167,6 +204,19 @@ mod tests {
         assert_eq!(found(&[(0, 0, 0, 1), (2, 2, 0, 3), (2, 2, 0, 3), (1, 1, 0, 2), (3, 0, 1, 1)]), None);
         assert_eq!(found(&[(3, 1, u16::MAX, 1), (2, 0, 1, 1)]), None);
         assert_eq!(found(&[(65_535, 7, 0, 1), (0, 8, 0, 1), (1, 7, 1, 1), (65_535, 7, 0, 1)]), None);
+    }
+
+    #[test]
+    fn packets_are_counted_by_their_numbers_whatever_a_link_does() {
+        let count = |rows: &[_]| conduct(rows).packets_numbered();
+        assert_eq!(count(&[]), 0);
+        assert_eq!(count(&[(0, 0, 0, 1), (1, 1, 0, 1)]), 2);
+        // Lost, twice, late, and asked for again.
+        assert_eq!(count(&[(2, 2, 0, 1), (2, 2, 0, 1), (0, 0, 0, 1), (7, 3, 1, 1)]), 3);
+        // Past the end of the numbers, with one that was held back since.
+        let rows: Vec<_> =
+            (0..70_000).map(|row| (row as u16, row, 0, 1)).chain([(65_000, 65_000, 0, 1)]).collect();
+        assert_eq!(count(&rows), 70_000);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What a board counts and the host knows as well: STATUS in `protocol/WIRE.md`.
+/// What a board counts and the host knows as well: mostly STATUS in `protocol/WIRE.md`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Counter {
@@ -24,6 +24,8 @@ pub enum Counter {
     RowsUnneeded,
     /// Requests that were refused.
     Refusals,
+    /// ROW_OUT packets, by the numbers in their headers.
+    RowsNumbered,
     /// Packets that came to the board whole.
     Packets,
     /// Packets of another session.
@@ -46,6 +48,7 @@ impl Counter {
             Self::RowsRepeated => "rows sent again",
             Self::RowsUnneeded => "rows that were not needed",
             Self::Refusals => "refusals",
+            Self::RowsNumbered => "ROW_OUT packets by their numbers",
             Self::Packets => "packets that came to it",
             Self::ForeignPackets => "packets of another session",
             Self::CoreBusy => "rows inside the core",
@@ -56,6 +59,7 @@ impl Counter {
     #[must_use]
     pub(super) const fn bound(self) -> &'static str {
         match self {
+            Self::RowsNumbered => "at most ",
             Self::Packets => "at least ",
             _ => "",
         }

@@ -256,7 +256,7 @@ pub enum Finding {
         counter: Counter,
         /// What the board counts.
         counted: u32,
-        /// What it should; of packets, at least.
+        /// What it should; of packets at least, of rows numbered at most.
         right: u32,
     },
     /// The board counts other pauses for a row than the gaps of its seed are.

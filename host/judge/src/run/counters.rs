@@ -34,6 +34,7 @@ impl Run<'_> {
             return Err(miscounted(Finding::CounterWrong { counter, counted, right }));
         }
         packets_counted(status, self.board.answered_since_clear())?;
+        rows_numbered(status, self.board.packets_numbered())?;
         latencies_counted(status, seen)?;
         if let Some(finding) = &seen.wrong_pauses {
             return Err(miscounted(finding.clone()));
@@ -74,6 +75,16 @@ fn packets_counted(status: &Status, answered: u64) -> Result<(), End> {
     }
     let (counter, counted) = (Counter::Packets, status.packets);
     Err(miscounted(Finding::CounterWrong { counter, counted, right }))
+}
+
+/// ROW_OUT packets are numbered from 0 on, and each one is a row that came out or one that was sent again. Since no two have one number
+/// and none is behind a later row's, over a link that loses nothing they count from 0 without a gap.
+fn rows_numbered(status: &Status, counted: u32) -> Result<(), End> {
+    let right = status.rows_out.saturating_add(status.rows_repeated);
+    if counted <= right {
+        return Ok(());
+    }
+    Err(miscounted(Finding::CounterWrong { counter: Counter::RowsNumbered, counted, right }))
 }
 
 /// Packets that the board calls damaged.

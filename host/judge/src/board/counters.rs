@@ -1,0 +1,78 @@
+//! What a board counts, and what the host counts beside it.
+
+use halfrow_protocol::message::{Reply, Request, ResetLevel, Status};
+
+use super::conversation::Conversation;
+use super::deadlines::Step;
+use super::{Board, BoardError};
+
+impl Board {
+    /// The board's counters, which `clear` sets back.
+    ///
+    /// # Errors
+    /// [`BoardError`] when no answer comes.
+    pub fn status(&mut self, clear: bool) -> Result<Status, BoardError> {
+        let status = status(&mut self.conversation, clear, Step::Request)?;
+        if clear {
+            self.counted_from = self.conversation.tally;
+        }
+        Ok(status)
+    }
+
+    /// The board's counters, although the run was stopped: then they are waited for as the end of a session is.
+    ///
+    /// # Errors
+    /// [`BoardError`] when no answer comes.
+    pub(crate) fn status_although_stopped(&mut self) -> Result<Status, BoardError> {
+        match self.status(false) {
+            Err(BoardError::Stopped(_) | BoardError::Timeout { .. }) => {
+                self.conversation.disregarding_stop(|conversation| status(conversation, false, Step::Close))
+            }
+            status => status,
+        }
+    }
+
+    /// The packets that were sent since the board's counters were set back, all tries counted.
+    #[must_use]
+    pub(crate) fn packets_since_clear(&self) -> u64 {
+        self.tally().packets_out.saturating_sub(self.counted_from.packets_out)
+    }
+
+    /// The requests that were answered since the board's counters were set back.
+    #[must_use]
+    pub(crate) fn answered_since_clear(&self) -> u64 {
+        self.tally().answered.saturating_sub(self.counted_from.answered)
+    }
+
+    /// Whether every packet that was sent since the board's counters were set back came to it whole, and once.
+    #[must_use]
+    pub(crate) fn had_each_packet_once(&self, status: &Status) -> bool {
+        u64::from(status.packets) == self.packets_since_clear()
+    }
+
+    /// Sets the counters back, and drops tables that an earlier session left: a board takes a generation that is active
+    /// already for a repeated packet, and would go on using the old tables under it. Says whether there were any.
+    ///
+    /// # Errors
+    /// [`BoardError`] when no answer comes.
+    pub(crate) fn start_afresh(&mut self) -> Result<bool, BoardError> {
+        let had_tables = self.status(true)?.generation != 0;
+        if had_tables {
+            self.reset(ResetLevel::Tables, Step::Request)?;
+        }
+        Ok(had_tables)
+    }
+
+    /// The fewest ROW_OUT packets that the board has sent in this session, by its own numbers.
+    #[must_use]
+    pub(crate) fn packets_numbered(&self) -> u32 {
+        self.conversation.conduct.packets_numbered()
+    }
+}
+
+fn status(conversation: &mut Conversation, clear: bool, step: Step) -> Result<Status, BoardError> {
+    conversation.request(&Request::Status { clear }, step, |reply| match reply {
+        Reply::Status(status) => Some(status),
+        _ => None,
+    })
+}
