@@ -12,8 +12,8 @@ use super::deadlines::{RetryLimit, Step};
 use super::{BoardError, Heard, OpenOptions, Stop};
 use crate::link::{LineErrors, Link, LinkError, Severed};
 
-/// The most that an exchange counts as a wait that moved something, and so did not wait to the end: all the rest may be that
-/// the host was kept from running, and then there is more to be read.
+/// What an exchange that moved bytes adds to the time waited, at most. It returns as soon as a byte has moved: if it took
+/// longer, the host may have been kept from running, and what it has not read yet says nothing against the board.
 const BRIEF: Duration = Duration::from_millis(50);
 
 /// How far a board's window can be ahead of the rows that came back: the most banks each way, and two rows in the core.

@@ -11,9 +11,13 @@ use crate::frames::{Builtin, Scene};
 use crate::result::Variation;
 
 impl Plan {
-    /// The run, segment by segment: a frame with the decoy; another one with the decoy and, close behind it, the frames to judge; then
-    /// noise with the sensor's blanking, and noise with gaps; last a frame for each other centre or depth. A board with one bank of tables cannot change them between two
-    /// frames that follow closely, so there the second segment begins with the frames to judge; and so does the run where there is no decoy.
+    /// The run, segment by segment:
+    ///
+    /// * a frame with the decoy, where there is one;
+    /// * another one with the decoy and, close behind it, the frames to judge. A board with one bank of tables cannot change them between
+    ///   two frames that follow closely: there, and without a decoy, this segment has the frames to judge alone;
+    /// * noise with the sensor's blanking, and noise with gaps;
+    /// * a frame for each other centre or depth.
     ///
     /// Where only some parts are selected, frames keep the numbers that they have among all, and with them what they hold.
     #[must_use]

@@ -22,7 +22,7 @@ pub use traffic::{NumberedFrame, ReturnedRow, RowTraffic};
 /// Bytes that may wait to be written before another row is packed. Two rows keep a link busy.
 const QUEUE: usize = 8 * 1024;
 
-/// The try whose deadline a row has that is asked for once: by then most of what is late has come.
+/// Where a row is never asked for again, it is waited for as long as at this try: by then most rows that are late have come.
 const PATIENT: u32 = 3;
 
 /// A row that did not come back although it was asked for only once.

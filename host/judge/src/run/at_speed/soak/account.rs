@@ -25,7 +25,7 @@ pub(super) struct Account {
     begun: Duration,
     /// What differed first, with its frame counted from the first of the soak.
     first: Option<End>,
-    /// What differed first, may have come from the link, and did not differ in another session.
+    /// The first difference that may have come from the link, since another session did not confirm it.
     first_doubtful: Option<End>,
 }
 
@@ -106,13 +106,17 @@ impl Account {
         }
     }
 
-    /// Takes `end`, which is what differed in a burst, may have come from the link, and could not be looked at again.
+    /// Takes a difference that may have come from the link, and that no other session could be asked about.
     pub(super) fn leave_open(&mut self, end: End) {
         self.first_doubtful.get_or_insert(end);
     }
 
-    /// Ends it at `now` on the run's clock. What differed goes before all else, since nothing that came later makes it right; then
-    /// `ended`; then what may have come from the link; and without a frame nothing is right.
+    /// Ends it at `now` on the run's clock with the first of these that there is:
+    ///
+    /// 1. a difference that is the board's, since nothing that comes later makes it right;
+    /// 2. what `ended` the bursts early;
+    /// 3. a difference that may have come from the link;
+    /// 4. that there was no frame to judge.
     pub(super) fn end(&mut self, now: Duration, ended: Result<(), End>) -> Result<(), End> {
         self.report.seconds = now.saturating_sub(self.begun).as_secs_f64();
         match (self.first.take(), ended, self.first_doubtful.take()) {
