@@ -1,6 +1,6 @@
 //! What is judged when the last row has come back, but for the counters.
 
-use super::findings::End;
+use super::findings::{During, End};
 use super::judge::{Seen, WrongEntry};
 use super::plan::{DECOY, Generation};
 use super::steps::Run;
@@ -14,7 +14,7 @@ impl Run<'_> {
     pub(super) fn judge(&mut self) -> Result<(), End> {
         let after = self.tables_after();
         self.findings.lap(CheckName::TablesAfter);
-        let status = self.board.status(false).map_err(|error| End::board(CheckName::Counters, &error))?;
+        let status = self.board.status(false).during(CheckName::Counters)?;
         self.findings.note_status(&status);
         self.findings.lap(CheckName::Counters);
         if let Some(misconduct) = self.misconduct() {

@@ -58,6 +58,18 @@ impl End {
     }
 }
 
+/// What was asked of a board in a check.
+pub(super) trait During<T> {
+    /// Ends the run in `check` if the board could not be driven.
+    fn during(self, check: CheckName) -> Result<T, End>;
+}
+
+impl<T> During<T> for Result<T, BoardError> {
+    fn during(self, check: CheckName) -> Result<T, End> {
+        self.map_err(|error| End::board(check, &error))
+    }
+}
+
 /// What went over links that broke.
 #[derive(Default)]
 pub(super) struct Earlier {

@@ -3,7 +3,7 @@
 use std::iter;
 use std::time::{Duration, Instant};
 
-use super::findings::{End, Findings};
+use super::findings::{During, End, Findings};
 use super::plan::Segment;
 use super::steps::Run;
 use crate::board::{Board, BoardError, NumberedFrame, OpenOptions, Unjudged};
@@ -55,7 +55,7 @@ impl WayBack {
         let left = Instant::now();
         loop {
             let spent = findings.earlier.seconds + left.elapsed();
-            self.options.stop.check(spent, left.elapsed()).map_err(|error| End::board(*check, &error))?;
+            self.options.stop.check(spent, left.elapsed()).during(*check)?;
             if let Some(board) = self.try_open(spent, findings.link.reconnections.len()) {
                 let away = left.elapsed();
                 findings.earlier.seconds += away;
@@ -147,7 +147,7 @@ impl Run<'_> {
     /// Sets a board that may have forgotten everything. Frames begin with their row 0, since a board takes no other
     /// behind a greeting.
     fn restore(&mut self, segment: &Segment, at: usize) -> Result<(), End> {
-        self.start_afresh().map_err(|error| End::board(CheckName::Link, &error))?;
+        self.start_afresh().during(CheckName::Link)?;
         self.configure(segment)?;
         let next = segment.frames.get(at);
         let Some(frame) = next.or(segment.frames.last()) else { return Ok(()) };
@@ -161,8 +161,7 @@ impl Run<'_> {
                 .map_err(|error| End::error(CheckName::Frames, Cause::Station, Problem::of(&error)))?;
             self.findings.rows_counted += rendered.height();
             let played = NumberedFrame { number: frame.number, frame: rendered };
-            let played = self.board.stream(&mut Unjudged(iter::once(played)));
-            played.map_err(|error| End::board(CheckName::Frames, &error))?;
+            self.board.stream(&mut Unjudged(iter::once(played))).during(CheckName::Frames)?;
         }
         later.map_or(Ok(()), |(number, first_frame)| self.commit(number, first_frame, rows))
     }

@@ -4,7 +4,7 @@
 //! settings. In a session of its own no copy of an earlier session means anything.
 
 use super::counters::is_contradictory;
-use super::findings::End;
+use super::findings::{During, End};
 use super::steps::Run;
 use crate::progress::Step;
 use crate::result::{CheckName, Doubt, Finding};
@@ -49,7 +49,7 @@ impl Run<'_> {
     /// Opens a session in which no copy of an earlier one's requests means anything, `number` of those of the run, from 1.
     pub(super) fn open_session(&mut self, number: u32) -> Result<(), End> {
         let nonce = self.way_back.options.nonce.wrapping_add(NONCE + number);
-        self.board.open_another_session(nonce).map_err(|error| End::board(CheckName::Link, &error))
+        self.board.open_another_session(nonce).during(CheckName::Link)
     }
 
     /// Why the board may not be as the host made it in this session, although it is sound and `check` found something.

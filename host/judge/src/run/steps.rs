@@ -4,7 +4,7 @@ use std::sync::mpsc::Receiver;
 use std::thread;
 
 use super::exercised::not_exercised;
-use super::findings::{End, Findings};
+use super::findings::{During, End, Findings};
 use super::golden::{self, CannotJudge};
 use super::legal::{grids, impossible};
 use super::misfit::misfit;
@@ -181,18 +181,17 @@ impl Run<'_> {
     }
 
     fn link(&mut self) -> Result<(), End> {
-        let board_error = |error| End::board(CheckName::Link, &error);
-        let (_, round_trip) = self.board.echo(&[]).map_err(board_error)?;
+        let (_, round_trip) = self.board.echo(&[]).during(CheckName::Link)?;
         self.findings.link.round_trip_us = Some(round_trip.as_micros() as u64);
         let patterns = patterns(self.plan.seed);
         let bytes: usize = patterns.iter().map(Vec::len).sum();
         for pattern in &patterns {
-            let (same, _) = self.board.echo(pattern).map_err(board_error)?;
+            let (same, _) = self.board.echo(pattern).during(CheckName::Link)?;
             if !same {
                 return Err(End::failed(CheckName::Link, Finding::EchoWrong {}));
             }
         }
-        self.start_afresh().map_err(board_error)?;
+        self.start_afresh().during(CheckName::Link)?;
         self.findings.passed(CheckName::Link, Finding::EchoesReturned { bytes, echoes: patterns.len() });
         Ok(())
     }

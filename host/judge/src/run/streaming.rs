@@ -4,7 +4,7 @@ use std::sync::mpsc::Receiver;
 
 use halfrow_protocol::message::RowPlace;
 
-use super::findings::End;
+use super::findings::{During, End};
 use super::judge::{Judge, Manner};
 use super::pauses::pauses;
 use super::plan::{SENSOR_BLANKING, Segment, Timing};
@@ -33,7 +33,7 @@ impl Run<'_> {
         self.findings.begin_lap();
         prepared.map_err(|error| End::error(CheckName::Frames, Cause::Station, Problem::of(&error)))?;
         if self.plan.fail_fast && self.findings.seen.differences() > 0 {
-            self.board.drop_rows().map_err(|error| End::board(CheckName::Frames, &error))?;
+            self.board.drop_rows().during(CheckName::Frames)?;
         }
         Ok(())
     }

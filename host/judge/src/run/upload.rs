@@ -1,6 +1,6 @@
 //! Geometry and tables on their way to the board, and back through the datapath's own ports.
 
-use super::findings::End;
+use super::findings::{During, End};
 use super::plan::{Generation, SENSOR_BLANKING, Segment, Timing};
 use super::steps::Run;
 use crate::board::{Bank, BoardError, ReadBack, RefusalCode, RowTiming, Table};
@@ -21,8 +21,7 @@ impl Run<'_> {
             Timing::Sensor => RowTiming { blanking: SENSOR_BLANKING, ..RowTiming::default() },
             Timing::Gaps(gap_seed) => RowTiming { gap_seed, ..RowTiming::default() },
         };
-        let configured = self.board.configure(&segment.geometry, timing);
-        configured.map_err(|error| End::board(CheckName::Upload, &error))
+        self.board.configure(&segment.geometry, timing).during(CheckName::Upload)
     }
 
     /// Uploads a generation, to be used from `first_frame` on, which has so many rows.
@@ -34,7 +33,7 @@ impl Run<'_> {
     /// Whole tables whatever the frames have of them, since frames at speed are whole.
     fn upload(&mut self, generation: &Generation, first_frame: u16, rows: usize) -> Result<(), End> {
         let Generation { number, tables, kernel } = generation;
-        self.board.upload(tables, kernel).map_err(|error| End::board(CheckName::Upload, &error))?;
+        self.board.upload(tables, kernel).during(CheckName::Upload)?;
         let (entries, nodes) = (tables.units().len(), kernel.nodes().len());
         let uploaded = Finding::TablesUploaded { rows: entries, nodes, generation: *number };
         self.findings.passed(CheckName::Upload, uploaded);
@@ -60,7 +59,7 @@ impl Run<'_> {
         generation: &Generation,
     ) -> Result<usize, End> {
         let Generation { tables, kernel, .. } = generation;
-        let read = self.board.read_back(bank, tables, kernel).map_err(|error| End::board(check, &error))?;
+        let read = self.board.read_back(bank, tables, kernel).during(check)?;
         match read.iter().find(|read| !read.agrees()) {
             None => Ok(read.len()),
             Some(wrong) => Err(self.wrong_entries(check, bank, generation, wrong)),

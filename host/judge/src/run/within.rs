@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::findings::{End, Findings};
+use super::findings::{During, End, Findings};
 use super::parts::{Part, Selection};
 use super::plan::Plan;
 use super::prices::{Prices, Rates};
@@ -60,7 +60,7 @@ pub(super) fn choose(
     if misfit(&plan.tables, &plan.kernel, &board.capabilities).is_some() {
         return Ok(plan.clone());
     }
-    let rates = Rates::of(board).map_err(|error| End::board(CheckName::Link, &error))?;
+    let rates = Rates::of(board).during(CheckName::Link)?;
     let capabilities = board.capabilities.clone();
     let prices = Prices::new(plan, &capabilities, rates);
     let kept = if board.bytes_per_second().is_some() { KEPT } else { KEPT_UNSURE };

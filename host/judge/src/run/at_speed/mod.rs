@@ -18,7 +18,7 @@ use std::time::Duration;
 use halfrow_model::Geometry;
 use halfrow_protocol::message::BurstMode;
 
-use super::findings::End;
+use super::findings::{During, End};
 use super::parts::Part;
 use super::plan::{DECOY, Generation, JUDGED, Segment};
 use super::steps::Run;
@@ -103,8 +103,7 @@ impl Run<'_> {
     }
 
     fn set(&mut self, geometry: &Geometry) -> Result<(), End> {
-        let configured = self.board.configure(geometry, RowTiming::default());
-        configured.map_err(|error| End::board(CheckName::AtSpeed, &error))
+        self.board.configure(geometry, RowTiming::default()).during(CheckName::AtSpeed)
     }
 
     /// Has the board make the burst, and ends the run with a frame or a count that is wrong.
@@ -171,8 +170,7 @@ impl Run<'_> {
     fn upload_corner(&mut self, tables: &[Generation]) -> Result<(), End> {
         for (place, generation) in tables.iter().enumerate() {
             self.set(generation.tables.geometry())?;
-            let uploaded = self.board.upload(&generation.tables, &generation.kernel);
-            uploaded.map_err(|error| End::board(CheckName::AtSpeed, &error))?;
+            self.board.upload(&generation.tables, &generation.kernel).during(CheckName::AtSpeed)?;
             self.check_read_back(CheckName::AtSpeed, Bank::Shadow, generation)?;
             // The entries of a grid lie otherwise in a frame of another height.
             let rows = if generation.tables.shape().is_some() { usize::MAX } else { 1 };
@@ -198,8 +196,7 @@ impl Run<'_> {
         let Some(decoy) = decoy.filter(can_have) else {
             return Ok(vec![active]);
         };
-        let uploaded = self.board.upload(&decoy.tables, &decoy.kernel);
-        uploaded.map_err(|error| End::board(CheckName::AtSpeed, &error))?;
+        self.board.upload(&decoy.tables, &decoy.kernel).during(CheckName::AtSpeed)?;
         self.check_read_back(CheckName::AtSpeed, Bank::Shadow, &decoy)?;
         Ok(vec![active, decoy])
     }

@@ -19,7 +19,7 @@ use crate::reference::correct;
 use crate::result::{
     Account, CheckName, Defect, Evidence, Finding, FrameReport, FrameTiming, Problem, Repetition, Suspect,
 };
-use crate::run::findings::End;
+use crate::run::findings::{During, End};
 use crate::run::judge::as_found;
 use crate::run::plan::Generation;
 use crate::run::steps::Run;
@@ -91,7 +91,7 @@ impl Run<'_> {
     pub(super) fn expect(&mut self, plan: &BurstPlan, generation: &Generation) -> Result<(), End> {
         let mut signatures = Vec::new();
         signer(generation).sign(&generation.tables, plan.content(0), &mut signatures);
-        self.board.expect(&signatures).map_err(|error| End::board(CheckName::AtSpeed, &error))
+        self.board.expect(&signatures).during(CheckName::AtSpeed)
     }
 
     /// What was kept of a burst in which one frame was repeated.
@@ -106,7 +106,7 @@ impl Run<'_> {
         };
         // Records come by the handful, so that others may be there behind it.
         let frames = first.n + 1;
-        let trapped = self.board.trap().map_err(|error| End::board(CheckName::AtSpeed, &error))?;
+        let trapped = self.board.trap().during(CheckName::AtSpeed)?;
         let row = trapped.as_ref().map(|trapped| trapped.row);
         let told = trapped.and_then(|trapped| self.suspects_of(generation, plan.content(0), &trapped));
         let (Some(row), Some(suspects)) = (row, told) else {
@@ -117,15 +117,14 @@ impl Run<'_> {
 
     /// Makes the tables of the other bank the active ones, which takes a frame.
     pub(super) fn activate(&mut self, generation: &Generation) -> Result<(), End> {
-        let of_board = |error| End::board(CheckName::AtSpeed, &error);
         let Generation { number, tables, kernel } = generation;
         let scene = Scene { geometry: *tables.geometry(), ..self.plan.scene(u16::MAX.into()) };
         let frame = Builtin::Noise
             .render(&scene)
             .map_err(|error| End::error(CheckName::AtSpeed, Cause::Station, Problem::of(&error)))?;
-        self.board.commit(tables, kernel, u16::MAX, *number).map_err(of_board)?;
+        self.board.commit(tables, kernel, u16::MAX, *number).during(CheckName::AtSpeed)?;
         let frame = NumberedFrame { number: u16::MAX, frame: frame.into() };
-        self.board.stream(&mut Unjudged(iter::once(frame))).map_err(of_board)
+        self.board.stream(&mut Unjudged(iter::once(frame))).during(CheckName::AtSpeed)
     }
 
     /// The suspects by a trapped row of a frame that `generation` made of `content`; none if the row is as it should be.

@@ -10,7 +10,7 @@ use super::burst::BurstPlan;
 use super::predicted;
 use crate::board::{Board, BoardError};
 use crate::result::{BurstCount, CheckName, Finding};
-use crate::run::findings::End;
+use crate::run::findings::{During, End};
 use crate::run::plan::Generation;
 use crate::run::steps::Run;
 use crate::verdict::Cause;
@@ -130,17 +130,16 @@ impl Watch<'_> {
     }
 
     fn finish(mut self, watched: &mut Watched) -> Result<(), End> {
-        let of_board = |error: BoardError| End::board(CheckName::AtSpeed, &error);
         let unclear = |finding| End::error(CheckName::AtSpeed, Cause::Station, finding);
         let frames = self.plan.frames;
-        while !self.look(watched).map_err(of_board)? {
+        while !self.look(watched).during(CheckName::AtSpeed)? {
             if self.idle >= self.plan.patience() {
                 let (frame, seconds) = (watched.frames, self.idle.as_secs_f64());
                 return Err(unclear(Finding::BurstStalled { frame, frames, seconds }));
             }
             // By what was meant to pass, since a recording has no clock between its exchanges.
             let wait = self.plan.look_again_in(frames - watched.frames);
-            self.board.idle(wait).map_err(of_board)?;
+            self.board.idle(wait).during(CheckName::AtSpeed)?;
             self.idle += wait;
         }
         let came = watched.frames;

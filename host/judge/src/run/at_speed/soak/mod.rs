@@ -10,10 +10,10 @@ use halfrow_protocol::message::BurstMode;
 
 use super::burst::{BurstPlan, LONGEST_LOOK};
 use super::watched::{EndsEarly, Watched};
-use crate::board::{Bank, BoardError, Bursts, RowTiming};
+use crate::board::{Bank, Bursts, RowTiming};
 use crate::progress::{Event, Step};
 use crate::result::{CheckName, Doubt, Finding, SoakInterval, SoakLength};
-use crate::run::findings::End;
+use crate::run::findings::{During, End};
 use crate::run::plan::{DECOY, Generation, JUDGED, Segment};
 use crate::run::second_look::LOOKS;
 use crate::run::steps::Run;
@@ -199,7 +199,7 @@ impl Run<'_> {
         let mut left = then.saturating_sub(self.board.now());
         while !left.is_zero() {
             let wait = left.min(LONGEST_LOOK);
-            self.board.idle(wait).map_err(|error| End::board(CheckName::AtSpeed, &error))?;
+            self.board.idle(wait).during(CheckName::AtSpeed)?;
             left -= wait;
         }
         Ok(())
@@ -226,9 +226,8 @@ impl Run<'_> {
     /// The tables and the kernel to judge with and the decoy's, each the active ones in two bursts out of four; those of the other
     /// bank come with them where there is one.
     fn tables_of_burst(&mut self, draw: u32) -> Result<Vec<Generation>, End> {
-        let of_board = |error: BoardError| End::board(CheckName::AtSpeed, &error);
-        self.start_afresh().map_err(of_board)?;
-        self.board.configure(self.plan.tables.geometry(), RowTiming::default()).map_err(of_board)?;
+        self.start_afresh().during(CheckName::AtSpeed)?;
+        self.board.configure(self.plan.tables.geometry(), RowTiming::default()).during(CheckName::AtSpeed)?;
         let mut tables: Vec<_> =
             self.generations.iter().filter(|it| [DECOY, JUDGED].contains(&it.number)).cloned().collect();
         if (draw / 2).is_multiple_of(2) {
@@ -237,7 +236,7 @@ impl Run<'_> {
         tables.truncate(self.board.capabilities.table_banks.into());
         let mut active = 0;
         for (place, generation) in tables.iter().enumerate() {
-            self.board.upload(&generation.tables, &generation.kernel).map_err(of_board)?;
+            self.board.upload(&generation.tables, &generation.kernel).during(CheckName::AtSpeed)?;
             self.check_read_back(CheckName::AtSpeed, Bank::Shadow, generation)?;
             if place == 0 || !self.board.knows_shape_of(&generation.tables) {
                 self.activate(generation)?;
