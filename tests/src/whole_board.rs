@@ -22,7 +22,7 @@ impl WholeBoard {
     /// When nobody answers.
     #[must_use]
     pub fn open(link: Box<dyn Link>) -> Self {
-        let board = Board::open(link, &OpenOptions::default()).map_err(|(error, _)| error).unwrap();
+        let board = Board::open(link, &OpenOptions::default()).unwrap();
         Self { board, next_frame: 0 }
     }
 

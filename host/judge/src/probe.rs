@@ -16,19 +16,19 @@ pub fn probe(target: &Target) -> Answer {
         Err(error) => return not_opened(&error),
     };
     let options = OpenOptions { polite: true, ..Draws::draw().into() };
-    match Board::open(candidate.link, &options) {
+    match Board::open(candidate.link, &options).map_err(BoardError::from) {
         Ok(mut board) => {
             let (name, datapath) = (board.capabilities.name.clone(), board.capabilities.datapath);
             board.close();
             Answer::Board { name, datapath }
         }
-        Err((BoardError::Held { .. }, _)) => Answer::Held,
-        Err((BoardError::NoAnswer { .. }, _)) => Answer::Silent,
-        Err((error @ (BoardError::NotABoard | BoardError::Version { .. }), _)) => {
+        Err(BoardError::Held { .. }) => Answer::Held,
+        Err(BoardError::NoAnswer { .. }) => Answer::Silent,
+        Err(error @ (BoardError::NotABoard | BoardError::Version { .. })) => {
             Answer::Foreign { reason: error.to_string() }
         }
-        Err((error, _)) if error.cause() == Cause::Busy => Answer::Busy,
-        Err((error, _)) => Answer::Failed { reason: crate::result::Problem::of(&error).sentence() },
+        Err(error) if error.cause() == Cause::Busy => Answer::Busy,
+        Err(error) => Answer::Failed { reason: crate::result::Problem::of(&error).sentence() },
     }
 }
 

@@ -93,7 +93,7 @@ fn wrong_of_link(broken: bool) -> (u64, bool) {
         late.into_iter().chain([packet]).collect()
     };
     let link = Altered::new(&halfrow_mock::Options::default(), alter).candidate().link;
-    let mut board = Board::open(link, &OpenOptions::default()).map_err(|(error, _)| error).unwrap();
+    let mut board = Board::open(link, &OpenOptions::default()).unwrap();
     let figures = link_test::run(&mut board, Duration::from_millis(50), 1).unwrap();
     (figures.errors.wrong, delivered.try_recv().is_ok())
 }

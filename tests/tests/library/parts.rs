@@ -69,8 +69,7 @@ fn a_price_is_what_a_run_takes_and_a_little_more() {
     let boards =
         [("mock,speed=20000", 0.7), ("mock,speed=300000,delay=0.002", 0.8), ("mock,speed=5000000", 0.15)];
     for (board, least_share) in boards {
-        let mut opened =
-            Board::open(open(board).link, &OpenOptions::default()).map_err(|(error, _)| error).unwrap();
+        let mut opened = Board::open(open(board).link, &OpenOptions::default()).unwrap();
         let rates = Rates::of(&mut opened).unwrap();
         for selection in &selections {
             let plan = plan(Some(selection.clone()));

@@ -68,7 +68,7 @@ fn a_board_that_another_host_holds_is_left_to_it() {
     for served in [Served::on_a_serial_port("mock"), Served::on_a_tcp_port("127.0.0.1", "mock")] {
         let link = link::open(&served.target().parse().unwrap()).unwrap().link;
         let options = OpenOptions { nonce: 1, host: 1, ..Default::default() };
-        drop(Board::open(link, &options).map_err(|(error, _)| error).unwrap());
+        drop(Board::open(link, &options).unwrap());
         assert_eq!(look_at(&served.target(), &["--ask"])["answer"], json!({ "state": "held" }));
     }
 }

@@ -20,7 +20,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let candidate = arguments.board.candidate(&context.settings)?;
     let options = arguments.board.open_options(&context.settings, None)?;
-    let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| error)?;
+    let mut board = Board::open(candidate.link, &options)?;
     let status = board.status(false);
     board.close();
     let status = status?;

@@ -29,7 +29,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let candidate = arguments.board.candidate(&context.settings)?;
     let options = arguments.board.open_options(&context.settings, None)?;
-    let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| error)?;
+    let mut board = Board::open(candidate.link, &options)?;
     let tested = link_test::run(&mut board, arguments.seconds, arguments.seed);
     let identity = Identity::of(&board.welcome, &board.capabilities);
     let kind = candidate.kind.confirmed_by(board.capabilities.nature);

@@ -168,8 +168,8 @@ fn greet(target: &Target) -> Result<BoardReport, (Failure, bool)> {
         (error.into(), may_change)
     })?;
     let options = OpenOptions { polite: true, ..Draws::draw().into() };
-    let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| {
-        let failure = Failure::from(error);
+    let mut board = Board::open(candidate.link, &options).map_err(|failed| {
+        let failure = Failure::from(failed);
         let may_change = failure.exit == Exit::Error;
         (failure, may_change)
     })?;

@@ -41,7 +41,7 @@ use self::call_error::CallError;
 use crate::console;
 use crate::exit::Exit;
 use crate::settings::Settings;
-use halfrow::board::BoardError;
+use halfrow::board::{BoardError, OpenFailed};
 use halfrow::link::OpenError;
 use halfrow::reference;
 use halfrow::run::Misfit;
@@ -101,6 +101,12 @@ impl From<OpenError> for Failure {
 impl From<BoardError> for Failure {
     fn from(error: BoardError) -> Self {
         Self { exit: error.cause().into(), error: error.into() }
+    }
+}
+
+impl From<OpenFailed> for Failure {
+    fn from(failed: OpenFailed) -> Self {
+        failed.error.into()
     }
 }
 

@@ -204,7 +204,7 @@ impl Arguments {
     fn open(&self, settings: &Settings) -> Result<TestedBoard, Failure> {
         let candidate = self.board.candidate(settings)?;
         let options = self.board.open_options(settings, None)?;
-        let board = Board::open(candidate.link, &options).map_err(|(error, _)| error)?;
+        let board = Board::open(candidate.link, &options)?;
         Ok(TestedBoard::new(board, candidate.kind))
     }
 }

@@ -1,11 +1,14 @@
 //! Why a board could not be driven.
 
+use std::error::Error;
+use std::fmt;
 use std::time::Duration;
 
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Malformed, Refusal, RowPlace};
 
 use super::Tally;
+use super::conversation::Conversation;
 use crate::link::LinkError;
 use crate::report::wording::{count, span};
 use crate::verdict::{Cause, StoppedBy};
@@ -139,6 +142,39 @@ pub enum BoardError {
     /// Somebody ended the run.
     #[error("{0}; the board is not judged")]
     Stopped(StoppedBy),
+}
+
+/// A board that could not be opened.
+#[derive(Debug)]
+pub struct OpenFailed {
+    /// Why.
+    pub error: BoardError,
+    /// What the link did up to then.
+    pub tally: Box<Tally>,
+}
+
+impl OpenFailed {
+    pub(super) fn of(error: BoardError, conversation: &Conversation) -> Self {
+        Self { error, tally: Box::new(conversation.tally) }
+    }
+}
+
+impl fmt::Display for OpenFailed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.error.fmt(f)
+    }
+}
+
+impl Error for OpenFailed {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        self.error.source()
+    }
+}
+
+impl From<OpenFailed> for BoardError {
+    fn from(failed: OpenFailed) -> Self {
+        failed.error
+    }
 }
 
 /// What came over a link since it was opened.

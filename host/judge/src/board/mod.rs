@@ -29,7 +29,7 @@ use crate::link::Link;
 pub(crate) use bursts::{Fetched, Trapped};
 pub(crate) use conduct::Misconduct;
 pub use conversation::Tally;
-pub use error::{BoardError, Heard};
+pub use error::{BoardError, Heard, OpenFailed};
 pub use rows::{NumberedFrame, ReturnedRow, RowTraffic};
 pub(crate) use rows::{Unjudged, Unreturned};
 pub(crate) use said::Said;
@@ -89,13 +89,12 @@ impl Board {
     /// Opens a session over `link`.
     ///
     /// # Errors
-    /// [`BoardError`]: nobody answers, no halfrow board, another version, held by another host. What the link did up to
-    /// then comes with it.
-    pub fn open(link: Box<dyn Link>, options: &OpenOptions) -> Result<Self, (BoardError, Box<Tally>)> {
+    /// [`OpenFailed`]: nobody answers, no halfrow board, another version, held by another host.
+    pub fn open(link: Box<dyn Link>, options: &OpenOptions) -> Result<Self, OpenFailed> {
         let mut conversation = Conversation::new(link, options);
         let welcome = match greet_or_take_over(&mut conversation, options) {
             Ok(welcome) => welcome,
-            Err(error) => return Err((error, Box::new(conversation.tally))),
+            Err(error) => return Err(OpenFailed::of(error, &conversation)),
         };
         let counted_from = conversation.tally;
         let capabilities = conversation.request(&Request::Capabilities, Step::Request, |reply| match reply {
@@ -108,9 +107,9 @@ impl Board {
                 Ok(Self { conversation, counted_from, welcome, capabilities, options, shapes })
             }
             Err(error) => {
-                let tally = Box::new(conversation.tally);
+                let failed = OpenFailed::of(error, &conversation);
                 close(&mut conversation);
-                Err((error, tally))
+                Err(failed)
             }
         }
     }

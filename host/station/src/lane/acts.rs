@@ -271,7 +271,7 @@ impl Common<'_> {
         let stop = self.stop.clone().limited(Some(within)).within(Some(within));
         let options = OpenOptions { stop, ..Draws::draw().into() };
         let board = Board::open(candidate.link, &options)
-            .map_err(|(error, _)| Box::new(Try::error(error.cause(), &error)))?;
+            .map_err(|failed| Box::new(Try::error(failed.error.cause(), &failed.error)))?;
         let kind = candidate.kind.confirmed_by(board.capabilities.nature);
         Ok((board, kind))
     }

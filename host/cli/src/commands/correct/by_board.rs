@@ -26,7 +26,7 @@ impl Job<'_> {
     ) -> Result<BoardKind, Failure> {
         let candidate = self.arguments.board.candidate(&context.settings)?;
         let options = self.arguments.board.open_options(&context.settings, None)?;
-        let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| error)?;
+        let mut board = Board::open(candidate.link, &options)?;
         let corrected = match run::misfit(&self.chosen.tables, &self.chosen.kernel, &board.capabilities) {
             None => self.stream(&mut board, places, progress),
             Some(misfit) => Err(misfit.into()),
