@@ -284,6 +284,28 @@ fn no_check_of_a_doubtful_session_is_told_of_the_next_one() {
     assert_eq!(told, [&passed[..], &[(CheckName::Link, Outcome::Error)]].concat());
 }
 
+/// A packet of an earlier session that has the number of HELLO, in front of the answer to that.
+fn behind_stale(kind: Kind, reply: &'static Reply<'static>) -> Report {
+    judge(&System::TINY, move |toward, packet: Passing| {
+        if toward == Toward::Board || !packet.is(Kind::Hello) {
+            return vec![packet];
+        }
+        let mut stale = packet.saying(reply);
+        (stale.header.kind, stale.header.session) = (kind.code(), 77);
+        vec![stale, packet]
+    })
+}
+
+/// WIRE.md, 2.1: nothing but its own reply or refusal is for whoever greets.
+#[test]
+fn what_is_of_an_earlier_session_is_no_answer_to_a_greeting() {
+    const BUSY: Refusal = Refusal { code: RefusalCode::Busy, kind: Kind::Configure.code(), detail: 0 };
+    for (kind, reply) in [(Kind::Reset, &Reply::Reset), (Kind::Refusal, &Reply::Refusal(BUSY))] {
+        let report = behind_stale(kind, reply);
+        assert_eq!(report.verdict, Verdict::Pass, "{kind}: {}", report.headline());
+    }
+}
+
 /// Every program's first packet would be its number 1 otherwise, and a refusal names no nonce.
 #[test]
 fn a_refusal_that_an_earlier_program_was_told_is_not_this_one_s() {

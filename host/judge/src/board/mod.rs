@@ -18,7 +18,7 @@ use std::time::Duration;
 
 use halfrow_model::{Geometry, GridShape};
 use halfrow_protocol::message::{Configuration, Hello, Reply, Request, Reset, ResetLevel};
-use halfrow_protocol::{Kind, VERSION};
+use halfrow_protocol::{Kind, Packet, VERSION};
 
 use answer::take_reply;
 use asked::Asking;
@@ -300,10 +300,8 @@ fn greet(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welco
     };
     conversation.queue_zeros(2);
     let request = Request::Hello(hello);
-    let answer = conversation.ask(&Asking::Request(&request), Step::Hello, |packet| {
-        // A stale reply has another nonce; anything else that carries our number is for us.
-        !matches!(Reply::read(packet), Ok(Reply::Hello(welcome)) if welcome.nonce != hello.nonce)
-    })?;
+    let asking = Asking::Request(&request);
+    let answer = conversation.ask(&asking, Step::Hello, |packet| is_for(packet, hello.nonce))?;
     let welcome = take_reply(Kind::Hello, &answer, |reply| match reply {
         Reply::Hello(welcome) => Some(welcome),
         _ => None,
@@ -312,6 +310,16 @@ fn greet(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welco
         welcome @ Welcome { version: VERSION, session: 1.., .. } => Ok(welcome),
         Welcome { version: VERSION, .. } => Err(BoardError::NotABoard),
         Welcome { version, .. } => Err(BoardError::Version { board: version.into(), ours: VERSION }),
+    }
+}
+
+/// Whether `packet`, which has the number of a HELLO with this nonce, answers that one: what is of an earlier session may have its
+/// number as well.
+fn is_for(packet: &Packet<'_>, nonce: u32) -> bool {
+    match Reply::read(packet) {
+        Ok(Reply::Refusal(refusal)) => refusal.kind == Kind::Hello.code(),
+        // The nonce comes first, also where the rest makes no sense.
+        _ => packet.header.kind == Kind::Hello.code() && packet.payload.starts_with(&nonce.to_le_bytes()),
     }
 }
 
