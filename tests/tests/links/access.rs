@@ -72,3 +72,29 @@ fn a_port_in_use_is_busy_for_a_user_without_rights_too() {
     let ended = info_as_nobody(&program, &served.target());
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
 }
+
+/// A user of whom no other program is, with room for so many threads.
+fn with_threads(most: u32, program: &Path, arguments: &[&str]) -> Ended {
+    let mut command = Command::new("prlimit");
+    command.arg(format!("--nproc={most}"));
+    command
+        .args(["setpriv", "--reuid=54321", "--regid=54321", "--clear-groups"])
+        .arg(program)
+        .args(arguments);
+    program::finish(command.env_clear().env("PATH", "/usr/bin:/bin").current_dir("/"))
+}
+
+/// One thread is the program's own, and one waits for signals. Root alone may become another user, and has always room.
+#[test]
+fn a_run_that_gets_no_thread_ends_with_its_result() {
+    if !is_root() {
+        return;
+    }
+    let folder = Folder::new();
+    let program = for_anybody(&folder);
+    let run = ["verify", "--json", "--width", "128", "--height", "32", "--radius", "80"];
+    let without = with_threads(2, &program, &run).json();
+    assert_eq!(without["cause"], "station", "{without}");
+    assert_eq!(without["finding"]["code"], "thread-missing", "{without}");
+    assert_eq!(with_threads(3, &program, &run).json()["verdict"], "PASS");
+}

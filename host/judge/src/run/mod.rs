@@ -29,6 +29,7 @@ mod schedule;
 mod second_look;
 mod steps;
 mod streaming;
+mod threads;
 mod upload;
 mod variations;
 mod within;
@@ -60,6 +61,7 @@ pub(crate) use prepared::PrepareError;
 pub use prices::{Prices, Rates, usual_capabilities};
 pub use recorded::{RecordedRun, RestoreError};
 pub(crate) use steps::MAX_LATENCY;
+pub(crate) use threads::NoThread;
 pub use variations::{Build, Vary};
 pub use within::WithinError;
 

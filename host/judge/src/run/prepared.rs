@@ -7,6 +7,7 @@ use std::thread::Scope;
 use halfrow_model::{CorrectError, Frame, FrameError, Geometry};
 
 use super::plan::{Generation, Plan, ScheduledFrame, Segment};
+use super::threads::{self, NoThread};
 use crate::board::NumberedFrame;
 use crate::reference::correct;
 use crate::result::sha256;
@@ -35,15 +36,18 @@ pub(crate) enum PrepareError {
 
 /// The frames of `schedule` in their order, each made ready on a thread of `scope` while earlier ones are on their way.
 /// That thread ends when the receiver is dropped.
+///
+/// # Errors
+/// [`NoThread`] when there is none.
 pub(super) fn ahead<'scope, 'run: 'scope>(
     scope: &'scope Scope<'scope, '_>,
     plan: &'run Plan,
     schedule: &'run [Segment],
     generations: Vec<Generation>,
-) -> Receiver<Result<Prepared, PrepareError>> {
+) -> Result<Receiver<Result<Prepared, PrepareError>>, NoThread> {
     let (sender, receiver) = sync_channel(1);
     let span = tracing::Span::current();
-    scope.spawn(move || {
+    threads::spawn(scope, move || {
         let _entered = span.entered();
         let of_segment = |segment: &'run Segment| segment.frames.iter().map(move |frame| (frame, segment));
         let mut frames = schedule.iter().flat_map(of_segment);
@@ -53,8 +57,8 @@ pub(super) fn ahead<'scope, 'run: 'scope>(
             let is_last = prepared.is_err();
             sender.send(prepared).ok().filter(|()| !is_last)
         });
-    });
-    receiver
+    })?;
+    Ok(receiver)
 }
 
 impl Prepared {

@@ -68,6 +68,7 @@ impl Run<'_> {
         let (plan, generations) = (self.plan, self.generations.clone());
         thread::scope(|scope| {
             let frames = prepared::ahead(scope, plan, &schedule, generations);
+            let frames = frames.map_err(|error| error.during(CheckName::Frames))?;
             self.progress.step(Step::TestTheLink);
             self.persist(Self::link)?;
             let last = self.stream_all(&schedule, &frames)?;

@@ -104,6 +104,16 @@ pub enum UsbError {
         /// What it can make.
         nearest: Vec<u32>,
     },
+    /// The system gives this program no thread that moves bytes over USB.
+    #[error(
+        "this computer has no thread left to serve {name}; end other programs, or allow this user more processes, then run again"
+    )]
+    NoThread {
+        /// The chip's name.
+        name: String,
+        /// The system's reason.
+        source: std::io::Error,
+    },
     /// A transfer failed.
     #[error("{name} failed while {doing}; unplug the board, plug it in, and run again")]
     Transfer {

@@ -85,8 +85,10 @@ impl UsbLink {
         let unpack = Box::new(move |transfer: &[u8], data: &mut Vec<u8>, errors: &mut LineErrors| {
             strip(transfer, packet, data, is_line, errors);
         });
+        let pump = Pump::start(Box::new(transport), unpack);
+        let pump = pump.map_err(|source| UsbError::NoThread { name: name.clone(), source })?;
         Ok(Self {
-            pump: Pump::start(Box::new(transport), unpack),
+            pump,
             name: format!("{name} ({}, channel {}, {what})", chip.name(), channel.letter()),
             bytes_per_second,
             opened: Instant::now(),

@@ -1,6 +1,7 @@
 //! Two threads that keep a device's endpoints busy, and the queues between them and the link.
 
 use std::collections::VecDeque;
+use std::io;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
@@ -134,15 +135,21 @@ pub(super) struct Pump {
 }
 
 impl Pump {
-    pub(super) fn start(transport: Box<dyn Transport>, unpack: Box<Unpack>) -> Self {
+    /// # Errors
+    /// The system's, when it has no thread left.
+    pub(super) fn start(transport: Box<dyn Transport>, unpack: Box<Unpack>) -> io::Result<Self> {
         let queues = Mutex::new(Queues::default());
         let shared = Arc::new(Shared { transport, unpack, queues, changed: Condvar::new() });
-        let (reading, writing) = (Arc::clone(&shared), Arc::clone(&shared));
-        let threads = vec![
-            thread::spawn(move || reading.keep_reading()),
-            thread::spawn(move || writing.keep_writing()),
-        ];
-        Self { shared, threads }
+        let mut pump = Self { shared, threads: Vec::new() };
+        pump.spawn(Shared::keep_reading)?;
+        pump.spawn(Shared::keep_writing)?;
+        Ok(pump)
+    }
+
+    fn spawn(&mut self, work: fn(&Shared)) -> io::Result<()> {
+        let shared = Arc::clone(&self.shared);
+        self.threads.push(thread::Builder::new().name("usb".to_owned()).spawn(move || work(&shared))?);
+        Ok(())
     }
 
     /// As [`Link::exchange`](crate::Link::exchange). What has arrived before a failure is handed over first.
@@ -250,7 +257,7 @@ mod tests {
     }
 
     fn pump(device: Device) -> Pump {
-        Pump::start(Box::new(device), Box::new(|transfer, data, _| data.extend_from_slice(transfer)))
+        Pump::start(Box::new(device), Box::new(|transfer, data, _| data.extend_from_slice(transfer))).unwrap()
     }
 
     #[test]

@@ -7,7 +7,9 @@ use crate::board::BoardError;
 use crate::coverage::FaultsError;
 use crate::link::{LinkError, OpenError, RecordingError, SerialError, TcpError, UsbError, UsbFailure};
 use crate::link_test::LinkTestError;
-use crate::run::{CannotJudge, GoldenError, Misfit, PrepareError, RestoreError, TooManyFrames, WithinError};
+use crate::run::{
+    CannotJudge, GoldenError, Misfit, NoThread, PrepareError, RestoreError, TooManyFrames, WithinError,
+};
 use crate::target::TargetError;
 
 #[cfg(feature = "sim")]
@@ -96,6 +98,7 @@ codes! {
         BaudOfFifo => "usb-fifo-has-no-rate",
         Rate [chip, baud, nearest] => "usb-rate-not-made",
         Transfer [name, doing] => "usb-transfer-failed",
+        NoThread [name] => "usb-thread-missing",
     }
     RecordingError {
         Read [path] => "recording-unreadable",
@@ -150,6 +153,8 @@ codes! {
     CannotJudge => "computer-cannot-judge"
     ;
     TooManyFrames [frames] => "too-many-frames"
+    ;
+    NoThread => "thread-missing"
     ;
     UsbFailure => "usb-device-failed"
     ;

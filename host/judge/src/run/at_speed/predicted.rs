@@ -8,19 +8,23 @@ use halfrow_model::Signer;
 use super::burst::BurstPlan;
 use crate::reference;
 use crate::run::Generation;
+use crate::run::threads::{self, NoThread};
 
 /// Frames that may be predicted ahead of the board.
 const AHEAD: usize = 64;
 
 /// The signatures of the frames of `plan` in their order, each predicted on a thread of `scope`. That thread ends when the
 /// receiver is dropped.
+///
+/// # Errors
+/// [`NoThread`] when there is none.
 pub(super) fn ahead<'scope, 'run: 'scope>(
     scope: &'scope Scope<'scope, '_>,
     plan: BurstPlan,
     tables: &'run [Generation],
-) -> Receiver<u32> {
+) -> Result<Receiver<u32>, NoThread> {
     let (sender, receiver) = sync_channel(AHEAD);
-    scope.spawn(move || {
+    threads::spawn(scope, move || {
         let mut signers: Vec<_> = tables.iter().map(signer).collect();
         let mut rows = Vec::new();
         let mut last = None;
@@ -39,8 +43,8 @@ pub(super) fn ahead<'scope, 'run: 'scope>(
                 break;
             }
         }
-    });
-    receiver
+    })?;
+    Ok(receiver)
 }
 
 /// A signer of frames that are made with `generation`.

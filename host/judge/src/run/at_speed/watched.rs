@@ -164,17 +164,17 @@ impl Run<'_> {
         self.findings.bursts += 1;
         let burst = plan.request(self.findings.bursts);
         let mut watched = Watched::default();
-        if let Err(error) = self.board.burst(&burst) {
-            return (watched, Err(End::board(CheckName::AtSpeed, &error)));
-        }
         let ended = thread::scope(|scope| {
+            let predicted = predicted::ahead(scope, *plan, tables);
+            let predicted = predicted.map_err(|error| error.during(CheckName::AtSpeed))?;
+            self.board.burst(&burst).map_err(|error| End::board(CheckName::AtSpeed, &error))?;
             let watch = Watch {
                 board: self.board,
                 plan,
                 burst,
                 generation: tables.first().map_or(0, |active| active.number),
                 ends_early,
-                predicted: predicted::ahead(scope, *plan, tables),
+                predicted,
                 told,
                 idle: Duration::ZERO,
             };

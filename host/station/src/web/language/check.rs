@@ -34,7 +34,7 @@ const OF_STATION: [&str; 15] = [
     "UnknownBarcode",
 ];
 /// The same of the judge's.
-const OF_JUDGE: [&str; 14] = [
+const OF_JUDGE: [&str; 15] = [
     "BoardError",
     "LinkError",
     "OpenError",
@@ -48,6 +48,7 @@ const OF_JUDGE: [&str; 14] = [
     "GoldenError",
     "CannotJudge",
     "TooManyFrames",
+    "NoThread",
     "UsbFailure",
 ];
 /// Codes that belong to no type of those.

@@ -1,0 +1,31 @@
+//! Threads that work ahead of a board.
+
+use std::io;
+use std::thread::{Builder, Scope};
+
+use super::findings::End;
+use crate::result::{CheckName, Problem};
+use crate::verdict::Cause;
+
+/// The system gives this program no thread on which it can work out what must come back.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "this computer has no thread left for what must come back; end other programs, or allow this user more processes, then run again"
+)]
+pub(crate) struct NoThread(#[source] io::Error);
+
+impl NoThread {
+    /// Why a run ends during `check`.
+    pub(super) fn during(&self, check: CheckName) -> End {
+        End::error(check, Cause::Station, Problem::of(self))
+    }
+}
+
+/// Does `work` on a thread of `scope`.
+pub(super) fn spawn<'scope>(
+    scope: &'scope Scope<'scope, '_>,
+    work: impl FnOnce() + Send + 'scope,
+) -> Result<(), NoThread> {
+    let spawned = Builder::new().name("ahead".to_owned()).spawn_scoped(scope, work);
+    spawned.map(drop).map_err(NoThread)
+}
