@@ -98,6 +98,19 @@ impl Board {
         self.conversation.credit()
     }
 
+    /// Drops the rows inside the board, and returns for how many rows beyond the one that it waits for then it gives credit.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board refuses or does not answer.
+    pub(crate) fn credit_behind_reset(&mut self) -> Result<u32, BoardError> {
+        let reset = Reset { level: ResetLevel::Rows, next_row: self.credit() };
+        let request = Request::Reset(reset);
+        let answer = self.conversation.ask(&Asking::Request(&request), Step::Request, |_| true)?;
+        take_reply(Kind::Reset, &answer, |reply| matches!(reply, Reply::Reset).then_some(()))?;
+        self.conversation.acknowledged = reset.next_row;
+        Ok(answer.header.window.saturating_sub(reset.next_row))
+    }
+
     /// Drops the rows inside the board, which then waits for row sequence number `next_row`, one that was not sent yet.
     ///
     /// # Errors

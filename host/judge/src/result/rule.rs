@@ -34,6 +34,8 @@ pub enum Rule {
     Forgotten,
     /// A row out of place is refused.
     RowPlace,
+    /// The window is as far ahead as a board has banks for rows.
+    Window,
     /// A row beyond the window is refused.
     Credit,
     /// What must not be done with rows inside is refused.
@@ -81,6 +83,18 @@ pub enum Answer {
     Replied {
         /// Its payload in hexadecimal, the first bytes.
         payload: String,
+    },
+    /// Credit for rows.
+    Credit {
+        /// How many beyond the row that is waited for.
+        rows: u32,
+    },
+    /// How far a burst is.
+    Burst {
+        /// Whether it has ended.
+        ended: bool,
+        /// The records that are there.
+        records: usize,
     },
     /// A row as it must be.
     Row {

@@ -29,6 +29,11 @@ fn must(right: &Answer, request: &str) -> String {
         }
         Answer::Replied { payload } if payload.is_empty() => format!("carry out {request}"),
         Answer::Replied { payload } => format!("answer {request} with {payload}"),
+        Answer::Credit { rows } => format!("give credit for {} behind {request}", count(*rows, "row")),
+        Answer::Burst { ended, records } => {
+            let state = if *ended { "that has ended" } else { "under way" };
+            format!("answer {request} with a burst {state} and {}", count(*records, "record"))
+        }
         Answer::Row { row, frame } => format!("return row {row} of frame {frame} as it is made"),
         Answer::OtherRow {} => format!("answer {request} with another row"),
         Answer::Nothing {} => format!("leave {request} unanswered"),
@@ -40,6 +45,11 @@ fn did(found: &Answer) -> String {
         Answer::Refused { code, detail } => format!("refused as `{}`, detail {detail}", reason(*code)),
         Answer::Replied { payload } if payload.is_empty() => "carried it out".to_owned(),
         Answer::Replied { payload } => format!("answered with {payload}"),
+        Answer::Credit { rows } => format!("gave it for {rows}"),
+        Answer::Burst { ended, records } => {
+            let state = if *ended { "that has ended" } else { "under way" };
+            format!("answered with one {state} and {}", count(*records, "record"))
+        }
         Answer::Row { row, frame } => format!("returned row {row} of frame {frame}"),
         Answer::OtherRow {} => "returned another".to_owned(),
         Answer::Nothing {} => "did not".to_owned(),
@@ -75,6 +85,7 @@ fn meaning(rule: Rule) -> &'static str {
         Rule::Pending => "a commit is pending",
         Rule::Forgotten => "RESET forgets a pending commit",
         Rule::RowPlace => "a row out of place",
+        Rule::Window => "the window is as far ahead as row_banks_in says",
         Rule::Credit => "a row beyond the window",
         Rule::Inside => "a row is inside the core",
         Rule::Rows => "rows come back in place",

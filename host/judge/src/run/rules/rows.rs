@@ -2,14 +2,15 @@
 
 use std::mem;
 
+use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Commit, RefusalCode, Request, RowIn, RowPlace};
 use halfrow_protocol::samples::pack;
 
 use super::compared::Compared;
-use super::{FIRST_FACTOR, Rules, of_board, of_rows, other_row};
+use super::{FIRST_FACTOR, Rules, broken, of_board, of_rows, other_row};
 use crate::board::BoardError;
 use crate::reference::correct;
-use crate::result::{CheckName, Counter, Finding, Rule};
+use crate::result::{Answer, CheckName, Counter, Finding, Rule};
 use crate::run::Generation;
 use crate::run::at_speed::{BY_TURNS, fit};
 use crate::run::findings::End;
@@ -80,7 +81,7 @@ impl Rules<'_, '_> {
 
     /// Behind a RESET nothing but row 0 in its place, and nothing beyond the window.
     fn first_rows(&mut self) -> Result<(), End> {
-        self.drop_rows()?;
+        self.window()?;
         let first = self.place(0);
         let second = RowPlace { row_sequence: first.row_sequence, ..self.place(1) };
         let wrong = [
@@ -102,6 +103,18 @@ impl Rules<'_, '_> {
         // Behind the last row of a frame comes row 0.
         let behind = RowPlace { row_sequence: self.run.board.acknowledged(), ..self.place(1) };
         self.row_refused(Rule::RowPlace, behind, RefusalCode::Row)
+    }
+
+    /// Behind a RESET no row is inside, so that the window is as far ahead as there are banks.
+    fn window(&mut self) -> Result<(), End> {
+        let rows = self.run.board.credit_behind_reset().map_err(of_board)?;
+        let banks = self.capabilities.row_banks_in.into();
+        if rows != banks {
+            let (right, found) = (Answer::Credit { rows: banks }, Answer::Credit { rows });
+            return Err(broken(Rule::Window, Kind::Reset, right, found));
+        }
+        self.right += 1;
+        Ok(())
     }
 
     /// Gives row `row` of the frame, which is one of the first two: for those there is credit.
