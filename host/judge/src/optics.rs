@@ -45,7 +45,7 @@ pub enum TablesBy {
 
 impl TablesBy {
     /// The entries that every board with datapath 2 has room for.
-    pub const LEAST_ENTRIES: usize = 2048;
+    pub const LEAST_ENTRIES: usize = crate::board::LEAST_ENTRIES as usize;
 }
 
 impl TablesBy {

@@ -3,10 +3,13 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use halfrow::verdict::Cause;
+use halfrow::board::{Board, OpenOptions};
+use halfrow::verdict::{Cause, Verdict};
+use halfrow_mock::Options;
+use halfrow_model::{MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
 use halfrow_protocol::message::{Capabilities, Grids, Welcome};
 use halfrow_protocol::{Kind, Reply};
-use halfrow_tests::altered::{Passing, Toward, judge_claims, judge_claims_by, judge_each};
+use halfrow_tests::altered::{Altered, Passing, Toward, judge_claims, judge_claims_by, judge_each};
 use halfrow_tests::system::{System, streamed};
 
 /// A capability by its name in WIRE.md, and what it is set to.
@@ -77,6 +80,48 @@ fn a_board_that_cannot_be_is_refused_by_the_capability_s_name() {
             report.headline()
         );
         assert!(report.frames.is_empty());
+    }
+}
+
+#[test]
+fn a_board_that_cannot_be_is_refused_by_whoever_opens_it() {
+    for &(claim, change) in IMPOSSIBLE {
+        let claims = move |_, packet: Passing| match packet.reply() {
+            Some(Reply::Capabilities(mut capabilities)) => {
+                change(&mut capabilities);
+                vec![packet.saying(&Reply::Capabilities(capabilities))]
+            }
+            _ => vec![packet],
+        };
+        let link = Altered::new(&Options::default(), claims).candidate().link;
+        let (error, _) = Board::open(link, &OpenOptions::default()).map(drop).unwrap_err();
+        assert_eq!(error.cause(), Cause::Refused, "{claim}: {error}");
+        assert!(error.to_string().contains(&format!("the board says {claim}, and ")), "{error}");
+    }
+}
+
+/// What a board may say of its size is what the datapath is made for.
+#[test]
+fn the_page_of_the_wire_names_the_sizes_that_the_model_has() {
+    let page = include_str!("../../../protocol/WIRE.md");
+    let width = format!("| 02 | `u16` max_width | samples, even, {MIN_WIDTH} to {MAX_WIDTH} |");
+    let height = format!("| 03 | `u16` max_height | rows, 1 to {MAX_HEIGHT} |");
+    [width, height].iter().for_each(|row| assert!(page.contains(row), "{row}"));
+}
+
+/// The mock has 4 banks for rows that wait: more would be credit that it does not give, fewer what it may give and does not.
+#[test]
+fn a_board_with_other_row_banks_than_it_says_fails() {
+    for (banks, change) in [
+        (2, (|board| board.row_banks_in = 2) as fn(&mut Capabilities)),
+        (3, |board| board.row_banks_in = 3),
+        (5, |board| board.row_banks_in = 5),
+        (255, |board| board.row_banks_in = 255),
+    ] {
+        let report = judge_claims(&System::TINY, change);
+        assert_eq!(report.verdict, Verdict::Fail, "{banks}: {}", report.headline());
+        let said = format!("must give credit for {banks} rows behind RESET, and gave it for 4");
+        assert!(report.headline().contains(&said), "{}", report.headline());
     }
 }
 

@@ -50,6 +50,19 @@ pub enum BoardError {
          touch, and for a port that echoes"
     )]
     Echoed,
+    /// It says of itself what no board can be, so that no command can use it.
+    #[error(
+        "the board says {capability} = {value}, and {legal}; correct what it says of itself (CAPABILITIES in protocol/WIRE.md), or \
+         load another bitstream"
+    )]
+    Impossible {
+        /// The capability.
+        capability: String,
+        /// What the board says.
+        value: u16,
+        /// What may be, as the end of a sentence.
+        legal: String,
+    },
     /// No common version of the wire.
     #[error(
         "the board speaks version {board} of the wire and this program version {ours}; load a matching bitstream or \
@@ -252,7 +265,7 @@ impl BoardError {
         match self {
             Self::Held { .. } => Cause::Busy,
             Self::Link { source, .. } if matches!(**source, LinkError::InUse { .. }) => Cause::Busy,
-            Self::NotABoard | Self::Version { .. } | Self::Malformed { kind: Kind::Capabilities, .. } => {
+            Self::NotABoard | Self::Version { .. } | Self::Impossible { .. } | Self::Malformed { .. } => {
                 Cause::Refused
             }
             Self::Stopped(by) => Cause::Stopped(*by),

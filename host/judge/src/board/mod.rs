@@ -8,6 +8,7 @@ mod conversation;
 mod counters;
 pub mod deadlines;
 mod error;
+mod legal;
 mod rows;
 mod said;
 mod sent;
@@ -30,6 +31,7 @@ pub(crate) use bursts::{Fetched, Trapped};
 pub(crate) use conduct::Misconduct;
 pub use conversation::Tally;
 pub use error::{BoardError, Heard, OpenFailed};
+pub(crate) use legal::{LEAST_ENTRIES, MAX_LATENCY, grids, possible};
 pub use rows::{NumberedFrame, ReturnedRow, RowTraffic};
 pub(crate) use rows::{Unjudged, Unreturned};
 pub(crate) use said::Said;
@@ -89,8 +91,19 @@ impl Board {
     /// Opens a session over `link`.
     ///
     /// # Errors
-    /// [`OpenFailed`]: nobody answers, no halfrow board, another version, held by another host.
+    /// [`OpenFailed`]: nobody answers, no halfrow board, one that cannot be, another version, held by another host.
     pub fn open(link: Box<dyn Link>, options: &OpenOptions) -> Result<Self, OpenFailed> {
+        let mut board = Self::open_any(link, options)?;
+        possible(&board.capabilities).map_err(|error| {
+            let tally = Box::new(board.tally());
+            board.close();
+            OpenFailed { error, tally }
+        })?;
+        Ok(board)
+    }
+
+    /// As [`Self::open`], whatever the board says that it can do.
+    pub(crate) fn open_any(link: Box<dyn Link>, options: &OpenOptions) -> Result<Self, OpenFailed> {
         let mut conversation = Conversation::new(link, options);
         let welcome = match greet_or_take_over(&mut conversation, options) {
             Ok(welcome) => welcome,

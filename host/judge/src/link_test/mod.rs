@@ -137,7 +137,9 @@ impl Test<'_> {
 
     /// A packet of row factors, 1 to 2^24, as many as fit into packet and table.
     fn entries(&mut self) -> Vec<u8> {
-        let count = Board::entries_at_once(Table::RowFactors).min(self.board.capabilities.max_height.into());
+        // A packet without entries would be no test, and what a board of an unknown datapath says is not looked at.
+        let rows = self.board.capabilities.max_height.max(1);
+        let count = Board::entries_at_once(Table::RowFactors).min(rows.into());
         (0..count).flat_map(|_| (1 + (self.random.next_u32() >> 8)).to_le_bytes()).collect()
     }
 }

@@ -7,11 +7,11 @@ mod within;
 
 use std::borrow::Cow;
 
+use crate::board::MAX_LATENCY;
 use crate::result::{
     Account, BoardKind, BoardReport, Finding, FrameReport, LatencyReport, LinkReport, NotExercised, Outcome,
     Reconnection, Report, SoakDifference, SoakLength, SoakReport, StreetReport, Suspect,
 };
-use crate::run::MAX_LATENCY;
 use crate::verdict::Verdict;
 
 pub use coverage::coverage;

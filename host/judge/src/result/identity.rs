@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::board::{Bursts, Capabilities, Welcome};
-use crate::run::grids;
+use crate::board::{Bursts, Capabilities, Welcome, grids};
 
 /// What a board says of itself.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

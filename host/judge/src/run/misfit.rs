@@ -3,10 +3,9 @@
 use halfrow_model::{Kernel, TableError, TableSet, Taps};
 use halfrow_protocol::message::{BoardNature, UnknownDatapath};
 
-use super::legal::grids;
 use super::plan::TooManyFrames;
 use super::within::WithinError;
-use crate::board::Capabilities;
+use crate::board::{Capabilities, grids};
 
 /// Why a board cannot have tables, a kernel or frames: the call does not fit the board, or the board not this program, so
 /// that there is nothing to judge.

@@ -29,7 +29,7 @@ pub(super) struct WayBack {
 impl WayBack {
     /// Opens the board behind `link`, or behind the next one if that breaks.
     pub(super) fn open(&mut self, link: Box<dyn Link>, findings: &mut Findings) -> Result<Board, End> {
-        let OpenFailed { error, tally } = match Board::open(link, &self.options) {
+        let OpenFailed { error, tally } = match Board::open_any(link, &self.options) {
             Ok(board) => return Ok(board),
             Err(failed) => failed,
         };
@@ -89,7 +89,9 @@ impl WayBack {
         // A board that never lost power must not take this for the greeting that it has answered.
         let nonce = self.options.nonce.wrapping_add(1 + times as u32);
         let options = OpenOptions { nonce, stop: self.options.stop.after(spent), ..self.options.clone() };
-        Board::open(link, &options).inspect_err(|failed| tracing::debug!("not there yet: {failed}")).ok()
+        Board::open_any(link, &options)
+            .inspect_err(|failed| tracing::debug!("not there yet: {failed}"))
+            .ok()
     }
 }
 

@@ -6,7 +6,6 @@ use std::thread;
 use super::exercised::not_exercised;
 use super::findings::{During, End, Findings};
 use super::golden::{self, CannotJudge};
-use super::legal::{grids, impossible};
 use super::misfit::misfit;
 use super::options::RunOptions;
 use super::patterns::patterns;
@@ -14,16 +13,13 @@ use super::plan::{Generation, Plan, Segment};
 use super::prepared::{self, PrepareError, Prepared};
 use super::reconnect::WayBack;
 use super::variations::Build;
-use crate::board::{Board, UnknownDatapath};
+use crate::board::{Board, BoardError, UnknownDatapath, grids, possible};
 use crate::progress::{Progress, Step};
 use crate::reference;
 use crate::result::{CheckName, Finding, NotExercised, Problem};
 use crate::tables::DATAPATH;
 use crate::target::BoardKind;
 use crate::verdict::Cause;
-
-/// The largest L that a board may have.
-pub(crate) const MAX_LATENCY: u8 = 32;
 
 /// A run with an open board.
 pub(super) struct Run<'a> {
@@ -161,8 +157,8 @@ impl Run<'_> {
                 return error(Cause::Refused, Finding::DatapathUnknown { datapath, known });
             }
         };
-        if let Some(impossible) = impossible(datapath, &self.board.capabilities) {
-            return error(Cause::Refused, impossible);
+        if let Err(BoardError::Impossible { capability, value, legal }) = possible(&self.board.capabilities) {
+            return error(Cause::Refused, Finding::CapabilityImpossible { capability, value, legal });
         }
         if self.options.require_hardware && self.findings.board.kind != BoardKind::Hardware {
             return error(

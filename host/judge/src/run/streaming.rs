@@ -9,8 +9,8 @@ use super::judge::{Judge, Manner};
 use super::pauses::pauses;
 use super::plan::{SENSOR_BLANKING, Segment, Timing};
 use super::prepared::{PrepareError, Prepared};
-use super::steps::{MAX_LATENCY, Run};
-use crate::board::{BoardError, Misconduct};
+use super::steps::Run;
+use crate::board::{BoardError, MAX_LATENCY, Misconduct};
 use crate::result::{CheckName, Finding, FrameTiming, Problem};
 use crate::verdict::Cause;
 

@@ -23,6 +23,7 @@ codes! {
         NoAnswer [kind, attempts, waited] => "no-answer",
         NotABoard => "not-a-board",
         Echoed => "line-echoes",
+        Impossible [capability, value, legal] => "capability-out-of-range",
         Version [board, ours] => "wire-version-unknown",
         Held [seconds] => "board-held",
         SessionLost => "session-lost",

@@ -6,8 +6,8 @@ use rand_pcg::Pcg64Mcg;
 
 use super::corners::{BY_TURNS, CALM, drawn_factors, drawn_kernel, fit};
 use crate::board::Capabilities;
+use crate::board::grids;
 use crate::run::Generation;
-use crate::run::legal::grids;
 use crate::run::variations::Build;
 
 /// Samples that such a frame has about. One of them goes over the link.

@@ -4,9 +4,9 @@ use halfrow_model::{GridShape, TableSet};
 use halfrow_protocol::message::{Commit, Entries, Grids, RefusalCode, Request, Shape, Span, Table};
 
 use super::{FIRST_FACTOR, Rules};
+use crate::board::grids;
 use crate::result::Rule;
 use crate::run::findings::End;
-use crate::run::legal::grids;
 use crate::run::parts::of_height;
 
 /// Places of COMMIT's fields (WIRE.md, 13).

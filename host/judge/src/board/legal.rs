@@ -1,0 +1,143 @@
+//! What a board may say of itself: `protocol/WIRE.md` section 3 and `fpga/DATAPATH.md`.
+
+use std::ops::RangeInclusive;
+
+use halfrow_model::{MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
+use halfrow_protocol::message::Grids;
+
+use super::{BoardError, Capabilities, Datapath};
+
+/// What a capability may be.
+struct Limit {
+    /// Its name in WIRE.md.
+    name: &'static str,
+    /// What is legal, as the end of a sentence.
+    legal: fn() -> String,
+    value: fn(&Capabilities) -> u16,
+    holds: fn(&Capabilities) -> bool,
+}
+
+/// The sizes that the datapath is defined for.
+const WIDTHS: RangeInclusive<usize> = MIN_WIDTH..=MAX_WIDTH;
+const HEIGHTS: RangeInclusive<usize> = 1..=MAX_HEIGHT;
+/// The depths of samples, in bits.
+const DEPTHS: [u8; 3] = [8, 10, 12];
+/// L = 3 + p: what an output may need beside its column, and the pipeline.
+const MIN_LATENCY: u8 = 3;
+/// The largest L that a board may have.
+pub(crate) const MAX_LATENCY: u8 = 32;
+/// The fewest row banks each way, and the fewest records of bursts.
+const TWO: u16 = 2;
+/// The fewest entries of a bank that takes grids.
+pub(crate) const LEAST_ENTRIES: u16 = 2048;
+
+/// The grids that a board takes; none of a datapath that is not known.
+pub(crate) fn grids(board: &Capabilities) -> Option<Grids> {
+    board.grids.filter(|grids| grids.further_datapath == Datapath::Grids.id())
+}
+
+/// Of datapath 1, and of 2 beside it.
+const LIMITS: [Limit; 14] = [
+    Limit {
+        name: "max_width",
+        legal: || format!("rows have an even number of samples, {MIN_WIDTH} to {MAX_WIDTH}"),
+        value: |board| board.max_width,
+        holds: |board| WIDTHS.contains(&board.max_width.into()) && board.max_width.is_multiple_of(2),
+    },
+    Limit {
+        name: "max_height",
+        legal: || format!("frames have 1 to {MAX_HEIGHT} rows"),
+        value: |board| board.max_height,
+        holds: |board| HEIGHTS.contains(&board.max_height.into()),
+    },
+    Limit {
+        name: "depths",
+        legal: || "a board has at least one of 8, 10 and 12 bits".to_owned(),
+        value: |board| board.depths.into(),
+        holds: |board| DEPTHS.into_iter().any(|bits| board.sample_depths().has(bits)),
+    },
+    Limit {
+        name: "taps",
+        legal: || "a datapath has 5 or 7".to_owned(),
+        value: |board| board.taps.into(),
+        holds: |board| matches!(board.taps, 5 | 7),
+    },
+    Limit {
+        name: "latency",
+        legal: || format!("L is {MIN_LATENCY} to {MAX_LATENCY}"),
+        value: |board| board.latency.into(),
+        holds: |board| (MIN_LATENCY..=MAX_LATENCY).contains(&board.latency),
+    },
+    Limit {
+        name: "ring",
+        legal: || "M is a power of two that holds the widest row".to_owned(),
+        value: |board| board.ring,
+        holds: |board| board.ring.is_power_of_two() && board.ring >= board.max_width,
+    },
+    Limit {
+        name: "table_banks",
+        legal: || "a board has 1 or 2".to_owned(),
+        value: |board| board.table_banks.into(),
+        holds: |board| matches!(board.table_banks, 1 | 2),
+    },
+    Limit {
+        name: "row_banks_in",
+        legal: || format!("a board has at least {TWO}"),
+        value: |board| board.row_banks_in.into(),
+        holds: |board| u16::from(board.row_banks_in) >= TWO,
+    },
+    Limit {
+        name: "row_banks_out",
+        legal: || format!("a board has at least {TWO}"),
+        value: |board| board.row_banks_out.into(),
+        holds: |board| u16::from(board.row_banks_out) >= TWO,
+    },
+    Limit {
+        name: "step_ports",
+        legal: || "a datapath that reads row factors has at least one port for them".to_owned(),
+        value: |board| board.step_ports.into(),
+        holds: |board| board.step_ports >= 1,
+    },
+    Limit {
+        name: "kernel_ports",
+        legal: || "a datapath that reads nodes has at least one port for them".to_owned(),
+        value: |board| board.kernel_ports.into(),
+        holds: |board| board.kernel_ports >= 1,
+    },
+    Limit {
+        name: "records",
+        legal: || format!("a board that makes bursts keeps at least {TWO}"),
+        value: |board| board.bursts.map_or(0, |bursts| bursts.records),
+        holds: |board| board.bursts.is_none_or(|bursts| bursts.records >= TWO),
+    },
+    Limit {
+        name: "entries",
+        legal: || {
+            format!("a board that takes grids has at least {LEAST_ENTRIES} entries, and as many as rows")
+        },
+        value: |board| grids(board).map_or(0, |grids| grids.entries),
+        holds: |board| grids(board).is_none_or(|it| it.entries >= board.max_height.max(LEAST_ENTRIES)),
+    },
+    Limit {
+        name: "ks",
+        legal: || "a board that takes grids has nodes every 2^5 or every 2^6 columns".to_owned(),
+        value: |board| grids(board).map_or(0, |grids| grids.ks.into()),
+        holds: |board| grids(board).is_none_or(|grids| grids.takes(5) || grids.takes(6)),
+    },
+];
+
+/// Whether a board of a known datapath can have these capabilities. Of one that is not known nothing can be said.
+///
+/// # Errors
+/// [`BoardError::Impossible`] for the first that none can have.
+pub(crate) fn possible(capabilities: &Capabilities) -> Result<(), BoardError> {
+    let limits = match capabilities.known_datapath() {
+        Ok(Datapath::RowFactors | Datapath::Grids) => &LIMITS[..],
+        Err(_) => &[],
+    };
+    let broken = limits.iter().find(|limit| !(limit.holds)(capabilities));
+    broken.map_or(Ok(()), |Limit { name, legal, value, .. }| {
+        let (capability, value, legal) = ((*name).to_owned(), value(capabilities), legal());
+        Err(BoardError::Impossible { capability, value, legal })
+    })
+}
