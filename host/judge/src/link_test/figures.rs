@@ -83,26 +83,6 @@ pub struct RoundTrips {
     pub most_us: f64,
 }
 
-impl RoundTrips {
-    /// Of `times`, which are at least one.
-    pub(super) fn of(mut times: Vec<Duration>) -> Self {
-        times.sort_unstable();
-        let at = |share: f64| {
-            let rank = (share * times.len() as f64).ceil() as usize;
-            let time = times.get(rank.saturating_sub(1)).copied().unwrap_or_default();
-            time.as_secs_f64() * 1e6
-        };
-        Self {
-            count: times.len(),
-            least_us: at(0.0),
-            median_us: at(0.5),
-            p90_us: at(0.9),
-            p99_us: at(0.99),
-            most_us: at(1.0),
-        }
-    }
-}
-
 /// Bytes on the wire, stuffing and headers included.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Throughput {
@@ -142,34 +122,6 @@ impl Throughput {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn percentiles_are_the_nearest_ranks() {
-        let times = (1..=200).rev().map(Duration::from_micros).collect();
-        let expected = RoundTrips {
-            count: 200,
-            least_us: 1.0,
-            median_us: 100.0,
-            p90_us: 180.0,
-            p99_us: 198.0,
-            most_us: 200.0,
-        };
-        let found = RoundTrips::of(times);
-        let close = |(a, b): (f64, f64)| (a - b).abs() < 1e-6;
-        assert_eq!(found.count, 200);
-        assert!(
-            [
-                (found.least_us, expected.least_us),
-                (found.median_us, expected.median_us),
-                (found.p90_us, expected.p90_us),
-                (found.p99_us, expected.p99_us),
-                (found.most_us, expected.most_us),
-            ]
-            .into_iter()
-            .all(close),
-            "{found:?}"
-        );
-    }
 
     #[test]
     fn no_error_among_n_packets_bounds_the_rate_by_three_in_n() {

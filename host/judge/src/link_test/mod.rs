@@ -5,6 +5,7 @@
 
 mod figures;
 mod rows;
+mod times;
 
 use std::time::{Duration, Instant};
 
@@ -15,6 +16,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::board::{Bank, Board, BoardError, Table, TablePort, Tally};
 
 pub use figures::{Errors, Figures, Rate, RoundTrips, Throughput};
+use times::Times;
 
 /// A link test that did not come to an end.
 #[derive(Debug, thiserror::Error)]
@@ -92,11 +94,11 @@ impl Test<'_> {
 
     fn round_trips(&mut self) -> Result<RoundTrips, BoardError> {
         let begun = self.begin();
-        let mut times = Vec::new();
-        while times.is_empty() || !self.is_over(&begun) {
-            times.push(self.board.echo(&[])?.1);
+        let mut times = Times::beginning(self.board.echo(&[])?.1);
+        while !self.is_over(&begun) {
+            times.add(self.board.echo(&[])?.1);
         }
-        Ok(RoundTrips::of(times))
+        Ok(times.round_trips())
     }
 
     /// Random bytes of random length there and back. Returns the number of echoes that came back otherwise.
