@@ -11,7 +11,7 @@ use halfrow::target::BoardKind;
 use halfrow::verdict::Verdict;
 use halfrow_mock::{Board, Options};
 use halfrow_pipe::{Endpoint, Pipe, PipeOptions};
-use halfrow_protocol::message::{Refusal, RowOut, Status, TrappedRow};
+use halfrow_protocol::message::{BurstState, Records, Refusal, RowOut, Status, TrappedRow};
 use halfrow_protocol::{Encoder, Header, Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{System, failed_check, judge_by_plan, open};
@@ -352,6 +352,20 @@ fn a_row_that_is_trapped_otherwise_than_it_is_fails() {
         _ => Some(packet),
     });
     assert_eq!(broken(&report).0, Rule::Trap);
+}
+
+#[test]
+fn a_burst_that_never_ends_is_told_with_what_was_said_of_it() {
+    let report = saying(|packet| match packet.reply() {
+        Some(Reply::Records(records)) if records.state == BurstState::Ended => {
+            let state = BurstState::UnderWay;
+            Some(packet.saying(&Reply::Records(Records { state, ..records })))
+        }
+        _ => Some(packet),
+    });
+    assert_eq!(broken(&report).0, Rule::Ended);
+    let said = "must answer RECORDS with a burst that has ended and 64 records, and answered with one under way and 64 records";
+    assert!(report.headline().contains(said), "{}", report.headline());
 }
 
 #[test]

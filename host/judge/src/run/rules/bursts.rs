@@ -26,14 +26,46 @@ const PATIENCE: Duration = Duration::from_secs(5);
 const LONGEST_IDLE: Duration = Duration::from_millis(250);
 /// Bytes that go to the board between the beginning of a burst and its end, so that it is cut at another place each time.
 const BYTES_TO_CUT: [usize; 8] = [0, 5, 11, 40, 77, 130, 211, 400];
-/// Bytes of RECORDS' reply in front of the records, and some of those of a record (AT-SPEED.md).
-const HEAD: usize = 10;
-const PAUSES_LOW: usize = 14;
-const PAUSES_HIGH: usize = 15;
-const FLAGS: usize = 17;
-const HELD_BACK: u8 = 1;
 /// Keeps the seed of bursts from that of frames.
 const FAR: u32 = 0xa5a5_0000;
+
+/// What RECORDS is to say of a burst.
+#[derive(Clone, Copy)]
+pub(super) struct Awaited {
+    ended: bool,
+    records: usize,
+}
+
+impl Awaited {
+    /// It is to have so many records, and may be under way.
+    fn under_way(records: u32) -> Self {
+        Self { ended: false, records: records as usize }
+    }
+
+    /// It is to have ended. Which records there are is for whoever compares them.
+    pub(super) fn ended(records: u32) -> Self {
+        Self { ended: true, records: records as usize }
+    }
+
+    fn is_met_by(self, came: Self) -> bool {
+        if self.ended { came.ended } else { came.records >= self.records }
+    }
+}
+
+impl From<Awaited> for Answer {
+    fn from(Awaited { ended, records }: Awaited) -> Self {
+        Self::Burst { ended, records }
+    }
+}
+
+/// A reply to RECORDS without what is not looked at: pauses are what a board cannot help, and of the flags one is known.
+fn looked_at(mut payload: Vec<u8>) -> Vec<u8> {
+    let records = payload.get_mut(Records::HEAD..).unwrap_or_default();
+    for record in records.as_chunks_mut().0 {
+        *record = FrameRecord { pauses: 0, ..FrameRecord::from(*record) }.to_bytes();
+    }
+    payload
+}
 
 impl Rules<'_, '_> {
     pub(super) fn bursts(&mut self) -> Result<(), End> {
@@ -125,29 +157,29 @@ impl Rules<'_, '_> {
         Duration::from_secs_f64(f64::from(frames) * clocks as f64 / f64::from(clock_hz(&self.capabilities)))
     }
 
-    /// Looks at `burst` from frame `from` on until `is_so`, which takes about as long as `frames` of it.
+    /// Looks at `burst` from frame `from` on until it is as `awaited`, which takes about as long as `frames` of it.
     pub(super) fn look(
         &mut self,
         burst: &Burst,
         from: u32,
         frames: u32,
-        is_so: impl Fn(&Fetched) -> bool,
+        awaited: Awaited,
     ) -> Result<Fetched, End> {
         let time = self.time_of(frames);
         let (mut idle, mut passed) = (time.min(LONGEST_IDLE), Duration::ZERO);
         loop {
             let fetched = self.run.board.records(burst.burst, from).map_err(of_board)?;
-            if is_so(&fetched) {
+            let has_ended = fetched.state == BurstState::Ended;
+            let came = Awaited { ended: has_ended, records: fetched.records.len() };
+            if awaited.is_met_by(came) {
                 return Ok(fetched);
             }
             if passed >= time + PATIENCE {
-                break;
+                return Err(super::broken(Rule::Ended, Kind::Records, awaited.into(), came.into()));
             }
             self.run.board.idle(idle).map_err(of_board)?;
             (passed, idle) = (passed + idle, (2 * idle).min(LONGEST_IDLE));
         }
-        let (right, found) = (Answer::Replied { payload: String::new() }, Answer::Nothing {});
-        Err(super::broken(Rule::Ended, Kind::Records, right, found))
     }
 
     /// A burst that waits for free records again and again: what is refused meanwhile, and what it tells again.
@@ -162,7 +194,7 @@ impl Rules<'_, '_> {
         let burst = self.start(burst)?;
         let (mut from, mut held) = (0, Vec::new());
         for taken in taken {
-            self.look(&burst, from, kept, |fetched| fetched.records.len() as u32 == kept)?;
+            self.look(&burst, from, kept, Awaited::under_way(kept))?;
             if from == 0 {
                 self.busy_with_burst(&burst)?;
                 // Fewer frames than were asked for first.
@@ -173,7 +205,7 @@ impl Rules<'_, '_> {
             held.push(from + kept);
             from += taken;
         }
-        self.look(&burst, from, kept, |fetched| fetched.state == BurstState::Ended)?;
+        self.look(&burst, from, kept, Awaited::ended(all - from))?;
         self.told(Rule::Records, &burst, from..all, BurstState::Ended, &held)?;
         // One that has ended goes on no more, and its records stay behind a RESET.
         self.replied(Rule::Ended, &Request::Burst(Burst { frames: 2 * all, ..burst }), Vec::new())?;
@@ -185,7 +217,6 @@ impl Rules<'_, '_> {
     }
 
     /// The records of `frames` and no others must be there, of which those in `held` waited for a free one; they free those before.
-    /// Pauses are what a board cannot help, and of the flags one is looked at.
     fn told(
         &mut self,
         rule: Rule,
@@ -194,18 +225,11 @@ impl Rules<'_, '_> {
         state: BurstState,
         held: &[u32],
     ) -> Result<(), End> {
-        let mut right = self.records(burst, frames.clone(), state, held);
-        let said = self.run.board.ask(Kind::Records, &frames.start.to_le_bytes());
-        if let Ok(Said::Replied(found)) = &said {
-            for (byte, (right, found)) in right.iter_mut().zip(found).skip(HEAD).enumerate() {
-                let free = match byte % FrameRecord::BYTES {
-                    PAUSES_LOW | PAUSES_HIGH => u8::MAX,
-                    FLAGS => !HELD_BACK,
-                    _ => 0,
-                };
-                *right = *right & !free | *found & free;
-            }
-        }
+        let right = self.records(burst, frames.clone(), state, held);
+        let said = self.run.board.ask(Kind::Records, &frames.start.to_le_bytes()).map(|said| match said {
+            Said::Replied(payload) => Said::Replied(looked_at(payload)),
+            refused => refused,
+        });
         self.judge(rule, Kind::Records, said, &Said::Replied(right))
     }
 
@@ -243,9 +267,9 @@ impl Rules<'_, '_> {
     fn ended_early(&mut self) -> Result<(), End> {
         let Some(burst) = self.small_burst(Burst::ENDLESS) else { return Ok(()) };
         let burst = self.start(burst)?;
-        self.look(&burst, 0, FEW, |fetched| fetched.records.len() > 1)?;
+        self.look(&burst, 0, FEW, Awaited::under_way(FEW))?;
         self.replied(Rule::Ended, &Request::Burst(Burst { frames: 0, ..burst }), Vec::new())?;
-        let ended = self.look(&burst, 0, FEW, |fetched| fetched.state == BurstState::Ended)?;
+        let ended = self.look(&burst, 0, FEW, Awaited::ended(FEW))?;
         let came = ended.records.len() as u32;
         self.told(Rule::Records, &burst, 0..came, BurstState::Ended, &[])?;
         // Of more than fit a packet it is not known where they end.
@@ -289,7 +313,7 @@ impl Rules<'_, '_> {
     fn right_burst(&mut self, rule: Rule, mode: BurstMode) -> Result<(), End> {
         let Some(burst) = self.small_burst(FEW) else { return Ok(()) };
         let burst = self.start(Burst { mode, ..burst })?;
-        self.look(&burst, 0, FEW, |fetched| fetched.state == BurstState::Ended)?;
+        self.look(&burst, 0, FEW, Awaited::ended(FEW))?;
         self.told(rule, &burst, 0..FEW, BurstState::Ended, &[])
     }
 

@@ -1,9 +1,10 @@
 //! Rows whose signatures are expected otherwise than they are, so that the board keeps them.
 
 use halfrow_model::{Content, Frame, row_signature};
-use halfrow_protocol::message::{Burst, BurstMode, BurstState, Expect, RefusalCode, Request};
+use halfrow_protocol::message::{Burst, BurstMode, Expect, RefusalCode, Request};
 use halfrow_protocol::samples::pack;
 
+use super::bursts::Awaited;
 use super::{Rules, of_board};
 use crate::reference::correct;
 use crate::result::Rule;
@@ -59,7 +60,7 @@ impl Rules<'_, '_> {
         let Some(burst) = self.trap_burst() else { return Ok(()) };
         self.run.board.expect(signatures).map_err(of_board)?;
         let burst = self.start(burst)?;
-        self.look(&burst, 0, burst.frames, |fetched| fetched.state == BurstState::Ended).map(drop)
+        self.look(&burst, 0, burst.frames, Awaited::ended(burst.frames)).map(drop)
     }
 
     /// Row `row` of the first frame must have been kept.
