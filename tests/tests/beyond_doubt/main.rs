@@ -11,6 +11,7 @@ mod echoes;
 mod exercised;
 mod lost_rows;
 mod recordings;
+mod refusals;
 mod rules;
 mod slow_clocks;
 mod soak;

@@ -5,7 +5,7 @@ use std::fmt;
 use std::time::Duration;
 
 use halfrow_protocol::Kind;
-use halfrow_protocol::message::{Malformed, Refusal, RowPlace};
+use halfrow_protocol::message::{Malformed, Refusal, RefusalCode, RowPlace};
 
 use super::Tally;
 use super::conversation::Conversation;
@@ -88,8 +88,12 @@ pub enum BoardError {
         "the board no longer knows this session: it was reset or lost power, or another host took it over; run again"
     )]
     SessionLost,
-    /// The board refused.
-    #[error("the board refused {kind}: {code} (detail {detail}); see protocol/WIRE.md, section 6", kind = .kind, code = .refusal.code, detail = .refusal.detail)]
+    /// The board refused a request. A kind, a payload, taps and most ranges depend on the board alone, which then does not do what it
+    /// says that it can; any other refusal may come of another host or of an old packet.
+    #[error(
+        "the board refused {kind}: {code} (detail {detail}){}", advice(.refusal), kind = .kind, code = .refusal.code,
+        detail = .refusal.detail
+    )]
     Refused {
         /// The request.
         kind: Kind,
@@ -231,6 +235,30 @@ fn suspect(heard: Heard) -> String {
     }
 }
 
+/// Whether a request is refused for what it says and for what the board can do, whatever the board did before. Then it is the board that
+/// does not do what it says that it can: this program asks for nothing else.
+fn is_own(refusal: &Refusal) -> bool {
+    use Kind::{Configure, Expect, TableCrc, TableRead, TableWrite};
+    let kind = Kind::from_code(refusal.kind);
+    match refusal.code {
+        RefusalCode::Kind | RefusalCode::Payload | RefusalCode::Taps => true,
+        // A range of COMMIT, RECORDS and rows depends on what was set and played.
+        RefusalCode::Range => matches!(kind, Some(Configure | Expect | TableCrc | TableRead | TableWrite)),
+        _ => false,
+    }
+}
+
+/// What to do about a refusal.
+fn advice(refusal: &Refusal) -> &'static str {
+    match refusal.code {
+        _ if is_own(refusal) => {
+            "; its capabilities allow that: correct what it says of itself (`halfrow info`), or load another bitstream"
+        }
+        RefusalCode::Busy => "; end what else feeds the board's core, then run again",
+        _ => "; run again, and if it refuses each time load a bitstream that keeps to protocol/WIRE.md",
+    }
+}
+
 /// From which silence on a run is not merely slow.
 const SILENT: Duration = Duration::from_secs(1);
 
@@ -268,6 +296,7 @@ impl BoardError {
             Self::NotABoard | Self::Version { .. } | Self::Impossible { .. } | Self::Malformed { .. } => {
                 Cause::Refused
             }
+            Self::Refused { refusal, .. } if is_own(refusal) => Cause::Refused,
             Self::Stopped(by) => Cause::Stopped(*by),
             _ => Cause::Station,
         }

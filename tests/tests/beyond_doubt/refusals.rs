@@ -1,0 +1,43 @@
+//! Boards that refuse what they must carry out: never FAIL, since another host or an old request may be why, and never the fault of
+//! the station where it is the board's alone.
+
+use halfrow::result::Report;
+use halfrow::verdict::{Cause, Verdict};
+use halfrow_protocol::message::{Refusal, RefusalCode};
+use halfrow_protocol::{Kind, Reply};
+use halfrow_tests::altered::{Passing, Toward, judge_each};
+use halfrow_tests::system::System;
+
+/// The report on a board that refuses each request of `kind`.
+fn refusing(kind: Kind, code: RefusalCode) -> Report {
+    judge_each(&System::TINY, move |toward, packet: Passing| {
+        if toward == Toward::Board || !packet.is(kind) {
+            return packet;
+        }
+        let mut refusal = packet.saying(&Reply::Refusal(Refusal { code, kind: kind.code(), detail: 0 }));
+        refusal.header.kind = Kind::Refusal.code();
+        refusal
+    })
+}
+
+#[test]
+fn a_refusal_of_what_a_board_says_that_it_can_is_its_own() {
+    let own = "its capabilities allow that";
+    let passing = "run again, and if it refuses each time";
+    for (kind, code, cause, said) in [
+        (Kind::Configure, RefusalCode::Range, Cause::Refused, own),
+        (Kind::TableWrite, RefusalCode::Taps, Cause::Refused, own),
+        (Kind::TableCrc, RefusalCode::Range, Cause::Refused, own),
+        (Kind::Status, RefusalCode::Kind, Cause::Refused, own),
+        (Kind::Commit, RefusalCode::Payload, Cause::Refused, own),
+        (Kind::Commit, RefusalCode::NotReady, Cause::Station, passing),
+        (Kind::Commit, RefusalCode::Range, Cause::Station, passing),
+        (Kind::Configure, RefusalCode::Busy, Cause::Station, "end what else feeds the board's core"),
+        (Kind::Configure, RefusalCode::Session, Cause::Station, "run again"),
+    ] {
+        let report = refusing(kind, code);
+        let what = format!("{kind}, {code}: {}", report.headline());
+        assert_eq!((report.verdict, report.cause), (Verdict::Error, cause), "{what}");
+        assert!(report.headline().contains(said), "{what}");
+    }
+}
