@@ -161,7 +161,8 @@ pub struct Records<'a> {
 }
 
 impl<'a> Records<'a> {
-    const HEAD: usize = 10;
+    /// Bytes in front of the records.
+    pub const HEAD: usize = 10;
     /// The most records of a packet.
     pub const MOST: usize = (MAX_PAYLOAD - Self::HEAD) / FrameRecord::BYTES;
 

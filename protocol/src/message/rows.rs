@@ -22,6 +22,8 @@ pub struct RowPlace {
 }
 
 impl RowPlace {
+    /// Bytes of a place with its generation.
+    pub(super) const BYTES: usize = 14;
     const LAST: u8 = 1;
 
     fn write(&self, generation: u8, payload: &mut Vec<u8>) {
@@ -58,6 +60,9 @@ pub struct RowIn<'a> {
 }
 
 impl<'a> RowIn<'a> {
+    /// Bytes of the payload in front of the samples.
+    pub const HEAD: usize = RowPlace::BYTES;
+
     pub(crate) fn write(&self, payload: &mut Vec<u8>) {
         self.place.write(0, payload);
         payload.extend_from_slice(self.packed);
@@ -99,6 +104,11 @@ pub struct RowOut<'a> {
 }
 
 impl<'a> RowOut<'a> {
+    /// Bytes of the payload in front of the samples.
+    pub const HEAD: usize = RowPlace::BYTES + 8;
+    /// Bytes of `entered` behind the samples.
+    pub const ENTERED: usize = 4;
+
     pub(crate) fn write(&self, payload: &mut Vec<u8>) {
         self.place.write(self.generation, payload);
         for field in [self.first_latency, self.last_latency, self.pauses, self.repeats] {
@@ -121,5 +131,24 @@ impl<'a> RowOut<'a> {
             entered: fields.u32().ok(),
         };
         Ok(fields.end(row))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_s_payload_is_as_long_as_its_parts() {
+        let (place, packed) = (RowPlace::default(), &[1, 2, 3][..]);
+        let mut payload = Vec::new();
+        RowIn { place, packed }.write(&mut payload);
+        assert_eq!(payload.len(), RowIn::HEAD + packed.len());
+        payload.clear();
+        let (generation, first_latency, last_latency, pauses, repeats) = (1, 2, 3, 4, 5);
+        let entered = Some(6);
+        RowOut { place, generation, first_latency, last_latency, pauses, repeats, packed, entered }
+            .write(&mut payload);
+        assert_eq!(payload.len(), RowOut::HEAD + packed.len() + RowOut::ENTERED);
     }
 }

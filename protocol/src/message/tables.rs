@@ -154,6 +154,9 @@ pub struct Commit {
 }
 
 impl Commit {
+    /// Bytes of the payload, the shape's included.
+    pub const BYTES: usize = 13;
+
     pub(crate) fn write(&self, payload: &mut Vec<u8>) {
         payload.extend_from_slice(&self.steps_crc.to_le_bytes());
         payload.extend_from_slice(&self.kernel_crc.to_le_bytes());
@@ -171,5 +174,18 @@ impl Commit {
             shape: fields.array().ok().map(|[v, k]| Shape { v, k }),
         };
         Ok(fields.end(commit))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_commit_s_payload_is_as_long_as_it_says() {
+        let shape = Some(Shape { v: 1, k: 5 });
+        let mut payload = Vec::new();
+        Commit { steps_crc: 1, kernel_crc: 2, first_frame: 3, generation: 4, shape }.write(&mut payload);
+        assert_eq!(payload.len(), Commit::BYTES);
     }
 }

@@ -10,6 +10,7 @@ mod times;
 use std::time::{Duration, Instant};
 
 use halfrow_protocol::MAX_PAYLOAD;
+use halfrow_protocol::message::ROW_FACTOR_BYTES;
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
@@ -131,7 +132,7 @@ impl Test<'_> {
         let port = TablePort { table: Table::RowFactors, port: 0 };
         let mut wrong = 0;
         while !self.is_over(&begun) {
-            let read = self.board.read_entries(Bank::Shadow, port, entries.len() / 4)?;
+            let read = self.board.read_entries(Bank::Shadow, port, entries.len() / ROW_FACTOR_BYTES)?;
             wrong += u64::from(read != entries);
         }
         Ok((self.throughput(&begun), wrong))

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use halfrow_model::MAX_WIDTH;
-use halfrow_protocol::message::{Commit, Grids, Span};
+use halfrow_protocol::message::{Commit, Grids, RowIn, RowOut, Span};
 use halfrow_protocol::{MAX_PAYLOAD, wire_length};
 use serde::{Deserialize, Serialize};
 
@@ -15,9 +15,6 @@ use super::rules;
 use super::variations::Build;
 use crate::board::{Board, BoardError, BoardNature, Bursts, Capabilities, Table};
 
-/// Bytes of a row's place, and of what the board says behind it of a row that comes back, the CRC of what entered included.
-const PLACE: usize = 14;
-const SAID: usize = 12;
 /// Payload that a row costs at least: a link stands still between shorter ones, while they are acknowledged.
 const SMALL: usize = 300;
 /// Payload of requests and replies that are neither rows nor tables, the longest of them.
@@ -190,8 +187,9 @@ impl<'a> Prices<'a> {
     /// leaves while the next one enters.
     pub(super) fn rows(&self, rows: usize, width: usize, between: usize) -> f64 {
         let packed = (3 * width).div_ceil(2);
+        let back = RowOut::HEAD + packed + RowOut::ENTERED;
         let carried = |payload| wire_length(payload) as f64 / self.rates.bytes_per_second;
-        let (out, back) = (carried(PLACE + packed), carried(PLACE + SAID + packed).max(carried(SMALL)));
+        let (out, back) = (carried(RowIn::HEAD + packed), carried(back).max(carried(SMALL)));
         let played = self.clocks(width + between);
         let alone = 2.0 * (out + played) + self.rates.round_trip;
         // One of them has the row that the next one pushes out.
@@ -225,7 +223,7 @@ impl<'a> Prices<'a> {
 
     /// A commit, for which the board reads both tables through every port.
     pub(super) fn commit(&self) -> f64 {
-        self.rates.request(size_of::<Commit>(), 1) + self.clocks(COMMIT)
+        self.rates.request(Commit::BYTES, 1) + self.clocks(COMMIT)
     }
 
     pub(super) fn short_request(&self) -> f64 {
