@@ -133,15 +133,19 @@ impl Look<'_> {
     fn excuses(&mut self, fault: &Fault, excuse: &Excuse) -> Result<bool, StoreError> {
         match fault {
             Fault::Missing { table: "step" | "measurement", key } => Ok(*key < excuse.pruned_before),
-            Fault::Differs { table: BINDING, column, stored, .. } if column == "to_ms" => {
-                Ok(excuse.ended.contains(stored))
+            Fault::Differs { table: BINDING, key, column, stored, .. } if column == "to_ms" => {
+                let begins = |ms: &i64| ms.to_string() == *stored;
+                Ok(excuse.ended.contains(stored) || self.others_begin(key)?.iter().any(begins))
             }
-            Fault::Missing { table: BINDING, key } => match self.rebuilt.bound(key)? {
-                Some((device, unit)) => self.plant.is_bound(&device, &unit),
-                None => Ok(false),
-            },
+            Fault::Missing { table: BINDING, key } => Ok(!self.others_begin(key)?.is_empty()),
             _ => Ok(false),
         }
+    }
+
+    /// When all other bindings begin that the plant has of the device or the unit of the binding `key`.
+    fn others_begin(&mut self, key: &str) -> Result<Vec<i64>, StoreError> {
+        let Some((device, unit)) = self.rebuilt.bound(key)? else { return Ok(Vec::new()) };
+        self.plant.others_begin(key, &device, &unit)
     }
 
     /// Records, jobs and mismatches against the runs that they are of.

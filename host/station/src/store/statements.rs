@@ -103,6 +103,8 @@ statements! {
     pub(super) FORGET_RETEST = "plant/forget-retest.sql";
     pub(super) LAST_JUDGED = "plant/last-judged.sql";
     pub(super) ADD_BINDING_UNLESS = "plant/add-binding.sql";
+    pub(super) ADD_REBINDING = "plant/add-rebinding.sql";
+    pub(super) END_BINDINGS_THEN = "plant/end-bindings.sql";
     pub(super) ADD_WAIVER_UNLESS = "plant/add-waiver.sql";
     pub(super) ADD_AUDIT_UNLESS = "plant/add-audit.sql";
     pub(super) ADD_BOARD = "plant/add-board.sql";

@@ -5,7 +5,7 @@ use halfrow::Verdict;
 use super::super::bindings::{BY_RUN, Detail, REBIND};
 use super::super::database::{Database, DatabaseError, values};
 use super::super::outbox::AuditLine;
-use super::super::{Rebinding, Waiver, bindings, rows, statements as sql};
+use super::super::{Waiver, rows, statements as sql};
 use crate::plan::Plan;
 use crate::plan::mock::is_mock;
 use crate::record::{DeviceSeen, JobClaim, Record};
@@ -131,7 +131,8 @@ pub(super) fn waiver(to: &mut dyn Database, id: &str, waiver: &Waiver) -> Result
     to.execute(sql::ADD_WAIVER_UNLESS, values![id, run, *at_ms, operator, reason]).map(drop)
 }
 
-/// A line of the audit. One about a unit is about the plant's unit of that serial number; what it bound is bound here, too.
+/// A line of the audit. One about a unit is about the plant's unit of that serial number; what it bound is bound here, too, until what
+/// was bound later, whichever comes first.
 /// Returns whether it was entered: not while the plant does not have its unit, which comes with a run.
 pub(super) fn audit(to: &mut dyn Database, line: &AuditLine) -> Result<bool, DatabaseError> {
     let AuditLine { id, at_ms, operator, act, subject, detail, unit } = line;
@@ -149,7 +150,9 @@ pub(super) fn audit(to: &mut dyn Database, line: &AuditLine) -> Result<bool, Dat
     let added = to.execute(sql::ADD_AUDIT_UNLESS, values![id, *at_ms, operator, act, subject, detail])?;
     let Some(unit_id) = unit.filter(|_| added == 1 && act == REBIND) else { return Ok(true) };
     let Detail { device, reason } = serde_json::from_str(detail)?;
-    let (id, operator) = (id.clone(), operator.clone());
-    bindings::rebind(to, &Rebinding { id, at_ms: *at_ms, operator, unit_id, device, reason })?;
+    to.execute(sql::END_BINDINGS_THEN, values![*at_ms, id, &unit_id, device.as_ref()])?;
+    if let Some(device) = device {
+        to.execute(sql::ADD_REBINDING, values![id, &device, &unit_id, *at_ms, operator, &reason])?;
+    }
     Ok(true)
 }

@@ -59,13 +59,13 @@ impl Snapshot {
         Ok(found.into_iter().next())
     }
 
-    /// Whether this device or this unit is, or ever was, bound to anything.
+    /// When all bindings of this device or this unit begin but the one of this id, in milliseconds since 1970, UTC.
     ///
     /// # Errors
     /// As [`Self::kept_runs`].
-    pub fn is_bound(&self, device: &str, unit: &str) -> Result<bool, StoreError> {
-        let text = "SELECT 1 FROM binding WHERE device = $1 OR unit_id = $2 LIMIT 1";
-        Ok(!self.rows("to tell what is bound", text, values![device, unit], |_| Ok(()))?.is_empty())
+    pub fn others_begin(&self, id: &str, device: &str, unit: &str) -> Result<Vec<i64>, StoreError> {
+        let text = "SELECT from_ms FROM binding WHERE id <> $1 AND (device = $2 OR unit_id = $3)";
+        self.rows("to tell what is bound", text, values![id, device, unit], |row| row.get(0))
     }
 
     /// The hashes of records that no run names.

@@ -39,7 +39,7 @@ fn plant() -> Server {
 }
 
 /// What is wrong with the database `name` of the server, as sentences.
-fn faults(server: &Server, name: &str) -> Vec<String> {
+pub(super) fn faults(server: &Server, name: &str) -> Vec<String> {
     let url = server.url().replace("/plant", &format!("/{name}"));
     let plant = Plant::connect(&PlantAddress::new(&url, None, None).unwrap()).unwrap();
     let mut read = 0;

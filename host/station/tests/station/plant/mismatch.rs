@@ -4,14 +4,15 @@ use std::process::Command;
 
 use halfrow_station::history::mismatch::{Mismatch, mismatches};
 use halfrow_station::record::DeviceSeen;
-use halfrow_station::store::{Change, Plant, Snapshot};
+use halfrow_station::store::{AuditLine, Change, Parcel, Plant, Snapshot};
 use serde_json::Value;
 
+use super::checked::faults;
 use super::pages::{served, settings, text};
 use super::sent::send_as;
 use super::server::Server;
 use crate::common::{Did, program};
-use crate::history::made::{BEGIN_MS, DAY_MS, End, HOUR_MS, Made, Run};
+use crate::history::made::{BEGIN_MS, DAY_MS, End, HOUR_MS, Made, Run, id};
 use crate::metrics::text::Figures;
 
 /// Long before whatever a person does while a test runs.
@@ -154,4 +155,83 @@ fn it_is_on_the_pages_in_what_the_command_says_and_in_the_figures() {
     let ours = unit(&["--json", "--data", data.to_str().unwrap()], "B1").said;
     let ours: Value = serde_json::from_str(&ours).unwrap();
     assert_eq!(ours[0]["mismatches"], Value::Array(Vec::new()));
+}
+
+/// A change of a binding as a station sends it, of the `number`-th hour behind all runs.
+fn rebinding(number: u32, serial: &str, device: Option<&str>) -> Parcel {
+    let at_ms = LONG_AGO_MS + i64::from(100 + number) * HOUR_MS;
+    Parcel::Audit(AuditLine {
+        id: id(at_ms, number),
+        at_ms,
+        operator: "engel".to_owned(),
+        act: "rebind".to_owned(),
+        subject: "its unit at the station".to_owned(),
+        detail: serde_json::json!({ "device": device, "reason": format!("change {number}") }).to_string(),
+        unit: Some(["CAM-T".to_owned(), serial.to_owned()]),
+    })
+}
+
+/// All bindings: the unit, the end of the device's number, and from which hour to which.
+fn bound(server: &Server) -> Vec<String> {
+    let text = format!(
+        "SELECT unit.serial || ' ' || right(device, 2) || ' ' || (from_ms - {LONG_AGO_MS}) / {HOUR_MS}
+           || ' to ' || coalesce(((to_ms - {LONG_AGO_MS}) / {HOUR_MS})::text, 'now')
+         FROM binding JOIN unit ON unit.id = binding.unit_id ORDER BY binding.id"
+    );
+    server.rows(&text).into_iter().flatten().collect()
+}
+
+/// Every order of `count` things.
+fn orders(count: usize) -> Vec<Vec<usize>> {
+    let Some(last) = count.checked_sub(1) else { return vec![Vec::new()] };
+    let with = |order: Vec<usize>| {
+        (0..count).map(move |place| {
+            let (before, behind) = order.split_at(place);
+            [before, &[last], behind].concat()
+        })
+    };
+    orders(last).into_iter().flat_map(with).collect()
+}
+
+#[test]
+fn the_newest_change_of_a_binding_holds_in_whatever_order_they_come() {
+    let server = Server::prepared();
+    let [d1, d2, d3, _] = DEVICES;
+    let seven = station("station 7", 1, &[("B1", d1), ("B2", d2)]);
+    send_as("station 7", seven, server.address());
+    assert_eq!(bound(&server), ["B1 d1 1 to now", "B2 d2 2 to now"]);
+    let changes = [
+        rebinding(1, "B1", Some(d3)),
+        rebinding(2, "B2", Some(d1)),
+        rebinding(3, "B1", None),
+        rebinding(4, "B2", Some(d3)),
+    ];
+    let expected =
+        ["B1 d1 1 to 101", "B2 d2 2 to 102", "B1 d3 101 to 103", "B2 d1 102 to 104", "B2 d3 104 to now"];
+    let before =
+        "DELETE FROM audit; DELETE FROM binding WHERE by_operator = 'engel'; UPDATE binding SET to_ms = NULL";
+    let mut plant = Plant::connect(&server.address()).unwrap();
+    let orders = orders(changes.len());
+    assert_eq!(orders.len(), 24);
+    for order in orders {
+        server.client("plant").batch_execute(before).unwrap();
+        for place in &order {
+            plant.take(&changes[*place]).unwrap();
+        }
+        assert_eq!(bound(&server), expected, "{order:?}");
+        assert_eq!(faults(&server, "plant"), [""; 0], "{order:?}");
+    }
+}
+
+#[test]
+fn what_a_run_bound_since_is_not_ended_by_a_change_that_comes_late() {
+    let server = Server::prepared();
+    let [d1, _, _, d4] = DEVICES;
+    send_as("station 7", station("station 7", 1, &[("B1", d1)]), server.address());
+    // It has the device that the person has given to B1 meanwhile.
+    send_as("station 8", station("station 8", 110, &[("B4", d4)]), server.address());
+    let mut plant = Plant::connect(&server.address()).unwrap();
+    plant.take(&rebinding(1, "B1", Some(d4))).unwrap();
+    assert_eq!(bound(&server), ["B1 d1 1 to 101", "B1 d4 101 to 110", "B4 d4 110 to now"]);
+    assert_eq!(faults(&server, "plant"), [""; 0]);
 }
