@@ -106,6 +106,16 @@ pub(super) struct NoBoard {
     done: &'static str,
 }
 
+/// A unit that is shared under another name.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "{serial} is shared as the board {board} already, and would be given to two; unshare that one first by `halfrow-station board unshare {board}`"
+)]
+pub(super) struct SharedAlready {
+    pub(super) serial: String,
+    pub(super) board: String,
+}
+
 /// A place of a board that is none.
 #[derive(Debug, thiserror::Error)]
 #[error("`{kind}` is no kind of board; write one as `halfrow boards` lists them")]
@@ -130,9 +140,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             if kinds::of(&share.board).is_none() {
                 return Err(Failure::call(NoBoardKind { kind: share.board.kind.clone() }));
             }
-            let board = share.board();
-            let shared = Plant::connect(&address)?.share(&board, &share.operator)?;
-            changed(shared, &board.name, "shared")
+            shared(&mut Plant::connect(&address)?, share)
         }
         What::List { json } => {
             let found = PlantPool::new(address).look(boards)?;
@@ -168,6 +176,16 @@ impl Share {
             until_ms: None,
         }
     }
+}
+
+/// Shares a board, or says which other one is this unit.
+fn shared(plant: &mut Plant, share: &Share) -> Result<Exit, Failure> {
+    let board = share.board();
+    let is_shared = plant.share(&board, &share.operator)?;
+    if !is_shared && let Some(other) = plant.other_of_unit(&board)? {
+        return Err(Failure::call(SharedAlready { serial: board.serial, board: other }));
+    }
+    changed(is_shared, &board.name, "shared")
 }
 
 fn changed(is_changed: bool, name: &str, done: &'static str) -> Result<Exit, Failure> {

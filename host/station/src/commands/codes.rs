@@ -96,6 +96,7 @@ codes::codes! {
         OtherSchema [path, version] => "database-of-other-schema",
         ClockApart [minutes] => "clocks-apart",
         DatedAhead [minutes] => "last-run-dated-ahead",
+        BeingJudged [serial, lane] => "unit-being-judged",
         NotOpen [run] => "run-not-open",
         ReadsOtherwise [run] => "run-reads-otherwise",
         = Blob,

@@ -2,7 +2,7 @@
 
 use halfrow::result::codes;
 
-use super::board::{NoBoard, NoBoardKind, NoKind};
+use super::board::{NoBoard, NoBoardKind, NoKind, SharedAlready};
 use super::evidence::{EvidenceLost, NoSuchRun};
 use super::export::{NoFolder, Taken};
 use super::job::{NoJob, NoWord};
@@ -39,6 +39,8 @@ codes::codes! {
     NoWord [word] => "job-needs-no-word"
     ;
     NoBoardKind [kind] => "shared-board-of-unknown-kind"
+    ;
+    SharedAlready [serial, board] => "shared-board-of-shared-unit"
     ;
     NoBoard [name] => "shared-board-not-changed"
     ;

@@ -147,6 +147,14 @@ pub enum StoreError {
         /// How far.
         minutes: u64,
     },
+    /// The unit is in a lane already, or the lane has a unit.
+    #[error("{serial} is being judged in lane {lane}; wait until that run is over")]
+    BeingJudged {
+        /// The serial number of the run that is open.
+        serial: String,
+        /// Its lane.
+        lane: String,
+    },
     /// The run is not open any more, or somebody else's.
     #[error("the run {run} is no longer this program's to finish; its lane was taken over")]
     NotOpen {

@@ -250,12 +250,31 @@ impl Store {
     /// Enters an open run. Only then may its board be touched. Returns its head with the unit's id and the fence.
     ///
     /// # Errors
-    /// [`StoreError`] when the lane or the unit has an open run already, the database does not take it, or it is dated otherwise
-    /// than the plant would date it.
+    /// [`StoreError::BeingJudged`] when the lane or the unit has an open run already; others when the database does not take it, or it is
+    /// dated otherwise than the plant would date it.
     pub fn begin(&mut self, run: RunHead, plan: &PlanRecord) -> Result<RunHead, StoreError> {
         self.is_dated(&run)?;
-        let (unit_id, fence) = self.change("to begin a run", |to| rows::open(to, &run, plan))?;
-        Ok(RunHead { unit_id, fence, ..run })
+        match self.change("to begin a run", |to| rows::open(to, &run, plan)) {
+            Ok((unit_id, fence)) => Ok(RunHead { unit_id, fence, ..run }),
+            Err(StoreError::Database { source, .. }) if source.is_conflict() => {
+                Err(self.in_the_way(&run, source))
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// What keeps `run` from being begun, for which there is a `conflict`.
+    fn in_the_way(&mut self, run: &RunHead, conflict: DatabaseError) -> StoreError {
+        let is_in_the_way = |open: &RunHead| {
+            (&open.product, &open.serial) == (&run.product, &run.serial)
+                || (&open.station, &open.lane) == (&run.station, &run.lane)
+        };
+        let open = self.open_runs().map(|open| open.into_iter().map(|open| open.run).find(is_in_the_way));
+        match open {
+            Ok(Some(RunHead { serial, lane, .. })) => StoreError::BeingJudged { serial, lane },
+            Ok(None) => StoreError::of_file(&self.folder.database(), "to begin a run", conflict),
+            Err(error) => error,
+        }
     }
 
     /// Ends an open run: the record on the disk first, then all rows in one transaction. Returns the verdict as a

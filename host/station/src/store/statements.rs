@@ -108,6 +108,7 @@ statements! {
     pub(super) ADD_WAIVER_UNLESS = "plant/add-waiver.sql";
     pub(super) ADD_AUDIT_UNLESS = "plant/add-audit.sql";
     pub(super) ADD_BOARD = "plant/add-board.sql";
+    pub(super) OTHER_OF_UNIT = "plant/other-of-unit.sql";
     pub(super) BOARD_OUT = "plant/board-out.sql";
     pub(super) FORGET_BOARD = "plant/forget-board.sql";
     pub(super) BOARDS = "plant/boards.sql";

@@ -60,6 +60,11 @@ impl DatabaseError {
         matches!(error.code, ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase)
     }
 
+    /// Whether the station's engine has a row already that there may be only one of.
+    pub(crate) fn is_conflict(&self) -> bool {
+        matches!(self, Self::Sqlite(error) if error.sqlite_error_code() == Some(ErrorCode::ConstraintViolation))
+    }
+
     /// Whether the engine is not there, or not for now, rather than that it does not do this one thing.
     pub(crate) fn is_away(&self) -> bool {
         let error = match self {

@@ -102,7 +102,8 @@ impl Waiter {
 }
 
 impl Plant {
-    /// Enters a board that is shared, or changes it while nobody has it; `operator` says so. Returns whether it is entered.
+    /// Enters a board that is shared, or changes it while nobody has it; `operator` says so. Returns whether it is entered: not when
+    /// [another one](Self::other_of_unit) is this unit.
     ///
     /// # Errors
     /// [`StoreError`] when the plant does not take it.
@@ -110,6 +111,17 @@ impl Plant {
         let SharedBoard { name, kind, target, product, serial, station, .. } = board;
         self.audited(operator, "share board", name, target, |to| {
             to.execute(sql::ADD_BOARD, values![name, kind, target, product, serial, station])
+        })
+    }
+
+    /// The board of another name that is the unit of this one, if there is one.
+    ///
+    /// # Errors
+    /// As [`Self::share`].
+    pub fn other_of_unit(&mut self, board: &SharedBoard) -> Result<Option<String>, StoreError> {
+        let SharedBoard { name, product, serial, .. } = board;
+        self.carry_out("to tell its boards", |database| {
+            database.first(sql::OTHER_OF_UNIT, values![product, serial, name], |row| row.get(0))
         })
     }
 

@@ -4,10 +4,10 @@ use std::io::{BufRead as _, BufReader, Lines};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::thread;
 
-use halfrow_station::store::{Plant, Turn, Waiter};
+use halfrow_station::store::{Plant, SharedBoard, Turn, Waiter};
 use serde_json::Value;
 
-use super::{any, job, plan, run_out, settings, shared, worker};
+use super::{any, board, job, plan, run_out, settings, shared, worker};
 use crate::common::program;
 use crate::plant::server::Server;
 
@@ -56,6 +56,30 @@ fn a_board_that_was_taken_over_or_out_is_held_no_more() {
     assert!(!plant.put_in("shelf-9", "it was cleaned", "engel").unwrap());
     let told = server.rows("SELECT act, detail FROM audit WHERE act LIKE 'board %' ORDER BY id");
     assert_eq!(told, [["board out", "it smells"], ["board in", "it was cleaned"]]);
+}
+
+/// A board under two names would be given to two.
+#[test]
+fn a_unit_is_shared_under_one_name() {
+    let (server, mut plant) = shared(1);
+    let again = SharedBoard { name: "shelf-9".to_owned(), ..board(0, "mock") };
+    assert!(!plant.share(&again, "engel").unwrap());
+    assert_eq!(server.rows("SELECT name FROM board"), [["shelf-0"]]);
+    let unlabelled = |name: &str| {
+        let (product, serial) = (String::new(), String::new());
+        SharedBoard { name: name.to_owned(), product, serial, ..board(0, "mock") }
+    };
+    for name in ["shelf-1", "shelf-2", "shelf-0"] {
+        assert!(plant.share(&unlabelled(name), "engel").unwrap(), "{name}");
+    }
+    assert!(plant.share(&again, "engel").unwrap(), "the other one has no number any more");
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = Command::new(program());
+    command.args(["board", "share", "shelf-3", "--kind", "mock", "--board", "mock", "--product", "CAM-T"]);
+    command.args(["--serial", "CAT00000", "--settings"]).arg(settings(&server, folder.path(), "12"));
+    let did: crate::common::Did = command.output().unwrap().into();
+    assert_eq!(did.code, Some(2));
+    assert!(did.complained.contains("CAT00000 is shared as the board shelf-9 already"), "{did:?}");
 }
 
 /// `halfrow-station board hold mock`

@@ -13,10 +13,23 @@ use super::bench::{Did, PLAN, Station, program};
 use super::killed_lane::run_in;
 use super::unsaved::calls;
 use crate::common::{held_up, script};
+use crate::history::made::{End, Made, Run};
 use crate::lanes::floor::HANG;
 
 /// A lane whose log comes to no end.
 const ENDLESS_LOG: &str = "read -r job\nlog=$(readlink /proc/$$/fd/2)\nrm \"$log\" && mkfifo \"$log\"\n";
+
+#[test]
+fn a_unit_that_is_being_judged_is_told_by_its_lane_and_not_as_a_full_disk() {
+    let mut made = Made::new();
+    let in_lane = |lane: &str, serial: &str| Run { lane: lane.to_owned(), ..Run::of(serial, End::Open) };
+    made.run(&in_lane("1", "S1"));
+    let mut refused = |lane, serial| made.try_begin(&in_lane(lane, serial)).unwrap_err().to_string();
+    let expected = "S1 is being judged in lane 1; wait until that run is over";
+    assert_eq!(refused("2", "S1"), expected, "the unit");
+    assert_eq!(refused("1", "S2"), expected, "the lane");
+    made.run(&in_lane("2", "S2"));
+}
 
 #[test]
 fn the_evidence_of_one_run_keeps_no_other_from_the_store() {
