@@ -1,4 +1,4 @@
--- The first job that a station with these plans and these things can judge now, on a board that is free.
+-- The first job that a station with these plans and these things can judge now, on a board that is free and that nobody waits for.
 WITH free AS MATERIALIZED (
   SELECT product, kind, serial FROM board
   WHERE serial <> '' AND station IN ('', $1) AND out IS NULL
@@ -6,6 +6,7 @@ WITH free AS MATERIALIZED (
     AND NOT EXISTS (
       SELECT 1 FROM waiter
       WHERE waiter.kind = board.kind AND waiter.until_ms >= CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT)
+        AND board.station IN ('', substring(waiter.holder FROM '^(.*) '))
     )
 )
 SELECT id, product, serial, kind FROM job

@@ -216,8 +216,8 @@ fn hold(address: &PlantAddress, kind: &str, station: &str) -> Result<Exit, Failu
     let signal = Signal::heed()?;
     let over = end_of_stdin()?;
     let is_over = || over.load(Ordering::Relaxed) || signal.by().is_some();
-    let holder = format!("{station} {:016x}", rng().random::<u64>());
-    let waiter = Waiter::new(kind, &holder, station).map_err(Failure::error)?;
+    let name = format!("{:016x}", rng().random::<u64>());
+    let waiter = Waiter::new(kind, &name, station).map_err(Failure::error)?;
     let plant = PlantLink::new(address.clone());
     let Some(held) = wait(&plant, &waiter, &is_over)? else { return Ok(Exit::Pass) };
     let holding = Holding::begin(plant, Held::Board(held.clone()));

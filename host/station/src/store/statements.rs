@@ -114,7 +114,7 @@ statements! {
     pub(super) BOARDS = "plant/boards.sql";
     pub(super) WAITERS = "plant/waiters.sql";
     pub(super) WAIT = "plant/wait.sql";
-    pub(super) PLACE = "plant/place.sql";
+    pub(super) QUEUE = "plant/queue.sql";
     pub(super) REACHABLE = "plant/reachable.sql";
     pub(super) FORGET_WAITERS = "plant/forget-waiters.sql";
     pub(super) FREE_BOARD = "plant/free-board.sql";

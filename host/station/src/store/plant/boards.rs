@@ -69,7 +69,7 @@ pub struct Waiter {
     pub id: String,
     /// The kind.
     pub kind: String,
-    /// Who they are.
+    /// Who they are: their station, a blank, and what has none.
     pub holder: String,
     /// The station that they are at.
     pub station: String,
@@ -90,14 +90,14 @@ pub enum Turn {
 }
 
 impl Waiter {
-    /// Somebody who waits from now on.
+    /// Somebody who waits from now on, called `name`, without a blank, at their station.
     ///
     /// # Errors
     /// [`ids::NoRandomness`]
-    pub fn new(kind: &str, holder: &str, station: &str) -> Result<Self, ids::NoRandomness> {
+    pub fn new(kind: &str, name: &str, station: &str) -> Result<Self, ids::NoRandomness> {
         let id = ids::new(clock::now_ms())?.to_string();
-        let [kind, holder, station] = [kind, holder, station].map(str::to_owned);
-        Ok(Self { id, kind, holder, station })
+        let holder = format!("{station} {name}");
+        Ok(Self { id, kind: kind.to_owned(), holder, station: station.to_owned() })
     }
 }
 
@@ -164,15 +164,17 @@ impl Plant {
         self.carry_out("to give a board", |database| {
             database.transaction(|to| {
                 to.execute(sql::WAIT, values![id, kind, holder, WAITING_MS])?;
-                let before: i64 = to.one(sql::PLACE, values![kind, id], |row| row.get(0))?;
+                let queue = to.all(sql::QUEUE, values![kind, id], Queue::of)?;
+                let left = left_to_others(&queue, station);
                 let free: Option<String> =
-                    to.first(sql::FREE_BOARD, values![kind, station, before], |row| row.get(0))?;
+                    to.first(sql::FREE_BOARD, values![kind, station, left], |row| row.get(0))?;
                 let Some(name) = free else {
                     let reachable: i64 = to.one(sql::REACHABLE, values![kind, station], |row| row.get(0))?;
                     if reachable == 0 {
                         to.execute(sql::FORGET_WAITERS, values![id])?;
                         return Ok(Turn::Never);
                     }
+                    let before: i64 = queue.iter().map(|queue| queue.waiting).sum();
                     return Ok(Turn::Waits { before: u32::try_from(before).unwrap_or(u32::MAX) });
                 };
                 to.execute(sql::FORGET_WAITERS, values![id])?;
@@ -234,6 +236,34 @@ impl Plant {
             })
         })
     }
+}
+
+/// Those of one station that wait in front of somebody.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Queue {
+    station: String,
+    waiting: i64,
+    /// How many boards are free that this station alone reaches.
+    own: i64,
+}
+
+impl Queue {
+    fn of(row: &Row<'_>) -> Result<Self, DatabaseError> {
+        Ok(Self { station: row.get(0)?, waiting: row.get(1)?, own: row.get(2)? })
+    }
+
+    /// How many of them get one that every station reaches.
+    fn of_all(&self) -> i64 {
+        (self.waiting - self.own).max(0)
+    }
+}
+
+/// How many of the free boards that somebody at `station` reaches are left to those in front: of its own to those at the same station,
+/// of the rest to whoever gets none that their station alone reaches.
+fn left_to_others(queue: &[Queue], station: &str) -> i64 {
+    let (ours, others): (Vec<_>, Vec<_>) = queue.iter().partition(|queue| queue.station == station);
+    let (waiting, own) = ours.first().map_or((0, 0), |ours| (ours.waiting, ours.own));
+    if waiting < own { waiting } else { waiting + others.into_iter().map(Queue::of_all).sum::<i64>() }
 }
 
 /// Gives the board of this name to `holder`; its row is locked.

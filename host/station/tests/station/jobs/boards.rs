@@ -32,9 +32,12 @@ fn who_waits_longest_is_the_next_and_a_job_comes_behind_people() {
     assert_eq!(plant.wait(&third).unwrap(), Turn::Waits { before: 1 }, "another waits longer");
     assert_eq!(plant.claim(&worker("12")).unwrap(), None);
     // Who does not ask again is forgotten.
-    server.client("plant").batch_execute("UPDATE waiter SET until_ms = 0 WHERE holder = 'second'").unwrap();
+    server
+        .client("plant")
+        .batch_execute("UPDATE waiter SET until_ms = 0 WHERE holder = '12 second'")
+        .unwrap();
     let Turn::Held(held) = plant.wait(&third).unwrap() else { panic!("it is the third's turn") };
-    assert_eq!((held.holder.as_str(), held.fence), ("third", 2));
+    assert_eq!((held.holder.as_str(), held.fence), ("12 third", 2));
     plant.give_back(&held).unwrap();
     assert!(plant.claim(&worker("12")).unwrap().is_some());
     assert_eq!(plant.wait(&Waiter::new("none", "first", "12").unwrap()).unwrap(), Turn::Never);
@@ -56,6 +59,93 @@ fn a_board_that_was_taken_over_or_out_is_held_no_more() {
     assert!(!plant.put_in("shelf-9", "it was cleaned", "engel").unwrap());
     let told = server.rows("SELECT act, detail FROM audit WHERE act LIKE 'board %' ORDER BY id");
     assert_eq!(told, [["board out", "it smells"], ["board in", "it was cleaned"]]);
+}
+
+/// A plant with `shelf-0`, which every station reaches, and `shelf-1`, which only the station A does.
+fn one_for_all_and_one_for_a() -> (Server, Plant) {
+    let (server, mut plant) = shared(1);
+    let of_a = SharedBoard { station: "A".to_owned(), ..board(1, "mock") };
+    assert!(plant.share(&of_a, "engel").unwrap());
+    (server, plant)
+}
+
+/// Several who wait, the first of them longest.
+fn waiting<const N: usize>(who: [(&str, &str); N]) -> [Waiter; N] {
+    who.map(|(name, station)| {
+        thread::sleep(std::time::Duration::from_millis(2));
+        Waiter::new("mock", name, station).unwrap()
+    })
+}
+
+/// The board that they get, or how many are in front of them.
+fn got(plant: &mut Plant, waiter: &Waiter) -> Result<String, u32> {
+    match plant.wait(waiter).unwrap() {
+        Turn::Held(lease) => Ok(lease.board),
+        Turn::Waits { before } => Err(before),
+        Turn::Never => panic!("there are boards"),
+    }
+}
+
+#[test]
+fn who_does_not_reach_a_board_keeps_nobody_from_it() {
+    let (_server, mut plant) = one_for_all_and_one_for_a();
+    let [p, b, a, again] = waiting([("p", "B"), ("b", "B"), ("a", "A"), ("again", "A")]);
+    assert_eq!(got(&mut plant, &p), Ok("shelf-0".to_owned()));
+    assert_eq!(got(&mut plant, &b), Err(0));
+    assert_eq!(got(&mut plant, &a), Ok("shelf-1".to_owned()), "B does not reach it");
+    assert_eq!(got(&mut plant, &again), Err(1));
+}
+
+#[test]
+fn who_has_a_board_of_their_own_leaves_the_one_that_all_reach() {
+    let (_server, mut plant) = one_for_all_and_one_for_a();
+    let [first, second, b] = waiting([("first", "A"), ("second", "A"), ("b", "B")]);
+    let Turn::Held(held) = plant.wait(&first).unwrap() else { panic!("both are free") };
+    assert_eq!(held.board, "shelf-1");
+    assert_eq!(got(&mut plant, &b), Ok("shelf-0".to_owned()));
+    assert_eq!(got(&mut plant, &second), Err(0));
+    plant.give_back(&held).unwrap();
+    assert_eq!(got(&mut plant, &second), Ok("shelf-1".to_owned()));
+}
+
+#[test]
+fn what_those_in_front_are_to_get_is_left_to_them() {
+    let (server, mut plant) = one_for_all_and_one_for_a();
+    let [first, second, b] = waiting([("first", "A"), ("second", "A"), ("b", "B")]);
+    for number in 0..2 {
+        assert!(plant.take_out(&format!("shelf-{number}"), "it smells", "engel").unwrap());
+    }
+    // Nobody is told of boards that are out, so that both wait without one.
+    for waiter in [&first, &second] {
+        assert_eq!(plant.wait(waiter).unwrap(), Turn::Never);
+        let wait = format!(
+            "INSERT INTO waiter VALUES ('{}', 'mock', '{}', {})",
+            waiter.id,
+            waiter.holder,
+            crate::common::now_ms() + 600_000
+        );
+        server.client("plant").batch_execute(&wait).unwrap();
+    }
+    for number in 0..2 {
+        assert!(plant.put_in(&format!("shelf-{number}"), "it was cleaned", "engel").unwrap());
+    }
+    assert_eq!(got(&mut plant, &b), Err(2), "one of their own, and the other one");
+    assert_eq!(got(&mut plant, &second), Ok("shelf-0".to_owned()), "their own is the first's");
+    assert_eq!(got(&mut plant, &first), Ok("shelf-1".to_owned()));
+}
+
+#[test]
+fn a_job_is_judged_on_a_board_that_nobody_who_waits_reaches() {
+    let (_server, mut plant) = one_for_all_and_one_for_a();
+    let (plan, any) = (plan(), any());
+    plant.add_jobs(&job(&plan, &any), 2).unwrap();
+    let [p, b] = waiting([("p", "B"), ("b", "B")]);
+    let Turn::Held(held) = plant.wait(&p).unwrap() else { panic!("it is free") };
+    assert_eq!(got(&mut plant, &b), Err(0));
+    plant.give_back(&held).unwrap();
+    let claim = plant.claim(&worker("A")).unwrap().unwrap();
+    assert_eq!(claim.lease.board, "shelf-1", "a person waits for the other one");
+    assert_eq!(plant.claim(&worker("A")).unwrap(), None);
 }
 
 /// A board under two names would be given to two.
