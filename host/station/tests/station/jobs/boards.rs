@@ -148,6 +148,18 @@ fn a_job_is_judged_on_a_board_that_nobody_who_waits_reaches() {
     assert_eq!(plant.claim(&worker("A")).unwrap(), None);
 }
 
+#[test]
+fn a_board_whose_holder_vanished_can_be_shared_otherwise() {
+    let (server, mut plant) = shared(1);
+    let Turn::Held(held) = plant.wait(&waiter("first")).unwrap() else { panic!("it is free") };
+    let other = SharedBoard { target: "tcp:shelf:5000".to_owned(), ..board(0, "other") };
+    assert!(!plant.share(&other, "engel").unwrap(), "somebody has it");
+    run_out(&server);
+    assert!(plant.share(&other, "engel").unwrap());
+    assert_eq!(server.rows("SELECT kind, target, holder FROM board"), [["other", "tcp:shelf:5000", "NULL"]]);
+    assert!(!plant.renew(&held).unwrap(), "it was another board");
+}
+
 /// A board under two names would be given to two.
 #[test]
 fn a_unit_is_shared_under_one_name() {
