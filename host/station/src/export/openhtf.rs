@@ -14,7 +14,7 @@ pub(super) fn of(record: &Record) -> Value {
     };
     let whole = (!record.measurements.is_empty()).then(|| {
         let times = (run.started_ms, record.ended_ms);
-        phase(0, "run", times, "PASS", record.marginal, &record.measurements)
+        phase(0, "run", times, worst(&record.measurements), record.marginal, &record.measurements)
     });
     let phases: Vec<_> = record.steps.iter().map(of_step).chain(whole).collect();
     json!({
@@ -43,6 +43,16 @@ pub(super) fn of(record: &Record) -> Value {
         "station_id": run.station,
         "code_info": code_info("halfrow-station", &plan.text),
     })
+}
+
+/// What the limits of the run as a whole make of it; those of a step are in its outcome.
+fn worst(measured: &[Measured]) -> &'static str {
+    let faults: Vec<_> = measured.iter().filter_map(Measured::fault).collect();
+    match faults.iter().find(|cause| **cause != RunCause::Board).or(faults.first()) {
+        None => "PASS",
+        Some(RunCause::Board) => "FAIL",
+        Some(_) => "ERROR",
+    }
 }
 
 fn of_step(step: &StepRecord) -> Value {

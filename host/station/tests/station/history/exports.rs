@@ -5,9 +5,10 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use halfrow_station::export::{Format, run};
+use halfrow_station::export::{Format, run, written};
 use halfrow_station::history::runs::{Filter, page};
-use halfrow_station::record::RunCause;
+use halfrow_station::plan::limits::{Blame, Limit, Maker, Measurement};
+use halfrow_station::record::{Record, RunCause, judged};
 use tempfile::TempDir;
 
 use super::commands::did;
@@ -137,6 +138,33 @@ fn every_cell_of_the_table_is_read_back_by_python() {
     let text = fs::read_to_string(&table).unwrap();
     fs::write(&table, text.replacen("1005.5", "1005.25", 1)).unwrap();
     assert!(!read().status.success(), "the control");
+}
+
+/// What OpenHTF itself makes of a phase with a measurement that failed.
+#[test]
+fn a_phase_of_openhtf_is_as_bad_as_its_worst_measurement() {
+    let mut made = Made::new();
+    made.run(&Run::of("S1", End::Pass));
+    let hash = &hashes(&made)[0];
+    let record = Record::parse(&made.folder().blobs().get(hash).unwrap()).unwrap();
+    let outcomes = |blames, most| {
+        let limit = Limit {
+            measurement: Measurement::named("run.seconds").unwrap(),
+            least: None,
+            most: Some(most),
+            blames,
+        };
+        let measurements = judged(Maker::Run, &[("run.seconds", Some(1.5))], &[limit]);
+        let limited = Record { measurements, ..record.clone() };
+        let json = written(&limited, Vec::new(), Format::OpenHtf).unwrap();
+        let json: serde_json::Value = serde_json::from_slice(&json).unwrap();
+        let phases = json["phases"].as_array().unwrap();
+        phases.iter().map(|phase| phase["outcome"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(outcomes(Blame::Board, 2.0), ["PASS", "PASS", "PASS"]);
+    assert_eq!(outcomes(Blame::Board, 1.0), ["PASS", "PASS", "FAIL"]);
+    assert_eq!(outcomes(Blame::Station, 1.0), ["PASS", "PASS", "ERROR"]);
+    assert_eq!(outcomes(Blame::Nobody, 1.0), ["PASS", "PASS", "PASS"]);
 }
 
 /// With OpenHTF from PyPI, in a Python of its own that is made when it is not there.
