@@ -5,4 +5,4 @@ WHERE $5 = '' OR NOT EXISTS (SELECT 1 FROM board AS other WHERE other.product = 
 ON CONFLICT (name) DO UPDATE SET
   kind = excluded.kind, target = excluded.target, product = excluded.product, serial = excluded.serial, station = excluded.station,
   holder = NULL, until_ms = NULL
-WHERE board.holder IS NULL OR board.until_ms < CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT);
+WHERE {free};

@@ -2,16 +2,12 @@
 WITH free AS MATERIALIZED (
   SELECT product, kind, serial FROM board
   WHERE serial <> '' AND station IN ('', $1) AND out IS NULL
-    AND (holder IS NULL OR until_ms < CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT))
-    AND NOT EXISTS (
-      SELECT 1 FROM waiter
-      WHERE waiter.kind = board.kind AND waiter.until_ms >= CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT)
-        AND board.station IN ('', substring(waiter.holder FROM '^(.*) '))
-    )
+    AND {free}
+    AND NOT {waited_for}
 )
 SELECT id, product, serial, kind FROM job
 WHERE state IN ('waiting', 'claimed')
-  AND (state = 'waiting' OR until_ms < CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT))
+  AND (state = 'waiting' OR until_ms < {now_ms})
   AND attempts < 5
   AND plan_sha256 = ANY (string_to_array($2, ' '))
   AND string_to_array(needs, ' ') <@ string_to_array($3, ' ')

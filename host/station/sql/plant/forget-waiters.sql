@@ -1,1 +1,1 @@
-DELETE FROM waiter WHERE id = $1 OR until_ms < CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT);
+DELETE FROM waiter WHERE id = $1 OR until_ms < {now_ms};

@@ -1,7 +1,7 @@
 -- A board of this kind that nobody has, behind those that are left to others; one that this station alone reaches comes first.
 SELECT name FROM board
 WHERE kind = $1 AND station IN ('', $2) AND out IS NULL
-  AND (holder IS NULL OR until_ms < CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT))
+  AND {free}
 ORDER BY station = '', name
 LIMIT 1 OFFSET $3
 FOR UPDATE SKIP LOCKED;

@@ -1,6 +1,6 @@
 -- The jobs of some states, the newest first, behind this one.
 SELECT job.id, plan.name, plan.version, job.product, job.serial, job.kind, job.needs, job.priority,
-  CASE WHEN job.state = 'claimed' AND job.until_ms < CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT) THEN 'waiting' ELSE job.state END,
+  CASE WHEN job.state = 'claimed' AND job.until_ms < {now_ms} THEN 'waiting' ELSE job.state END,
   job.holder, job.attempts, job.run_id, run.verdict, job.created_ms, job.operator_id, job.said
 FROM job
 JOIN plan ON plan.sha256 = job.plan_sha256

@@ -1,12 +1,12 @@
 -- By station: how many of it wait in front of this one for a board of the kind, and how many are free that it alone reaches.
 WITH front AS (
-  SELECT substring(holder FROM '^(.*) ') AS station, count(*) AS waiting FROM waiter
-  WHERE kind = $1 AND id < $2 AND until_ms >= CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT)
+  SELECT {waiter_station} AS station, count(*) AS waiting FROM waiter
+  WHERE kind = $1 AND id < $2 AND until_ms >= {now_ms}
   GROUP BY 1
 ), own AS (
   SELECT station, count(*) AS boards FROM board
   WHERE kind = $1 AND station <> '' AND out IS NULL
-    AND (holder IS NULL OR until_ms < CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT))
+    AND {free}
   GROUP BY 1
 )
 SELECT coalesce(front.station, own.station, ''), coalesce(waiting, 0), coalesce(boards, 0)

@@ -1,2 +1,2 @@
-UPDATE job SET until_ms = CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT) + $1
+UPDATE job SET until_ms = {now_ms} + $1
 WHERE id = $2 AND holder = $3 AND fence = $4 AND state = 'claimed';

@@ -1,6 +1,6 @@
 -- A station is there, by the plant's clock, which is told. Nothing is changed, and nothing told, when another one has its name.
 INSERT INTO station (name, origin, program, plans, unsent, dead, seen_ms)
-VALUES ($1, $2, $3, $4, $5, $6, CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT))
+VALUES ($1, $2, $3, $4, $5, $6, {now_ms})
 ON CONFLICT (name) DO UPDATE SET
   program = excluded.program, plans = excluded.plans, unsent = excluded.unsent, dead = excluded.dead, seen_ms = excluded.seen_ms
 WHERE station.origin = excluded.origin

@@ -1,3 +1,3 @@
 SELECT kind, holder, id FROM waiter
-WHERE until_ms >= CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT)
+WHERE until_ms >= {now_ms}
 ORDER BY kind, id;

@@ -1,6 +1,7 @@
-//! The text of every statement. SQLite and PostgreSQL have the same, but for three words.
+//! The text of every statement. SQLite and PostgreSQL have the same, but for [words](super::database::Engine::words).
 
-/// The schemas, in order: numbered files that are never edited.
+/// The schemas, in order: numbered files that are never edited. The column `retest_of` of a run is nobody's: what was judged again is
+/// told by `nth` and the table `retest`.
 pub(super) const SCHEMAS: [&str; 6] = [
     include_str!("../../sql/schema-1.sql"),
     include_str!("../../sql/schema-2.sql"),
@@ -8,6 +9,19 @@ pub(super) const SCHEMAS: [&str; 6] = [
     include_str!("../../sql/schema-4.sql"),
     include_str!("../../sql/schema-5.sql"),
     include_str!("../../sql/schema-6.sql"),
+];
+
+/// What a plant's statements say of boards: whether nobody has one, whether somebody waits who reaches it, of which station whoever
+/// waits is, and what time it is by the plant's clock, in milliseconds since 1970, UTC. Later ones stand in earlier ones.
+pub(super) const OF_BOARDS: [(&str, &str); 4] = [
+    ("{free}", "(board.holder IS NULL OR board.until_ms < {now_ms})"),
+    (
+        "{waited_for}",
+        "EXISTS (SELECT 1 FROM waiter WHERE waiter.kind = board.kind AND waiter.until_ms >= {now_ms}
+           AND board.station IN ('', {waiter_station}))",
+    ),
+    ("{waiter_station}", "substring(waiter.holder FROM '^(.*) ')"),
+    ("{now_ms}", "CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT)"),
 ];
 
 /// A constant for each statement, and all of them for what is to be true of every one.
@@ -169,6 +183,14 @@ mod tests {
                 assert!(number <= most + 1, "${number} stands before ${} in\n{text}", most + 1);
                 most = most.max(number);
             }
+        }
+    }
+
+    #[test]
+    fn what_a_word_stands_for_is_written_nowhere_else() {
+        for (word, meaning) in OF_BOARDS {
+            assert!(ALL.iter().any(|text| text.contains(word)), "{word}");
+            assert!(!ALL.iter().any(|text| text.contains(meaning)), "{meaning}");
         }
     }
 

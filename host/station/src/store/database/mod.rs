@@ -13,6 +13,8 @@ pub(crate) use self::postgres::Postgres;
 pub(crate) use sqlite::Sqlite;
 pub(crate) use value::{FromValue, Value, values};
 
+use super::statements::OF_BOARDS;
+
 /// Something that an engine does not do.
 #[derive(Debug, thiserror::Error)]
 pub enum DatabaseError {
@@ -135,13 +137,15 @@ pub(crate) enum Engine {
 }
 
 impl Engine {
-    /// A schema with the words that this engine has for whole numbers, other numbers, and tables that take nothing else.
-    pub(crate) fn words(self, schema: &str) -> String {
+    /// A schema, or a statement of a plant, with what its words stand for: those that the engines have for whole numbers, other numbers,
+    /// and tables that take nothing else; and of boards that are shared, which only a plant has, [those](OF_BOARDS).
+    pub(crate) fn words(self, text: &str) -> String {
         let [int, real, strict] = match self {
             Self::Sqlite => ["INTEGER", "REAL", " STRICT"],
             Self::Postgres => ["BIGINT", "DOUBLE PRECISION", ""],
         };
-        schema.replace("{int}", int).replace("{real}", real).replace("{strict}", strict)
+        let words = OF_BOARDS.into_iter().chain([("{int}", int), ("{real}", real), ("{strict}", strict)]);
+        words.fold(text.to_owned(), |text, (word, meaning)| text.replace(word, meaning))
     }
 }
 

@@ -100,7 +100,7 @@ impl Postgres {
         if let Some(statement) = self.ready.get(text) {
             return Ok(statement.clone());
         }
-        let statement = self.line.wait(self.client.prepare(text))?;
+        let statement = self.line.wait(self.client.prepare(&Engine::Postgres.words(text)))?;
         self.ready.insert(text.to_owned(), statement.clone());
         Ok(statement)
     }
