@@ -73,10 +73,16 @@ pub(super) fn finish(to: &mut dyn Database, record: &Record, hash: &str) -> Resu
         bindings::bind(to, &record.run, device, record.ended_ms)?;
     }
     parts(to, record)?;
+    counted(to, id)?;
+    Ok(changed)
+}
+
+/// What yields and failures are told from, with the run `id`, which is entered with all that hangs on it and is its unit's last one.
+pub(super) fn counted(to: &mut dyn Database, id: &str) -> Result<(), DatabaseError> {
     for counted in [sql::ADD_DAY_COUNT, sql::ADD_RETEST, sql::ADD_FAILURES] {
         to.execute(counted, values![id])?;
     }
-    Ok(changed)
+    Ok(())
 }
 
 /// What hangs on a run: steps, measurements, suspects, attachments.

@@ -111,16 +111,14 @@ fn count(to: &mut dyn Database, record: &Record, unit: &str, counts: bool) -> Re
     let later: i64 = to.one(sql::IS_LATE, values![unit, id, plan, product], |row| row.get(0))?;
     let is_judged = record.conclusion.verdict != Verdict::Error;
     let is_late = later > 0 && is_judged && counts;
-    if is_late {
-        to.execute(sql::UNCOUNT_FIRST, values![unit, id, plan, product])?;
-        to.execute(sql::COUNT_ON, values![unit, id, plan, product])?;
-    }
-    to.execute(sql::ADD_DAY_COUNT, values![id])?;
-    to.execute(sql::ADD_FAILURES, values![id])?;
     if !is_late {
-        return to.execute(sql::ADD_RETEST, values![id]).map(drop);
+        return rows::counted(to, id);
     }
+    to.execute(sql::UNCOUNT_FIRST, values![unit, id, plan, product])?;
+    to.execute(sql::COUNT_ON, values![unit, id, plan, product])?;
     to.execute(sql::FORGET_RETEST, values![unit, plan])?;
+    rows::counted(to, id)?;
+    // It may be the unit's first judgement by now, and is not its last one.
     let last: String = to.one(sql::LAST_JUDGED, values![unit, plan, product], |row| row.get(0))?;
     to.execute(sql::ADD_RETEST, values![&last]).map(drop)
 }
