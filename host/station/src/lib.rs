@@ -22,6 +22,7 @@ compile_error!("halfrow-station is for Linux alone; docs/portable.md says what w
 
 pub mod check;
 mod clock;
+mod codes;
 pub mod commands;
 pub mod demo;
 pub mod disk;
@@ -42,6 +43,7 @@ pub mod published;
 pub mod record;
 pub mod run;
 pub mod said;
+pub mod secret;
 pub mod settings;
 pub mod store;
 pub mod trust;
@@ -49,3 +51,4 @@ pub mod web;
 pub mod work;
 
 pub use halfrow_program::{console, exit, guard};
+pub use ids::NoRandomness;

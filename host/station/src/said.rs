@@ -8,7 +8,7 @@ use halfrow::result::{Finding, Parameters, Problem};
 use serde::{Deserialize, Serialize, Serializer};
 use serde_json::{Value, json};
 
-use crate::commands::codes::known;
+use crate::codes::known;
 
 /// A sentence for people. It is written as its English text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -84,7 +84,7 @@ pub(crate) fn as_text_if_any<S: Serializer>(said: &Option<Said>, to: S) -> Resul
 }
 
 /// What the station says that is no error of a type of its own: answers to scans, why a lane is out of service, what a
-/// step came to. Codes are those of `commands::codes`.
+/// step came to. Codes are those of `codes`.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the sentence says what each is, and what its figures are")]
 pub enum Saying {

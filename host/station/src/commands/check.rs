@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
-use super::{Failure, codes, document};
+use super::{Failure, document};
 use crate::check::{self, Checked};
+use crate::codes;
 use crate::console;
 use crate::exit::Exit;
 use crate::store::Folder;

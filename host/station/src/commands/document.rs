@@ -5,7 +5,8 @@ use halfrow::result::{Document, Schema};
 use halfrow_program::json;
 use serde::Serialize;
 
-use super::{Failure, codes};
+use super::Failure;
+use crate::codes;
 use crate::exit::Exit;
 
 /// The result of a command.

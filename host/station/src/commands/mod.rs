@@ -3,7 +3,7 @@
 mod beginning;
 mod board;
 mod check;
-pub(crate) mod codes;
+mod codes;
 mod demo;
 mod document;
 mod evidence;
@@ -24,7 +24,7 @@ mod plan;
 mod plant;
 mod publish;
 mod rebind;
-mod refusals;
+pub(crate) mod refusals;
 mod run;
 mod schema;
 mod serve;

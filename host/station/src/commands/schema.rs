@@ -3,7 +3,8 @@
 use clap::Args;
 use serde_json::Value;
 
-use super::{Failure, codes, print};
+use super::{Failure, print};
+use crate::codes;
 use crate::exit::Exit;
 
 /// What the program prints as JSON; the codes come from the program.

@@ -3,7 +3,7 @@
 use super::{Sink, Undelivered};
 use crate::clock::HeardClock;
 use crate::said::Said;
-use crate::store::{Parcel, Plant, PlantAddress, PlantError, Presence};
+use crate::store::{Parcel, Plant, PlantAddress, PlantError, Presence, SINK_OF_PLANT};
 
 /// A plant, which is connected to when there is something to send.
 #[derive(Debug)]
@@ -16,8 +16,8 @@ pub struct PlantSink {
 }
 
 impl PlantSink {
-    /// Its name in the outbox. A plant that moves to another address keeps it.
-    pub const NAME: &'static str = "plant";
+    /// Its name in the outbox.
+    pub const NAME: &'static str = SINK_OF_PLANT;
 
     /// The plant at `address`, which hears of `station`.
     #[must_use]

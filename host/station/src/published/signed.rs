@@ -11,7 +11,7 @@ use ring::signature::{ED25519, Ed25519KeyPair, KeyPair as _, UnparsedPublicKey};
 use serde::{Deserialize, Serialize};
 
 use crate::history::PlanName;
-use crate::web::{SecretError, create, secret};
+use crate::secret::{self, SecretError};
 
 /// What public keys begin with.
 const KIND: &str = "ed25519:";
@@ -63,7 +63,7 @@ impl SigningKey {
     pub fn draw(path: &Path) -> Result<Self, SigningError> {
         let document =
             Ed25519KeyPair::generate_pkcs8(&SystemRandom::new()).map_err(|_| SigningError::NoRandomness)?;
-        create(path, &BASE64_STANDARD.encode(document.as_ref()))
+        secret::create(path, &BASE64_STANDARD.encode(document.as_ref()))
             .map_err(|source| SigningError::File { path: path.to_owned(), source })?;
         Self::load(path)
     }
@@ -74,7 +74,7 @@ impl SigningKey {
     /// [`SigningError`]
     pub fn load(path: &Path) -> Result<Self, SigningError> {
         let no_key = || SigningError::NoKey { path: path.to_owned() };
-        let document = BASE64_STANDARD.decode(secret(path)?.trim()).map_err(|_| no_key())?;
+        let document = BASE64_STANDARD.decode(secret::text(path)?.trim()).map_err(|_| no_key())?;
         Ed25519KeyPair::from_pkcs8(&document).map(Self).map_err(|_| no_key())
     }
 

@@ -15,9 +15,9 @@ use std::time::{Duration, Instant};
 
 use halfrow::verdict::StoppedBy;
 
-pub use crate::ids::NoRandomness;
 pub use recovered::{recover, recover_run};
 
+use crate::ids::NoRandomness;
 use crate::labgrid::LaneBoard;
 use crate::lane::supervisor::{Attendant, EVENTS, End, Heard, LOG, Patience};
 use crate::lane::{Job, Message, Ruling, kept_frame};

@@ -22,10 +22,9 @@ use crate::floor::{Floor, Place, Rule, Starts};
 use crate::history::PlanName;
 use crate::input_error::{Fault, InputError};
 use crate::labgrid::LaneBoard;
-use crate::outbox::PlantSink;
 use crate::plan::Plan;
 use crate::published::PublicKey;
-use crate::store::Presence;
+use crate::store::{Presence, SINK_OF_PLANT};
 use crate::web::Address;
 
 /// The version of the settings' own format.
@@ -196,7 +195,7 @@ impl Settings {
 
     /// The names of all to whom results are sent on.
     pub(crate) fn sink_names(&self) -> impl Iterator<Item = &str> {
-        self.plant.iter().map(|_| PlantSink::NAME).chain(self.sinks.iter().map(|sink| sink.name.as_str()))
+        self.plant.iter().map(|_| SINK_OF_PLANT).chain(self.sinks.iter().map(|sink| sink.name.as_str()))
     }
 
     /// What a plant hears of the station whose folder is called `origin`.

@@ -7,8 +7,8 @@ use toml::Spanned;
 use super::text::{GreenText, PlantText};
 use crate::input_error::Fault;
 use crate::published::PublicKey;
+use crate::secret::{self, SecretError};
 use crate::store::PlantAddress;
-use crate::web::{SecretError, secret};
 
 /// The variable that may have the password.
 const PASSWORD: &str = "HALFROW_PLANT_PASSWORD";
@@ -69,7 +69,7 @@ impl PlantSettings {
     /// [`PlantSettingsError`]
     pub fn address(&self) -> Result<PlantAddress, PlantSettingsError> {
         let password = match &self.password_file {
-            Some(path) => Some(secret(path)?.trim_end_matches(['\r', '\n']).to_owned()),
+            Some(path) => Some(secret::text(path)?.trim_end_matches(['\r', '\n']).to_owned()),
             None => std::env::var(PASSWORD).ok(),
         };
         Ok(PlantAddress::new(&self.url, password.as_deref(), self.ca.as_deref())?)

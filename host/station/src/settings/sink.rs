@@ -9,7 +9,7 @@ use super::read::is_name;
 use super::text::SinkText;
 use crate::export::Format;
 use crate::input_error::Fault;
-use crate::outbox::PlantSink;
+use crate::store::SINK_OF_PLANT;
 use crate::trust;
 
 /// The most characters of a sink's name.
@@ -138,12 +138,12 @@ impl SinkText {
 
 fn name(text: &Spanned<String>) -> Result<String, Fault> {
     let name = text.get_ref();
-    if is_name(name, MOST_NAME) && name != PlantSink::NAME {
+    if is_name(name, MOST_NAME) && name != SINK_OF_PLANT {
         return Ok(name.clone());
     }
     let what = format!("`{name}` is no name for a sink");
     let remedy =
-        format!("write 1 to {MOST_NAME} letters, digits and hyphens; {} is the plant's", PlantSink::NAME);
+        format!("write 1 to {MOST_NAME} letters, digits and hyphens; {SINK_OF_PLANT} is the plant's");
     Err(Fault::wrong(text.span().start, what, remedy))
 }
 

@@ -1,10 +1,9 @@
 //! Whether a run is dated as those of other stations are: a plant tells which of two judgements of a unit is the later one by
 //! when they began.
 
-use super::{Store, StoreError};
+use super::{SINK_OF_PLANT, Store, StoreError};
 use crate::clock::HeardClock;
 use crate::ids;
-use crate::outbox::PlantSink;
 use crate::record::RunHead;
 
 /// How far a date may be off: less than a board takes from one station to another.
@@ -20,7 +19,7 @@ impl Store {
     /// Refuses a run that a plant would take for an earlier or later one than it is. Whoever sends nothing to a plant may date
     /// runs as it likes: they are in order among themselves.
     pub(super) fn is_dated(&self, run: &RunHead) -> Result<(), StoreError> {
-        if !self.sinks.iter().any(|sink| sink == PlantSink::NAME) {
+        if !self.sinks.iter().any(|sink| sink == SINK_OF_PLANT) {
             return Ok(());
         }
         let minutes = |ms: i64| ms.unsigned_abs().div_ceil(MINUTE_MS);

@@ -4,8 +4,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::database::{DatabaseError, Engine};
+use crate::ids::NoRandomness;
 use crate::record::{BlobError, RecordError};
-use crate::run::NoRandomness;
 
 /// Something that the store cannot do.
 #[derive(Debug, thiserror::Error)]

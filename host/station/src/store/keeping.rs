@@ -9,7 +9,7 @@ use super::database::values;
 use super::{Folder, Snapshot, Store, StoreError, statements as sql};
 use crate::clock;
 use crate::ids;
-use crate::run::NoRandomness;
+use crate::ids::NoRandomness;
 
 impl Folder {
     /// Where it is.

@@ -8,6 +8,9 @@ use super::{Folder, Snapshot, Store, StoreError, Waiver, statements as sql};
 use crate::record::Record;
 use crate::{clock, ids};
 
+/// The plant's name among the sinks. A plant that moves to another address keeps it.
+pub const SINK_OF_PLANT: &str = "plant";
+
 /// What an entry is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]

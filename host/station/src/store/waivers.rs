@@ -9,7 +9,7 @@ use super::database::{Database, DatabaseError, values};
 use super::{Kind, Store, StoreError, outbox, statements as sql};
 use crate::clock;
 use crate::ids;
-use crate::run::NoRandomness;
+use crate::ids::NoRandomness;
 
 /// A waiver of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

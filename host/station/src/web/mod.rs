@@ -29,10 +29,8 @@ mod trouble;
 mod visit;
 
 pub use access::{
-    Access, Address, AddressError, Role, Scope, SecretError, TokenError, Tokens, UserError, Users, add_token,
-    add_user,
+    Access, Address, AddressError, Role, Scope, TokenError, Tokens, UserError, Users, add_token, add_user,
 };
-pub(crate) use access::{create, secret};
 pub use routes::{Route, Who, routes, routes_of_plant};
 pub use serve::{ServeError, Server};
 pub use state::App;

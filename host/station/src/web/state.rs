@@ -6,7 +6,7 @@ use std::sync::Arc;
 use halfrow::report::wording::plain;
 use tokio::task;
 
-use super::access::{Access, SecretError};
+use super::access::Access;
 use super::assets;
 use super::live::Live;
 use super::metrics::Turns;
@@ -15,6 +15,7 @@ use super::visit::{User, Visit};
 use crate::engine::Engine;
 use crate::history::counts::Tally;
 use crate::plan::Plan;
+use crate::secret::SecretError;
 use crate::settings::{PlanFile, Settings};
 use crate::store::{Folder, PlantAddress, PlantPool, Snapshot, Store, StoreError};
 

@@ -8,12 +8,12 @@ use axum::response::{IntoResponse, Response};
 use maud::html;
 use serde_json::json;
 
-use super::access::SecretError;
 use super::history::show;
 use super::language::Told;
 use super::layout::{Here, Page};
 use super::visit::Visit;
 use crate::said::Said;
+use crate::secret::SecretError;
 use crate::store::StoreError;
 
 /// An answer that says what is wrong, and what to do.

@@ -12,10 +12,10 @@ use super::{SinkError, SinkSettingsError};
 use crate::clock;
 use crate::outbox::{Sink, Undelivered};
 use crate::record::Record;
+use crate::secret;
 use crate::settings::{Login, SinkAddress};
 use crate::store::{Parcel, Waiver};
 use crate::trust;
-use crate::web::secret;
 
 /// The version of an event's own document.
 const SCHEMA: u32 = 1;
@@ -99,7 +99,7 @@ impl EventSink {
         let mut options = MqttOptions::new(client, (address.host.clone(), address.port));
         options.set_keep_alive(ALIVE).set_clean_session(true);
         if let Some(Login { user, password }) = login {
-            let password = secret(password)?.trim_end_matches(['\r', '\n']).to_owned();
+            let password = secret::text(password)?.trim_end_matches(['\r', '\n']).to_owned();
             options.set_credentials(user, password);
         }
         if address.is_protected {

@@ -13,9 +13,9 @@ use halfrow::frames::written_aside::WriteAsideError;
 use super::{Sink, Undelivered};
 use crate::export::ExportError;
 use crate::said::Said;
+use crate::secret::SecretError;
 use crate::settings::{Destination, SinkSettings};
 use crate::trust::TrustError;
-use crate::web::SecretError;
 
 /// A sink that cannot be used as the settings say.
 #[derive(Debug, thiserror::Error)]

@@ -13,10 +13,10 @@ use super::letter::{Letter, letter};
 use super::{SinkError, SinkSettingsError};
 use crate::export::Format;
 use crate::outbox::{Sink, Undelivered};
+use crate::secret;
 use crate::settings::SinkAddress;
 use crate::store::Parcel;
 use crate::trust;
-use crate::web::secret;
 
 /// How long a request may take, its answer included.
 const DEADLINE: Duration = Duration::from_secs(30);
@@ -46,7 +46,7 @@ impl PostSink {
         token: Option<&Path>,
     ) -> Result<Self, SinkSettingsError> {
         let authorization = match token {
-            Some(path) => Some(format!("Bearer {}", secret(path)?.trim())),
+            Some(path) => Some(format!("Bearer {}", secret::text(path)?.trim())),
             None => None,
         };
         let mut config = Agent::config_builder()

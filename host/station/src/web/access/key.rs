@@ -1,51 +1,16 @@
 //! The station's key, under which badges are kept and forms are marked.
 
-use std::fs::{self, File, Permissions};
-use std::io::{self, Write as _};
-use std::os::unix::fs::{OpenOptionsExt as _, PermissionsExt as _};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use halfrow::frames::written_aside::{folder_of, sync_folder};
 use hmac::{Hmac, KeyInit as _, Mac as _};
 use rand::TryRng as _;
 use rand::rngs::SysRng;
-use serde::Serialize;
-use serde::de::DeserializeOwned;
 use sha2::Sha256;
-use tempfile::Builder;
+
+use crate::secret::{self, SecretError};
 
 /// Bytes of a key, and of what is drawn for a session.
 const BYTES: usize = 32;
-
-/// A file of secrets that cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum SecretError {
-    /// It cannot be read or written.
-    #[error("{} cannot be read or written; check its name, and who may read it", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// The system's reason.
-        source: io::Error,
-    },
-    /// Others may read it.
-    #[error("others may read {0}, which has secrets; run: chmod 600 {0}", path.display())]
-    Open {
-        /// The file.
-        path: PathBuf,
-    },
-    /// It is not what it should be.
-    #[error("{}: {what}; restore it from a copy", path.display())]
-    Wrong {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong.
-        what: String,
-    },
-    /// The system has no randomness.
-    #[error("the system has no randomness for a key; restart it")]
-    NoRandomness(#[source] rand::rngs::SysError),
-}
 
 /// The key.
 #[derive(Clone)]
@@ -63,7 +28,7 @@ impl Key {
         if !path.exists() {
             return Self::draw(path);
         }
-        let text = secret(path)?;
+        let text = secret::text(path)?;
         let wrong = || SecretError::Wrong {
             path: path.to_owned(),
             what: "it has no 64 hexadecimal digits".to_owned(),
@@ -73,7 +38,8 @@ impl Key {
 
     fn draw(path: &Path) -> Result<Self, SecretError> {
         let key = Self(drawn().map_err(SecretError::NoRandomness)?);
-        create(path, &hex(&key.0)).map_err(|source| SecretError::File { path: path.to_owned(), source })?;
+        secret::create(path, &hex(&key.0))
+            .map_err(|source| SecretError::File { path: path.to_owned(), source })?;
         Ok(key)
     }
 
@@ -98,61 +64,6 @@ impl Key {
     }
 }
 
-/// Makes a file that was not there, of one line, which nobody else may read: whole, or not at all.
-pub(crate) fn create(path: &Path, line: &str) -> io::Result<()> {
-    let mut aside = Builder::new().permissions(Permissions::from_mode(0o600)).tempfile_in(folder_of(path))?;
-    writeln!(aside, "{line}")?;
-    aside.as_file().sync_all()?;
-    aside.persist_noclobber(path)?;
-    sync_folder(folder_of(path))
-}
-
-/// The text of a file that nobody else may read.
-pub(crate) fn secret(path: &Path) -> Result<String, SecretError> {
-    let refused = |source| SecretError::File { path: path.to_owned(), source };
-    if fs::metadata(path).map_err(refused)?.permissions().mode() & 0o077 != 0 {
-        return Err(SecretError::Open { path: path.to_owned() });
-    }
-    fs::read_to_string(path).map_err(refused)
-}
-
-/// Writes `text` to the file `path`, which nobody else may read, all or nothing; with `lasts`, a power cut does not take it back.
-pub(crate) fn keep(path: &Path, text: &str, lasts: bool) -> Result<(), SecretError> {
-    let write = || {
-        let mut aside = PathBuf::from(path).into_os_string();
-        aside.push(".new");
-        let mut file = File::options().write(true).create(true).truncate(true).mode(0o600).open(&aside)?;
-        file.write_all(text.as_bytes())?;
-        if lasts {
-            file.sync_all()?;
-        }
-        fs::rename(&aside, path)?;
-        if lasts { sync_folder(folder_of(path)) } else { Ok(()) }
-    };
-    write().map_err(|source| SecretError::File { path: path.to_owned(), source })
-}
-
-/// What the TOML file `path` of secrets says.
-pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<T, SecretError> {
-    let wrong = |error: toml::de::Error| SecretError::Wrong {
-        path: path.to_owned(),
-        what: error.message().to_owned(),
-    };
-    toml::from_str(&secret(path)?).map_err(wrong)
-}
-
-/// As [`read`]; what there is by default, if there is no file.
-pub(crate) fn read_or_none<T: DeserializeOwned + Default>(path: &Path) -> Result<T, SecretError> {
-    if path.exists() { read(path) } else { Ok(T::default()) }
-}
-
-/// Writes secrets to the TOML file `path`, as [`keep`] does.
-pub(crate) fn write(path: &Path, secrets: &impl Serialize, lasts: bool) -> Result<(), SecretError> {
-    let text = toml::to_string(secrets).map_err(io::Error::other);
-    let text = text.map_err(|source| SecretError::File { path: path.to_owned(), source })?;
-    keep(path, &text, lasts)
-}
-
 /// Drawn bytes, which nobody can guess.
 pub(crate) fn drawn() -> Result<[u8; BYTES], rand::rngs::SysError> {
     let mut drawn = [0; BYTES];
@@ -172,6 +83,9 @@ fn bytes(hex: &str) -> Option<Vec<u8>> {
 
 #[cfg(test)]
 mod tests {
+    use std::fs::{self, Permissions};
+    use std::os::unix::fs::PermissionsExt as _;
+
     use super::*;
 
     /// Python: `hmac.new(bytes(range(32)), b"badge\0A17", "sha256").hexdigest()`

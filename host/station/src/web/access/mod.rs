@@ -16,14 +16,13 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 pub use address::{Address, AddressError};
-pub use key::SecretError;
-pub(crate) use key::{create, secret};
 pub use tokens::{Scope, TokenError, Tokens};
 pub(super) use users::Identified;
 pub use users::{Role, UserError, Users};
 
 use super::visit::User;
 use crate::clock;
+use crate::secret::SecretError;
 use crate::settings::Settings;
 use key::Key;
 use sessions::{Failures, Sessions};

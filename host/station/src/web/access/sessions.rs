@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
-use super::key::{self, SecretError};
 use super::users::Identified;
+use crate::secret::{self, SecretError};
 use crate::web::routes::Who;
 use crate::web::visit::User;
 
@@ -59,7 +59,7 @@ impl Sessions {
     /// # Errors
     /// [`SecretError`] when others may read it, or it cannot be read.
     pub(super) fn load(path: &Path) -> Result<Self, SecretError> {
-        let lines: Lines = match key::read_or_none(path) {
+        let lines: Lines = match secret::read_or_none(path) {
             Ok(lines) => lines,
             Err(SecretError::Wrong { path, what }) => {
                 tracing::warn!("{}: {what}; everybody logs in anew", path.display());
@@ -124,7 +124,7 @@ impl Sessions {
             used_ms: *used_ms,
         };
         let lines = Lines { session: self.known.iter().map(line).collect() };
-        if let Err(error) = key::write(file, &lines, false) {
+        if let Err(error) = secret::write(file, &lines, false) {
             tracing::warn!("{:#}", anyhow::Error::from(error));
         }
     }

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::key::{self, Key, SecretError};
+use super::key::{self, Key};
+use crate::secret::{self, SecretError};
 
 /// What the marks of tokens are told from others by.
 const TOKEN: &str = "token";
@@ -55,7 +56,7 @@ impl Tokens {
     /// # Errors
     /// [`SecretError`]
     pub fn load_or_none(path: &Path) -> Result<Self, SecretError> {
-        key::read_or_none(path)
+        secret::read_or_none(path)
     }
 
     /// Writes every token to the file `path`, all or nothing.
@@ -63,7 +64,7 @@ impl Tokens {
     /// # Errors
     /// [`SecretError::File`]
     pub fn save(&self, path: &Path) -> Result<(), SecretError> {
-        key::write(path, self, true)
+        secret::write(path, self, true)
     }
 
     /// Draws a token of 256 bits, in hexadecimal digits, which is known from here on and nowhere written.

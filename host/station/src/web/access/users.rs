@@ -6,7 +6,8 @@ use std::sync::LazyLock;
 use argon2::{Argon2, PasswordHasher as _, PasswordVerifier as _};
 use serde::{Deserialize, Serialize};
 
-use super::key::{self, Key, SecretError};
+use super::key::{self, Key};
+use crate::secret::{self, SecretError};
 use crate::web::routes::Who;
 use crate::web::visit::User;
 
@@ -93,7 +94,7 @@ impl Users {
     /// # Errors
     /// [`SecretError`]
     pub fn load(path: &Path) -> Result<Self, SecretError> {
-        key::read(path)
+        secret::read(path)
     }
 
     /// As [`Self::load`]; nobody, if there is no file.
@@ -101,7 +102,7 @@ impl Users {
     /// # Errors
     /// [`SecretError`]
     pub fn load_or_none(path: &Path) -> Result<Self, SecretError> {
-        key::read_or_none(path)
+        secret::read_or_none(path)
     }
 
     /// Writes everybody to the file `path`, all or nothing.
@@ -109,7 +110,7 @@ impl Users {
     /// # Errors
     /// [`SecretError::File`]
     pub fn save(&self, path: &Path) -> Result<(), SecretError> {
-        key::write(path, self, true)
+        secret::write(path, self, true)
     }
 
     /// Adds somebody. An engineer has a password.

@@ -8,7 +8,7 @@ use serde_json::Value;
 use toml::Spanned;
 
 use super::FILES;
-use crate::commands::codes as station;
+use crate::codes as station;
 use crate::input_error::{Fault, InputError};
 
 /// The tables whose keys are codes.

@@ -10,8 +10,7 @@ use crate::clock;
 use crate::history::Period;
 use crate::history::rate::Rate;
 use crate::history::yields::{By, Wanted, Yields, yields};
-use crate::outbox::PlantSink;
-use crate::store::Snapshot;
+use crate::store::{SINK_OF_PLANT, Snapshot};
 use crate::web::layout::{Here, Page};
 use crate::web::live::Now;
 use crate::web::routes::Who;
@@ -134,7 +133,7 @@ async fn counted(app: &App, visit: &Visit) -> Result<Markup, Trouble> {
     let wanted = Wanted { period, ..Wanted::default() };
     let look = move |snapshot: &Snapshot| Ok((yields(snapshot, &wanted, By::Plan)?, snapshot.unsent()?));
     let (counted, unsent) = app.look(visit, look).await?;
-    let at_plant = unsent.iter().filter(|unsent| unsent.sink == PlantSink::NAME);
+    let at_plant = unsent.iter().filter(|unsent| unsent.sink == SINK_OF_PLANT);
     let entries: u32 = at_plant.map(|unsent| unsent.entries).sum();
     Ok(html! {
         (summed(visit, &counted))

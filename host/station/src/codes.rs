@@ -1,0 +1,350 @@
+//! The codes of the station's own errors.
+
+use std::error::Error;
+
+use halfrow::result::Problem;
+use halfrow::result::codes::{self, CodeList, Coded};
+use halfrow_program::codes as program;
+use serde_json::Value;
+
+use crate::check::Fault;
+use crate::commands::refusals;
+use crate::disk::DiskError;
+use crate::engine::HookError;
+use crate::exit::Exit;
+use crate::export::ExportError;
+use crate::floor::{Refusal, ScanError, UnknownBarcode};
+use crate::ids::NoRandomness;
+use crate::input_error::InputError;
+use crate::kept::CopyError;
+use crate::labgrid::LabgridError;
+use crate::outbox::{OutboxError, SinkError, SinkSettingsError};
+use crate::plan::serial::SerialError;
+use crate::published::{BundleError, FetchError, SigningError};
+use crate::record::{BlobError, RecordError};
+use crate::run::RunError;
+use crate::said::Saying;
+use crate::secret::SecretError;
+use crate::settings::PlantSettingsError;
+use crate::store::{AgainError, NoWaiver, PlantAddressError, PlantError, RebindError, StoreError};
+use crate::trust::TrustError;
+use crate::work::{Lost, WorkError};
+
+codes::codes! {
+    InputError {
+        Unreadable [path] => "station-input-unreadable",
+        Wrong [path, line, what] => "station-input-wrong",
+        Input [path, line, what] => "station-input-names-unusable",
+    }
+    SerialError {
+        Empty => "serial-empty",
+        TooLong [characters] => "serial-too-long",
+        Character [character, place] => "serial-character-wrong",
+        Reserved [serial] => "serial-reserved",
+        Pattern [serial, pattern] => "serial-of-no-product",
+        CheckDigit [serial] => "serial-check-digit-wrong",
+    }
+    ScanError {
+        Incomplete => "scan-incomplete",
+        Late => "scan-late",
+        NoLane [lane, known] => "lane-unknown",
+        WhichLane [lanes] => "lane-not-named",
+        Ambiguous [serial, first, second] => "serial-of-two-products",
+        Elsewhere [serial, lane] => "serial-in-other-lane",
+        = Barcode,
+        = Serial,
+        = Lane,
+    }
+    Refusal {
+        Out [lane, why] => "lane-out",
+        Owes [lane, why] => "lane-not-checked",
+        NoMock [lane] => "lane-owes-no-mock",
+        Busy [lane, serial] => "lane-busy",
+        Unsaved [lane, serial] => "lane-unsaved",
+        NoBoard [lane] => "lane-empty",
+        NoSerial [lane] => "lane-without-serial",
+        NoButton [lane] => "lane-without-button",
+        NothingToAbort [lane] => "lane-idle",
+        InService [lane] => "lane-in-service",
+    }
+    RunError {
+        NotBegun => "run-not-begun",
+        Unsaved [run] => "run-unsaved",
+        = Serial,
+        = NoRandomness,
+    }
+    StoreError {
+        InUse [folder] => "store-in-use",
+        Folder [folder] => "store-folder-unusable",
+        NoResults [folder] => "store-without-results",
+        DatabaseGone [folder] => "store-without-database",
+        Database [path, doing] => "database-refuses",
+        Damaged [path] => "database-unreadable",
+        Plant [plant, doing] => "plant-refuses",
+        NoRecord [plant, sha256] => "plant-without-record",
+        NoLog [path, mode] => "database-without-log",
+        Newer [path, found, known] => "database-newer",
+        Older [path, found, known] => "database-older",
+        OtherSchema [path, version] => "database-of-other-schema",
+        ClockApart [minutes] => "clocks-apart",
+        DatedAhead [minutes] => "last-run-dated-ahead",
+        BeingJudged [serial, lane] => "unit-being-judged",
+        NotOpen [run] => "run-not-open",
+        ReadsOtherwise [run] => "run-reads-otherwise",
+        = Blob,
+        = Record,
+        = NoRandomness,
+    }
+    PlantError {
+        OtherContent [run, ours, theirs] => "plant-has-other-record",
+        NotYet [run] => "plant-without-run",
+        NotKept [subject] => "plant-kept-nothing",
+        OtherStation [name] => "plant-has-other-station",
+        Collation [plant, collation, encoding] => "plant-of-other-collation",
+        = Store,
+    }
+    PlantAddressError {
+        Malformed => "plant-address-malformed",
+        Without [what] => "plant-address-incomplete",
+        Password => "plant-address-with-password",
+        = Trust,
+    }
+    TrustError {
+        Certificates [path] => "certificates-unreadable",
+        NoCertificates => "certificates-missing",
+        Tls => "tls-unusable",
+    }
+    OutboxError {
+        Thread => "outbox-without-thread",
+        = Store,
+    }
+    SinkSettingsError {
+        = Secret,
+        = Trust,
+    }
+    SinkError {
+        NoFolder [path] => "sink-without-folder",
+        OtherFile [path] => "sink-has-other-file",
+        Unread [path] => "sink-file-unreadable",
+        Unreached [host] => "sink-unreached",
+        Busy [host, status] => "sink-busy",
+        Closed [host, status] => "sink-closed",
+        Rejected [host, status, answer] => "sink-rejects",
+        Unconfirmed [host, seconds] => "sink-unconfirmed",
+        Unwritten => "sink-file-not-written",
+        = Export,
+    }
+    WorkError {
+        NoPlan [job, sha256] => "job-without-plan",
+        Target [board, target] => "shared-board-without-place",
+        = Run,
+    }
+    Lost {
+        Taken [board] => "shared-board-taken",
+        Unreached [board, seconds, said] => "shared-board-unreached",
+    }
+    LabgridError {
+        NotStarted [program] => "labgrid-program-not-started",
+        Failed [program, said] => "labgrid-program-failed",
+        Late [place, seconds] => "labgrid-late",
+        CoordinatorAway [coordinator] => "labgrid-coordinator-away",
+        Unknown [place, known] => "labgrid-place-unknown",
+        Held [place, holder] => "labgrid-place-held",
+        NotAcquired [place, said] => "labgrid-place-not-given",
+        NotReleased [place] => "labgrid-place-not-taken-back",
+        NoPort [place] => "labgrid-place-without-port",
+        SeveralPorts [place, ports] => "labgrid-place-with-several-ports",
+        PortAway [place] => "labgrid-port-away",
+        Protocol [place, protocol] => "labgrid-port-not-raw",
+    }
+    SigningError {
+        File [path] => "plan-key-not-made",
+        NoKey [path] => "plan-key-malformed",
+        NoRandomness => "plan-key-without-randomness",
+        NoPublicKey [text] => "plan-public-key-malformed",
+        = Secret,
+    }
+    BundleError {
+        Outside [name] => "plan-file-outside",
+        Plan => "plan-file-named-as-plan",
+        TooLarge [bytes] => "plan-files-too-large",
+        Changed [path] => "plan-file-changed",
+        Malformed [sha256] => "published-plan-malformed",
+        Damaged [sha256, found] => "published-plan-damaged",
+        Folder [path] => "plan-folder-unusable",
+        Unwritten => "plan-not-kept",
+    }
+    FetchError {
+        None [plan] => "plan-not-published",
+        Untrusted [plan] => "published-plan-untrusted",
+        Older [plan, number, kept] => "published-plan-older",
+        Plan [plan] => "published-plan-unusable",
+        = Store,
+        = Bundle,
+    }
+    PlantSettingsError {
+        = Address,
+        = Secret,
+    }
+    SecretError {
+        File [path] => "secret-file-unusable",
+        Open [path] => "secret-file-open",
+        Wrong [path, what] => "secret-file-wrong",
+        NoRandomness => "secret-without-randomness",
+    }
+    BlobError {
+        Folder [path] => "evidence-folder-unusable",
+        Write => "evidence-not-written",
+        Read [path] => "evidence-unreadable",
+        Damaged [path, found] => "evidence-damaged",
+    }
+    AgainError {
+        Refused [serial, when] => "unit-passed-already",
+        Asked [serial, when] => "unit-passed-already-asks",
+    }
+    DiskError {
+        Refused [folder, what] => "disk-refused",
+        Untold [folder] => "disk-unknown",
+    }
+    RecordError {
+        NotANumber [name, value] => "record-without-number",
+        Incomplete [seq, steps] => "record-incomplete",
+        Json => "record-unreadable",
+    }
+    Fault {
+        Database [said] => "database-damaged",
+        Evidence [run] => "run-evidence-wrong",
+        Record [run] => "run-record-wrong",
+        Contradiction [run] => "run-contradicts",
+        Unkept [run, sha256] => "run-record-not-kept",
+        Job [job] => "job-without-run",
+        Audit [id] => "audit-contradicts",
+        Plan [run] => "run-plan-wrong",
+        Differs [table, key, column, stored, rebuilt] => "table-row-differs",
+        Missing [table, key] => "table-row-missing",
+        Surplus [table, key] => "table-row-surplus",
+    }
+    RebindError {
+        Unknown [serial] => "unit-unknown",
+        Several [serial, first, second] => "unit-of-two-products",
+        NoReason => "rebind-without-reason",
+        NoDevice [device] => "device-malformed",
+        UnderTest [serial] => "unit-under-test",
+        = Store,
+    }
+    NoWaiver {
+        NoRun [run] => "waiver-without-run",
+        NoFail [run, verdict] => "waiver-without-fail",
+        Waived [run] => "waiver-given-already",
+        Empty => "waiver-without-reason",
+        = NoRandomness,
+        = Store,
+    }
+    CopyError {
+        Exists [path] => "copy-would-overwrite",
+        UnderWay [path] => "copy-of-runs-under-way",
+        Io [path] => "copy-not-written",
+        Faulty [path, faults, first] => "copy-faulty",
+        = Store,
+    }
+    ExportError {
+        Xml => "export-not-encoded-as-xml",
+        Json => "export-not-encoded-as-json",
+        Write => "export-not-written",
+        = Store,
+    }
+    HookError {
+        Start [program] => "hook-not-started",
+        Failed [program, said] => "hook-failed",
+        Late [program, deadline] => "hook-late",
+    }
+    Saying {
+        Armed [lane] => "lane-armed",
+        Starts [lane] => "lane-starts",
+        ToldToEnd [lane] => "lane-told-to-end",
+        TakenOut [lane] => "lane-taken-out",
+        PutBack [lane] => "lane-put-back",
+        Tested [serial, lane] => "serial-tested",
+        MockJudged [lane] => "mock-judged",
+        Waits [serial, lane] => "serial-waits",
+        WaitsForPlug [serial] => "serial-waits-for-board",
+        WaitsInstead [serial, other] => "serial-waits-instead",
+        NotGiven [serial, why] => "serial-not-given",
+        OutByPerson => "out-by-person",
+        Unkillable => "out-by-process",
+        GoodUnitWrong [serial, verdict] => "shift-good-unit-wrong",
+        BadUnitWrong [serial, verdict] => "shift-bad-unit-wrong",
+        GoodUnitDue [serial] => "shift-good-unit-due",
+        BadUnitDue [serial] => "shift-bad-unit-due",
+        MockDue [barcode] => "shift-mock-due",
+        MockWrong [target, verdict, barcode] => "shift-mock-wrong",
+        NoLaneOrPlan => "settings-without-lane-or-plan",
+        NoThread [error] => "thread-missing",
+        HooksBehind [verdicts] => "hooks-behind",
+        HardwareAlone [kind] => "plan-takes-hardware",
+        BuildNotOfPlan [build, builds] => "build-not-of-plan",
+        DeviceAskedFor => "device-asked-for",
+        DeviceUnsaid => "device-unsaid",
+        IdentityUnchecked [name, kind, build] => "identity-not-checked",
+        DeviceKnown [name, kind, build, device] => "device-known",
+        DeviceNew [name, kind, build, device] => "device-new",
+        StoppedBefore => "run-stopped-before",
+        LinkTested [link] => "link-tested",
+        LinkAnswersWrong [wrong] => "link-answers-wrong",
+        BoardSwapped [first, now] => "board-swapped",
+        DeviceElsewhere [device] => "device-in-other-lane",
+        OtherProduct [serial, product, scanned] => "board-of-other-product",
+        OtherSerial [serial, scanned] => "board-of-other-serial",
+        OtherDevice [serial, device, found] => "serial-of-other-device",
+        BeyondLimit [name, value, unit, low, high] => "measurement-beyond-limit",
+        NotMeasured [name, unit, low, high] => "measurement-missing",
+        StepsUnknown [passed, planned] => "steps-unknown",
+        StepNotReached => "step-not-reached",
+        LaneBabbles [line] => "lane-told-nonsense",
+        LaneDied [status] => "lane-died",
+        LaneNotStarted [error] => "lane-not-started",
+        LaneSilent [seconds] => "lane-silent",
+        LaneLate [seconds] => "lane-late",
+        LaneDeaf [seconds] => "lane-deaf",
+        LaneStuck [why] => "lane-stuck",
+        LaneEndless => "lane-endless",
+        PlanChanged => "plan-changed",
+        StationEnded [tries] => "station-ended",
+        SavedTooLate [tries] => "result-saved-too-late",
+        NotAtPlant => "result-not-at-plant",
+        TooMuchUnsent [entries, most] => "outbox-too-full",
+        DiskTooFull [percent] => "disk-too-full",
+    }
+    ;
+    UnknownBarcode [text] => "barcode-unknown"
+    ;
+    NoRandomness => "no-randomness"
+}
+
+/// The code of an error of the station's, of the library's or of the system's.
+pub(crate) fn known(error: &(dyn Error + 'static)) -> Option<Coded> {
+    lookup(error).or_else(|| refusals::lookup(error)).or_else(|| program::known(error))
+}
+
+/// Why a command came to no result.
+pub(crate) fn problem(exit: Exit, error: &anyhow::Error) -> Problem {
+    program::problem(exit, error, known)
+}
+
+/// What is wrong with what was kept.
+pub(crate) fn of_fault(fault: &Fault) -> Problem {
+    Problem::by(fault, known)
+}
+
+/// Every list of codes that is the station's own.
+pub(crate) fn lists() -> impl Iterator<Item = &'static CodeList> {
+    LISTS.iter().chain(refusals::LISTS).filter(|list| !list.codes.is_empty())
+}
+
+/// Every code that a document of the station may have.
+pub(crate) fn all() -> Vec<Value> {
+    let library = codes::LISTS.into_iter().flatten().chain(program::lists());
+    let typed = lists().chain(library).flat_map(|list| list.codes).map(|(code, _)| *code);
+    let others = codes::IO_CODES.into_iter().chain(program::USAGE).chain(program::UNTYPED);
+    typed.chain(others).map(Value::from).collect()
+}
