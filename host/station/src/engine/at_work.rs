@@ -243,11 +243,11 @@ impl AtWork {
         let name = || self.floor.lanes().get(lane).map_or_else(String::new, |lane| lane.name().to_owned());
         match heard {
             Heard::Happened(event) => {
-                let is_over = matches!(event, Event::Ended(_));
-                self.happened(lane, event);
-                if is_over {
+                // A verdict is told together with what the lane owes behind it.
+                if matches!(event, Event::Ended(_)) {
                     self.check(lane);
                 }
+                self.happened(lane, event);
             }
             Heard::Doing { run, what, rows } => self.tell(&News::Doing { lane: name(), run, what, rows }),
             Heard::Hook { run, said } => self.tell(&News::Hook { lane: name(), run, said }),

@@ -68,7 +68,7 @@ pub struct LaneState {
     pub run: Option<String>,
     /// The last verdict, which is saved.
     pub shown: Option<Shown>,
-    /// Why it is out of service, why nothing was saved, why no run was begun.
+    /// Why it is out of service, what it is to test first, why nothing was saved, why no run was begun.
     #[serde(serialize_with = "said::as_text_if_any")]
     pub note: Option<Said>,
     /// What a button can do with it now.

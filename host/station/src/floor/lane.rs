@@ -3,7 +3,7 @@
 //! ```text
 //!  EMPTY ─ board ─► READY ─ serial number ─► RUNNING ─► SAVING ─► PASS | FAIL | ERROR ─ next serial number ─► …
 //!    └ serial number ─► WAITING ─ board or button ─┘        └ UNSAVED ─ the disk is well ─► ERROR
-//!  OUT: taken out of service, by a person or since a process of it cannot be killed
+//!  OUT: taken out of service, by a person or since a process of it cannot be killed; or it owes a check, and shows no verdict
 //! ```
 
 use halfrow::Verdict;
@@ -73,11 +73,12 @@ impl Lane {
             (Phase::Running { .. }, _) => Word::Running,
             (Phase::Saving { .. }, _) => Word::Saving,
             (Phase::Unsaved { .. }, _) => Word::Unsaved,
-            (Phase::Idle | Phase::Ended, _) if self.owes.is_some() => Word::Out,
+            // Whatever the lane owes by now, whoever looks acts on the board whose verdict this is.
             (Phase::Ended, Some(Verdict::Pass)) => Word::Pass,
             (Phase::Ended, Some(Verdict::Fail)) => Word::Fail,
             (Phase::Ended, Some(Verdict::Error)) => Word::Error,
             _ if self.waiting.is_some() => Word::Waiting,
+            _ if self.owes.is_some() => Word::Out,
             _ if self.is_present => Word::Ready,
             _ => Word::Empty,
         }
@@ -136,8 +137,8 @@ impl Lane {
         self.shown.as_ref()
     }
 
-    /// What else there is to say: why it did not take a number, why it is out of service, why nothing was saved, why no run was
-    /// begun.
+    /// What else there is to say: why it did not take a number, why it is out of service, what it is to test first, why nothing was
+    /// saved, why no run was begun.
     #[must_use]
     pub fn note(&self) -> Option<&Said> {
         match &self.phase {

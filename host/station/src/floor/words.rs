@@ -72,7 +72,7 @@ pub enum Word {
     Error,
     /// The last run's result could not be saved: there is none.
     Unsaved,
-    /// Out of service.
+    /// Out of service, or its shift is to be checked first and it shows no verdict.
     Out,
 }
 

@@ -287,9 +287,38 @@ fn what_waits_is_forgotten_when_its_lane_owes_a_check() {
     assert!(floor.act(0, Act::Start, WEBER).is_err());
     assert_eq!(floor.happened(0, Event::Present(true), at(1)), None);
     floor.scan(&serial(1), WEBER, at(2)).unwrap();
+    assert_eq!(words(&floor), [Word::Waiting], "what is owed may wait");
     let begun = floor.act(0, Act::Start, WEBER).unwrap().effect;
-    assert!(matches!(begun, Some(Effect::Begin(of)) if of.serial == serial(1)), "what is owed may wait");
+    assert!(matches!(begun, Some(Effect::Begin(of)) if of.serial == serial(1)));
     assert_eq!(floor.lanes()[0].can(), [Act::Abort]);
+}
+
+/// The hours of its shift end while a board is tested, or right behind its verdict.
+#[test]
+fn a_verdict_stays_though_its_lane_owes_a_check() {
+    let why = Said::of(&std::io::Error::other("the shift is over"));
+    let owed = || Event::Owes(Some(Owes { plan: 0, serial: Some(serial(1)), why: why.clone() }));
+    for (verdict, word) in
+        [(Verdict::Pass, Word::Pass), (Verdict::Fail, Word::Fail), (Verdict::Error, Word::Error)]
+    {
+        for (events, when) in [
+            ([owed(), Event::Ended(shown(verdict))], "while it is tested"),
+            ([Event::Ended(shown(verdict)), owed()], "behind its verdict"),
+        ] {
+            let mut floor = floor(&[SCAN], false);
+            plug(&mut floor, 0);
+            floor.scan(&serial(0), WEBER, at(0)).unwrap();
+            events.into_iter().for_each(|event| drop(floor.happened(0, event, at(1))));
+            assert_eq!((words(&floor)[0], floor.lanes()[0].note()), (word, Some(&why)), "{when}");
+            floor.happened(0, Event::Present(false), at(2));
+            plug(&mut floor, 0);
+            let refused = floor.scan(&serial(2), WEBER, at(2)).unwrap_err().to_string();
+            assert!(refused.contains("the shift is over"), "{refused}");
+            assert_eq!((words(&floor)[0], floor.lanes()[0].shown()), (word, Some(&shown(verdict))), "{when}");
+            floor.scan(&serial(1), WEBER, at(3)).unwrap();
+            assert_eq!((words(&floor)[0], floor.lanes()[0].shown()), (Word::Running, None), "{when}");
+        }
+    }
 }
 
 #[test]
