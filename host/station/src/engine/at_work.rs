@@ -33,8 +33,8 @@ const REST: Duration = Duration::from_secs(1);
 enum Known {
     /// It was not asked for yet.
     Nothing,
-    /// It is so up to this moment, in milliseconds since 1970.
-    Until(i64),
+    /// It is so between these moments, in milliseconds since 1970; a clock that was set back tells nothing.
+    Between(i64, i64),
     /// It could not be told at this moment.
     Untold(Instant),
 }
@@ -44,7 +44,7 @@ impl Known {
     fn is_due(self, now_ms: i64, now: Instant) -> bool {
         match self {
             Self::Nothing => true,
-            Self::Until(until_ms) => now_ms > until_ms,
+            Self::Between(since_ms, until_ms) => now_ms < since_ms || now_ms > until_ms,
             Self::Untold(since) => now.saturating_duration_since(since) >= REST,
         }
     }
@@ -165,15 +165,16 @@ impl AtWork {
     /// What a lane owes to its shift, as the store says; it is out of service while that cannot be told.
     fn owed(&self, lane: usize) -> (Option<Owes>, Known) {
         let Settings { name, data, lanes, plans, .. } = &self.shared.settings;
-        let mut until_ms = i64::MAX;
-        let Some(lane) = lanes.get(lane) else { return (None, Known::Until(until_ms)) };
+        let (now_ms, mut until_ms) = (clock::now_ms(), i64::MAX);
+        let Some(lane) = lanes.get(lane) else { return (None, Known::Between(now_ms, until_ms)) };
         for &plan in &lane.plans {
             let Some(PlanFile { plan: of, .. }) = plans.get(plan) else { continue };
-            match Folder::new(data).owed(&InLane::of(name, &lane.name, of), clock::now_ms()) {
+            match Folder::new(data).owed(&InLane::of(name, &lane.name, of), now_ms) {
                 Ok(checked) => {
                     until_ms = until_ms.min(checked.until_ms);
                     if let Some(Owed { serial, why }) = checked.owed {
-                        return (Some(Owes { plan, serial: Some(serial), why }), Known::Until(until_ms));
+                        let owes = Owes { plan, serial: Some(serial), why };
+                        return (Some(owes), Known::Between(now_ms, until_ms));
                     }
                 }
                 Err(error) => {
@@ -182,7 +183,7 @@ impl AtWork {
                 }
             }
         }
-        (None, Known::Until(until_ms))
+        (None, Known::Between(now_ms, until_ms))
     }
 
     fn check(&mut self, lane: usize) {
@@ -378,6 +379,11 @@ mod tests {
         let known = Known::Untold(now);
         assert!(!known.is_due(0, now) && !known.is_due(i64::MAX, now + REST / 2));
         assert!(known.is_due(0, now + REST), "though the clock was set back");
-        assert!(Known::Until(5).is_due(6, now) && !Known::Until(5).is_due(5, now));
+    }
+
+    #[test]
+    fn what_is_owed_is_asked_for_again_when_its_time_is_over_or_the_clock_was_set_back() {
+        let due = [2, 3, 5, 6].map(|now_ms| Known::Between(3, 5).is_due(now_ms, Instant::now()));
+        assert_eq!(due, [true, false, false, true]);
     }
 }

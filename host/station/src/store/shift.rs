@@ -46,7 +46,8 @@ pub struct Owed {
 pub struct Checked {
     /// What it is to do; nothing if it was checked.
     pub owed: Option<Owed>,
-    /// The last moment at which that is so without another run in the lane, in milliseconds since 1970, UTC.
+    /// The last moment at which that is so without another run in the lane, in milliseconds since 1970, UTC. A judgement that is
+    /// dated too far ahead counts behind it.
     pub until_ms: i64,
 }
 
@@ -89,7 +90,13 @@ impl Folder {
             let of = values![station, lane, plan_sha256, product, &serial, since];
             let last =
                 self.read("to tell who checked a shift", |from| from.first(sql::LAST_JUDGEMENT, of, judged))?;
-            let last = last.filter(|last| last.started_ms <= now_ms.saturating_add(ASTRAY_MS));
+            let last = last.filter(|last| {
+                let is_astray = last.started_ms > now_ms.saturating_add(ASTRAY_MS);
+                if is_astray {
+                    until_ms = until_ms.min(last.started_ms.saturating_sub(ASTRAY_MS + 1));
+                }
+                !is_astray
+            });
             // Behind a repair the good unit passes again, and what failed in front of that says nothing of the lane as it is now.
             let last = last.filter(|last| last.verdict != expected.to_string() || last.run > before);
             if let Some(Judged { started_ms, .. }) = &last {

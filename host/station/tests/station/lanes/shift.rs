@@ -3,6 +3,8 @@
 use std::fs;
 use std::process::Command;
 
+use halfrow_station::plan::Plan;
+use halfrow_station::store::{Checked, Folder, InLane};
 use serde_json::Value;
 
 use super::floor::{Running, SERIALS, Station, plan};
@@ -290,6 +292,30 @@ fn what_is_dated_tomorrow_checks_no_shift() {
     let (is_taken, said) = running.answer(SERIALS[2]);
     assert!(!is_taken && said.contains("good unit"), "{said}");
     running.end();
+}
+
+/// As under a clock that goes on, or is set right, while the station is at work.
+#[test]
+fn what_was_dated_ahead_checks_its_lane_from_the_moment_on_that_is_told() {
+    let station = checked_at("started_ms + 1000000");
+    let plan = Plan::load(&station.path("plan.toml")).unwrap();
+    let (folder, place) = (Folder::new(&station.path("data")), InLane::of("12", "1", &plan));
+    let owed = |now_ms| {
+        let Checked { owed, until_ms } = folder.owed(&place, now_ms).unwrap();
+        (owed.map(|owed| owed.why.to_string()), until_ms)
+    };
+    let mut now_ms = station.query("SELECT min(started_ms) FROM run")[0].parse::<i64>().unwrap() - 1_000_000;
+    let mut before = owed(now_ms);
+    assert!(before.0.as_ref().is_some_and(|why| why.contains("good unit")), "{before:?}");
+    while before.0.is_some() {
+        assert_eq!(owed(before.1), before, "up to then");
+        now_ms = before.1.saturating_add(1);
+        let next = owed(now_ms);
+        assert!(next != before && next.1 > before.1, "{next:?} behind {before:?}");
+        before = next;
+    }
+    let last: i64 = station.query("SELECT max(started_ms) FROM run")[0].parse().unwrap();
+    assert!(now_ms <= last, "it counts as soon as it is not dated too far ahead any more");
 }
 
 #[test]
