@@ -1,1 +1,3 @@
-UPDATE job SET state = 'dead', said = $1, holder = NULL, until_ms = NULL WHERE id = $2 AND state IN ('waiting', 'claimed');
+-- What was judged by a claim before does not count any more.
+UPDATE job SET state = 'dead', said = $1, holder = NULL, until_ms = NULL, fence = fence + 1
+WHERE id = $2 AND state IN ('waiting', 'claimed');

@@ -52,7 +52,7 @@ pub(in crate::store) fn entered(
 }
 
 /// Ends the job that the run was of, if it was of one, or gives it back when nothing was judged. Returns whether the run counts: not
-/// if the job is somebody else's by now.
+/// if the job was cancelled, or claimed again.
 fn settles_job(to: &mut dyn Database, record: &Record) -> Result<bool, DatabaseError> {
     let Some(JobClaim { id, fence }) = &record.run.job else { return Ok(true) };
     let ended = &record.conclusion;
@@ -60,8 +60,8 @@ fn settles_job(to: &mut dyn Database, record: &Record) -> Result<bool, DatabaseE
         Verdict::Error => to.execute(sql::JOB_BACK, values![&ended.headline, id, *fence])?,
         Verdict::Pass | Verdict::Fail => to.execute(sql::JOB_DONE, values![&record.run.id, id, *fence])?,
     };
-    // A job of another plant, or of one that was lost, supersedes nothing.
-    Ok(changed == 1 || to.first(sql::RUN_OF_JOB, values![id], |_| Ok(()))?.is_none())
+    // A job of another plant, or of one that was lost, supersedes nothing; nor does one that waits for its next claim.
+    Ok(changed == 1 || to.first(sql::SUPERSEDING_JOB, values![id, *fence], |_| Ok(()))?.is_none())
 }
 
 /// The plan of a job, of which there need be no run yet.

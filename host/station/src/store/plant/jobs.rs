@@ -92,7 +92,7 @@ pub struct Worker {
 pub struct Claim {
     /// The job.
     pub job: String,
-    /// How often it was claimed, this time included.
+    /// The number of the claim, higher than that of every one before.
     pub fence: i64,
     /// The hash of the plan.
     pub plan_sha256: String,

@@ -5,8 +5,9 @@ use std::sync::Mutex;
 use std::thread;
 
 use halfrow::Verdict;
+use halfrow_station::check::check_plant;
 use halfrow_station::record::{JobClaim, Record, RunCause};
-use halfrow_station::store::{Claim, Entry, Kind, Parcel, Plant, Wanted, Worker};
+use halfrow_station::store::{Claim, Entry, Kind, Parcel, Plant, Snapshot, Wanted, Worker};
 
 use super::{any, board, job, plan, run_out, shared, worker};
 use crate::history::made::{BEGIN_MS, End, Made, Run};
@@ -141,6 +142,79 @@ fn what_judged_nothing_is_given_back_five_times_and_then_waits_for_a_person() {
     );
     let verdicts = server.rows("SELECT verdict FROM run ORDER BY id");
     assert_eq!(verdicts, [["ERROR"], ["ERROR"], [Verdict::Fail.to_string().as_str()]]);
+}
+
+/// A plant to which the run of a job's fifth claim comes when that has run out, others have asked for a job, and this was done `meanwhile`.
+fn fifth_claim(end: End, meanwhile: impl Fn(&mut Plant, &str)) -> Server {
+    let (server, mut plant) = shared(1);
+    let (plan, any) = (plan(), any());
+    let id = plant.add_jobs(&job(&plan, &any), 1).unwrap().remove(0);
+    let fifth = (0..5).map(|_| {
+        run_out(&server);
+        plant.claim(&worker("away")).unwrap().unwrap()
+    });
+    let fifth = fifth.last().unwrap();
+    run_out(&server);
+    assert_eq!(plant.claim(&worker("12")).unwrap(), None);
+    assert_eq!(states(&server), [["dead", "5"]]);
+    meanwhile(&mut plant, &id);
+    // It is sent twice, as what is in doubt is.
+    for _ in 0..2 {
+        plant.take(&run_of(&fifth, 1, end)).unwrap();
+    }
+    server
+}
+
+/// What is at the plant is what is made anew from its records.
+fn assert_well(server: &Server) {
+    let snapshot = Snapshot::of_plant(Plant::connect(&server.address()).unwrap()).unwrap();
+    let checked = check_plant(&snapshot, &mut |_| ()).unwrap();
+    assert!(checked.faults.is_empty(), "{:?}", checked.faults);
+}
+
+#[test]
+fn the_run_of_the_last_claim_counts_however_late_it_comes() {
+    let done = "SELECT job.state, run.nth, job.said FROM job JOIN run ON run.id = job.run_id";
+    let server = fifth_claim(End::Pass, |_, _| ());
+    assert_eq!(server.rows(done), [["done", "1", "NULL"]]);
+    assert_eq!(server.rows("SELECT runs, units, passed FROM day_count"), [["1", "1", "1"]]);
+    assert_well(&server);
+    // A person has it judged again meanwhile; nobody has claimed it since.
+    let retry =
+        |plant: &mut Plant, id: &str| assert!(plant.retry_job(id, "engel", "the cable is new").unwrap());
+    let server = fifth_claim(End::Fail(&["clock"]), retry);
+    assert_eq!(server.rows(done), [["done", "1", "NULL"]]);
+    assert_well(&server);
+    // An ERROR leaves the job as it is, and is counted as one.
+    let server = fifth_claim(End::Error(RunCause::Link), retry);
+    assert_eq!(states(&server), [["waiting", "0"]]);
+    assert_eq!(server.rows("SELECT runs, errors FROM day_count"), [["1", "1"]]);
+    assert_well(&server);
+}
+
+#[test]
+fn what_a_claim_judged_before_a_person_cancelled_the_job_or_another_one_claimed_it_does_not_count() {
+    let retry = |plant: &mut Plant, id: &str| assert!(plant.retry_job(id, "engel", "after all").unwrap());
+    let again = |plant: &mut Plant, id: &str| {
+        retry(plant, id);
+        plant.claim(&worker("12")).unwrap().unwrap();
+    };
+    let cancelled = |plant: &mut Plant, id: &str| {
+        retry(plant, id);
+        assert!(plant.cancel_job(id, "engel", "a mistake").unwrap());
+        retry(plant, id);
+    };
+    for end in [End::Pass, End::Error(RunCause::Link)] {
+        let servers = [fifth_claim(end, again), fifth_claim(end, cancelled)];
+        for (server, job) in servers.iter().zip([["claimed", "1"], ["waiting", "0"]]) {
+            assert_eq!(
+                (server.rows("SELECT nth FROM run"), states(server)),
+                (vec![vec!["0".to_owned()]], vec![job.map(str::to_owned).to_vec()])
+            );
+            assert_eq!(server.rows("SELECT count(*) FROM day_count"), [["0"]]);
+            assert_well(server);
+        }
+    }
 }
 
 #[test]
