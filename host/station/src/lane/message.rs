@@ -55,6 +55,8 @@ pub enum Stopper {
     System,
     /// Nobody: the terminal is gone.
     Disconnection,
+    /// The station itself, which has lost what the run is about.
+    Caller,
 }
 
 /// Whether a device may be judged under the serial number of the run.
@@ -82,9 +84,10 @@ pub enum Ruling {
 impl From<StoppedBy> for Stopper {
     fn from(by: StoppedBy) -> Self {
         match by {
-            StoppedBy::Person | StoppedBy::Caller => Self::Person,
+            StoppedBy::Person => Self::Person,
             StoppedBy::System => Self::System,
             StoppedBy::Disconnection => Self::Disconnection,
+            StoppedBy::Caller => Self::Caller,
         }
     }
 }
@@ -95,6 +98,7 @@ impl From<Stopper> for StoppedBy {
             Stopper::Person => Self::Person,
             Stopper::System => Self::System,
             Stopper::Disconnection => Self::Disconnection,
+            Stopper::Caller => Self::Caller,
         }
     }
 }

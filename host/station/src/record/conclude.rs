@@ -9,6 +9,9 @@ use super::step::{DeviceSeen, Measured, RunCause, StepOutcome, StepRecord};
 use crate::exit::Exit;
 use crate::said::{Said, Saying};
 
+/// What a run says that ended since somebody wanted it to.
+const STOPPED: [&str; 2] = ["stopped-by-signal", "run-stopped-before"];
+
 /// What a run came to.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Conclusion {
@@ -65,6 +68,16 @@ impl Conclusion {
             return Self { headline: format!("{}; {IDENTITY_NOT_CHECKED}", self.headline), ..self };
         }
         self
+    }
+
+    /// A run that the station ended for this reason gives it, and is owed to nobody who works there.
+    #[must_use]
+    pub fn stopped_since(self, why: Option<Said>) -> Self {
+        let is_stopped = self.finding.as_ref().is_some_and(|said| STOPPED.contains(&said.code.as_str()));
+        match why.filter(|_| is_stopped) {
+            Some(why) => Self::error(RunCause::Station, why),
+            None => self,
+        }
     }
 
     /// An ERROR of this cause.
@@ -168,6 +181,22 @@ mod tests {
         assert_eq!(of(2, &[failed.clone(), later], None), (Verdict::Error, RunCause::Station));
         let hung = Conclusion::error(RunCause::Crash, Saying::LaneEndless);
         assert_eq!(of(1, &[failed], Some(hung)), (Verdict::Error, RunCause::Crash));
+    }
+
+    #[test]
+    fn a_run_that_was_stopped_gives_the_reason_and_no_other_does() {
+        let said = |code: &str| Said { code: code.to_owned(), ..Said::from(Saying::PlanChanged) };
+        let since = |code| {
+            let stopped = Conclusion { exit_code: 130, ..Conclusion::error(RunCause::Operator, said(code)) };
+            stopped.stopped_since(Some(said("shared-board-taken")))
+        };
+        for code in STOPPED {
+            let came = Conclusion::error(RunCause::Station, said("shared-board-taken"));
+            assert_eq!((since(code), came.exit_code), (came, 3));
+        }
+        assert_eq!(since("lane-died").finding, Some(said("lane-died")));
+        let stopped = Conclusion::stopped(StoppedBy::Person);
+        assert_eq!(stopped.clone().stopped_since(None), stopped);
     }
 
     #[test]

@@ -146,8 +146,8 @@ impl RunCause {
             Cause::Station if is_of_link(code) => Self::Link,
             Cause::Station | Cause::Busy | Cause::NothingJudged => Self::Station,
             Cause::Refused => Self::Refused,
-            Cause::Stopped(StoppedBy::Person | StoppedBy::Caller) => Self::Operator,
-            Cause::Stopped(StoppedBy::System | StoppedBy::Disconnection) => Self::Station,
+            Cause::Stopped(StoppedBy::Person) => Self::Operator,
+            Cause::Stopped(StoppedBy::System | StoppedBy::Disconnection | StoppedBy::Caller) => Self::Station,
         }
     }
 
@@ -385,6 +385,7 @@ mod tests {
         assert_eq!(RunCause::of(Cause::Station, "link-closed"), RunCause::Link);
         assert_eq!(RunCause::of(Cause::Station, "golden-samples-wrong"), RunCause::Station);
         assert_eq!(RunCause::of(Cause::Stopped(StoppedBy::Person), "stopped-by-signal"), RunCause::Operator);
+        assert_eq!(RunCause::of(Cause::Stopped(StoppedBy::Caller), "stopped-by-signal"), RunCause::Station);
         assert!(!RunCause::Board.may_pass_off() && !RunCause::Refused.may_pass_off());
     }
 }

@@ -80,6 +80,10 @@ pub struct Saved {
 pub trait Watch {
     /// Who wants it to end, as soon as somebody does.
     fn stop(&self) -> Option<StoppedBy>;
+    /// Why, where that says more than who does.
+    fn why(&self) -> Option<Said> {
+        None
+    }
     /// It has come so far.
     fn hear(&mut self, stage: Stage<'_>);
 }
@@ -160,7 +164,9 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     let (device, is_stuck) = (attending.device, matches!(heard.end, End::Stuck(_)));
     let was_killed = is_stuck || matches!(heard.end, End::Killed(_));
     attending.watch.hear(Stage::Saving { was_killed, is_stuck });
-    let record = record(head, planned, order, &selected, (heard, device), begun.elapsed());
+    let why = attending.watch.why();
+    let mut record = record(head, planned, order, &selected, (heard, device), begun.elapsed());
+    record.conclusion = record.conclusion.stopped_since(why);
     let steps = selected.steps.len() as u32;
     save(&folder, record, |record| store.with(|store| store.finish(record, steps)))
 }

@@ -295,6 +295,10 @@ impl Watch for Watched<'_> {
         (self.stop)().or_else(|| self.holding.is_lost().then_some(StoppedBy::Caller))
     }
 
+    fn why(&self) -> Option<Said> {
+        self.holding.lost().filter(|_| (self.stop)().is_none()).map(|lost| Said::of(&lost))
+    }
+
     fn hear(&mut self, stage: Stage<'_>) {
         self.is_stuck |= matches!(stage, Stage::Saving { is_stuck: true, .. });
         (self.heard)(stage);

@@ -151,6 +151,28 @@ fn a_station_judges_so_many_jobs_at_once_and_ends_all_of_them_when_it_is_told_to
     assert!(refused.code == Some(2) && refused.complained.contains("give 1 to 64"), "{refused:?}");
 }
 
+#[test]
+fn a_run_that_was_ended_since_its_job_was_cancelled_says_so_and_blames_nobody() {
+    let (server, mut plant) = shared(0);
+    plant.share(&endless(0), "engel").unwrap();
+    let (plan, any) = (plan(), any());
+    let id = plant.add_jobs(&job(&plan, &any), 1).unwrap().remove(0);
+    let (folder, mut command) = work(&server, "12");
+    let worker = command.spawn().unwrap();
+    while server.rows("SELECT 1 FROM job WHERE state = 'claimed'").is_empty() {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    assert!(plant.cancel_job(&id, "engel", "a mistake").unwrap());
+    let did = Did::from(worker.wait_with_output().unwrap());
+    let ended: Value = serde_json::from_str(&did.said).unwrap();
+    let headline = ended["headline"].as_str().unwrap();
+    assert!(headline.contains("the board shelf-0 is not ours any more"), "{did:?}");
+    let data = folder.path().join("data");
+    assert_eq!(crate::common::query(&data, "SELECT verdict FROM run"), ["ERROR"]);
+    assert_eq!(crate::common::query(&data, "SELECT cause FROM run"), ["station"]);
+    assert_eq!(crate::common::query(&data, "SELECT headline FROM run"), [headline]);
+}
+
 /// The commands of an engineer at a plant.
 struct Engineer {
     server: Server,
