@@ -148,8 +148,8 @@ fn document(Judged { claim: Claim { job, lease, .. }, saved, is_sent, counts }: 
 fn text(Judged { claim: Claim { job, lease, .. }, saved, is_sent, counts }: &Judged) -> String {
     let (run, ended) = (&saved.record.run, &saved.record.conclusion);
     let note = match (is_sent, counts) {
-        (_, Some(false)) => "; another run of the job counts",
         (false, _) => "; the plant does not have it yet",
+        (true, Some(false)) => "; it does not count, for the job was cancelled or claimed again",
         (true, _) if ended.verdict == Verdict::Error => "; the job is given back",
         (true, _) => "",
     };

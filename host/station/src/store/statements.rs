@@ -145,6 +145,7 @@ statements! {
     pub(super) JOB_DONE = "plant/job-done.sql";
     pub(super) JOB_BACK = "plant/job-back.sql";
     pub(super) RUN_OF_JOB = "plant/run-of-job.sql";
+    pub(super) NTH_OF = "plant/nth-of.sql";
     pub(super) SUPERSEDING_JOB = "plant/superseding-job.sql";
     pub(super) CANCEL_JOB = "plant/cancel-job.sql";
     pub(super) RETRY_JOB = "plant/retry-job.sql";

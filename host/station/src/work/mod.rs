@@ -86,7 +86,7 @@ pub struct Judged {
     pub saved: Saved,
     /// Whether the plant had it when it was last looked.
     pub is_sent: bool,
-    /// Whether it counts: no other run of the job does. None if the plant was not there to tell.
+    /// Whether it counts there: its job was not cancelled, nor claimed again. None until the plant has it and says so.
     pub counts: Option<bool>,
 }
 
@@ -170,7 +170,7 @@ impl Work<'_> {
         };
         let run = &saved.record.run.id;
         let is_sent = self.is_sent(run, &|| holding.is_lost() || stop().is_some());
-        let counts = self.counts(&claim, run);
+        let counts = if is_sent { self.counts(run) } else { None };
         holding.end();
         Ok(Judged { claim, is_sent, counts, saved })
     }
@@ -261,10 +261,9 @@ impl Work<'_> {
         }
     }
 
-    /// Whether no other run of the job counts.
-    fn counts(&self, claim: &Claim, run: &str) -> Option<bool> {
-        let counted = self.plant.ask(|plant| plant.run_of_job(&claim.job)).ok()?;
-        Some(counted.is_none_or(|counted| counted == run))
+    /// Whether a run that the plant has counts there.
+    fn counts(&self, run: &str) -> Option<bool> {
+        self.plant.ask(|plant| plant.counts(run)).ok()?
     }
 }
 

@@ -208,6 +208,17 @@ impl Plant {
         })?;
         Ok(run.flatten())
     }
+
+    /// Whether a run counts; none if it is not there.
+    ///
+    /// # Errors
+    /// As [`Self::add_jobs`].
+    pub fn counts(&mut self, run: &str) -> Result<Option<bool>, StoreError> {
+        let nth = self.carry_out("to tell whether a run counts", |database| {
+            database.first(sql::NTH_OF, values![run], |row| row.get::<i64>(0))
+        })?;
+        Ok(nth.map(|nth| nth > 0))
+    }
 }
 
 /// A job and its board, or neither: what is locked goes with the transaction.

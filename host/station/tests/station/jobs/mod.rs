@@ -4,6 +4,7 @@ mod boards;
 pub(crate) mod claims;
 mod disk;
 mod rate;
+mod sent;
 mod shift;
 mod stuck;
 mod work;

@@ -1,0 +1,1 @@
+SELECT nth FROM run WHERE id = $1;

@@ -1,0 +1,48 @@
+//! What became of a job's run at the plant.
+
+use std::cell::Cell;
+
+use halfrow::Verdict;
+use halfrow::verdict::StoppedBy;
+use halfrow_station::outbox::{Outbox, PlantSink, Sink};
+use halfrow_station::run::Stage;
+use halfrow_station::settings::Settings;
+use halfrow_station::store::Store;
+
+use super::{any, at_work, job, plan, settings, shared};
+use crate::common::{folder, program};
+
+/// Whether the plant has the run of a job, and whether the run counts there, if the outbox `sends` and a person cancels the job
+/// while the result is being saved.
+fn became(sends: bool, is_cancelled: bool) -> (bool, Option<bool>) {
+    let (server, mut plant) = shared(1);
+    let (plan, any) = (plan(), any());
+    let id = plant.add_jobs(&job(&plan, &any), 1).unwrap().remove(0);
+    let folder = folder();
+    let settings = Settings::load_plant(&settings(&server, folder.path(), "12")).unwrap();
+    let work = at_work(&settings, program().to_owned());
+    let origin = work.store.with(Store::origin).unwrap();
+    let sink = PlantSink::new(server.address(), settings.presence(origin));
+    let sinks: Vec<Box<dyn Sink>> = if sends { vec![Box::new(sink)] } else { Vec::new() };
+    let outbox = Outbox::start(&work.store, sinks).unwrap();
+    let claim = work.claim().unwrap().unwrap();
+    let is_over = Cell::new(false);
+    let stop = || is_over.get().then_some(StoppedBy::Person);
+    let mut heard = |stage: Stage<'_>| {
+        if matches!(stage, Stage::Saving { .. }) {
+            is_over.set(!sends);
+            assert!(!is_cancelled || plant.cancel_job(&id, "engel", "a mistake").unwrap());
+        }
+    };
+    let judged = work.judge(claim, &stop, &mut heard).unwrap();
+    outbox.close();
+    assert_eq!(judged.saved.record.conclusion.verdict, Verdict::Pass);
+    (judged.is_sent, judged.counts)
+}
+
+#[test]
+fn whether_a_run_counts_is_told_once_the_plant_has_it() {
+    assert_eq!(became(true, false), (true, Some(true)));
+    assert_eq!(became(true, true), (true, Some(false)), "its job was cancelled");
+    assert_eq!(became(false, false), (false, None), "nobody knows yet");
+}
