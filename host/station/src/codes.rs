@@ -137,6 +137,7 @@ codes::codes! {
     WorkError {
         NoPlan [job, sha256] => "job-without-plan",
         Target [board, target] => "shared-board-without-place",
+        NotTaken [run, said] => "job-run-not-taken",
         = Run,
     }
     Lost {

@@ -20,7 +20,7 @@ use crate::outbox::Outbox;
 use crate::said::Said;
 use crate::settings::Settings;
 use crate::store::{Claim, PlantLink, SharedStore, Worker};
-use crate::work::{Judged, Work};
+use crate::work::{Judged, Work, WorkError};
 
 /// Take jobs of the plant, and judge the boards that they are about
 ///
@@ -53,6 +53,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let signal = Signal::heed()?;
     let mut store = arguments.disk.opens(&settings.data)?;
     recovered(&mut store)?;
+    let presence = settings.presence(store.origin()?);
     let sinks = sinks(&settings, &mut store)?;
     let store = SharedStore::new(store);
     let outbox = Outbox::start(&store, sinks)?;
@@ -61,7 +62,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let work = Work { settings: &settings, plant, store, program, worker };
     let stop = || signal.by();
     let at_once = settings.work.as_ref().map_or(1, |work| work.at_once);
-    let ended = take_jobs(&work, arguments, at_once, &stop);
+    let ended = match work.introduce(&presence, !arguments.once, &stop) {
+        Ok(()) => take_jobs(&work, arguments, at_once, &stop),
+        Err(error) => Err(Failure::error(error)),
+    };
     outbox.close();
     ended?;
     Ok(signal.by().map_or(Exit::Pass, |by| halfrow::Cause::Stopped(by).into()))
@@ -112,6 +116,13 @@ fn one_by_one(
         match work.judge(claim, stop, &mut |_| ()) {
             Ok(judged) => {
                 print(&if arguments.json { document(&judged) } else { text(&judged) })?;
+                let Judged { refused: Some(said), saved, .. } = judged else { continue };
+                let error = WorkError::NotTaken { run: saved.record.run.id.clone(), said };
+                if arguments.once {
+                    return Err(Failure::error(error));
+                }
+                console::error(&Said::of(&error));
+                work.until_taken(&saved.record.run.id, next_stop);
             }
             // It would be asked again for ever.
             Err(error) if arguments.once && error.is_of_store() => return Err(Failure::error(error)),
@@ -136,7 +147,7 @@ fn worker(settings: &Settings) -> Result<Worker, Failure> {
     })
 }
 
-fn document(Judged { claim: Claim { job, lease, .. }, saved, is_sent, counts }: &Judged) -> String {
+fn document(Judged { claim: Claim { job, lease, .. }, saved, is_sent, counts, .. }: &Judged) -> String {
     let (run, ended) = (&saved.record.run, &saved.record.conclusion);
     json!({
         "job": job, "board": lease.board, "serial": run.serial, "run": run.id, "verdict": ended.verdict,
@@ -145,7 +156,7 @@ fn document(Judged { claim: Claim { job, lease, .. }, saved, is_sent, counts }: 
     .to_string()
 }
 
-fn text(Judged { claim: Claim { job, lease, .. }, saved, is_sent, counts }: &Judged) -> String {
+fn text(Judged { claim: Claim { job, lease, .. }, saved, is_sent, counts, .. }: &Judged) -> String {
     let (run, ended) = (&saved.record.run, &saved.record.conclusion);
     let note = match (is_sent, counts) {
         (false, _) => "; the plant does not have it yet",

@@ -67,6 +67,17 @@ pub struct Unsent {
     pub said: Option<String>,
 }
 
+/// How it stands with a run at a sink. One that is not to be sent there is neither done nor dead.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Standing {
+    /// Whether the sink has it for certain.
+    pub is_done: bool,
+    /// Whether it waits for a person.
+    pub is_dead: bool,
+    /// What the sink said when it was last tried in vain.
+    pub said: Option<String>,
+}
+
 /// An entry that waits for a person.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Dead {
@@ -279,12 +290,21 @@ impl Folder {
     /// # Errors
     /// As [`Self::due`].
     pub fn is_sent(&self, sink: &str, run: &str) -> Result<bool, StoreError> {
-        let done = self.read("to tell what was sent", |from| {
+        Ok(self.standing(sink, run)?.is_done)
+    }
+
+    /// How it stands with this run at `sink`.
+    ///
+    /// # Errors
+    /// As [`Self::due`].
+    pub fn standing(&self, sink: &str, run: &str) -> Result<Standing, StoreError> {
+        let found = self.read("to tell what was sent", |from| {
             from.first(sql::OUTBOX_ENTRY, values![sink, Kind::Run.name(), run], |row| {
-                row.get::<Option<i64>>(0)
+                let [done_ms, dead_ms] = [row.get::<Option<i64>>(0)?, row.get(1)?];
+                Ok(Standing { is_done: done_ms.is_some(), is_dead: dead_ms.is_some(), said: row.get(2)? })
             })
         })?;
-        Ok(done.flatten().is_some())
+        Ok(found.unwrap_or_default())
     }
 
     /// All that belongs to an entry.

@@ -7,6 +7,7 @@
 //! ```
 
 mod held;
+mod sent;
 
 use std::path::PathBuf;
 use std::thread;
@@ -17,15 +18,15 @@ use halfrow::verdict::StoppedBy;
 use rand::{RngExt as _, rng};
 
 pub use held::{Held, Holding, Lost};
+use sent::Sent;
 
 use crate::clock;
 use crate::labgrid::LaneBoard;
-use crate::outbox::PlantSink;
 use crate::record::JobClaim;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch, recover_run};
 use crate::said::Said;
 use crate::settings::{PlanFile, Settings};
-use crate::store::{Claim, InLane, PlantLink, SharedStore, StoreError, Worker};
+use crate::store::{Claim, InLane, PlantError, PlantLink, Presence, SharedStore, StoreError, Worker};
 
 /// Who acts, to records and to the plant's audit.
 const OPERATOR: &str = "job";
@@ -62,6 +63,16 @@ pub enum WorkError {
         /// Why that is none.
         source: TargetError,
     },
+    /// The plant is there, and does not take what the job came to.
+    #[error(
+        "the plant does not take the run {run}, which is kept here: {said}; `halfrow-station outbox list` tells how it stands"
+    )]
+    NotTaken {
+        /// The run.
+        run: String,
+        /// What it said.
+        said: String,
+    },
 }
 
 impl WorkError {
@@ -86,6 +97,8 @@ pub struct Judged {
     pub saved: Saved,
     /// Whether the plant had it when it was last looked.
     pub is_sent: bool,
+    /// Why the plant, which is there, does not take it.
+    pub refused: Option<String>,
     /// Whether it counts there: its job was not cancelled, nor claimed again. None until the plant has it and says so.
     pub counts: Option<bool>,
 }
@@ -139,7 +152,7 @@ impl Work<'_> {
         free_later(&claim.job, back);
     }
 
-    /// Judges the board of a claim, keeps the result, and waits until the plant has it or the claim is lost.
+    /// Judges the board of a claim, keeps the result, and waits until the plant has it or does not take it, or the claim is lost.
     ///
     /// # Errors
     /// [`WorkError`] when there is no run; the job is another's then once the claim has run out.
@@ -169,10 +182,12 @@ impl Work<'_> {
             }
         };
         let run = &saved.record.run.id;
-        let is_sent = self.is_sent(run, &|| holding.is_lost() || stop().is_some());
+        let sent = self.sent(run, &|| holding.is_lost() || stop().is_some());
+        let is_sent = matches!(sent, Sent::Yes);
         let counts = if is_sent { self.counts(run) } else { None };
+        let refused = if let Sent::Refused(said) = sent { Some(said) } else { None };
         holding.end();
-        Ok(Judged { claim, is_sent, counts, saved })
+        Ok(Judged { claim, is_sent, refused, counts, saved })
     }
 
     /// Waits until another job may come to more than that which ended with `error`: what could not be saved is closed first, since
@@ -245,20 +260,44 @@ impl Work<'_> {
         Ok(run::run(&self.store, &order, watched)?)
     }
 
-    /// Whether the plant has a run, which is waited for unless that `is_over`. A store that does not tell is waited for no longer:
-    /// the run is saved, and sent whenever the outbox can.
-    fn is_sent(&self, run: &str, is_over: &dyn Fn() -> bool) -> bool {
-        let folder = self.store.with(|store| store.folder().clone());
-        loop {
-            match folder.is_sent(PlantSink::NAME, run) {
-                Ok(false) if !is_over() => thread::sleep(LOOK),
-                Ok(is_sent) => return is_sent,
-                Err(error) => {
-                    tracing::warn!("whether the plant has the run {run} is not known: {}", Said::of(&error));
-                    return false;
+    /// Has the plant hear of this station, which it takes nothing of while another one has its name. One that is away is waited for
+    /// if it `may_be_away`.
+    ///
+    /// # Errors
+    /// [`PlantError`] when it is there and refuses.
+    pub fn introduce(
+        &self,
+        station: &Presence,
+        may_be_away: bool,
+        stop: &dyn Fn() -> Option<StoppedBy>,
+    ) -> Result<(), PlantError> {
+        while stop().is_none() {
+            match self.plant.ask(|plant| plant.see(station)) {
+                Err(error) if may_be_away && error.is_away() => {
+                    tracing::warn!("no job is taken for now: {}", Said::of(&error));
+                    rest(AWAY_MS, stop);
                 }
+                heard => return heard.map(drop),
             }
         }
+        Ok(())
+    }
+
+    /// Waits until the plant has a run that it did not take, or a person is to look at it.
+    pub fn until_taken(&self, run: &str, stop: &dyn Fn() -> Option<StoppedBy>) {
+        while stop().is_none() && matches!(self.sent(run, &|| true), Sent::NotYet) {
+            rest(AWAY_MS, stop);
+        }
+    }
+
+    /// How it stands with a run at the plant, as [`sent::awaited`] says. A store that does not tell is waited for no longer: the run
+    /// is saved, and sent whenever the outbox can.
+    fn sent(&self, run: &str, is_over: &dyn Fn() -> bool) -> Sent {
+        let folder = self.store.with(|store| store.folder().clone());
+        sent::awaited(&folder, run, is_over).unwrap_or_else(|error| {
+            tracing::warn!("whether the plant has the run {run} is not known: {}", Said::of(&error));
+            Sent::NotYet
+        })
     }
 
     /// Whether a run that the plant has counts there.

@@ -25,11 +25,11 @@ impl PlantLink {
     /// What the plant answers. Whoever has another question waits meanwhile.
     ///
     /// # Errors
-    /// [`StoreError`] when it is not there, or refuses. The next question goes over a new connection.
-    pub fn ask<T>(
+    /// What the question says, and [`StoreError`] when the plant is not there, or refuses. The next question goes over a new connection.
+    pub fn ask<T, E: From<StoreError>>(
         &self,
-        question: impl FnOnce(&mut Plant) -> Result<T, StoreError>,
-    ) -> Result<T, StoreError> {
+        question: impl FnOnce(&mut Plant) -> Result<T, E>,
+    ) -> Result<T, E> {
         // Whoever panicked has taken the connection with them.
         let mut kept = self.0.plant.lock().unwrap_or_else(PoisonError::into_inner);
         let mut plant = match kept.take() {

@@ -1,16 +1,19 @@
 //! What became of a job's run at the plant.
 
 use std::cell::Cell;
+use std::time::Instant;
 
 use halfrow::Verdict;
 use halfrow::verdict::StoppedBy;
-use halfrow_station::outbox::{Outbox, PlantSink, Sink};
+use halfrow_station::outbox::{Outbox, PlantSink, Sink, Undelivered};
 use halfrow_station::run::Stage;
+use halfrow_station::said::{Said, Saying};
 use halfrow_station::settings::Settings;
-use halfrow_station::store::Store;
+use halfrow_station::store::{Parcel, Store};
 
 use super::{any, at_work, job, plan, settings, shared};
 use crate::common::{folder, program};
+use crate::lanes::floor::HANG;
 
 /// Whether the plant has the run of a job, and whether the run counts there, if the outbox `sends` and a person cancels the job
 /// while the result is being saved.
@@ -45,4 +48,37 @@ fn whether_a_run_counts_is_told_once_the_plant_has_it() {
     assert_eq!(became(true, false), (true, Some(true)));
     assert_eq!(became(true, true), (true, Some(false)), "its job was cancelled");
     assert_eq!(became(false, false), (false, None), "nobody knows yet");
+}
+
+/// A plant that is there, and takes nothing.
+struct Refusing;
+
+impl Sink for Refusing {
+    fn name(&self) -> &str {
+        PlantSink::NAME
+    }
+
+    fn take(&mut self, _: &Parcel) -> Result<(), Undelivered> {
+        Err(Undelivered::Refused(Saying::PlanChanged.into()))
+    }
+}
+
+#[test]
+fn what_the_plant_does_not_take_holds_no_board_and_says_why() {
+    let (server, mut plant) = shared(1);
+    let (plan, any) = (plan(), any());
+    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    let folder = folder();
+    let settings = Settings::load_plant(&settings(&server, folder.path(), "12")).unwrap();
+    let work = at_work(&settings, program().to_owned());
+    let outbox = Outbox::start(&work.store, vec![Box::new(Refusing)]).unwrap();
+    let claim = work.claim().unwrap().unwrap();
+    let begun = Instant::now();
+    let stop = || (begun.elapsed() > HANG).then_some(StoppedBy::Person);
+    let judged = work.judge(claim, &stop, &mut |_| ()).unwrap();
+    outbox.close();
+    assert_eq!(judged.saved.record.conclusion.verdict, Verdict::Pass, "it is kept");
+    assert_eq!((judged.is_sent, judged.counts), (false, None));
+    assert_eq!(judged.refused, Some(Said::from(Saying::PlanChanged).to_string()));
+    assert_eq!(server.rows("SELECT count(*) FROM board WHERE holder IS NOT NULL"), [["0"]]);
 }

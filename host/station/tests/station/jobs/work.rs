@@ -173,6 +173,32 @@ fn a_run_that_was_ended_since_its_job_was_cancelled_says_so_and_blames_nobody() 
     assert_eq!(crate::common::query(&data, "SELECT headline FROM run"), [headline]);
 }
 
+/// The other one was there first.
+#[test]
+fn a_station_takes_no_job_while_another_one_has_its_name() {
+    let (server, mut plant) = shared(1);
+    let (_first, mut command) = work(&server, "12");
+    assert_eq!(Did::from(command.output().unwrap()).code, Some(0), "there is no job yet");
+    let (plan, any) = (plan(), any());
+    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    let (_second, mut command) = work(&server, "12");
+    let mut second = command.spawn().unwrap();
+    while second.try_wait().unwrap().is_none() {
+        if !server.rows("SELECT 1 FROM job WHERE fence > 0").is_empty() {
+            second.kill().unwrap();
+            second.wait().unwrap();
+            panic!("it has taken the job");
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let did = Did::from(second.wait_with_output().unwrap());
+    assert!(
+        did.code == Some(3) && did.complained.contains("another station of this plant is called 12"),
+        "{did:?}"
+    );
+    assert_eq!(server.rows("SELECT state, fence FROM job"), [["waiting", "0"]]);
+}
+
 /// The commands of an engineer at a plant.
 struct Engineer {
     server: Server,

@@ -1,0 +1,54 @@
+//! Whether the plant has the run of a job, and what it says when it does not take it.
+
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::LOOK;
+use crate::outbox::PlantSink;
+use crate::store::{Folder, LEASE_MS, Snapshot, StoreError};
+
+/// How long a plant that says something else may take nothing: as long as one that is away may be away.
+const PATIENCE: Duration = Duration::from_millis(LEASE_MS.unsigned_abs());
+
+/// How it stands with a run at the plant.
+#[derive(Debug)]
+pub(super) enum Sent {
+    /// The plant has it.
+    Yes,
+    /// It is sent whenever the outbox can.
+    NotYet,
+    /// The plant does not take it, for this reason.
+    Refused(String),
+}
+
+/// How it stands with a run at the plant once that has it, a person is to look at it, or the plant has taken nothing for too long;
+/// it is waited for no longer when that `is_over`.
+pub(super) fn awaited(folder: &Folder, run: &str, is_over: &dyn Fn() -> bool) -> Result<Sent, StoreError> {
+    let mut until = Instant::now() + PATIENCE;
+    loop {
+        let entry = folder.standing(PlantSink::NAME, run)?;
+        if entry.is_done {
+            return Ok(Sent::Yes);
+        }
+        if entry.is_dead {
+            return Ok(Sent::Refused(entry.said.unwrap_or_default()));
+        }
+        if is_over() {
+            return Ok(Sent::NotYet);
+        }
+        if Instant::now() >= until {
+            // Nothing is said while it waits behind others.
+            if let Some(said) = entry.said.map_or_else(|| said_last(folder), |said| Ok(Some(said)))? {
+                return Ok(Sent::Refused(said));
+            }
+            until += PATIENCE;
+        }
+        thread::sleep(LOOK);
+    }
+}
+
+/// What the plant said last to anything that is tried again.
+fn said_last(folder: &Folder) -> Result<Option<String>, StoreError> {
+    let unsent = Snapshot::take(folder)?.unsent()?;
+    Ok(unsent.into_iter().find(|unsent| unsent.sink == PlantSink::NAME).and_then(|unsent| unsent.said))
+}
