@@ -1,5 +1,7 @@
 //! NumPy's arrays as frames: taken as they are or refused, never copied.
 
+use std::ops::Range;
+
 use numpy::{
     BorrowError, PyArray2, PyArrayDescrMethods as _, PyArrayMethods as _, PyReadonlyArray2,
     PyReadwriteArray2, PyUntypedArray, PyUntypedArrayMethods as _, dtype,
@@ -19,13 +21,31 @@ pub(crate) fn write<'py>(array: &Bound<'py, PyAny>, what: &str) -> PyResult<PyRe
     array.try_readwrite().map_err(|error| refused(error, what))
 }
 
+/// Makes sure that `out` has no sample of `frame`. The flags of a borrow go by the object that owns the memory, of which NumPy makes one
+/// for each array over a buffer that is not its own.
+pub(crate) fn check_apart(frame: &Bound<'_, PyArray2<u16>>, out: &Bound<'_, PyArray2<u16>>) -> PyResult<()> {
+    let (of_frame, of_out) = (addresses(frame), addresses(out));
+    let is_apart = of_frame.end <= of_out.start || of_out.end <= of_frame.start;
+    if is_apart { Ok(()) } else { Err(PyValueError::new_err(shared("out"))) }
+}
+
+/// Where the samples of an array are that has them one after the other.
+fn addresses(array: &Bound<'_, PyArray2<u16>>) -> Range<usize> {
+    let start = array.data().addr();
+    start..start + size_of::<u16>() * array.len()
+}
+
 fn refused(error: BorrowError, what: &str) -> PyErr {
     PyValueError::new_err(match error {
         BorrowError::NotWriteable => format!("{what} is read-only; give an array that can be written"),
-        _ => format!(
-            "{what} shares memory with an array that is in use, its input or another call's; give one of its own"
-        ),
+        _ => shared(what),
     })
+}
+
+fn shared(what: &str) -> String {
+    format!(
+        "{what} shares memory with an array that is in use, its input or another call's; give one of its own"
+    )
 }
 
 fn samples<'a, 'py>(array: &'a Bound<'py, PyAny>, what: &str) -> PyResult<&'a Bound<'py, PyArray2<u16>>> {

@@ -64,6 +64,7 @@ impl Corrector {
         };
         let mut written = arrays::write(&out, "out")?;
         check_size(tables, written.shape())?;
+        arrays::check_apart(&frame, &written)?;
         let (samples, output) = (frame.as_slice()?, written.as_slice_mut()?);
         py.detach(|| self.run(tables, samples, output)).map_err(errors::input)?;
         drop(written);

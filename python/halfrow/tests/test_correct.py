@@ -1,4 +1,5 @@
 """Corrected frames: the samples against the program, the memory against NumPy's own account of it."""
+import ctypes
 import threading
 import tracemalloc
 
@@ -91,6 +92,38 @@ def test_other_arrays_are_refused_and_never_copied(small):
     # To be read alone is no reason to refuse an input.
     frame.flags.writeable = False
     correct(frame)
+
+
+# Of one memory, arrays that NumPy itself takes for those of strangers: each has a base of its own.
+VIEWS = {
+    "frombuffer": lambda memory: np.frombuffer(memory, np.uint16),
+    "memoryview": lambda memory: np.asarray(memoryview(memory).cast("H")),
+    "ctypeslib": lambda memory: np.ctypeslib.as_array((ctypes.c_uint16 * (len(memory) // 2)).from_buffer(memory)),
+}
+
+
+@pytest.mark.parametrize("view", VIEWS.values(), ids=VIEWS)
+def test_an_out_in_the_frames_memory_is_refused_however_it_came_to_be(small, view):
+    frame = noise(small)
+    for apart in (0, 1, 128, frame.size - 1):
+        memory = bytearray(frame.nbytes + 2 * apart)
+        pair = [view(memory)[start:][: frame.size].reshape(frame.shape) for start in (0, apart)]
+        assert np.shares_memory(*pair)
+        for given, out in (pair, reversed(pair)):
+            given[:] = frame
+            refused(lambda: halfrow.correct(given, small, out=out), ValueError, "shares memory")
+            assert np.array_equal(given, frame)
+
+
+@pytest.mark.parametrize("view", VIEWS.values(), ids=VIEWS)
+def test_an_out_that_begins_where_the_frame_ends_is_taken(small, view):
+    frame = noise(small)
+    memory = bytearray(2 * frame.nbytes)
+    pair = [view(memory)[start:][: frame.size].reshape(frame.shape) for start in (0, frame.size)]
+    for given, out in (pair, reversed(pair)):
+        given[:] = frame
+        assert np.array_equal(halfrow.correct(given, small, out=out), halfrow.correct(frame, small))
+        assert np.array_equal(given, frame)
 
 
 def test_a_frame_that_does_not_fit_is_refused_by_its_code(small):
