@@ -1,6 +1,8 @@
 """The pytest plugin, in a pytest of its own."""
 import json
 
+import pytest
+
 TEST = """
 def test_the_board(halfrow_board):
     import halfrow
@@ -29,7 +31,7 @@ def test_a_failing_test_has_the_report_with_it_and_its_files_in_a_folder(pyteste
         result.stdout.fnmatch_lines(
             ["*halfrow: FAIL of mock,fault=stuck-data,bit=7*", "FAIL: *data bit 7*", "*Next: *", "report: kept/*"]
         )
-    folder = next((pytester.path / "kept").iterdir()) / "0"
+    folder = next((pytester.path / "kept").glob("*/0"))
     assert sorted(file.name for file in folder.iterdir()) == ["report.html", "report.json", "report.xml"]
     assert json.loads((folder / "report.json").read_text())["verdict"] == "FAIL"
 
@@ -47,6 +49,99 @@ def test_a_board_that_cannot_be_opened_fails_the_test_with_its_remedy(pytester):
     result = pytester.runpytest_subprocess("--halfrow-board", "serial:/dev/none")
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["*HalfrowError: */dev/none*"])
+
+
+FAILING = ("--halfrow-board", "mock,fault=stuck-data,bit=7", "--halfrow-report", "kept")
+SMALL = """
+import halfrow, os, pathlib, pytest
+TABLES = halfrow.Tables.from_lens(halfrow.Lens("equidistant:80", width=128, height=32))
+def judged(board, **options):
+    return board.verify(tables=TABLES, frames="builtin:bars", at_speed=0, **options).passed
+"""
+
+
+def kept(pytester):
+    """The reports that are kept: the sentence of each, by its place."""
+    folder = pytester.path / "kept"
+    read = lambda file: json.loads(file.read_text())["headline"]  # noqa: E731
+    return {str(file.parent.relative_to(folder)): read(file) for file in folder.rglob("report.json")}
+
+
+def named(result):
+    """The reports that the tests say are kept."""
+    return [line.removeprefix("report: kept/") for line in result.outlines if line.startswith("report: ")]
+
+
+def test_every_failing_test_has_a_folder_of_its_own(pytester):
+    """However much their names are alike, and however long they are."""
+    cases = ["a/b", "a b", "a+b", "x" * 300, "y" + "x" * 300]
+    pytester.makepyfile(SMALL + f"""
+@pytest.mark.parametrize("case", {cases}, ids={cases})
+def test_it(halfrow_board, case):
+    assert judged(halfrow_board)
+""")
+    result = pytester.runpytest_subprocess(*FAILING)
+    result.assert_outcomes(failed=len(cases))
+    assert len(set(named(result))) == len(cases) and set(named(result)) == set(kept(pytester))
+
+
+def test_a_report_is_kept_where_it_was_asked_for_wherever_the_test_goes(pytester):
+    pytester.makepyfile(SMALL + """
+def test_it(halfrow_board, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert judged(halfrow_board)
+""")
+    result = pytester.runpytest_subprocess(*FAILING)
+    result.assert_outcomes(failed=1)
+    assert named(result) == list(kept(pytester))
+
+
+def test_reports_of_an_earlier_run_are_removed_and_nothing_else(pytester):
+    pytester.makepyfile(SMALL + """
+def test_it(halfrow_board):
+    passed = [judged(halfrow_board) for _ in range(int(os.environ["TIMES"]))]
+    assert all(passed)
+""")
+
+    def run(times, *options):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv("TIMES", str(times))
+            return pytester.runpytest_subprocess(*options)
+
+    run(3, *FAILING).assert_outcomes(failed=1)
+    assert len(kept(pytester)) == 3
+    others = [pytester.path / "kept/notes.txt", next((pytester.path / "kept").glob("*/0")).parent / "notes.txt"]
+    [other.write_text("mine") for other in others]
+    run(1, *FAILING, "--collect-only")
+    assert len(kept(pytester)) == 3
+    run(1, "--halfrow-board", "mock,fault=stuck-data,bit=3", *FAILING[2:]).assert_outcomes(failed=1)
+    assert [headline for headline in kept(pytester).values() if "bit 3" in headline and "bit 7" not in headline]
+    assert len(kept(pytester)) == 1
+    run(1, *FAILING[2:]).assert_outcomes(passed=1)
+    assert not kept(pytester) and [other.read_text() for other in others] == ["mine", "mine"]
+
+
+def test_a_test_that_is_tried_again_begins_anew(pytester):
+    """As pytest-rerunfailures has it."""
+    pytester.makeconftest("""
+from _pytest.runner import runtestprotocol
+
+def pytest_runtest_protocol(item, nextitem):
+    runtestprotocol(item, nextitem=nextitem, log=False)
+    for told in runtestprotocol(item, nextitem=nextitem, log=False):
+        item.ihook.pytest_runtest_logreport(report=told)
+    return True
+""")
+    pytester.makepyfile(SMALL + """
+tries = []
+
+def test_it(halfrow_board):
+    tries.append(judged(halfrow_board))
+    assert len(halfrow_board.reports) == 1
+    assert len(tries) == 2
+""")
+    pytester.runpytest_subprocess(*FAILING[2:]).assert_outcomes(passed=1)
+    assert not kept(pytester)
 
 
 def test_the_options_are_explained(pytester):
