@@ -1,4 +1,6 @@
 """The driver and the strategy, in environments as labgrid's users write them."""
+import subprocess
+
 import pytest
 from conftest import PROGRAMS, served
 from halfrow_labgrid import BoardFailed, NotJudged, Status, WrongCall
@@ -127,6 +129,28 @@ def test_a_strategy_takes_a_board_from_off_to_judged(environment, tmp_path):
 
 def test_a_strategy_whose_board_fails_leaves_it_on(environment):
     strategy = environment("cam-bad").get_driver("HalfrowStrategy")
+def test_a_strategy_whose_power_fails_believes_nothing_and_goes_the_whole_way_next(environment, tmp_path):
+    power = tmp_path / "power"
+    strategy = environment("cam-good").get_driver("HalfrowStrategy")
+    strategy.transition("judged")
+
+    def fails(status):
+        power.unlink()
+        power.mkdir()
+        with pytest.raises(subprocess.CalledProcessError):
+            strategy.transition(status)
+        power.rmdir()
+        assert (strategy.status, strategy.report) == (Status.unknown, None)
+
+    fails("off")
+    strategy.transition("judged")
+    assert (strategy.status, strategy.report.verdict, power.read_text()) == (Status.judged, "PASS", "on\n")
+    strategy.transition("off")
+    fails("on")
+    strategy.transition("off")
+    assert (strategy.status, power.read_text()) == (Status.off, "off\n")
+
+
     with pytest.raises(BoardFailed):
         strategy.transition("judged")
     assert (strategy.status, strategy.report) == (Status.on, None)

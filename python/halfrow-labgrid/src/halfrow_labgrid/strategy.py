@@ -32,7 +32,8 @@ class HalfrowStrategy(Strategy):
     """Takes a board from one state to another; with a driver of labgrid's PowerProtocol it switches it, too.
 
     `off` cuts the power; `on` gives it and waits until the board answers; `judged` has it judged and keeps the report. A board that
-    is judged is not judged again until it was on or off between. What is no PASS is raised, and leaves the board on.
+    is judged is not judged again until it was on or off between. What is no PASS is raised, and leaves the board on. A transition that
+    fails on its way leaves the status `unknown`, from which the next one goes the whole way.
 
     Args:
         patience (float): how long a board may take to answer once it is on, in seconds
@@ -54,11 +55,14 @@ class HalfrowStrategy(Strategy):
         if wanted is self.status:
             return
         self.report = None
+        # What fails on its way leaves a board of which nobody knows how far it came, and the next transition goes the whole way.
+        was, self.status = self.status, Status.unknown
         if wanted is Status.off:
             self._off()
-        if wanted in (Status.on, Status.judged) and self.status in (Status.unknown, Status.off):
+        elif was in (Status.unknown, Status.off):
             self._on()
         if wanted is Status.judged:
+            self.status = Status.on
             self.report = self.halfrow.verify()
         self.status = wanted
 
@@ -81,4 +85,3 @@ class HalfrowStrategy(Strategy):
             self.power.on()
         self.target.activate(self.halfrow)
         self.halfrow.wait(self.patience)
-        self.status = Status.on
