@@ -103,6 +103,8 @@ def test_what_cannot_be_judged_is_told_apart_from_what_is_called_wrongly(environ
     with pytest.raises(WrongCall, match="unexpected argument") as raised:
         nobody.verify(bogus=True)
     assert raised.value.report.exit_code == 2
+    with pytest.raises(WrongCall, match="frame is an empty list"):
+        nobody.verify(frame=[])
     for own in ({"board": "mock"}, {"timeout": 1}, {"Width": 1}):
         with pytest.raises(WrongCall, match="is no option for the driver"):
             nobody.verify(**own)
@@ -127,8 +129,6 @@ def test_a_strategy_takes_a_board_from_off_to_judged(environment, tmp_path):
     assert (tmp_path / "power").read_text().split() == ["off", "on", "off", "on"]
 
 
-def test_a_strategy_whose_board_fails_leaves_it_on(environment):
-    strategy = environment("cam-bad").get_driver("HalfrowStrategy")
 def test_a_strategy_whose_power_fails_believes_nothing_and_goes_the_whole_way_next(environment, tmp_path):
     power = tmp_path / "power"
     strategy = environment("cam-good").get_driver("HalfrowStrategy")
@@ -151,6 +151,8 @@ def test_a_strategy_whose_power_fails_believes_nothing_and_goes_the_whole_way_ne
     assert (strategy.status, power.read_text()) == (Status.off, "off\n")
 
 
+def test_a_strategy_whose_board_fails_leaves_it_on(environment):
+    strategy = environment("cam-bad").get_driver("HalfrowStrategy")
     with pytest.raises(BoardFailed):
         strategy.transition("judged")
     assert (strategy.status, strategy.report) == (Status.on, None)

@@ -106,10 +106,15 @@ def replaced(options: Mapping[str, Any]) -> Dict[str, Any]:
 
 
 def words(options: Mapping[str, Any]) -> Iterator[str]:
-    """The words of a command line: a list says an option several times, true says it without a value, and false or nothing not at all."""
+    """The words of a command line: a list says an option several times, true says it without a value, and false or None not at all.
+
+    An empty list is refused: whoever gives it found nothing where something was looked for.
+    """
     for name, value in options.items():
         if not OPTION.fullmatch(name) or name in OWN:
             raise wrong_call(f"`{name}` is no option for the driver", "See `halfrow help verify`; board and timeout are the driver's.")
+        if isinstance(value, (list, tuple)) and not value:
+            raise wrong_call(f"{name} is an empty list", "Name at least one, or leave it out or None for what halfrow does without.")
         for one in value if isinstance(value, (list, tuple)) else [value]:
             if one is True:
                 yield f"--{name}"
