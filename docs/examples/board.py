@@ -1,6 +1,6 @@
 """A board behind a TCP port, from WIRE.md and DATAPATH.md alone: datapath 1, one bank of tables, no frames of its own.
     python3 board.py PORT"""
-import functools, itertools, math, re, socket, struct, sys, time, zlib
+import contextlib, functools, itertools, math, re, socket, struct, sys, time, zlib
 
 MAX_WIDTH, MAX_HEIGHT, IN_BANKS, OUT_BANKS, LATENCY = 256, 128, 2, 2, 12
 CAPABILITIES = b"".join(struct.pack("<BB" + form, tag, struct.calcsize(form), value) for tag, form, value in zip(
@@ -180,9 +180,10 @@ REQUESTS = {0x00: (Board.hello, "<IIBBB"), 0x01: (lambda board, _: CAPABILITIES,
 board, server = Board(), socket.create_server(("127.0.0.1", int(sys.argv[1])))
 print(f"a board at tcp:127.0.0.1:{sys.argv[1]}", flush=True)
 while True:
-    link, run = server.accept()[0], b""
-    while received := link.recv(2**16):
-        *runs, run = (run[:5000] + received).split(b"\0")
-        for whole in filter(None, runs): board.take(whole)
-        link.sendall(board.to_host)
-        board.to_host = b""
+    link, run, board.to_host = server.accept()[0], b"", b""
+    with link, contextlib.suppress(ConnectionError):  # a host may be killed
+        while received := link.recv(2**16):
+            *runs, run = (run[:5000] + received).split(b"\0")
+            for whole in filter(None, runs): board.take(whole)
+            link.sendall(board.to_host)
+            board.to_host = b""
