@@ -12,8 +12,9 @@
 //! way. What it keeps of the frames has a budget, [`RunOptions::evidence_bytes`], so that its memory does not grow with
 //! their number but for some hundred bytes each in the report.
 //!
-//! This library prints nothing, knows no option of a command line, and ends no process: whoever calls it does. Its log
-//! goes to `tracing`; every line of a run stands in a span `run` with the target as `board`.
+//! This library prints nothing, knows no option of a command line, and ends no process: whoever calls it does. It knows
+//! which [`exit`] code goes with a result, since that stands in every document. Its log goes to `tracing`;
+//! every line of a run stands in a span `run` with the target as `board`.
 //!
 //! # Two boards at once
 //!
@@ -35,6 +36,7 @@ pub mod coverage;
 pub mod diagnosis;
 pub mod kernels;
 pub mod lenses;
+pub mod exit;
 pub mod link_test;
 pub mod optics;
 mod probe;

@@ -1,6 +1,6 @@
 //! What the programs `halfrow` and `halfrow-station` stand on, so that scripts and people find the same in both.
 //!
-//! * [`exit`]: the exit codes.
+//! * [`exit`]: the exit codes, which are the library's.
 //! * [`console`]: the one place that writes to stdout and stderr.
 //! * [`log`]: what goes to stderr when somebody wants to know.
 //! * [`guard`]: a panic is an error with exit code 3, never 101.
@@ -13,7 +13,6 @@
 pub mod built;
 pub mod codes;
 pub mod console;
-pub mod exit;
 pub mod guard;
 pub mod json;
 pub mod line;
@@ -22,3 +21,5 @@ pub mod man_pages;
 pub mod number;
 pub mod reference;
 pub mod signals;
+
+pub use halfrow::exit;

@@ -16,7 +16,7 @@ pub(crate) struct Run {
 
 #[pymethods]
 impl Run {
-    /// All of it, as `halfrow schema` describes it, but the exit code.
+    /// All of it, as `halfrow schema` describes it.
     fn json(&self) -> PyResult<String> {
         report::json(&self.finished.report).map_err(errors::failed)
     }

@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use halfrow::report;
 use halfrow::result::Report;
 use jsonschema::Validator;
 use serde_json::Value;
@@ -26,7 +27,7 @@ pub fn assert_valid(document: &Value) {
     assert!(wrong.is_empty(), "not as the schema says: {wrong:#?}");
     if !document["run"].is_null() {
         let report: Report = serde_json::from_value(document.clone()).unwrap();
-        let again: Value = serde_json::from_str(&halfrow_cli::json::report(&report).unwrap()).unwrap();
+        let again: Value = serde_json::from_str(&report::json(&report).unwrap()).unwrap();
         assert_eq!(&again, document);
     }
 }

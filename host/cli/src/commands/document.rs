@@ -14,8 +14,8 @@ pub(super) fn result_text(
     board: Option<&BoardReport>,
     rest: impl Serialize,
 ) -> Result<String, Failure> {
-    let document = Document { schema: Schema, command, verdict: None, board, error: None, rest };
-    json::document(&document, exit_code).map_err(Failure::error)
+    let document = Document { schema: Schema, command, verdict: None, exit_code, board, error: None, rest };
+    json::document(&document).map_err(Failure::error)
 }
 
 /// Prints the result of a command that judges nothing, which is its only one.

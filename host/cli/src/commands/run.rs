@@ -16,10 +16,10 @@ use super::table_file::{NamedTables, TableArgument};
 use super::{CallError, Context, Failure};
 use crate::exit::Exit;
 use crate::settings::Settings;
-use crate::{console, flags, json, text};
+use crate::{console, flags, text};
 use halfrow::link::{Class, OpenError, RecordingFile};
 use halfrow::optics::Chosen;
-use halfrow::report::ReportFolder;
+use halfrow::report::{self, ReportFolder};
 use halfrow::run::{self, Circumstances, Finished, Lack, Plan, RunOptions};
 use halfrow::target::Target;
 
@@ -173,10 +173,7 @@ impl RunArguments {
             .map_err(Failure::call)?;
         let report = report.map(|path| ReportFolder::prepare(path, overwrite)).transpose();
         let recording = record.map(|path| RecordingFile::prepare(path, overwrite)).transpose();
-        Ok(Outputs {
-            report: report.map_err(Failure::call)?.map(|folder| folder.with_json(json::report)),
-            recording: recording.map_err(Failure::call)?,
-        })
+        Ok(Outputs { report: report.map_err(Failure::call)?, recording: recording.map_err(Failure::call)? })
     }
 }
 
@@ -197,7 +194,7 @@ pub(super) fn conclude(
     }
     let report = &finished.report;
     if context.json {
-        console::tell(&json::report(report).map_err(Failure::error)?);
+        console::tell(&report::json(report).map_err(Failure::error)?);
     } else {
         console::tell(text::render(report).trim_end());
     }

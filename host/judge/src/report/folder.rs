@@ -97,11 +97,7 @@ pub struct ReportFolder {
     aside: AsideFolder,
     /// Until the report is in its place, so that two that may not overwrite cannot both begin.
     _claim: Option<Claim>,
-    json: JsonView,
 }
-
-/// What makes the JSON of a report.
-type JsonView = fn(&Report) -> Result<String, serde_json::Error>;
 
 impl ReportFolder {
     /// Makes sure that a report can be written to `path`, before a board is opened for it.
@@ -117,13 +113,7 @@ impl ReportFolder {
         check(path, overwrite)?;
         let failed = |source| ReportError::Prepare { path: path.to_owned(), source };
         let aside = AsideFolder::new(path).map_err(failed)?;
-        Ok(Self { path: path.to_owned(), overwrite, aside, _claim: claim, json: json::render })
-    }
-
-    /// The same with JSON that `view` makes, as a program does that adds to it. It begins with `verdict` and holds `board`.
-    #[must_use]
-    pub fn with_json(self, view: JsonView) -> Self {
-        Self { json: view, ..self }
+        Ok(Self { path: path.to_owned(), overwrite, aside, _claim: claim })
     }
 
     /// The folder, if an earlier report is in it.
@@ -137,7 +127,7 @@ impl ReportFolder {
     /// # Errors
     /// [`ReportError`] when a view cannot be encoded, a file cannot be written, or something came to be in the way.
     pub fn commit(self, report: &Report, evidence: &[Evidence]) -> Result<(), ReportError> {
-        self.write(JSON, &(self.json)(report)?)?;
+        self.write(JSON, &json::render(report)?)?;
         for view in &VIEWS {
             self.write(view.name, &(view.render)(report, evidence)?)?;
         }

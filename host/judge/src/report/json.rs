@@ -2,7 +2,7 @@
 
 use crate::result::Report;
 
-/// The report, indented, ending in a line feed. `schema`, `command`, `verdict` and `board.kind` come first.
+/// The report, indented, ending in a line feed. `schema`, `command`, `verdict`, `exit_code` and `board.kind` come first.
 ///
 /// # Errors
 /// The encoder's. No value that a [`Report`] can hold brings one about.

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 use super::{BoardReport, Problem};
+use crate::exit::Exit;
 use crate::verdict::Verdict;
 
 /// The number of the present shape of all documents. It rises when a key goes or changes its meaning; keys may come.
@@ -38,6 +39,8 @@ pub struct Document<'a, T> {
     pub command: &'a str,
     /// The judgement; none where nothing was to be judged.
     pub verdict: Option<Verdict>,
+    /// The exit code of the program that ends with it.
+    pub exit_code: Exit,
     /// The board, if one was used.
     pub board: Option<&'a BoardReport>,
     /// Why there is no result; none where there is one.

@@ -206,6 +206,7 @@ impl Serialize for Report {
             schema: self.schema,
             command: self.command(),
             verdict: Some(self.verdict),
+            exit_code: self.cause.into(),
             board: Some(&self.board),
             error: self.error().as_ref(),
             rest: Rest::from(self),

@@ -16,8 +16,9 @@ pub(super) fn text(
     verdict: Option<Verdict>,
     rest: impl Serialize,
 ) -> Result<String, Failure> {
-    let document = Document { schema: Schema, command, verdict, board: None, error: None, rest };
-    json::document(&document, exit).map_err(Failure::error)
+    let document =
+        Document { schema: Schema, command, verdict, exit_code: exit, board: None, error: None, rest };
+    json::document(&document).map_err(Failure::error)
 }
 
 /// The document of a command that failed. It has no verdict, for none is saved.

@@ -256,7 +256,7 @@ class Report:
     text: str = field(repr=False, default="")
     """The verdict, every check, who is suspected and what to do: a line each."""
     document: Dict[str, Any] = field(repr=False, compare=False, default_factory=dict)
-    """All of it, as `halfrow schema` describes the result of verify, but the exit code."""
+    """All of it, as `halfrow schema` describes the result of verify."""
     _run: Optional[_halfrow.Run] = field(repr=False, compare=False, default=None)
 
     @property

@@ -1,8 +1,9 @@
 //! Exit codes, which scripts rely on: the one place where the classes of errors and the causes of results become numbers.
 
-use halfrow::link::Class;
-use halfrow::verdict::{Cause, StoppedBy, Verdict};
 use serde::Serialize;
+
+use crate::link::Class;
+use crate::verdict::{Cause, StoppedBy, Verdict};
 
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
