@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use halfrow::report::{self, wording};
 use halfrow::{Finished, ReportFolder};
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 
 use crate::errors;
 
@@ -19,6 +20,21 @@ impl Run {
     /// All of it, as `halfrow schema` describes it.
     fn json(&self) -> PyResult<String> {
         report::json(&self.finished.report).map_err(errors::failed)
+    }
+
+    /// A copy has the same frames behind it.
+    fn __copy__(this: Bound<'_, Self>) -> Bound<'_, Self> {
+        this
+    }
+
+    fn __deepcopy__<'py>(this: Bound<'py, Self>, _memo: Bound<'py, PyAny>) -> Bound<'py, Self> {
+        this
+    }
+
+    /// None leaves the process: the frames stay here.
+    fn __reduce__(this: Bound<'_, Self>) -> (Bound<'_, PyType>, ()) {
+        let py = this.py();
+        (py.None().into_bound(py).get_type(), ())
     }
 
     /// The verdict, every check, who is suspected, and what to do: a line each.

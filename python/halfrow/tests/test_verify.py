@@ -1,4 +1,5 @@
 """Boards judged: reports, files, progress, signals."""
+import copy
 import dataclasses
 import json
 import os
@@ -64,7 +65,7 @@ def test_reports_have_the_members_that_the_schema_has(small):
         known = set(described.get("properties") or ["code", "parameters", "words"])
         assert {field.name for field in dataclasses.fields(getattr(halfrow, ours))} <= known, ours
     whole = halfrow.verify(tables=small, frames=["builtin:black"], at_speed=0)
-    own = {field.name for field in dataclasses.fields(halfrow.Report)} - {"text", "document", "_run"}
+    own = {field.name for field in dataclasses.fields(halfrow.Report)} - {"text", "document"}
     assert own <= set(whole.document) and set(schema["required"]) <= set(whole.document)
     with pytest.raises(dataclasses.FrozenInstanceError):
         whole.verdict = "FAIL"
@@ -81,8 +82,9 @@ def test_values_have_the_types_that_they_are_said_to_have(small):
         kind = {dict: dict, float: (int, float)}.get(origin or hint, origin or hint)
         assert isinstance(value, kind), (place, value)
         if dataclasses.is_dataclass(hint):
-            for name, inner in typing.get_type_hints(hint).items():
-                check(getattr(value, name), inner, f"{place}.{name}")
+            hints = typing.get_type_hints(hint)
+            for name in (field.name for field in dataclasses.fields(hint)):
+                check(getattr(value, name), hints[name], f"{place}.{name}")
 
     for target in ("mock", "mock,fault=stuck-data", "mock,fault=wrong-datapath"):
         check(halfrow.verify(target, tables=small), halfrow.Report, target)
@@ -127,6 +129,21 @@ def test_a_report_is_written_and_not_overwritten_unasked(tmp_path, small):
 
 def test_a_recording_is_judged_again(tmp_path, small):
     first = halfrow.verify("mock,fault=stuck-data", tables=small, record=tmp_path / "run.rec")
+def test_a_report_is_data_and_a_copy_is_as_good_as_it_is(tmp_path, small):
+    report = halfrow.verify("mock,fault=stuck-data,bit=7", tables=small)
+    data = dataclasses.asdict(report)
+    assert json.loads(json.dumps(data))["suspects"][0]["defect"]["parameters"]["bit"] == 7
+    assert set(data) == {field.name for field in dataclasses.fields(report)}
+    assert dataclasses.astuple(report)[0] == "FAIL"
+    copies = [copy.copy(report), copy.deepcopy(report)]
+    assert copies[1].document is not report.document
+    for number, copied in enumerate(copies):
+        assert copied == report and copied.document == report.document
+        copied.save(tmp_path / str(number))
+    with pytest.raises(ValueError, match="was changed"):
+        dataclasses.replace(report, verdict="PASS").save(tmp_path / "changed")
+
+
     again = halfrow.verify(f"replay:{tmp_path / 'run.rec'}")
     assert (again.verdict, again.headline) == (first.verdict, first.headline) and first.verdict == "FAIL"
     assert again.board.kind == "replay"

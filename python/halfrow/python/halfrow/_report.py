@@ -6,7 +6,7 @@ import functools
 import json
 import os
 from dataclasses import dataclass, field
-from typing import Any, Dict, Optional, Tuple, Union, get_args, get_origin, get_type_hints
+from typing import Any, ClassVar, Dict, Optional, Tuple, Union, get_args, get_origin, get_type_hints
 
 from . import _halfrow
 from ._errors import Problem
@@ -257,7 +257,8 @@ class Report:
     """The verdict, every check, who is suspected and what to do: a line each."""
     document: Dict[str, Any] = field(repr=False, compare=False, default_factory=dict)
     """All of it, as `halfrow schema` describes the result of verify."""
-    _run: Optional[_halfrow.Run] = field(repr=False, compare=False, default=None)
+    # What the process that made the run has beside it; no field, since it is no data.
+    _run: ClassVar[Optional[_halfrow.Run]] = None
 
     @property
     def passed(self) -> bool:
@@ -270,21 +271,23 @@ class Report:
         Only in the process that made the run, which alone has its frames.
         """
         if self._run is None:
-            raise ValueError("this report has left the process of its run, whose frames it needs; save it there")
+            raise ValueError(
+                "the frames of this report's run are not with it: it has left the process of its run, or was changed; save "
+                "the report that verify returned, in its process"
+            )
         self._run.save(folder, overwrite)
 
     def __str__(self) -> str:
         return self.text
-
-    def __getstate__(self) -> Dict[str, Any]:
-        return {**self.__dict__, "_run": None}
 
 
 def of(run: _halfrow.Run) -> Report:
     """The report of a run that is over."""
     document = json.loads(run.json())
     found: Report = _made(Report, document)
-    return dataclasses.replace(found, text=run.text(), document=document, _run=run)
+    report = dataclasses.replace(found, text=run.text(), document=document)
+    object.__setattr__(report, "_run", run)
+    return report
 
 
 @functools.lru_cache(maxsize=None)
