@@ -1,10 +1,13 @@
 //! The flags that the settings have that the libraries name in words: the one place where a remedy gets its flag.
 
 /// What sentences of the libraries say, and the flag for it. None of them is part of another.
-pub const FLAGS: [(&str, &str); 19] = [
+pub const FLAGS: [(&str, &str); 22] = [
     ("allow it to be overwritten", "--overwrite"),
     ("another place for the recording", "--record"),
     ("another place for the report", "--report"),
+    ("a recording to make", "--record"),
+    ("a time to judge within", "--within"),
+    ("make tables of the frame's size", "--width, --height"),
     ("record a run with `halfrow verify`", "--record"),
     ("take the board over", "--take-over"),
     ("raise the retry limit", "--retry-limit"),

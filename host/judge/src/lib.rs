@@ -26,17 +26,19 @@
 //!
 //! Only [`link`] touches a device, only [`board`] speaks the protocol, and [`run`] is the one that knows the order of
 //! things. [`probe`] asks a device whether it is a board, [`link_test`] measures what a link can do, [`correction`] uses a
-//! board to correct frames, [`lenses`] reads what calibrations leave, and [`optics`] makes a plan of it.
+//! board to correct frames, [`lenses`] reads what calibrations leave, [`optics`] makes a plan of it, and [`call`] looks at what
+//! a call names before anything is done.
 //! [`compare`], [`diagnosis`], [`result`] and [`report`] see samples and counts, never a link.
 
 pub mod board;
+pub mod call;
 pub mod compare;
 pub mod correction;
 pub mod coverage;
 pub mod diagnosis;
+pub mod exit;
 pub mod kernels;
 pub mod lenses;
-pub mod exit;
 pub mod link_test;
 pub mod optics;
 mod probe;

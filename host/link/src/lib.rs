@@ -32,7 +32,7 @@ pub use candidate::{Candidate, Reopener};
 pub use class::Class;
 pub use error::OpenError;
 pub use line_errors::LineErrors;
-pub use open::{check, fault, open, recording, replay};
+pub use open::{check, fault, open, recording, recording_file, replay};
 pub use recording::{Lost, Recorder, Recording, RecordingError, RecordingFile};
 pub(crate) use replay::ReplayLink;
 pub use serial::{Holder, SerialError, holders};

@@ -106,6 +106,12 @@ pub fn recording(target: &Target) -> Result<Option<Recording>, OpenError> {
     if target.kind == "replay" { read_replay(target).map(Some) } else { Ok(None) }
 }
 
+/// The file of the recording that `target` names, if it names one.
+#[must_use]
+pub fn recording_file(target: &Target) -> Option<&Path> {
+    target.address.as_deref().filter(|_| target.kind == "replay").map(Path::new)
+}
+
 /// The board that answered in `recording`, which `target` names.
 ///
 /// # Errors

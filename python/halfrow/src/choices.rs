@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use halfrow::call;
 use halfrow::model::{BitDepth, ModelPath, Phase, UnavailablePath, UnknownPath, UnknownPhase};
 use halfrow::optics::TablesBy;
 use pyo3::PyResult;
@@ -54,7 +55,16 @@ pub(crate) fn tables_by(
 }
 
 /// A time in seconds, called `what`.
-pub(crate) fn seconds(what: &str, seconds: Option<f64>) -> PyResult<Option<Duration>> {
-    let time = seconds.map(Duration::try_from_secs_f64).transpose();
-    time.map_err(|_| errors::wrong_value(format!("{what} is no time; give seconds, 0 or more, not too many")))
+pub(crate) fn seconds(what: &'static str, seconds: Option<f64>) -> PyResult<Option<Duration>> {
+    call::seconds(what, seconds).map_err(errors::input)
+}
+
+/// The time to judge within.
+pub(crate) fn within(seconds: Option<f64>) -> PyResult<Option<Duration>> {
+    let time = |seconds| {
+        let wrong =
+            "within is no time to judge within; give a number of seconds, more than 0 and at most 1000000";
+        call::within(seconds).ok_or_else(|| errors::wrong_value(wrong))
+    };
+    seconds.map(time).transpose()
 }

@@ -30,7 +30,7 @@ impl Corrector {
     #[pyo3(signature = (tables, *, kernel = None, path = None))]
     fn new(tables: Bound<'_, Tables>, kernel: Option<KernelLike<'_>>, path: Option<&str>) -> PyResult<Self> {
         let kernel = match kernel {
-            Some(kernel) => kernel.taken()?.0,
+            Some(kernel) => kernel.taken()?.kernel,
             None => tables.get().chosen.kernel.clone(),
         };
         let path = choices::path(path)?;

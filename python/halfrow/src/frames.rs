@@ -92,7 +92,15 @@ pub(crate) fn array(py: Python<'_>, frame: Frame) -> PyResult<Bound<'_, PyArray2
     PyArray1::from_vec(py, frame.into_samples()).reshape(shape)
 }
 
-/// The hash of a file that was read.
-pub(crate) fn hash(path: &Path) -> PyResult<FileHash> {
-    FileHash::of(path).map_err(errors::failed)
+/// A file that was read.
+#[derive(Clone)]
+pub(crate) struct Input {
+    /// Its path, which need not be text, as that of a hash is.
+    pub(crate) path: PathBuf,
+    pub(crate) hash: FileHash,
+}
+
+/// The file `path`, which was read.
+pub(crate) fn input(path: &Path) -> PyResult<Input> {
+    Ok(Input { path: path.to_owned(), hash: FileHash::of(path).map_err(errors::failed)? })
 }

@@ -14,11 +14,14 @@ use crate::errors;
 ///
 /// `name` is one of `halfrow.KERNELS`, or the path of a kernel file. Raises InputError when it is neither.
 #[pyclass(frozen, module = "halfrow")]
+#[derive(Clone)]
 pub(crate) struct Kernel {
     pub(crate) kernel: model::Kernel,
     /// What it is called.
     #[pyo3(get)]
     pub(crate) name: String,
+    /// What it was asked for by: its name or its file. None of weights.
+    pub(crate) asked: Option<PathBuf>,
 }
 
 #[pymethods]
@@ -27,7 +30,7 @@ impl Kernel {
     #[pyo3(signature = (name = PathBuf::from(Interpolant::Hermite.name())))]
     fn new(name: PathBuf) -> PyResult<Self> {
         let kernel = optics::kernel(name.as_os_str()).map_err(errors::optics)?;
-        Ok(Self { kernel, name: name.display().to_string() })
+        Ok(Self { kernel, name: name.display().to_string(), asked: Some(name) })
     }
 
     /// The kernel of real weights: an array of float64 of shape (65, 5), a row for x = 0, 1/32, …, 2 with the weights of
@@ -45,7 +48,7 @@ impl Kernel {
         let node = |node: usize| std::array::from_fn(|tap| weights[[node, tap]]);
         let nodes: Vec<[f64; 5]> = (0..weights.nrows()).map(node).collect();
         let kernel = model::Kernel::from_weights(&nodes).map_err(errors::input)?;
-        Ok(Self { kernel, name: name.to_owned() })
+        Ok(Self { kernel, name: name.to_owned(), asked: None })
     }
 
     /// The samples that it reads: 5 or 7.
@@ -89,14 +92,11 @@ pub(crate) enum KernelLike<'py> {
 }
 
 impl KernelLike<'_> {
-    /// It, and what it is called.
-    pub(crate) fn taken(self) -> PyResult<(model::Kernel, String)> {
+    /// It.
+    pub(crate) fn taken(self) -> PyResult<Kernel> {
         match self {
-            Self::Kernel(kernel) => Ok((kernel.get().kernel.clone(), kernel.get().name.clone())),
-            Self::Name(name) => {
-                let Kernel { kernel, name } = Kernel::new(name)?;
-                Ok((kernel, name))
-            }
+            Self::Kernel(kernel) => Ok(kernel.get().clone()),
+            Self::Name(name) => Kernel::new(name),
         }
     }
 }

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use halfrow::frames::Builtin;
 use halfrow::model::Equidistant;
 use halfrow::optics::{Optics, PAPER_FIELD, TablesBy, View};
-use halfrow::result::FileHash;
 use numpy::PyArray2;
 use pyo3::prelude::*;
 
@@ -28,7 +27,7 @@ const EQUIDISTANT: &str = "equidistant:";
 pub(crate) struct Lens {
     pub(crate) optics: Optics,
     /// The file that it was read from.
-    pub(crate) file: Option<FileHash>,
+    pub(crate) file: Option<frames::Input>,
 }
 
 #[pymethods]
@@ -134,7 +133,7 @@ impl Lens {
             }
             (Some(path), None) => {
                 let optics = Optics::of_file(path, view, TablesBy::Fitting).map_err(errors::optics)?;
-                return Ok(Self { optics, file: Some(frames::hash(path)?) });
+                return Ok(Self { optics, file: Some(frames::input(path)?) });
             }
         };
         let optics =
@@ -152,7 +151,7 @@ pub(crate) enum LensLike<'py> {
 
 impl LensLike<'_> {
     /// The lens with the file that it was read from.
-    pub(crate) fn taken(self) -> PyResult<(Optics, Option<FileHash>)> {
+    pub(crate) fn taken(self) -> PyResult<(Optics, Option<frames::Input>)> {
         match self {
             Self::Lens(lens) => Ok((lens.get().optics.clone(), lens.get().file.clone())),
             Self::Name(name) => {

@@ -6,16 +6,17 @@ use std::sync::Arc;
 
 use halfrow::board::Stop;
 use halfrow::board::deadlines::RetryLimit;
+use halfrow::call::{self, Voided};
 use halfrow::frames::{self, PictureSize, ReadOptions, UnknownBuiltin};
 use halfrow::link::Recording;
-use halfrow::model::{CorrectError, Frame, Geometry, Phase};
-use halfrow::result::FileHash;
+use halfrow::model::{Geometry, Phase};
 use halfrow::run::{Circumstances, Draws, RecordedRun, RunOptions, Vary};
 use halfrow::{FrameSource, Plan};
 use pyo3::prelude::*;
 
 use crate::errors::Whose;
-use crate::kernel::KernelLike;
+use crate::frames::Input;
+use crate::kernel::{Kernel, KernelLike};
 use crate::tables::Tables;
 use crate::{choices, errors, frames as files};
 
@@ -30,7 +31,7 @@ const REPEATS: RangeInclusive<u32> = 1..=1000;
 pub(crate) struct Options<'py> {
     tables: Option<Bound<'py, Tables>>,
     kernel: Option<KernelLike<'py>>,
-    frames: Vec<Bound<'py, PyAny>>,
+    frames: Option<Vec<Bound<'py, PyAny>>>,
     phase: String,
     repeat: u32,
     seed: u64,
@@ -47,36 +48,67 @@ pub(crate) struct Options<'py> {
     pub(crate) record: Option<PathBuf>,
     pub(crate) overwrite: bool,
     pub(crate) progress: Option<Bound<'py, PyAny>>,
+    /// The options that say something else than they do when they are left out.
+    given: Vec<String>,
+}
+
+/// What is to be judged, how, and what it is read from.
+pub(crate) struct Planned {
+    pub(crate) plan: Plan,
+    pub(crate) options: RunOptions,
+    /// Tables, lens and frames that are files.
+    pub(crate) inputs: Vec<PathBuf>,
+    /// The kernel, by name or file, unless it is the tables' own.
+    pub(crate) kernel: Option<PathBuf>,
+}
+
+/// What the options say of tables and kernel.
+struct Judged {
+    plan: Plan,
+    files: Vec<Input>,
+    kernel: Option<PathBuf>,
 }
 
 impl Options<'_> {
     /// What the run in `recording` did, if there is one, or else what the options say; it ends early by `stop`.
-    pub(crate) fn planned(
-        &mut self,
-        recording: Option<&Recording>,
-        stop: Stop,
-    ) -> PyResult<(Plan, RunOptions)> {
+    pub(crate) fn planned(&mut self, recording: Option<&Recording>, stop: Stop) -> PyResult<Planned> {
         let timeout = choices::seconds("timeout", self.timeout)?;
         let stop = stop.within(timeout);
         let Some(recording) = recording else {
-            let (plan, files) = self.plan()?;
+            let Judged { plan, files, kernel } = self.plan()?;
+            let inputs = files.iter().map(|file| file.path.clone()).collect();
             let options = RunOptions { timeout, stop, ..self.options(files)? };
-            return Ok((plan, options));
+            return Ok(Planned { plan, options, inputs, kernel });
         };
+        self.refuse(&call::BESIDE_RECORDING)?;
         let restored = RecordedRun::restore(recording);
         let (plan, options) =
             restored.map_err(|error| errors::raised(Whose::of_call(!error.is_other_datapath()), &error))?;
-        Ok((plan, RunOptions { require_hardware: self.require_hardware, stop, ..options }))
+        let options = RunOptions { require_hardware: self.require_hardware, stop, ..options };
+        Ok(Planned { plan, options, inputs: Vec::new(), kernel: None })
     }
 
-    fn plan(&mut self) -> PyResult<(Plan, Vec<FileHash>)> {
-        if self.within.is_some() && !(self.frames.is_empty() && self.record.is_none()) {
-            return Err(errors::conflict(
-                "within chooses the frames and is of one link; leave out frames and record",
+    /// Refuses options that do nothing beside what is `voided` by.
+    fn refuse(&self, voided: &Voided) -> PyResult<()> {
+        let named = |option: &str| if option == call::FRAMES { "frames" } else { option }.to_owned();
+        let is_given = |option: &str| self.given.contains(&named(option));
+        voided.refuse(is_given, named).map_err(errors::input)
+    }
+
+    fn check(&self) -> PyResult<()> {
+        if self.frames.as_ref().is_some_and(Vec::is_empty) {
+            return Err(errors::wrong_value(
+                "frames holds none; name at least one, or leave it out for the built-in frames",
             ));
         }
-        if self.reconnect.is_some() && self.record.is_some() {
-            return Err(errors::conflict("a recording is of one link; leave out reconnect or record"));
+        if self.within.is_some() {
+            if self.record.is_some() {
+                return Err(errors::conflict("within cannot be used with record; give one of them"));
+            }
+            self.refuse(&call::WITHIN)?;
+        }
+        if self.record.is_some() {
+            self.refuse(&call::WHILE_RECORDED)?;
         }
         if !REPEATS.contains(&self.repeat) {
             return Err(errors::wrong_value(format!(
@@ -84,31 +116,38 @@ impl Options<'_> {
                 self.repeat
             )));
         }
+        Ok(())
+    }
+
+    fn plan(&mut self) -> PyResult<Judged> {
+        self.check()?;
         let phase = choices::phase(&self.phase)?;
-        let is_free = self.tables.is_none() && self.frames.is_empty();
-        let (plan, mut files) = self.of_tables(phase)?;
-        let named = std::mem::take(&mut self.frames);
+        let is_free = self.tables.is_none() && self.frames.is_none();
+        let Judged { plan, mut files, kernel } = self.of_tables(phase)?;
         let geometry = plan.tables.geometry();
-        let taken =
-            named.iter().enumerate().map(|(place, frame)| source(frame, place, phase, geometry, &mut files));
-        let sources = taken.collect::<PyResult<Vec<_>>>()?;
-        let frames = if sources.is_empty() { plan.frames.clone() } else { sources };
+        let frames = match self.frames.take() {
+            None => plan.frames.clone(),
+            Some(named) => {
+                let mut taken = |(place, frame)| source(frame, place, phase, geometry, &mut files);
+                named.iter().enumerate().map(&mut taken).collect::<PyResult<_>>()?
+            }
+        };
         let plan = Plan {
             frames,
             repeat: self.repeat,
             vary: Vary { centre: is_free, depth: is_free },
             at_speed: choices::seconds("at_speed", self.at_speed)?,
-            within: choices::seconds("within", self.within)?,
+            within: choices::within(self.within)?,
             fail_fast: self.fail_fast,
             seed: self.seed,
             ..plan
         };
         plan.check_length().map_err(errors::input)?;
-        Ok((plan, files))
+        Ok(Judged { plan, files, kernel })
     }
 
     /// To judge with the tables of the call, or else with those of the paper's lens, and the files that they came from.
-    fn of_tables(&mut self, phase: Phase) -> PyResult<(Plan, Vec<FileHash>)> {
+    fn of_tables(&mut self, phase: Phase) -> PyResult<Judged> {
         let own;
         let tables = match &self.tables {
             Some(tables) => tables.get(),
@@ -118,15 +157,16 @@ impl Options<'_> {
             }
         };
         let mut chosen = tables.chosen.clone();
+        let mut asked = tables.kernel_asked.clone();
         if let Some(kernel) = self.kernel.take() {
-            let (kernel, name) = kernel.taken()?;
-            chosen.kernel = kernel;
+            let name;
+            Kernel { kernel: chosen.kernel, name, asked } = kernel.taken()?;
             chosen.source = format!("{}, judged with the {name} kernel", chosen.source);
         }
-        Ok((chosen.plan(phase), tables.files.clone()))
+        Ok(Judged { plan: chosen.plan(phase), files: tables.files.clone(), kernel: asked })
     }
 
-    fn options(&mut self, files: Vec<FileHash>) -> PyResult<RunOptions> {
+    fn options(&mut self, files: Vec<Input>) -> PyResult<RunOptions> {
         let mut retry_limit = RetryLimit::default();
         if let Some(percent) = self.retry_limit {
             if !(0.0..=100.0).contains(&percent) {
@@ -135,13 +175,14 @@ impl Options<'_> {
             retry_limit.share = percent / 100.0;
         }
         let arguments = std::mem::take(&mut self.arguments);
+        let hashes = files.into_iter().map(|file| file.hash).collect();
         Ok(RunOptions {
             retry_limit,
             reconnect: choices::seconds("reconnect", self.reconnect)?,
             take_over: self.take_over,
             require_hardware: self.require_hardware,
             keep_equal: self.report.is_some(),
-            circumstances: Circumstances { arguments, files, draws: Draws::draw(), operator: None },
+            circumstances: Circumstances { arguments, files: hashes, draws: Draws::draw(), operator: None },
             ..RunOptions::default()
         })
     }
@@ -153,7 +194,7 @@ fn source(
     place: usize,
     phase: Phase,
     geometry: &Geometry,
-    files: &mut Vec<FileHash>,
+    files: &mut Vec<Input>,
 ) -> PyResult<FrameSource> {
     if let Ok(name) = given.extract::<String>()
         && let Some(name) = name.strip_prefix(BUILTIN)
@@ -161,26 +202,17 @@ fn source(
         return Ok(FrameSource::Builtin(name.parse().map_err(errors::input::<UnknownBuiltin>)?));
     }
     let depth = geometry.depth();
+    let size = PictureSize::Exactly(geometry.width(), geometry.height());
+    let how = ReadOptions { depth, phase, size, ..ReadOptions::default() };
     let (path, frame) = if let Ok(path) = given.extract::<PathBuf>() {
-        let size = PictureSize::Exactly(geometry.width(), geometry.height());
-        let how = ReadOptions { depth, phase, size, ..ReadOptions::default() };
         let read = given.py().detach(|| frames::read(&path, &how)).map_err(errors::input)?;
-        files.push(files::hash(&path)?);
+        files.push(files::input(&path)?);
         (path, read)
     } else {
         let name = format!("frames[{place}]");
         let frame = files::frame_of(given, &name, depth.bits(), phase.name())?;
         (name.into(), frame)
     };
-    check_size(&frame, geometry)?;
+    call::check_size(&path, (frame.width(), frame.height()), &how, geometry).map_err(errors::input)?;
     Ok(FrameSource::File { path, frame: Arc::new(frame) })
-}
-
-fn check_size(frame: &Frame, geometry: &Geometry) -> PyResult<()> {
-    let (frame_width, frame_height) = (frame.width(), frame.height());
-    let (width, height) = (geometry.width(), geometry.height());
-    if (frame_width, frame_height) == (width, height) {
-        return Ok(());
-    }
-    Err(errors::input(CorrectError::Size { frame_width, frame_height, width, height }))
 }

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use halfrow::model::{Interpolant, RowFactor};
 use halfrow::optics::{self, Chosen, Optics, View};
-use halfrow::result::FileHash;
 use halfrow::tables::{TableFile, datapath_of, mem};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
+use crate::frames::Input;
 use crate::kernel::{Kernel, KernelLike};
 use crate::lens::{Lens, LensLike};
 use crate::{choices, errors, frames};
@@ -22,8 +22,10 @@ pub(crate) struct Tables {
     pub(crate) chosen: Chosen,
     /// What the kernel is called.
     kernel_name: String,
+    /// What the kernel was asked for by, unless it is the table file's.
+    pub(crate) kernel_asked: Option<PathBuf>,
     /// The files that they were read from.
-    pub(crate) files: Vec<FileHash>,
+    pub(crate) files: Vec<Input>,
 }
 
 #[pymethods]
@@ -69,7 +71,7 @@ impl Tables {
         };
         let optics = Optics::before(file.tables.geometry());
         let chosen = optics.and_then(|optics| optics::choose(Some((&path, file)), optics, None));
-        let files = paths.iter().map(|path| frames::hash(path)).collect::<PyResult<_>>()?;
+        let files = paths.iter().map(|path| frames::input(path)).collect::<PyResult<_>>()?;
         Self::with_kernel(chosen.map_err(errors::optics)?, &path.display().to_string(), kernel, files)
     }
 
@@ -160,7 +162,8 @@ impl Tables {
     /// The kernel.
     #[getter]
     fn kernel(&self) -> Kernel {
-        Kernel { kernel: self.chosen.kernel.clone(), name: self.kernel_name.clone() }
+        let (kernel, name) = (self.chosen.kernel.clone(), self.kernel_name.clone());
+        Kernel { kernel, name, asked: self.kernel_asked.clone() }
     }
 
     /// The lens that built-in frames are seen through; for tables of a file, which does not say it, the paper's.
@@ -198,13 +201,13 @@ impl Tables {
         mut chosen: Chosen,
         from: &str,
         kernel: Option<KernelLike<'_>>,
-        files: Vec<FileHash>,
+        files: Vec<Input>,
     ) -> PyResult<Self> {
-        let mut kernel_name = OF_FILE.to_owned();
+        let (mut kernel_name, mut kernel_asked) = (OF_FILE.to_owned(), None);
         if let Some(kernel) = kernel {
-            (chosen.kernel, kernel_name) = kernel.taken()?;
+            Kernel { kernel: chosen.kernel, name: kernel_name, asked: kernel_asked } = kernel.taken()?;
             chosen.source = format!("{from}, {kernel_name} kernel");
         }
-        Ok(Self { chosen, kernel_name, files })
+        Ok(Self { chosen, kernel_name, kernel_asked, files })
     }
 }

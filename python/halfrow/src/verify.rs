@@ -1,9 +1,11 @@
 //! A board judged.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use halfrow::board::Stop;
+use halfrow::call::Files;
 use halfrow::link::{self, Candidate, Class, Lost, OpenError, Recorder, RecordingFile};
 use halfrow::run::{self, RecordedRun};
 use halfrow::target::{Target, TargetError};
@@ -11,7 +13,7 @@ use halfrow::{Finished, Plan, ReportFolder, RunOptions, StoppedBy};
 use pyo3::prelude::*;
 
 use crate::errors::{self, Whose};
-use crate::plan::Options;
+use crate::plan::{Options, Planned};
 use crate::run::Run;
 use crate::watched::watched;
 
@@ -24,7 +26,14 @@ pub(crate) fn verify(py: Python<'_>, target: &str, options: &Bound<'_, PyAny>) -
     let is_stopped = Arc::new(AtomicBool::new(false));
     let stopped = Arc::clone(&is_stopped);
     let stop = Stop::when(move || stopped.load(Ordering::Relaxed).then_some(StoppedBy::Person));
-    let (plan, options) = asked.planned(recording.as_ref(), stop)?;
+    let Planned { plan, options, inputs, kernel } = asked.planned(recording.as_ref(), stop)?;
+    let files = Files::new(asked.overwrite)
+        .reads(inputs)
+        .reads_kernel(kernel.as_deref().map(Path::as_os_str))
+        .reads(link::recording_file(&target))
+        .writes_claimed("record", asked.record.as_deref())
+        .writes_report("report", asked.report.as_deref());
+    files.check().map_err(errors::input)?;
     let report = asked.report.as_deref().map(|path| ReportFolder::prepare(path, asked.overwrite));
     let report = report.transpose().map_err(errors::input)?;
     let record = asked.record.as_deref().map(|path| RecordingFile::prepare(path, asked.overwrite));

@@ -1,4 +1,5 @@
 """What is refused: with the codes of the program, and with what Python's own libraries raise."""
+import os
 import pickle
 import re
 
@@ -37,16 +38,97 @@ def test_codes_are_those_of_the_program(tmp_path, program, opencv):
         (lambda: halfrow.verify(frames=[broken]), ["verify", "--frame", broken], "frame-file-not-understood"),
     ]
     for call, arguments, code in cases:
-        with pytest.raises(halfrow.HalfrowError) as raised:
-            call()
-        exit_code, document = program(*arguments)
-        error, told = raised.value, document["error"]
-        assert (error.code, error.parameters) == (told["code"], told["parameters"]), arguments
-        assert code in (None, error.code)
-        assert isinstance(error, halfrow.InputError) == (exit_code == 2), arguments
-        # The program names the flags of what the library has in words.
-        named = [re.sub(r" \(--[a-z-]+\)", "", cause["message"]) for cause in told["causes"]]
-        assert [cause.message for cause in error.causes] == named
+        refused_as_by_the_program(program, call, arguments, code)
+
+
+def refused_as_by_the_program(program, call, arguments, code):
+    with pytest.raises(halfrow.HalfrowError) as raised:
+        call()
+    exit_code, document = program(*arguments)
+    error, told = raised.value, document["error"]
+    named = dict(told["parameters"])
+    for of_option in {"option", "first", "second"} & set(named):
+        option = named[of_option].removeprefix("--").replace("-", "_")
+        named[of_option] = "frames" if option == "frame" else option
+    assert (error.code, error.parameters) == (told["code"], named), arguments
+    assert code in (None, error.code)
+    assert isinstance(error, halfrow.InputError) == (exit_code == 2), arguments
+    # The program names the flags of what the library has in words.
+    causes = [re.sub(r" \(--[a-z-]+\)", "", cause["message"]) for cause in told["causes"]]
+    assert [cause.message for cause in error.causes] == causes
+
+
+SMALL = ["--radius", 80, "--width", 128, "--height", 32]
+
+
+def verify(options, **named):
+    """A call of both, with `options` of the program and those that are `named` here; the code comes last."""
+    tables = halfrow.Tables.from_lens(halfrow.Lens("equidistant:80", width=128, height=32))
+    return lambda: halfrow.verify("mock", tables=tables, **named), ["verify", *SMALL, *options]
+
+
+def test_codes_of_runs_are_those_of_the_program(tmp_path, program, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "there.rec").write_text("")
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "link.rec").symlink_to("there.rec")
+    halfrow.write_frame("ok.pgm", np.zeros((32, 128), np.uint16))
+    for name, shape in (("big.pgm", (64, 128)), ("narrow.pgm", (32, 4))):
+        halfrow.write_frame(name, np.zeros(shape, np.uint16))
+    for case, code in [
+        (verify(["--record", "there.rec"], record="there.rec"), "file-exists"),
+        (verify(["--record", "link.rec", "--overwrite"], record="link.rec", overwrite=True), "file-is-link"),
+        (verify(["--record", "folder", "--overwrite"], record="folder", overwrite=True), "file-is-no-regular-one"),
+        (verify(["--record", "no/x.rec"], record="no/x.rec"), "folder-unusable"),
+        (verify(["--report", "no/rep"], report="no/rep"), "folder-unusable"),
+        (verify(["--report", "folder"], report="folder"), "folder-is-no-report"),
+        (verify(["--record", "x", "--report", "x"], record="x", report="x"), "outputs-share-a-file"),
+        (verify(["--frame", "ok.pgm", "--frame", "big.pgm"], frames=["ok.pgm", "big.pgm"]), "frame-of-other-size"),
+        (verify(["--frame", "narrow.pgm"], frames="narrow.pgm"), "frame-of-other-size"),
+        (verify(["--within", 2, "--frame", "ok.pgm"], within=2, frames="ok.pgm"), "option-without-effect"),
+        (verify(["--within", 2, "--repeat", 3], within=2, repeat=3), "option-without-effect"),
+        (verify(["--within", 2, "--record", "y"], within=2, record="y"), "usage-arguments-conflict"),
+        (verify(["--reconnect=5", "--record", "y"], reconnect=5, record="y"), "option-without-effect"),
+        (verify(["--at-speed=-1"], at_speed=-1), "option-is-no-time"),
+        (verify(["--reconnect=-1"], reconnect=-1), "option-is-no-time"),
+        (verify(["--timeout=-1"], timeout=-1), "option-is-no-time"),
+        *((verify([f"--within={wrong}"], within=float(wrong)), "usage-value-wrong") for wrong in (0, -1, "nan", "1e7")),
+        (verify(["--repeat=0"], repeat=0), "usage-value-wrong"),
+        (verify(["--retry-limit=101"], retry_limit=101), "usage-value-wrong"),
+    ]:
+        refused_as_by_the_program(program, *case, code)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["big.pgm", "folder", "link.rec", "narrow.pgm", "ok.pgm", "there.rec"]
+
+
+def test_no_input_of_a_run_is_overwritten(tmp_path, program, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    tables = halfrow.Tables.from_lens(halfrow.Lens("equidistant:80", width=128, height=32))
+    tables.write("t.json")
+    halfrow.Kernel("keys").write("k.json")
+    halfrow.write_frame("f.pgm", np.zeros((32, 128), np.uint16))
+    os.link("f.pgm", "link.pgm")
+    # A name need not be text.
+    odd = os.fsdecode(b"odd-\xff.pgm")
+    os.link("f.pgm", odd)
+    assert halfrow.verify("mock", tables=tables, frames="builtin:black", at_speed=0, record="r.rec").passed
+    of_file = halfrow.Tables.read("t.json", kernel="k.json")
+    for name, call, arguments in [
+        ("f.pgm", dict(tables=tables, frames="f.pgm"), [*SMALL, "--frame", "f.pgm"]),
+        ("link.pgm", dict(tables=tables, frames="f.pgm"), [*SMALL, "--frame", "f.pgm"]),
+        ("t.json", dict(tables=of_file), ["--tables", "t.json"]),
+        ("k.json", dict(tables=of_file), ["--tables", "t.json", "--kernel", "k.json"]),
+        ("k.json", dict(tables=tables, kernel="k.json"), [*SMALL, "--kernel", "k.json"]),
+        ("k.json", dict(tables=tables, kernel=halfrow.Kernel("k.json")), [*SMALL, "--kernel", "k.json"]),
+        ("r.rec", dict(board="replay:r.rec"), ["--board", "replay:r.rec"]),
+        (odd, dict(tables=tables, frames=odd), [*SMALL, "--frame", odd]),
+    ]:
+        before = (tmp_path / name).read_bytes()
+        judged = lambda: halfrow.verify(**call, record=name, overwrite=True)  # noqa: B023, E731
+        refused_as_by_the_program(
+            program, judged, ["verify", *arguments, "--record", name, "--overwrite"], "input-would-be-overwritten"
+        )
+        assert (tmp_path / name).read_bytes() == before, name
+
 
 
 def test_an_error_says_what_is_wrong_and_what_to_do(tmp_path):
@@ -72,8 +154,10 @@ def test_an_error_says_what_is_wrong_and_what_to_do(tmp_path):
         (lambda: halfrow.Tables.from_lens(projection="exact", rows="fitted"), "usage-arguments-conflict"),
         (lambda: halfrow.Tables.from_lens(entries=100), "usage-arguments-conflict"),
         (lambda: halfrow.Tables.from_lens(halfrow.Lens(), projection="exact", entries=3), "grid-without-room"),
-        (lambda: halfrow.verify(timeout=-1), "usage-value-wrong"),
-        (lambda: halfrow.verify(at_speed=float("nan")), "usage-value-wrong"),
+        (lambda: halfrow.verify(timeout=-1), "option-is-no-time"),
+        (lambda: halfrow.verify(at_speed=float("nan")), "option-is-no-time"),
+        (lambda: halfrow.verify(frames=[]), "usage-value-wrong"),
+        (lambda: halfrow.verify(frames=(), within=3), "usage-value-wrong"),
         (lambda: halfrow.verify(repeat=0), "usage-value-wrong"),
         (lambda: halfrow.verify(retry_limit=101), "usage-value-wrong"),
         (lambda: halfrow.Corrector(halfrow.Tables.from_lens(), path="fast"), "model-path-unknown"),

@@ -82,7 +82,11 @@ fn a_recording_that_is_made_waits_for_no_board() {
     let call = |more: &[&'static str]| {
         small("verify", &[&["--frame", "builtin:grey", "--record", "run.rec"], more].concat())
     };
-    refused(&folder, &call(&["--reconnect=5"]), "--reconnect does nothing beside --record");
+    refused(
+        &folder,
+        &call(&["--reconnect=5"]),
+        "--reconnect does nothing beside a recording to make (--record)",
+    );
     folder.write("settings.toml", "reconnect = 5\n");
     assert_eq!(folder.halfrow(call(&["--settings", "settings.toml"])).code, Some(0));
     let ended = finish(folder.command(call(&["--overwrite"])).env("HALFROW_RECONNECT", "5"));

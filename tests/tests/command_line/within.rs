@@ -19,7 +19,7 @@ fn what_is_no_time_and_what_does_nothing_beside_one_is_refused() {
         refused(&folder, &call(&[&option]), "give a number of seconds, more than 0 and at most 1000000");
     }
     for option in [["--frame", "builtin:black"], ["--repeat", "2"]] {
-        let sentence = format!("{} does nothing beside --within", option[0]);
+        let sentence = format!("{} does nothing beside a time to judge within (--within)", option[0]);
         refused(&folder, &call(&[&["--within", "5"], &option[..]].concat()), &sentence);
     }
     refused(&folder, &call(&["--within", "5", "--record", "run.rec"]), "cannot be used with");

@@ -1,6 +1,6 @@
 //! The options of the board and its link, which several commands share.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
@@ -87,8 +87,7 @@ impl BoardArguments {
 
     /// The recording that the target names, if it is one.
     pub(super) fn replayed(&self, settings: &Settings) -> Result<Option<PathBuf>, Failure> {
-        let target = self.target(settings)?;
-        Ok(target.address.filter(|_| target.kind == "replay").map(PathBuf::from))
+        Ok(link::recording_file(&self.target(settings)?).map(Path::to_owned))
     }
 
     /// The board that is named, or that was got of the pool that is.

@@ -10,12 +10,6 @@ use halfrow::frames::Format;
 /// A call that cannot be carried out as it stands. Options are named as they are written on the command line.
 #[derive(Debug, Error)]
 pub(super) enum CallError {
-    /// An option beside another thing that decides in its place.
-    #[error("{option} {reason}")]
-    VoidOption { option: String, reason: &'static str },
-    /// A number of seconds that is none.
-    #[error("{option} takes a number of seconds, from 0 to 10^19")]
-    Seconds { option: &'static str },
     /// A command that prints nothing that could be JSON.
     #[error("`halfrow {command}` has no result in JSON; leave --json out")]
     NoJson { command: &'static str },
@@ -81,33 +75,9 @@ pub(super) enum CallError {
     /// An input whose output would have no name.
     #[error("{} has no file name; name a file", path.display())]
     Unnamed { path: PathBuf },
-    /// An input that would be overwritten.
-    #[error(
-        "{} is read by this call, and {option} would write there; an input is never overwritten, so name another place \
-         with {option}", path.display()
-    )]
-    InputOverwritten { path: PathBuf, option: &'static str },
-    /// Two outputs in one place.
-    #[error("{first} and {second} would both be written to {}; part them", path.display())]
-    OutputsShare { first: &'static str, second: &'static str, path: PathBuf },
     /// Two frames in one place.
     #[error("two inputs would both be written to {}, or a frame and its preview; part them", path.display())]
     FramesShare { path: PathBuf },
-    /// A file of a folder that may not be replaced.
-    #[error("{} exists; allow it to be overwritten, or name another folder with {option}", path.display())]
-    Exists { path: PathBuf, option: &'static str },
-    /// What stands in the place of a file of a folder.
-    #[error("{} is no regular file, and so is not replaced; name another folder with {option}", path.display())]
-    NotAFile { path: PathBuf, option: &'static str },
-    /// A folder that takes no files.
-    #[error("cannot write into the folder {}; name another with {option}", path.display())]
-    FolderClosed { path: PathBuf, option: &'static str, source: io::Error },
-    /// A file's folder that is missing or takes no files.
-    #[error(
-        "nothing can be written into the folder {}; check that it exists and is writable, or name another place with \
-         {option}", path.display()
-    )]
-    FolderUnusable { path: PathBuf, option: &'static str, source: io::Error },
     /// A folder that cannot be made.
     #[error("the folder {} cannot be made; name another", path.display())]
     FolderNotMade { path: PathBuf, source: io::Error },
@@ -131,9 +101,6 @@ pub(super) enum CallError {
     /// An input that cannot be read whole.
     #[error("{} cannot be read; name a file that can be", path.display())]
     Unreadable { path: PathBuf, source: io::Error },
-    /// A frame of another size than the tables.
-    #[error("{} is {width} x {height}, and the tables are for {columns} x {rows}; {remedy}", path.display())]
-    OtherSize { path: PathBuf, width: usize, height: usize, columns: usize, rows: usize, remedy: String },
     /// The station's program does not lie beside this one.
     #[error(
         "the station is a program of its own, and {} is not there; build it with `cargo build --release --package \

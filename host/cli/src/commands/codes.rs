@@ -27,8 +27,6 @@ pub(super) struct Arguments {}
 
 codes::codes! {
     CallError {
-        VoidOption [option] => "option-without-effect",
-        Seconds [option] => "option-is-no-time",
         NoJson [command] => "command-without-json",
         NoDocument [command] => "command-without-document",
         CodeUnknown [code] => "code-unknown",
@@ -47,20 +45,13 @@ codes::codes! {
         OtherFormat [path] => "frame-format-contradicted",
         OneFile [path, frames, option] => "one-file-for-several-frames",
         Unnamed [path] => "input-without-name",
-        InputOverwritten [path, option] => "input-would-be-overwritten",
-        OutputsShare [first, second, path] => "outputs-share-a-file",
         FramesShare [path] => "frames-share-a-file",
-        Exists [path, option] => "file-in-folder-exists",
-        NotAFile [path, option] => "file-in-folder-is-no-file",
-        FolderClosed [path, option] => "folder-takes-no-files",
-        FolderUnusable [path, option] => "folder-unusable",
         FolderNotMade [path] => "folder-not-made",
         FolderUnlisted [path] => "folder-not-listed",
         NoPhotograph => "photographs-missing",
         PhotographTwice [first, second] => "photograph-given-twice",
         PhotographsMissing => "paper-photographs-missing",
         Unreadable [path] => "input-unreadable",
-        OtherSize [path, width, height, columns, rows] => "frame-of-other-size",
         StationMissing [path] => "station-missing",
         StationNotStarted [path] => "station-not-started",
     }

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::files::{Files, make_folder};
+use super::files::{check_files, make_folder};
 use super::{Context, Failure};
 use crate::exit::Exit;
+use halfrow::call::Files;
 use halfrow_frames::written_aside::write_aside;
 use halfrow_program::man_pages::{self, Shell};
 
@@ -34,11 +35,10 @@ pub(super) fn manual(arguments: &Manual, command: clap::Command, context: &Conte
     let folder = &arguments.folder;
     let pages = man_pages::all(command).map_err(Failure::error)?;
     let places: Vec<_> = pages.iter().map(|page| folder.join(&page.name)).collect();
-    Files::new(arguments.overwrite)
-        .reads(&context.settings_file)
-        .writes_into("FOLDER", &places)
-        .check()
-        .map_err(Failure::call)?;
+    check_files(
+        &Files::new(arguments.overwrite).reads(&context.settings_file).writes_into("FOLDER", &places),
+    )
+    .map_err(Failure::call)?;
     make_folder(folder).map_err(Failure::error)?;
     for (page, place) in pages.iter().zip(&places) {
         write_aside(place, arguments.overwrite, |out| out.write_all(page.text.as_bytes()))

@@ -13,7 +13,7 @@ use serde_json::json;
 
 use super::board::{self, BoardArguments, Replays};
 use super::document::tell_result;
-use super::files::Files;
+use super::files::check_files;
 use super::given::{Decider, Given};
 use super::inputs::{FrameName, InputArguments, tell_fitting};
 use super::optics::{self, LensArguments};
@@ -22,6 +22,7 @@ use super::{CallError, Context, Failure};
 use crate::exit::Exit;
 use crate::settings::Settings;
 use crate::{console, progress};
+use halfrow::call::Files;
 use halfrow::frames::{self, Format, ReadOptions, Scene, WriteError, preview};
 use halfrow::optics::Chosen;
 use halfrow::target::BoardKind;
@@ -94,7 +95,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     };
     job.check(context.quiet).map_err(Failure::call)?;
     let files = places.add_to(files.reads(job.inputs.iter().filter_map(FrameName::file)));
-    files.check().map_err(Failure::call)?;
+    check_files(&files).map_err(Failure::call)?;
     let watched = progress::for_stderr(context.quiet || context.json);
     watched.rows_expected((job.inputs.len() * geometry.height()) as u64);
     let board = if arguments.model {

@@ -7,11 +7,12 @@ use halfrow_program::number::whole_number;
 use serde_json::json;
 
 use super::document::tell_result;
-use super::files::{Files, make_folder};
+use super::files::{check_files, make_folder};
 use super::optics::LensArguments;
 use super::{CallError, Context, Failure};
 use crate::console;
 use crate::exit::Exit;
+use halfrow::call::Files;
 use halfrow::frames::{self, Builtin};
 
 #[derive(Debug, Args)]
@@ -41,12 +42,13 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let chosen: Vec<_> = Builtin::ALL.into_iter().filter(is_wanted).collect();
     let folder = &arguments.output;
     let places: Vec<_> = chosen.iter().map(|frame| folder.join(format!("{}.pgm", frame.name()))).collect();
-    Files::new(arguments.overwrite)
-        .reads(&context.settings_file)
-        .reads(arguments.lens.file())
-        .writes_into("--output", &places)
-        .check()
-        .map_err(Failure::call)?;
+    check_files(
+        &Files::new(arguments.overwrite)
+            .reads(&context.settings_file)
+            .reads(arguments.lens.file())
+            .writes_into("--output", &places),
+    )
+    .map_err(Failure::call)?;
     make_folder(folder).map_err(Failure::error)?;
     let mut written = Vec::new();
     for (builtin, path) in chosen.iter().zip(places) {

@@ -6,7 +6,7 @@
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
-use super::CallError;
+use halfrow::call::{self, VoidOption};
 
 /// The options of a call by their ids, which are those of clap, and where their values come from.
 ///
@@ -62,24 +62,6 @@ const LENS: [&str; 10] = [
     "centre_y",
 ];
 
-/// What a recording says of its run beside the options that make tables. Its time limit is on the board's clock, which
-/// leaves --timeout that of this computer.
-const RECORDED: [&str; 13] = [
-    "frame",
-    "tables",
-    "kernel",
-    "phase",
-    "raw",
-    "fit",
-    "repeat",
-    "at_speed",
-    "fail_fast",
-    "within",
-    "seed",
-    "take_over",
-    "retry_limit",
-];
-
 /// The options of a board.
 const BOARD: [&str; 4] = ["board", "timeout", "retry_limit", "take_over"];
 
@@ -87,10 +69,10 @@ impl Decider {
     /// The options that are of no use beside it.
     fn voids(self) -> Vec<&'static str> {
         let options: &[&[&str]] = match self {
-            Self::Recording => &[&RECORDED, &["reconnect"], &IN_TABLE_FILES, &LENS],
-            Self::Record => &[&["reconnect"]],
+            Self::Recording => &[call::BESIDE_RECORDING.options, &IN_TABLE_FILES, &LENS],
+            Self::Record => &[call::WHILE_RECORDED.options],
             Self::Tables => &[&LENS],
-            Self::Within => &[&["frame", "repeat"]],
+            Self::Within => &[call::WITHIN.options],
             Self::Model | Self::NoBoardItem => &[&BOARD],
             Self::NoPhotographItem => &[&["images"]],
             Self::NoFigure4 => &[&["photograph", "lines"]],
@@ -104,15 +86,10 @@ impl Decider {
     /// Why, behind the option's name.
     fn reason(self) -> &'static str {
         match self {
-            Self::Recording => {
-                "does nothing beside a recording, which holds what was streamed, and how; leave it out, or judge a \
-                 board"
-            }
-            Self::Record => {
-                "does nothing beside --record, since a recording is of one link; give one of them"
-            }
+            Self::Recording => call::BESIDE_RECORDING.reason,
+            Self::Record => call::WHILE_RECORDED.reason,
             Self::Tables => "is for making tables, and the file of --tables holds some; give one of them",
-            Self::Within => "does nothing beside --within, which chooses the frames; give one of them",
+            Self::Within => call::WITHIN.reason,
             Self::Model => "does nothing beside --model, which corrects without a board; give one of them",
             Self::NoFrameFile => "is for frames that are files, and none is; leave it out, or name a file",
             Self::Headerless => "does nothing beside --raw, whose samples are never scaled; give one of them",
@@ -144,9 +121,9 @@ impl Given {
 
     /// Refuses a flag that is void beside `decider`. Of what the environment or the settings, which have the keys
     /// `settings`, say in vain is only told in the log.
-    pub(super) fn refuse_void(&self, decider: Decider, settings: &[&str]) -> Result<(), CallError> {
+    pub(super) fn refuse_void(&self, decider: Decider, settings: &[&str]) -> Result<(), VoidOption> {
         if let Some(option) = self.void_flag(decider) {
-            return Err(CallError::VoidOption { option, reason: decider.reason() });
+            return Err(VoidOption { option, reason: decider.reason() });
         }
         for id in decider.voids() {
             let of_variable = self.variables.iter().any(|variable| variable == id);

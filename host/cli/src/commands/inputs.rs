@@ -9,10 +9,10 @@ use super::given::{Decider, Given, yes_or_no};
 use super::{CallError, Failure};
 use crate::console;
 use crate::settings::Settings;
-use anyhow::ensure;
 use clap::Args;
-use halfrow_model::{Frame, Geometry, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH, Phase};
+use halfrow_model::{Frame, Geometry, Phase};
 
+use halfrow::call::check_size;
 use halfrow::frames::{
     self, Builtin, Decoded, Fitting, PictureSize, RawGeometry, RawLayout, ReadOptions, RowReader, Scene,
 };
@@ -154,34 +154,6 @@ fn read_frame(path: &Path, how: &ReadOptions, geometry: &Geometry) -> anyhow::Re
     let decoded = frames::read_fitted(path, how)?;
     check_size(path, (decoded.frame.width(), decoded.frame.height()), how, geometry)?;
     Ok(decoded)
-}
-
-/// Refuses raw samples of another size; of pictures in colour, their reader did.
-fn check_size(
-    path: &Path,
-    (width, height): (usize, usize),
-    how: &ReadOptions,
-    geometry: &Geometry,
-) -> anyhow::Result<()> {
-    let remedy = match Geometry::centred(width, height, geometry.depth()) {
-        _ if matches!(how.size, PictureSize::Fitted(..)) => {
-            "raw samples are never scaled; give a picture in colour, or tables of the frame's size".to_owned()
-        }
-        Ok(_) => format!(
-            "make tables of the frame's size with `halfrow tables --width {width} --height {height}`, or give these \
-             options here"
-        ),
-        Err(_) => format!(
-            "no tables can have the frame's size, since the datapath takes an even number of columns from \
-             {MIN_WIDTH} to {MAX_WIDTH} and up to {MAX_HEIGHT} rows; scale or crop the picture"
-        ),
-    };
-    let (columns, rows) = (geometry.width(), geometry.height());
-    ensure!(
-        (width, height) == (columns, rows),
-        CallError::OtherSize { path: path.to_owned(), width, height, columns, rows, remedy }
-    );
-    Ok(())
 }
 
 /// The file's SHA-256.

@@ -7,11 +7,12 @@ use halfrow_model::{GridResidual, GridResiduals, GridShape, TableError};
 use serde_json::{Map, Value, json};
 
 use super::document::print_result;
-use super::files::Files;
+use super::files::check_files;
 use super::optics::LensArguments;
 use super::{Context, Failure, print};
 use crate::console;
 use crate::exit::Exit;
+use halfrow::call::Files;
 use halfrow::frames::{self, HeatMap};
 use halfrow::optics::{Optics, OpticsError, TablesBy};
 use halfrow_lab::{Residuals, Spread};
@@ -30,12 +31,13 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     arguments.map.as_deref().map_or(Ok(()), frames::check_png).map_err(Failure::call)?;
-    Files::new(arguments.overwrite)
-        .reads(&context.settings_file)
-        .reads(arguments.lens.file())
-        .writes("--map", &arguments.map)
-        .check()
-        .map_err(Failure::call)?;
+    check_files(
+        &Files::new(arguments.overwrite)
+            .reads(&context.settings_file)
+            .reads(arguments.lens.file())
+            .writes("--map", &arguments.map),
+    )
+    .map_err(Failure::call)?;
     let optics = arguments.lens.optics()?;
     let figures = Figures::of(&optics).map_err(Failure::call)?;
     let map = arguments.map.as_ref().zip(figures.used());

@@ -8,13 +8,14 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::board::{self, BoardArguments, Replays};
 use super::document::tell_result;
-use super::files::Files;
+use super::files::check_files;
 use super::given::{Decider, Given};
 use super::{CallError, Context, Failure};
 use crate::exit::Exit;
 use crate::settings::Settings;
 use crate::{console, progress};
 use halfrow::board::Board;
+use halfrow::call::Files;
 use halfrow::frames::preview::RgbImage;
 use halfrow_lab::paper::{
     self, Claim, Exhibit, Folder, Item, MarkedError, MarkedPhotograph, Material, PaperError, TestedBoard,
@@ -172,13 +173,13 @@ impl Arguments {
                 self.given.refuse_void(decider, &context.settings.keys())?;
             }
         }
-        Files::new(self.overwrite)
+        let files = Files::new(self.overwrite)
             .reads(&context.settings_file)
             .reads([&self.synthesis])
             .reads(&self.photograph)
             .reads(&self.lines)
-            .writes_into("--output", Folder::files(&self.output, items))
-            .check()
+            .writes_into("--output", Folder::files(&self.output, items));
+        Ok(check_files(&files)?)
     }
 
     fn photographs(&self, items: &[Item]) -> anyhow::Result<Vec<RgbImage>> {

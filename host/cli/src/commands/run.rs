@@ -8,15 +8,16 @@ use clap::Args;
 use halfrow_program::number::{any, whole_number};
 
 use super::board::BoardArguments;
-use super::files::Files;
+use super::files::check_files;
 use super::given::{Given, yes_or_no};
 use super::inputs::file_hash;
 use super::optics::{self, LensArguments};
 use super::table_file::{NamedTables, TableArgument};
-use super::{CallError, Context, Failure};
+use super::{Context, Failure};
 use crate::exit::Exit;
 use crate::settings::Settings;
 use crate::{console, flags, text};
+use halfrow::call::{self, Files};
 use halfrow::link::{Class, OpenError, RecordingFile};
 use halfrow::optics::Chosen;
 use halfrow::report::{self, ReportFolder};
@@ -162,15 +163,16 @@ impl RunArguments {
         let settings = &context.settings;
         let overwrite = self.overwrite.or(settings.overwrite).unwrap_or(false);
         let report = self.report_path(settings);
-        Files::new(overwrite)
-            .reads(&context.settings_file)
-            .reads(inputs)
-            .reads_kernel(self.kernel(settings))
-            .reads(self.board.replayed(settings)?)
-            .writes_claimed("--record", record)
-            .writes_report("--report", report)
-            .check()
-            .map_err(Failure::call)?;
+        check_files(
+            &Files::new(overwrite)
+                .reads(&context.settings_file)
+                .reads(inputs)
+                .reads_kernel(self.kernel(settings))
+                .reads(self.board.replayed(settings)?)
+                .writes_claimed("--record", record)
+                .writes_report("--report", report),
+        )
+        .map_err(Failure::call)?;
         let report = report.map(|path| ReportFolder::prepare(path, overwrite)).transpose();
         let recording = record.map(|path| RecordingFile::prepare(path, overwrite)).transpose();
         Ok(Outputs { report: report.map_err(Failure::call)?, recording: recording.map_err(Failure::call)? })
@@ -179,8 +181,7 @@ impl RunArguments {
 
 /// The time of an `option` in seconds.
 pub(super) fn seconds(option: &'static str, seconds: Option<f64>) -> Result<Option<Duration>, Failure> {
-    let time = seconds.map(Duration::try_from_secs_f64).transpose();
-    time.map_err(|_| Failure::call(CallError::Seconds { option }))
+    call::seconds(option, seconds).map_err(Failure::call)
 }
 
 /// Writes the report into its folder, if there is one, and prints it.

@@ -7,11 +7,12 @@ use clap::Args;
 use serde_json::json;
 
 use super::document::tell_result;
-use super::files::Files;
+use super::files::check_files;
 use super::optics::{self, LensArguments};
 use super::{CallError, Context, Failure};
 use crate::console;
 use crate::exit::Exit;
+use halfrow::call::Files;
 use halfrow::tables::{TableFile, mem};
 use halfrow_frames::written_aside::WriteAsideError;
 
@@ -31,13 +32,14 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let format = Format::of(&arguments.output).map_err(Failure::call)?;
-    Files::new(arguments.overwrite)
-        .reads(&context.settings_file)
-        .reads(arguments.lens.file())
-        .reads_kernel(Some(&arguments.kernel))
-        .writes("--output", format.places(&arguments.output))
-        .check()
-        .map_err(Failure::call)?;
+    check_files(
+        &Files::new(arguments.overwrite)
+            .reads(&context.settings_file)
+            .reads(arguments.lens.file())
+            .reads_kernel(Some(&arguments.kernel))
+            .writes("--output", format.places(&arguments.output)),
+    )
+    .map_err(Failure::call)?;
     let chosen = optics::choose(None, &arguments.lens, Some(&arguments.kernel))?;
     let geometry = *chosen.tables.geometry();
     chosen.tables.check_ring(geometry.width().next_power_of_two()).map_err(Failure::call)?;

@@ -15,6 +15,7 @@ use super::{Context, Failure};
 use crate::exit::Exit;
 use crate::progress;
 use crate::settings::Settings;
+use halfrow::call;
 use halfrow::frames::{Builtin, check_regular};
 use halfrow::link::{self, Candidate, Lost, Recorder, Recording};
 use halfrow::optics::Chosen;
@@ -55,7 +56,7 @@ pub(super) struct Arguments {
 }
 
 fn within(text: &str) -> Result<f64, String> {
-    let seconds = text.parse().ok().filter(|&seconds: &f64| seconds > 0.0 && seconds <= 1e6);
+    let seconds = text.parse().ok().filter(|&seconds| call::within(seconds).is_some());
     seconds.ok_or_else(|| "give a number of seconds, more than 0 and at most 1000000".to_owned())
 }
 
@@ -175,7 +176,7 @@ impl Arguments {
             frames,
             repeat: self.repeat,
             at_speed: seconds("--at-speed", self.at_speed.or(settings.at_speed))?,
-            within: seconds("--within", self.within)?,
+            within: self.within.and_then(call::within),
             fail_fast: self.fail_fast,
             seed: self.run.seed(settings),
             ..chosen.plan(phase)

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{bail, ensure};
 
 use super::super::CallError;
-use super::super::files::{Files, make_folder};
+use super::super::files::make_folder;
 use super::super::inputs::FrameName;
+use halfrow::call::Files;
 use halfrow::frames::{Format, check_png};
 use halfrow_frames::written_aside::Place;
 

@@ -1,4 +1,4 @@
-//! The codes of errors of files, of what is in them, and of the model's own values.
+//! The codes of errors of calls, of files, of what is in them, and of the model's own values.
 
 use halfrow_model::{
     CameraError, CorrectError, FrameError, GeometryError, GridRoomError, GridShapeError, KernelError,
@@ -6,6 +6,7 @@ use halfrow_model::{
 };
 
 use super::codes;
+use crate::call::{FilesError, FrameOfOtherSize, NoTime, VoidOption};
 use crate::frames::{
     DecodeError, EncodeError, PackingError, ReadError, UnknownBuiltin, UnknownFormat, UnknownLayout,
     WriteError,
@@ -80,6 +81,16 @@ codes! {
         Junit => "report-junit-not-encoded",
         Pictures => "report-pictures-not-encoded",
     }
+    FilesError {
+        InputOverwritten [path, option] => "input-would-be-overwritten",
+        OutputsShare [first, second, path] => "outputs-share-a-file",
+        Exists [path, option] => "file-in-folder-exists",
+        NotAFile [path, option] => "file-in-folder-is-no-file",
+        FolderClosed [path, option] => "folder-takes-no-files",
+        FolderUnusable [path, option] => "folder-unusable",
+        = File,
+        = Report,
+    }
     TableFileError {
         Io [path] => "table-file-unreadable",
         Datapath [path] => "table-file-of-other-datapath",
@@ -150,6 +161,12 @@ codes! {
         = Shape,
         = Lens,
     }
+    ;
+    VoidOption [option] => "option-without-effect"
+    ;
+    NoTime [option] => "option-is-no-time"
+    ;
+    FrameOfOtherSize [path, width, height, columns, rows] => "frame-of-other-size"
     ;
     WrongShape [columns, rows, width, height] => "lens-of-other-shape"
     ;

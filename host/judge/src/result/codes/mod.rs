@@ -131,7 +131,9 @@ macro_rules! codes {
                         $( parameters.insert(stringify!($name).to_owned(), $name.parameter()); )?
                         Some($crate::result::codes::Coded { code: $code.to_owned(), parameters })
                     } )*
-                    $( $( #[$attribute] )* $error::$inner(inner) => lookup(inner), )*
+                    $( $( #[$attribute] )* $error::$inner(inner) => {
+                        lookup(inner).or_else(|| $crate::result::codes::lookup(inner))
+                    } )*
                 };
             } )*
             $( let boxed = || error.downcast_ref::<Box<$whole>>().map(|error| &**error);

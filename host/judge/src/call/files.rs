@@ -1,0 +1,249 @@
+//! What a command reads and what it writes, looked at before anything is done.
+
+use std::collections::{BTreeSet, HashMap};
+use std::ffi::OsStr;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::kernels::NamedKernel;
+use crate::report::{self, ReportError};
+use halfrow_frames::written_aside::{self, Place, WriteAsideError, folder_of};
+
+/// A file or folder that a call must not write, or cannot.
+#[derive(Debug, Error)]
+pub enum FilesError {
+    /// An input that would be overwritten.
+    #[error(
+        "{} is read by this call, and {option} would write there; an input is never overwritten, so name another place \
+         with {option}", path.display()
+    )]
+    InputOverwritten {
+        /// The input.
+        path: PathBuf,
+        /// The option that names the output.
+        option: &'static str,
+    },
+    /// Two outputs in one place.
+    #[error("{first} and {second} would both be written to {}; part them", path.display())]
+    OutputsShare {
+        /// The option that names the one.
+        first: &'static str,
+        /// The option that names the other.
+        second: &'static str,
+        /// The place.
+        path: PathBuf,
+    },
+    /// A file of a folder that may not be replaced.
+    #[error("{} exists; allow it to be overwritten, or name another folder with {option}", path.display())]
+    Exists {
+        /// The file.
+        path: PathBuf,
+        /// The option that names the folder.
+        option: &'static str,
+    },
+    /// What stands in the place of a file of a folder.
+    #[error("{} is no regular file, and so is not replaced; name another folder with {option}", path.display())]
+    NotAFile {
+        /// What is there.
+        path: PathBuf,
+        /// The option that names the folder.
+        option: &'static str,
+    },
+    /// A folder that takes no files.
+    #[error("cannot write into the folder {}; name another with {option}", path.display())]
+    FolderClosed {
+        /// The folder.
+        path: PathBuf,
+        /// The option that names it.
+        option: &'static str,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// A file's folder that is missing or takes no files.
+    #[error(
+        "nothing can be written into the folder {}; check that it exists and is writable, or name another place with \
+         {option}", path.display()
+    )]
+    FolderUnusable {
+        /// The folder.
+        path: PathBuf,
+        /// The option that names the file.
+        option: &'static str,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// A file that is there already, or is none.
+    #[error(transparent)]
+    File(#[from] WriteAsideError),
+    /// A report's folder that may not be replaced.
+    #[error(transparent)]
+    Report(#[from] ReportError),
+}
+
+/// The files and folders of a call.
+#[derive(Debug, Default)]
+pub struct Files {
+    overwrite: bool,
+    inputs: Vec<PathBuf>,
+    outputs: Vec<Output>,
+}
+
+/// What is written, and by which option it is named.
+#[derive(Debug)]
+struct Output {
+    option: &'static str,
+    path: PathBuf,
+    shape: Shape,
+}
+
+/// How an output lies in its folder.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Shape {
+    /// A file that the call names.
+    File,
+    /// A file that the call names and that is claimed before the board is opened, which is when one that is there is refused.
+    Claimed,
+    /// A file in a folder that the call names, which is made if need be.
+    InFolder,
+    /// A folder that is replaced as a whole.
+    Report,
+}
+
+impl Files {
+    /// Those of a call that may overwrite its outputs, or not.
+    #[must_use]
+    pub fn new(overwrite: bool) -> Self {
+        Self { overwrite, ..Self::default() }
+    }
+
+    /// Adds what is read.
+    #[must_use]
+    pub fn reads<P: Into<PathBuf>>(mut self, paths: impl IntoIterator<Item = P>) -> Self {
+        self.inputs.extend(paths.into_iter().map(Into::into));
+        self
+    }
+
+    /// Adds a kernel that is read if it is not one with a name.
+    #[must_use]
+    pub fn reads_kernel(self, kernel: Option<&OsStr>) -> Self {
+        self.reads(
+            kernel.filter(|kernel| kernel.to_str().is_none_or(|name| name.parse::<NamedKernel>().is_err())),
+        )
+    }
+
+    /// Adds files that `option` names.
+    #[must_use]
+    pub fn writes<P: Into<PathBuf>>(self, option: &'static str, paths: impl IntoIterator<Item = P>) -> Self {
+        self.adds(option, Shape::File, paths)
+    }
+
+    /// Adds a file that `option` names and that is claimed behind this.
+    #[must_use]
+    pub fn writes_claimed(self, option: &'static str, path: Option<&Path>) -> Self {
+        self.adds(option, Shape::Claimed, path)
+    }
+
+    /// Adds files in a folder that `option` names.
+    #[must_use]
+    pub fn writes_into<P: Into<PathBuf>>(
+        self,
+        option: &'static str,
+        paths: impl IntoIterator<Item = P>,
+    ) -> Self {
+        self.adds(option, Shape::InFolder, paths)
+    }
+
+    /// Adds a report's folder that `option` names.
+    #[must_use]
+    pub fn writes_report(self, option: &'static str, path: Option<&Path>) -> Self {
+        self.adds(option, Shape::Report, path)
+    }
+
+    fn adds<P: Into<PathBuf>>(
+        mut self,
+        option: &'static str,
+        shape: Shape,
+        paths: impl IntoIterator<Item = P>,
+    ) -> Self {
+        let outputs = paths.into_iter().map(|path| Output { option, path: path.into(), shape });
+        self.outputs.extend(outputs);
+        self
+    }
+
+    /// Whether everything can be written as far as can be told, no input is written to, and no two outputs are one. What runs
+    /// that were killed left in the outputs' folders is cleared; where they had recorded something, it is kept, and returned under
+    /// which name.
+    ///
+    /// # Errors
+    /// [`FilesError`]
+    pub fn check(&self) -> Result<Vec<PathBuf>, FilesError> {
+        for output in &self.outputs {
+            output.check(self.overwrite)?;
+        }
+        self.check_apart()?;
+        self.check_folders()
+    }
+
+    fn check_apart(&self) -> Result<(), FilesError> {
+        let inputs: HashMap<_, _> = self.inputs.iter().map(|input| (Place::of(input), input)).collect();
+        let mut seen = HashMap::new();
+        for output in &self.outputs {
+            let place = Place::of(&output.path);
+            let is_inside = |other: &Path| output.shape == Shape::Report && place.holds(other);
+            let input = inputs.get(&place).copied();
+            if let Some(input) = input.or_else(|| self.inputs.iter().find(|input| is_inside(input))) {
+                return Err(FilesError::InputOverwritten { path: input.clone(), option: output.option });
+            }
+            let other =
+                self.outputs.iter().find(|other| other.shape != Shape::Report && is_inside(&other.path));
+            if let Some(first) = seen.insert(place.clone(), output.option).or(other.map(|other| other.option))
+            {
+                return Err(FilesError::OutputsShare {
+                    first,
+                    second: output.option,
+                    path: output.path.clone(),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn check_folders(&self) -> Result<Vec<PathBuf>, FilesError> {
+        let folders: BTreeSet<_> = self
+            .outputs
+            .iter()
+            .map(|output| (folder_of(&output.path), output.shape, output.option))
+            .collect();
+        let mut kept = Vec::new();
+        for (folder, shape, option) in folders {
+            let checked = written_aside::check_folder(folder, shape == Shape::InFolder);
+            let path = folder.to_owned();
+            checked.map_err(|source| match shape {
+                Shape::InFolder => FilesError::FolderClosed { path, option, source },
+                Shape::File | Shape::Claimed | Shape::Report => {
+                    FilesError::FolderUnusable { path, option, source }
+                }
+            })?;
+            kept.extend(written_aside::clear(folder));
+        }
+        Ok(kept)
+    }
+}
+
+impl Output {
+    fn check(&self, overwrite: bool) -> Result<(), FilesError> {
+        let (path, option) = (self.path.clone(), self.option);
+        match self.shape {
+            Shape::Report => Ok(report::check_folder(&self.path, overwrite)?),
+            Shape::File => Ok(written_aside::check(&self.path, overwrite)?),
+            Shape::Claimed => Ok(written_aside::check(&self.path, true)?),
+            Shape::InFolder => match written_aside::check(&self.path, overwrite) {
+                Err(WriteAsideError::Exists { .. }) => Err(FilesError::Exists { path, option }),
+                Err(WriteAsideError::NotAFile { .. }) => Err(FilesError::NotAFile { path, option }),
+                checked => Ok(checked?),
+            },
+        }
+    }
+}

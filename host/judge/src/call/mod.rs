@@ -1,0 +1,13 @@
+//! A call that judges boards or makes files, whoever makes it: what it reads and writes, and which of its options say something.
+//!
+//! Options go by the names that the caller gives them.
+
+mod files;
+mod options;
+mod size;
+
+pub use files::{Files, FilesError};
+pub use options::{
+    BESIDE_RECORDING, FRAMES, NoTime, VoidOption, Voided, WHILE_RECORDED, WITHIN, seconds, within,
+};
+pub use size::{FrameOfOtherSize, check_size};

@@ -1,0 +1,103 @@
+//! Options that are times, and options that do nothing beside another thing.
+
+use std::time::Duration;
+
+use thiserror::Error;
+
+/// The longest time that a run can be asked to keep within, in seconds.
+const LONGEST: f64 = 1e6;
+
+/// An option beside another thing that decides in its place.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{option} {reason}")]
+pub struct VoidOption {
+    /// The option, as the caller names it.
+    pub option: String,
+    /// Why it does nothing, and what to do.
+    pub reason: &'static str,
+}
+
+/// A number of seconds that is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("{option} takes a number of seconds; give one from 0 to 10^19")]
+pub struct NoTime {
+    /// The option, as the caller names it.
+    pub option: &'static str,
+}
+
+/// Options that do nothing beside what decides in their place.
+#[derive(Clone, Copy, Debug)]
+pub struct Voided {
+    /// The options, in small letters with `_` between words.
+    pub options: &'static [&'static str],
+    /// Why, behind an option's name, and what to do.
+    pub reason: &'static str,
+}
+
+/// The frames that are streamed: what a call of `verify` names several of.
+pub const FRAMES: &str = "frame";
+
+/// A recording that is judged again. Its time limit is on the board's clock, which leaves `timeout` that of this computer.
+pub const BESIDE_RECORDING: Voided = Voided {
+    options: &[
+        FRAMES,
+        "tables",
+        "kernel",
+        "phase",
+        "raw",
+        "fit",
+        "repeat",
+        "at_speed",
+        "fail_fast",
+        "within",
+        "seed",
+        "take_over",
+        "retry_limit",
+        "reconnect",
+    ],
+    reason: "does nothing beside a recording, which holds what was streamed, and how; leave it out, or judge a board",
+};
+
+/// A recording that is made.
+pub const WHILE_RECORDED: Voided = Voided {
+    options: &["reconnect"],
+    reason: "does nothing beside a recording to make, which is of one link; give one of them",
+};
+
+/// A time, for which the frames are chosen.
+pub const WITHIN: Voided = Voided {
+    options: &[FRAMES, "repeat"],
+    reason: "does nothing beside a time to judge within, for which the frames are chosen; give one of them",
+};
+
+impl Voided {
+    /// Refuses the first of the options that the call gives, as `is_given` says, and which it calls `named`.
+    ///
+    /// # Errors
+    /// [`VoidOption`]
+    pub fn refuse(
+        &self,
+        is_given: impl Fn(&str) -> bool,
+        named: impl FnOnce(&str) -> String,
+    ) -> Result<(), VoidOption> {
+        match self.options.iter().find(|option| is_given(option)) {
+            Some(option) => Err(VoidOption { option: named(option), reason: self.reason }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The time of an `option` in seconds.
+///
+/// # Errors
+/// [`NoTime`] when it is below 0, not finite, or beyond all measure.
+pub fn seconds(option: &'static str, seconds: Option<f64>) -> Result<Option<Duration>, NoTime> {
+    seconds.map(Duration::try_from_secs_f64).transpose().map_err(|_| NoTime { option })
+}
+
+/// The time to judge within that `seconds` are: more than 0 and at most 1,000,000; none of any other.
+#[must_use]
+pub fn within(seconds: f64) -> Option<Duration> {
+    let is_time = seconds > 0.0 && seconds <= LONGEST;
+    is_time.then(|| Duration::from_secs_f64(seconds))
+}

@@ -1,0 +1,53 @@
+//! Frames that are as large as the tables that they are for.
+
+use std::path::{Path, PathBuf};
+
+use halfrow_model::{Geometry, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
+use thiserror::Error;
+
+use crate::frames::{PictureSize, ReadOptions};
+
+/// A frame of another size than the tables.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{} is {width} x {height}, and the tables are for {columns} x {rows}; {remedy}", path.display())]
+pub struct FrameOfOtherSize {
+    /// The frame's file, or what the call names it by.
+    pub path: PathBuf,
+    /// The frame's columns.
+    pub width: usize,
+    /// The frame's rows.
+    pub height: usize,
+    /// The columns that the tables are for.
+    pub columns: usize,
+    /// The rows that the tables are for.
+    pub rows: usize,
+    /// What to do.
+    pub remedy: String,
+}
+
+/// Refuses a frame of `width` x `height`, called `path` and read as `how` says, that does not fit `geometry`.
+///
+/// # Errors
+/// [`FrameOfOtherSize`]
+pub fn check_size(
+    path: &Path,
+    (width, height): (usize, usize),
+    how: &ReadOptions,
+    geometry: &Geometry,
+) -> Result<(), FrameOfOtherSize> {
+    let (columns, rows) = (geometry.width(), geometry.height());
+    if (width, height) == (columns, rows) {
+        return Ok(());
+    }
+    let remedy = match Geometry::centred(width, height, geometry.depth()) {
+        _ if matches!(how.size, PictureSize::Fitted(..)) => {
+            "raw samples are never scaled; give a picture in colour, or tables of the frame's size".to_owned()
+        }
+        Ok(_) => "make tables of the frame's size".to_owned(),
+        Err(_) => format!(
+            "no tables can have the frame's size, since the datapath takes an even number of columns from \
+             {MIN_WIDTH} to {MAX_WIDTH} and up to {MAX_HEIGHT} rows; scale or crop the picture"
+        ),
+    };
+    Err(FrameOfOtherSize { path: path.to_owned(), width, height, columns, rows, remedy })
+}
