@@ -60,6 +60,15 @@ fn a_run_is_a_document_whatever_it_comes_to() {
 }
 
 #[test]
+fn a_run_of_the_mock_that_checks_a_shift_is_a_document_and_no_judgement() {
+    let shift = "[shift]\ngood = \"CAT90001\"\nbad = \"HR:MOCK\"\nhours = 8\n[tables]";
+    let station = Station::with(&PLAN.replace("[tables]", shift));
+    let [plan, data] = [station.path("plan.toml"), station.data()].map(|path| path.display().to_string());
+    let said = document(&did(&["run", "--mock", "--json", "--plan", &plan, "--data", &data]));
+    assert_eq!(said["nth"], 0, "{said:#}");
+}
+
+#[test]
 fn what_has_no_verdict_is_a_document_with_a_code() {
     let station = Station::with(PLAN);
     let said = document(&run(&station, "CAT1", "mock"));
