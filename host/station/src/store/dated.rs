@@ -7,7 +7,7 @@ use crate::ids;
 use crate::record::RunHead;
 
 /// How far a date may be off: less than a board takes from one station to another.
-const TOLERATED_MS: i64 = 5 * 60_000;
+pub(super) const TOLERATED_MS: i64 = 5 * 60_000;
 const MINUTE_MS: u64 = 60_000;
 
 impl Store {

@@ -3,6 +3,7 @@
 use halfrow::Verdict;
 
 use super::database::{DatabaseError, Row, values};
+use super::dated::TOLERATED_MS;
 use super::{Folder, StoreError, statements as sql};
 use crate::plan::mock::BARCODE;
 use crate::plan::{Bad, Plan, Production, Shift};
@@ -59,10 +60,6 @@ struct Judged {
     target: String,
 }
 
-/// How far in the future a judgement may be dated, in milliseconds, as by a clock that was set right a little. When one was made that is
-/// dated further, nobody knows.
-const ASTRAY_MS: i64 = 300_000;
-
 impl Folder {
     /// Whether a run of this serial number that begins at `now_ms` can count as production: it is of a product, and its lane was
     /// checked in this shift.
@@ -90,10 +87,11 @@ impl Folder {
             let of = values![station, lane, plan_sha256, product, &serial, since];
             let last =
                 self.read("to tell who checked a shift", |from| from.first(sql::LAST_JUDGEMENT, of, judged))?;
+            // When one was made that is dated further ahead, nobody knows.
             let last = last.filter(|last| {
-                let is_astray = last.started_ms > now_ms.saturating_add(ASTRAY_MS);
+                let is_astray = last.started_ms > now_ms.saturating_add(TOLERATED_MS);
                 if is_astray {
-                    until_ms = until_ms.min(last.started_ms.saturating_sub(ASTRAY_MS + 1));
+                    until_ms = until_ms.min(last.started_ms.saturating_sub(TOLERATED_MS + 1));
                 }
                 !is_astray
             });

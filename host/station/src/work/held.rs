@@ -16,7 +16,9 @@ const HELD: Duration = Duration::from_millis(LEASE_MS.unsigned_abs());
 const RENEWED: Duration = Duration::from_millis(LEASE_MS.unsigned_abs() / 3);
 /// How soon it is tried again when the plant did not answer.
 const AGAIN: Duration = Duration::from_secs(1);
-/// What is ended needs so long until nothing is asked of the board any more.
+/// How long in front of the end of its lease something is taken for lost: a lane that heeds its station asks nothing of the board any
+/// more by then. One that does not is killed some seconds later, when somebody else may have the board; the board itself refuses its
+/// packets then, for its session is over.
 const ENDS: Duration = Duration::from_secs(4);
 
 /// What is held.
