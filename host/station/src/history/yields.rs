@@ -12,6 +12,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use halfrow::Verdict;
 use jiff::civil::Date;
 use jiff::{SignedDuration, Timestamp, tz};
 use serde::Serialize;
@@ -277,7 +278,6 @@ impl Again {
 
 /// The units that were judged more than once.
 fn again(of: &Snapshot, plans: &BTreeMap<String, PlanName>) -> Result<Vec<Again>, StoreError> {
-    let is_pass = |verdict: &str| verdict == halfrow::Verdict::Pass.to_string();
     let rows = of.rows("to tell what was judged again", statements::RETESTS, &[], |row| {
         let (hash, first_ms): (String, i64) = (row.get(1)?, row.get(6)?);
         let plan = plans.get(&hash).cloned().ok_or(DatabaseError::Dangling { what: "a plan" })?;
@@ -288,10 +288,10 @@ fn again(of: &Snapshot, plans: &BTreeMap<String, PlanName>) -> Result<Vec<Again>
             judgements: count(row, 4)?,
             first: row.get(5)?,
             first_ms,
-            first_passed: is_pass(&row.get::<String>(7)?),
+            first_passed: row.get::<Verdict>(7)? == Verdict::Pass,
             last: row.get(8)?,
             last_ms: row.get(9)?,
-            last_passed: is_pass(&row.get::<String>(10)?),
+            last_passed: row.get::<Verdict>(10)? == Verdict::Pass,
         })
     })?;
     Ok(rows)

@@ -45,11 +45,11 @@ impl Folder {
         if plan.again == Again::Allow || plan.production.is_reference(serial) {
             return Ok(None);
         }
-        let last: Option<(String, i64)> = self.read("to tell whether a unit passed", |from| {
+        let last: Option<(Verdict, i64)> = self.read("to tell whether a unit passed", |from| {
             let of = values![&plan.product, serial, &plan.sha256];
             from.first(sql::PASSED, of, |row| Ok((row.get(0)?, row.get(1)?)))
         })?;
-        let Some((_, ms)) = last.filter(|(verdict, _)| *verdict == Verdict::Pass.to_string()) else {
+        let Some((_, ms)) = last.filter(|(verdict, _)| *verdict == Verdict::Pass) else {
             return Ok(None);
         };
         let when =

@@ -35,6 +35,7 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use halfrow::Verdict;
 use rusqlite::{Connection, OpenFlags};
 use uuid::Uuid;
 
@@ -152,13 +153,13 @@ pub struct OpenRun {
 /// A verdict that the store has.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Stored {
-    /// The verdict, as it is written.
-    pub verdict: String,
+    /// The verdict.
+    pub verdict: Verdict,
     /// The exit code.
     pub exit_code: u8,
     /// The hash of the record.
     pub record_sha256: String,
-    /// The how-manieth judgement of this unit by this plan it is.
+    /// Which judgement of this unit under plans of this name it is, counted from 1; 0 of one that does not count.
     pub nth: i64,
 }
 
@@ -310,7 +311,7 @@ impl Store {
         let otherwise = || StoreError::ReadsOtherwise { run: run.to_owned() };
         let stored = self.folder.verdict_of(run)?.ok_or_else(otherwise)?;
         let record = Record::parse(&self.folder.blobs().get(&stored.record_sha256)?)?;
-        let is_same = stored.verdict == record.conclusion.verdict.to_string() && record.run.id == run;
+        let is_same = stored.verdict == record.conclusion.verdict && record.run.id == run;
         if is_same { Ok((stored, record)) } else { Err(otherwise()) }
     }
 

@@ -52,7 +52,7 @@ pub(super) fn finish(to: &mut dyn Database, record: &Record, hash: &str) -> Resu
     let changed = to.execute(
         sql::FINISH_RUN,
         values![
-            &ended.verdict.to_string(),
+            ended.verdict,
             ended.exit_code,
             ended.cause.name(),
             &ended.headline,

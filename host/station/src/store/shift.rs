@@ -55,7 +55,7 @@ pub struct Checked {
 /// The last judgement of a unit.
 struct Judged {
     run: String,
-    verdict: String,
+    verdict: Verdict,
     started_ms: i64,
     target: String,
 }
@@ -96,12 +96,12 @@ impl Folder {
                 !is_astray
             });
             // Behind a repair the good unit passes again, and what failed in front of that says nothing of the lane as it is now.
-            let last = last.filter(|last| last.verdict != expected.to_string() || last.run > before);
+            let last = last.filter(|last| last.verdict != expected || last.run > before);
             if let Some(Judged { started_ms, .. }) = &last {
                 until_ms = until_ms.min(started_ms.saturating_add(lasts));
             }
             match last {
-                Some(last) if last.verdict == expected.to_string() => before = last.run,
+                Some(last) if last.verdict == expected => before = last.run,
                 last => {
                     let why = why(shift, expected, last);
                     return Ok(Checked { owed: Some(Owed { serial, why }), until_ms });
@@ -125,14 +125,20 @@ fn why(shift: &Shift, expected: Verdict, last: Option<Judged>) -> Said {
             let barcode = BARCODE.to_owned();
             return match last {
                 None => Saying::MockDue { barcode },
-                Some(Judged { verdict, target, .. }) => Saying::MockWrong { target, verdict, barcode },
+                Some(Judged { verdict, target, .. }) => {
+                    Saying::MockWrong { target, verdict: verdict.to_string(), barcode }
+                }
             }
             .into();
         }
     };
     match (last, is_good) {
-        (Some(Judged { verdict, .. }), true) => Saying::GoodUnitWrong { serial, verdict },
-        (Some(Judged { verdict, .. }), false) => Saying::BadUnitWrong { serial, verdict },
+        (Some(Judged { verdict, .. }), true) => {
+            Saying::GoodUnitWrong { serial, verdict: verdict.to_string() }
+        }
+        (Some(Judged { verdict, .. }), false) => {
+            Saying::BadUnitWrong { serial, verdict: verdict.to_string() }
+        }
         (None, true) => Saying::GoodUnitDue { serial },
         (None, false) => Saying::BadUnitDue { serial },
     }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use halfrow::Verdict;
 use serde::Serialize;
 
 use super::audit::Line;
@@ -72,8 +73,8 @@ impl Store {
         }
         let stored = self.folder.verdict_of(run)?;
         let verdict = stored.ok_or_else(|| NoWaiver::NoRun { run: run.to_owned() })?.verdict;
-        if verdict != halfrow::Verdict::Fail.to_string() {
-            return Err(NoWaiver::NoFail { run: run.to_owned(), verdict });
+        if verdict != Verdict::Fail {
+            return Err(NoWaiver::NoFail { run: run.to_owned(), verdict: verdict.to_string() });
         }
         let at_ms = clock::now_ms();
         let (id, audit) = (ids::new(at_ms)?.to_string(), ids::new(at_ms)?.to_string());

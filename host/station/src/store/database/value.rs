@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use halfrow::Verdict;
+
 /// What stands in a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Value<'a> {
@@ -52,6 +54,16 @@ impl From<u8> for Value<'_> {
 impl From<f64> for Value<'_> {
     fn from(real: f64) -> Self {
         Self::Real(real)
+    }
+}
+
+impl From<Verdict> for Value<'_> {
+    fn from(verdict: Verdict) -> Self {
+        Self::Text(match verdict {
+            Verdict::Pass => "PASS",
+            Verdict::Fail => "FAIL",
+            Verdict::Error => "ERROR",
+        })
     }
 }
 
@@ -125,6 +137,14 @@ impl FromValue for f64 {
 
     fn from_value(value: Value<'_>) -> Option<Self> {
         if let Value::Real(real) = value { Some(real) } else { None }
+    }
+}
+
+impl FromValue for Verdict {
+    const EXPECTED: &'static str = "PASS, FAIL or ERROR";
+
+    fn from_value(value: Value<'_>) -> Option<Self> {
+        [Self::Pass, Self::Fail, Self::Error].into_iter().find(|verdict| value == Value::from(*verdict))
     }
 }
 

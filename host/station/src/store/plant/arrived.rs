@@ -92,7 +92,7 @@ fn enter(
             run.fence,
             run.started_ms,
             record.ended_ms,
-            &ended.verdict.to_string(),
+            ended.verdict,
             ended.exit_code,
             ended.cause.name(),
             &ended.headline,
