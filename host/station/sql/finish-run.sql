@@ -1,5 +1,5 @@
--- The n-th judgement of this unit under plans of this name; an ERROR uses up none. What is no unit has the number 0, and
--- counts nowhere.
+-- The n-th judgement of this unit under plans of this name; an ERROR uses up none. The mock that checks a shift is no
+-- unit: its runs have the number 0, and count nowhere.
 UPDATE run SET
   state = 'final', verdict = $1, exit_code = $2, cause = $3, headline = $4, ended_ms = $5, record_sha256 = $6,
   board_kind = $7, device = $8, build = $9,

@@ -97,7 +97,7 @@ pub struct RunLine {
     pub cause: Option<String>,
     /// It in one sentence.
     pub headline: Option<String>,
-    /// The how-manieth judgement of the unit under plans of this name; an ERROR has the number of the next one.
+    /// Which judgement of the unit under plans of this name it is, counted from 1; an ERROR has the number of the next one.
     pub nth: i64,
     /// Whether there is a waiver.
     pub waived: bool,

@@ -115,8 +115,8 @@ fn steps(job: &Job, plan: &Plan, target: &Target, heeded: &Heeded, tell: &(dyn F
                 common.first.clone_from(&record.board);
             }
             let passed = record.outcome == StepOutcome::Passed;
-            let may_pass_off = record.cause.may_pass_off() && heeded.stop.get().is_none();
-            let again = !passed && may_pass_off && attempt <= step.retries;
+            let is_retryable = record.cause.is_retryable() && heeded.stop.get().is_none();
+            let again = !passed && is_retryable && attempt <= step.retries;
             tell(&Message::Ended { step: Box::new(record) });
             if !again {
                 break passed;

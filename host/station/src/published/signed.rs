@@ -140,7 +140,7 @@ pub struct Statement {
     pub version: String,
     /// The plan's hash.
     pub sha256: String,
-    /// The how-manieth statement about plans of this name it is.
+    /// Which statement about plans of this name it is, counted from 1.
     pub number: i64,
     /// Who says so.
     pub operator: String,

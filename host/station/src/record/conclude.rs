@@ -63,7 +63,7 @@ impl Conclusion {
 
     /// A PASS says so when nobody could tell whether the board has the serial number that was scanned.
     #[must_use]
-    pub fn knowing(self, device: DeviceSeen) -> Self {
+    pub fn note_unchecked_identity(self, device: DeviceSeen) -> Self {
         if self.verdict == Verdict::Pass && device == DeviceSeen::NotChecked {
             return Self { headline: format!("{}; {IDENTITY_NOT_CHECKED}", self.headline), ..self };
         }

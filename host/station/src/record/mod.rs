@@ -81,7 +81,7 @@ pub struct RunHead {
     pub operator: String,
     /// The target string of the board.
     pub target: String,
-    /// The how-manieth holder of the lane this run is.
+    /// Which holder of the lane this run is, by a number that only grows.
     pub fence: i64,
     /// When it began, in milliseconds since 1970, UTC.
     pub started_ms: i64,
@@ -96,7 +96,7 @@ pub struct RunHead {
 pub struct JobClaim {
     /// The job, a UUID of version 7.
     pub id: String,
-    /// The how-manieth claim of it this is. A run counts while it is the last one.
+    /// The number of the claim, higher than that of every one before. A run counts if its claim is the last one.
     pub fence: i64,
 }
 

@@ -153,7 +153,7 @@ impl RunCause {
 
     /// Whether a step that ended so may be tried again: a FAIL never is.
     #[must_use]
-    pub const fn may_pass_off(self) -> bool {
+    pub const fn is_retryable(self) -> bool {
         matches!(self, Self::Link | Self::Station)
     }
 }
@@ -386,6 +386,6 @@ mod tests {
         assert_eq!(RunCause::of(Cause::Station, "golden-samples-wrong"), RunCause::Station);
         assert_eq!(RunCause::of(Cause::Stopped(StoppedBy::Person), "stopped-by-signal"), RunCause::Operator);
         assert_eq!(RunCause::of(Cause::Stopped(StoppedBy::Caller), "stopped-by-signal"), RunCause::Station);
-        assert!(!RunCause::Board.may_pass_off() && !RunCause::Refused.may_pass_off());
+        assert!(!RunCause::Board.is_retryable() && !RunCause::Refused.is_retryable());
     }
 }

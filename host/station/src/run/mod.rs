@@ -292,8 +292,8 @@ fn record(
     let ended_ms = clock::now_ms();
     let seconds = took.as_secs_f64();
     let measurements = judged(Maker::Run, &[("run.seconds", Some(seconds))], &selected.limits);
-    let conclusion =
-        Conclusion::of(selected.steps.len() as u32, &steps, &measurements, of_lane(end)).knowing(device);
+    let conclusion = Conclusion::of(selected.steps.len() as u32, &steps, &measurements, of_lane(end))
+        .note_unchecked_identity(device);
     let reached = steps.last().map_or(0, |step| step.seq);
     let rest = selected.steps.iter().zip(1..).filter(|(_, seq)| *seq > reached);
     steps.extend(rest.map(|(step, seq)| StepRecord::skipped(seq, step, ended_ms)));

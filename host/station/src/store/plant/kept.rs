@@ -13,7 +13,7 @@ pub struct Kept {
     pub run: String,
     /// Its unit.
     pub unit_id: String,
-    /// The how-manieth judgement of the unit it is; 0 of one that does not count.
+    /// Which judgement of the unit it is, counted from 1; 0 of one that does not count.
     pub nth: i64,
     /// The hash of its record.
     pub sha256: String,

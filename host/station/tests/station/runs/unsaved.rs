@@ -17,7 +17,7 @@ pub(crate) fn injected(station: &Station, serial: &str, inject: &str) -> Did {
         .into()
 }
 
-/// A system call of a run: its name, and the how-manieth of that name it is.
+/// A system call of a run: its name, and which of that name it is, counted from 1.
 pub(crate) type Call = (String, usize);
 
 /// The calls of these names that a run makes, in their order.
