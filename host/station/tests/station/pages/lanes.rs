@@ -77,6 +77,30 @@ fn news_begin_with_everything_and_have_no_gap_and_every_verdict_has_its_record()
 }
 
 #[test]
+fn a_verdict_is_drawn_with_what_its_lane_owes_beside_it() {
+    let shift = format!("[shift]\ngood = \"{}\"\nbad = \"HR:MOCK\"\nhours = 8\n[tables]", SERIALS[0]);
+    let station = Station::private(1).where_instead("plan.toml", "[tables]", &shift).where_instead(
+        "station.toml",
+        "mock,serial=1",
+        "mock,fault=stuck-data",
+    );
+    let serving = station.serve();
+    let mut live = Live::of(&serving);
+    serving.here().post("/scan", &[("text", SERIALS[0])]).with("accept", "application/json").send();
+    let drawn = loop {
+        let (_, name, said) = live.next();
+        if name == "lane" && !said["run"].is_null() {
+            break said;
+        }
+    };
+    assert_eq!((&drawn["state"], &drawn["verdict"]), (&"FAIL".into(), &"FAIL".into()), "{drawn}");
+    let html = drawn["html"].as_str().unwrap();
+    for said in ["put the board aside", "the good unit CA0131103628 came to FAIL", "samples differ"] {
+        assert!(html.contains(said), "{said}: {html}");
+    }
+}
+
+#[test]
 fn without_a_script_the_page_says_the_states_and_takes_a_serial_number() {
     let station = Station::private(1);
     let serving = station.serve();
