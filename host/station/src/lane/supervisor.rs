@@ -196,9 +196,13 @@ impl Lane {
 
     /// Sees that the process is gone.
     fn end(mut self, end: End) -> End {
-        drop(self.stdin.take());
         let is_over = matches!(end, End::Done | End::Refused(_) | End::Died(_));
-        let mut status = if is_over { waited(&mut self.child, GRACE) } else { None };
+        let mut status = None;
+        if is_over {
+            // What is to be killed does not end by itself before, and hears no end of its orders.
+            drop(self.stdin.take());
+            status = waited(&mut self.child, GRACE);
+        }
         if status.is_none() {
             status = killed(&mut self.child);
         }
