@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use halfrow::board::{Board, OpenOptions};
+use halfrow::board::{Board, OpenFailed, OpenOptions};
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
 use halfrow_model::{MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
@@ -94,7 +94,7 @@ fn a_board_that_cannot_be_is_refused_by_whoever_opens_it() {
             _ => vec![packet],
         };
         let link = Altered::new(&Options::default(), claims).candidate().link;
-        let (error, _) = Board::open(link, &OpenOptions::default()).map(drop).unwrap_err();
+        let OpenFailed { error, .. } = Board::open(link, &OpenOptions::default()).map(drop).unwrap_err();
         assert_eq!(error.cause(), Cause::Refused, "{claim}: {error}");
         assert!(error.to_string().contains(&format!("the board says {claim}, and ")), "{error}");
     }
