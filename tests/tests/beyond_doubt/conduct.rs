@@ -3,25 +3,25 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use halfrow::result::{CheckName, NotExercised, Report};
+use halfrow::result::{CheckName, Report};
 use halfrow::run::{Plan, Vary};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_model::{BitDepth, Geometry};
-use halfrow_protocol::message::{RowOut, RowPlace, Status};
+use halfrow_protocol::message::{RowOut, RowPlace};
 use halfrow_protocol::{Kind, Reply, samples};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge, judge_each};
 use halfrow_tests::system::{System, failed_check, judge_by_plan};
 
 #[track_caller]
-fn fails(report: &Report, check: CheckName, sentence: &str) {
+pub(crate) fn fails(report: &Report, check: CheckName, sentence: &str) {
     assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
     assert_eq!(failed_check(report), Some(check), "{}", report.headline());
     assert!(report.headline().contains(sentence), "{}", report.headline());
 }
 
 #[track_caller]
-fn passes(report: &Report) {
+pub(crate) fn passes(report: &Report) {
     assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
 }
 
@@ -173,99 +173,6 @@ fn of_two_rows_with_each_other_s_numbers_the_earlier_one_left_late() {
     });
     let sentence = "the board reorders rows: row 4 of frame 0 left it behind a later row";
     fails(&report, CheckName::Frames, sentence);
-}
-
-/// The report on a board whose ROW_OUT packets have the numbers that `number` makes of the right ones.
-fn numbered(number: fn(u16) -> u16) -> Report {
-    judge_each(&System::TINY, move |_, mut packet| {
-        if packet.is(Kind::RowOut) {
-            packet.header.sequence = number(packet.header.sequence);
-        }
-        packet
-    })
-}
-
-#[test]
-fn numbers_of_packets_that_were_never_sent_are_the_board_s_fault() {
-    for number in [
-        (|right| right.wrapping_mul(3).wrapping_add(777)) as fn(u16) -> u16,
-        |right| right.wrapping_add(1),
-        |right| if right < 5 { right } else { right.wrapping_add(1) },
-    ] {
-        fails(&numbered(number), CheckName::Counters, "ROW_OUT packets by their numbers, and it is");
-    }
-}
-
-/// STATUS with another value in one counter.
-fn with_counter(change: fn(&mut Status)) -> Report {
-    judge_each(&System::TINY, move |_, packet| match packet.reply() {
-        Some(Reply::Status(mut status)) => {
-            change(&mut status);
-            packet.saying(&Reply::Status(status))
-        }
-        _ => packet,
-    })
-}
-
-#[test]
-fn counters_are_compared_with_what_the_host_saw() {
-    for (sentence, change) in [
-        ("rows in, and it is", (|status| status.rows_in += 1) as fn(&mut Status)),
-        ("rows out, and it is", |status| status.rows_out += 1),
-        ("as the first row that has not arrived", |status| status.next_row_in += 1),
-        ("as the first row that is not acknowledged", |status| status.next_row_out += 1),
-        ("as the tables' generation, and it is 2", |status| status.generation = 7),
-        ("rows sent again, and it is 0", |status| status.rows_repeated = 3),
-        ("rows that were not needed, and it is 0", |status| status.rows_unneeded = 3),
-        ("1 refusals, and it is 0", |status| status.refusals = 1),
-        ("packets of another session, and it is 0", |status| status.foreign_packets = 2),
-    ] {
-        fails(&with_counter(change), CheckName::Counters, sentence);
-    }
-}
-
-#[test]
-fn damaged_packets_that_nobody_missed_are_only_noted() {
-    let report = with_counter(|status| status.crc_errors = 5);
-    passes(&report);
-    let counters = report.checks.iter().find(|check| check.name == CheckName::Counters).unwrap();
-    assert!(counters.detail().contains("it counts 5 damaged packets, and nothing had to be sent again"));
-    assert!(report.not_exercised.contains(&NotExercised::CountersOfPoorLinks {}));
-}
-
-/// What it counts of its link keeps other counters from being compared, where the host saw nothing of that.
-#[test]
-fn counters_that_are_not_compared_are_told_of_a_board_that_passes() {
-    let is_told = |change: fn(&mut Status)| {
-        let report = with_counter(change);
-        passes(&report);
-        report.not_exercised.contains(&NotExercised::CountersOfPoorLinks {})
-    };
-    assert!(!is_told(|_| {}));
-    assert!(is_told(|status| status.packets += 1000));
-    assert!(is_told(|status| (status.crc_errors, status.rows_repeated) = (1, 3)));
-}
-
-/// Each row that it took, each that it did not need and each refusal came in a packet of its own, over whatever link.
-#[test]
-fn counters_that_contradict_each_other_are_the_board_s_fault_over_any_link() {
-    for change in [
-        (|status| status.packets = 0) as fn(&mut Status),
-        |status| (status.packets, status.refusals) = (0, 4242),
-        |status| (status.crc_errors, status.refusals, status.foreign_packets) = (1, 4242, 55),
-        |status| (status.crc_errors, status.rows_unneeded) = (1, 4242),
-        |status| (status.crc_errors, status.foreign_packets) = (1, 4242),
-    ] {
-        fails(&with_counter(change), CheckName::Counters, "packets that came to it, and it is at least");
-    }
-}
-
-/// That is what a late copy of the STATUS that sets them back leaves as well.
-#[test]
-fn fewer_packets_than_were_answered_are_no_pass_and_no_fail() {
-    let report = with_counter(|status| status.packets = status.rows_in + 2);
-    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
-    assert!(report.headline().contains("packets that came to it"), "{}", report.headline());
 }
 
 #[test]

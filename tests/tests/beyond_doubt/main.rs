@@ -7,6 +7,7 @@
 mod at_speed;
 mod capabilities;
 mod conduct;
+mod counters;
 mod echoes;
 mod exercised;
 mod lost_rows;
