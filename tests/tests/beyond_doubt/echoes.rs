@@ -1,10 +1,11 @@
 //! Lines that begin to echo in the middle of a run, in the board's place or beside it: what was sent is no answer to it.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use halfrow::link::{Candidate, Link, LinkError};
 use halfrow::result::Report;
 use halfrow::run::{Part, Plan, Selection};
+use halfrow::target::BoardKind;
 use halfrow::verdict::Verdict;
 use halfrow_tests::system::{System, judge_by_plan, open};
 
@@ -82,5 +83,53 @@ fn a_line_that_echoes_from_the_first_is_named_with_a_board_and_without() {
     for beside in [false, true] {
         let report = echoing(0, beside);
         assert!(report.headline().contains(SAID), "beside: {beside}: {}", report.headline());
+    }
+}
+
+/// A console or a modem: it echoes what it is sent, and says something of its own, at once or later.
+struct Console {
+    begun: Instant,
+    says: &'static [u8],
+    /// Whether it says that with the echo, or when it is looked at again.
+    at_once: bool,
+    waits: Vec<u8>,
+}
+
+impl Link for Console {
+    fn exchange(&mut self, out: &[u8], back: &mut Vec<u8>, wait: Duration) -> Result<usize, LinkError> {
+        let waits = std::mem::take(&mut self.waits);
+        back.extend(&waits);
+        if !out.is_empty() {
+            back.extend(out);
+            let said = if self.at_once { &mut *back } else { &mut self.waits };
+            said.extend(self.says);
+        } else if waits.is_empty() {
+            std::thread::sleep(wait.min(Duration::from_millis(10)));
+        }
+        Ok(out.len())
+    }
+
+    fn now(&self) -> Duration {
+        self.begun.elapsed()
+    }
+
+    fn bytes_per_second(&self) -> Option<f64> {
+        None
+    }
+
+    fn name(&self) -> String {
+        "a console".to_owned()
+    }
+}
+
+#[test]
+fn a_console_that_echoes_is_told_from_a_loopback_plug() {
+    for (says, at_once) in [(&b"\r\nERROR\r\n"[..], true), (b"bench login: ", false), (b"", true)] {
+        let link = Console { begun: Instant::now(), says, at_once, waits: Vec::new() };
+        let report =
+            judge_by_plan(&System::TINY.plan(), Candidate::new("console", BoardKind::Hardware, link));
+        let (headline, is_console) = (report.headline(), !says.is_empty());
+        assert_eq!(headline.contains("another device with a console"), is_console, "{says:?}: {headline}");
+        assert_eq!(headline.contains(SAID), !is_console, "{says:?}: {headline}");
     }
 }

@@ -1,10 +1,16 @@
 //! An answer that was waited for, and what it says.
 
+use std::time::Duration;
+
 use halfrow_protocol::message::{RefusalCode, Reply};
 use halfrow_protocol::{Header, Kind, Packet};
 
 use super::BoardError;
 use super::asked::Asking;
+use super::conversation::Conversation;
+
+/// How long it is listened behind an echo for what else comes.
+const MORE: Duration = Duration::from_millis(200);
 
 /// A packet that was kept.
 pub(super) struct Kept {
@@ -25,6 +31,23 @@ impl Kept {
             payload
         };
         self.header == *sent && self.payload == asked()
+    }
+}
+
+impl Conversation {
+    /// What echoes: a line, or a device that has more to say, which may come later. Packets of a board beside an echo would not
+    /// make it one.
+    pub(super) fn echoed(&mut self) -> Result<BoardError, BoardError> {
+        if self.session != 0 {
+            return Ok(BoardError::Echoed);
+        }
+        let begun = self.now();
+        while let Some(wait) = MORE.checked_sub(self.since(begun)).filter(|wait| !wait.is_zero()) {
+            self.exchange(wait, || "listening behind an echo".to_owned(), |_| {})?;
+        }
+        let beside = self.tally.bytes_in.saturating_sub(self.tally.bytes_out);
+        let is_board = self.tally.packets_in > self.tally.packets_out;
+        Ok(if beside > 0 && !is_board { BoardError::Console { bytes: beside } } else { BoardError::Echoed })
     }
 }
 

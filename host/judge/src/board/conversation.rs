@@ -378,7 +378,7 @@ impl Conversation {
         self.tally.strays += rows - unwanted;
         let sent = self.header(asking.kind(), sequence);
         match answer {
-            Some(answer) if answer.is_echo_of(&sent, asking) => Err(BoardError::Echoed),
+            Some(answer) if answer.is_echo_of(&sent, asking) => Err(self.echoed()?),
             answer => Ok(answer),
         }
     }

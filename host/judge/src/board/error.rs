@@ -63,6 +63,16 @@ pub enum BoardError {
         /// What may be, as the end of a sentence.
         legal: String,
     },
+    /// What was sent came back, and more than that.
+    #[error(
+        "what is sent comes back, and {} beside it: another device with a console is at this port, as a modem or a Linux \
+         system is, and no halfrow board; choose another port",
+        count(*bytes, "byte")
+    )]
+    Console {
+        /// What came beyond what was sent.
+        bytes: u64,
+    },
     /// No common version of the wire.
     #[error(
         "the board speaks version {board} of the wire and this program version {ours}; load a matching bitstream or \

@@ -24,6 +24,7 @@ codes! {
         NotABoard => "not-a-board",
         Echoed => "line-echoes",
         Impossible [capability, value, legal] => "capability-out-of-range",
+        Console [bytes] => "console-answers",
         Version [board, ours] => "wire-version-unknown",
         Held [seconds] => "board-held",
         SessionLost => "session-lost",
