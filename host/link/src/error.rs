@@ -107,6 +107,25 @@ impl OpenError {
         Self::AddressMissing { form: forms.join(" or "), kind }
     }
 
+    /// Whether what the target names is there, and is kept from this program: by its rights, by another program, or by how it is
+    /// set up.
+    #[must_use]
+    pub fn is_kept_from_us(&self) -> bool {
+        match self {
+            Self::Serial(error) => {
+                matches!(error, SerialError::NotAllowed { .. } | SerialError::InUse { .. })
+            }
+            Self::Usb(error) => matches!(
+                error,
+                UsbError::NotPermitted { .. }
+                    | UsbError::Busy { .. }
+                    | UsbError::OtherMode { .. }
+                    | UsbError::NoMode { .. }
+            ),
+            _ => false,
+        }
+    }
+
     /// Whose error it is.
     #[must_use]
     pub fn class(&self) -> Class {

@@ -12,6 +12,7 @@ mod scenarios;
 mod ser2net;
 mod serial;
 mod served;
+mod taken_over;
 mod tcp;
 mod unplugged;
 

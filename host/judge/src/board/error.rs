@@ -308,6 +308,21 @@ impl BoardError {
             }
             Self::Refused { refusal, .. } if is_own(refusal) => Cause::Refused,
             Self::Stopped(by) => Cause::Stopped(*by),
+    /// Whether it shows that something is there that is no board for this run now, and no silence.
+    #[must_use]
+    pub(crate) fn is_of_somebody(&self) -> bool {
+        match self {
+            Self::Link { source, .. } => matches!(**source, LinkError::InUse { .. }),
+            Self::Held { .. }
+            | Self::NotABoard
+            | Self::Version { .. }
+            | Self::Echoed
+            | Self::Console { .. }
+            | Self::Malformed { .. } => true,
+            _ => false,
+        }
+    }
+
             _ => Cause::Station,
         }
     }

@@ -8,8 +8,8 @@ use super::plan::Generation;
 use super::{Misfit, RunOptions};
 use crate::board::{Board, BoardError, Status, Tally};
 use crate::result::{
-    BoardReport, Check, CheckName, Finding, Identity, LinkReport, NotExercised, Outcome, Problem, SoakReport,
-    Suspect, WithinReport,
+    BoardReport, Check, CheckName, Finding, Identity, LinkReport, NotExercised, Outcome, Problem,
+    Reconnection, SoakReport, Suspect, WithinReport,
 };
 use crate::target::BoardKind;
 use crate::verdict::Cause;
@@ -208,6 +208,13 @@ impl Findings {
         self.earlier.tally += board.tally();
         self.earlier.seconds += board.now();
         (self.rows_counted, self.repeats_counted) = (0, 0);
+    }
+
+    /// Takes note that the board came back that went away for this `reason`.
+    pub(super) fn note_return(&mut self, reason: Problem, away: Duration) {
+        self.earlier.seconds += away;
+        let back = Reconnection { reason, seconds_away: away.as_secs_f64(), kept_tables: None };
+        self.link.reconnections.push(back);
     }
 
     pub(super) fn note_status(&mut self, status: &Status) {

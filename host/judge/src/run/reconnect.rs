@@ -1,5 +1,6 @@
 //! A board that goes away during a run and comes back: waiting for it, and bringing it to where the run stood.
 
+use std::error::Error;
 use std::iter;
 use std::time::{Duration, Instant};
 
@@ -7,9 +8,9 @@ use super::findings::{During, End, Findings};
 use super::plan::Segment;
 use super::steps::Run;
 use crate::board::{Board, BoardError, NumberedFrame, OpenFailed, OpenOptions, Unjudged};
-use crate::link::{Link, Reopener};
+use crate::link::{Link, OpenError, Reopener};
 use crate::progress::Step;
-use crate::result::{CheckName, Finding, Problem, Reconnection};
+use crate::result::{CheckName, Finding, Problem};
 use crate::verdict::Cause;
 
 /// More often than this it is a loose contact, and waiting does not mend it.
@@ -27,8 +28,15 @@ pub(super) struct WayBack {
 }
 
 impl WayBack {
-    /// Opens the board behind `link`, or behind the next one if that breaks.
+    /// Opens the board behind `link`, or behind the next one if that breaks. Whoever takes it over later came later, and is not
+    /// thrown out.
     pub(super) fn open(&mut self, link: Box<dyn Link>, findings: &mut Findings) -> Result<Board, End> {
+        let opened = self.open_first(link, findings);
+        self.options.take_over = false;
+        opened
+    }
+
+    fn open_first(&mut self, link: Box<dyn Link>, findings: &mut Findings) -> Result<Board, End> {
         let OpenFailed { error, tally } = match Board::open_any(link, &self.options) {
             Ok(board) => return Ok(board),
             Err(failed) => failed,
@@ -56,23 +64,17 @@ impl WayBack {
         loop {
             let spent = findings.earlier.seconds + left.elapsed();
             self.options.stop.check(spent, left.elapsed()).during(*check)?;
-            if let Some(board) = self.try_open(spent, findings.link.reconnections.len()) {
-                let away = left.elapsed();
-                findings.earlier.seconds += away;
-                findings.link.reconnections.push(Reconnection {
-                    reason,
-                    seconds_away: away.as_secs_f64(),
-                    kept_tables: None,
-                });
-                return Ok(board);
-            }
+            let kept_from_us = match self.try_open(spent, findings.link.reconnections.len()) {
+                Ok(board) => {
+                    findings.note_return(reason, left.elapsed());
+                    return Ok(board);
+                }
+                Err(why) => why,
+            };
             if left.elapsed() > patience {
                 let seconds = patience.as_secs_f64();
-                return Err(End::error(
-                    *check,
-                    *cause,
-                    Finding::BoardStayedAway { reason: Box::new(reason), seconds },
-                ));
+                let away = Finding::BoardStayedAway { reason: Box::new(reason), seconds };
+                return Err(kept_from_us.unwrap_or_else(|| End::error(*check, *cause, away)));
             }
             std::thread::sleep(TICK);
         }
@@ -83,16 +85,27 @@ impl WayBack {
         self.patience.filter(|_| self.reopen.is_some())
     }
 
-    fn try_open(&mut self, spent: Duration, times: usize) -> Option<Board> {
-        let link = self.reopen.as_mut()?();
-        let link = link.inspect_err(|error| tracing::debug!("not there yet: {error}")).ok()?;
+    /// Opens the board, or tells what keeps one from this run that is there; nothing if none is.
+    fn try_open(&mut self, spent: Duration, times: usize) -> Result<Board, Option<End>> {
+        let reopen = self.reopen.as_mut().ok_or(None)?;
+        let link = reopen().map_err(|error| {
+            tracing::debug!("not there yet: {error}");
+            not_opened(&*error)
+        })?;
         // A board that never lost power must not take this for the greeting that it has answered.
         let nonce = self.options.nonce.wrapping_add(1 + times as u32);
         let options = OpenOptions { nonce, stop: self.options.stop.after(spent), ..self.options.clone() };
-        Board::open_any(link, &options)
-            .inspect_err(|failed| tracing::debug!("not there yet: {failed}"))
-            .ok()
+        Board::open_any(link, &options).map_err(|OpenFailed { error, .. }| {
+            tracing::debug!("not there yet: {error}");
+            error.is_of_somebody().then(|| End::board(CheckName::Identity, &error))
+        })
     }
+}
+
+/// What keeps a device from this run that is there.
+fn not_opened(error: &(dyn Error + Send + Sync + 'static)) -> Option<End> {
+    let error = error.downcast_ref::<OpenError>().filter(|error| error.is_kept_from_us())?;
+    Some(End::error(CheckName::Identity, error.class().into(), Problem::of(error)))
 }
 
 impl Run<'_> {

@@ -1,0 +1,129 @@
+//! Boards that are there, and are kept from a run that lost them: by another host that took them over, or by the system.
+
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::time::Duration;
+
+use halfrow::link::{Candidate, Link, LinkError, OpenError, SerialError};
+use halfrow::progress::Silent;
+use halfrow::result::Report;
+use halfrow::run::{RunOptions, verify};
+use halfrow::verdict::Cause;
+use halfrow_protocol::message::{Hello, Request};
+use halfrow_protocol::{Encoder, Header, Kind, VERSION};
+use halfrow_tests::patience::come_to_an_end;
+use halfrow_tests::system::{System, open};
+
+/// How long the run waits for a board that does not come back.
+const PATIENCE: Duration = Duration::from_millis(300);
+
+/// A line to a board that two hosts reach.
+struct Line {
+    link: Box<dyn Link>,
+    /// Bytes that the first of them sends until the other one takes the board over.
+    left: usize,
+}
+
+impl Line {
+    /// What the other host says, and hears.
+    fn take_over(&mut self) -> Result<(), LinkError> {
+        let hello =
+            Hello { nonce: 77, host: 77, version_min: VERSION, version_max: VERSION, take_over: true };
+        let header = Header { kind: Kind::Hello.code(), sequence: 1, reply: false, session: 0, window: 0 };
+        let mut said = vec![0; 2];
+        Encoder::new().encode(&header, |payload| Request::Hello(hello).write(payload), &mut said).unwrap();
+        let mut heard = Vec::new();
+        while !said.is_empty() {
+            let taken = self.link.exchange(&said, &mut heard, Duration::from_millis(1))?;
+            said.drain(..taken);
+        }
+        heard.push(0);
+        while !heard.is_empty() {
+            heard.clear();
+            self.link.exchange(&[], &mut heard, Duration::from_millis(10))?;
+        }
+        Ok(())
+    }
+}
+
+/// The first host's end of it.
+#[derive(Clone)]
+struct End(Arc<Mutex<Line>>);
+
+impl End {
+    fn line(&self) -> MutexGuard<'_, Line> {
+        self.0.lock().unwrap()
+    }
+}
+
+impl Link for End {
+    fn exchange(&mut self, out: &[u8], back: &mut Vec<u8>, wait: Duration) -> Result<usize, LinkError> {
+        let mut line = self.line();
+        let taken = line.link.exchange(out, back, wait)?;
+        if line.left > 0 {
+            line.left = line.left.saturating_sub(taken);
+            if line.left == 0 {
+                line.take_over()?;
+            }
+        }
+        Ok(taken)
+    }
+
+    fn now(&self) -> Duration {
+        self.line().link.now()
+    }
+
+    fn bytes_per_second(&self) -> Option<f64> {
+        None
+    }
+
+    fn name(&self) -> String {
+        "a line that two hosts reach".to_owned()
+    }
+}
+
+fn judged(candidate: Candidate, take_over: bool) -> Report {
+    let options = RunOptions { reconnect: Some(PATIENCE), take_over, ..RunOptions::default() };
+    come_to_an_end(move || verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report)
+}
+
+#[test]
+fn a_board_that_was_taken_over_is_left_to_who_took_it() {
+    for take_over in [false, true] {
+        for behind in [300, 3_000, 9_000] {
+            let candidate = open("mock");
+            let end = End(Arc::new(Mutex::new(Line { link: candidate.link, left: behind })));
+            let link = Box::new(end.clone());
+            let shared = Candidate { link, ..candidate };
+            let report = judged(shared.reopened_by(move || Ok::<_, OpenError>(end.clone())), take_over);
+            let what = format!("take over: {take_over}, behind {behind}: {}", report.headline());
+            assert_eq!(report.cause, Cause::Busy, "{what}");
+            assert!(report.headline().contains("another host holds the board"), "{what}");
+            assert!(report.link.reconnections.is_empty(), "{what}");
+        }
+    }
+}
+
+#[test]
+fn a_board_that_may_not_be_opened_again_is_not_said_to_be_away() {
+    let not_allowed = || SerialError::NotAllowed {
+        path: "/dev/ttyUSB1".into(),
+        remedy: "join the group dialout".to_owned(),
+    };
+    let in_use = || SerialError::InUse { path: "/dev/ttyUSB1".into(), holders: Vec::new() };
+    let cases: [(fn() -> SerialError, _, _); 3] = [
+        (not_allowed, Cause::Station, "you may not open /dev/ttyUSB1; join the group dialout"),
+        (in_use, Cause::Busy, "/dev/ttyUSB1 is in use"),
+        (
+            || SerialError::Missing("/dev/ttyUSB1".into()),
+            Cause::Station,
+            "the board did not come back in 0.3 s",
+        ),
+    ];
+    for (refused, cause, said) in cases {
+        let lost = open("mock,fault=disconnect,packet=60");
+        let reopen = move || Err::<End, _>(OpenError::from(refused()));
+        let report = judged(lost.reopened_by(reopen), false);
+        assert_eq!(report.cause, cause, "{}", report.headline());
+        assert!(report.headline().contains(said), "{}", report.headline());
+    }
+}
