@@ -308,3 +308,35 @@ fn without_the_capability_nothing_is_read_behind_the_samples() {
     });
     assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
 }
+
+/// The first try of a BURST comes late, behind the next one, which it sets back.
+#[test]
+fn a_burst_that_comes_late_is_not_the_bitstreams_fault() {
+    let (mut late, mut is_sent) = (None, false);
+    let board = Altered::new(&Options::default(), move |toward, packet| {
+        if toward == Toward::Host || !packet.is(Kind::Burst) || is_sent {
+            return vec![packet];
+        }
+        let name = |packet: &Passing| match request(packet) {
+            Request::Burst(burst) => burst.burst,
+            other => panic!("{other:?}"),
+        };
+        match late.take() {
+            None => {
+                late = Some(packet);
+                Vec::new()
+            }
+            Some(first) if name(&first) == name(&packet) => {
+                late = Some(first);
+                vec![packet]
+            }
+            Some(first) => {
+                is_sent = true;
+                vec![packet, first]
+            }
+        }
+    });
+    let report = TINY.judge_candidate(board.candidate());
+    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert!(report.headline().contains("a late copy may have begun it again"), "{}", report.headline());
+}

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use halfrow_protocol::message::{Burst, BurstState, Expect, FrameRecord, Reply, Request};
-use halfrow_protocol::samples;
+use halfrow_protocol::{Kind, samples};
 
 use super::deadlines::Step;
 use super::{Board, BoardError, Tally};
@@ -50,6 +50,17 @@ impl Board {
             }
             _ => None,
         })
+    }
+
+    /// What `error` means that stands where records of the last burst should: the late copy of a request, which the link
+    /// brought twice, may have begun the one before it again.
+    pub(crate) fn of_last_burst(&self, error: BoardError) -> BoardError {
+        match error {
+            BoardError::Unexpected { kind: Kind::Records } if self.repeated_changes() > 0 => {
+                BoardError::OtherBurst { again: self.repeated_changes() }
+            }
+            other => other,
+        }
     }
 
     /// Says what signatures the rows of a repeating frame must have, from its row 0 on.

@@ -125,6 +125,16 @@ pub enum BoardError {
         /// The request.
         kind: Kind,
     },
+    /// Another burst than the one that was begun last, over a link that brought requests twice.
+    #[error(
+        "the board is at another burst than the last one that it was told, and {} came to it twice: a late copy may have begun \
+         it again; check the cable, its connectors and the link, then run again",
+        count(*again, "request")
+    )]
+    OtherBurst {
+        /// Requests that came twice.
+        again: u64,
+    },
     /// Too many retries.
     #[error(
         "the link is too poor to judge a board over: {retries} of {packets} packets had to be sent again, and {limit} \

@@ -31,6 +31,7 @@ codes! {
         Refused [kind, refusal] => "request-refused",
         Malformed [kind] => "answer-malformed",
         Unexpected [kind] => "answer-of-other-kind",
+        OtherBurst [again] => "burst-begun-again",
         TooPoor [retries, packets, limit] => "link-too-poor",
         RowMissing [place, attempts] => "row-missing",
         WrongPlace [place] => "row-place-unknown",

@@ -105,7 +105,8 @@ struct Watch<'a> {
 impl Watch<'_> {
     /// Takes the records that are there, and says whether they were the last.
     fn look(&mut self, watched: &mut Watched) -> Result<bool, BoardError> {
-        let fetched = self.board.records(self.burst.burst, watched.frames)?;
+        let fetched = self.board.records(self.burst.burst, watched.frames);
+        let fetched = fetched.map_err(|error| self.board.of_last_burst(error))?;
         for record in &fetched.records {
             let Ok(expected) = self.predicted.recv() else { break };
             watched.take(self, expected, record);
