@@ -193,12 +193,39 @@ pub enum DecodeError {
         /// The depth asked for.
         asked: BitDepth,
     },
+    /// A sample needs more bits than any frame has.
+    #[error(
+        "the sample at row {row}, column {column} is {value}, above {most}, and no frame has more than {bits} bits; scale it to \
+         {bits} bits: divide samples of 16 bits by 16, of 14 bits by 4",
+        most = BitDepth::Twelve.max(),
+        bits = BitDepth::Twelve.bits()
+    )]
+    TooDeep {
+        /// Its row.
+        row: usize,
+        /// Its column.
+        column: usize,
+        /// The sample.
+        value: u16,
+    },
     /// The rows do not fill whole packing groups.
     #[error(transparent)]
     Packing(#[from] PackingError),
     /// The samples are no frame.
     #[error(transparent)]
-    Frame(#[from] FrameError),
+    Frame(FrameError),
+}
+
+/// Of a depth that can be given no deeper, the remedy is another one.
+impl From<FrameError> for DecodeError {
+    fn from(error: FrameError) -> Self {
+        match error {
+            FrameError::TooBright { row, column, value, max, .. } if max == BitDepth::Twelve.max() => {
+                Self::TooDeep { row, column, value }
+            }
+            other => Self::Frame(other),
+        }
+    }
 }
 
 /// What a reader says that came to the end of its bytes.

@@ -188,3 +188,16 @@ fn what_is_written_is_read_back_exactly() {
         assert_eq!(decode(as_tiff.get_ref(), &options(depth)).unwrap(), frame);
     }
 }
+
+/// Full scale of 16 bits, which other programs write, is none of a frame's depths.
+#[test]
+fn samples_deeper_than_any_frame_are_to_be_scaled() {
+    let mut deep = hex(TIFF_LITTLE);
+    deep[8..10].copy_from_slice(&[0xff, 0xff]);
+    let error = decode(&deep, &options(BitDepth::Twelve)).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "the sample at row 0, column 0 is 65535, above 4095, and no frame has more than 12 bits; scale it to 12 bits: divide \
+         samples of 16 bits by 16, of 14 bits by 4"
+    );
+}

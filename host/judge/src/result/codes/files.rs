@@ -44,6 +44,7 @@ codes! {
         Tiff => "tiff-damaged",
         OtherPhase [found, asked] => "frame-of-other-phase",
         OtherDepth [found, asked] => "frame-of-other-depth",
+        TooDeep [row, column, value] => "sample-too-deep",
         = Packing,
         = Frame,
     }
