@@ -12,6 +12,8 @@ use tiff::encoder::colortype::Gray16;
 use tiff::encoder::{DirectoryEncoder, Rational, SRational, TiffEncoder, TiffKind};
 use tiff::tags::Tag;
 
+use super::Orientation;
+
 /// PhotometricInterpretation of a colour filter array.
 pub(super) const FILTER_ARRAY: u16 = 32803;
 
@@ -56,22 +58,35 @@ const XYZ_TO_SRGB: [i32; 9] = [32406, -15372, -4986, -9689, 18758, 415, 557, -20
 /// # Errors
 /// The encoder's, or whatever `out` answers.
 pub fn encode(frame: &Frame, out: &mut (impl Write + Seek)) -> Result<(), TiffError> {
+    encode_oriented(frame, Orientation::default(), out)
+}
+
+/// [`encode`] for who shows it turned by `orientation`.
+///
+/// # Errors
+/// As those of [`encode`].
+pub(super) fn encode_oriented(
+    frame: &Frame,
+    orientation: Orientation,
+    out: &mut (impl Write + Seek),
+) -> Result<(), TiffError> {
     let (width, height) = (u32::try_from(frame.width())?, u32::try_from(frame.height())?);
     let mut encoder = TiffEncoder::new(out)?;
     let mut image = encoder.new_image::<Gray16>(width, height)?;
     // Some developers look for one strip alone.
     image.rows_per_strip(height)?;
-    describe_file(image.encoder())?;
+    describe_file(image.encoder(), orientation)?;
     describe_samples(image.encoder(), frame)?;
     image.write_data(frame.samples())
 }
 
 fn describe_file<W: Write + Seek, K: TiffKind>(
     directory: &mut DirectoryEncoder<'_, W, K>,
+    orientation: Orientation,
 ) -> Result<(), TiffError> {
-    // The full picture, not a smaller one of another; the first row is the upper one.
+    // The full picture, not a smaller one of another.
     directory.write_tag(Tag::NewSubfileType, 0_u32)?;
-    directory.write_tag(Tag::Orientation, 1_u16)?;
+    directory.write_tag(Tag::Orientation, orientation.tag())?;
     directory.write_tag(Tag::Software, concat!("halfrow ", env!("CARGO_PKG_VERSION")))?;
     directory.write_tag(Tag::Make, "halfrow")?;
     directory.write_tag(Tag::Model, "frame")?;

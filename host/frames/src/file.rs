@@ -9,7 +9,9 @@ use halfrow_model::Frame;
 use super::format::Format;
 use super::preview::{RgbImage, encode_png_rgb};
 use super::size::MAX_FILE_BYTES;
-use super::{Decoded, FrameShape, PictureSize, ReadError, ReadOptions, WriteError, photograph, png};
+use super::{
+    Decoded, FrameShape, Orientation, PictureSize, ReadError, ReadOptions, WriteError, photograph, png,
+};
 use crate::written_aside::{BUFFER, write_aside};
 
 /// The frame in the file `path`. The bytes tell the format, not the name; without a header, `how.raw` must.
@@ -99,8 +101,21 @@ fn all_of(input: File, path: &Path) -> Result<Vec<u8>, ReadError> {
 /// # Errors
 /// [`WriteError`] when the extension is another, the file exists and `overwrite` is false, or it cannot be written.
 pub fn write(path: &Path, frame: &Frame, overwrite: bool) -> Result<(), WriteError> {
+    write_oriented(path, frame, Orientation::default(), overwrite)
+}
+
+/// [`write()`] of a frame that is shown turned by `orientation`, which a DNG tells.
+///
+/// # Errors
+/// As those of [`write()`].
+pub fn write_oriented(
+    path: &Path,
+    frame: &Frame,
+    orientation: Orientation,
+    overwrite: bool,
+) -> Result<(), WriteError> {
     let bytes = Format::of(path)?
-        .encode(frame)
+        .encode(frame, orientation)
         .map_err(|source| WriteError::Encode { path: path.to_owned(), source })?;
     Ok(write_aside(path, overwrite, |out| out.write_all(&bytes))?)
 }
@@ -125,7 +140,7 @@ pub fn write_rows<E: From<WriteError>>(
     let frame = Frame::new(shape.width, shape.depth, shape.phase, samples);
     let frame =
         frame.map_err(|source| WriteError::Encode { path: path.to_owned(), source: source.into() })?;
-    Ok(write(path, &frame, overwrite)?)
+    Ok(write_oriented(path, &frame, shape.orientation, overwrite)?)
 }
 
 fn write_plain_rows<E: From<WriteError>>(

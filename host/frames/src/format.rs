@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 use halfrow_model::{BitDepth, Frame};
 
-use super::{EncodeError, FrameShape, RawLayout, WriteError, dng, pgm, png, raw, tiff};
+use super::{EncodeError, FrameShape, Orientation, RawLayout, WriteError, dng, pgm, png, raw, tiff};
 
 /// A format that frames are written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,13 +76,13 @@ impl Format {
         }
     }
 
-    pub(super) fn encode(self, frame: &Frame) -> Result<Vec<u8>, EncodeError> {
+    pub(super) fn encode(self, frame: &Frame, orientation: Orientation) -> Result<Vec<u8>, EncodeError> {
         let mut bytes = Vec::new();
         match self {
             Self::Pgm => pgm::encode(frame, &mut bytes)?,
             Self::Png => png::encode(frame, &mut bytes)?,
             Self::Tiff => tiff::encode(frame, &mut Cursor::new(&mut bytes))?,
-            Self::Dng => dng::encode(frame, &mut Cursor::new(&mut bytes))?,
+            Self::Dng => dng::encode_oriented(frame, orientation, &mut Cursor::new(&mut bytes))?,
             Self::Raw => raw::encode(frame, RawLayout::U16Le, &mut bytes)?,
         }
         Ok(bytes)

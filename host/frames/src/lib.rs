@@ -16,6 +16,7 @@ mod heat_map;
 mod jpeg;
 mod mosaic;
 mod narrow;
+mod orientation;
 mod patterns;
 pub mod pgm;
 mod photograph;
@@ -38,12 +39,14 @@ use halfrow_model::{BitDepth, Frame, Phase};
 pub use builtin::{Builtin, UnknownBuiltin};
 pub use error::{DecodeError, EncodeError, PackingError, ReadError, WriteError};
 pub use file::{
-    check_png, check_regular, read, read_fitted, read_rgb, read_shown, write, write_rgb, write_rows,
+    check_png, check_regular, read, read_fitted, read_rgb, read_shown, write, write_oriented, write_rgb,
+    write_rows,
 };
 pub use fitting::{Fitting, PictureSize};
 pub use format::{Format, UnknownFormat};
 pub use heat_map::HeatMap;
 pub use mosaic::mosaic;
+pub use orientation::Orientation;
 pub use photograph::is_photograph;
 pub use raw::{RawGeometry, RawLayout, UnknownLayout};
 pub use rows::{FrameShape, RowReader};
@@ -71,12 +74,14 @@ pub struct Decoded {
     pub frame: Frame,
     /// How the picture that it was made of was brought to its size, if it was.
     pub fitting: Option<Fitting>,
+    /// How raw samples are to be turned by who shows them. A picture in colour was turned.
+    pub orientation: Orientation,
 }
 
 /// Of raw samples, or of a picture that had the size.
 impl From<Frame> for Decoded {
     fn from(frame: Frame) -> Self {
-        Self { frame, fitting: None }
+        Self { frame, fitting: None, orientation: Orientation::default() }
     }
 }
 

@@ -2,10 +2,10 @@
 
 use halfrow_model::{BitDepth, Colour, Frame, FrameError, Phase};
 
-use image::ImageBuffer;
+use image::{DynamicImage, ImageBuffer};
 
 use super::preview::RgbImage;
-use super::{DecodeError, Decoded, Fitting, ReadOptions, narrow};
+use super::{DecodeError, Decoded, Fitting, Orientation, ReadOptions, narrow};
 
 /// A decoded picture: `channels` interleaved samples a pixel, row after row.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,20 +18,47 @@ pub(super) struct Picture {
     pub(super) full: u16,
     /// The samples.
     pub(super) samples: Vec<u16>,
+    /// How it is turned by who shows it.
+    pub(super) orientation: Orientation,
 }
 
 impl Picture {
+    /// A picture in colour as it is seen, by its orientation. Raw samples stay as they lie.
+    pub(super) fn turned(self) -> Self {
+        let Self { width, channels, orientation, .. } = self;
+        if channels < 3 || orientation == Orientation::default() {
+            return self;
+        }
+        let side = |length| u32::try_from(length).unwrap_or(u32::MAX);
+        let (columns, rows) = (side(width), side(self.samples.len() / (channels * width.max(1))));
+        let (full, samples) = (self.full, self.samples);
+        let mut image = if channels == 3 {
+            DynamicImage::ImageRgb16(ImageBuffer::from_raw(columns, rows, samples).unwrap_or_default())
+        } else {
+            DynamicImage::ImageRgba16(ImageBuffer::from_raw(columns, rows, samples).unwrap_or_default())
+        };
+        image.apply_orientation(orientation.turn());
+        let width = image.width() as usize;
+        let samples = match image {
+            DynamicImage::ImageRgb16(image) => image.into_raw(),
+            DynamicImage::ImageRgba16(image) => image.into_raw(),
+            _ => Vec::new(),
+        };
+        Self { width, channels, full, samples, orientation: Orientation::default() }
+    }
+
     /// The frame that the picture stands for. Grey is a raw Bayer frame and taken as it is. Of colour, which may be fitted, each
     /// sample keeps the colour of its place, scaled to the depth by [`scaled`], without gamma. Alpha is ignored.
     ///
     /// # Errors
     /// [`DecodeError`] when the samples are no frame of `how.depth`, or colour is not of the size that `how` asks for.
     pub(super) fn into_frame(self, how: &ReadOptions) -> Result<Decoded, DecodeError> {
-        let Self { width, channels, full, samples } = self;
+        let Self { width, channels, full, samples, orientation } = self;
         if channels < 3 {
             narrow::note(full, how.depth);
             let samples = if channels == 1 { samples } else { samples.into_iter().step_by(2).collect() };
-            return Ok(Frame::new(width, how.depth, how.phase, samples)?.into());
+            let frame = Frame::new(width, how.depth, how.phase, samples)?;
+            return Ok(Decoded { orientation, ..frame.into() });
         }
         let height = samples.len() / (channels * width.max(1));
         let fitting = how.size.fitting((width, height))?;
@@ -41,12 +68,13 @@ impl Picture {
         };
         let mosaic = mosaicked(&samples, channels, width.max(1), how.phase);
         let samples = mosaic.map(|sample| scaled(sample, full, how.depth)).collect();
-        Ok(Decoded { frame: Frame::new(width, how.depth, how.phase, samples)?, fitting })
+        let frame = Frame::new(width, how.depth, how.phase, samples)?;
+        Ok(Decoded { fitting, ..frame.into() })
     }
 
     /// Red, green and blue as they are; none when the picture is grey or has more than 8 bits.
     pub(super) fn into_rgb(self) -> Option<RgbImage> {
-        let Self { width, channels, full, samples } = self;
+        let Self { width, channels, full, samples, .. } = self;
         if channels < 3 || full > u8::MAX.into() {
             return None;
         }

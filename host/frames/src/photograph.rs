@@ -118,7 +118,7 @@ pub fn is_photograph(path: &Path) -> bool {
 /// Those of [`shown`].
 pub(super) fn decode(format: Format, bytes: &[u8], how: &ReadOptions) -> Result<Decoded, DecodeError> {
     let (picture, fitting) = shown(format, bytes, how.size)?;
-    Ok(Decoded { frame: mosaic::of_rgb(&picture, how)?, fitting })
+    Ok(Decoded { fitting, ..mosaic::of_rgb(&picture, how)?.into() })
 }
 
 /// The photograph in `bytes`, turned as its EXIF says, and how it was fitted.

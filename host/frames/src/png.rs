@@ -7,7 +7,7 @@ use png::{ColorType, Decoder, DecodingError, Encoder, EncodingError, Info, Trans
 
 use super::mosaic::Picture;
 use super::preview::RgbImage;
-use super::{DecodeError, ReadOptions, photograph, size};
+use super::{DecodeError, Orientation, ReadOptions, photograph, size};
 
 /// The first bytes of a PNG.
 pub(super) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
@@ -118,7 +118,8 @@ fn read(input: &mut Cursor<&[u8]>) -> Result<Picture, DecodeError> {
         _ => (u8::MAX.into(), bytes.into_iter().map(u16::from).collect()),
     };
     let width = usize::try_from(output.width).unwrap_or(usize::MAX);
-    Ok(Picture { width, channels: output.color_type.samples(), full, samples })
+    let (channels, orientation) = (output.color_type.samples(), Orientation::default());
+    Ok(Picture { width, channels, full, samples, orientation })
 }
 
 /// Refuses what would be too large or would not keep its samples, from the header alone.

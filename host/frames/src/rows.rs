@@ -8,7 +8,7 @@ use std::sync::Arc;
 use halfrow_model::{BitDepth, Frame, Phase};
 
 use super::raster::Raster;
-use super::{Decoded, Fitting, ReadError, ReadOptions, file, narrow, pgm, raw};
+use super::{Decoded, Fitting, Orientation, ReadError, ReadOptions, file, narrow, pgm, raw};
 
 /// Bytes in which the header of a PGM is looked for. A file with a longer one is read whole.
 const HEAD: u64 = 4096;
@@ -26,6 +26,8 @@ pub struct FrameShape {
     pub depth: BitDepth,
     /// The arrangement of the colours.
     pub phase: Phase,
+    /// How it is turned by who shows it, which a DNG tells.
+    pub orientation: Orientation,
 }
 
 /// The rows of a frame, from the top.
@@ -35,6 +37,7 @@ pub struct RowReader {
     height: usize,
     next: usize,
     fitting: Option<Fitting>,
+    orientation: Orientation,
     source: Source,
 }
 
@@ -79,7 +82,8 @@ impl RowReader {
         let lines =
             Lines { path: path.to_owned(), input, raster, depth: how.depth, bytes: Vec::new(), taken: 0 };
         let source = Source::File(lines);
-        Ok(Self { width: raster.width, height: raster.height, next: 0, fitting: None, source })
+        let (width, height, orientation) = (raster.width, raster.height, Orientation::default());
+        Ok(Self { width, height, next: 0, fitting: None, orientation, source })
     }
 
     /// Columns.
@@ -98,6 +102,12 @@ impl RowReader {
     #[must_use]
     pub fn fitting(&self) -> Option<Fitting> {
         self.fitting
+    }
+
+    /// How raw samples are to be turned by who shows them.
+    #[must_use]
+    pub fn orientation(&self) -> Orientation {
+        self.orientation
     }
 
     /// Reads the next row into the first [`Self::width`] of `samples`, and returns whether there was one.
@@ -141,7 +151,8 @@ impl Lines {
 
 impl From<Decoded> for RowReader {
     fn from(decoded: Decoded) -> Self {
-        Self { fitting: decoded.fitting, ..Self::from(decoded.frame) }
+        let Decoded { frame, fitting, orientation } = decoded;
+        Self { fitting, orientation, ..Self::from(frame) }
     }
 }
 
@@ -158,6 +169,7 @@ impl From<Arc<Frame>> for RowReader {
             height: frame.height(),
             next: 0,
             fitting: None,
+            orientation: Orientation::default(),
             source: Source::Frame(frame),
         }
     }

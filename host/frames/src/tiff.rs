@@ -9,12 +9,13 @@ use tiff::encoder::colortype::{Gray8, Gray16};
 use tiff::{ColorType, TiffError};
 
 use super::mosaic::Picture;
-use super::{DecodeError, ReadOptions, tiff_directory};
+use super::{DecodeError, Orientation, ReadOptions, tiff_directory};
 
 /// The first bytes of a TIFF, of either byte order.
 pub(super) const MAGICS: [&[u8]; 2] = [b"II*\0", b"MM\0*"];
 
-/// The frame in the bytes of a TIFF or DNG: grey is a raw Bayer frame as it is; RGB is mosaicked; alpha is ignored.
+/// The frame in the bytes of a TIFF or DNG: grey is a raw Bayer frame as it is; RGB is turned as its
+/// orientation says, and mosaicked; alpha is ignored.
 ///
 /// # Errors
 /// [`DecodeError`] when the file is damaged, of a kind that is not taken (several pictures, palettes, planes, lossy or
@@ -28,13 +29,15 @@ pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
 /// # Errors
 /// Those of [`decode`] that are the file's.
 pub(super) fn picture(bytes: &[u8], how: &ReadOptions) -> Result<Picture, DecodeError> {
-    match tiff_directory::check(bytes)? {
-        None => read(bytes),
+    let told = tiff_directory::check(bytes)?;
+    let picture = match told.array {
+        None => read(bytes)?,
         Some(array) => {
             array.check(how)?;
-            read(&array.as_grey(bytes))
+            read(&array.as_grey(bytes))?
         }
-    }
+    };
+    Ok(Picture { orientation: told.orientation, ..picture }.turned())
 }
 
 /// Writes `frame` as grey samples, as they are: of 8 bits when that is its depth, else of 16; uncompressed.
@@ -73,7 +76,8 @@ fn read(bytes: &[u8]) -> Result<Picture, DecodeError> {
         DecodingResult::U16(samples) => (u16::MAX, samples),
         _ => return Err(unsupported("a TIFF of signed or floating-point samples")),
     };
-    Ok(Picture { width: usize::try_from(width).unwrap_or(usize::MAX), channels, full, samples })
+    let (width, orientation) = (usize::try_from(width).unwrap_or(usize::MAX), Orientation::default());
+    Ok(Picture { width, channels, full, samples, orientation })
 }
 
 fn unsupported(what: &str) -> DecodeError {

@@ -6,7 +6,7 @@
 use halfrow_model::Phase;
 
 use super::tiff_bytes::{Bytes, SHORT};
-use super::{DecodeError, ReadOptions, dng, size};
+use super::{DecodeError, Orientation, ReadOptions, dng, size};
 
 const WIDTH: u16 = 256;
 const HEIGHT: u16 = 257;
@@ -64,13 +64,22 @@ impl FilterArray {
     }
 }
 
+/// What a TIFF or DNG tells of its picture beside sizes and codings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Told {
+    /// The filter array that raw samples lie under.
+    pub(super) array: Option<FilterArray>,
+    /// How the picture is turned by who shows it.
+    pub(super) orientation: Orientation,
+}
+
 /// Refuses a TIFF that is not one plain picture: grey from black to white, raw under a colour filter array (DNG), or colour,
-/// with or without alpha, of 8 or 16 bits, uncompressed or packed by LZW, deflate or PackBits. Of raw samples, returns what is
-/// told of the array.
+/// with or without alpha, of 8 or 16 bits, uncompressed or packed by LZW, deflate or PackBits. Returns what else is
+/// told.
 ///
 /// # Errors
 /// [`DecodeError`] that names what is not taken, or the byte where the directory breaks off.
-pub(super) fn check(bytes: &[u8]) -> Result<Option<FilterArray>, DecodeError> {
+pub(super) fn check(bytes: &[u8]) -> Result<Told, DecodeError> {
     let tags = Tags::read(bytes)?;
     let one = |tag, otherwise| tags.value(tag).unwrap_or(otherwise);
     let (width, height) = size::checked(one(WIDTH, 0).into(), one(HEIGHT, 0).into())?;
@@ -95,7 +104,7 @@ pub(super) fn check(bytes: &[u8]) -> Result<Option<FilterArray>, DecodeError> {
     }
     let samples = width * height * if channels == 1 { 1 } else { 3 };
     size::plausible(bytes.len(), samples * if bits == 8 { 1 } else { 2 })?;
-    Ok(array)
+    Ok(Told { array, orientation: Orientation::of_tag(one(Orientation::TAG, 1)) })
 }
 
 fn no_bayer_pattern() -> DecodeError {
@@ -146,6 +155,8 @@ impl Tags {
                 // Of a table only its presence matters; the others are not looked at unless the samples are raw.
                 dng::LINEARISATION | dng::ACTIVE_AREA | dng::LAYOUT => 0,
                 tag if tag == dng::REPEAT.0 || Self::BLACKS.contains(&tag) => 0,
+                // No size hangs on it.
+                Orientation::TAG => file.value(start).unwrap_or(1),
                 tag if Self::wanted(tag) => file.value(start)?,
                 _ => continue,
             };

@@ -188,3 +188,35 @@ fn outputs_that_have_no_place_are_refused() {
     refused(&folder, &small("correct", &[black, "--model", "-o", "out.jpg"]), "names no format");
     refused(&folder, &small("correct", &[black, "-o", "out.pgm"]), "--model");
 }
+
+/// The value of the tag Orientation in a TIFF's first directory.
+fn orientation(file: &[u8]) -> u16 {
+    let short = |at: usize| u16::from_le_bytes([file[at], file[at + 1]]);
+    let directory = usize::from(short(4));
+    let entries = (0..usize::from(short(directory))).map(|entry| directory + 2 + 12 * entry);
+    entries.filter(|&entry| short(entry) == 274).map(|entry| short(entry + 8)).next().unwrap()
+}
+
+/// A camera that hangs upside down: its samples lie as they lay, and a viewer turns them as before.
+#[test]
+fn the_orientation_of_a_dng_is_kept() {
+    let folder = Folder::new();
+    let made = folder.halfrow(small("correct", &["builtin:noise", "--model", "-o", "in.dng"]));
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    let mut upright = folder.read("in.dng");
+    let entry = upright.windows(8).position(|bytes| bytes == [18, 1, 3, 0, 1, 0, 0, 0]).unwrap();
+    folder.write("upright.dng", &upright);
+    upright[entry + 8] = 3;
+    folder.write("hanging.dng", &upright);
+    for (name, how) in [("model", ["--model", "--quiet"]), ("board", ["--board", "mock"])] {
+        let call = [&["upright.dng", "hanging.dng", "-o", name, "--format", "dng"][..], &how].concat();
+        let ended = folder.halfrow(small("correct", &call));
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let [mut hanging, upright] =
+            ["hanging", "upright"].map(|frame| folder.read(&format!("{name}/{frame}.dng")));
+        assert_eq!((orientation(&hanging), orientation(&upright)), (3, 1), "{name}");
+        let entry = hanging.windows(8).position(|bytes| bytes == [18, 1, 3, 0, 1, 0, 0, 0]).unwrap();
+        hanging[entry + 8] = 1;
+        assert!(hanging == upright, "{name}");
+    }
+}

@@ -10,7 +10,7 @@ use super::{CallError, Failure};
 use crate::console;
 use crate::settings::Settings;
 use clap::Args;
-use halfrow_model::{Frame, Geometry, Phase};
+use halfrow_model::{Geometry, Phase};
 
 use halfrow::call::check_size;
 use halfrow::frames::{
@@ -117,10 +117,10 @@ impl FrameName {
     }
 
     /// The frame with these rows.
-    pub(super) fn frame(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<Frame> {
+    pub(super) fn frame(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<Decoded> {
         match self {
-            Self::Builtin(builtin) => Ok(builtin.render(scene)?),
-            Self::File(path) => Ok(read_frame(path, how, &scene.geometry)?.frame),
+            Self::Builtin(builtin) => Ok(builtin.render(scene)?.into()),
+            Self::File(path) => read_frame(path, how, &scene.geometry),
         }
     }
 }
@@ -142,7 +142,7 @@ pub(super) fn frame_sources(
     let source = |name| match name {
         FrameName::Builtin(builtin) => Ok(FrameSource::Builtin(builtin)),
         FrameName::File(path) => {
-            let Decoded { frame, fitting } = read_frame(&path, how, geometry)?;
+            let Decoded { frame, fitting, .. } = read_frame(&path, how, geometry)?;
             tell(&path, fitting);
             Ok(FrameSource::File { path, frame: Arc::new(frame) })
         }

@@ -1,7 +1,7 @@
 //! PNG and TIFF files that Python's zlib and struct wrote byte by byte, and what must be read from them. The scaled
 //! samples were computed there with exact fractions.
 
-use halfrow_frames::{DecodeError, ReadOptions, decode, png, tiff};
+use halfrow_frames::{DecodeError, PictureSize, ReadOptions, decode, png, tiff};
 use halfrow_model::{BitDepth, Frame, FrameError, Phase};
 
 /// 4 x 2, grey, 16 bits: [`GREY`].
@@ -187,6 +187,60 @@ fn what_is_written_is_read_back_exactly() {
         assert_eq!(decode(&as_png, &options(depth)).unwrap(), frame);
         assert_eq!(decode(as_tiff.get_ref(), &options(depth)).unwrap(), frame);
     }
+}
+
+/// 4 x 2 of this orientation, RGB or RGBA of 8 or 16 bits, every pixel grey: 1 to 8, 257 times as much in 16 bits.
+fn oriented(orientation: u16, channels: u16, bits: u16) -> Vec<u8> {
+    let short = |tag: u16, value: u16| [tag, 3, 1, 0, value, 0].map(u16::to_le_bytes).concat();
+    let long = |tag: u16, value: u32| {
+        [[tag, 4, 1, 0].map(u16::to_le_bytes).concat(), value.to_le_bytes().to_vec()].concat()
+    };
+    let strip = (1..=8_u8).flat_map(|value| vec![value; usize::from(channels * bits / 8)]);
+    let strip: Vec<u8> = strip.collect();
+    let sizes = [short(256, 4), short(257, 2), short(258, bits), short(259, 1), short(262, 2)];
+    let start = 8 + 2 + 10 * 12 + 4;
+    let places = [long(273, start), short(274, orientation), short(277, channels), short(278, 2)];
+    let length = long(279, u32::try_from(strip.len()).unwrap());
+    let entries = [sizes.concat(), places.concat(), length].concat();
+    [b"II*\0\x08\0\0\0\x0a\0", &entries[..], &[0; 4], &strip].concat()
+}
+
+/// By TIFF 6.0: where the first row and column of the file are seen.
+#[test]
+fn a_tiff_in_colour_is_turned_as_its_orientation_says() {
+    let seen = [
+        (1, 4, [1, 2, 3, 4, 5, 6, 7, 8]),
+        (2, 4, [4, 3, 2, 1, 8, 7, 6, 5]),
+        (3, 4, [8, 7, 6, 5, 4, 3, 2, 1]),
+        (4, 4, [5, 6, 7, 8, 1, 2, 3, 4]),
+        (5, 2, [1, 5, 2, 6, 3, 7, 4, 8]),
+        (6, 2, [5, 1, 6, 2, 7, 3, 8, 4]),
+        (7, 2, [8, 4, 7, 3, 6, 2, 5, 1]),
+        (8, 2, [4, 8, 3, 7, 2, 6, 1, 5]),
+        // No orientation that there is.
+        (0, 4, [1, 2, 3, 4, 5, 6, 7, 8]),
+        (9, 4, [1, 2, 3, 4, 5, 6, 7, 8]),
+    ];
+    for (orientation, width, samples) in seen {
+        for (channels, bits) in [(3, 8), (3, 16), (4, 8), (4, 16)] {
+            let file = oriented(orientation, channels, bits);
+            let frame = decode(&file, &options(BitDepth::Eight)).unwrap();
+            assert_eq!(
+                (frame.width(), frame.samples()),
+                (width, &samples[..]),
+                "{orientation}, {channels} x {bits}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_turned_tiff_is_fitted_as_it_is_seen() {
+    let size = PictureSize::Exactly(2, 4);
+    let turned = decode(&oriented(6, 3, 16), &ReadOptions { size, ..options(BitDepth::Eight) }).unwrap();
+    assert_eq!((turned.width(), turned.height()), (2, 4));
+    let upright = decode(&oriented(3, 3, 16), &ReadOptions { size, ..options(BitDepth::Eight) });
+    assert!(matches!(upright, Err(DecodeError::OtherSize { width: 4, height: 2, .. })));
 }
 
 /// Full scale of 16 bits, which other programs write, is none of a frame's depths.

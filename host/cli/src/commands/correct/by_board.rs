@@ -1,5 +1,7 @@
 //! Frames corrected by a board, unjudged.
 
+use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -10,7 +12,7 @@ use super::places::Places;
 use super::{Context, Failure, Job};
 use halfrow::board::Board;
 use halfrow::correction::Correction;
-use halfrow::frames;
+use halfrow::frames::{self, Decoded, Orientation};
 use halfrow::progress::Progress;
 use halfrow::run::{self, JUDGED};
 use halfrow::target::BoardKind;
@@ -46,20 +48,24 @@ impl Job<'_> {
             first_frame: 0,
         };
         let (mut unread, mut unwritten) = (None, None);
+        // Of the frames that are on their way.
+        let orientations = RefCell::new(VecDeque::new());
         let inputs = self.inputs.iter().map_while(|input| match input.frame(&self.how, &self.scene) {
-            Ok(frame) => Some(Arc::new(frame)),
+            Ok(Decoded { frame, orientation, .. }) => {
+                orientations.borrow_mut().push_back(orientation);
+                Some(Arc::new(frame))
+            }
             Err(error) => {
                 unread = Some(error);
                 None
             }
         });
         let mut indices = 0..;
-        let take = |samples| match self.write(places, indices.next().unwrap_or_default(), samples) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(error) => {
-                unwritten = Some(error);
-                ControlFlow::Break(())
-            }
+        let take = |samples| {
+            let orientation = orientations.borrow_mut().pop_front().unwrap_or_default();
+            let written = self.write(places, indices.next().unwrap_or_default(), orientation, samples);
+            unwritten = written.err();
+            if unwritten.is_none() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         };
         let streamed = correction.run(board, inputs, take, progress);
         match (unwritten, unread) {
@@ -69,12 +75,19 @@ impl Job<'_> {
         }
     }
 
-    fn write(&self, places: &Places, index: usize, samples: Vec<u16>) -> Result<(), Failure> {
+    fn write(
+        &self,
+        places: &Places,
+        index: usize,
+        orientation: Orientation,
+        samples: Vec<u16>,
+    ) -> Result<(), Failure> {
         let width = self.scene.geometry.width();
         let frame = Frame::new(width, self.how.depth, self.how.phase, samples)
             .context("the board's samples are no frame; judge it with `halfrow verify`")
             .map_err(Failure::error)?;
-        frames::write(&places.frames[index], &frame, self.arguments.overwrite).map_err(Failure::error)?;
+        frames::write_oriented(&places.frames[index], &frame, orientation, self.arguments.overwrite)
+            .map_err(Failure::error)?;
         self.write_preview(places, index, &frame).map_err(Failure::error)
     }
 }

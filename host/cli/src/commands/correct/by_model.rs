@@ -32,6 +32,7 @@ impl Job<'_> {
             height: geometry.height(),
             depth: geometry.depth(),
             phase: self.how.phase,
+            orientation: rows.orientation(),
         };
         let correct_next = |leaving: &mut [u16]| -> anyhow::Result<()> {
             rows.next_row(&mut entering)?;

@@ -1,0 +1,35 @@
+//! How a camera was held.
+
+use image::metadata;
+
+/// How a picture is turned and mirrored to be seen upright, by the tag Orientation of TIFF and EXIF.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Orientation(metadata::Orientation);
+
+impl Orientation {
+    /// The tag's number.
+    pub(super) const TAG: u16 = 274;
+
+    /// What the tag says; upright where it says nothing that there is.
+    pub(super) fn of_tag(value: u32) -> Self {
+        let known = u8::try_from(value).ok().and_then(metadata::Orientation::from_exif);
+        known.map_or_else(Self::default, Self)
+    }
+
+    /// The tag's value, 1 to 8.
+    pub(super) fn tag(self) -> u16 {
+        self.0.to_exif().into()
+    }
+
+    /// The same for pictures.
+    pub(super) fn turn(self) -> metadata::Orientation {
+        self.0
+    }
+}
+
+/// Upright.
+impl Default for Orientation {
+    fn default() -> Self {
+        Self(metadata::Orientation::NoTransforms)
+    }
+}
