@@ -234,7 +234,8 @@ fn keep(file: NamedTempFile) -> Option<PathBuf> {
         return None;
     }
     let (_file, path) = file.keep().ok()?;
-    Some(under_way::kept(&path).unwrap_or(path))
+    // Its folder may have gone with it.
+    Some(under_way::kept(&path).unwrap_or(path)).filter(|kept| kept.exists())
 }
 
 /// The folder that `path` is in.
@@ -359,5 +360,23 @@ mod tests {
         write(&folder.path().join("aside"), false, "text").unwrap();
         fs::write(folder.path().join("ordinary"), "text").unwrap();
         assert_eq!(mode("aside"), mode("ordinary"));
+    }
+
+    #[test]
+    fn what_went_with_its_folder_is_not_said_to_be_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        for is_gone in [false, true] {
+            let place = folder.path().join("place");
+            fs::create_dir(&place).unwrap();
+            let mut aside = Aside::stream(&place.join("a"), true).unwrap();
+            aside.write_all(b"half a stream").unwrap();
+            aside.flush().unwrap();
+            if is_gone {
+                fs::remove_dir_all(&place).unwrap();
+            }
+            let unfinished = aside.keep_unfinished(io::ErrorKind::StorageFull.into());
+            assert_eq!(unfinished.kept, (!is_gone).then(|| place.join("a.partial")));
+            let _ = fs::remove_dir_all(&place);
+        }
     }
 }

@@ -47,7 +47,7 @@ impl Finished {
         let what = Problem::new(RECORDING_LOST, "the recording could not be written");
         // Its sentence says what its own causes do.
         let causes = vec![Problem { causes: Vec::new(), ..Problem::of(why) }];
-        let remedy = "Free some space or choose another place for the recording, then run again.";
+        let remedy = "See that its folder is there and has space, or choose another place for the recording, then run again.";
         self.lose(Problem { causes, ..what }, remedy)
     }
 
