@@ -140,3 +140,14 @@ fn others_may_read_a_report_as_any_folder() {
     let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
     assert_eq!(mode(&path), mode(&ordinary));
 }
+
+#[test]
+fn a_folder_that_has_gone_is_no_full_disk() {
+    let station = TempDir::new().unwrap();
+    let above = station.path().join("share");
+    fs::create_dir(&above).unwrap();
+    let prepared = ReportFolder::prepare(&above.join("today"), false).unwrap();
+    fs::remove_dir_all(&above).unwrap();
+    let error = prepared.commit(&made::pass(), &[]).unwrap_err().to_string();
+    assert!(error.ends_with("check that its folder exists, is writable and has space"), "{error}");
+}

@@ -60,7 +60,7 @@ pub enum ReportError {
         source: io::Error,
     },
     /// A file of the report was not taken.
-    #[error("cannot write {name} of the report {}; check the space that is left", path.display())]
+    #[error("cannot write {name} of the report {}; check that its folder exists, is writable and has space", path.display())]
     Write {
         /// The report's path.
         path: PathBuf,

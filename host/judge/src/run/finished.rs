@@ -33,7 +33,9 @@ impl Finished {
             ReportError::Exists { .. } => {
                 "Name another place for the report, or allow it to be overwritten, then run again."
             }
-            _ => "Free some space or choose another place for the report, then run again.",
+            _ => {
+                "See that its folder is there and has space, or choose another place for the report, then run again."
+            }
         };
         let left = earlier.map_or_else(String::new, |path| {
             format!(", and {} still holds that of an earlier run", path.display())
