@@ -1,6 +1,6 @@
 //! Asks a device whether it is a board. That writes a greeting to it, whatever it is.
 
-use crate::board::{Board, BoardError, OpenOptions};
+use crate::board::{Board, BoardError, Heard, OpenOptions};
 use crate::link::discovery::Answer;
 use crate::link::{self, Class, OpenError};
 use crate::run::Draws;
@@ -23,7 +23,8 @@ pub fn probe(target: &Target) -> Answer {
             Answer::Board { name, datapath }
         }
         Err(BoardError::Held { .. }) => Answer::Held,
-        Err(BoardError::NoAnswer { .. }) => Answer::Silent,
+        Err(BoardError::NoAnswer { heard: Heard { bytes: 0, .. }, .. }) => Answer::Silent,
+        Err(BoardError::NoAnswer { heard: Heard { bytes, .. }, .. }) => Answer::Babble { bytes },
         Err(error @ (BoardError::NotABoard | BoardError::Version { .. })) => {
             Answer::Foreign { reason: error.to_string() }
         }

@@ -1,5 +1,8 @@
 //! `halfrow boards` on ports that the test makes: what is free, busy, missing, and what answers.
 
+use std::io::{Read as _, Write as _};
+use std::net::TcpListener;
+
 use halfrow::board::{Board, OpenOptions};
 use halfrow::link;
 use halfrow_cli::serve::Pty;
@@ -71,4 +74,29 @@ fn a_board_that_another_host_holds_is_left_to_it() {
         drop(Board::open(link, &options).unwrap());
         assert_eq!(look_at(&served.target(), &["--ask"])["answer"], json!({ "state": "held" }));
     }
+}
+
+/// A GPS receiver, a console, a board at another rate.
+#[test]
+fn what_talks_and_is_no_board_is_told_from_silence() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let target = format!("tcp:{}", listener.local_addr().unwrap());
+    let receiver = std::thread::spawn(move || {
+        for _ in 0..2 {
+            let (mut host, _) = listener.accept().unwrap();
+            let mut heard = [0; 256];
+            while host.read(&mut heard).is_ok_and(|read| read > 0) {
+                // It may be gone by now.
+                let _ = host.write_all(b"$GPGGA,,,,,,0,,,,,,,,*66\r\n");
+            }
+        }
+    });
+    let answer = look_at(&target, &["--ask"])["answer"].clone();
+    assert_eq!(answer["state"], "babble", "{answer}");
+    let bytes = answer["bytes"].as_u64().unwrap();
+    assert!(bytes > 0 && bytes.is_multiple_of(26), "{answer}");
+    let text = halfrow(["boards", "--ask", &target]).stdout;
+    assert!(text.contains("something talks that is no halfrow board, or is one at another rate: "), "{text}");
+    assert!(text.contains(" bytes came, no answer among them"), "{text}");
+    receiver.join().unwrap();
 }

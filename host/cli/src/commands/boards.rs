@@ -7,7 +7,7 @@ use super::bitstreams::{BOARDS, BitstreamBoard};
 use super::document::print_result;
 use super::{Context, Failure, print};
 use crate::exit::Exit;
-use halfrow::report::wording::plain;
+use halfrow::report::wording::{count, plain};
 use halfrow::target::{BoardKind, Target};
 use halfrow_link::discovery::{self, Access, Answer, Found};
 use halfrow_link::kinds::{Form, KINDS};
@@ -111,6 +111,12 @@ fn state(device: &Found) -> String {
         Some(Answer::Held) => return "a halfrow board answers, which another host holds".to_owned(),
         Some(Answer::Foreign { reason }) => return format!("something else answers: {}", plain(reason)),
         Some(Answer::Silent) => return "nothing answers".to_owned(),
+        Some(Answer::Babble { bytes }) => {
+            return format!(
+                "something talks that is no halfrow board, or is one at another rate: {} came, no answer among them",
+                count(*bytes, "byte")
+            );
+        }
         Some(Answer::Busy) => return "busy: it is open elsewhere".to_owned(),
         Some(Answer::Failed { reason }) => {
             let free = if device.access == Access::Free { "free, but " } else { "" };

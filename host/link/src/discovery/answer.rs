@@ -20,8 +20,13 @@ pub enum Answer {
         /// Why it is none.
         reason: String,
     },
-    /// Nothing answered.
+    /// Nothing answered, and nothing came.
     Silent,
+    /// Bytes came, and no answer among them: another device, or a board at another rate.
+    Babble {
+        /// How many.
+        bytes: u64,
+    },
     /// It is open elsewhere.
     Busy,
     /// It could not be opened.
