@@ -6,6 +6,7 @@ use std::process::Command;
 
 use halfrow_tests::patience::wait_until;
 use halfrow_tests::program::{Ended, Folder, Running, finish, halfrow};
+use halfrow_tests::served::Served;
 use serde_json::{Value, json};
 
 /// What openFPGALoader 0.10 says without a board, each line on the stream that it uses.
@@ -75,9 +76,10 @@ fn is_running(id: &str) -> bool {
 #[test]
 fn the_loader_is_called_by_its_name_of_the_board_and_the_build_is_compared() {
     let folder = with_loader(WORKS);
-    let build = build_of_the_mock();
+    let (build, served) = (build_of_the_mock(), Served::on_a_serial_port("mock"));
+    let board = &served.target();
     recorded(&folder, "minispartan6plus", &build);
-    let ended = load(&folder, &["top.bit", "--board", "mock", "--json", "--", "--ftdi-serial", "HR 1"]);
+    let ended = load(&folder, &["top.bit", "--board", board, "--json", "--", "--ftdi-serial", "HR 1"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     assert_eq!(folder.text("called"), "-b\nminispartan6\n--ftdi-serial\nHR 1\ntop.bit\n");
     let said = ended.json();
@@ -90,7 +92,7 @@ fn the_loader_is_called_by_its_name_of_the_board_and_the_build_is_compared() {
         (&json!(build), &json!("ISE 14.7"))
     );
     assert!(ended.stderr.contains("Loading: 40%\nLoading: 100%\nDone\n"), "{}", ended.stderr);
-    let quiet = load(&folder, &["top.bit", "--board", "mock", "--quiet"]);
+    let quiet = load(&folder, &["top.bit", "--board", board, "--quiet"]);
     assert!(quiet.stdout.contains(&format!("build {build}, which is the file's")), "{}", quiet.stdout);
     assert!(!quiet.stderr.contains("Loading"), "{}", quiet.stderr);
 }
@@ -99,7 +101,8 @@ fn the_loader_is_called_by_its_name_of_the_board_and_the_build_is_compared() {
 fn a_board_of_another_build_is_refused() {
     let folder = with_loader(WORKS);
     recorded(&folder, "ulx3s", "00000bad");
-    let error = refused(&folder, &["top.bit", "--board", "mock"], 6, "board-of-other-build");
+    let served = Served::on_a_serial_port("mock");
+    let error = refused(&folder, &["top.bit", "--board", &served.target()], 6, "board-of-other-build");
     assert_eq!(error["parameters"]["board"], build_of_the_mock());
     assert_eq!(error["parameters"]["file"], "00000bad");
     assert_eq!(folder.text("called"), "-b\nulx3s\ntop.bit\n");
@@ -157,6 +160,7 @@ fn a_board_that_can_never_be_greeted_is_refused_before_anything_is_loaded() {
         ("mock,foo=1", "target-options-wrong"),
         ("replay:run.rec", "recording-corrects-nothing"),
         ("pool:ulx3s", "bitstream-for-board-of-pool"),
+        ("mock", "bitstream-for-built-in-board"),
     ] {
         refused(&folder, &["top.bit", "--board", board], 2, error);
         assert!(!folder.path().join("called").exists(), "{board}");

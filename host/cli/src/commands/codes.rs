@@ -62,6 +62,7 @@ codes::codes! {
         UnknownBoard [path, board, known] => "bitstream-board-unknown",
         OtherBoard [path, board, named] => "bitstream-for-other-board",
         OfPool [target] => "bitstream-for-board-of-pool",
+        BuiltIn [target] => "bitstream-for-built-in-board",
         LoaderMissing [other] => "loader-missing",
         LoaderNotStarted [call] => "loader-not-started",
         LoaderFailed [call, said] => "loader-failed",

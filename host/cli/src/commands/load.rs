@@ -28,8 +28,9 @@ use halfrow::board::{Board, BoardError, OpenOptions};
 use halfrow::link::{self, Class};
 use halfrow::result::{BoardReport, Identity};
 use halfrow::run::Draws;
-use halfrow::target::Target;
+use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::StoppedBy;
+use halfrow_link::kinds;
 
 pub(super) use error::LoadError;
 
@@ -103,7 +104,11 @@ fn check(target: &Target) -> Result<(), Failure> {
         return Err(Failure::call(LoadError::OfPool { target: target.to_string() }));
     }
     refuse_recording(target)?;
-    Ok(link::check(target)?)
+    link::check(target)?;
+    if kinds::of(target).is_some_and(|kind| kind.board != BoardKind::Hardware) {
+        return Err(Failure::call(LoadError::BuiltIn { target: target.to_string() }));
+    }
+    Ok(())
 }
 
 /// The board that the call or the record names.

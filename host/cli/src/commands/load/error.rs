@@ -32,6 +32,11 @@ pub(in crate::commands) enum LoadError {
         "{target} is any board of its kind, and need not be the one that is loaded; name the place of that one with --board"
     )]
     OfPool { target: String },
+    /// A board in this program.
+    #[error(
+        "{target} is a board in this program, and no FPGA is behind it; name the place of the one that is loaded with --board"
+    )]
+    BuiltIn { target: String },
     /// No loader.
     #[error(
         "openFPGALoader is not installed; install it (Debian, Ubuntu: `sudo apt install openfpgaloader`, macOS: `brew \
