@@ -61,8 +61,12 @@ fn receive(exit: Exit) {
     if is_first && IS_HEEDED.load(Ordering::SeqCst) {
         return;
     }
-    written_aside::abandon_all();
-    tell("stopped by a signal; what was not whole yet is gone");
+    let said = if written_aside::abandon_all() {
+        "stopped by a signal; what was not whole yet is gone"
+    } else {
+        "stopped by a signal"
+    };
+    tell(said);
     signal_hook::low_level::exit(exit.code().into());
 }
 

@@ -121,6 +121,20 @@ fn frames_that_are_half_written_go_with_the_program() {
     }
 }
 
+/// It waits for a frame that does not come, and has begun to write nothing.
+#[test]
+fn who_writes_nothing_is_not_told_of_what_is_gone() {
+    let folder = Folder::new();
+    let pipe = folder.path().join("in.pgm");
+    nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::from_bits_truncate(0o600)).unwrap();
+    let running = started(&folder, small("correct", &["in.pgm", "--model", "-o", "out.pgm"]));
+    // It opens when somebody reads it.
+    let _pipe = OpenOptions::new().write(true).open(pipe).unwrap();
+    running.send("TERM");
+    let ended = running.end();
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(143), "error: stopped by a signal\n"));
+}
+
 #[test]
 fn a_second_signal_ends_at_once_what_the_first_could_not() {
     let folder = Folder::new();

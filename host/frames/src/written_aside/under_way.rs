@@ -69,13 +69,15 @@ fn made<T>(make: impl FnOnce() -> io::Result<(T, PathBuf)>) -> io::Result<(T, No
 }
 
 /// Removes all that is under way, for a program that must end at once, and lets nothing more be begun. Streams that are
-/// worth keeping stay for the next run to find.
-pub fn abandon_all() {
+/// worth keeping stay for the next run to find. Says whether anything was under way.
+pub fn abandon_all() -> bool {
     let under_way = under_way();
+    let is_any = !under_way.is_empty();
     for path in under_way.iter().filter(|path| !is_worth_keeping(path)) {
         let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
     }
     std::mem::forget(under_way);
+    is_any
 }
 
 /// A locked file in `folder` that will be `kept_for`, if it is worth that.
