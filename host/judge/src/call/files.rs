@@ -1,4 +1,4 @@
-//! What a command reads and what it writes, looked at before anything is done.
+//! What a call reads and what it writes, looked at before anything is done.
 
 use std::collections::{BTreeSet, HashMap};
 use std::ffi::OsStr;

@@ -77,7 +77,7 @@ class _Folder:
 
     def _clear(self, name: str) -> None:
         # Nothing that somebody else has put there.
-        reports = [place for place in (self.place / name).glob("*") if place.name.isdecimal()]
+        reports = [place for place in (self.place / name).glob("*") if place.name.isdecimal() and place.is_dir()]
         for place in reports:
             for file in _FILES:
                 (place / file).unlink(missing_ok=True)
