@@ -178,3 +178,17 @@ fn a_soak_is_shown_over_time_with_what_differed() {
     assert!(page.contains("behind 2 h 13 min, content of seed 08d12e6a, tables of generation 2:"));
     assert!(!self::page(&made::pass(), &[]).contains("over time"));
 }
+
+/// Two boards' reports are compared by what came out of them.
+#[test]
+fn the_hash_of_what_went_in_is_told_from_that_of_what_came_out() {
+    let (report, evidence) = made::fail();
+    let page = page(&report, &evidence);
+    let hash = |name: &str| {
+        let (_, rest) = page.split_once(&format!("<dt>{name}</dt><dd>")).unwrap_or_else(|| panic!("{name}"));
+        rest.split('<').next().unwrap().to_owned()
+    };
+    assert_eq!(hash("SHA-256 of the samples that went in"), report.frames[1].sha256);
+    let bytes: Vec<u8> = evidence[0].found.samples().iter().flat_map(|sample| sample.to_le_bytes()).collect();
+    assert_eq!(hash("SHA-256 of those that came out"), halfrow::result::sha256([bytes]));
+}

@@ -15,7 +15,7 @@ pub struct FrameReport {
     pub name: String,
     /// The frame's number on the wire.
     pub number: u16,
-    /// SHA-256 of the samples, 16 bits little endian.
+    /// SHA-256 of the samples that went in, 16 bits little endian.
     pub sha256: String,
     /// Bayer phase.
     #[serde(with = "as_text")]

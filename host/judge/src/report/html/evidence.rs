@@ -10,7 +10,7 @@ use super::charts;
 use super::facts::{mark, pair};
 use crate::report::pictures::{self, BOX, Picture, Window};
 use crate::report::wording::{self, count, grouped};
-use crate::result::{Evidence, FrameReport, Report};
+use crate::result::{Evidence, FrameReport, Report, sha256};
 use crate::verdict::Verdict;
 
 /// Bytes of all pictures together, of a PASS and of anything else. Base 64 makes 1.5 and 3.4 MB of them, which leaves half a megabyte of
@@ -64,7 +64,7 @@ fn section(
                 (mark(wording::frame_outcome(report, frame)))
                 " Frame " (frame.number) ": " (wording::frame_name(frame))
             }
-            (summary(frame))
+            (summary(frame, kept))
             div.previews {
                 (preview(input.as_ref(), "As it went in, developed for the screen"))
                 (preview(found.as_ref(), &came_out(frame)))
@@ -94,7 +94,7 @@ fn came_out(frame: &FrameReport) -> String {
     }
 }
 
-fn summary(frame: &FrameReport) -> Markup {
+fn summary(frame: &FrameReport, kept: &Evidence) -> Markup {
     let comparison = &frame.comparison;
     let share = wording::percent(comparison.differences as f64 / comparison.samples.max(1) as f64);
     html! {
@@ -111,9 +111,15 @@ fn summary(frame: &FrameReport) -> Markup {
             (pair("Timing", frame.timing.to_string()))
             (pair("Phase", frame.phase.to_string()))
             (pair("Table generation", frame.generation.to_string()))
-            (pair("SHA-256 of the samples", &frame.sha256))
+            (pair("SHA-256 of the samples that went in", &frame.sha256))
+            (pair("SHA-256 of those that came out", sha256(kept.found.rows().map(little_endian))))
         }
     }
+}
+
+/// As the hash of what went in has them.
+fn little_endian(samples: &[u16]) -> Vec<u8> {
+    samples.iter().map(|sample| sample.to_le_bytes()).collect::<Vec<_>>().into_flattened()
 }
 
 fn preview(picture: Option<&Picture>, caption: &str) -> Markup {
