@@ -27,7 +27,7 @@ pub(super) fn section(soak: &SoakReport) -> Markup {
     }
 }
 
-/// A bar for each interval, as tall as its frames are many, red from below where frames differ.
+/// A bar for each interval, as tall as its frames are many, pale, and red from below where frames differ.
 fn chart(chart: &SoakChart) -> Markup {
     let most = chart.intervals.iter().map(|interval| interval.frames).max().unwrap_or(0);
     let bars = |count: fn(&SoakInterval) -> u64, lowest: u64| {
@@ -52,7 +52,7 @@ fn chart(chart: &SoakChart) -> Markup {
                 }
             }
             div.axis { span { "0" } span { (span(whole)) } }
-            figcaption { (caption) "; red, those that differ. A gap is time in which none was judged." }
+            figcaption { (caption) "; red on pale, those that differ. A gap is time in which none was judged." }
         }
     }
 }
