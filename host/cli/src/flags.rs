@@ -15,7 +15,7 @@ pub const FLAGS: [(&str, &str); 22] = [
     ("name a real board", "--board"),
     ("repeat them less often", "--repeat"),
     ("Name at least one frame", "--frame"),
-    ("Make a report", "--report"),
+    ("difference maps of a report", "--report"),
     ("Name a real board", "--board"),
     ("name the layout", "--raw"),
     ("crop and scale it", "--fit"),

@@ -1,6 +1,8 @@
 use halfrow::compare::Comparison;
 use halfrow::report;
-use halfrow::result::{BoardKind, BoardReport, CoverageReport, Evidence, Report};
+use halfrow::result::{
+    Account, BoardKind, BoardReport, CoverageReport, Defect, Evidence, Report, Suspect,
+};
 
 use crate::made;
 
@@ -213,4 +215,33 @@ fn intervals_that_differ_are_told_from_others_by_brightness() {
         let ratio = (one.max(other) + 0.05) / (one.min(other) + 0.05);
         assert!(ratio >= 3.0, "{ratio}");
     }
+}
+
+/// What nothing known explains.
+fn unknown() -> Suspect {
+    let defect = Defect::NoneKnown {
+        rows: None,
+        columns: None,
+        least: None,
+        most: None,
+        bright: None,
+        frames: 1,
+        of_frames: 2,
+    };
+    Suspect { defect, account: Account::Nothing, explained: 0.0 }
+}
+
+#[test]
+fn a_report_asks_nobody_to_make_one() {
+    let (mut report, evidence) = made::fail();
+    let known = report.suspects.clone();
+    report.suspects = vec![unknown()];
+    assert!(page(&report, &evidence).contains("Look at the difference maps below."));
+    report.frames.truncate(1);
+    let without_maps = page(&report, &[]);
+    assert!(without_maps.contains("every frame that was streamed is right"), "{without_maps}");
+    // Beside what explains it, that something else does not is no news.
+    report.suspects = [known, vec![unknown()]].concat();
+    let page = page(&report, &[]);
+    assert!(page.contains("row factor") && !page.contains("no single part"), "{page}");
 }

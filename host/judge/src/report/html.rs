@@ -10,7 +10,8 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use png::EncodingError;
 
 use super::wording::{self, plain};
-use crate::result::{Check, Evidence, Report, Suspect};
+use crate::result::wording::MAPS;
+use crate::result::{Check, Defect, Evidence, Report, Suspect};
 use crate::verdict::Verdict;
 
 const STYLE: &str = include_str!("style.css");
@@ -102,20 +103,43 @@ fn next(report: &Report) -> Markup {
     // The headline may say it, and stands apart here.
     let remedy = wording::remedy(report).or_else(|| report.remedy().filter(|_| report.suspects.is_empty()));
     let codes = wording::codes(report);
+    let has_maps = report.frames.iter().any(|frame| frame.comparison.differences > 0);
     if codes.is_empty() {
         return Markup::default();
     }
     html! {
         section {
             h2 { "What to do" }
-            @if let Some(remedy) = remedy { p.remedy { (plain(&remedy)) } }
-            @if !report.suspects.is_empty() { ol.suspects { @for it in &report.suspects { (suspect(it)) } } }
+            @if let Some(remedy) = remedy { p.remedy { (plain(asked(&remedy, has_maps))) } }
+            (suspects(&report.suspects, has_maps))
             p.explain { "More of it: " code { "halfrow explain " (codes.join(" ")) } }
         }
     }
 }
 
-pub(super) fn suspect(suspect: &Suspect) -> Markup {
+/// What is suspected, on a page that has maps of what differs or has none. That nothing known explains it is no news beside what does.
+pub(super) fn suspects(suspects: &[Suspect], has_maps: bool) -> Markup {
+    let is_known = |suspect: &&Suspect| !matches!(suspect.defect, Defect::NoneKnown { .. });
+    let shown = |suspect: &&Suspect| is_known(suspect) || !suspects.iter().any(|other| is_known(&other));
+    html! {
+        @if !suspects.is_empty() {
+            ol.suspects { @for it in suspects.iter().filter(shown) { (suspect(it, has_maps)) } }
+        }
+    }
+}
+
+/// What is asked for of whoever reads the report.
+fn asked(asked: &str, has_maps: bool) -> &str {
+    match (asked == MAPS, has_maps) {
+        (false, _) => asked,
+        (true, true) => "Look at the difference maps below.",
+        (true, false) => {
+            "No map shows it: every frame that was streamed is right, and what differs does so at full speed alone."
+        }
+    }
+}
+
+fn suspect(suspect: &Suspect, has_maps: bool) -> Markup {
     html! {
         li {
             h3 {
@@ -124,7 +148,7 @@ pub(super) fn suspect(suspect: &Suspect) -> Markup {
             }
             p { (plain(&suspect.evidence())) }
             p { strong { "At the bench: " } (plain(&suspect.technician())) }
-            p { strong { "Next: " } (plain(&suspect.designer())) }
+            p { strong { "Next: " } (plain(asked(&suspect.designer(), has_maps))) }
         }
     }
 }

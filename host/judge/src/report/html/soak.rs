@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use maud::{Markup, html};
 
-use super::suspect;
+use super::suspects;
 use crate::report::wording::{self, grouped, plain, span};
 use crate::result::{SoakChart, SoakDifference, SoakInterval, SoakReport};
 
@@ -66,7 +66,7 @@ fn differences(differences: &[SoakDifference]) -> Markup {
                 @if !difference.suspects.is_empty() {
                     details {
                         summary { "Suspects" }
-                        ol.suspects { @for it in &difference.suspects { (suspect(it)) } }
+                        (suspects(&difference.suspects, false))
                     }
                 }
             }

@@ -270,7 +270,7 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         Finding::TablesChanged { found } => return remedy(found),
         Finding::SamplesDiffer { suspect: Some(suspect), .. }
         | Finding::DiffersAtSpeed { suspect: Some(suspect), .. } => return Some(designer(suspect)),
-        Finding::SamplesDiffer { suspect: None, .. } => "Make a report and look at the difference maps.",
+        Finding::SamplesDiffer { suspect: None, .. } => super::MAPS,
         Finding::EchoWrong {} => "Check the board's packet buffers: the link carried what the board sent.",
         Finding::TableCrcWrong {} => {
             "Check the board's CRC unit, and whether the tables change on their own."

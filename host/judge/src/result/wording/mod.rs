@@ -41,6 +41,8 @@ const LOGIC: &str = "Make sure that the right bitstream is loaded and run again;
 const TIMING: &str = "Switch the board off and on, reload the bitstream and run three times; if it ever returns, set the board \
                       aside with its reports.";
 /// Nothing is known.
+/// What is asked for where no defect explains what differs.
+pub(crate) const MAPS: &str = "Look at the difference maps of a report.";
 const REPORT: &str = "Reload the bitstream and run again with a report; if it returns, set the board aside, and hand the report \
                       to the designer.";
 

@@ -128,7 +128,7 @@ fn unknown(defect: &Defect) -> Words {
         part: "unknown",
         place: "no single part".to_owned(),
         defect: format!("no known defect explains most of the differences: {}", clauses(defect).join(", ")),
-        designer: "Make a report and look at the difference maps.".to_owned(),
+        designer: super::MAPS.to_owned(),
         technician: REPORT,
     }
 }
