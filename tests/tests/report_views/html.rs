@@ -1,7 +1,7 @@
 use halfrow::compare::Comparison;
 use halfrow::report;
 use halfrow::result::{
-    Account, BoardKind, BoardReport, CoverageReport, Defect, Evidence, Report, Suspect,
+    Account, BoardKind, BoardReport, CoverageReport, Defect, Evidence, Problem, Reconnection, Report, Suspect,
 };
 
 use crate::made;
@@ -195,28 +195,6 @@ fn the_hash_of_what_went_in_is_told_from_that_of_what_came_out() {
     assert_eq!(hash("SHA-256 of those that came out"), halfrow::result::sha256([bytes]));
 }
 
-/// WCAG 2.1, success criterion 1.4.11: 3 : 1 between what is to be told apart, which no kind of colour blindness takes away.
-#[test]
-fn intervals_that_differ_are_told_from_others_by_brightness() {
-    let page = page(&made::soaked(), &[]);
-    let light = |colour: &str| {
-        let channel = |at: usize| {
-            let value = f64::from(u8::from_str_radix(&colour[at..at + 2], 16).unwrap()) / 255.0;
-            if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
-        };
-        0.2126 * channel(0) + 0.7152 * channel(2) + 0.0722 * channel(4)
-    };
-    let values = |name: &str| -> Vec<f64> {
-        page.split(&format!("{name}: #")).skip(1).map(|rest| light(&rest[..6])).collect()
-    };
-    let (judged, wrong) = (values("--judged"), values("--wrong"));
-    assert_eq!((judged.len(), wrong.len()), (3, 3), "light, dark and on paper");
-    for (one, other) in judged.into_iter().zip(wrong) {
-        let ratio = (one.max(other) + 0.05) / (one.min(other) + 0.05);
-        assert!(ratio >= 3.0, "{ratio}");
-    }
-}
-
 /// What nothing known explains.
 fn unknown() -> Suspect {
     let defect = Defect::NoneKnown {
@@ -244,4 +222,40 @@ fn a_report_asks_nobody_to_make_one() {
     report.suspects = [known, vec![unknown()]].concat();
     let page = page(&report, &[]);
     assert!(page.contains("row factor") && !page.contains("no single part"), "{page}");
+}
+
+/// WCAG 2.1, success criterion 1.4.11: 3 : 1 between what is to be told apart, which no kind of colour blindness takes away.
+#[test]
+fn intervals_that_differ_are_told_from_others_by_brightness() {
+    let page = page(&made::soaked(), &[]);
+    let light = |colour: &str| {
+        let channel = |at: usize| {
+            let value = f64::from(u8::from_str_radix(&colour[at..at + 2], 16).unwrap()) / 255.0;
+            if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+        };
+        0.2126 * channel(0) + 0.7152 * channel(2) + 0.0722 * channel(4)
+    };
+    let values = |name: &str| -> Vec<f64> {
+        page.split(&format!("{name}: #")).skip(1).map(|rest| light(&rest[..6])).collect()
+    };
+    let (judged, wrong) = (values("--judged"), values("--wrong"));
+    assert_eq!((judged.len(), wrong.len()), (3, 3), "light, dark and on paper");
+    for (one, other) in judged.into_iter().zip(wrong) {
+        let ratio = (one.max(other) + 0.05) / (one.min(other) + 0.05);
+        assert!(ratio >= 3.0, "{ratio}");
+    }
+}
+
+#[test]
+fn times_away_that_are_alike_stand_in_one_line() {
+    let mut report = made::pass();
+    let away = |reason: &str| Reconnection {
+        reason: Problem::new("link-closed", reason),
+        seconds_away: 0.0,
+        kept_tables: None,
+    };
+    report.link.reconnections = [vec![away("unplugged"); 16], vec![away("closed")]].concat();
+    let page = page(&report, &[]);
+    assert!(page.contains("<dd>16 times, each for 0.0 s: unplugged</dd>"), "{page}");
+    assert_eq!(page.matches("Went away").count(), 2);
 }

@@ -224,6 +224,15 @@ pub fn away(away: &Reconnection) -> String {
     format!("for {:.1} s: {}{kept}", away.seconds_away, away.reason)
 }
 
+/// How a board went away as often, each time [`away`] alike.
+pub(super) fn away_together(together: &[Reconnection]) -> String {
+    let Some(first) = together.first() else { return String::new() };
+    match together.len() {
+        1 => away(first),
+        times => format!("{times} times, each {}", away(first)),
+    }
+}
+
 /// How much of a soak was judged, in one sentence without a full stop.
 #[must_use]
 pub fn soak(soak: &SoakReport) -> String {

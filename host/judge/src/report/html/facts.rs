@@ -104,8 +104,8 @@ pub(super) fn link(link: &LinkReport) -> Markup {
             @if link.line_errors.sum() > 0 { (pair("Line errors", link.line_errors.to_string())) }
             @if let Some(time) = link.round_trip_us { (pair("Round trip", format!("{} µs", grouped(time)))) }
             (pair("Time", format!("{:.3} s on the link's clock", link.seconds)))
-            @for away in &link.reconnections {
-                (pair("Went away", wording::away(away)))
+            @for together in link.reconnections.chunk_by(|one, other| wording::away(one) == wording::away(other)) {
+                (pair("Went away", wording::away_together(together)))
             }
         } }
     }
