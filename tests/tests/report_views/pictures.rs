@@ -2,7 +2,9 @@
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use halfrow::compare::Comparison;
 use halfrow::report;
+use halfrow::result::Evidence;
 
 use crate::made;
 
@@ -23,13 +25,30 @@ fn picture(page: &str, alt: &str) -> (u32, u32, Vec<[u8; 3]>) {
 }
 
 #[test]
-fn each_pixel_of_the_map_shows_the_largest_difference_of_its_eight_by_eight_samples() {
+fn each_pixel_of_the_map_of_a_large_frame_shows_the_largest_difference_of_its_eight_by_eight_samples() {
+    let (mut report, mut evidence) = made::fail();
+    let expected = made::sized_frame(256, 72, |_, _| 100);
+    let found = made::sized_frame(256, 72, |row, column| if row == 3 && column < 5 { 116 } else { 100 });
+    report.frames[1].comparison = Comparison::of_frames(&expected, &found);
+    evidence[0] = Evidence { index: 1, input: expected.clone(), found, expected };
+    let page = report::html(&report, &evidence).unwrap();
+    let (width, height, pixels) = picture(&page, "Map of differences");
+    assert_eq!((width, height), (32, 9));
+    assert_eq!(pixels[0], FROM_8, "columns 0 to 4 of row 3 are 16 too large");
+    assert!(pixels[1..].iter().all(|pixel| *pixel == EQUAL));
+    assert!(page.contains("in each 8 × 8 samples:"));
+}
+
+#[test]
+fn each_pixel_of_the_map_of_a_small_frame_shows_one_sample() {
     let (report, evidence) = made::fail();
     let page = report::html(&report, &evidence).unwrap();
     let (width, height, pixels) = picture(&page, "Map of differences");
-    assert_eq!((width, height), (8, 5));
-    assert_eq!(pixels[0], FROM_8, "columns 0 to 4 of row 3 are 16 too large");
-    assert!(pixels[1..].iter().all(|pixel| *pixel == EQUAL));
+    assert_eq!((width, height), (64, 40));
+    let wrong: Vec<_> = (0..pixels.len()).filter(|&place| pixels[place] != EQUAL).collect();
+    assert_eq!(wrong, (0..5).map(|column| 3 * 64 + column).collect::<Vec<_>>());
+    assert_eq!(pixels[3 * 64], FROM_8);
+    assert!(page.contains("of each sample:"));
 }
 
 #[test]
@@ -56,6 +75,7 @@ fn the_three_crops_share_one_contrast() {
 fn the_bars_count_the_differences_by_row_and_by_column() {
     let (report, evidence) = made::fail();
     let page = report::html(&report, &evidence).unwrap();
-    assert!(page.contains("M0 0h100v1h-100z"), "rows 0 to 7 have all five");
-    assert!(page.contains("M0 0v100h1v-100z"), "columns 0 to 7 have all five");
+    assert!(page.contains("M0 3h100v1h-100z"), "row 3 has all five");
+    let columns: String = (0..5).map(|column| format!("M{column} 0v100h1v-100z")).collect();
+    assert!(page.contains(&columns), "columns 0 to 4 have one each");
 }

@@ -12,8 +12,9 @@ use png::EncodingError;
 use crate::frames::preview::{self, RgbImage};
 
 pub(super) use crop::{Window, windows};
-pub(super) use map::{BOX, difference_map};
-pub(super) use scale::steps_up_to;
+pub(super) use map::difference_map;
+pub use map::side;
+pub use scale::{Step, steps_up_to};
 
 /// The narrowest preview that still shows something.
 const MIN_WIDTH: usize = 64;
@@ -54,7 +55,8 @@ pub fn developed(frame: &Frame, max_width: usize) -> Result<Vec<u8>, EncodingErr
     Ok(Picture::new(&preview::thumbnail(frame, max_width))?.png)
 }
 
-/// A map of where two frames of one size differ and by how much, as a PNG: a pixel for each square of 8 samples.
+/// A map of where two frames of one size differ and by how much, as a PNG: a pixel for each square of [`side`] samples, in the colours of
+/// [`steps_up_to`] the largest difference.
 ///
 /// # Errors
 /// The PNG encoder's.

@@ -8,7 +8,7 @@ use png::EncodingError;
 
 use super::charts;
 use super::facts::{mark, pair};
-use crate::report::pictures::{self, BOX, Picture, Window};
+use crate::report::pictures::{self, Picture, Window};
 use crate::report::wording::{self, count, grouped};
 use crate::result::{Evidence, FrameReport, Report, sha256};
 use crate::verdict::Verdict;
@@ -140,15 +140,17 @@ fn details(frame: &FrameReport, kept: &Evidence) -> Result<(Markup, usize), Enco
         crops.push(markup);
     }
     let (rows, columns) = (&frame.comparison.by_row, &frame.comparison.by_column);
+    let side = pictures::side(frame.comparison.samples);
     let markup = html! {
         h3 { "Where it differs" }
         div.map {
             img.samples src=(map.data_uri()) width=(map.width) height=(map.height) alt="Map of differences";
-            (charts::by_row(rows, BOX))
-            (charts::by_column(columns, BOX))
+            (charts::by_row(rows, side))
+            (charts::by_column(columns, side))
         }
         p.legend {
-            "Largest |found − expected| in each " (BOX) " × " (BOX) " samples:"
+            @if side == 1 { "|found − expected| of each sample:" }
+            @else { "Largest |found − expected| in each " (side) " × " (side) " samples:" }
             @for step in pictures::steps_up_to(frame.comparison.largest) {
                 @let [red, green, blue] = step.colour;
                 " " span.key {

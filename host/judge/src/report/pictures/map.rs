@@ -7,20 +7,29 @@ use super::Picture;
 use super::scale::colour;
 use crate::frames::preview::RgbImage;
 
-/// The side of the square of samples that one pixel of the map stands for. It keeps a single difference visible when a
-/// whole frame is shown on a telephone.
-pub(in crate::report) const BOX: usize = 8;
+/// The side of the square of samples that one pixel of the map of a large frame stands for. It keeps a single difference
+/// visible when a whole frame is shown on a telephone.
+const BOX: usize = 8;
+/// The most samples of a frame that has a pixel for each.
+const SMALL: usize = 128 * 128;
 
-/// A map of two frames of one size: each pixel has the colour of the largest difference in its square of [`BOX`] samples.
+/// The side of the square of samples that one pixel of the map stands for, in a frame of so many samples.
+#[must_use]
+pub fn side(samples: usize) -> usize {
+    if samples <= SMALL { 1 } else { BOX }
+}
+
+/// A map of two frames of one size: each pixel has the colour of the largest difference in its square of [`side`] samples.
 ///
 /// # Errors
 /// The PNG encoder's.
 pub(in crate::report) fn difference_map(expected: &Frame, found: &Frame) -> Result<Picture, EncodingError> {
-    let (width, height) = (expected.width().div_ceil(BOX), expected.height().div_ceil(BOX));
+    let side = side(expected.samples().len());
+    let (width, height) = (expected.width().div_ceil(side), expected.height().div_ceil(side));
     let mut largest = vec![0_u16; width * height];
     for (row, (expected, found)) in expected.rows().zip(found.rows()).enumerate() {
-        let line = largest.iter_mut().skip(row / BOX * width).take(width);
-        for (most, (expected, found)) in line.zip(expected.chunks(BOX).zip(found.chunks(BOX))) {
+        let line = largest.iter_mut().skip(row / side * width).take(width);
+        for (most, (expected, found)) in line.zip(expected.chunks(side).zip(found.chunks(side))) {
             *most = expected.iter().zip(found).fold(*most, |most, (e, f)| most.max(e.abs_diff(*f)));
         }
     }

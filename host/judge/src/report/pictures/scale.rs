@@ -1,12 +1,12 @@
 //! The colour scale of differences.
 
-/// A colour, and the smallest absolute difference that has it.
+/// A colour of the map, and the smallest absolute difference that has it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::report) struct Step {
+pub struct Step {
     /// The smallest absolute difference of this step.
-    pub(in crate::report) from: u16,
+    pub from: u16,
     /// Red, green and blue.
-    pub(in crate::report) colour: [u8; 3],
+    pub colour: [u8; 3],
 }
 
 /// Powers of four, as a fault in one bit of a sample is a power of two. The colours are the brighter part of magma, whose
@@ -34,7 +34,7 @@ pub(super) fn colour(difference: u16) -> [u8; 3] {
 }
 
 /// The steps that differences up to `largest` reach, from the smallest.
-pub(in crate::report) fn steps_up_to(largest: u16) -> impl DoubleEndedIterator<Item = Step> {
+pub fn steps_up_to(largest: u16) -> impl DoubleEndedIterator<Item = Step> {
     STEPS.into_iter().filter(move |step| step.from <= largest)
 }
 

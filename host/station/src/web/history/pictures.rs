@@ -114,6 +114,30 @@ fn section(
                     }
                 }
             }
+            @if let Some(comparison) = known.and_then(|known| known.get("comparison")) { (legend(visit, comparison)) }
+        }
+    }
+}
+
+/// What the colours of the last picture mean.
+fn legend(visit: &Visit, comparison: &Value) -> Markup {
+    let number = |key: &str| comparison.get(key).and_then(Value::as_u64).unwrap_or_default();
+    let side = pictures::side(usize::try_from(number("samples")).unwrap_or(usize::MAX));
+    let squares = match side {
+        1 => visit.say("pictures.samples").to_owned(),
+        side => visit.words.fill("pictures.squares", &[("side", &side.to_string())]),
+    };
+    let largest = u16::try_from(number("largest")).unwrap_or(u16::MAX);
+    html! {
+        p.soft {
+            (visit.say("pictures.difference")) ": " (squares)
+            @for step in pictures::steps_up_to(largest) {
+                @let [red, green, blue] = step.colour;
+                " " span.key {
+                    svg viewBox="0 0 1 1" aria-hidden="true" { rect width="1" height="1" fill=(format!("rgb({red} {green} {blue})")) {} }
+                    " " (visit.words.fill("pictures.from_on", &[("from", &step.from.to_string())]))
+                }
+            }
         }
     }
 }

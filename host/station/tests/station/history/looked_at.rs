@@ -273,9 +273,13 @@ fn a_fail_keeps_the_frames_that_are_wrong_and_shows_them() {
         let answer = served.get(picture);
         assert_eq!((answer.status, answer.header("content-type")), (200, Some("image/png")), "{picture}");
         assert!(answer.body.starts_with(b"\x89PNG"));
+        // Of so small a frame each sample has its own square in the map.
+        assert_eq!(answer.body[16..24], [0, 0, 0, 64, 0, 0, 0, 8], "{picture}");
         // It is evidence of that run, and of no other.
         assert_eq!(served.get(&picture.replace(failed, passed)).status, 404);
     }
+    assert!(page.contains("A square stands for one sample. Colour of its difference:"), "{page}");
+    assert!(page.contains("fill=\"rgb(131 38 129)\"></rect></svg> from 1<"), "{page}");
     assert!(!served.page(&format!("/runs/{passed}")).contains("<img"));
 }
 
