@@ -59,7 +59,7 @@ pub(super) async fn page(
         } @else {
             @if matches!(by, By::Day | By::Week) { (drawn(&visit, &lines)) }
             @if by == By::Station { (drifting(&visit, &drifts(&lines))) }
-            (table(&visit, &lines))
+            (table(&visit, by, &lines))
         }
         (flipped(&visit, &flips))
     };
@@ -152,11 +152,19 @@ fn drifting(visit: &Visit, drifts: &[Drift]) -> Markup {
     }
 }
 
-fn table(visit: &Visit, lines: &[Yield]) -> Markup {
+fn table(visit: &Visit, by: By, lines: &[Yield]) -> Markup {
+    let plan = visit.say("history.plan");
+    let of = match by {
+        By::Plan => plan.to_owned(),
+        By::Day => format!("{}, {plan}", visit.say("yield.day")),
+        By::Week => format!("{}, {plan}", visit.say("yield.week")),
+        By::Lane => format!("{}, {plan}", visit.say("history.lane")),
+        By::Station => format!("{}, {plan}", visit.say("nav.station")),
+    };
     html! {
         div.wide tabindex="0" { table.yields {
             thead { tr {
-                th { (visit.say("history.plan")) } th.number { (visit.say("yield.units")) }
+                th { (of) } th.number { (visit.say("yield.units")) }
                 th { (visit.say("yield.first")) } th { (visit.say("yield.last")) }
                 th.number { (visit.say("yield.flipped")) } th.number { (visit.say("history.waived")) }
                 th.number { (visit.say("history.runs")) } th { (visit.say("yield.errors")) }

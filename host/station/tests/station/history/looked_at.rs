@@ -127,6 +127,13 @@ fn no_share_of_a_yield_stands_without_its_interval_and_flips_are_listed_by_unit(
         let shares = page.matches("<span class=\"share\">").count();
         assert!(shares > 0);
         assert_eq!(shares, page.matches("</span> <span class=\"interval\">").count());
+        // The first column is headed by what its lines are about.
+        let head = match by {
+            "day" => "Day, Plan",
+            "lane" => "Lane, Plan",
+            _ => "Plan",
+        };
+        assert!(page.contains(&format!("<table class=\"yields\"><thead><tr><th>{head}</th>")), "{page}");
     }
     let page = served.page("/yield");
     let judged = |serial: &str| -> Vec<End> {
