@@ -3,6 +3,7 @@
 use axum::extract::{Query, State};
 use axum::http::StatusCode;
 use axum::response::Response;
+use halfrow::report::wording::plain;
 use maud::{Markup, html};
 
 use super::acts::Refused;
@@ -35,7 +36,8 @@ pub(super) async fn shown(
     let serial = asked.serial.clone();
     let units = app.look(&visit, move |now| unit::units(now, &serial)).await?;
     if units.is_empty() {
-        return Err(Trouble::missing(&visit));
+        let said = visit.words.fill("history.unknown", &[("serial", &plain(&asked.serial))]);
+        return Err(Trouble::new(&visit, StatusCode::NOT_FOUND, said));
     }
     let status = refused.as_ref().map_or(StatusCode::OK, |refused| refused.status);
     let content = html! {

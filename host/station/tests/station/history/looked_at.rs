@@ -160,6 +160,7 @@ fn failures_have_bars_by_part_and_by_check() {
     };
     assert!(row(&served.page("/pareto"), "memory").contains("</svg> 15</td>"));
     assert!(row(&served.page("/pareto?by=check"), "verify").contains("</svg> 15</td>"));
+    assert!(served.page("/pareto").contains("Runs that failed: 15, of units: "));
     assert!(served.page("/pareto?plan=none").contains("Nothing failed that fits."));
 }
 
@@ -308,6 +309,13 @@ fn a_unit_s_page_tells_its_story_in_every_language() {
         made.run(&Run { started_ms: BEGIN_MS + hour * HOUR_MS, ..Run::of("S1", end) });
     }
     let served = Served::of(made);
+    let unknown = served.get("/unit?serial=NOPE");
+    assert_eq!(unknown.status, 404);
+    assert!(
+        unknown.text().contains("Nothing was tested here under the serial number NOPE."),
+        "{}",
+        unknown.text()
+    );
     for (language, flip) in [
         ("en", "First FAIL, in the end PASS under final"),
         ("de", "Erst FAIL, am Ende PASS nach final"),
