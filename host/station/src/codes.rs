@@ -256,7 +256,7 @@ codes::codes! {
     }
     HookError {
         Start [program] => "hook-not-started",
-        Failed [program, said] => "hook-failed",
+        Failed [program, status, said] => "hook-failed",
         Late [program, deadline] => "hook-late",
     }
     Saying {

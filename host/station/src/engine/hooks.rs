@@ -2,7 +2,7 @@
 
 use std::io::{self, Read};
 use std::os::unix::process::CommandExt as _;
-use std::process::{Command, ExitStatus, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -28,12 +28,12 @@ pub enum HookError {
         source: io::Error,
     },
     /// It failed.
-    #[error("the hook {program} failed ({status}): {said}; look at what it drives")]
+    #[error("the hook {program} failed ({status}){}; look at what it drives", of(said))]
     Failed {
         /// The program.
         program: String,
         /// How it ended.
-        status: ExitStatus,
+        status: String,
         /// What it complained of, one line.
         said: String,
     },
@@ -45,6 +45,11 @@ pub enum HookError {
         /// How long it might take.
         deadline: Duration,
     },
+}
+
+/// What a hook complains of, behind a colon; nothing of one that says nothing.
+fn of(said: &str) -> String {
+    if said.is_empty() { String::new() } else { format!(": {said}") }
 }
 
 /// Runs `hook` for the verdict that is shown on `lane`, until it ends or its deadline.
@@ -82,7 +87,7 @@ pub(super) fn run(hook: &Hook, lane: &str, shown: &Shown) -> Result<(), HookErro
             kill(child.id());
             let said = heard(&told);
             let said = String::from_utf8_lossy(&said).split_whitespace().collect::<Vec<_>>().join(" ");
-            Err(HookError::Failed { program: program(), status, said })
+            Err(HookError::Failed { program: program(), status: status.to_string(), said })
         }
     }
 }
@@ -169,6 +174,8 @@ mod tests {
         run(&hook("exit 0", 60), "1", &shown("x")).unwrap();
         let failed = run(&hook("echo no paper >&2; exit 3", 60), "1", &shown("x")).unwrap_err();
         assert!(failed.to_string().contains("(exit status: 3): no paper;"), "{failed}");
+        let silent = run(&hook("exit 3", 60), "1", &shown("x")).unwrap_err();
+        assert!(silent.to_string().ends_with("failed (exit status: 3); look at what it drives"), "{silent}");
         let missing = Hook { program: "/no/such/program".into(), ..hook("", 60) };
         assert!(matches!(run(&missing, "1", &shown("x")), Err(HookError::Start { .. })));
     }

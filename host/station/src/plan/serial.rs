@@ -50,7 +50,7 @@ pub enum SerialError {
     },
     /// It is another product's, or misread.
     #[error(
-        "`{serial}` is no serial number of this product, whose pattern is {pattern}; scan the board's label again, \
+        "`{serial}` is no serial number of this product; scan the board's label again, \
          or take the plan of its product"
     )]
     Pattern {

@@ -70,6 +70,7 @@ impl Words {
     fn value(&self, value: &Value) -> String {
         match value {
             Value::Null => "–".to_owned(),
+            Value::String(text) if text.is_empty() => "–".to_owned(),
             Value::String(text) => text.clone(),
             Value::Number(number) if number.is_f64() => {
                 let rounded = number.as_f64().map(|value| (value * 1e6).round() / 1e6);

@@ -117,6 +117,37 @@ fn without_a_script_the_page_says_the_states_and_takes_a_serial_number() {
     assert!(refused.contains("class=\"answer refused\""), "{refused}");
 }
 
+/// Nobody logged in: what is to be scanned is a badge, in every lane and over them all.
+#[test]
+fn whoever_is_not_logged_in_is_asked_for_the_badge() {
+    let station = Station::with(1, "[web]\nlisten = \"127.0.0.1:0\"\n[access]\nusers = \"users.toml\"");
+    assert!(station.user(&["add", "Weber"], "A-0017\n").status.success());
+    let serving = station.serve();
+    let page = seen(&serving, "lane ready");
+    assert!(page.contains("<p class=\"badge\"><strong>Scan your badge</strong>"), "{page}");
+    assert!(
+        page.contains("<p class=\"does\">scan your badge</p>") && !page.contains("scan its label"),
+        "{page}"
+    );
+    let mut here = serving.here();
+    here.learn(&here.post("/login", &[("badge", "A-0017")]).send());
+    let page = here.get("/").send().text();
+    assert!(
+        page.contains("<p class=\"does\">scan its label</p>") && !page.contains("class=\"badge\""),
+        "{page}"
+    );
+}
+
+/// A label of another product is answered by what to do, and not by the plan's pattern.
+#[test]
+fn a_wrong_label_is_answered_without_a_pattern() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let said = serving.here().post("/scan", &[("text", "WRONG"), ("typed", "true")]).send().text();
+    assert!(said.contains("is no serial number of this product; scan the board"), "{said}");
+    assert!(!said.contains("(?&lt;number&gt;"), "{said}");
+}
+
 #[test]
 fn every_language_says_it_in_its_words() {
     let station = Station::private(1);
