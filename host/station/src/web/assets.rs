@@ -12,10 +12,11 @@ const CSS: &str = "text/css; charset=utf-8";
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 
 /// Every file by its name.
-const ASSETS: [(&str, &str, &str); 8] = [
+const ASSETS: [(&str, &str, &str); 9] = [
     ("style.css", CSS, include_str!("../../assets/style.css")),
     ("history.css", CSS, include_str!("../../assets/history.css")),
     ("operator.css", CSS, include_str!("../../assets/operator.css")),
+    ("still.css", CSS, include_str!("../../assets/still.css")),
     ("operator.js", SCRIPT, include_str!("../../assets/operator.js")),
     ("scanner.js", SCRIPT, include_str!("../../assets/scanner.js")),
     ("live.js", SCRIPT, include_str!("../../assets/live.js")),

@@ -26,15 +26,25 @@ const MOST: usize = 64 * 1024;
 /// The field of every form that says for whom it was made.
 const MARK: &str = "csrf";
 
-/// What every answer carries. A page may load from the station alone, and stands in nobody's frame.
+/// What pages may load, which is from the station alone, and who may frame them.
+macro_rules! policy {
+    ($frames:literal) => {
+        concat!(
+            "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; ",
+            "frame-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors ",
+            $frames
+        )
+    };
+}
+
+/// The policy of what stands in a page of the station.
+pub(super) const FRAMED: &str = policy!("'self'");
+
+/// What every answer carries that has none of its own. A page stands in nobody's frame.
 ///
 /// With `no-referrer` browsers send the origin `null` with forms; `same-origin` tells others as little.
 const HEADERS: [(HeaderName, &str); 4] = [
-    (
-        header::CONTENT_SECURITY_POLICY,
-        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; \
-         form-action 'self'; base-uri 'none'; frame-ancestors 'none'",
-    ),
+    (header::CONTENT_SECURITY_POLICY, policy!("'none'")),
     (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
     (header::REFERRER_POLICY, "same-origin"),
     (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
@@ -59,7 +69,7 @@ pub(super) async fn every(State(app): State<App>, request: Request, next: Next) 
         Trouble::new(&visit, StatusCode::MISDIRECTED_REQUEST, visit.say("trouble.host")).into_response()
     };
     for (name, value) in HEADERS {
-        response.headers_mut().insert(name, HeaderValue::from_static(value));
+        response.headers_mut().entry(name).or_insert(HeaderValue::from_static(value));
     }
     response
 }

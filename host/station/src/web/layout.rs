@@ -1,13 +1,13 @@
 //! What all pages have in common.
 
-use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
+use axum::http::header::{CACHE_CONTROL, CONTENT_SECURITY_POLICY, CONTENT_TYPE};
 use axum::http::{HeaderValue, StatusCode};
 use axum::response::{IntoResponse as _, Response};
 use maud::{DOCTYPE, Markup, html};
 
-use super::language;
 use super::routes::Who;
 use super::visit::Visit;
+use super::{guard, language};
 
 /// A place of the navigation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,15 +70,19 @@ impl Page<'_> {
         self.with_status(visit, StatusCode::OK)
     }
 
-    /// As an answer with this status.
-    pub(super) fn with_status(self, visit: &Visit, status: StatusCode) -> Response {
-        let text = self.markup(visit).into_string();
-        let kind = HeaderValue::from_static("text/html; charset=utf-8");
-        let keep = HeaderValue::from_static("no-store");
-        (status, [(CONTENT_TYPE, kind), (CACHE_CONTROL, keep)], text).into_response()
+    /// As a part of one of the station's own pages, without the navigation.
+    pub(super) fn framed(self, visit: &Visit) -> Response {
+        let mut response = text(StatusCode::OK, self.markup(visit, false));
+        response.headers_mut().insert(CONTENT_SECURITY_POLICY, HeaderValue::from_static(guard::FRAMED));
+        response
     }
 
-    fn markup(&self, visit: &Visit) -> Markup {
+    /// As an answer with this status.
+    pub(super) fn with_status(self, visit: &Visit, status: StatusCode) -> Response {
+        text(status, self.markup(visit, true))
+    }
+
+    fn markup(&self, visit: &Visit, is_whole: bool) -> Markup {
         html! {
             (DOCTYPE)
             html lang=(visit.words.code) {
@@ -92,12 +96,18 @@ impl Page<'_> {
                     (self.head)
                 }
                 body {
-                    (navigation(visit, self.here))
+                    @if is_whole { (navigation(visit, self.here)) }
                     main { (self.content) }
                 }
             }
         }
     }
+}
+
+fn text(status: StatusCode, markup: Markup) -> Response {
+    let kind = HeaderValue::from_static("text/html; charset=utf-8");
+    let keep = HeaderValue::from_static("no-store");
+    (status, [(CONTENT_TYPE, kind), (CACHE_CONTROL, keep)], markup.into_string()).into_response()
 }
 
 fn navigation(visit: &Visit, here: Here) -> Markup {

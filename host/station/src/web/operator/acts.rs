@@ -58,7 +58,7 @@ pub(super) struct Answer {
     lane: Option<String>,
     pub(super) said: String,
     /// The lane that the page's next scan is for.
-    armed: Option<String>,
+    pub(super) armed: Option<String>,
     /// Whether it is somebody else's page from now on.
     is_other: bool,
 }

@@ -11,6 +11,7 @@ use super::routes::{Route, Who, act, look};
 pub(super) fn routes() -> Vec<Route> {
     vec![
         look("/", Who::Reader, page::page),
+        look("/still", Who::Reader, page::still),
         look("/live", Who::Reader, events::events),
         look("/today", Who::Reader, page::today),
         // A badge logs in, whoever scans it.

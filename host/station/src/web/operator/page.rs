@@ -18,7 +18,7 @@ use crate::web::state::{App, Floor};
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
-/// How often the page comes anew without its script, in seconds.
+/// How often the lanes come anew without the page's script, in seconds.
 const ANEW: u32 = 5;
 
 pub(super) async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
@@ -34,8 +34,8 @@ async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Respons
     let Floor { live, hints, .. } = app.floor(&visit)?;
     let (now, today) = (live.now(), counted(&app, &visit).await?);
     let head = html! {
-        noscript { meta http-equiv="refresh" content={ (ANEW) "; url=/" }; }
         link rel="stylesheet" href="/assets/operator.css";
+        noscript { link rel="stylesheet" href="/assets/still.css"; }
         script type="module" src="/assets/operator.js" {}
     };
     let content = html! {
@@ -46,12 +46,32 @@ async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Respons
             (scan_box(&visit, &now, answer.as_ref()))
             p #notice .notice role="alert" data-lane=(visit.say("hand.lane")) {}
             (hint(hints, &visit, &now))
+            // What is typed meanwhile stays, since the form is in another page than the lanes.
+            noscript { iframe src="/still" title=(visit.say("nav.lanes")) {} }
             (floor(&visit, &now))
             footer #today data-changes[app.settings().plant.is_some()] { (today) }
             div #said .heard role="log" aria-live="assertive" {}
         }
     };
     Ok(Page { here: Here::Lanes, title: visit.say("nav.lanes"), head, content }.answer(&visit))
+}
+
+/// The lanes alone, which come anew without a script.
+pub(super) async fn still(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
+    let (now, today) = (app.floor(&visit)?.live.now(), counted(&app, &visit).await?);
+    let head = html! {
+        meta http-equiv="refresh" content=(ANEW);
+        base target="_top";
+        link rel="stylesheet" href="/assets/operator.css";
+    };
+    let content = html! {
+        section #station {
+            h1.heard { (visit.say("nav.lanes")) }
+            (floor(&visit, &now))
+            footer #today { (today) " · " (live_lamp(&visit)) }
+        }
+    };
+    Ok(Page { here: Here::Lanes, title: visit.say("nav.lanes"), head, content }.framed(&visit))
 }
 
 /// What a visitor of a demonstration may try.
@@ -93,7 +113,8 @@ fn scan_box(visit: &Visit, now: &Now, answer: Option<&Answer>) -> Markup {
             }
             (live_lamp(visit))
         }
-        (by_hand(visit, now))
+        (by_hand(visit, now, None))
+        noscript { (by_hand(visit, now, Some(answer.and_then(|answer| answer.armed.as_deref()).unwrap_or_default()))) }
     }
 }
 
@@ -103,8 +124,9 @@ fn live_lamp(visit: &Visit) -> Markup {
     }
 }
 
-/// For people who type, and for browsers without scripts.
-fn by_hand(visit: &Visit, now: &Now) -> Markup {
+/// For people who type; for browsers without scripts with the lane that was chosen last.
+fn by_hand(visit: &Visit, now: &Now, unscripted: Option<&str>) -> Markup {
+    let is_scripted = unscripted.is_none();
     html! {
         form #hand .hand method="post" action="/scan" autocomplete="off" {
             input type="hidden" name="csrf" value=(visit.csrf);
@@ -113,11 +135,13 @@ fn by_hand(visit: &Visit, now: &Now) -> Markup {
                 label { (visit.say("hand.lane")) " "
                     select name="lane" {
                         option value="" { "–" }
-                        @for state in &now.lanes { option { (state.lane) } }
+                        @for state in &now.lanes { option selected[unscripted == Some(&state.lane)] { (state.lane) } }
                     }
                 }
             }
-            label { (visit.say("hand.serial")) " " input #hand-text name="text" required maxlength="200" spellcheck="false"; }
+            label { (visit.say("hand.serial")) " "
+                input id=[is_scripted.then_some("hand-text")] name="text" required maxlength="200" spellcheck="false" autofocus[!is_scripted];
+            }
             button { (visit.say("hand.send")) }
         }
     }

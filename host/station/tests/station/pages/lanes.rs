@@ -106,14 +106,19 @@ fn without_a_script_the_page_says_the_states_and_takes_a_serial_number() {
     let serving = station.serve();
     let here = serving.here();
     let page = here.get("/").send().text();
-    assert!(
-        page.contains("<noscript><meta http-equiv=\"refresh\" content=\"5; url=/\"></noscript>"),
-        "{page}"
-    );
+    // What comes anew is the frame with the lanes, and nobody else frames it.
+    assert!(page.contains("<noscript><iframe src=\"/still\"") && !page.contains("http-equiv"), "{page}");
+    let still = here.get("/still").send();
+    assert!(still.text().contains("<meta http-equiv=\"refresh\" content=\"5\">"), "{}", still.text());
+    for (answer, ancestors) in [(still, "'self'"), (here.get("/").send(), "'none'")] {
+        let policy = &answer.headers["content-security-policy"];
+        assert!(policy.ends_with(&format!("frame-ancestors {ancestors}")), "{policy}");
+    }
     let answer = here.post("/scan", &[("text", SERIALS[1]), ("typed", "true")]).send();
     assert_eq!(answer.status, 200);
     assert!(answer.text().contains(&format!("{} is tested in lane 1", SERIALS[1])), "{}", answer.text());
-    let refused = here.post("/scan", &[("text", "CA0201134374"), ("typed", "true")]).send().text();
+    let fields = [("text", "CA0201134374"), ("typed", "true"), ("lane", "1")];
+    let refused = here.post("/scan", &fields).send().text();
     assert!(refused.contains("class=\"answer refused\""), "{refused}");
 }
 

@@ -10,13 +10,14 @@ use crate::pages::station::{Browser, PUBLIC, Station};
 /// A route as this table has it: method, path, who may, a path that there is, and the fields of a form that is right.
 type Row = (&'static str, &'static str, Who, &'static str, &'static [(&'static str, &'static str)]);
 
-const ROWS: [Row; 29] = [
+const ROWS: [Row; 30] = [
     ("GET", "/assets/{name}", Who::Anyone, "/assets/style.css", &[]),
     ("GET", "/login", Who::Anyone, "/login", &[]),
     ("POST", "/login", Who::Anyone, "/login", &[("badge", "A-0017")]),
     ("POST", "/logout", Who::Anyone, "/logout", &[]),
     ("POST", "/language", Who::Anyone, "/language", &[("language", "de")]),
     ("GET", "/", Who::Reader, "/", &[]),
+    ("GET", "/still", Who::Reader, "/still", &[]),
     ("GET", "/live", Who::Reader, "/live", &[]),
     ("GET", "/today", Who::Reader, "/today", &[]),
     ("GET", "/history", Who::Reader, "/history", &[]),
