@@ -33,7 +33,11 @@ export function progress({ lane, what, lang, rows }) {
 
 // Marks the lane that the next scan is for.
 export function arm(lane) {
-  for (const one of document.querySelectorAll(".lane")) one.classList.toggle("armed", one.dataset.lane === lane);
+  for (const one of document.querySelectorAll(".lane")) {
+    const isArmed = one.dataset.lane === lane;
+    one.classList.toggle("armed", isArmed);
+    one.querySelector(".name").setAttribute("aria-pressed", isArmed);
+  }
 }
 
 export const count = () => document.querySelectorAll(".lane").length;

@@ -57,11 +57,12 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
     let shown = state.shown.as_ref().filter(|_| is_verdict(state.state));
     let word = said(visit, state.state);
     html! {
-        article.lane.(state.state.name()).(length(word)) id={ "lane-" (state.lane) } data-lane=(state.lane)
+        article.lane.(state.state.name()).(length(word)) id={ "lane-" (state.lane) } data-lane=(state.lane) aria-labelledby={ "name-" (state.lane) }
             data-run=[shown.map(|shown| &shown.run)] data-record=[shown.map(|shown| &shown.record_sha256)] {
             header {
-                h2 {
-                    button.name.(length(&state.lane)) type="button" data-arm=(state.lane) aria-label=(visit.words.fill("lane.arm", &[("lane", &state.lane)])) {
+                h2 id={ "name-" (state.lane) } aria-label=(visit.words.fill("lane.name", &[("lane", &state.lane)])) {
+                    button.name.(length(&state.lane)) type="button" data-arm=(state.lane) aria-pressed="false"
+                        aria-label=(visit.words.fill("lane.arm", &[("lane", &state.lane)])) {
                         (state.lane)
                     }
                 }
