@@ -118,9 +118,9 @@ pub enum Saying {
     GoodUnitWrong { serial: String, verdict: String },
     #[error("the bad unit {serial} came to {verdict}; an engineer looks at the lane")]
     BadUnitWrong { serial: String, verdict: String },
-    #[error("the good unit {serial} is to come to PASS first, to check this shift")]
+    #[error("the good unit {serial} is to come to PASS first, to check this shift; scan its label")]
     GoodUnitDue { serial: String },
-    #[error("the bad unit {serial} is to come to FAIL first, to check this shift")]
+    #[error("the bad unit {serial} is to come to FAIL first, to check this shift; scan its label")]
     BadUnitDue { serial: String },
     #[error(
         "the mock board with a drawn fault is to come to FAIL first, to check this shift; scan {barcode}"

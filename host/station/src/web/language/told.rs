@@ -9,6 +9,8 @@ use crate::said::Said;
 const ENGLISH: &str = "en";
 /// Parameters that say what a finding is about: what is to be done is asked of them first.
 const ABOUT: [&str; 4] = ["suspect", "defect", "found", "reason"];
+/// Parameters that are seconds.
+const TIMES: [&str; 4] = ["at", "seconds", "deadline", "waited"];
 
 /// A sentence on a page.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,17 +24,44 @@ pub(in crate::web) struct Told {
 impl Words {
     /// What was said, with its causes; in English if the language has no words for all of it.
     pub(in crate::web) fn tell(&self, said: &Said) -> Told {
-        let all = [said].into_iter().chain(&said.causes);
-        let own: Option<Vec<_>> =
-            all.map(|one| self.sentence(&one.code, &one.parameters.clone().into())).collect();
-        match own {
-            _ if self.code == ENGLISH => Told { text: said.to_string(), foreign: None },
-            Some(own) => Told { text: own.join(": "), foreign: None },
+        let (sentences, foreign) = self.sentences(said);
+        Told { text: sentences.join(": "), foreign }
+    }
+
+    /// What was said without what it asks for, and that: `recorded`, which is in English, or what stands behind a semicolon.
+    pub(in crate::web) fn parted(&self, said: &Said, recorded: Option<&str>) -> (Told, Option<Told>) {
+        let is_asked = |one: &Said| {
+            parts(&one.message)
+                .is_some_and(|(_, asked)| recorded.is_none_or(|known| written(known) == written(asked)))
+        };
+        let place = all(said).position(is_asked);
+        let (mut sentences, foreign) = self.sentences(said);
+        let parted = place.and_then(|place| sentences.get_mut(place)).and_then(|sentence| {
+            let (why, asked) = parts(sentence).map(|(why, asked)| (why.to_owned(), written(asked)))?;
+            *sentence = why;
+            Some(Told { text: asked, foreign })
+        });
+        let asked = parted.or_else(|| {
+            let Told { text, foreign } = self.remedy(Some(said), recorded?);
+            Some(Told { text: written(&text), foreign })
+        });
+        (Told { text: sentences.join(": "), foreign }, asked)
+    }
+
+    /// What was said and each of its causes, and whether that is in another language.
+    fn sentences(&self, said: &Said) -> (Vec<String>, Option<&'static str>) {
+        let english = |said: &Said| said.message.clone();
+        let own = |one: &Said| self.sentence(&one.code, &one.parameters.clone().into());
+        if self.code == ENGLISH {
+            return (all(said).map(english).collect(), None);
+        }
+        match (all(said).map(own).collect::<Option<Vec<_>>>(), own(said)) {
+            (Some(own), _) => (own, None),
             // A cause that is the system's or a library's own has no words here.
-            None => match self.sentence(&said.code, &said.parameters.clone().into()) {
-                Some(first) => Told { text: causes(first, said), foreign: None },
-                None => self.english(said.to_string()),
-            },
+            (None, Some(first)) => {
+                ([first].into_iter().chain(said.causes.iter().map(english)).collect(), None)
+            }
+            (None, None) => (all(said).map(english).collect(), Some(ENGLISH)),
         }
     }
 
@@ -52,7 +81,7 @@ impl Words {
 
     fn sentence(&self, code: &str, parameters: &Value) -> Option<String> {
         let words = self.of_code("said", code)?;
-        Some(filled(words, &|name| Some(self.value(at(parameters, name)?))))
+        Some(filled(words, &|name| Some(self.named(name, at(parameters, name)?))))
     }
 
     fn asked(&self, code: &str, parameters: &Value) -> Option<String> {
@@ -62,8 +91,17 @@ impl Words {
         });
         inner.or_else(|| {
             let words = self.of_code("remedy", code)?;
-            Some(filled(words, &|name| Some(self.value(at(parameters, name)?))))
+            Some(filled(words, &|name| Some(self.named(name, at(parameters, name)?))))
         })
+    }
+
+    /// The parameter of this name as people read it: of times no more than they can tell apart.
+    fn named(&self, name: &str, value: &Value) -> String {
+        match value.as_f64().filter(|_| value.is_f64() && TIMES.contains(&name)) {
+            Some(seconds) if seconds >= 1.0 => self.figures(&format!("{}", (seconds * 10.0).round() / 10.0)),
+            Some(seconds) => self.figures(&format!("{}", (seconds * 1e3).round() / 1e3)),
+            None => self.value(value),
+        }
     }
 
     /// A parameter as people read it.
@@ -92,10 +130,20 @@ impl Words {
     }
 }
 
-/// The sentence with its causes as they were told.
-fn causes(first: String, said: &Said) -> String {
-    let causes = said.causes.iter().map(|cause| cause.message.clone());
-    [first].into_iter().chain(causes).collect::<Vec<_>>().join(": ")
+/// It and its causes.
+fn all(said: &Said) -> impl Iterator<Item = &Said> {
+    [said].into_iter().chain(&said.causes)
+}
+
+/// What is wrong and what to do about it: sentences of this program have that behind their last semicolon.
+fn parts(sentence: &str) -> Option<(&str, &str)> {
+    sentence.rsplit_once("; ").or_else(|| sentence.rsplit_once('；'))
+}
+
+/// What to do as a line of its own has it.
+fn written(asked: &str) -> String {
+    let mut letters = asked.trim().trim_end_matches(['.', '。']).chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// The parameter of this name; `place.row` is the row of the place.
@@ -128,6 +176,49 @@ mod tests {
         assert_eq!(of(None, None).tell(&Said::of(&out)).text, text);
         let seconds = Said::from(Saying::LaneSilent { seconds: 2.5 });
         assert_eq!(german(&seconds).0, "der Prozess des Platzes meldete 2,5 s lang nichts");
+    }
+
+    /// In every language what to do is told apart, and a finding's figures stay whole.
+    #[test]
+    fn what_is_asked_for_is_told_apart_from_why() {
+        let text = |told: Option<Told>| told.map(|told| (told.text, told.foreign));
+        let due = Said::from(Saying::MockDue { barcode: "HR:MOCK".to_owned() });
+        for (language, asked) in
+            [("en", "Scan HR:MOCK"), ("de", "Scannen Sie HR:MOCK"), ("zh", "请扫描 HR:MOCK")]
+        {
+            let (why, told) = of(Some(language), None).parted(&due, None);
+            assert_eq!(text(told), Some((asked.to_owned(), None)));
+            assert!(!why.text.contains("HR:MOCK") && !why.text.ends_with([';', '；', ' ']), "{why:?}");
+        }
+        let (why, told) = of(None, None).parted(&Saying::OutByPerson.into(), None);
+        assert_eq!((why.text.as_str(), told), ("taken out by a person", None));
+        let said = |code: &str, message: &str, parameters: Value| Said {
+            code: code.to_owned(),
+            parameters: parameters.as_object().cloned().unwrap_or_default(),
+            message: message.to_owned(),
+            causes: Vec::new(),
+        };
+        let cause = said(
+            "link-closed",
+            "it was closed; check the cable",
+            json!({ "link": "usb:1", "at": 11.069_952 }),
+        );
+        let broke = Said { causes: vec![cause], ..said("link-broke", "the link broke", json!({})) };
+        let (why, told) = of(Some("de"), None).parted(&broke, Some("Check the cable."));
+        assert_eq!(why.text, "die Verbindung brach ab: usb:1 wurde nach 11,1 s geschlossen");
+        let asked = "Kabel und Stromversorgung der Platine prüfen, dann noch einmal";
+        assert_eq!(text(told), Some((asked.to_owned(), None)));
+        let lost = said("row-lost-once", "a row was lost; it is row 3", json!({}));
+        let (why, told) = of(None, None).parted(&lost, Some("Check the cable."));
+        assert_eq!(
+            (why.text.as_str(), told.unwrap().text.as_str()),
+            ("a row was lost; it is row 3", "Check the cable")
+        );
+        let (_, told) = of(Some("de"), None).parted(&lost, Some("Check the cable."));
+        assert_eq!(
+            text(told),
+            Some(("Kabel und Verbindung prüfen, dann noch einmal prüfen".to_owned(), None))
+        );
     }
 
     #[test]

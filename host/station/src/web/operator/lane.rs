@@ -70,9 +70,19 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
                 @if let Some(shown) = shown { (saved(visit, shown)) }
             }
             p.word { (shape(state.state)) span { (word) } }
-            p.serial { (state.serial.as_deref().unwrap_or_default()) }
+            p.serial { (serial(state.serial.as_deref().unwrap_or_default(), shown)) }
             (says(visit, state))
-            @if state.state == Word::Running { (progress(visit, doing)) }
+            @if state.state == Word::Running { (progress(visit, &state.lane, doing)) }
+        }
+    }
+}
+
+/// The serial number; of a run that is over it leads to all that was found.
+fn serial(serial: &str, shown: Option<&Shown>) -> Markup {
+    html! {
+        @match shown {
+            Some(shown) => { a href={ "/runs/" (shown.run) } { (serial) } }
+            None => { (serial) }
         }
     }
 }
@@ -89,14 +99,32 @@ fn length(word: &str) -> &'static str {
 /// What the operator does now, and why.
 fn says(visit: &Visit, state: &LaneState) -> Markup {
     let shown = state.shown.as_ref().filter(|_| is_verdict(state.state));
-    let judged = shown.filter(|_| state.state != Word::Pass);
+    let note = state.note.as_ref().map(|note| match state.state {
+        // There is one thing to do, whatever is said.
+        Word::Unsaved => (visit.words.tell(note), None),
+        _ => visit.words.parted(note, None),
+    });
+    let error = shown.filter(|_| state.state == Word::Error).map(|shown| of_error(visit, shown));
+    let fail = shown.filter(|_| state.state == Word::Fail);
+    let told: Vec<_> = note.into_iter().chain(error).collect();
+    let asked = told.iter().find_map(|(_, asked)| asked.as_ref());
     html! {
-        p.does { (does(visit, state)) }
-        @if let Some(note) = &state.note { (why(&visit.words.tell(note), None)) }
-        @if let Some(shown) = judged {
+        @if let Some(does) = does(visit, state, asked.is_some()) { p.does { (does) } }
+        @if let Some(asked) = asked { p.asks lang=[asked.foreign] { (plain(&asked.text)) } }
+        @for (told, _) in &told { (why(told, None)) }
+        @if let Some(shown) = fail {
             @let remedy = shown.remedy.as_ref().map(|text| visit.words.remedy(shown.finding.as_ref(), text));
             (why(&headline(visit, shown), remedy.as_ref()))
         }
+    }
+}
+
+/// Why there is no verdict, and what to do about it.
+fn of_error(visit: &Visit, shown: &Shown) -> (Told, Option<Told>) {
+    let recorded = shown.remedy.as_deref();
+    match &shown.finding {
+        Some(finding) => visit.words.parted(finding, recorded),
+        None => (headline(visit, shown), recorded.map(|text| visit.words.english(text.to_owned()))),
     }
 }
 
@@ -107,7 +135,7 @@ fn headline(visit: &Visit, shown: &Shown) -> Told {
     }
 }
 
-/// Why, with what to do when it is pointed at.
+/// Why, with what an engineer does when it is pointed at.
 fn why(told: &Told, remedy: Option<&Told>) -> Markup {
     html! { p.why lang=[told.foreign] title=[remedy.map(|remedy| &remedy.text)] { (plain(&told.text)) } }
 }
@@ -120,13 +148,13 @@ fn saved(visit: &Visit, shown: &Shown) -> Markup {
 }
 
 /// What the run does; the script puts in what is told later.
-fn progress(visit: &Visit, of: Option<&Doing>) -> Markup {
+fn progress(visit: &Visit, lane: &str, of: Option<&Doing>) -> Markup {
     let (rows, told) = (of.and_then(|of| of.rows), of.map(|of| doing(visit, of)));
     html! {
         p.doing lang=[told.as_ref().and_then(|told| told.foreign)] {
             @if let Some(told) = &told { (plain(&told.text)) }
         }
-        progress max=[rows.map(|(_, of)| of)] value=[rows.map(|(done, _)| done)] {}
+        progress aria-labelledby={ "name-" (lane) } max=[rows.map(|(_, of)| of)] value=[rows.map(|(done, _)| done)] {}
     }
 }
 

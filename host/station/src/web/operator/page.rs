@@ -99,10 +99,11 @@ fn shape_of(lanes: usize) -> usize {
 fn scan_box(visit: &Visit, now: &Now, answer: Option<&Answer>) -> Markup {
     let class = answer.map_or("", |answer| if answer.is_taken { "taken" } else { "refused" });
     html! {
+        @if visit.can_log_in && !visit.may(Who::Operator) {
+            p.badge { strong { (visit.say("scan.badge")) } " " a href="/login" { (visit.say("scan.login")) } }
+        }
         div.scan {
-            span.scans {
-                @if visit.may(Who::Operator) { (visit.say("scan.scan")) } @else { a href="/login" { (visit.say("scan.login")) } }
-            }
+            span.scans { (visit.say("scan.scan")) }
             output #typed .typed aria-label=(visit.say("scan.typed")) {}
             span #armed .armed data-for=(visit.say("scan.for")) {}
             output #answer .answer.(class) role="status" { @if let Some(answer) = answer { (answer.said) } }
@@ -128,7 +129,7 @@ fn live_lamp(visit: &Visit) -> Markup {
 fn by_hand(visit: &Visit, now: &Now, unscripted: Option<&str>) -> Markup {
     let is_scripted = unscripted.is_none();
     html! {
-        form #hand .hand method="post" action="/scan" autocomplete="off" {
+        form id=[is_scripted.then_some("hand")] .hand method="post" action="/scan" autocomplete="off" {
             input type="hidden" name="csrf" value=(visit.csrf);
             input type="hidden" name="typed" value="true";
             @if now.lanes.len() > 1 {

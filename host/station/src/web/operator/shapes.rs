@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use crate::engine::LaneState;
 use crate::floor::{Act, Word};
+use crate::web::routes::Who;
 use crate::web::visit::Visit;
 
 /// The state in a word.
@@ -22,9 +23,15 @@ pub(super) fn said(visit: &Visit, word: Word) -> &'static str {
     }
 }
 
-/// What the operator does now.
-pub(super) fn does(visit: &Visit, state: &LaneState) -> &'static str {
-    match state.state {
+/// What the operator does now. Where more is asked for, it is not said twice.
+pub(super) fn does(visit: &Visit, state: &LaneState, is_asked: bool) -> Option<&'static str> {
+    // Scans of whoever is not logged in are badges.
+    let is_barred = visit.can_log_in && !visit.may(Who::Operator);
+    Some(match state.state {
+        Word::Out if is_asked => return None,
+        Word::Error if is_asked => visit.say("does.unjudged"),
+        Word::Ready if is_barred => visit.say("does.badge"),
+        Word::Waiting if is_barred && state.can.contains(&Act::Start) => visit.say("does.badge"),
         Word::Empty => visit.say("does.empty"),
         Word::Ready => visit.say("does.ready"),
         Word::Waiting if state.can.contains(&Act::Start) => visit.say("does.start"),
@@ -38,7 +45,7 @@ pub(super) fn does(visit: &Visit, state: &LaneState) -> &'static str {
         Word::Error => visit.say("does.error"),
         Word::Unsaved => visit.say("does.unsaved"),
         Word::Out => visit.say("does.out"),
-    }
+    })
 }
 
 /// The state's shape.

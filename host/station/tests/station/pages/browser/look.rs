@@ -103,7 +103,9 @@ fn what_was_found_can_be_read_on_a_phone() {
     let size = json!({ "width": 400, "height": 844, "deviceScaleFactor": 1, "mobile": true });
     page.call("Emulation.setDeviceMetricsOverride", size);
     page.go(&format!("http://127.0.0.1:{}/runs/{}", serving.port, run.as_str().unwrap()));
-    page.wait("document.querySelectorAll('.steps tr, .checks tr').length > 1");
+    page.wait(
+        "document.readyState === 'complete' && document.querySelectorAll('.steps tr, .checks tr').length > 1",
+    );
     let narrowest = page.evaluate(
         "Math.min(...[...document.querySelectorAll('.steps tr, .checks tr')].map(row => row.lastElementChild.clientWidth))",
     );

@@ -7,3 +7,4 @@ mod live;
 mod look;
 mod proxied;
 mod scans;
+mod told;

@@ -1,0 +1,171 @@
+//! Whether an operator sees what is to be done: on the screen, read aloud, without scripts, on paper.
+
+use std::time::Duration;
+
+use serde_json::{Value, json};
+
+use super::chromium::Chromium;
+use crate::pages::station::{Browser, SERIALS, Serving, Station};
+
+/// A station of so many lanes, the third of which has a board that is not there, the sixth a button.
+fn station(lanes: usize) -> Station {
+    let six = "board = \"mock,serial=6\"";
+    Station::private(lanes)
+        .where_instead("station.toml", "mock,serial=3", "tcp:127.0.0.1:1")
+        .where_instead("station.toml", "mock,serial=2", "mock,serial=2,fault=stuck-data,bit=7")
+        .where_instead("station.toml", six, &format!("{six}\nstart = [\"button\"]"))
+}
+
+/// Has `serial` tested in `lane`, or wait there.
+fn scan(here: &Browser, serial: &str, lane: &str) {
+    let scan = here.post("/scan", &[("text", serial), ("lane", lane)]).with("accept", "application/json");
+    while !scan.clone().send().text().contains("\"is_taken\":true") {}
+}
+
+/// The page in `language`, as large as that.
+fn shown(page: &mut Chromium, serving: &Serving, language: &str, (width, height): (u32, u32)) {
+    let own = format!("http://127.0.0.1:{}/", serving.port);
+    let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 700 });
+    page.call("Emulation.setDeviceMetricsOverride", size);
+    let cookie = json!({ "url": own, "name": "halfrow-language", "value": language });
+    page.call("Network.setCookie", cookie);
+    page.go(&own);
+    page.wait(&format!(
+        "document.readyState === 'complete' && document.documentElement.lang === '{language}' && document.querySelector('#lamp') !== null"
+    ));
+}
+
+/// Words that are cut off or broken, buttons that lie on another, and lanes that are not whole.
+const CUT: &str = "(() => {
+    const found = [];
+    for (const lane of document.querySelectorAll('.lane')) {
+        const say = what => found.push(`${lane.dataset.lane} ${lane.className}: ${what}`);
+        for (const part of lane.querySelectorAll('.does, .asks')) {
+            const box = part.getBoundingClientRect(), end = lane.getBoundingClientRect().top + lane.clientTop + lane.clientHeight;
+            const isHidden = part.matches('.asks') && !part.checkVisibility();
+            if (part.scrollHeight > part.clientHeight + 1 || box.bottom > end + 1 || isHidden) say(part.textContent);
+        }
+        const word = document.createRange();
+        word.selectNodeContents(lane.querySelector('.word span'));
+        if (lane.classList.contains('short') && word.getClientRects().length > 1) say('its word is broken');
+        const buttons = [...lane.querySelectorAll('button')].map(button => button.getBoundingClientRect());
+        for (const [i, one] of buttons.entries()) for (const other of buttons.slice(i + 1)) {
+            const isClear = one.right <= other.left || other.right <= one.left || one.bottom <= other.top || other.bottom <= one.top;
+            if (!isClear) say('a button on another');
+        }
+    }
+    return found;
+})()";
+
+#[test]
+fn what_to_do_is_shown_whole_on_every_screen_and_in_every_language() {
+    for lanes in [8, 16] {
+        let station = station(lanes);
+        let serving = station.serve();
+        let here = serving.here();
+        for (serial, lane) in SERIALS.iter().zip(["1", "2", "3", "6"]) {
+            scan(&here, serial, lane);
+        }
+        let mut page = Chromium::live(&serving);
+        page.wait(
+            "document.querySelector('#lane-3.error .asks') && document.querySelector('#lane-2.fail')
+                && document.querySelector('#lane-6.waiting') && true",
+        );
+        for size in [(1920, 1080), (1280, 800), (360, 740)] {
+            for (language, asked) in [
+                ("en", "Start ser2net or halfrow serve there, and check the port"),
+                ("de", "Prüfen, ob die Platine dort bedient wird"),
+                ("zh", "请检查那里的板卡服务"),
+            ] {
+                shown(&mut page, &serving, language, size);
+                assert_eq!(page.evaluate(CUT), json!([]), "{lanes} {language} {size:?}");
+                let said = "document.querySelector('#lane-3 .asks').textContent.replaceAll('`', '')";
+                assert_eq!(page.evaluate(said), json!(asked));
+                // It is said once.
+                let why = page.evaluate("document.querySelector('#lane-3 .why').textContent");
+                assert!(!why.as_str().unwrap().contains(asked), "{why}");
+                assert_eq!(page.evaluate("document.documentElement.scrollWidth > innerWidth"), json!(false));
+            }
+        }
+    }
+}
+
+/// What a screen reader says of each lane: heading, button, whether it is pressed.
+const HEARD: &str = "[...document.querySelectorAll('.lane')].map(lane => {
+    const [heading, button] = [lane.querySelector('h2'), lane.querySelector('.name')];
+    const names = document.getElementById(lane.getAttribute('aria-labelledby'));
+    return [names.ariaLabel, heading.ariaLabel, button.ariaLabel, button.ariaPressed].join('|');
+})";
+
+#[test]
+fn a_screen_reader_says_which_lane_the_next_scan_is_for() {
+    let station = Station::private(2);
+    let serving = station.serve();
+    let mut page = Chromium::live(&serving);
+    let heard = |first: bool, second: bool| {
+        json!([
+            format!("Lane 1|Lane 1|scan for lane 1|{first}"),
+            format!("Lane 2|Lane 2|scan for lane 2|{second}"),
+        ])
+    };
+    assert_eq!(page.evaluate(HEARD), heard(false, false));
+    page.scan("HR:LANE:2", "Enter", Duration::ZERO);
+    page.wait("document.querySelector('#lane-2.armed') !== null");
+    assert_eq!(page.evaluate(HEARD), heard(false, true));
+    page.scan("HR:LANE:1", "Enter", Duration::ZERO);
+    page.wait("document.querySelector('#lane-1.armed') !== null");
+    assert_eq!(page.evaluate(HEARD), heard(true, false));
+}
+
+#[test]
+fn without_a_script_nothing_that_is_typed_is_thrown_away() {
+    let station = Station::private(2);
+    let serving = station.serve();
+    let mut page = Chromium::open("about:blank");
+    page.call("Emulation.setScriptExecutionDisabled", json!({ "value": true }));
+    page.go(&format!("http://127.0.0.1:{}/", serving.port));
+    page.wait("document.readyState === 'complete' && document.activeElement.name === 'text'");
+    page.call("Input.insertText", json!({ "text": "CA967803" }));
+    let lanes = |page: &Chromium| page.asked.iter().filter(|address| address.ends_with("/still")).count();
+    while lanes(&page) < 3 {
+        page.wait("true");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let field = "[document.activeElement.name, document.activeElement.value]";
+    assert_eq!(page.evaluate(field), json!(["text", "CA967803"]));
+    let seen = page.evaluate("[...document.querySelectorAll('#floor, iframe, form.hand')].map(one => [one.tagName, one.checkVisibility()]).join()");
+    assert_eq!(seen, json!("FORM,false,FORM,true,IFRAME,true,DIV,false"));
+    page.wait(
+        "document.querySelector('iframe').contentDocument.querySelectorAll('.lane.ready').length === 2",
+    );
+}
+
+/// What of the page is there on paper.
+fn on_paper(page: &mut Chromium, address: &str) -> Value {
+    page.go(address);
+    page.wait("document.readyState === 'complete' && document.querySelector('main') !== null");
+    page.call("Emulation.setEmulatedMedia", json!({ "media": "print" }));
+    page.evaluate(
+        "[['verdict', one => getComputedStyle(one).printColorAdjust], ['filters', one => getComputedStyle(one).display],
+          ['wide', one => getComputedStyle(one).overflowX], ['top nav', one => getComputedStyle(one).display]]
+          .map(([name, look]) => document.querySelector('.' + name) && look(document.querySelector('.' + name)))",
+    )
+}
+
+#[test]
+fn on_paper_verdicts_keep_their_ground_and_no_column_is_cut_off() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let mut page = Chromium::live(&serving);
+    page.wait("document.querySelector('.lane.ready') !== null");
+    scan(&serving.here(), SERIALS[0], "1");
+    page.wait("document.querySelector('.lane.pass') !== null");
+    let at = |path: &str| format!("http://127.0.0.1:{}{path}", serving.port);
+    let history = on_paper(&mut page, &at("/history"));
+    assert_eq!(history, json!(["exact", "none", null, "none"]));
+    assert_eq!(on_paper(&mut page, &at("/yield?by=day")), json!([null, "none", "visible", "none"]));
+    // A4 without its margins, in pixels of CSS.
+    let size = json!({ "width": 718, "height": 1046, "deviceScaleFactor": 1, "mobile": false });
+    page.call("Emulation.setDeviceMetricsOverride", size);
+    assert_eq!(page.evaluate("document.documentElement.scrollWidth > innerWidth"), json!(false));
+}
