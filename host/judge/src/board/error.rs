@@ -307,6 +307,22 @@ impl BoardError {
         }
     }
 
+    /// Whether it shows that something is there that is no board for this run now, and no silence.
+    #[must_use]
+    pub(crate) fn is_of_somebody(&self) -> bool {
+        match self {
+            Self::Link { source, .. } => matches!(**source, LinkError::InUse { .. }),
+            Self::Held { .. }
+            | Self::NotABoard
+            | Self::Version { .. }
+            | Self::Echoed
+            | Self::Console { .. }
+            | Self::Impossible { .. }
+            | Self::Malformed { .. } => true,
+            _ => false,
+        }
+    }
+
     /// Why a run ends as it does that ends with this error.
     #[must_use]
     pub fn cause(&self) -> Cause {
@@ -318,21 +334,6 @@ impl BoardError {
             }
             Self::Refused { refusal, .. } if is_own(refusal) => Cause::Refused,
             Self::Stopped(by) => Cause::Stopped(*by),
-    /// Whether it shows that something is there that is no board for this run now, and no silence.
-    #[must_use]
-    pub(crate) fn is_of_somebody(&self) -> bool {
-        match self {
-            Self::Link { source, .. } => matches!(**source, LinkError::InUse { .. }),
-            Self::Held { .. }
-            | Self::NotABoard
-            | Self::Version { .. }
-            | Self::Echoed
-            | Self::Console { .. }
-            | Self::Malformed { .. } => true,
-            _ => false,
-        }
-    }
-
             _ => Cause::Station,
         }
     }
