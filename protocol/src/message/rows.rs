@@ -23,7 +23,7 @@ pub struct RowPlace {
 
 impl RowPlace {
     /// Bytes of a place with its generation.
-    pub(super) const BYTES: usize = 14;
+    pub(super) const BYTES: usize = 12;
     const LAST: u8 = 1;
 
     fn write(&self, generation: u8, payload: &mut Vec<u8>) {

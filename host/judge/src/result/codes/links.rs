@@ -157,7 +157,7 @@ codes! {
     ;
     TooManyFrames [frames] => "too-many-frames"
     ;
-    NoThread => "thread-missing"
+    NoThread => "run-thread-missing"
     ;
     UsbFailure => "usb-device-failed"
     ;

@@ -5,8 +5,7 @@ use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
 use super::corners::{BY_TURNS, CALM, drawn_factors, drawn_kernel, fit};
-use crate::board::Capabilities;
-use crate::board::grids;
+use crate::board::{Capabilities, grids};
 use crate::run::Generation;
 use crate::run::variations::Build;
 
