@@ -8,7 +8,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::floor::Shown;
-use crate::group::{kill, killed, waited};
+use crate::process_group::{kill, killed, waited};
 use crate::settings::{Hook, WORDS};
 
 /// The most that is kept of what a hook complains of, in bytes.

@@ -12,7 +12,7 @@ use halfrow::target::Target;
 
 use super::error::{Answer, Port};
 use super::{LabgridError, Place};
-use crate::group::{killed, waited};
+use crate::process_group::{killed, waited};
 
 /// How often it is looked whether anybody wants the run to end.
 const LOOK: Duration = Duration::from_millis(20);

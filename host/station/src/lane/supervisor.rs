@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use halfrow::verdict::StoppedBy;
 
 use super::{Control, Job, Message, Ruling};
-use crate::group::{kill, killed, waited};
+use crate::process_group::{kill, killed, waited};
 use crate::record::{BoardSeen, StepRecord};
 use crate::said::{Said, Saying};
 

@@ -5,7 +5,7 @@
 //!     └ recovered: a run that is found open is ERROR, cause crash, and never PASS
 //! ```
 
-mod lent;
+mod lent_board;
 mod recovered;
 
 use std::borrow::Cow;
@@ -160,7 +160,7 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     let spool = folder.spool(&head.id);
     let job = job(&head, order, ids::seed(id), &spool);
     let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked };
-    let heard = lent::supervised(order, job, &spool, patience(order, &selected), &mut attending);
+    let heard = lent_board::supervised(order, job, &spool, patience(order, &selected), &mut attending);
     let (device, is_stuck) = (attending.device, matches!(heard.end, End::Stuck(_)));
     let was_killed = is_stuck || matches!(heard.end, End::Killed(_));
     attending.watch.hear(Stage::Saving { was_killed, is_stuck });

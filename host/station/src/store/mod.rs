@@ -10,18 +10,18 @@
 //! A run is in the store, open, before its board is touched, and its verdict is shown when a second connection has read
 //! it back.
 
-mod again;
 mod audit;
 mod bindings;
+mod clock_agreement;
 mod database;
-mod dated;
 mod error;
-mod keeping;
 mod migrations;
 mod outbox;
 mod plant;
+mod retention;
+mod retest_policy;
 mod rows;
-mod shared;
+mod shared_store;
 mod shift;
 mod snapshot;
 pub(crate) mod statements;
@@ -39,19 +39,19 @@ use halfrow::Verdict;
 use rusqlite::{Connection, OpenFlags};
 use uuid::Uuid;
 
-pub use again::AgainError;
 pub use bindings::{Admission, Change, RebindError, Rebinding, is_device};
 use database::Sqlite;
 pub(crate) use database::{Database, DatabaseError, Row as Found, Value, values};
 pub use error::StoreError;
-pub use keeping::Removed;
 pub use outbox::{AuditLine, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Standing, Tried, Unsent};
 pub use plant::{
     Claim, Job, Kept, LEASE_MS, Lease, NewJob, PlanOfJob, Plant, PlantAddress, PlantAddressError, PlantError,
     PlantLink, PlantPool, Presence, STATES, SharedBoard, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
     publications, waiters,
 };
-pub use shared::SharedStore;
+pub use retention::Removed;
+pub use retest_policy::AgainError;
+pub use shared_store::SharedStore;
 pub use shift::{Checked, InLane, Owed};
 pub use snapshot::{Rebuilt, Snapshot, TABLES};
 pub use table::{Key, Row, Rows};

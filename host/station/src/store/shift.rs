@@ -2,8 +2,8 @@
 
 use halfrow::Verdict;
 
+use super::clock_agreement::TOLERATED_MS;
 use super::database::{DatabaseError, Row, values};
-use super::dated::TOLERATED_MS;
 use super::{Folder, StoreError, statements as sql};
 use crate::plan::mock::BARCODE;
 use crate::plan::{Bad, Plan, Production, Shift};

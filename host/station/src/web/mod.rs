@@ -1,16 +1,15 @@
 //! The station's pages: what lanes do, while they do it, and what was judged.
 //!
 //! ```text
-//!  browser ──► serve ──► guard ──► a line of the table of routes ──► page or act
-//!              limits    Host, Origin, login, CSRF                    │        │
-//!                                                                     ▼        ▼
-//!                                                           snapshot of store  engine
+//!  browser ──► serve ──► request_guard ──► a line of the table of routes ──► page or act
+//!              limits    Host, Origin, login, CSRF                            │        │
+//!                                                                             ▼        ▼
+//!                                                                   snapshot of store  engine
 //!  engine's news ──► live ──► server-sent events of every page that is open
 //! ```
 
 mod access;
 mod assets;
-mod guard;
 mod history;
 mod jobs;
 pub(crate) mod language;
@@ -22,6 +21,7 @@ mod operator;
 mod outbox;
 mod patient;
 mod plant;
+mod request_guard;
 mod routes;
 mod serve;
 mod state;

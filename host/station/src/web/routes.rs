@@ -6,7 +6,7 @@ use axum::http::Method;
 use axum::middleware;
 use axum::routing::{self, MethodRouter};
 
-use super::guard::{self, Guarded};
+use super::request_guard::{self, Guarded};
 use super::state::App;
 use super::{assets, history, jobs, login, metrics, operator, outbox, plant};
 
@@ -86,8 +86,8 @@ pub(super) fn is_page(app: &App, path: &str) -> bool {
 pub(super) fn router(app: &App) -> Router {
     let with = |router: Router<App>, Route { method, path, who, handler }: Route| {
         let guarded = Guarded { app: app.clone(), who, is_act: method == Method::POST };
-        router.route(path, handler.layer(middleware::from_fn_with_state(guarded, guard::route)))
+        router.route(path, handler.layer(middleware::from_fn_with_state(guarded, request_guard::route)))
     };
-    let router = table(app).into_iter().fold(Router::new(), with).fallback(guard::nothing_here);
-    router.layer(middleware::from_fn_with_state(app.clone(), guard::every)).with_state(app.clone())
+    let router = table(app).into_iter().fold(Router::new(), with).fallback(request_guard::nothing_here);
+    router.layer(middleware::from_fn_with_state(app.clone(), request_guard::every)).with_state(app.clone())
 }
