@@ -7,7 +7,7 @@ use maud::{DOCTYPE, Markup, html};
 
 use super::routes::Who;
 use super::visit::Visit;
-use super::{guard, language};
+use super::{language, request_guard};
 
 /// A place of the navigation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,7 +73,9 @@ impl Page<'_> {
     /// As a part of one of the station's own pages, without the navigation.
     pub(super) fn framed(self, visit: &Visit) -> Response {
         let mut response = text(StatusCode::OK, self.markup(visit, false));
-        response.headers_mut().insert(CONTENT_SECURITY_POLICY, HeaderValue::from_static(guard::FRAMED));
+        response
+            .headers_mut()
+            .insert(CONTENT_SECURITY_POLICY, HeaderValue::from_static(request_guard::FRAMED));
         response
     }
 
