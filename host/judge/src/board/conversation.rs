@@ -9,8 +9,9 @@ use super::answer::{Kept, take_reply};
 use super::asked::{Asking, LastAsked, Stray};
 use super::conduct::Conduct;
 use super::deadlines::{RetryLimit, Step};
+use super::tally::Tally;
 use super::{BoardError, Heard, OpenOptions, Stop};
-use crate::link::{LineErrors, Link, LinkError, Severed};
+use crate::link::{Link, LinkError, Severed};
 
 /// What an exchange that moved bytes adds to the time waited, at most. It returns as soon as a byte has moved: if it took
 /// longer, the host may have been kept from running, and what it has not read yet says nothing against the board.
@@ -18,46 +19,6 @@ const BRIEF: Duration = Duration::from_millis(50);
 
 /// How far a board's window can be ahead of the rows that came back: the most banks each way, and two rows in the core.
 const MOST_AHEAD: u32 = 2 * u8::MAX as u32 + 2;
-
-/// What a link did.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
-    /// Bytes written.
-    pub bytes_out: u64,
-    /// Bytes read.
-    pub bytes_in: u64,
-    /// Packets written.
-    pub packets_out: u64,
-    /// Packets read whole.
-    pub packets_in: u64,
-    /// Requests that were answered by what they ask for.
-    pub answered: u64,
-    /// Packets that came damaged since the session began.
-    pub damaged_in: u64,
-    /// Packets sent again.
-    pub retries: u64,
-    /// Of those, the ones to which an answer came as well: nothing had been lost, and the first answer was late.
-    pub late: u64,
-    /// Packets that nobody waited for: second answers, rows that were there already, and what is of another session.
-    pub strays: u64,
-    /// What the link's chip has seen go wrong on the line.
-    pub line_errors: LineErrors,
-}
-
-impl std::ops::AddAssign for Tally {
-    fn add_assign(&mut self, other: Self) {
-        self.bytes_out += other.bytes_out;
-        self.bytes_in += other.bytes_in;
-        self.packets_out += other.packets_out;
-        self.packets_in += other.packets_in;
-        self.answered += other.answered;
-        self.damaged_in += other.damaged_in;
-        self.retries += other.retries;
-        self.late += other.late;
-        self.strays += other.strays;
-        self.line_errors += other.line_errors;
-    }
-}
 
 pub(super) struct Conversation {
     link: Box<dyn Link>,

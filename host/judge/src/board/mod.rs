@@ -14,6 +14,7 @@ mod said;
 mod sent;
 mod stop;
 mod tables;
+mod tally;
 
 use std::time::Duration;
 
@@ -29,7 +30,6 @@ use deadlines::{RetryLimit, Step};
 use crate::link::Link;
 pub(crate) use bursts::{Fetched, Trapped};
 pub(crate) use conduct::Misconduct;
-pub use conversation::Tally;
 pub use error::{BoardError, Heard, OpenFailed};
 pub(crate) use legal::{LEAST_ENTRIES, MAX_LATENCY, grids, possible};
 pub use rows::{NumberedFrame, ReturnedRow, RowTraffic};
@@ -38,6 +38,7 @@ pub(crate) use said::Said;
 pub(crate) use sent::Sent;
 pub use stop::Stop;
 pub(crate) use tables::{ReadBack, TablePort};
+pub use tally::Tally;
 
 pub use halfrow_protocol::message::{
     Bank, BoardNature, Bursts, Capabilities, Datapath, RefusalCode, Status, Table, UnknownDatapath, Welcome,

@@ -1,0 +1,45 @@
+//! What goes over a link, counted.
+
+use std::ops::AddAssign;
+
+use crate::link::LineErrors;
+
+/// What a link did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Bytes written.
+    pub bytes_out: u64,
+    /// Bytes read.
+    pub bytes_in: u64,
+    /// Packets written.
+    pub packets_out: u64,
+    /// Packets read whole.
+    pub packets_in: u64,
+    /// Requests that were answered by what they ask for.
+    pub answered: u64,
+    /// Packets that came damaged since the session began.
+    pub damaged_in: u64,
+    /// Packets sent again.
+    pub retries: u64,
+    /// Of those, the ones to which an answer came as well: nothing had been lost, and the first answer was late.
+    pub late: u64,
+    /// Packets that nobody waited for: second answers, rows that were there already, and what is of another session.
+    pub strays: u64,
+    /// What the link's chip has seen go wrong on the line.
+    pub line_errors: LineErrors,
+}
+
+impl AddAssign for Tally {
+    fn add_assign(&mut self, other: Self) {
+        self.bytes_out += other.bytes_out;
+        self.bytes_in += other.bytes_in;
+        self.packets_out += other.packets_out;
+        self.packets_in += other.packets_in;
+        self.answered += other.answered;
+        self.damaged_in += other.damaged_in;
+        self.retries += other.retries;
+        self.late += other.late;
+        self.strays += other.strays;
+        self.line_errors += other.line_errors;
+    }
+}
