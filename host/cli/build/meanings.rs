@@ -27,8 +27,7 @@ const CODES: [&str; 4] = [
     "../program/src/codes.rs",
 ];
 /// Where those of `halfrow-station` are, of which this program only tells.
-const CODES_OF_STATION: [&str; 2] =
-    ["../station/src/commands/codes.rs", "../station/src/commands/refusals.rs"];
+const CODES_OF_STATION: [&str; 2] = ["../station/src/codes.rs", "../station/src/commands/refusals.rs"];
 /// Types whose words in a report are their variants' names, and then those whose codes are: where both have one, the code's meaning stands.
 const BY_NAME: [&str; 5] = ["Verdict", "CheckName", "Finding", "Defect", "NotExercised"];
 

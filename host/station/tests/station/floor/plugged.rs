@@ -74,7 +74,7 @@ fn taking_nothing() -> [(&'static str, Floor); 5] {
         ("the shift is over", owes),
         ("is testing", running),
         ("is not saved", unsaved),
-        ("pattern", other),
+        ("no serial number of this product", other),
     ]
 }
 

@@ -28,11 +28,13 @@ impl Server {
     /// At work, with a database `plant` that has no tables.
     pub(crate) fn start() -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
         give_to_server(folder.path());
-        let mut server = Self { folder, port, listen: "127.0.0.1", process: None };
+        let mut server = Self { folder, port: free_port(), listen: "127.0.0.1", process: None };
         copy(cluster(), &server.data());
-        server.again();
+        while !server.begins() {
+            server.kill();
+            server.port = free_port();
+        }
         server.client("postgres").batch_execute("CREATE DATABASE plant").unwrap();
         server
     }
@@ -54,6 +56,11 @@ impl Server {
 
     /// Starts it again.
     pub(crate) fn again(&mut self) {
+        assert!(self.begins(), "the port {} is another's by now", self.port);
+    }
+
+    /// Starts it; not if its port is another's by now.
+    fn begins(&mut self) -> bool {
         let mut server = as_server("postgres");
         server.arg("-D").arg(self.data()).args(["-p", &self.port.to_string(), "-k"]).arg(self.folder.path());
         server.args([
@@ -67,12 +74,23 @@ impl Server {
             "-c",
             "max_connections=400",
         ]);
-        self.process = Some(server.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap());
+        let mut process = server.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         let until = Instant::now() + STARTED;
-        while let Err(error) = self.connected("postgres") {
-            assert!(Instant::now() < until, "{error}");
+        let is_ours = loop {
+            match self.connected("postgres") {
+                Ok(mut client) => break self.is_of(&mut client),
+                Err(_) if process.try_wait().unwrap().is_some() => break false,
+                Err(error) => assert!(Instant::now() < until, "{error}"),
+            }
             thread::sleep(Duration::from_millis(20));
-        }
+        };
+        self.process = Some(process);
+        is_ours
+    }
+
+    fn is_of(&self, client: &mut Client) -> bool {
+        let folder: String = client.query_one("SHOW data_directory", &[]).unwrap().get(0);
+        self.data() == Path::new(&folder)
     }
 
     /// Has a certificate and its key, which lie in `folder`, from here on.
@@ -154,6 +172,10 @@ impl Server {
     pub(crate) fn rows(&self, text: &str) -> Vec<Vec<String>> {
         rows(&mut self.client("plant"), text)
     }
+}
+
+fn free_port() -> u16 {
+    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }
 
 impl Drop for Server {
