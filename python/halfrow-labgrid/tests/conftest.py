@@ -85,8 +85,9 @@ def served(board, *where):
 class Lab:
     """labgrid at work."""
 
-    def __init__(self, coordinator):
+    def __init__(self, coordinator, process):
         self.coordinator = coordinator
+        self.process = process
 
     def client(self, *words, user="alice", check=True):
         """What labgrid's own client says."""
@@ -122,8 +123,7 @@ def lab(tmp_path_factory):
         ports = {name: target.rsplit(":")[-1] for name, target in targets.items()}
         (folder / "exported.yaml").write_text(EXPORTED.format(nobody=free_port(), **ports))
         quiet = {"cwd": folder, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        stack.enter_context(running(LABGRID / "labgrid-coordinator", "-l", address, **quiet))
-        lab = Lab(address)
+        lab = Lab(address, stack.enter_context(running(LABGRID / "labgrid-coordinator", "-l", address, **quiet)))
         wait_for("coordinator", lambda: "User" in lab.client("who", check=False))
         stack.enter_context(running(LABGRID / "labgrid-exporter", "-c", address, "-n", "bench", "exported.yaml", **quiet))
         wait_for("exporter", lambda: "bench/nobody" in lab.client("resources"))

@@ -49,17 +49,21 @@ class Coordinator:
         # labgrid's session takes its name from there.
         os.environ["LG_USERNAME"] = user
         self.loop = ensure_event_loop()
+        self._address = address
         self._session = ClientSession(proxymanager.get_grpc_address(address, default_port=20408), self.loop)
         self.name = f"{self._session.gethostname()}/{self._session.getuser()}"
         try:
             self._wait(self._session.start())
-        except (Error, asyncio.TimeoutError) as error:
+        except Refused:
             # What was asked is under way still, and would complain when the program ends.
             self.close()
-            raise Refused("coordinator-away", {"coordinator": address}) from error
+            raise
 
     def _wait(self, asked: Any) -> Any:
-        return self.loop.run_until_complete(asyncio.wait_for(asked, PATIENCE))
+        try:
+            return self.loop.run_until_complete(asyncio.wait_for(asked, PATIENCE))
+        except (Error, asyncio.TimeoutError) as error:
+            raise Refused("coordinator-away", {"coordinator": self._address}) from error
 
     def close(self) -> None:
         """Ends the session. Places stay acquired."""
@@ -92,7 +96,7 @@ class Coordinator:
         request = messages.ReleasePlaceRequest(placename=name, fromuser=self.name)
         try:
             self._wait(self._session.stub.ReleasePlace(request))
-        except (grpc.aio.AioRpcError, asyncio.TimeoutError) as error:
+        except grpc.aio.AioRpcError as error:
             raise Refused("not-released") from error
         self._wait(self._session.sync_with_coordinator())
 
