@@ -1,8 +1,11 @@
 """The driver and the strategy, in environments as labgrid's users write them."""
+import os
+import signal
 import subprocess
+import threading
 
 import pytest
-from conftest import PROGRAMS, served
+from conftest import PROGRAMS, served, wait_for
 from halfrow_labgrid import BoardFailed, NotJudged, Status, WrongCall
 from labgrid import Environment
 
@@ -113,6 +116,36 @@ def test_what_cannot_be_judged_is_told_apart_from_what_is_called_wrongly(environ
     missing = environment("cam-good", halfrow=tmp_path / "nothing").get_driver("HalfrowDriver")
     with pytest.raises(NotJudged, match="cannot be started"):
         missing.verify()
+
+
+def test_a_run_that_is_interrupted_gives_the_board_back(environment, tmp_path):
+    driver = environment("cam-good").get_driver("HalfrowDriver")
+    kept = tmp_path / "kept"
+    kept.mkdir()
+
+    def interrupts():
+        # The board is taken once something of its run is kept.
+        wait_for("recording", lambda: any(path.stat().st_size for path in kept.iterdir()))
+        os.kill(os.getpid(), signal.SIGINT)
+
+    interrupter = threading.Thread(target=interrupts)
+    interrupter.start()
+    with pytest.raises(KeyboardInterrupt):
+        driver.verify(radius=400.0, width=640, height=480, repeat=1000, record=kept / "run.rec")
+    interrupter.join()
+    assert driver.verify().verdict == "PASS"
+
+
+def test_a_wait_that_no_board_can_end_is_not_tried_again(environment, tmp_path, monkeypatch):
+    tool, calls, settings = tmp_path / "tool", tmp_path / "calls", tmp_path / "halfrow.toml"
+    tool.write_text(f'#!/bin/sh\necho >> {calls}\nexec {PROGRAMS / "halfrow"} "$@"\n')
+    tool.chmod(0o755)
+    settings.write_text("bogus = 1\n")
+    monkeypatch.setenv("HALFROW_SETTINGS", str(settings))
+    driver = environment("cam-good", halfrow=tool).get_driver("HalfrowDriver")
+    with pytest.raises(WrongCall, match="bogus"):
+        driver.wait(patience=2.0)
+    assert calls.read_text() == "\n"
 
 
 def test_a_strategy_takes_a_board_from_off_to_judged(environment, tmp_path):

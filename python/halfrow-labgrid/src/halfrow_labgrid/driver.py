@@ -1,6 +1,7 @@
 """A driver that has halfrow judge the board at a serial port."""
 from __future__ import annotations
 
+import contextlib
 import json
 import re
 import subprocess
@@ -18,7 +19,11 @@ from .report import Report, error, read, wrong_call
 
 # What halfrow itself needs beyond the time of a run, in seconds.
 GRACE = 30.0
+# How long halfrow may take to give a board back, in seconds.
+ENDING = 5.0
 LOOK = 0.5
+# The exit code of a wrong call, which no board mends.
+CALL_WRONG = 2
 OPTION = re.compile(r"[a-z][a-z-]*")
 # What the driver says itself.
 OWN = {"board", "json", "timeout"}
@@ -76,7 +81,7 @@ class HalfrowDriver(Driver):
     def wait(self, patience: float = 30.0) -> Dict[str, Any]:
         """Waits until the board answers, for so many seconds; returns what `halfrow info` tells of it.
 
-        Raises NotJudged if it does not.
+        Raises NotJudged if it does not, and WrongCall at once for what halfrow does not take.
         """
         begun = time.monotonic()
         while True:
@@ -84,7 +89,7 @@ class HalfrowDriver(Driver):
             if code == 0:
                 told: Dict[str, Any] = json.loads(said)
                 return told
-            if time.monotonic() - begun > patience:
+            if code == CALL_WRONG or time.monotonic() - begun > patience:
                 read(code, said)
             time.sleep(LOOK)
 
@@ -92,12 +97,29 @@ class HalfrowDriver(Driver):
         command = [self.tool, *asked, "--json", "--quiet", "--board", self.board]
         self.logger.debug("%s", command)
         try:
-            done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=patience, check=False)
+            process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         except OSError as missing:
             raise error(f"{self.tool} cannot be started ({missing.strerror})", "Name halfrow under `tools`.") from missing
-        except subprocess.TimeoutExpired as late:
-            raise error(f"halfrow was ended after {patience} s", "Look at the board and its link.") from late
-        return done.returncode, done.stdout
+        with process:
+            try:
+                said, _ = process.communicate(timeout=patience)
+            except subprocess.TimeoutExpired as late:
+                end(process)
+                raise error(f"halfrow was ended after {patience} s", "Look at the board and its link.") from late
+            except BaseException:
+                end(process)
+                raise
+        return process.returncode, said
+
+
+def end(process: "subprocess.Popen[str]") -> None:
+    """Ends a halfrow that is at work still, by a signal upon which it gives the board back if it can."""
+    process.terminate()
+    try:
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.communicate(timeout=ENDING)
+    finally:
+        process.kill()
 
 
 def replaced(options: Mapping[str, Any]) -> Dict[str, Any]:
