@@ -253,12 +253,20 @@ impl Optics {
 /// # Errors
 /// [`OpticsError`] when it is neither, or a file that cannot be used.
 pub fn kernel(name: &OsStr) -> Result<Kernel, OpticsError> {
+    kernel_file(name).map(|file| file.kernel)
+}
+
+/// The kernel file of this name, or that of a kernel by name, which has no notes.
+///
+/// # Errors
+/// As [`kernel`].
+pub fn kernel_file(name: &OsStr) -> Result<KernelFile, OpticsError> {
     match name.to_string_lossy().parse::<NamedKernel>() {
-        Ok(named) => Ok(named.kernel()?),
+        Ok(named) => Ok(KernelFile { kernel: named.kernel()?, about: None }),
         Err(unknown) if !Path::new(name).exists() => {
             Err(OpticsError::Kernel { name: name.display().to_string(), unknown })
         }
-        Err(_) => Ok(KernelFile::read(Path::new(name))?.kernel),
+        Err(_) => Ok(KernelFile::read(Path::new(name))?),
     }
 }
 

@@ -7,6 +7,7 @@ use halfrow::optics;
 use halfrow::tables::KernelFile;
 use numpy::{PyArray2, PyArrayMethods as _, PyReadonlyArray2};
 use pyo3::prelude::*;
+use serde_json::{Map, Value};
 
 use crate::errors;
 
@@ -17,6 +18,8 @@ use crate::errors;
 #[derive(Clone)]
 pub(crate) struct Kernel {
     pub(crate) kernel: model::Kernel,
+    /// The notes of its file.
+    pub(crate) about: Option<Map<String, Value>>,
     /// What it is called.
     #[pyo3(get)]
     pub(crate) name: String,
@@ -29,8 +32,8 @@ impl Kernel {
     #[new]
     #[pyo3(signature = (name = PathBuf::from(Interpolant::Hermite.name())))]
     fn new(name: PathBuf) -> PyResult<Self> {
-        let kernel = optics::kernel(name.as_os_str()).map_err(errors::optics)?;
-        Ok(Self { kernel, name: name.display().to_string(), asked: Some(name) })
+        let KernelFile { kernel, about } = optics::kernel_file(name.as_os_str()).map_err(errors::optics)?;
+        Ok(Self { kernel, about, name: name.display().to_string(), asked: Some(name) })
     }
 
     /// The kernel of real weights: an array of float64 of shape (65, 5), a row for x = 0, 1/32, …, 2 with the weights of
@@ -48,7 +51,7 @@ impl Kernel {
         let node = |node: usize| std::array::from_fn(|tap| weights[[node, tap]]);
         let nodes: Vec<[f64; 5]> = (0..weights.nrows()).map(node).collect();
         let kernel = model::Kernel::from_weights(&nodes).map_err(errors::input)?;
-        Ok(Self { kernel, name: name.to_owned(), asked: None })
+        Ok(Self { kernel, about: None, name: name.to_owned(), asked: None })
     }
 
     /// The samples that it reads: 5 or 7.
@@ -68,10 +71,11 @@ impl Kernel {
         numpy::PyArray1::from_vec(py, weights).reshape([model::NODES, model::TAP_NAMES.len()])
     }
 
-    /// Writes it to a kernel file (JSON). A file that is there is replaced only with `overwrite`.
+    /// Writes it to a kernel file (JSON), where the notes of a file that it was read from stay. A file that is there is replaced
+    /// only with `overwrite`.
     #[pyo3(signature = (path, *, overwrite = false))]
     fn write(&self, path: PathBuf, overwrite: bool) -> PyResult<()> {
-        let file = KernelFile { kernel: self.kernel.clone(), about: None };
+        let file = KernelFile { kernel: self.kernel.clone(), about: self.about.clone() };
         file.write(&path, overwrite).map_err(errors::unwritten)
     }
 

@@ -160,7 +160,7 @@ impl Options<'_> {
         let mut asked = tables.kernel_asked.clone();
         if let Some(kernel) = self.kernel.take() {
             let name;
-            Kernel { kernel: chosen.kernel, name, asked } = kernel.taken()?;
+            Kernel { kernel: chosen.kernel, name, asked, .. } = kernel.taken()?;
             chosen.source = format!("{}, judged with the {name} kernel", chosen.source);
         }
         Ok(Judged { plan: chosen.plan(phase), files: tables.files.clone(), kernel: asked })

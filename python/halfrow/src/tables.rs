@@ -7,6 +7,7 @@ use halfrow::optics::{self, Chosen, Optics, View};
 use halfrow::tables::{TableFile, datapath_of, mem};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
+use serde_json::{Map, Value};
 
 use crate::frames::Input;
 use crate::kernel::{Kernel, KernelLike};
@@ -20,6 +21,8 @@ const OF_FILE: &str = "the table file's";
 #[pyclass(frozen, module = "halfrow")]
 pub(crate) struct Tables {
     pub(crate) chosen: Chosen,
+    /// The notes of the table file, unless its kernel was replaced, of which they may tell.
+    about: Option<Map<String, Value>>,
     /// What the kernel is called.
     kernel_name: String,
     /// What the kernel was asked for by, unless it is the table file's.
@@ -63,27 +66,30 @@ impl Tables {
     #[pyo3(signature = (path, *, kernel = None))]
     fn read(path: PathBuf, kernel: Option<KernelLike<'_>>) -> PyResult<Self> {
         let is_mem = path.extension().is_some_and(|extension| extension == "mem");
-        let (file, paths) = if is_mem {
+        let (mut file, paths) = if is_mem {
             let (tables, kernel) = mem::read(&path).map_err(errors::optics)?;
             (TableFile { tables, kernel, about: None }, mem::paths(&path).to_vec())
         } else {
             (TableFile::read(&path).map_err(errors::optics)?, vec![path.clone()])
         };
+        let about = file.about.take().filter(|_| kernel.is_none());
         let optics = Optics::before(file.tables.geometry());
         let chosen = optics.and_then(|optics| optics::choose(Some((&path, file)), optics, None));
         let files = paths.iter().map(|path| frames::input(path)).collect::<PyResult<_>>()?;
-        Self::with_kernel(chosen.map_err(errors::optics)?, &path.display().to_string(), kernel, files)
+        let chosen = chosen.map_err(errors::optics)?;
+        Ok(Self { about, ..Self::with_kernel(chosen, &path.display().to_string(), kernel, files)? })
     }
 
-    /// Writes them with their kernel to NAME.json, or to two files of memory images for NAME.mem. Files that are there are
-    /// replaced only with `overwrite`.
+    /// Writes them with their kernel to NAME.json, where the notes of a file that they were read from stay, or to two files of
+    /// memory images for NAME.mem. Files that are there are replaced only with `overwrite`.
     #[pyo3(signature = (path, *, overwrite = false))]
     fn write(&self, path: PathBuf, overwrite: bool) -> PyResult<()> {
         let (tables, kernel) = (&self.chosen.tables, &self.chosen.kernel);
         match path.extension().and_then(|extension| extension.to_str()) {
             Some("mem") => mem::write(&path, tables, kernel, overwrite).map(drop),
             Some("json") => {
-                let file = TableFile { tables: tables.clone(), kernel: kernel.clone(), about: None };
+                let file =
+                    TableFile { tables: tables.clone(), kernel: kernel.clone(), about: self.about.clone() };
                 file.write(&path, overwrite)
             }
             _ => {
@@ -163,7 +169,7 @@ impl Tables {
     #[getter]
     fn kernel(&self) -> Kernel {
         let (kernel, name) = (self.chosen.kernel.clone(), self.kernel_name.clone());
-        Kernel { kernel, name, asked: self.kernel_asked.clone() }
+        Kernel { kernel, about: None, name, asked: self.kernel_asked.clone() }
     }
 
     /// The lens that built-in frames are seen through; for tables of a file, which does not say it, the paper's.
@@ -205,9 +211,9 @@ impl Tables {
     ) -> PyResult<Self> {
         let (mut kernel_name, mut kernel_asked) = (OF_FILE.to_owned(), None);
         if let Some(kernel) = kernel {
-            Kernel { kernel: chosen.kernel, name: kernel_name, asked: kernel_asked } = kernel.taken()?;
+            Kernel { kernel: chosen.kernel, name: kernel_name, asked: kernel_asked, .. } = kernel.taken()?;
             chosen.source = format!("{from}, {kernel_name} kernel");
         }
-        Ok(Self { chosen, kernel_name, kernel_asked, files })
+        Ok(Self { chosen, about: None, kernel_name, kernel_asked, files })
     }
 }

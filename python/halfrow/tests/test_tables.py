@@ -90,6 +90,29 @@ def test_a_kernel_is_its_weights(tmp_path, name):
     assert halfrow.Kernel(tmp_path / "kernel.json") == kernel
 
 
+def test_notes_stay_with_what_they_are_about(tmp_path, small):
+    about = {"who": "unit 7", "when": [2026, None, 0.1]}
+
+    def noted(name):
+        path = tmp_path / name
+        path.write_text(json.dumps({**of_file(path), "about": about}))
+        return path
+
+    def notes(written, name):
+        written.write(tmp_path / name)
+        return of_file(tmp_path / name).get("about")
+
+    small.write(tmp_path / "tables.json")
+    halfrow.Kernel("keys").write(tmp_path / "kernel.json")
+    tables, kernel = noted("tables.json"), noted("kernel.json")
+    assert notes(halfrow.Tables.read(tables), "again.json") == about
+    assert notes(halfrow.Kernel(kernel), "kernel_again.json") == about
+    # They may tell of the kernel that is no longer there.
+    assert notes(halfrow.Tables.read(tables, kernel=kernel), "other.json") is None
+    assert notes(halfrow.Tables.read(tables).kernel, "its_kernel.json") is None
+    assert halfrow.Tables.read(tables) == small
+
+
 def test_linear_weights_are_straight_lines():
     x = np.arange(65) / 32
     expected = np.zeros((65, 5))
