@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use crate::kernel::KernelLike;
 use crate::tables::Tables;
-use crate::{arrays, choices, errors};
+use crate::{arguments, arrays, choices, errors};
 
 /// Corrects frames by the reference model, bit for bit as a board must; several threads may use one at once.
 ///
@@ -28,7 +28,11 @@ pub(crate) struct Corrector {
 impl Corrector {
     #[new]
     #[pyo3(signature = (tables, *, kernel = None, path = None))]
-    fn new(tables: Bound<'_, Tables>, kernel: Option<KernelLike<'_>>, path: Option<&str>) -> PyResult<Self> {
+    fn new(
+        #[pyo3(from_py_with = arguments::tables)] tables: Bound<'_, Tables>,
+        #[pyo3(from_py_with = arguments::kernel)] kernel: Option<KernelLike<'_>>,
+        path: Option<&str>,
+    ) -> PyResult<Self> {
         let kernel = match kernel {
             Some(kernel) => kernel.taken()?.kernel,
             None => tables.get().chosen.kernel.clone(),
@@ -100,8 +104,8 @@ fn check_size(tables: &TableSet, shape: &[usize]) -> PyResult<()> {
 pub(crate) fn correct<'py>(
     py: Python<'py>,
     frame: &Bound<'py, PyAny>,
-    tables: Bound<'py, Tables>,
-    kernel: Option<KernelLike<'py>>,
+    #[pyo3(from_py_with = arguments::tables)] tables: Bound<'py, Tables>,
+    #[pyo3(from_py_with = arguments::kernel)] kernel: Option<KernelLike<'py>>,
     out: Option<Bound<'py, PyAny>>,
     path: Option<&str>,
 ) -> PyResult<Bound<'py, PyAny>> {

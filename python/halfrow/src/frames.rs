@@ -8,7 +8,7 @@ use halfrow::result::FileHash;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
 
-use crate::{arrays, choices, errors};
+use crate::{arguments, arrays, choices, errors};
 
 /// Reads the frame in the file `path`: uint16 of shape (height, width), each sample 0 to 2^bits − 1.
 ///
@@ -20,11 +20,11 @@ use crate::{arrays, choices, errors};
 pub(crate) fn read_frame<'py>(
     py: Python<'py>,
     path: PathBuf,
-    bits: u32,
+    #[pyo3(from_py_with = arguments::bits)] bits: u32,
     phase: &str,
     raw: Option<&str>,
-    width: Option<usize>,
-    height: Option<usize>,
+    #[pyo3(from_py_with = arguments::width)] width: Option<usize>,
+    #[pyo3(from_py_with = arguments::height)] height: Option<usize>,
 ) -> PyResult<Bound<'py, PyArray2<u16>>> {
     let raw = match (raw, width, height) {
         (None, None, None) => None,
@@ -56,7 +56,7 @@ pub(crate) fn write_frame(
     py: Python<'_>,
     path: PathBuf,
     frame: &Bound<'_, PyAny>,
-    bits: u32,
+    #[pyo3(from_py_with = arguments::bits)] bits: u32,
     phase: &str,
     overwrite: bool,
 ) -> PyResult<()> {
@@ -71,7 +71,7 @@ pub(crate) fn write_frame(
 pub(crate) fn demosaic<'py>(
     py: Python<'py>,
     frame: &Bound<'py, PyAny>,
-    bits: u32,
+    #[pyo3(from_py_with = arguments::bits)] bits: u32,
     phase: &str,
 ) -> PyResult<Bound<'py, PyArray3<u8>>> {
     let frame = frame_of(frame, "frame", bits, phase)?;

@@ -9,7 +9,7 @@ use numpy::{PyArray2, PyArrayMethods as _, PyReadonlyArray2};
 use pyo3::prelude::*;
 use serde_json::{Map, Value};
 
-use crate::errors;
+use crate::{arguments, errors};
 
 /// An interpolation kernel as a board stores it: 65 nodes of five weights each.
 ///
@@ -40,7 +40,10 @@ impl Kernel {
     /// G0, R1, G4, R5 and G6, each −2 to 2 − 2⁻¹⁴, rounded to 14 fractional bits. The weights of G2 and R3 follow from them.
     #[staticmethod]
     #[pyo3(signature = (weights, *, name = "own"))]
-    fn from_weights(weights: PyReadonlyArray2<'_, f64>, name: &str) -> PyResult<Self> {
+    fn from_weights(
+        #[pyo3(from_py_with = arguments::weights)] weights: PyReadonlyArray2<'_, f64>,
+        name: &str,
+    ) -> PyResult<Self> {
         let weights = weights.as_array();
         if weights.ncols() != model::TAP_NAMES.len() {
             return Err(errors::wrong_value(format!(

@@ -8,7 +8,7 @@ use halfrow::optics::{Optics, PAPER_FIELD, TablesBy, View};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 
-use crate::{choices, errors, frames};
+use crate::{arguments, choices, errors, frames};
 
 /// What stands before a radius in place of a lens file.
 const EQUIDISTANT: &str = "equidistant:";
@@ -38,12 +38,12 @@ impl Lens {
     ))]
     fn new(
         lens: Option<PathBuf>,
-        width: Option<usize>,
-        height: Option<usize>,
-        bits: u32,
-        centre_x: Option<f64>,
-        centre_y: Option<f64>,
-        field_of_view: f64,
+        #[pyo3(from_py_with = arguments::width)] width: Option<usize>,
+        #[pyo3(from_py_with = arguments::height)] height: Option<usize>,
+        #[pyo3(from_py_with = arguments::bits)] bits: u32,
+        #[pyo3(from_py_with = arguments::centre_x)] centre_x: Option<f64>,
+        #[pyo3(from_py_with = arguments::centre_y)] centre_y: Option<f64>,
+        #[pyo3(from_py_with = arguments::field_of_view)] field_of_view: f64,
     ) -> PyResult<Self> {
         let depth = choices::depth(bits)?;
         Self::seen(lens, &View { width, height, depth, centre_x, centre_y, field_of_view })
@@ -106,7 +106,7 @@ impl Lens {
         py: Python<'py>,
         name: &str,
         phase: &str,
-        seed: u64,
+        #[pyo3(from_py_with = arguments::seed)] seed: u64,
     ) -> PyResult<Bound<'py, PyArray2<u16>>> {
         let builtin: Builtin = name.parse().map_err(errors::input::<halfrow::frames::UnknownBuiltin>)?;
         let scene = self.optics.scene(choices::phase(phase)?, seed);

@@ -10,6 +10,7 @@
 
 #![allow(clippy::needless_pass_by_value, reason = "what Python hands over is made for the call")]
 
+mod arguments;
 mod arrays;
 mod choices;
 mod correct;

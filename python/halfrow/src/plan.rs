@@ -16,9 +16,9 @@ use pyo3::prelude::*;
 
 use crate::errors::Whose;
 use crate::frames::Input;
-use crate::kernel::{Kernel, KernelLike};
+use crate::kernel::Kernel;
 use crate::tables::Tables;
-use crate::{choices, errors, frames as files};
+use crate::{arguments, choices, errors, frames as files};
 
 /// What stands before the name of a built-in frame.
 const BUILTIN: &str = "builtin:";
@@ -30,7 +30,7 @@ const REPEATS: RangeInclusive<u32> = 1..=1000;
 #[pyo3(from_item_all)]
 pub(crate) struct Options<'py> {
     tables: Option<Bound<'py, Tables>>,
-    kernel: Option<KernelLike<'py>>,
+    kernel: Bound<'py, PyAny>,
     frames: Option<Vec<Bound<'py, PyAny>>>,
     phase: String,
     repeat: u32,
@@ -158,7 +158,7 @@ impl Options<'_> {
         };
         let mut chosen = tables.chosen.clone();
         let mut asked = tables.kernel_asked.clone();
-        if let Some(kernel) = self.kernel.take() {
+        if let Some(kernel) = arguments::kernel(&self.kernel)? {
             let name;
             Kernel { kernel: chosen.kernel, name, asked, .. } = kernel.taken()?;
             chosen.source = format!("{}, judged with the {name} kernel", chosen.source);

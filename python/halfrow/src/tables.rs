@@ -12,7 +12,7 @@ use serde_json::{Map, Value};
 use crate::frames::Input;
 use crate::kernel::{Kernel, KernelLike};
 use crate::lens::{Lens, LensLike};
-use crate::{choices, errors, frames};
+use crate::{arguments, choices, errors, frames};
 
 /// What a kernel without a name is called.
 const OF_FILE: &str = "the table file's";
@@ -42,11 +42,11 @@ impl Tables {
     #[pyo3(signature = (lens = None, *, projection = "rows", rows = None, entries = None, kernel = None))]
     fn from_lens(
         py: Python<'_>,
-        lens: Option<LensLike<'_>>,
+        #[pyo3(from_py_with = arguments::lens)] lens: Option<LensLike<'_>>,
         projection: &str,
         rows: Option<&str>,
-        entries: Option<usize>,
-        kernel: Option<KernelLike<'_>>,
+        #[pyo3(from_py_with = arguments::entries)] entries: Option<usize>,
+        #[pyo3(from_py_with = arguments::kernel)] kernel: Option<KernelLike<'_>>,
     ) -> PyResult<Self> {
         let (mut optics, file) = match lens {
             Some(lens) => lens.taken()?,
@@ -64,7 +64,10 @@ impl Tables {
     /// `kernel` takes the place of the file's. Raises InputError, which names the file and the place in it.
     #[staticmethod]
     #[pyo3(signature = (path, *, kernel = None))]
-    fn read(path: PathBuf, kernel: Option<KernelLike<'_>>) -> PyResult<Self> {
+    fn read(
+        path: PathBuf,
+        #[pyo3(from_py_with = arguments::kernel)] kernel: Option<KernelLike<'_>>,
+    ) -> PyResult<Self> {
         let is_mem = path.extension().is_some_and(|extension| extension == "mem");
         let (mut file, paths) = if is_mem {
             let (tables, kernel) = mem::read(&path).map_err(errors::optics)?;

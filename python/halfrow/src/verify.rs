@@ -12,16 +12,21 @@ use halfrow::target::{Target, TargetError};
 use halfrow::{Finished, Plan, ReportFolder, RunOptions, StoppedBy};
 use pyo3::prelude::*;
 
+use crate::arguments;
 use crate::errors::{self, Whose};
 use crate::plan::{Options, Planned};
 use crate::run::Run;
 use crate::watched::watched;
 
-/// Judges the board behind `target`; halfrow/_verify.py says how.
+/// Judges the board behind `board`; halfrow/_verify.py says how.
 #[pyfunction]
-pub(crate) fn verify(py: Python<'_>, target: &str, options: &Bound<'_, PyAny>) -> PyResult<Run> {
+pub(crate) fn verify(
+    py: Python<'_>,
+    #[pyo3(from_py_with = arguments::board)] board: String,
+    options: &Bound<'_, PyAny>,
+) -> PyResult<Run> {
     let mut asked: Options<'_> = options.extract().map_err(|error| errors::not_taken(py, &error))?;
-    let target: Target = target.parse().map_err(errors::input::<TargetError>)?;
+    let target: Target = board.parse().map_err(errors::input::<TargetError>)?;
     let recording = py.detach(|| link::recording(&target)).map_err(not_opened)?;
     let is_stopped = Arc::new(AtomicBool::new(false));
     let stopped = Arc::clone(&is_stopped);

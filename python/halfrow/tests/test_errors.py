@@ -1,5 +1,6 @@
 """What is refused: with the codes of the program, and with what Python's own libraries raise."""
 import os
+import pathlib
 import pickle
 import re
 
@@ -142,6 +143,41 @@ def test_an_error_says_what_is_wrong_and_what_to_do(tmp_path):
     assert error.remedy
     again = pickle.loads(pickle.dumps(error))
     assert (type(again), str(again), again.causes) == (type(error), str(error), error.causes)
+
+
+@pytest.mark.parametrize(
+    "call, name, shown",
+    [
+        (lambda tables, frame: halfrow.correct(frame, tables, kernel=3), "kernel", "3"),
+        (lambda tables, _: halfrow.Corrector(tables, kernel=3), "kernel", "3"),
+        (lambda tables, _: halfrow.verify(tables=tables, kernel=3), "kernel", "3"),
+        (lambda *_: halfrow.Tables.from_lens(kernel=b"".join), "kernel", "of type builtin"),
+        (lambda *_: halfrow.Tables.read("t.json", kernel=np.zeros((65, 5))), "kernel", "of type ndarray"),
+        (lambda _, frame: halfrow.correct(frame, "t.json"), "tables", "'t.json'"),
+        (lambda *_: halfrow.Corrector("t.json"), "tables", "'t.json'"),
+        (lambda *_: halfrow.Tables.from_lens(3), "lens", "3"),
+        (lambda *_: halfrow.Tables.from_lens(projection="exact", entries=-1), "entries", "-1"),
+        (lambda *_: halfrow.Lens(width=-2), "width", "-2"),
+        (lambda *_: halfrow.Lens(height=2.5), "height", "2.5"),
+        (lambda *_: halfrow.Lens(bits="12"), "bits", "'12'"),
+        (lambda *_: halfrow.Lens(centre_x="middle"), "centre_x", "'middle'"),
+        (lambda *_: halfrow.Lens(centre_y="middle"), "centre_y", "'middle'"),
+        (lambda *_: halfrow.Lens(field_of_view=None), "field_of_view", "None"),
+        (lambda *_: halfrow.Lens().frame("noise", seed=-1), "seed", "-1"),
+        (lambda *_: halfrow.read_frame("x.raw", raw="u8", width=-1, height=1), "width", "-1"),
+        (lambda *_: halfrow.write_frame("x.pgm", np.zeros((2, 64), np.uint16), bits=-1), "bits", "-1"),
+        (lambda *_: halfrow.Kernel.from_weights(np.zeros((65, 5), np.float32)), "weights", "of type ndarray"),
+        (lambda *_: halfrow.verify(None), "board", "None"),
+        (lambda *_: halfrow.verify(pathlib.PurePosixPath("x")), "board", "PurePosixPath('x')"),
+        (lambda *_: halfrow.verify("serial:/dev/\udcff"), "board", r"'serial:/dev/\udcff'"),
+    ],
+)
+def test_an_argument_of_another_kind_is_named_with_what_it_takes(small, call, name, shown):
+    with pytest.raises(halfrow.InputError) as raised:
+        call(small, np.zeros((small.height, small.width), np.uint16))
+    assert raised.value.code == "usage-value-wrong"
+    assert raised.value.message.startswith(f"{name} is {shown}") and raised.value.remedy
+    assert "\n" not in str(raised.value)
 
 
 @pytest.mark.parametrize(

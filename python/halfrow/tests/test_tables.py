@@ -1,5 +1,6 @@
 """Tables, lenses and kernels against the program and against arithmetic done here."""
 import json
+import pickle
 
 import numpy as np
 import pytest
@@ -111,6 +112,12 @@ def test_notes_stay_with_what_they_are_about(tmp_path, small):
     assert notes(halfrow.Tables.read(tables, kernel=kernel), "other.json") is None
     assert notes(halfrow.Tables.read(tables).kernel, "its_kernel.json") is None
     assert halfrow.Tables.read(tables) == small
+
+
+@pytest.mark.parametrize("kind", [halfrow.Lens, halfrow.Kernel, halfrow.Tables.from_lens])
+def test_what_is_no_data_stays_in_its_process(kind):
+    with pytest.raises(TypeError, match="cannot pickle"):
+        pickle.dumps(kind())
 
 
 def test_linear_weights_are_straight_lines():

@@ -1,0 +1,51 @@
+//! Arguments of a call, each taken as what it must be or refused by its name.
+
+use numpy::PyReadonlyArray2;
+use pyo3::prelude::*;
+
+use crate::errors;
+use crate::kernel::KernelLike;
+use crate::lens::LensLike;
+use crate::tables::Tables;
+
+/// The longest look of a value that a message repeats.
+const LONGEST: usize = 40;
+
+/// Functions for `from_py_with`, called as the arguments that they take.
+macro_rules! arguments {
+    ($($name:ident: $kind:ty, $takes:literal;)+) => {$(
+        pub(crate) fn $name<'py>(given: &Bound<'py, PyAny>) -> PyResult<$kind> {
+            given.extract().map_err(|_| wrong_kind(given, stringify!($name), $takes))
+        }
+    )+};
+}
+
+arguments! {
+    board: String, "a target as text, like mock or serial:/dev/ttyUSB1";
+    tables: Bound<'py, Tables>, "Tables, as Tables.from_lens or Tables.read makes them";
+    lens: Option<LensLike<'py>>, "a Lens, a lens file, or \"equidistant:RADIUS\"";
+    kernel: Option<KernelLike<'py>>, "a Kernel, one of halfrow.KERNELS, or a kernel file";
+    weights: PyReadonlyArray2<'py, f64>, "an array of float64 of shape (65, 5), as numpy.asarray(weights, numpy.float64) makes one";
+    width: Option<usize>, "a number of columns";
+    height: Option<usize>, "a number of rows";
+    bits: u32, "8, 10 or 12";
+    centre_x: Option<f64>, "a column, counted from 0";
+    centre_y: Option<f64>, "a row, counted from 0";
+    field_of_view: f64, "an angle in degrees";
+    entries: Option<usize>, "the most entries that a grid may have";
+    seed: u64, "a whole number from 0 to 2^64 - 1";
+}
+
+fn wrong_kind(given: &Bound<'_, PyAny>, name: &str, takes: &str) -> PyErr {
+    errors::wrong_value(format!("{name} is {}; give {takes}", look(given)))
+}
+
+/// A value as Python shows it, or its kind alone where that takes much room.
+fn look(given: &Bound<'_, PyAny>) -> String {
+    let shown = given.repr().map(|shown| shown.to_string()).ok();
+    let shown = shown.filter(|shown| shown.len() <= LONGEST && !shown.contains('\n'));
+    shown.unwrap_or_else(|| {
+        let kind = given.get_type().name().map_or_else(|_| "unknown".to_owned(), |name| name.to_string());
+        format!("of type {kind}")
+    })
+}
