@@ -18,13 +18,12 @@ use crate::floor::{Accepted, Event, Shown};
 use crate::guard::guarded;
 use crate::history::PlanName;
 use crate::lane::Message;
-use crate::outbox::PlantSink;
 use crate::plan::{Plan, mock::is_mock};
 use crate::record::Record;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::said::{Said, Saying};
 use crate::settings::Settings;
-use crate::store::{Folder, SharedStore};
+use crate::store::{Folder, SINK_OF_PLANT, SharedStore};
 
 /// How long after a result could not be saved it is tried again.
 const AGAIN: Duration = Duration::from_secs(2);
@@ -141,7 +140,7 @@ fn at_plant(shared: &Shared, saved: Saved, patience: Duration) -> Event {
     }
     let (folder, until) = (Folder::new(data), Instant::now() + patience);
     loop {
-        match folder.is_sent(PlantSink::NAME, &saved.record.run.id) {
+        match folder.is_sent(SINK_OF_PLANT, &saved.record.run.id) {
             Ok(true) => return Event::Ended(shown(saved)),
             Ok(false) if Instant::now() < until => thread::sleep(LOOK),
             Ok(false) => return Event::Unsaved { why: Saying::NotAtPlant.into() },

@@ -2,10 +2,9 @@
 
 use nix::sys::statvfs::statvfs;
 
-use crate::outbox::PlantSink;
 use crate::said::{Said, Saying};
 use crate::settings::Settings;
-use crate::store::{Folder, Snapshot};
+use crate::store::{Folder, SINK_OF_PLANT, Snapshot};
 
 /// Why no other board is judged: more is unsent than the settings allow, or the disk has no room for what waits.
 pub(super) fn refuses(settings: &Settings, folder: &Folder) -> Option<Said> {
@@ -14,7 +13,7 @@ pub(super) fn refuses(settings: &Settings, folder: &Folder) -> Option<Said> {
     let entries = match Snapshot::take(folder).and_then(|now| now.unsent()) {
         // What others are sent is kept by the plant, too.
         Ok(unsent) => {
-            unsent.iter().find(|unsent| unsent.sink == PlantSink::NAME).map_or(0, |plant| plant.entries)
+            unsent.iter().find(|unsent| unsent.sink == SINK_OF_PLANT).map_or(0, |plant| plant.entries)
         }
         Err(error) => return Some(Said::of(&error)),
     };

@@ -16,9 +16,6 @@ pub struct PlantSink {
 }
 
 impl PlantSink {
-    /// Its name in the outbox.
-    pub const NAME: &'static str = SINK_OF_PLANT;
-
     /// The plant at `address`, which hears of `station`.
     #[must_use]
     pub fn new(address: PlantAddress, station: Presence) -> Self {
@@ -41,7 +38,7 @@ impl PlantSink {
 
 impl Sink for PlantSink {
     fn name(&self) -> &str {
-        Self::NAME
+        SINK_OF_PLANT
     }
 
     fn take(&mut self, parcel: &Parcel) -> Result<(), Undelivered> {

@@ -18,7 +18,7 @@ impl Store {
 
     /// Refuses a run that a plant would take for an earlier or later one than it is. Whoever sends nothing to a plant may date
     /// runs as it likes: they are in order among themselves.
-    pub(super) fn is_dated(&self, run: &RunHead) -> Result<(), StoreError> {
+    pub(super) fn refuses_misdated(&self, run: &RunHead) -> Result<(), StoreError> {
         if !self.sinks.iter().any(|sink| sink == SINK_OF_PLANT) {
             return Ok(());
         }

@@ -254,7 +254,7 @@ impl Store {
     /// [`StoreError::BeingJudged`] when the lane or the unit has an open run already; others when the database does not take it, or it is
     /// dated otherwise than the plant would date it.
     pub fn begin(&mut self, run: RunHead, plan: &PlanRecord) -> Result<RunHead, StoreError> {
-        self.is_dated(&run)?;
+        self.refuses_misdated(&run)?;
         match self.change("to begin a run", |to| rows::open(to, &run, plan)) {
             Ok((unit_id, fence)) => Ok(RunHead { unit_id, fence, ..run }),
             Err(StoreError::Database { source, .. }) if source.is_conflict() => {

@@ -4,8 +4,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::LOOK;
-use crate::outbox::PlantSink;
-use crate::store::{Folder, LEASE_MS, Snapshot, StoreError};
+use crate::store::{Folder, LEASE_MS, SINK_OF_PLANT, Snapshot, StoreError};
 
 /// How long a plant that says something else may take nothing: as long as one that is away may be away.
 const PATIENCE: Duration = Duration::from_millis(LEASE_MS.unsigned_abs());
@@ -26,7 +25,7 @@ pub(super) enum Sent {
 pub(super) fn awaited(folder: &Folder, run: &str, is_over: &dyn Fn() -> bool) -> Result<Sent, StoreError> {
     let mut until = Instant::now() + PATIENCE;
     loop {
-        let entry = folder.standing(PlantSink::NAME, run)?;
+        let entry = folder.standing(SINK_OF_PLANT, run)?;
         if entry.is_done {
             return Ok(Sent::Yes);
         }
@@ -50,5 +49,5 @@ pub(super) fn awaited(folder: &Folder, run: &str, is_over: &dyn Fn() -> bool) ->
 /// What the plant said last to anything that is tried again.
 fn said_last(folder: &Folder) -> Result<Option<String>, StoreError> {
     let unsent = Snapshot::take(folder)?.unsent()?;
-    Ok(unsent.into_iter().find(|unsent| unsent.sink == PlantSink::NAME).and_then(|unsent| unsent.said))
+    Ok(unsent.into_iter().find(|unsent| unsent.sink == SINK_OF_PLANT).and_then(|unsent| unsent.said))
 }

@@ -9,7 +9,7 @@ use halfrow_station::outbox::{Outbox, PlantSink, Sink, Undelivered};
 use halfrow_station::run::Stage;
 use halfrow_station::said::{Said, Saying};
 use halfrow_station::settings::Settings;
-use halfrow_station::store::{Parcel, Store};
+use halfrow_station::store::{Parcel, SINK_OF_PLANT, Store};
 
 use super::{any, at_work, job, plan, settings, shared};
 use crate::common::{folder, program};
@@ -55,7 +55,7 @@ struct Refusing;
 
 impl Sink for Refusing {
     fn name(&self) -> &str {
-        PlantSink::NAME
+        SINK_OF_PLANT
     }
 
     fn take(&mut self, _: &Parcel) -> Result<(), Undelivered> {

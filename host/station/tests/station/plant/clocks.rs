@@ -3,7 +3,7 @@
 use std::fs;
 
 use halfrow_station::outbox::{PlantSink, Sink as _};
-use halfrow_station::store::StoreError;
+use halfrow_station::store::{SINK_OF_PLANT, StoreError};
 
 use super::sent::presence;
 use super::server::Server;
@@ -32,7 +32,7 @@ fn no_run_begins_while_the_clocks_of_station_and_plant_are_apart() {
     let mut made = Made::new();
     let origin = made.store.origin().unwrap();
     let mut sink = PlantSink::new(server.address(), presence("station 7", origin));
-    made.store.sends_to(vec![PlantSink::NAME.to_owned()]).unwrap();
+    made.store.sends_to(vec![SINK_OF_PLANT.to_owned()]).unwrap();
     // The control: clocks that agree.
     made.store.heard_plant(sink.beat(0, 0).unwrap());
     made.run(&now_of("S1"));

@@ -1,7 +1,7 @@
 //! What comes to the plant is what the station has.
 
 use halfrow_station::outbox::{PlantSink, Round, round};
-use halfrow_station::store::{PlantAddress, Presence, SharedStore};
+use halfrow_station::store::{PlantAddress, Presence, SINK_OF_PLANT, SharedStore};
 
 use super::server::Server;
 use super::tables::is_as;
@@ -16,7 +16,7 @@ pub(crate) fn send(made: Made, address: PlantAddress) -> (Made, Round) {
 /// As [`send`], from a station of this name.
 pub(crate) fn send_as(name: &str, made: Made, address: PlantAddress) -> (Made, Round) {
     let (folder, mut store) = made.parts();
-    store.sends_to(vec![PlantSink::NAME.to_owned()]).unwrap();
+    store.sends_to(vec![SINK_OF_PLANT.to_owned()]).unwrap();
     let origin = store.origin().unwrap();
     let mut sink = PlantSink::new(address, presence(name, origin));
     let store = SharedStore::new(store);

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
 use halfrow_station::outbox::{PlantSink, round};
-use halfrow_station::store::{PlantAddress, SharedStore};
+use halfrow_station::store::{PlantAddress, SINK_OF_PLANT, SharedStore};
 
 use super::sent::presence;
 use super::server::Server;
@@ -64,7 +64,7 @@ fn a_plant_that_answers_nothing_is_away_and_has_all_once_it_answers_again() {
     let way = Way::to(server.port());
     let url = format!("postgres://postgres@127.0.0.1:{}/plant", way.port);
     let mut made = Made::new();
-    made.store.sends_to(vec![PlantSink::NAME.to_owned()]).unwrap();
+    made.store.sends_to(vec![SINK_OF_PLANT.to_owned()]).unwrap();
     for (number, serial) in (1..).zip(["S1", "S2"]) {
         made.numbered(number, &Run::of(serial, End::Pass));
     }
