@@ -5,13 +5,12 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use halfrow::Verdict;
-use halfrow::verdict::StoppedBy;
 use halfrow_station::settings::Settings;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use tempfile::TempDir;
 
-use super::{any, at_work, job, plan, settings, shared};
+use super::{any, at_work, job, judged, plan, settings, shared};
 use crate::common::{Did, folder, program, query};
 use crate::lanes::floor::HANG;
 use crate::plant::server::Server;
@@ -135,10 +134,7 @@ fn a_verdict_is_told_though_the_store_does_not_say_whether_the_plant_has_it() {
     let work = at_work(&settings, program().to_owned());
     let database = rusqlite::Connection::open(folder.path().join("data/station.db")).unwrap();
     database.execute_batch("ALTER TABLE outbox RENAME TO elsewhere").unwrap();
-    let claim = work.claim().unwrap().unwrap();
-    let begun = Instant::now();
-    let stop = || (begun.elapsed() > HANG).then_some(StoppedBy::Person);
-    let judged = work.judge(claim, &stop, &mut |_| ()).unwrap();
+    let judged = judged(&work);
     assert_eq!(judged.saved.record.conclusion.verdict, Verdict::Pass);
     assert!(!judged.is_sent);
 }

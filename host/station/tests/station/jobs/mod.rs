@@ -10,15 +10,18 @@ mod stuck;
 mod work;
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
+use halfrow::verdict::StoppedBy;
 use halfrow_station::plan::Plan;
 use halfrow_station::settings::Settings;
 use halfrow_station::store::{
     Folder, NewJob, Plant, PlantLink, SharedBoard, SharedStore, Store, Wanted, Worker,
 };
-use halfrow_station::work::Work;
+use halfrow_station::work::{Judged, Work};
 
 use crate::common::PLAN;
+use crate::lanes::floor::HANG;
 use crate::plant::server::Server;
 
 /// The plan of every job.
@@ -96,4 +99,12 @@ fn at_work(settings: &Settings, program: PathBuf) -> Work<'_> {
         worker: Worker { plans, ..worker(&settings.name) },
         settings,
     }
+}
+
+/// The next job, judged; whoever waits for too long ends it by hand.
+fn judged(work: &Work<'_>) -> Judged {
+    let claim = work.claim().unwrap().unwrap();
+    let begun = Instant::now();
+    let stop = || (begun.elapsed() > HANG).then_some(StoppedBy::Person);
+    work.judge(claim, &stop, &mut |_| ()).unwrap()
 }

@@ -1,7 +1,6 @@
 //! What became of a job's run at the plant.
 
 use std::cell::Cell;
-use std::time::Instant;
 
 use halfrow::Verdict;
 use halfrow::verdict::StoppedBy;
@@ -11,9 +10,8 @@ use halfrow_station::said::{Said, Saying};
 use halfrow_station::settings::Settings;
 use halfrow_station::store::{Parcel, SINK_OF_PLANT, Store};
 
-use super::{any, at_work, job, plan, settings, shared};
+use super::{any, at_work, job, judged, plan, settings, shared};
 use crate::common::{folder, program};
-use crate::lanes::floor::HANG;
 
 /// Whether the plant has the run of a job, and whether the run counts there, if the outbox `sends` and a person cancels the job
 /// while the result is being saved.
@@ -72,10 +70,7 @@ fn what_the_plant_does_not_take_holds_no_board_and_says_why() {
     let settings = Settings::load_plant(&settings(&server, folder.path(), "12")).unwrap();
     let work = at_work(&settings, program().to_owned());
     let outbox = Outbox::start(&work.store, vec![Box::new(Refusing)]).unwrap();
-    let claim = work.claim().unwrap().unwrap();
-    let begun = Instant::now();
-    let stop = || (begun.elapsed() > HANG).then_some(StoppedBy::Person);
-    let judged = work.judge(claim, &stop, &mut |_| ()).unwrap();
+    let judged = judged(&work);
     outbox.close();
     assert_eq!(judged.saved.record.conclusion.verdict, Verdict::Pass, "it is kept");
     assert_eq!((judged.is_sent, judged.counts), (false, None));
