@@ -2,8 +2,12 @@
 
 use std::io::{BufRead as _, BufReader, Read};
 use std::process::{Child, Command, Stdio};
+use std::str::FromStr as _;
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
+
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 
 use super::Ended;
 use crate::patience::{LIMIT, end_of, wait_until};
@@ -91,8 +95,14 @@ impl Running {
     /// If it has ended already.
     #[cfg(unix)]
     pub fn send(&self, signal: &str) {
-        let kill = Command::new("sh").args(["-c", &format!("kill -{signal} {}", self.child.id())]).status();
-        assert!(kill.unwrap().success());
+        let process = Pid::from_raw(self.child.id().cast_signed());
+        kill(process, Signal::from_str(&format!("SIG{signal}")).unwrap()).unwrap();
+    }
+
+    /// Whether it has come to its end.
+    #[must_use]
+    pub fn has_ended(&mut self) -> bool {
+        matches!(self.child.try_wait(), Ok(Some(_)))
     }
 
     /// Stops it, and waits until it stands still.

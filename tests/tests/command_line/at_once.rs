@@ -5,7 +5,7 @@ use std::fs;
 use halfrow_tests::parallel;
 use halfrow_tests::program::{Ended, Folder};
 
-use crate::running::{started, stop_amid, streaming};
+use crate::running::{stopped_amid, streaming};
 use crate::signals::LARGE;
 use crate::small;
 
@@ -152,8 +152,7 @@ fn what_killed_runs_left_is_cleared_and_what_running_ones_write_is_not() {
 #[test]
 fn a_frame_that_a_killed_program_left_is_cleared() {
     let folder = Folder::new();
-    let running = started(&folder, LARGE);
-    stop_amid(&running, &folder.path().join("out"));
+    let running = stopped_amid(&folder, &LARGE);
     drop(running);
     let half = |name: &&String| name.starts_with('.');
     assert!(folder.names("out").iter().any(|name| half(&name)));

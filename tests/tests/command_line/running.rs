@@ -21,20 +21,28 @@ pub(crate) fn streaming<'a>(folder: &Folder, arguments: impl IntoIterator<Item =
     running
 }
 
-/// Stops a run where something half written is in `folder`.
-pub(crate) fn stop_amid(running: &Running, folder: &Path) {
+/// A run of `arguments` that stands still where something half written is in `out`. A quick one may write all
+/// that it has between two looks: then it is begun again.
+pub(crate) fn stopped_amid(folder: &Folder, arguments: &[&str]) -> Running {
+    let out = folder.path().join("out");
     let is_hidden = |name: &str| name.starts_with('.');
+    let mut running = started(folder, arguments.iter().copied());
     wait_until("something to be half written", || {
-        if !has(folder, is_hidden) {
+        if running.has_ended() {
+            std::fs::remove_dir_all(&out).unwrap();
+            running = started(folder, arguments.iter().copied());
+        }
+        if !has(&out, is_hidden) {
             return false;
         }
         running.stop();
-        let is_amid = has(folder, is_hidden);
+        let is_amid = has(&out, is_hidden);
         if !is_amid {
             running.send("CONT");
         }
         is_amid
     });
+    running
 }
 
 /// Waits until something in `folder` has a name that `is_wanted`.

@@ -11,7 +11,7 @@ use nix::fcntl::{FcntlArg, OFlag, fcntl};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
-use crate::running::{SLOW, started, stop_amid, streaming, until_there_is};
+use crate::running::{SLOW, started, stopped_amid, streaming, until_there_is};
 use crate::small;
 
 /// Starts a slow run, sends it `signal` while it streams, and waits for its end.
@@ -105,8 +105,7 @@ pub(crate) const LARGE: [&str; 9] = [
 fn frames_that_are_half_written_go_with_the_program() {
     for (signal, code) in SIGNALS {
         let folder = Folder::new();
-        let running = started(&folder, LARGE);
-        stop_amid(&running, &folder.path().join("out"));
+        let running = stopped_amid(&folder, &LARGE);
         running.send(signal);
         running.send("CONT");
         let ended = running.end();
