@@ -74,6 +74,22 @@ pub(super) struct Piece {
     pub(super) curve: i32,
 }
 
+impl Piece {
+    /// The coordinates of the block whose first column has the coordinate `first`, each by itself: what compilers make vectors of.
+    #[inline]
+    fn coordinates(self, first: u32) -> [u32; BLOCK] {
+        let middle = first.wrapping_add(self.middle);
+        let mut relatives = [0; BLOCK];
+        for (index, relative) in relatives.iter_mut().enumerate() {
+            let i = index as i32 - MIDDLE as i32;
+            let bent = (i * i).wrapping_mul(self.curve).wrapping_add(self.rest.cast_signed()) >> 3;
+            let straight = i.cast_unsigned().wrapping_mul(self.slope);
+            *relative = middle.wrapping_add(straight).wrapping_add(bent.cast_unsigned());
+        }
+        relatives
+    }
+}
+
 /// What is added to ((n + column) & !1), with both counted from even columns, for a − `least`: [`Start::lead`] less the
 /// column's parity.
 pub(super) const LEADS: [[u16; BLOCK]; 2] = {
@@ -139,6 +155,13 @@ impl<'a> Curve<'a> {
         Self { segments, k }
     }
 
+    /// The coordinates of a block that lies across two segments.
+    #[cold]
+    #[inline(never)]
+    fn scattered(self, column: usize, start: &Start) -> [u32; BLOCK] {
+        std::array::from_fn(|index| self.relative(column + index, start))
+    }
+
     /// S of `column` with half a unit of q, how it would go on along a line, and how it bends.
     #[inline]
     fn at(self, column: usize) -> [i64; 3] {
@@ -182,16 +205,9 @@ impl Walk for Curve<'_> {
     #[inline]
     fn relatives(self, column: usize, start: &Start) -> [u32; BLOCK] {
         if !is_within_segment(column) {
-            return std::array::from_fn(|index| self.relative(column + index, start));
+            return self.scattered(column, start);
         }
-        let [own, slope, curve] = self.at(column);
-        let (mut own, mut stride) = (own - (start.origin << 3), slope + curve);
-        std::array::from_fn(|_| {
-            let relative = (own >> 3) as u32;
-            own += stride;
-            stride += 2 * curve;
-            relative
-        })
+        start.piece.coordinates(start.relative)
     }
 }
 
