@@ -18,7 +18,7 @@ use halfrow_protocol::message::{
 use halfrow_protocol::{Damage, Decoder, Encoder, Header, Kind, Packet};
 
 use crate::burst::Bursts;
-use crate::faults::BoardFault;
+use crate::faults::{BoardFault, Defects};
 use crate::options::{OptionError, Options};
 use crate::player::Player;
 use crate::tables::Tables;
@@ -101,7 +101,7 @@ impl Board {
         let header = packet.header;
         count(&mut self.status.packets);
         if header.kind != Kind::Hello.code() {
-            if !self.session.is_open(header.session) {
+            if !self.session.is_open(header.session) && !Defects::of(self.fault).takes_any_session {
                 return self.turn_away(&header);
             }
             self.session.heard(now);

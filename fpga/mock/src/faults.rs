@@ -86,6 +86,8 @@ pub enum BoardFault {
         /// The bit, 0 to 24.
         bit: u8,
     },
+    /// Packets are carried out whatever session they name.
+    AnySession,
     /// The board claims another datapath id.
     WrongDatapath,
     /// A bit of a row flips between its packet and the core.
@@ -269,6 +271,9 @@ pub const FAULTS: &[Fault<BoardFault>] = &[
     ),
     fault("unchecked-commit", "a commit is taken whatever CRC it names", &[], |_| {
         Ok(BoardFault::UncheckedCommit)
+    }),
+    fault("any-session", "packets are carried out whatever session they name", &[], |_| {
+        Ok(BoardFault::AnySession)
     }),
     fault("wrong-datapath", "the board claims another datapath id", &[], |_| Ok(BoardFault::WrongDatapath)),
     fault(

@@ -59,6 +59,7 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
     fails("a bit that flips when warm", ",fault=warm-bit,row=1,bit=11", "in row 1 first"),
     fails("tables that change late", ",fault=late-swap", "the change of table banks between two frames"),
     fails("a pause that is not counted", ",fault=hidden-pause", "pixel clocks of most latency"),
+    fails("packets of any session", ",fault=any-session", "a packet of another session has no effect"),
     fails("a commit that is not checked", ",fault=unchecked-commit", "the board must refuse COMMIT"),
     expect(
         "ERROR",

@@ -45,6 +45,11 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
         "the tables changed during the run: grid row 2, node 2, bit 3",
     ),
     fails(
+        "packets of any session behind a grid",
+        ",fault=any-session",
+        "a packet of another session has no effect",
+    ),
+    fails(
         "a commit of a grid that is not checked",
         ",fault=unchecked-commit",
         "the board must refuse COMMIT",

@@ -20,13 +20,15 @@ pub(crate) struct Defects {
     pub(crate) burst: BurstDefects,
     /// What the board says of itself.
     pub(crate) claims: WrongClaims,
+    /// Whether it carries out packets whatever session they name.
+    pub(crate) takes_any_session: bool,
 }
 
 impl Defects {
     /// What is wrong with a board with `fault`.
     pub(crate) fn of(fault: Option<BoardFault>) -> Self {
         let mut defects = Self::default();
-        let Self { core, tables, player, burst, claims } = &mut defects;
+        let Self { core, tables, player, burst, claims, takes_any_session } = &mut defects;
         match fault {
             None => {}
             Some(BoardFault::StuckData { bit, value }) => core.data_lines = StuckBits::one(bit, value),
@@ -50,6 +52,7 @@ impl Defects {
                 tables.drift = Some(Drift { after, entry: row, bit });
             }
             Some(BoardFault::UncheckedCommit) => tables.unchecked = true,
+            Some(BoardFault::AnySession) => *takes_any_session = true,
             Some(BoardFault::WrongDatapath) => claims.datapath = 8,
             Some(BoardFault::SpoiltRow { row, column, bit }) => {
                 player.spoilt = Some(SpoiltSample { row, column, bit });

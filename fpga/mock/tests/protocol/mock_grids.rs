@@ -81,6 +81,9 @@ fn heard_of(fault: Option<BoardFault>) -> Vec<Heard> {
     let mut heard = bench.say(&Request::Capabilities);
     let tables = [grid(4, 7), grid(4, 8)];
     tables[0].upload(&mut bench);
+    let own = std::mem::replace(&mut bench.session, 77);
+    heard.extend(bench.say(&Request::Capabilities));
+    bench.session = own;
     let Request::Commit(right) = tables[0].commit(1, 0) else { unreachable!() };
     heard.extend(bench.say(&Request::Commit(Commit { steps_crc: !right.steps_crc, generation: 3, ..right })));
     heard.extend(bench.say(&Request::Commit(right)));

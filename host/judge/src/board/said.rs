@@ -1,5 +1,7 @@
 //! Requests of any form, and what a board says to them: for whoever wants to know what it refuses.
 
+use std::mem;
+
 use halfrow_protocol::message::{Burst, Refusal, RefusalCode, Reply, Request, Reset, ResetLevel, RowPlace};
 use halfrow_protocol::{Kind, Packet, samples};
 
@@ -58,6 +60,32 @@ impl Board {
             Err(BoardError::Refused { refusal, .. }) => Ok(Said::Refused(refusal)),
             said => said,
         }
+    }
+
+    /// Sends a request of `kind` under the number of the session `session`, which is not open, and returns what the board says to it.
+    ///
+    /// # Errors
+    /// As [`Self::ask`].
+    pub(crate) fn ask_in_session(
+        &mut self,
+        session: u8,
+        kind: Kind,
+        payload: &[u8],
+    ) -> Result<Said, BoardError> {
+        let own = mem::replace(&mut self.conversation.session, session);
+        let said = self.ask(kind, payload);
+        self.conversation.session = own;
+        match said {
+            Err(BoardError::SessionLost) => {
+                Ok(Said::Refused(Refusal { code: RefusalCode::Session, kind: kind.code(), detail: 0 }))
+            }
+            said => said,
+        }
+    }
+
+    /// Number of the open session.
+    pub(crate) fn session(&self) -> u8 {
+        self.conversation.session
     }
 
     /// Sends a row, and waits for nothing.

@@ -20,6 +20,8 @@ pub enum Rule {
     Address,
     /// A packet with a flipped bit has no effect.
     Damage,
+    /// A packet of another session is refused, and has no effect.
+    Session,
     /// A commit of tables that read back otherwise is refused.
     CommitCrc,
     /// A commit that names tables which are active or pending is answered, generation 0 is refused, and another is not both.

@@ -78,6 +78,7 @@ fn meaning(rule: Rule) -> &'static str {
         Rule::Entry => "a table's entry out of range",
         Rule::Address => "entries keep to their places",
         Rule::Damage => "a damaged packet has no effect",
+        Rule::Session => "a packet of another session has no effect",
         Rule::CommitCrc => "a commit with another CRC than the tables have",
         Rule::Generation => "which generations a commit may name",
         Rule::Shape => "a grid that the board cannot have is refused",

@@ -5,7 +5,6 @@
 mod bursts;
 mod commits;
 mod compared;
-mod damage;
 mod grids;
 mod power_up;
 mod price;
@@ -15,6 +14,7 @@ mod small;
 mod tables;
 mod trap;
 mod wide;
+mod without_effect;
 
 use std::mem;
 
@@ -94,6 +94,7 @@ impl<'a, 'run> Rules<'a, 'run> {
         self.requests()?;
         self.tables()?;
         self.damage()?;
+        self.other_sessions()?;
         self.commits()?;
         self.rows()?;
         self.wide()?;

@@ -1,0 +1,65 @@
+//! Packets that must have no effect: those that the link has damaged, and those of another session.
+
+use std::iter;
+
+use halfrow_protocol::message::{Entries, Refusal, RefusalCode, Request};
+
+use super::{FIRST_FACTOR, Rules, of_board, payload};
+use crate::board::Said;
+use crate::result::Rule;
+use crate::run::findings::End;
+
+/// The row factor that must stay.
+const KEPT: [u8; 4] = 1_u32.to_le_bytes();
+
+/// One that nothing else writes.
+const OTHER: [u8; 4] = 0x1a5_u32.to_le_bytes();
+
+/// So many sessions to come are left alone: what a link holds back could be theirs then.
+const TO_COME: u16 = 16;
+
+impl Rules<'_, '_> {
+    /// A row factor stays as it was written, though packets that would write another one came with a flipped bit.
+    pub(super) fn damage(&mut self) -> Result<(), End> {
+        self.replied(Rule::Damage, &write(&KEPT), Vec::new())?;
+        self.run.board.give_damaged(&write(&OTHER));
+        self.is_kept(Rule::Damage)
+    }
+
+    /// It stays so though packets of other sessions would write another one, and each of those is refused.
+    pub(super) fn other_sessions(&mut self) -> Result<(), End> {
+        let other = write(&OTHER);
+        for session in others(self.run.board.session()) {
+            let said = self.run.board.ask_in_session(session, other.kind(), &payload(&other));
+            let refusal = Refusal { code: RefusalCode::Session, kind: other.kind().code(), detail: 0 };
+            // A board that carries it out may answer as if to a packet of its own session, which none is seen to be.
+            self.is_kept(Rule::Session)?;
+            self.judge(Rule::Session, other.kind(), said, &Said::Refused(refusal))?;
+        }
+        Ok(())
+    }
+
+    fn is_kept(&mut self, rule: Rule) -> Result<(), End> {
+        let read = Request::TableRead(FIRST_FACTOR);
+        let said = self.run.board.ask(read.kind(), &payload(&read));
+        if matches!(&said, Ok(Said::Replied(entry)) if entry.ends_with(&OTHER)) {
+            // Whatever else a link has done, only what must have no effect can have written this.
+            self.run.board.excuse_repeats().map_err(of_board)?;
+        }
+        self.judge(rule, read.kind(), said, &Said::Replied(payload(&write(&KEPT))))
+    }
+}
+
+fn write(bytes: &[u8; 4]) -> Request<'_> {
+    Request::TableWrite(Entries { span: FIRST_FACTOR, bytes })
+}
+
+/// The session before `open`, and those whose numbers differ from it in a bit.
+fn others(open: u8) -> impl Iterator<Item = u8> {
+    let before = if open == 1 { u8::MAX } else { open - 1 };
+    // 255 follows 254, and 1 follows 255.
+    let ahead = move |session: u8| (u16::from(session) + 255 - u16::from(open)) % 255;
+    let with_a_bit = (0..u8::BITS).map(move |bit| open ^ 1 << bit);
+    let apart = with_a_bit.filter(move |&session| session != 0 && ahead(session) > TO_COME);
+    iter::once(before).chain(apart.filter(move |&session| session != before))
+}
