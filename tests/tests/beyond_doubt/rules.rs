@@ -1,18 +1,11 @@
 //! What a board must refuse, keep and end: one that does otherwise fails, wherever it does, and a sound one never.
 
-use std::convert::Infallible;
-use std::mem;
-use std::time::Duration;
-
-use halfrow::link::{Candidate, WireLink};
 use halfrow::result::{Answer, Check, CheckName, Finding, NotExercised, Outcome, Report, Rule};
 use halfrow::run::{Part, Plan, Selection};
-use halfrow::target::BoardKind;
 use halfrow::verdict::Verdict;
-use halfrow_mock::{Board, Options};
-use halfrow_pipe::{Endpoint, Pipe, PipeOptions};
+use halfrow_mock::Options;
 use halfrow_protocol::message::{BurstState, Records, Refusal, RowOut, Status, TrappedRow};
-use halfrow_protocol::{Encoder, Header, Kind, Reply};
+use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{System, failed_check, judge_by_plan, open};
 
@@ -20,7 +13,7 @@ use halfrow_tests::system::{System, failed_check, judge_by_plan, open};
 const FRAME: u16 = 0x1234;
 
 /// The least run with the rules.
-fn plan() -> Plan {
+pub(crate) fn plan() -> Plan {
     Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() }
 }
 
@@ -51,7 +44,7 @@ fn carried_out(packet: &Passing, refusal: Refusal) -> Passing {
     Passing { header, payload: Vec::new() }
 }
 
-fn broken(report: &Report) -> (Rule, &Answer, &Answer) {
+pub(crate) fn broken(report: &Report) -> (Rule, &Answer, &Answer) {
     assert_eq!(failed_check(report), Some(CheckName::Rules), "{}", report.headline());
     assert!(report.remedy().is_some());
     match &report.finding {
@@ -99,78 +92,6 @@ fn what_a_record_may_say_is_not_looked_at() {
         Some(packet)
     });
     assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
-}
-
-/// The mock board behind a decoder that looks at no CRC.
-#[derive(Debug)]
-struct Careless {
-    board: Board,
-    piece: Vec<u8>,
-    encoder: Encoder,
-}
-
-impl Careless {
-    /// The packet as it would be with the CRC that it should have, if its length is right.
-    fn taken(&mut self) -> Vec<u8> {
-        let bytes = unstuffed(&mem::take(&mut self.piece));
-        let mut wire = Vec::new();
-        if let [1, kind, s0, s1, l0, l1, 0, session, w0, w1, w2, w3, rest @ ..] = bytes.as_slice()
-            && rest.len() == usize::from(u16::from_le_bytes([*l0, *l1])) + 4
-        {
-            let header = Header {
-                kind: *kind,
-                sequence: u16::from_le_bytes([*s0, *s1]),
-                reply: false,
-                session: *session,
-                window: u32::from_le_bytes([*w0, *w1, *w2, *w3]),
-            };
-            let payload = &rest[..rest.len() - 4];
-            self.encoder.encode(&header, |wire| wire.extend_from_slice(payload), &mut wire).unwrap();
-        }
-        wire
-    }
-}
-
-/// What was stuffed into `piece` (WIRE.md, 1).
-fn unstuffed(piece: &[u8]) -> Vec<u8> {
-    let (mut bytes, mut rest) = (Vec::new(), piece);
-    while let [code, behind @ ..] = rest {
-        let (block, next) = behind.split_at(behind.len().min(usize::from(*code) - 1));
-        bytes.extend_from_slice(block);
-        bytes.extend((*code < 255 && !next.is_empty()).then_some(0));
-        rest = next;
-    }
-    bytes
-}
-
-impl Endpoint for Careless {
-    type Failure = Infallible;
-
-    fn receive(&mut self, bytes: &[u8], now: Duration) -> Result<(), Infallible> {
-        for &byte in bytes {
-            if byte != 0 {
-                self.piece.push(byte);
-            } else if !self.piece.is_empty() {
-                let wire = self.taken();
-                self.board.receive(&wire, now);
-            }
-        }
-        Ok(())
-    }
-
-    fn outgoing(&mut self) -> &mut Vec<u8> {
-        self.board.outgoing()
-    }
-}
-
-#[test]
-fn a_board_that_takes_damaged_packets_fails() {
-    let board = Board::new(&Options::default(), None).unwrap();
-    let careless = Careless { board, piece: Vec::new(), encoder: Encoder::new() };
-    let pipe = Pipe::new(careless, PipeOptions::default(), None);
-    let link = WireLink::new(pipe, "a careless board", false);
-    let report = judge_by_plan(&plan(), Candidate::new("careless", BoardKind::Mock, link));
-    assert_eq!(broken(&report).0, Rule::Damage, "{}", report.headline());
 }
 
 #[test]

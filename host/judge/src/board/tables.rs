@@ -95,26 +95,26 @@ impl Board {
     ) -> Result<Vec<ReadBack>, BoardError> {
         let entries = (tables.units().len() as u16, crc32fast::hash(&tables.to_bytes()));
         let nodes = (NODES as u16, crc32fast::hash(&kernel.to_bytes()));
-        self.table_ports(table_of(tables))
-            .into_iter()
-            .map(|port| {
-                let (count, expected) = match port.table {
-                    Table::RowFactors | Table::Grid => entries,
-                    Table::Kernel => nodes,
-                };
-                let span = Span { table: port.table, bank, port: port.port, first: 0, count };
-                let found =
-                    self.conversation.request(
-                        &Request::TableCrc(span),
-                        Step::Request,
-                        |reply| match reply {
-                            Reply::TableCrc(crc) => Some(crc),
-                            _ => None,
-                        },
-                    )?;
-                Ok(ReadBack { port, expected, found })
-            })
-            .collect()
+        let mut read = Vec::new();
+        for port in self.table_ports(table_of(tables)) {
+            let (count, expected) = match port.table {
+                Table::RowFactors | Table::Grid => entries,
+                Table::Kernel => nodes,
+            };
+            let span = Span { table: port.table, bank, port: port.port, first: 0, count };
+            let request = Request::TableCrc(span);
+            let found = self.conversation.request(&request, Step::Request, |reply| match reply {
+                Reply::TableCrc(crc) => Some(crc),
+                _ => None,
+            })?;
+            let port = ReadBack { port, expected, found };
+            let agrees = port.agrees();
+            read.push(port);
+            if !agrees {
+                break;
+            }
+        }
+        Ok(read)
     }
 
     /// The bytes of entries as a port reads them.

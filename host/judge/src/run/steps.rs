@@ -90,11 +90,12 @@ impl Run<'_> {
         let mut last = None;
         for segment in schedule {
             // Tables that have changed are not replaced: they are the last that are judged.
-            if segment.is_varied() && matches!(self.tables_after(), Err(End::Failed { .. })) {
+            let after = if segment.is_varied() { self.tables_after().map(drop) } else { Ok(()) };
+            if let Err(End::Failed { .. }) = after {
                 return Ok(last);
             }
             last = Some(segment);
-            if let Err(end) = self.prepare(segment) {
+            if let Err(end) = after.and_then(|()| self.prepare(segment)) {
                 self.return_to(segment, 0, end)?;
             }
             self.stream(segment, source)?;

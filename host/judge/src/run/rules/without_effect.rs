@@ -5,7 +5,7 @@ use std::iter;
 use halfrow_protocol::message::{Entries, Refusal, RefusalCode, Request};
 
 use super::{FIRST_FACTOR, Rules, of_board, payload};
-use crate::board::Said;
+use crate::board::{BoardError, Said};
 use crate::result::Rule;
 use crate::run::findings::End;
 
@@ -15,15 +15,32 @@ const KEPT: [u8; 4] = 1_u32.to_le_bytes();
 /// One that nothing else writes.
 const OTHER: [u8; 4] = 0x1a5_u32.to_le_bytes();
 
+const READ: Request<'static> = Request::TableRead(FIRST_FACTOR);
+
+/// How often damaged packets must be carried out for the board to be wrong: a link that flips the very bit back makes one of them
+/// whole, and does so once.
+const TIMES: usize = 3;
+
 /// So many sessions to come are left alone: what a link holds back could be theirs then.
 const TO_COME: u16 = 16;
 
 impl Rules<'_, '_> {
     /// A row factor stays as it was written, though packets that would write another one came with a flipped bit.
     pub(super) fn damage(&mut self) -> Result<(), End> {
+        let mut said = self.behind_damage()?;
+        for _ in 1..TIMES {
+            if is_other(&said) {
+                said = self.behind_damage()?;
+            }
+        }
+        self.judge_kept(Rule::Damage, said)
+    }
+
+    /// What is said to be in the row factor's place behind damaged packets.
+    fn behind_damage(&mut self) -> Result<Result<Said, BoardError>, End> {
         self.replied(Rule::Damage, &write(&KEPT), Vec::new())?;
         self.run.board.give_damaged(&write(&OTHER));
-        self.is_kept(Rule::Damage)
+        Ok(self.read())
     }
 
     /// It stays so though packets of other sessions would write another one, and each of those is refused.
@@ -33,21 +50,30 @@ impl Rules<'_, '_> {
             let said = self.run.board.ask_in_session(session, other.kind(), &payload(&other));
             let refusal = Refusal { code: RefusalCode::Session, kind: other.kind().code(), detail: 0 };
             // A board that carries it out may answer as if to a packet of its own session, which none is seen to be.
-            self.is_kept(Rule::Session)?;
+            let read = self.read();
+            self.judge_kept(Rule::Session, read)?;
             self.judge(Rule::Session, other.kind(), said, &Said::Refused(refusal))?;
         }
         Ok(())
     }
 
-    fn is_kept(&mut self, rule: Rule) -> Result<(), End> {
-        let read = Request::TableRead(FIRST_FACTOR);
-        let said = self.run.board.ask(read.kind(), &payload(&read));
-        if matches!(&said, Ok(Said::Replied(entry)) if entry.ends_with(&OTHER)) {
+    fn read(&mut self) -> Result<Said, BoardError> {
+        self.run.board.ask(READ.kind(), &payload(&READ))
+    }
+
+    /// Ends with anything `said` to be in the row factor's place but what was written there.
+    fn judge_kept(&mut self, rule: Rule, said: Result<Said, BoardError>) -> Result<(), End> {
+        if is_other(&said) {
             // Whatever else a link has done, only what must have no effect can have written this.
             self.run.board.excuse_repeats().map_err(of_board)?;
         }
-        self.judge(rule, read.kind(), said, &Said::Replied(payload(&write(&KEPT))))
+        self.judge(rule, READ.kind(), said, &Said::Replied(payload(&write(&KEPT))))
     }
+}
+
+/// Whether the row factor is the one that must not have been written.
+fn is_other(said: &Result<Said, BoardError>) -> bool {
+    matches!(said, Ok(Said::Replied(entry)) if entry.ends_with(&OTHER))
 }
 
 fn write(bytes: &[u8; 4]) -> Request<'_> {

@@ -1,0 +1,56 @@
+//! What a board has said in a whole packet stands, whatever the link does behind it.
+
+use halfrow::result::{CheckName, Report};
+use halfrow::verdict::Verdict;
+use halfrow_protocol::{Kind, Reply};
+use halfrow_tests::altered::{Passing, Toward, judge};
+use halfrow_tests::system::System;
+
+/// The report on a board that says something else in its packet `place` of the kind `kind`, from 0, and whose packets of the kind
+/// `lost` are all lost behind that.
+fn altered_once(
+    kind: Kind,
+    place: usize,
+    alter: impl Fn(&mut Vec<u8>) + Send + 'static,
+    lost: Kind,
+) -> Report {
+    let mut count = 0;
+    judge(&System::TINY, move |toward, mut packet: Passing| {
+        if toward == Toward::Board {
+            return vec![packet];
+        }
+        if count > place && packet.is(lost) {
+            return Vec::new();
+        }
+        if packet.is(kind) && !matches!(packet.reply(), Some(Reply::Refusal(_)) | None) {
+            if count == place {
+                alter(&mut packet.payload);
+            }
+            count += 1;
+        }
+        vec![packet]
+    })
+}
+
+#[test]
+fn a_frame_that_was_wrong_at_speed_fails_though_no_record_comes_behind_it() {
+    // One record, of 18 bytes that begin with its signature, behind the packet's own fields, the last of which counts them.
+    let first_alone = |payload: &mut Vec<u8>| {
+        payload.truncate(28);
+        payload[9] = 1;
+        payload[10] ^= 1;
+    };
+    let report = altered_once(Kind::Records, 0, first_alone, Kind::Records);
+    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+    assert!(report.headline().contains("differs at speed"), "{}", report.headline());
+}
+
+#[test]
+fn a_table_that_was_another_fails_though_no_entry_is_read_behind_that() {
+    for place in 0..4 {
+        let report = altered_once(Kind::TableCrc, place, |payload| payload[0] ^= 1, Kind::TableRead);
+        assert_eq!(report.verdict, Verdict::Fail, "{place}: {}", report.headline());
+        let failed = report.checks.iter().find(|check| check.name == CheckName::ReadBack).unwrap();
+        assert!(failed.detail().contains("CRC"), "{place}: {}", failed.detail());
+    }
+}
