@@ -268,9 +268,18 @@ fn is_own(refusal: &Refusal) -> bool {
     }
 }
 
+/// Whether no capability is needed for a request of `kind`.
+fn is_of_every_board(kind: Kind) -> bool {
+    use Kind::{Burst, Expect, Records, RowOut, Trap};
+    !matches!(kind, Burst | Records | Expect | Trap | RowOut)
+}
+
 /// What to do about a refusal.
 fn advice(refusal: &Refusal) -> &'static str {
     match refusal.code {
+        RefusalCode::Kind if Kind::from_code(refusal.kind).is_some_and(is_of_every_board) => {
+            "; every board answers it: see protocol/WIRE.md, section 3"
+        }
         _ if is_own(refusal) => {
             "; its capabilities allow that: correct what it says of itself (`halfrow info`), or load another bitstream"
         }
