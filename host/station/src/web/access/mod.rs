@@ -61,7 +61,7 @@ pub(super) enum Machine {
     Known { name: String, is_new: bool },
     /// It is not.
     Unknown,
-    /// It has to wait so long.
+    /// It is not, and has to wait so long until it is told so again.
     Waits(Duration),
 }
 
@@ -174,14 +174,16 @@ impl Access {
             Tokens::default()
         });
         // From here on nothing waits for the disk: others wait for this.
-        let mut refused = self.refused.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(wait) = refused.wait(peer, Instant::now()) {
-            return Machine::Waits(wait);
-        }
         let Some(name) = tokens.reader(&self.key, token) else {
-            refused.add(peer, Instant::now());
-            return Machine::Unknown;
+            let (mut refused, now) =
+                (self.refused.lock().unwrap_or_else(PoisonError::into_inner), Instant::now());
+            let wait = refused.wait(peer, now);
+            if wait.is_none() {
+                refused.add(peer, now);
+            }
+            return wait.map_or(Machine::Unknown, Machine::Waits);
         };
+        // One that is right never waits, for 256 bits are not guessed, and behind a proxy others have the same address.
         let mut machines = self.machines.lock().unwrap_or_else(PoisonError::into_inner);
         let is_new = machines.len() < MOST_MACHINES && machines.insert((name.to_owned(), peer));
         Machine::Known { name: name.to_owned(), is_new }
