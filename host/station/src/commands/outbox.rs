@@ -133,7 +133,7 @@ fn text(Left { unsent, dead }: &Left) -> String {
 }
 
 fn table_of(unsent: &[Unsent]) -> String {
-    let row = |Unsent { sink, entries, dead, since_ms, said }: &Unsent| {
+    let row = |Unsent { sink, entries, dead, since_ms, said, .. }: &Unsent| {
         let said = said.clone().unwrap_or_default();
         vec![sink.clone(), entries.to_string(), dead.to_string(), time(*since_ms), said]
     };

@@ -10,17 +10,17 @@ use crate::store::{Folder, SINK_OF_PLANT, Snapshot};
 pub(super) fn refuses(settings: &Settings, folder: &Folder) -> Option<Said> {
     let plant = settings.plant.as_ref()?;
     let most = plant.most_unsent;
-    let entries = match Snapshot::take(folder).and_then(|now| now.unsent()) {
+    let results = match Snapshot::take(folder).and_then(|now| now.unsent()) {
         // What others are sent is kept by the plant, too.
         Ok(unsent) => {
-            unsent.iter().find(|unsent| unsent.sink == SINK_OF_PLANT).map_or(0, |plant| plant.entries)
+            unsent.iter().find(|unsent| unsent.sink == SINK_OF_PLANT).map_or(0, |plant| plant.results)
         }
         Err(error) => return Some(Said::of(&error)),
     };
-    if entries > most {
-        return Some(Saying::TooMuchUnsent { entries, most }.into());
+    if results > most {
+        return Some(Saying::TooMuchUnsent { entries: results, most }.into());
     }
-    let percent = filled(folder).filter(|_| entries > 0)?;
+    let percent = filled(folder).filter(|_| results > 0)?;
     (percent >= plant.most_filled.into()).then(|| Saying::DiskTooFull { percent }.into())
 }
 

@@ -12,9 +12,9 @@ use crate::store::PlantAddress;
 
 /// The variable that may have the password.
 const PASSWORD: &str = "HALFROW_PLANT_PASSWORD";
-/// How many entries may be unsent until lanes take nothing more.
+/// How many results may be unsent until lanes take nothing more.
 const MOST_UNSENT: u32 = 10_000;
-/// How full the disk may be, in per cent, while entries are unsent.
+/// How full the disk may be, in per cent, while results are unsent.
 const MOST_FILLED: u8 = 95;
 
 /// `[plant]`
@@ -25,9 +25,9 @@ pub struct PlantSettings {
     ca: Option<PathBuf>,
     /// Whether a verdict is shown only when the plant has it.
     pub is_green_at_plant: bool,
-    /// How many entries may be unsent until lanes take nothing more.
+    /// How many results may be unsent until lanes take nothing more.
     pub most_unsent: u32,
-    /// How full the disk may be, in per cent (1 to 100), until lanes take nothing more while entries are unsent.
+    /// How full the disk may be, in per cent (1 to 100), until lanes take nothing more while results are unsent.
     pub most_filled: u8,
     /// The keys of those whose plans are taken.
     pub trusts: Vec<PublicKey>,

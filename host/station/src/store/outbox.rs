@@ -59,6 +59,8 @@ pub struct Unsent {
     pub sink: String,
     /// Entries that it does not have for certain.
     pub entries: u32,
+    /// Those of them that are runs and waivers, and no lines of the audit.
+    pub results: u32,
     /// Those of them that wait for a person.
     pub dead: u32,
     /// When the first of them came about, in milliseconds since 1970, UTC.
@@ -254,9 +256,9 @@ impl Snapshot {
     /// [`StoreError`] when the database cannot be read.
     pub fn unsent(&self) -> Result<Vec<Unsent>, StoreError> {
         self.rows("to tell what is to be sent", sql::OUTBOX_STATE, &[], |row| {
-            let since_ms = ids::made_ms(row.text(3)?);
-            let (sink, entries, dead) = (row.get(0)?, row.get(1)?, row.get(2)?);
-            Ok(Unsent { sink, entries, dead, since_ms, said: row.get(4)? })
+            let since_ms = ids::made_ms(row.text(4)?);
+            let (sink, entries, results, dead) = (row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?);
+            Ok(Unsent { sink, entries, results, dead, since_ms, said: row.get(5)? })
         })
     }
 
@@ -367,9 +369,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut store = Store::open(&Folder::new(folder.path())).unwrap();
         store.sends_to(vec!["mes".to_owned()]).unwrap();
-        for number in ["1", "2", "3"] {
-            store.note("weber", "scan", "1", number).unwrap();
-        }
+        ["1", "2", "3"].into_iter().for_each(|number| store.note("weber", "scan", "1", number).unwrap());
         let now_ms = clock::now_ms();
         let entries = store.folder().due("mes", now_ms, i64::MAX).unwrap();
         let mut said = |place: usize, tries: u32, at_ms: i64, said: &str| {

@@ -41,7 +41,7 @@ fn sinks(visit: &Visit, unsent: &[Unsent]) -> Markup {
                 th.number { (visit.say("outbox.waits")) } th { (visit.say("outbox.since")) }
                 th { (visit.say("outbox.said")) }
             } }
-            tbody { @for Unsent { sink, entries, dead, since_ms, said } in unsent {
+            tbody { @for Unsent { sink, entries, dead, since_ms, said, .. } in unsent {
                 tr {
                     td { (show::said(sink)) } td.number { (entries) } td.number { (dead) }
                     td.when { (show::moment(*since_ms)) }

@@ -159,7 +159,7 @@ async fn counted(app: &App, visit: &Visit) -> Result<Markup, Trouble> {
     let look = move |snapshot: &Snapshot| Ok((yields(snapshot, &wanted, By::Plan)?, snapshot.unsent()?));
     let (counted, unsent) = app.look(visit, look).await?;
     let at_plant = unsent.iter().filter(|unsent| unsent.sink == SINK_OF_PLANT);
-    let entries: u32 = at_plant.map(|unsent| unsent.entries).sum();
+    let entries: u32 = at_plant.map(|unsent| unsent.results).sum();
     Ok(html! {
         (summed(visit, &counted))
         @if app.settings().plant.is_some() {

@@ -242,11 +242,13 @@ fn the_page_counts_what_is_not_at_the_plant_and_nothing_that_other_sinks_do_not_
         || serving.here().post("/scan", &[("text", SERIALS[0])]).with("accept", "application/json").send();
     while !scan().text().contains("\"is_taken\":true") {}
     seen(&serving, "lane pass");
-    let unsent =
-        |sink: &str| station.query(&format!("SELECT count(*) FROM outbox WHERE sink = '{sink}'")).remove(0);
-    assert_ne!(unsent("share"), "0", "the control");
+    let unsent = |of: &str| station.query(&format!("SELECT count(*) FROM outbox WHERE {of}")).remove(0);
+    for control in ["sink = 'share'", "sink = 'plant' AND kind = 'audit'"] {
+        assert_ne!(unsent(control), "0", "{control}");
+    }
     let page = serving.here().get("/").send().text();
-    assert!(page.contains(&format!("not at the plant yet: {}<", unsent("plant"))), "{page}");
+    let results = unsent("sink = 'plant' AND kind <> 'audit'");
+    assert!(page.contains(&format!("not at the plant yet: {results}<")), "{page}");
 }
 
 /// Reasons, refusals and headlines come by their codes.
