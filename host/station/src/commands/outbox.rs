@@ -8,7 +8,7 @@ use super::looking::{either, table, time};
 use super::why::Why;
 use super::{Failure, print};
 use crate::exit::Exit;
-use crate::outbox::{OutboxError, Round, round};
+use crate::outbox::{OutboxError, all};
 use crate::settings::Settings;
 use crate::store::{Dead, Folder, SharedStore, Snapshot, Store, Unsent};
 
@@ -29,7 +29,10 @@ enum What {
         #[arg(long)]
         json: bool,
     },
-    /// Send what is due while the station does not run, which sends by itself
+    /// Send all that is left while the station does not run, which sends by itself
+    ///
+    /// What was tried in vain is tried again at once; what waits for a person is not. Exit codes: 0 nothing is left to be sent, 3
+    /// something is, also what waits for a person.
     Send {
         #[command(flatten)]
         disk: Disk,
@@ -98,7 +101,7 @@ fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result
     print(&format!("{forgotten} of {sink} are forgotten"))
 }
 
-/// Sends to everybody until nothing is due.
+/// Sends to everybody what they do not have, and tells what is left.
 fn send(settings: &Settings, mut store: Store) -> Result<Exit, Failure> {
     let mut sinks = sinks(settings, &mut store)?;
     if sinks.is_empty() {
@@ -106,19 +109,16 @@ fn send(settings: &Settings, mut store: Store) -> Result<Exit, Failure> {
     }
     store.sends_to(sinks.iter().map(|sink| sink.name().to_owned()).collect())?;
     let store = SharedStore::new(store);
-    let mut all = Round::default();
+    let mut sent = 0;
     for sink in &mut sinks {
-        loop {
-            let Round { sent, failed, is_away } = round(&store, &mut **sink)?;
-            all = Round { sent: all.sent + sent, failed: all.failed + failed, is_away };
-            if is_away || sent + failed == 0 {
-                break;
-            }
-        }
+        sent += all(&store, &mut **sink)?.sent;
     }
-    let left = store.with(|store| Snapshot::take(store.folder())?.unsent())?;
-    print(&format!("{} sent, {} not", all.sent, all.failed))?;
-    if all.failed == 0 { Ok(Exit::Pass) } else { print(&table_of(&left)).map(|_| Exit::Error) }
+    let mut left = store.with(|store| Snapshot::take(store.folder())?.unsent())?;
+    // What others had is not sent to them any more.
+    left.retain(|unsent| sinks.iter().any(|sink| sink.name() == unsent.sink));
+    let entries: u32 = left.iter().map(|unsent| unsent.entries).sum();
+    print(&format!("{sent} sent, {entries} not"))?;
+    if left.is_empty() { Ok(Exit::Pass) } else { print(&table_of(&left)).map(|_| Exit::Error) }
 }
 
 fn text(Left { unsent, dead }: &Left) -> String {

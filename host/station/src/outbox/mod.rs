@@ -22,7 +22,7 @@ pub use sinks::{SinkError, SinkSettingsError, open};
 use crate::clock;
 use crate::guard::guarded;
 use crate::said::Said;
-use crate::store::{Entry, Parcel, SharedStore, Snapshot, StoreError, Tried};
+use crate::store::{Entry, Folder, Parcel, SharedStore, Snapshot, StoreError, Tried};
 
 /// How often it is looked whether there is something to send.
 const LOOK: Duration = Duration::from_millis(200);
@@ -83,11 +83,45 @@ pub struct Round {
 /// # Errors
 /// [`StoreError`] when the store cannot be read or written. What was sent is sent again then, which changes nothing.
 pub fn round(store: &SharedStore, sink: &mut dyn Sink) -> Result<Round, StoreError> {
-    let folder = store.with(|store| store.folder().clone());
+    let due = folder(store).due(sink.name(), clock::now_ms(), back_off::LONGEST_MS)?;
+    given(store, sink, due, |_, _, _| ())
+}
+
+/// Gives `sink` all that it does not have, each once and however soon it was tried before, unless it waits for a person or the sink
+/// is away.
+///
+/// # Errors
+/// As [`round`].
+pub fn all(store: &SharedStore, sink: &mut dyn Sink) -> Result<Round, StoreError> {
+    store.with(|store| store.due_at_once(sink.name()))?;
+    let (mut all, begun_ms) = (Round::default(), clock::now_ms());
+    loop {
+        // What is tried from here on waits for longer than until now.
+        let due = folder(store).due(sink.name(), begun_ms, i64::MAX)?;
+        if due.is_empty() || all.is_away {
+            return Ok(all);
+        }
+        let Round { sent, failed, is_away } = given(store, sink, due, |_, _, _| ())?;
+        all = Round { sent: all.sent + sent, failed: all.failed + failed, is_away };
+    }
+}
+
+fn folder(store: &SharedStore) -> Folder {
+    store.with(|store| store.folder().clone())
+}
+
+/// Gives `sink` what is `due`; `refused` hears of each that it has not taken.
+fn given(
+    store: &SharedStore,
+    sink: &mut dyn Sink,
+    due: Vec<Entry>,
+    mut refused: impl FnMut(&str, &Entry, &Undelivered),
+) -> Result<Round, StoreError> {
+    let folder = folder(store);
     let mut round = Round::default();
     let (mut tried, mut kept) = (Vec::new(), None::<Instant>);
     let keep = |name: &str, tried: &[_]| store.with(|store| store.tried(name, tried, clock::now_ms()));
-    for entry in folder.due(sink.name(), clock::now_ms(), back_off::LONGEST_MS)? {
+    for entry in due {
         let taken = match folder.parcel(&entry) {
             Ok(parcel) => sink.take(&parcel),
             Err(error) => Err(Undelivered::NotNow(Said::of(&error))),
@@ -95,6 +129,9 @@ pub fn round(store: &SharedStore, sink: &mut dyn Sink) -> Result<Round, StoreErr
         round.sent += usize::from(taken.is_ok());
         round.failed += usize::from(taken.is_err());
         round.is_away = matches!(taken, Err(Undelivered::Away(_)));
+        if let Err(why) = &taken {
+            refused(sink.name(), &entry, why);
+        }
         let became = became(&entry, taken);
         tried.push((entry, became));
         if round.is_away {

@@ -180,6 +180,14 @@ impl Store {
         Ok(())
     }
 
+    /// What was tried in vain for `sink` waits no longer; what waits for a person does.
+    ///
+    /// # Errors
+    /// As [`Self::sends_to`].
+    pub fn due_at_once(&mut self, sink: &str) -> Result<(), StoreError> {
+        self.change("what is to be sent now", |to| to.execute(sql::OUTBOX_AT_ONCE, values![sink]).map(drop))
+    }
+
     /// What this folder is called, whatever the station is; drawn the first time.
     ///
     /// # Errors

@@ -90,6 +90,7 @@ statements! {
     pub(super) ADD_TO_OUTBOX = "add-to-outbox.sql";
     pub(super) ALL_TO_OUTBOX = "all-to-outbox.sql";
     pub(super) OUTBOX_DUE = "outbox-due.sql";
+    pub(super) OUTBOX_AT_ONCE = "outbox-at-once.sql";
     pub(super) OUTBOX_STATE = "outbox-state.sql";
     pub(super) OUTBOX_DONE = "outbox-done.sql";
     pub(super) OUTBOX_FAILED = "outbox-failed.sql";

@@ -10,9 +10,9 @@ use std::process::Command;
 
 use halfrow_station::outbox::{Round, Sink, Undelivered, round};
 use halfrow_station::settings::Settings;
-use halfrow_station::store::{Folder, Parcel, SharedStore, Snapshot, Store};
+use halfrow_station::store::{Folder, Parcel, SharedStore, Snapshot, Store, Tried};
 
-use crate::common::{Did, PLAN, program};
+use crate::common::{Did, PLAN, now_ms, program};
 
 /// What a command of the station in this folder does, whose settings have this `[[sink]]`.
 fn did(folder: &Path, sink: &str, arguments: &[&str]) -> Did {
@@ -29,15 +29,11 @@ fn settings(folder: &Path, sink: &str) {
     fs::write(folder.join("station.toml"), text).unwrap();
 }
 
-/// Sends all that is due.
-fn send(folder: &Path, sink: &str) -> Did {
-    did(folder, sink, &["outbox", "send", "--any-disk"])
-}
+/// Sends all that is not sent yet.
+const SEND: [&str; 3] = ["outbox", "send", "--any-disk"];
 
-/// What is to be sent is due now, whatever went wrong before.
-fn due(folder: &Path) {
-    let database = rusqlite::Connection::open(folder.join("station.db")).unwrap();
-    database.execute("UPDATE outbox SET next_ms = 0", []).unwrap();
+fn send(folder: &Path, sink: &str) -> Did {
+    did(folder, sink, &SEND)
 }
 
 #[test]
@@ -110,4 +106,26 @@ fn what_a_sink_has_is_known_before_it_has_all_that_is_behind_it() {
     assert_eq!(round(&store, &mut sink).unwrap(), Round { sent: 3, failed: 0, is_away: false });
     assert_eq!(sink.unsent[..2], [3, 2]);
     assert!(Snapshot::take(&sink.folder).unwrap().unsent().unwrap().is_empty());
+}
+
+/// The clock was wrong by a day when it was tried in vain.
+#[test]
+fn what_waits_for_a_time_of_a_wrong_clock_is_sent_all_the_same() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = Folder::new(place.path());
+    let mut store = Store::open(&folder).unwrap();
+    store.sends_to(vec!["mes".to_owned()]).unwrap();
+    for (wait_ms, sent) in [(200_000, 0), (86_400_000, 1)] {
+        store.note("weber", "scan", "1", "1").unwrap();
+        let entry = folder.due("mes", now_ms(), i64::MAX).unwrap().remove(0);
+        let again = Tried::Again { next_ms: now_ms() + wait_ms, said: "not now".to_owned() };
+        store.tried("mes", &[(entry, again)], now_ms()).unwrap();
+        let shared = SharedStore::new(store);
+        let mut sink = Looking { folder: folder.clone(), unsent: Vec::new() };
+        // What was noted before, and waits for less, is not sent.
+        assert_eq!(round(&shared, &mut sink).unwrap().sent, sent, "{wait_ms}");
+        drop(shared);
+        store = Store::open(&folder).unwrap();
+        store.sends_to(vec!["mes".to_owned()]).unwrap();
+    }
 }

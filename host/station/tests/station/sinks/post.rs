@@ -11,7 +11,7 @@ use base64::Engine as _;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::{did, due, send};
+use super::{did, send};
 use crate::common::query;
 use crate::history::released::history;
 use crate::plant::link::certificates;
@@ -118,31 +118,48 @@ fn what_a_server_answers_says_who_waits_for_whom() {
         ("302 elsewhere", "answers 302 to everything"),
     ] {
         server.answers(answer);
-        due(folder.path());
         let sent = send(folder.path(), &sink);
-        assert!(sent.said.starts_with("0 sent, 1 not") && sent.said.contains(said), "{answer}: {sent:?}");
+        assert!(sent.said.starts_with("0 sent, 10 not") && sent.said.contains(said), "{answer}: {sent:?}");
         assert_eq!(server.requests().len(), 1, "{answer}");
     }
     // It has trouble with each, or is still at work with it, and may have it later. Lines of the audit are not posted.
     for (answer, came) in [("500 oops", "2 sent, 8 not"), ("409 patience", "0 sent, 8 not")] {
         server.answers(answer);
-        due(folder.path());
         assert!(send(folder.path(), &sink).said.starts_with(came), "{answer}");
         assert_eq!(server.requests().len(), 8, "{answer}");
     }
     // It never takes them as they are: they wait for a person.
     server.answers("422 the serial number is\n unknown here");
-    due(folder.path());
-    assert!(send(folder.path(), &sink).said.starts_with("0 sent, 8 not"));
-    due(folder.path());
-    assert!(send(folder.path(), &sink).said.starts_with("0 sent, 0 not"));
+    for posted in [8, 0] {
+        let refused = send(folder.path(), &sink);
+        assert!(refused.said.starts_with("0 sent, 8 not") && refused.code == Some(3), "{refused:?}");
+        assert_eq!(server.requests().len(), posted);
+    }
     let listed = did(folder.path(), &sink, &["outbox", "list"]);
     assert!(listed.said.contains("(the serial number is unknown here)"), "{listed:?}");
     server.answers("204 ");
     let release = ["outbox", "release", "--sink", "mes", "--reason", "known now"];
     assert_eq!(did(folder.path(), &sink, &release).said, "8 of mes are tried again\n");
     // The release has its line in the audit.
-    assert!(send(folder.path(), &sink).said.starts_with("9 sent, 0 not"));
+    let sent = send(folder.path(), &sink);
+    assert!(sent.said.starts_with("9 sent, 0 not") && sent.code == Some(0), "{sent:?}");
+}
+
+#[test]
+fn what_was_tried_a_moment_ago_is_sent_when_a_person_says_so() {
+    let server = Server::start(None);
+    let folder = history().closed();
+    let sink = sink(&format!("http://127.0.0.1:{}/", server.port), "");
+    server.answers("500 oops");
+    for _ in 0..3 {
+        assert_eq!(send(folder.path(), &sink).code, Some(3));
+        assert_eq!(server.requests().len(), 8, "each once");
+    }
+    server.answers("200 taken");
+    let sent = send(folder.path(), &sink);
+    assert!(sent.said.starts_with("8 sent, 0 not") && sent.code == Some(0), "{sent:?}");
+}
+
 }
 
 #[test]
@@ -157,9 +174,11 @@ fn what_leaves_the_computer_goes_to_the_server_of_that_name_alone() {
     let trusting =
         |place: &TempDir| sink(&url, &format!("ca = \"{}\"", place.path().join("ca.pem").display()));
     let refused = send(folder.path(), &trusting(&theirs));
-    assert!(refused.said.starts_with("0 sent, 1 not") && refused.said.contains("certificate"), "{refused:?}");
+    assert!(
+        refused.said.starts_with("0 sent, 10 not") && refused.said.contains("certificate"),
+        "{refused:?}"
+    );
     assert!(server.requests().is_empty());
-    due(folder.path());
     let sent = send(folder.path(), &trusting(&ours));
     assert!(sent.said.starts_with("10 sent, 0 not"), "{sent:?}");
     assert_eq!(server.requests().len(), 8);
