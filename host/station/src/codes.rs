@@ -119,6 +119,7 @@ codes::codes! {
         = Store,
     }
     SinkSettingsError {
+        Token [path] => "sink-token-malformed",
         = Secret,
         = Trust,
     }

@@ -23,6 +23,12 @@ pub enum SinkSettingsError {
     /// Its password or token.
     #[error(transparent)]
     Secret(#[from] SecretError),
+    /// Its token cannot stand in a request.
+    #[error("{} holds no token; write it alone into one line, of letters, digits and signs of ASCII", path.display())]
+    Token {
+        /// The file.
+        path: PathBuf,
+    },
     /// Nobody can be trusted.
     #[error(transparent)]
     Trust(#[from] TrustError),

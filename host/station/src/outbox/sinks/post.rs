@@ -20,8 +20,8 @@ use crate::trust;
 
 /// How long a request may take, its answer included.
 const DEADLINE: Duration = Duration::from_secs(30);
-/// How much of an answer is told.
-const TOLD: u64 = 500;
+/// How many letters of an answer are told.
+const TOLD: usize = 500;
 /// By which a server knows what it has been given before (draft-ietf-httpapi-idempotency-key-header).
 const IDEMPOTENCY_KEY: &str = "Idempotency-Key";
 
@@ -33,7 +33,7 @@ pub(super) struct PostSink {
     host: String,
     format: Format,
     /// What lets the station in.
-    authorization: Option<String>,
+    token: Option<String>,
     agent: Agent,
 }
 
@@ -45,10 +45,7 @@ impl PostSink {
         format: Format,
         token: Option<&Path>,
     ) -> Result<Self, SinkSettingsError> {
-        let authorization = match token {
-            Some(path) => Some(format!("Bearer {}", secret::text(path)?.trim())),
-            None => None,
-        };
+        let token = token.map(read).transpose()?;
         let mut config = Agent::config_builder()
             .timeout_global(Some(DEADLINE))
             .http_status_as_error(false)
@@ -64,7 +61,7 @@ impl PostSink {
             config = config.tls_config(tls.build());
         }
         let (url, host) = (address.url.clone(), address.host.clone());
-        Ok(Self { name, url, host, format, authorization, agent: config.build().new_agent() })
+        Ok(Self { name, url, host, format, token, agent: config.build().new_agent() })
     }
 
     fn post(&self, Letter { id, media, bytes, .. }: &Letter) -> Result<(), SinkError> {
@@ -73,8 +70,8 @@ impl PostSink {
             .post(&self.url)
             .header(header::CONTENT_TYPE, *media)
             .header(IDEMPOTENCY_KEY, format!("\"{id}\""));
-        if let Some(authorization) = &self.authorization {
-            request = request.header(header::AUTHORIZATION, authorization);
+        if let Some(token) = &self.token {
+            request = request.header(header::AUTHORIZATION, format!("Bearer {token}"));
         }
         let answer = request.send(bytes.as_slice());
         let unreached = |source| SinkError::Unreached { host: self.host.clone(), source: Box::new(source) };
@@ -90,21 +87,54 @@ impl PostSink {
             // It is still at work with the same key (draft-ietf-httpapi-idempotency-key-header-07, section 2.7), as after DEADLINE.
             408 | 409 | 425 | 429 | 500..=599 => Err(SinkError::Busy { host, status }),
             300..=399 | 401 | 403 | 407 => Err(SinkError::Closed { host, status }),
-            _ => Err(SinkError::Rejected { host, status, answer: beginning(body) }),
+            _ => Err(SinkError::Rejected { host, status, answer: beginning(body, self.token.as_deref()) }),
         }
     }
 }
 
-/// The first words of an answer, in one line.
-fn beginning(body: Body) -> String {
-    let mut bytes = Vec::new();
+/// The token in the file `path`.
+fn read(path: &Path) -> Result<String, SinkSettingsError> {
+    let text = secret::text(path)?;
+    let token = text.trim();
+    if token.is_empty() || !token.bytes().all(|byte| byte.is_ascii_graphic()) {
+        return Err(SinkSettingsError::Token { path: path.to_owned() });
+    }
+    Ok(token.to_owned())
+}
+
+/// The first words of an answer, in one line; without the token, which a server may tell that tells all it was sent.
+fn beginning(body: Body, token: Option<&str>) -> String {
+    let (mut bytes, length) = (Vec::new(), token.map_or(0, str::len));
+    // A token that begins in what is told is read whole; a letter has four bytes at most.
+    let most = u64::try_from(4 * TOLD + length).unwrap_or(u64::MAX);
     // What there is of it tells something.
-    let _ = body.into_reader().take(TOLD).read_to_end(&mut bytes);
+    let _ = body.into_reader().take(most).read_to_end(&mut bytes);
     let text = String::from_utf8_lossy(&bytes);
+    let text = match token {
+        Some(token) => without(&text, token),
+        None => text.chars().take(TOLD).collect(),
+    };
     text.split(|letter: char| letter.is_whitespace() || letter.is_control())
         .filter(|word| !word.is_empty())
         .collect::<Vec<_>>()
         .join(" ")
+}
+
+/// The first [`TOLD`] letters of `text`, with `…` for each `token` that begins in them.
+fn without(text: &str, token: &str) -> String {
+    let (mut told, mut left) = (String::new(), TOLD);
+    for piece in text.split(token) {
+        told.extend(piece.chars().take(left));
+        left = left.saturating_sub(piece.chars().count());
+        if left == 0 {
+            return told;
+        }
+        told.push('…');
+        left = left.saturating_sub(token.len());
+    }
+    // Behind the last piece there is none.
+    told.pop();
+    told
 }
 
 impl Sink for PostSink {

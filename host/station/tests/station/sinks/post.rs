@@ -160,6 +160,40 @@ fn what_was_tried_a_moment_ago_is_sent_when_a_person_says_so() {
     assert!(sent.said.starts_with("8 sent, 0 not") && sent.code == Some(0), "{sent:?}");
 }
 
+/// As pages do that proxies and frameworks have for those who look for faults.
+#[test]
+fn a_server_that_tells_what_it_was_sent_has_the_token_kept_nowhere() {
+    let server = Server::start(None);
+    let folder = history().closed();
+    token(folder.path());
+    let sink = sink(&format!("http://127.0.0.1:{}/", server.port), "token_file = \"mes.token\"");
+    // The second one stands across the end of what is told.
+    let told = "authorization: Bearer rosebud-5e1f, ";
+    let filled = "x".repeat(500 - told.len() - 4);
+    server.answers(&format!("400 {told}{filled}rosebud-5e1f rosebud-5e1f"));
+    assert_eq!(send(folder.path(), &sink).code, Some(3));
+    let listed = did(folder.path(), &sink, &["outbox", "list"]).said;
+    assert!(listed.contains("authorization: Bearer …, xxx"), "{listed}");
+    for said in query(folder.path(), "SELECT said FROM outbox WHERE dead_ms IS NOT NULL") {
+        assert!(!said.contains("rose"), "{said}");
+    }
+}
+
+#[test]
+fn a_token_that_no_request_can_have_is_told_before_anything_is_sent() {
+    let server = Server::start(None);
+    let folder = history().closed();
+    let path = token(folder.path());
+    let sink = sink(&format!("http://127.0.0.1:{}/", server.port), "token_file = \"mes.token\"");
+    for wrong in ["one\ntwo\n", "one two\n", "schlüssel\n", "\n"] {
+        fs::write(&path, wrong).unwrap();
+        let refused = send(folder.path(), &sink);
+        assert!(
+            refused.code == Some(2) && refused.complained.contains("mes.token holds no token"),
+            "{wrong}: {refused:?}"
+        );
+    }
+    assert!(server.requests().is_empty());
 }
 
 #[test]
