@@ -130,6 +130,7 @@ codes::codes! {
         Unreached [host] => "sink-unreached",
         Busy [host, status] => "sink-busy",
         Closed [host, status] => "sink-closed",
+        Unknown [host, said] => "sink-knows-no-user",
         Rejected [host, status, answer] => "sink-rejects",
         Unconfirmed [host, seconds] => "sink-unconfirmed",
         Unwritten => "sink-file-not-written",
@@ -239,6 +240,7 @@ codes::codes! {
         NoFail [run, verdict] => "waiver-without-fail",
         Waived [run] => "waiver-given-already",
         Empty => "waiver-without-reason",
+        TooLong [characters, most] => "waiver-reason-too-long",
         = NoRandomness,
         = Store,
     }

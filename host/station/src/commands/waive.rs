@@ -17,7 +17,7 @@ pub(super) struct Arguments {
     run: String,
     #[command(flatten)]
     data: Data,
-    /// Why
+    /// Why, in 500 characters at most
     #[arg(long, value_name = "TEXT")]
     reason: String,
     /// Who waives

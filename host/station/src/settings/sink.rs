@@ -102,8 +102,8 @@ impl SinkSettings {
                 (Destination::Post { address, format, token }, ["format", "token_file", "ca"].as_slice())
             }
             (None, None, Some(url)) => {
-                let events =
-                    Destination::Events { address: address(url, MQTT, ca)?, login: login(folder, text)? };
+                let address = address(topics(url)?, MQTT, ca)?;
+                let events = Destination::Events { address, login: login(folder, text)? };
                 (events, ["user", "password_file", "ca"].as_slice())
             }
             _ => {
@@ -158,6 +158,15 @@ fn login(folder: &Path, text: &SinkText) -> Result<Option<Login>, Fault> {
             Err(Fault::wrong(at, "a user and a password belong together", "write user and password_file"))
         }
     }
+}
+
+/// The address of a broker, whose path every topic begins with.
+fn topics(url: &Spanned<String>) -> Result<&Spanned<String>, Fault> {
+    if !url.get_ref().contains(['+', '#', '?']) {
+        return Ok(url);
+    }
+    let what = "topics begin with the path of this address, and no topic may have `+`, `#` or `?` here";
+    Err(Fault::wrong(url.span().start, what, "leave them out"))
 }
 
 /// What leaves this computer goes through TLS, and no address has a password.

@@ -55,6 +55,7 @@ pub use shared_store::SharedStore;
 pub use shift::{Checked, InLane, Owed};
 pub use snapshot::{Rebuilt, Snapshot, TABLES};
 pub use table::{Key, Row, Rows};
+pub(crate) use waivers::MOST_REASON;
 pub use waivers::{NoWaiver, Waiver};
 
 use crate::clock::{self, HeardClock};

@@ -12,6 +12,9 @@ use crate::clock;
 use crate::ids;
 use crate::ids::NoRandomness;
 
+/// The longest reason, in characters.
+pub(crate) const MOST_REASON: usize = 500;
+
 /// A waiver of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Waiver {
@@ -53,6 +56,14 @@ pub enum NoWaiver {
     /// It says no reason, or no name.
     #[error("a waiver needs a name and a reason; say both")]
     Empty,
+    /// Its reason is longer than pages and events have room for.
+    #[error("the reason has {characters} characters, and a waiver's has {most} at most; say it in less")]
+    TooLong {
+        /// Its length.
+        characters: usize,
+        /// The most.
+        most: usize,
+    },
     /// An id cannot be made.
     #[error(transparent)]
     NoRandomness(#[from] NoRandomness),
@@ -70,6 +81,10 @@ impl Store {
         let (operator, reason) = (operator.trim(), reason.trim());
         if operator.is_empty() || reason.is_empty() {
             return Err(NoWaiver::Empty);
+        }
+        let (characters, most) = (reason.chars().count(), MOST_REASON);
+        if characters > most {
+            return Err(NoWaiver::TooLong { characters, most });
         }
         let stored = self.folder.verdict_of(run)?;
         let verdict = stored.ok_or_else(|| NoWaiver::NoRun { run: run.to_owned() })?.verdict;

@@ -4,7 +4,8 @@
 use std::time::{Duration, Instant};
 
 use rumqttc::{
-    Client, Connection, Event, MqttOptions, Packet, PublishOptions, QoS, TlsConfiguration, Transport,
+    Client, ClientError, ConnectReturnCode, Connection, ConnectionError, Event, MqttOptions, Packet,
+    PublishOptions, QoS, TlsConfiguration, Transport,
 };
 use serde::Serialize;
 
@@ -23,6 +24,8 @@ const SCHEMA: u32 = 1;
 const OLDEST_MS: i64 = 3_600_000;
 /// How long an event may go without being confirmed.
 const CONFIRMED: Duration = Duration::from_secs(10);
+/// The most bytes of what is told, which is what MQTT 3.1.1 has lengths for (section 2.2.3); a broker may take less.
+const MOST: usize = 268_435_455;
 /// How often a broker is told that the station is there, in seconds.
 const ALIVE: u16 = 60;
 
@@ -98,6 +101,7 @@ impl EventSink {
         let client = format!("halfrow-{station}-{name}");
         let mut options = MqttOptions::new(client, (address.host.clone(), address.port));
         options.set_keep_alive(ALIVE).set_clean_session(true);
+        options.set_max_packet_size(options.max_packet_size(), MOST);
         if let Some(Login { user, password }) = login {
             let password = secret::text(password)?.trim_end_matches(['\r', '\n']).to_owned();
             options.set_credentials(user, password);
@@ -136,26 +140,40 @@ impl EventSink {
 
     /// Tells it, and waits until the broker has confirmed it.
     fn tell(&mut self, topic: &str, event: Vec<u8>) -> Result<(), SinkError> {
-        let host = self.host.clone();
-        let unreached = |source| SinkError::Unreached { host: host.clone(), source };
         let (client, mut connection) = self
             .connected
             .take()
             .unwrap_or_else(|| Client::builder(self.options.clone()).capacity(4).build());
         let how = PublishOptions::new(QoS::AtLeastOnce);
-        client.try_publish(topic, event, how).map_err(|error| unreached(error.into()))?;
+        let unreached =
+            |error: ClientError| SinkError::Unreached { host: self.host.clone(), source: error.into() };
+        client.try_publish(topic, event, how).map_err(unreached)?;
         let until = Instant::now() + CONFIRMED;
         loop {
             let left = until.saturating_duration_since(Instant::now());
             let Ok(happened) = connection.recv_timeout(left) else {
-                return Err(SinkError::Unconfirmed { host, seconds: CONFIRMED.as_secs() });
+                return Err(SinkError::Unconfirmed { host: self.host.clone(), seconds: CONFIRMED.as_secs() });
             };
             // One is under way at a time.
-            if let Event::Incoming(Packet::PubAck(_)) = happened.map_err(|error| unreached(error.into()))? {
+            if let Event::Incoming(Packet::PubAck(_)) =
+                happened.map_err(|error| refused(&self.host, error))?
+            {
                 self.connected = Some((client, connection));
                 return Ok(());
             }
         }
+    }
+}
+
+/// A connection that did not come about, or ended.
+fn refused(host: &str, error: ConnectionError) -> SinkError {
+    use ConnectReturnCode::{BadUserNamePassword, NotAuthorized};
+    let host = host.to_owned();
+    match error {
+        ConnectionError::ConnectionRefused(code @ (BadUserNamePassword | NotAuthorized)) => {
+            SinkError::Unknown { host, said: format!("{code:?}") }
+        }
+        error => SinkError::Unreached { host, source: error.into() },
     }
 }
 

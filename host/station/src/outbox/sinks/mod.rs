@@ -90,6 +90,14 @@ pub enum SinkError {
         /// Its answer's number.
         status: u16,
     },
+    /// A broker lets nobody in under this name.
+    #[error("{host} does not let the station in ({said}); check user and password_file in the settings")]
+    Unknown {
+        /// The other side.
+        host: String,
+        /// What it says.
+        said: String,
+    },
     /// It takes others, and not this.
     #[error("{host} answers {status} to this ({answer}); put right there what it says, and release it")]
     Rejected {
@@ -117,6 +125,7 @@ impl From<SinkError> for Undelivered {
             SinkError::NoFolder { .. }
             | SinkError::Unreached { .. }
             | SinkError::Closed { .. }
+            | SinkError::Unknown { .. }
             | SinkError::Unconfirmed { .. } => Self::Away(said),
             SinkError::Busy { status: 409 | 500, .. }
             | SinkError::Unwritten(_)

@@ -11,15 +11,13 @@ use super::asked::{Asked, unit_address};
 use super::{run, show, unit};
 use crate::history::unit::{Unit, UnitRun};
 use crate::said::Said;
-use crate::store::{Change, NoWaiver, RebindError};
+use crate::store::{Change, MOST_REASON, NoWaiver, RebindError};
 use crate::web::language::Told;
 use crate::web::routes::Who;
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
-/// The longest reason, in characters.
-const MOST: &str = "500";
 /// What a device looks like, for the browser.
 const DEVICE: &str = "[0-9a-f]{16}";
 
@@ -59,7 +57,7 @@ pub(super) async fn waive(
     let status = match &waived {
         Ok(_) => return Ok(Redirect::to(&show::run_address(&id)).into_response()),
         Err(NoWaiver::NoRun { .. }) => StatusCode::NOT_FOUND,
-        Err(NoWaiver::Empty) => StatusCode::BAD_REQUEST,
+        Err(NoWaiver::Empty | NoWaiver::TooLong { .. }) => StatusCode::BAD_REQUEST,
         Err(NoWaiver::NoFail { .. } | NoWaiver::Waived { .. }) => StatusCode::CONFLICT,
         Err(NoWaiver::NoRandomness(_) | NoWaiver::Store(_)) => StatusCode::SERVICE_UNAVAILABLE,
     };
@@ -145,6 +143,6 @@ pub(super) fn rebind_form(visit: &Visit, unit: &Unit) -> Markup {
 pub(in crate::web) fn fields(visit: &Visit) -> Markup {
     html! {
         input type="hidden" name="csrf" value=(visit.csrf);
-        label { span { (visit.say("history.reason")) } input name="reason" required maxlength=(MOST); }
+        label { span { (visit.say("history.reason")) } input name="reason" required maxlength=(MOST_REASON); }
     }
 }

@@ -26,6 +26,15 @@ fn page(browser: &Browser, path: &str) -> String {
 }
 
 #[test]
+fn a_reason_that_is_longer_than_the_form_takes_waives_nothing() {
+    let (station, serving, run) = failed();
+    let act = format!("/runs/{run}/waive");
+    let long = serving.engineer().post(&act, &[("reason", &"x".repeat(501))]).send();
+    assert!(long.status == 400 && long.text().contains("waiver-reason-too-long"), "{}", long.text());
+    assert_eq!(station.query("SELECT id FROM waiver"), Vec::<String>::new());
+}
+
+#[test]
 fn an_engineer_waives_a_fail_once_and_with_a_reason_and_everyone_sees_it() {
     let (station, serving, run) = failed();
     let (operator, engineer) = (serving.operator(), serving.engineer());

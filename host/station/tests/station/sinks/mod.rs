@@ -62,17 +62,32 @@ fn a_sink_that_is_not_one_is_refused_with_its_line() {
         ("name = \"mes\"\npost = \"http://mes.example/runs\"", "would send results openly to mes.example"),
         ("name = \"mes\"\nmqtt = \"mqtt://10.0.0.1\"", "would send results openly to 10.0.0.1"),
     ];
-    for (sink, expected) in cases {
-        settings(folder.path(), &format!("[[sink]]\n{sink}"));
-        let error = Settings::load(&folder.path().join("station.toml")).unwrap_err().to_string();
-        assert!(error.contains(expected) && error.contains("station.toml:"), "{sink}: {error}");
-    }
+    are_refused(folder.path(), &cases);
     for right in
         ["post = \"http://[::1]:80/a\"", "post = \"https://mes.example\"", "mqtt = \"mqtts://b.example/a\""]
     {
         settings(folder.path(), &format!("[[sink]]\nname = \"mes\"\n{right}"));
         Settings::load(&folder.path().join("station.toml")).unwrap();
     }
+}
+
+/// Each of these sinks is refused with these words.
+fn are_refused(folder: &Path, sinks: &[(&str, &str)]) {
+    for (sink, expected) in sinks {
+        settings(folder, &format!("[[sink]]\n{sink}"));
+        let error = Settings::load(&folder.join("station.toml")).unwrap_err().to_string();
+        assert!(error.contains(expected) && error.contains("station.toml:"), "{sink}: {error}");
+    }
+}
+
+#[test]
+fn a_way_to_a_sink_that_is_none_is_refused_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases = [
+        ("name = \"mes\"\nmqtt = \"mqtt://localhost/a+b\"", "no topic may have"),
+        ("name = \"mes\"\nmqtt = \"mqtt://localhost/a/#\"", "no topic may have"),
+    ];
+    are_refused(folder.path(), &cases);
 }
 
 /// Looks at what it has whenever it is given something.
