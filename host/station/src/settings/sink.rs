@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use axum::http::Uri;
 use toml::Spanned;
+use ureq::{Proxy, ProxyProtocol};
 
 use super::read::is_name;
 use super::text::SinkText;
@@ -42,6 +43,8 @@ pub enum Destination {
         format: Format,
         /// The file with the token that lets the station in.
         token: Option<PathBuf>,
+        /// Whom requests go through, as they are: it sees neither them nor the answers.
+        proxy: Option<Proxy>,
     },
     /// An event for each to a broker of MQTT.
     Events {
@@ -98,8 +101,9 @@ impl SinkSettings {
             }
             (None, Some(url), None) => {
                 let (address, token) = (address(url, HTTP, ca)?, path(&text.token_file));
-                let format = format.unwrap_or_default();
-                (Destination::Post { address, format, token }, ["format", "token_file", "ca"].as_slice())
+                let (format, proxy) = (format.unwrap_or_default(), proxy(text.proxy.as_ref(), &address)?);
+                let to = Destination::Post { address, format, token, proxy };
+                (to, ["format", "token_file", "ca", "proxy"].as_slice())
             }
             (None, None, Some(url)) => {
                 let address = address(topics(url)?, MQTT, ca)?;
@@ -131,6 +135,7 @@ impl SinkText {
             ("user", at(&self.user)),
             ("password_file", at(&self.password_file)),
             ("ca", at(&self.ca)),
+            ("proxy", at(&self.proxy)),
         ];
         given.into_iter().find_map(|(key, at)| Some((key, at?)).filter(|(key, _)| !used.contains(key)))
     }
@@ -167,6 +172,26 @@ fn topics(url: &Spanned<String>) -> Result<&Spanned<String>, Fault> {
     }
     let what = "topics begin with the path of this address, and no topic may have `+`, `#` or `?` here";
     Err(Fault::wrong(url.span().start, what, "leave them out"))
+}
+
+/// The proxy to a server at `to`. What goes through one leaves this computer.
+fn proxy(text: Option<&Spanned<String>>, to: &SinkAddress) -> Result<Option<Proxy>, Fault> {
+    let Some(text) = text else { return Ok(None) };
+    let wrong = |what, remedy| Fault::wrong(text.span().start, what, remedy);
+    if !to.is_protected {
+        let what = "results would go openly through a proxy";
+        return Err(wrong(what, "write https:// in post, or leave proxy out"));
+    }
+    let no_proxy =
+        || wrong("this is no proxy that is asked without a password", "write it as http://host:port");
+    let uri: Uri = text.get_ref().parse().map_err(|_| no_proxy())?;
+    let authority = uri.authority().filter(|authority| !authority.as_str().contains('@'));
+    let (Some("http"), Some(authority), "/") = (uri.scheme_str(), authority, uri.path()) else {
+        return Err(no_proxy());
+    };
+    let proxy = Proxy::builder(ProxyProtocol::Http).host(authority.host());
+    let proxy = proxy.port(authority.port_u16().unwrap_or(HTTP[0].1));
+    proxy.build().map(Some).map_err(|_| no_proxy())
 }
 
 /// What leaves this computer goes through TLS, and no address has a password.

@@ -138,6 +138,7 @@ pub(super) struct SinkText {
     pub(super) user: Option<Spanned<String>>,
     pub(super) password_file: Option<Spanned<String>>,
     pub(super) ca: Option<Spanned<String>>,
+    pub(super) proxy: Option<Spanned<String>>,
 }
 
 /// A `[[lane]]`

@@ -147,8 +147,8 @@ pub fn open(settings: &SinkSettings, station: &str) -> Result<Box<dyn Sink>, Sin
         Destination::Folder { path, format } => {
             Box::new(folder::FolderSink { name, folder: path.clone(), format: *format })
         }
-        Destination::Post { address, format, token } => {
-            Box::new(post::PostSink::new(name, address, *format, token.as_deref())?)
+        Destination::Post { address, format, token, proxy } => {
+            Box::new(post::PostSink::new(name, address, *format, token.as_deref(), proxy.as_ref())?)
         }
         Destination::Events { address, login } => {
             Box::new(events::EventSink::new(name, station, address, login.as_ref())?)

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use ureq::http::{StatusCode, header};
 use ureq::tls::{Certificate, RootCerts, TlsConfig};
-use ureq::{Agent, Body};
+use ureq::{Agent, Body, Proxy};
 
 use super::letter::{Letter, letter};
 use super::{SinkError, SinkSettingsError};
@@ -38,12 +38,13 @@ pub(super) struct PostSink {
 }
 
 impl PostSink {
-    /// The server at `address`, which is told the token in the file `token`.
+    /// The server at `address`, behind `proxy` if there is one, which is told the token in the file `token`.
     pub(super) fn new(
         name: String,
         address: &SinkAddress,
         format: Format,
         token: Option<&Path>,
+        proxy: Option<&Proxy>,
     ) -> Result<Self, SinkSettingsError> {
         let token = token.map(read).transpose()?;
         let mut config = Agent::config_builder()
@@ -51,6 +52,8 @@ impl PostSink {
             .http_status_as_error(false)
             .max_redirects(0)
             .max_redirects_will_error(false)
+            // What the environment names for all programs is not of this station's settings.
+            .proxy(proxy.cloned())
             .user_agent(format!("halfrow-station/{}", halfrow::VERSION));
         if address.is_protected {
             let trusted = trust::certificates(address.ca.as_deref())?;

@@ -16,9 +16,15 @@ use crate::common::{Did, PLAN, now_ms, program};
 
 /// What a command of the station in this folder does, whose settings have this `[[sink]]`.
 fn did(folder: &Path, sink: &str, arguments: &[&str]) -> Did {
+    command(folder, sink, arguments).output().unwrap().into()
+}
+
+/// That command, not begun yet.
+fn command(folder: &Path, sink: &str, arguments: &[&str]) -> Command {
     settings(folder, sink);
     let mut command = Command::new(program());
-    command.args(arguments).arg("--settings").arg(folder.join("station.toml")).output().unwrap().into()
+    command.args(arguments).arg("--settings").arg(folder.join("station.toml"));
+    command
 }
 
 /// Writes these settings.
@@ -84,6 +90,19 @@ fn are_refused(folder: &Path, sinks: &[(&str, &str)]) {
 fn a_way_to_a_sink_that_is_none_is_refused_with_its_line() {
     let folder = tempfile::tempdir().unwrap();
     let cases = [
+        (
+            "name = \"mes\"\npost = \"http://localhost/\"\nproxy = \"http://p.example\"",
+            "openly through a proxy",
+        ),
+        (
+            "name = \"mes\"\npost = \"https://localhost/\"\nproxy = \"http://me:x@p.example\"",
+            "asked without a password",
+        ),
+        (
+            "name = \"mes\"\npost = \"https://localhost/\"\nproxy = \"p.example:3128\"",
+            "write it as http://host:port",
+        ),
+        ("name = \"mes\"\nfolder = \"a\"\nproxy = \"http://p.example\"", "proxy says nothing to this sink"),
         ("name = \"mes\"\nmqtt = \"mqtt://localhost/a+b\"", "no topic may have"),
         ("name = \"mes\"\nmqtt = \"mqtt://localhost/a/#\"", "no topic may have"),
     ];

@@ -2,17 +2,20 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{BufRead as _, BufReader};
+use std::io::{self, BufRead as _, BufReader, Write as _};
+use std::net::{TcpListener, TcpStream};
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{self, Receiver};
+use std::thread;
 
 use base64::Engine as _;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::{did, send};
-use crate::common::query;
+use super::{SEND, command, did, send};
+use crate::common::{Did, query};
 use crate::history::released::history;
 use crate::plant::link::certificates;
 
@@ -216,4 +219,73 @@ fn what_leaves_the_computer_goes_to_the_server_of_that_name_alone() {
     let sent = send(folder.path(), &trusting(&ours));
     assert!(sent.said.starts_with("10 sent, 0 not"), "{sent:?}");
     assert_eq!(server.requests().len(), 8);
+}
+
+/// What programs take for the proxy of all that they send, unless they are told otherwise.
+const PROXIES: [&str; 6] =
+    ["ALL_PROXY", "all_proxy", "HTTPS_PROXY", "https_proxy", "HTTP_PROXY", "http_proxy"];
+
+#[test]
+fn a_proxy_in_the_environment_gets_nothing() {
+    let certified = tempfile::tempdir().unwrap();
+    certificates(certified.path());
+    let proxy = Server::start(None);
+    let ca = format!("ca = \"{}\"", certified.path().join("ca.pem").display());
+    for (scheme, certified, more) in [("http", None, ""), ("https", Some(certified.path()), ca.as_str())] {
+        let server = Server::start(certified);
+        let folder = history().closed();
+        let sink = sink(&format!("{scheme}://localhost:{}/", server.port), more);
+        let mut send = command(folder.path(), &sink, &SEND);
+        send.envs(PROXIES.map(|name| (name, format!("http://127.0.0.1:{}", proxy.port))));
+        let sent: Did = send.env_remove("NO_PROXY").env_remove("no_proxy").output().unwrap().into();
+        assert!(sent.said.starts_with("10 sent, 0 not"), "{scheme}: {sent:?}");
+        assert_eq!(server.requests().len(), 8, "{scheme}");
+    }
+    assert!(proxy.requests().is_empty());
+}
+
+/// A proxy that connects whoever asks it to, and what it was asked for by each.
+fn connecting() -> (u16, Receiver<String>) {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = listener.local_addr().unwrap().port();
+    let (sender, asked) = mpsc::channel();
+    thread::spawn(move || {
+        for client in listener.incoming().map(Result::unwrap) {
+            let head =
+                BufReader::new(&client).lines().map(Result::unwrap).take_while(|line| !line.is_empty());
+            let head: Vec<_> = head.collect();
+            let to = head[0].split(' ').nth(1).unwrap();
+            let server = TcpStream::connect(to).unwrap();
+            (&client).write_all(b"HTTP/1.1 200 OK\r\n\r\n").unwrap();
+            for (from, to) in [(&client, &server), (&server, &client)] {
+                let (mut from, mut to) = (from.try_clone().unwrap(), to.try_clone().unwrap());
+                thread::spawn(move || io::copy(&mut from, &mut to));
+            }
+            sender.send(head.join("\n")).unwrap();
+        }
+    });
+    (port, asked)
+}
+
+#[test]
+fn a_proxy_of_the_settings_carries_what_it_cannot_read() {
+    let certified = tempfile::tempdir().unwrap();
+    certificates(certified.path());
+    let server = Server::start(Some(certified.path()));
+    let folder = history().closed();
+    token(folder.path());
+    let (port, asked) = connecting();
+    let more = format!(
+        "token_file = \"mes.token\"\nca = \"{}\"\nproxy = \"http://localhost:{port}\"",
+        certified.path().join("ca.pem").display()
+    );
+    let sent = send(folder.path(), &sink(&format!("https://localhost:{}/", server.port), &more));
+    assert!(sent.said.starts_with("10 sent, 0 not"), "{sent:?}");
+    assert_eq!(server.requests().len(), 8);
+    let asked: Vec<_> = asked.try_iter().collect();
+    assert!(!asked.is_empty());
+    for head in asked {
+        let first = format!("CONNECT localhost:{} HTTP/1.1", server.port);
+        assert!(head.starts_with(&first) && !head.contains("rosebud"), "{head}");
+    }
 }
