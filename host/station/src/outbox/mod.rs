@@ -9,6 +9,7 @@
 mod back_off;
 mod plant;
 mod sinks;
+mod standing;
 
 use std::io;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
@@ -22,7 +23,8 @@ pub use sinks::{SinkError, SinkSettingsError, open};
 use crate::clock;
 use crate::guard::guarded;
 use crate::said::Said;
-use crate::store::{Entry, Folder, Parcel, SharedStore, Snapshot, StoreError, Tried};
+use crate::store::{Entry, Folder, Parcel, SharedStore, Snapshot, StoreError, Tried, Unsent};
+use standing::{Left, Standing};
 
 /// How often it is looked whether there is something to send.
 const LOOK: Duration = Duration::from_millis(200);
@@ -47,9 +49,12 @@ pub trait Sink: Send {
     fn take(&mut self, parcel: &Parcel) -> Result<(), Undelivered>;
 
     /// So much is to be sent to it, and so much of that waits for a person. Returns the clock by which it orders what several
-    /// stations send, if it does and is there.
-    fn beat(&mut self, _unsent: u32, _dead: u32) -> Option<HeardClock> {
-        None
+    /// stations send, if it does.
+    ///
+    /// # Errors
+    /// Why it is away, if that is known.
+    fn beat(&mut self, _unsent: u32, _dead: u32) -> Result<Option<HeardClock>, Said> {
+        Ok(None)
     }
 
     /// There is nothing to do for now.
@@ -216,23 +221,54 @@ pub enum OutboxError {
     Store(#[from] StoreError),
 }
 
-fn beat(store: &SharedStore, sink: &mut dyn Sink) {
-    let unsent = store.with(|store| Snapshot::take(store.folder())?.unsent()).unwrap_or_default();
-    let ours = unsent.iter().find(|unsent| unsent.sink == sink.name());
-    if let Some(clock) = sink.beat(ours.map_or(0, |ours| ours.entries), ours.map_or(0, |ours| ours.dead)) {
-        store.with(|store| store.heard_plant(clock));
+fn left(store: &SharedStore, sink: &dyn Sink) -> Result<Left, StoreError> {
+    let unsent = Snapshot::take(&folder(store))?.unsent()?;
+    let ours = unsent.into_iter().find(|unsent| unsent.sink == sink.name());
+    Ok(ours.map_or_else(Left::default, |Unsent { entries, dead, said, .. }| Left {
+        entries,
+        dead,
+        was_tried: said.is_some(),
+    }))
+}
+
+fn beat(store: &SharedStore, sink: &mut dyn Sink, standing: &mut Standing) {
+    let left = left(store, sink).unwrap_or_default();
+    let heard = sink.beat(left.entries, left.dead);
+    match &heard {
+        Ok(Some(clock)) => store.with(|store| store.heard_plant(*clock)),
+        Ok(None) => {}
+        Err(said) => standing.away(sink.name(), said),
     }
+    // Where something waits, whether it is taken says more.
+    if matches!(heard, Ok(Some(_))) && left.entries == left.dead {
+        standing.there(sink.name(), 0, || Ok(left));
+    }
+}
+
+/// What is due for `sink`, as [`round`]; the log says how it stands.
+fn logged_round(
+    store: &SharedStore,
+    sink: &mut dyn Sink,
+    standing: &mut Standing,
+) -> Result<Round, StoreError> {
+    let due = folder(store).due(sink.name(), clock::now_ms(), back_off::LONGEST_MS)?;
+    let round = given(store, sink, due, |name, entry, why| standing.refused(name, entry, why))?;
+    if round.sent + round.failed > 0 && !round.is_away {
+        standing.there(sink.name(), round.sent, || left(store, sink));
+    }
+    Ok(round)
 }
 
 /// Sends until the outbox is closed.
 fn send(store: &SharedStore, mut sink: Box<dyn Sink>, stopped: &Receiver<()>) {
     let (mut vain, mut worked, mut beaten) = (0, Instant::now(), None::<Instant>);
+    let mut standing = Standing::default();
     loop {
         if beaten.is_none_or(|beaten| beaten.elapsed() > BEAT) {
             beaten = Some(Instant::now());
-            beat(store, &mut *sink);
+            beat(store, &mut *sink, &mut standing);
         }
-        let round = round(store, &mut *sink).unwrap_or_else(|error| {
+        let round = logged_round(store, &mut *sink, &mut standing).unwrap_or_else(|error| {
             tracing::error!("what is to be sent on stays here: {}", Said::of(&error));
             Round { is_away: true, ..Round::default() }
         });

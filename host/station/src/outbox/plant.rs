@@ -55,13 +55,10 @@ impl Sink for PlantSink {
         })
     }
 
-    fn beat(&mut self, unsent: u32, dead: u32) -> Option<HeardClock> {
+    fn beat(&mut self, unsent: u32, dead: u32) -> Result<Option<HeardClock>, Said> {
         (self.station.unsent, self.station.dead, self.clock) = (unsent, dead, None);
-        if let Err(error) = self.plant() {
-            // What is to be sent will say so, too.
-            tracing::debug!("the plant has not heard of this station: {}", Said::of(&error));
-        }
-        self.clock
+        self.plant().map_err(|error| Said::of(&error))?;
+        Ok(self.clock)
     }
 
     fn rest(&mut self) {

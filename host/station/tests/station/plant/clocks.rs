@@ -34,11 +34,11 @@ fn no_run_begins_while_the_clocks_of_station_and_plant_are_apart() {
     let mut sink = PlantSink::new(server.address(), presence("station 7", origin));
     made.store.sends_to(vec![SINK_OF_PLANT.to_owned()]).unwrap();
     // The control: clocks that agree.
-    made.store.heard_plant(sink.beat(0, 0).unwrap());
+    made.store.heard_plant(sink.beat(0, 0).unwrap().unwrap());
     made.run(&now_of("S1"));
     server.client("plant").batch_execute(FAST).unwrap();
     sink.rest();
-    made.store.heard_plant(sink.beat(0, 0).unwrap());
+    made.store.heard_plant(sink.beat(0, 0).unwrap().unwrap());
     let refused = begun(&mut made, "S2").unwrap_err();
     assert!(matches!(refused, StoreError::ClockApart { minutes: 60..=61 }), "{refused}");
     // Whoever sends to others alone is in order with itself.

@@ -9,14 +9,16 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{self, Receiver};
 use std::thread;
+use std::time::{Duration, Instant};
 
 use base64::Engine as _;
 use serde_json::Value;
 use tempfile::TempDir;
 
 use super::{SEND, command, did, send};
-use crate::common::{Did, query};
+use crate::common::{Did, program, query};
 use crate::history::released::history;
+use crate::lanes::floor::{HANG, SERIALS, Station};
 use crate::plant::link::certificates;
 
 struct Server {
@@ -288,4 +290,48 @@ fn a_proxy_of_the_settings_carries_what_it_cannot_read() {
         let first = format!("CONNECT localhost:{} HTTP/1.1", server.port);
         assert!(head.starts_with(&first) && !head.contains("rosebud"), "{head}");
     }
+}
+
+#[test]
+fn the_log_says_once_that_a_sink_takes_nothing_and_once_that_it_does_again() {
+    let server = Server::start(None);
+    server.answers("500 oops");
+    let share = "[[sink]]\nname = \"share\"\nfolder = \"share\"\n";
+    let mes = sink(&format!("http://127.0.0.1:{}/", server.port), "");
+    let station = Station::with(&["mock"], &format!("{share}{mes}"));
+    let log = station.path("log");
+    let mut logging = Command::new("sh");
+    logging.args(["-c", "exec \"$0\" \"$@\" 2>\"$LOG\""]).arg(program()).env("LOG", &log);
+    let mut running = station.started(logging);
+    let told = |count: usize, of: &str| {
+        let begun = Instant::now();
+        loop {
+            let text = fs::read_to_string(&log).unwrap_or_default();
+            let found = text.lines().filter(|line| line.contains(of)).count();
+            if found == count {
+                return;
+            }
+            assert!(found < count && begun.elapsed() < HANG, "{found} of {of}: {text}");
+            thread::sleep(Duration::from_millis(50));
+        }
+    };
+    running.scan(SERIALS[0]);
+    running.state("1", "PASS");
+    while station.query("SELECT count(*) FROM outbox WHERE kind = 'run' AND attempts > 1") != ["2"] {
+        thread::sleep(Duration::from_millis(50));
+    }
+    told(1, "WARN the sink share takes nothing, and all waits for it: the folder ");
+    told(1, "WARN the sink mes does not take the run ");
+    told(0, "is sent again");
+    fs::create_dir(station.path("share")).unwrap();
+    server.answers("200 taken");
+    told(1, "WARN the sink share takes what it is sent again: 1 waited");
+    told(1, "WARN the sink mes has taken all that it did not take before");
+    server.answers("422 unknown");
+    running.scan(SERIALS[1]);
+    running.state("1", "PASS");
+    told(1, "WARN the sink mes refuses the run ");
+    told(1, "which waits for a person: 127.0.0.1 answers 422 to this (unknown)");
+    assert_eq!(running.end().0, Some(0));
+    assert_eq!(fs::read_to_string(&log).unwrap().lines().count(), 5);
 }

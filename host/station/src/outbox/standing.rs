@@ -1,0 +1,83 @@
+//! What the log says of a sink: once that it takes nothing or not all, and once that it does again.
+
+use super::Undelivered;
+use crate::said::Said;
+use crate::store::{Entry, Kind, SINK_OF_PLANT, StoreError};
+
+/// How it stands with a sink, as far as the log has said it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Standing {
+    /// It was away.
+    is_away: bool,
+    /// It did not take something for a time.
+    is_behind: bool,
+}
+
+/// How much a sink does not have.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Left {
+    /// Entries.
+    pub(super) entries: u32,
+    /// Those of them that wait for a person.
+    pub(super) dead: u32,
+    /// Whether any other of them was tried in vain.
+    pub(super) was_tried: bool,
+}
+
+impl Standing {
+    /// The sink has not taken this.
+    pub(super) fn refused(&mut self, sink: &str, entry: &Entry, why: &Undelivered) {
+        match why {
+            Undelivered::Away(said) => self.away(sink, said),
+            Undelivered::NotNow(said) if !self.is_behind => {
+                self.is_behind = true;
+                tracing::warn!("{} does not take {} for now: {said}", called(sink), named(entry));
+            }
+            Undelivered::NotNow(_) => {}
+            Undelivered::Refused(said) => {
+                tracing::warn!("{} refuses {}, which waits for a person: {said}", called(sink), named(entry));
+            }
+        }
+    }
+
+    /// The sink is not there.
+    pub(super) fn away(&mut self, sink: &str, said: &Said) {
+        if !self.is_away {
+            self.is_away = true;
+            tracing::warn!("{} takes nothing, and all waits for it: {said}", called(sink));
+        }
+    }
+
+    /// The sink is there, and has taken `sent` more; `left` tells what it does not have.
+    // A log of warnings alone that has the beginning of an outage has its end, too.
+    pub(super) fn there(&mut self, sink: &str, sent: usize, left: impl FnOnce() -> Result<Left, StoreError>) {
+        if !self.is_away && !self.is_behind {
+            return;
+        }
+        // What cannot be read now is looked at behind the next one.
+        let Ok(Left { entries, dead, was_tried }) = left() else { return };
+        if self.is_away {
+            self.is_away = false;
+            let waited = u64::from(entries - dead) + sent as u64;
+            tracing::warn!("{} takes what it is sent again: {waited} waited", called(sink));
+        }
+        if self.is_behind && !was_tried {
+            self.is_behind = false;
+            tracing::warn!("{} has taken all that it did not take before", called(sink));
+        }
+    }
+}
+
+/// What a sink is called among people.
+fn called(sink: &str) -> String {
+    if sink == SINK_OF_PLANT { "the plant".to_owned() } else { format!("the sink {sink}") }
+}
+
+/// What an entry is called among people.
+fn named(Entry { kind, subject, .. }: &Entry) -> String {
+    match kind {
+        Kind::Run => format!("the run {subject}"),
+        Kind::Waiver => format!("the waiver {subject}"),
+        Kind::Audit => format!("the line {subject} of the audit"),
+    }
+}
