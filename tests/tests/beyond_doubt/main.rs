@@ -11,6 +11,7 @@ mod counters;
 mod damaged_packets;
 mod echoes;
 mod exercised;
+mod late_answers;
 mod lost_rows;
 mod recordings;
 mod refusals;

@@ -20,7 +20,7 @@ use halfrow_tests::system::System;
 
 /// A link that delivers the request number `which` of a kind once more, in front of the request number `before` of another, and
 /// may lose the answer to that copy.
-fn late_copy(which: (Kind, usize), before: (Kind, usize), answered: bool) -> Report {
+pub(super) fn late_copy(which: (Kind, usize), before: (Kind, usize), answered: bool) -> Report {
     let (mut seen, mut waited) = (0, 0);
     let mut copy: Option<Passing> = None;
     // The answers to be lost, which come in the order of the requests.

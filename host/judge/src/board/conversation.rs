@@ -26,7 +26,8 @@ pub(super) struct Conversation {
     decoder: Decoder,
     outgoing: Vec<u8>,
     incoming: Vec<u8>,
-    sequence: u16,
+    /// The last packet's.
+    pub(super) sequence: u16,
     /// 0 until a board has answered HELLO.
     pub(super) session: u8,
     /// The board's, the greatest of all packets.

@@ -32,8 +32,8 @@ pub(crate) use bursts::{Fetched, Trapped};
 pub(crate) use conduct::Misconduct;
 pub use error::{BoardError, Heard, OpenFailed};
 pub(crate) use legal::{LEAST_ENTRIES, MAX_LATENCY, grids, possible};
+pub(crate) use rows::{Given, Unjudged, Unreturned};
 pub use rows::{NumberedFrame, ReturnedRow, RowTraffic};
-pub(crate) use rows::{Unjudged, Unreturned};
 pub(crate) use said::Said;
 pub(crate) use sent::Sent;
 pub use stop::Stop;
@@ -230,7 +230,7 @@ impl Board {
     /// # Errors
     /// [`BoardError`]; rows that came back before it were handed over.
     pub fn stream(&mut self, traffic: &mut dyn RowTraffic) -> Result<(), BoardError> {
-        rows::stream(&mut self.conversation, traffic, 0)
+        rows::stream(&mut self.conversation, traffic, Given::default())
     }
 
     /// Streams frames without ever asking for a row again, and returns the first row that does not come back within its

@@ -8,7 +8,7 @@ use halfrow_protocol::{Kind, Packet, samples};
 use super::answer::take_reply;
 use super::asked::Asking;
 use super::deadlines::Step;
-use super::{Board, BoardError, RowTraffic, rows};
+use super::{Board, BoardError, Given, RowTraffic, rows};
 
 /// What a board said to a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -88,9 +88,10 @@ impl Board {
         self.conversation.session
     }
 
-    /// Sends a row, and waits for nothing.
-    pub(crate) fn give(&mut self, place: &RowPlace, samples: &[u16]) {
+    /// Sends a row, waits for nothing, and returns the number of its packet.
+    pub(crate) fn give(&mut self, place: &RowPlace, samples: &[u16]) -> u16 {
         self.conversation.queue_row(place, samples);
+        self.conversation.sequence
     }
 
     /// Sends `request` damaged, in each way in which a link can flip a bit of one byte, and waits for nothing.
@@ -108,13 +109,13 @@ impl Board {
         Ok(())
     }
 
-    /// Streams frames of which the first `given` rows were given, and hands back every row.
+    /// Streams frames of which the first rows were `given`, and hands back every row.
     ///
     /// # Errors
     /// [`BoardError`]; rows that came back before it were handed over.
     pub(crate) fn stream_given(
         &mut self,
-        given: u32,
+        given: Given,
         traffic: &mut dyn RowTraffic,
     ) -> Result<(), BoardError> {
         rows::stream(&mut self.conversation, traffic, given)

@@ -7,6 +7,7 @@ use halfrow_protocol::message::{RefusalCode, Reply, RowOut};
 use halfrow_protocol::{Kind, Packet, samples};
 
 use super::in_flight::InFlight;
+use super::numbers::Numbers;
 use super::{ReturnedRow, RowTraffic};
 use crate::board::BoardError;
 
@@ -21,12 +22,15 @@ pub(super) struct Arrivals<'a> {
     pub(super) gap: bool,
     /// Rows that came although they were there already.
     pub(super) copies: Vec<u32>,
+    /// Refusals of rows that are none of the stream's.
+    pub(super) old_refusals: u64,
+    pub(super) numbers: Numbers,
     unpacked: Vec<u16>,
     pub(super) flow: ControlFlow<()>,
 }
 
 impl<'a> Arrivals<'a> {
-    pub(super) fn new(traffic: &'a mut dyn RowTraffic, first_row: u32) -> Self {
+    pub(super) fn new(traffic: &'a mut dyn RowTraffic, first_row: u32, numbers: Numbers) -> Self {
         Self {
             traffic,
             in_flight: InFlight::new(first_row),
@@ -34,6 +38,8 @@ impl<'a> Arrivals<'a> {
             ahead: BTreeSet::new(),
             gap: false,
             copies: Vec::new(),
+            old_refusals: 0,
+            numbers,
             unpacked: Vec::new(),
             flow: ControlFlow::Continue(()),
         }
@@ -54,6 +60,10 @@ impl<'a> Arrivals<'a> {
             Reply::RowOut(row) => self.take_row(&row),
             Reply::Refusal(refusal) if refusal.code == RefusalCode::Session => Err(BoardError::SessionLost),
             Reply::Refusal(refusal) if refusal.kind == Kind::RowIn.code() => {
+                if !self.numbers.has(packet.header.sequence) {
+                    self.old_refusals += 1;
+                    return Ok(());
+                }
                 Err(BoardError::Refused { kind: Kind::RowIn, refusal })
             }
             _ => Ok(()),

@@ -3,6 +3,7 @@
 mod arrivals;
 mod in_flight;
 mod late;
+mod numbers;
 mod traffic;
 
 use std::time::Duration;
@@ -15,6 +16,7 @@ use super::conversation::Conversation;
 use super::deadlines::Step;
 use arrivals::Arrivals;
 use late::LateRows;
+use numbers::Numbers;
 
 pub(crate) use traffic::Unjudged;
 pub use traffic::{NumberedFrame, ReturnedRow, RowTraffic};
@@ -38,15 +40,25 @@ pub(crate) struct Unreturned {
     pub returned: u32,
 }
 
-/// Streams all frames of `traffic` through the board, of which it was given so many rows already. Rows are numbered from
+/// Rows of the next stream that the board was given in front of it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Given {
+    /// How many of its first rows.
+    pub rows: u32,
+    /// The numbers of the packets.
+    pub numbers: Vec<u16>,
+}
+
+/// Streams all frames of `traffic` through the board, of which rows may have been `given` already. Rows are numbered from
 /// `conversation.acknowledged` on.
 pub(super) fn stream(
     conversation: &mut Conversation,
     traffic: &mut dyn RowTraffic,
-    given: u32,
+    given: Given,
 ) -> Result<(), BoardError> {
-    let mut stream = Stream::new(conversation, traffic, Step::Row.deadline().attempts);
-    stream.sent += given;
+    let rows = given.rows;
+    let mut stream = Stream::new(conversation, traffic, given, Step::Row.deadline().attempts);
+    stream.sent += rows;
     stream.run()
 }
 
@@ -56,7 +68,7 @@ pub(super) fn stream_once(
     traffic: &mut dyn RowTraffic,
 ) -> Result<Option<Unreturned>, BoardError> {
     let first_row = conversation.acknowledged;
-    let mut stream = Stream::new(conversation, traffic, 1);
+    let mut stream = Stream::new(conversation, traffic, Given::default(), 1);
     match stream.run() {
         Ok(()) => Ok(None),
         Err(BoardError::RowMissing { place, .. }) => {
@@ -91,11 +103,17 @@ struct Stream<'a> {
 }
 
 impl<'a> Stream<'a> {
-    fn new(conversation: &'a mut Conversation, traffic: &'a mut dyn RowTraffic, most: u32) -> Self {
+    fn new(
+        conversation: &'a mut Conversation,
+        traffic: &'a mut dyn RowTraffic,
+        given: Given,
+        most: u32,
+    ) -> Self {
         let (first_row, now) = (conversation.acknowledged, conversation.waited);
+        let numbers = Numbers::new(given, conversation.tally.packets_out);
         Self {
             conversation,
-            arrivals: Arrivals::new(traffic, first_row),
+            arrivals: Arrivals::new(traffic, first_row, numbers),
             exhausted: false,
             sent: first_row,
             attempts: 1,
@@ -182,6 +200,7 @@ impl<'a> Stream<'a> {
         let wait = self.patience().saturating_sub(self.conversation.waited.saturating_sub(self.progress_at));
         let missing = self.missing();
         self.arrivals.gap = false;
+        self.arrivals.numbers.go_on(self.conversation.tally.packets_out, self.conversation.sequence);
         let (arrivals, mut taken) = (&mut self.arrivals, Ok(()));
         self.conversation.exchange(
             wait,
@@ -193,6 +212,7 @@ impl<'a> Stream<'a> {
             },
         )?;
         self.conversation.acknowledged = self.missing();
+        self.conversation.tally.strays += std::mem::take(&mut self.arrivals.old_refusals);
         taken?;
         if self.missing() > missing {
             let took = self.conversation.waited.saturating_sub(self.missing_since);

@@ -25,7 +25,7 @@ use super::findings::End;
 use super::parts::{Part, of_height};
 use super::plan::Segment;
 use super::steps::Run;
-use crate::board::{BoardError, Capabilities, RowTiming, Said};
+use crate::board::{BoardError, Capabilities, Given, RowTiming, Said};
 use crate::progress::Step;
 use crate::result::{Answer, CheckName, Doubt, Finding, Outcome, Rule};
 use crate::verdict::Cause;
@@ -78,14 +78,14 @@ struct Rules<'a, 'run> {
     /// Rows of a frame, as the board is set.
     height: usize,
     /// Rows of the next frame that the board was given.
-    given: u32,
+    given: Given,
 }
 
 impl<'a, 'run> Rules<'a, 'run> {
     fn new(run: &'a mut Run<'run>) -> Option<Self> {
         let capabilities = run.board.capabilities.clone();
         let small = Small::new(&capabilities, run.plan.seed, run.plan.phase)?;
-        Some(Self { run, capabilities, small, right: 0, height: 0, given: 0 })
+        Some(Self { run, capabilities, small, right: 0, height: 0, given: Given::default() })
     }
 
     /// Tries all of them, and returns how many requests were answered as they must be.

@@ -122,8 +122,9 @@ impl Rules<'_, '_> {
         let place = self.place(row);
         let made = self.small.made(0, self.height, GENERATION);
         let frame = self.small.frame(FRAME, &made.tables);
-        self.run.board.give(&place, frame.frame.row(row.into()));
-        self.given = self.given.max(u32::from(row) + 1);
+        let number = self.run.board.give(&place, frame.frame.row(row.into()));
+        self.given.rows = self.given.rows.max(u32::from(row) + 1);
+        self.given.numbers.push(number);
     }
 
     /// Gives row 0, and waits until it is inside the core. How long a row waits in front of it is not the wire's to say, so one that
@@ -218,7 +219,7 @@ impl Rules<'_, '_> {
                 return Err(other_row(Rule::Again, 0, FRAME));
             }
         }
-        self.run.board.acknowledge(first.row_sequence + mem::take(&mut self.given));
+        self.run.board.acknowledge(first.row_sequence + mem::take(&mut self.given).rows);
         self.configure(self.small.rows())
     }
 
@@ -234,7 +235,7 @@ impl Rules<'_, '_> {
         for bytes in BYTES_TO_CUT {
             self.give(0);
             self.give(1);
-            let given = mem::take(&mut self.given);
+            let given = mem::take(&mut self.given).rows;
             self.run.board.drop_rows_behind(bytes, given).map_err(of_board)?;
             self.right_frames(&[FRAME])?;
         }
