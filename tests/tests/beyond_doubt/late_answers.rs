@@ -1,13 +1,16 @@
 //! What a board says to a packet that came late: no sound board is blamed for it, and none that is broken is right.
 
-use halfrow::result::Report;
-use halfrow::verdict::Verdict;
+use halfrow::result::{Finding, Report};
+use halfrow::verdict::{Cause, Verdict};
 use halfrow_protocol::message::{Refusal, RefusalCode};
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Passing, Toward, judge};
 use halfrow_tests::system::System;
 
 use crate::stale_packets::late_copy;
+
+/// What a run says that asks for another bitstream.
+const BLAME: &str = "load a";
 
 fn refuses_a_row(packet: &Passing) -> bool {
     matches!(packet.reply(), Some(Reply::Refusal(refusal)) if refusal.kind == Kind::RowIn.code())
@@ -62,4 +65,47 @@ fn a_row_that_is_refused_is_not_right() {
         vec![refused]
     });
     assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+}
+
+/// Both copies are answered, so that the host knows.
+#[test]
+fn an_error_that_an_old_copy_of_a_request_may_have_brought_about_is_looked_at_again() {
+    for which in [(Kind::Reset, 2), (Kind::Reset, 3), (Kind::Burst, 20), (Kind::Burst, 30)] {
+        for before in [(Kind::RowIn, 10), (Kind::RowIn, 30), (Kind::Records, 4)] {
+            let report = late_copy(which, before, true);
+            let what = format!("{which:?} before {before:?}: {}", report.headline());
+            assert!(!report.headline().contains(BLAME), "{what}");
+            assert_ne!(report.verdict, Verdict::Fail, "{what}");
+        }
+    }
+}
+
+/// Refuses CONFIGURE in the first `sessions` sessions, behind a STATUS that came twice.
+fn refusing(code: RefusalCode, sessions: usize) -> Report {
+    let (mut greetings, mut twice) = (0, false);
+    judge(&System::TINY, move |toward, packet: Passing| {
+        greetings += usize::from(toward == Toward::Board && packet.is(Kind::Hello));
+        if toward == Toward::Board && packet.is(Kind::Status) && !twice {
+            twice = true;
+            return vec![packet.clone(), packet];
+        }
+        if toward == Toward::Board || !packet.is(Kind::Configure) || greetings > sessions {
+            return vec![packet];
+        }
+        let mut refusal =
+            packet.saying(&Reply::Refusal(Refusal { code, kind: Kind::Configure.code(), detail: 0 }));
+        refusal.header.kind = Kind::Refusal.code();
+        vec![refusal]
+    })
+}
+
+#[test]
+fn a_board_that_refuses_over_a_link_that_doubts_is_right_in_no_session() {
+    let once = refusing(RefusalCode::Range, 1);
+    assert_eq!((once.verdict, once.cause), (Verdict::Error, Cause::Station), "{}", once.headline());
+    assert!(matches!(once.finding, Finding::RightInAnotherSession { .. }), "{}", once.headline());
+    assert!(!once.headline().contains(BLAME), "{}", once.headline());
+    let always = refusing(RefusalCode::Range, usize::MAX);
+    assert_eq!((always.verdict, always.cause), (Verdict::Error, Cause::Refused), "{}", always.headline());
+    assert!(always.headline().contains("its capabilities allow that"), "{}", always.headline());
 }

@@ -308,6 +308,26 @@ fn over_a_link_that_loses(every: usize, spoilt: bool) -> Report {
     soaked_by(board.candidate(), frames(5000), &RunOptions::default())
 }
 
+/// The first BURST once more in front of the third, which the board then refuses.
+#[test]
+fn what_a_board_says_behind_an_old_burst_does_not_end_a_soak() {
+    let (mut bursts, mut first) = (0, None);
+    let board = Altered::new(&slow(), move |toward, packet: Passing| {
+        let is_burst = toward == Toward::Board && packet.is(Kind::Burst);
+        bursts += u32::from(is_burst);
+        if is_burst && bursts == 1 {
+            first = Some(packet.clone());
+        }
+        let old = first.take_if(|_| bursts == 3);
+        old.into_iter().chain([packet]).collect()
+    });
+    let report = soaked_by(board.candidate(), frames(3000), &RunOptions::default());
+    assert_eq!(soak(&report).frames, 3000, "{}", report.headline());
+    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert!(matches!(report.finding, Finding::RightInAnotherSession { .. }), "{}", report.headline());
+    assert!(!report.headline().contains("end what else"), "{}", report.headline());
+}
+
 /// Answers that are lost make requests come twice, and with them doubt. A fault that stays is none of the link's.
 #[test]
 fn over_a_link_that_loses_answers_sound_boards_do_not_fail_and_broken_ones_do_not_pass() {

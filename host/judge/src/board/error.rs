@@ -316,6 +316,19 @@ impl BoardError {
         }
     }
 
+    /// Whether the board said what no sound board says behind what it was asked.
+    #[must_use]
+    pub(crate) fn is_answer(&self) -> bool {
+        matches!(
+            self,
+            Self::Refused { .. }
+                | Self::Malformed { .. }
+                | Self::Unexpected { .. }
+                | Self::OtherBurst { .. }
+                | Self::WrongPlace { .. }
+        )
+    }
+
     /// Whether it shows that something is there that is no board for this run now, and no silence.
     #[must_use]
     pub(crate) fn is_of_somebody(&self) -> bool {

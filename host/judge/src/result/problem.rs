@@ -61,6 +61,19 @@ impl Problem {
         Self { remedy, causes: chain.collect(), ..first }
     }
 
+    /// It without what to do about it.
+    #[must_use]
+    pub(crate) fn unasked(mut self) -> Self {
+        let causes = self.causes.iter_mut().map(|cause| &mut cause.message);
+        for message in std::iter::once(&mut self.message).chain(causes) {
+            if let Some((what, _)) = message.rsplit_once("; ") {
+                *message = what.to_owned();
+            }
+        }
+        self.remedy = None;
+        self
+    }
+
     /// It and its causes, none of which has causes of its own.
     #[must_use]
     pub fn chain(mut self) -> Vec<Self> {

@@ -20,7 +20,7 @@ pub(super) enum End {
     /// The board is wrong.
     Failed { check: CheckName, finding: Finding, suspects: Vec<Suspect> },
     /// It could not be judged.
-    Error { check: CheckName, cause: Cause, finding: Finding, unreachable: bool, outage: bool },
+    Error { check: CheckName, cause: Cause, finding: Finding, unreachable: bool, outage: bool, answer: bool },
 }
 
 impl End {
@@ -28,12 +28,14 @@ impl End {
     pub(super) fn board(check: CheckName, error: &BoardError) -> Self {
         let unreachable =
             matches!(error, BoardError::Link { .. } | BoardError::NoAnswer { .. } | BoardError::SessionLost);
-        let (cause, finding, outage) = (error.cause(), Problem::of(error).into(), error.is_outage());
-        Self::Error { check, cause, finding, unreachable, outage }
+        let (cause, finding) = (error.cause(), Problem::of(error).into());
+        let (outage, answer) = (error.is_outage(), error.is_answer());
+        Self::Error { check, cause, finding, unreachable, outage, answer }
     }
 
     pub(super) fn error(check: CheckName, cause: Cause, finding: impl Into<Finding>) -> Self {
-        Self::Error { check, cause, finding: finding.into(), unreachable: false, outage: false }
+        let finding = finding.into();
+        Self::Error { check, cause, finding, unreachable: false, outage: false, answer: false }
     }
 
     pub(super) fn failed(check: CheckName, finding: Finding) -> Self {
@@ -46,6 +48,15 @@ impl End {
             Self::Failed { check, finding, .. } => (*check, Outcome::Failed, finding),
             Self::Error { check, finding, .. } => (*check, Outcome::Error, finding),
         }
+    }
+
+    pub(super) fn is_failed(&self) -> bool {
+        matches!(self, Self::Failed { .. })
+    }
+
+    /// Whether the board said what no sound board says behind what the run asked of it.
+    pub(super) fn is_answer(&self) -> bool {
+        matches!(self, Self::Error { answer: true, .. })
     }
 
     pub(super) fn is_unreachable(&self) -> bool {

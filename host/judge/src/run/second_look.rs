@@ -1,4 +1,4 @@
-//! Everything once more, when a FAIL may come from a packet that was late.
+//! Everything once more, when a FAIL, or an answer that no sound board gives, may come from a packet that was late.
 //!
 //! A link that delivers a copy of an old request behind newer ones can leave a sound board with old tables, counters or
 //! settings. In a session of its own no copy of an earlier session means anything.
@@ -16,34 +16,41 @@ pub(super) const LOOKS: u32 = 3;
 const NONCE: u32 = 1 << 16;
 
 impl Run<'_> {
-    /// Does everything again that ended in `failed`, if an old copy of a request may have brought it about.
-    pub(super) fn look_again(&mut self, failed: End) -> Result<(), End> {
-        let mut failed = failed;
+    /// Does everything again that ended in `found`, if an old copy of a request may have brought it about.
+    pub(super) fn look_again(&mut self, found: End) -> Result<(), End> {
+        let mut found = found;
         for look in 1..=LOOKS {
-            let Some(doubt) = self.doubt(failed.check().0) else { return Err(failed) };
-            let (_, _, found) = failed.check();
-            tracing::warn!("{}; looking again, since {}", found.sentence(), doubt.sentence());
+            let Some(doubt) = self.doubt_of(&found) else { return Err(found) };
+            tracing::warn!("{}; looking again, since {}", found.check().2.sentence(), doubt.sentence());
             self.progress.step(Step::LookAgain);
-            self.open_session(look)?;
-            self.findings.begin_again();
-            match self.all_but_identity() {
-                Err(again @ End::Failed { .. }) => failed = again,
-                Err(error) => return Err(error),
-                Ok(()) => {
-                    let (check, _, found) = failed.check();
-                    let finding = Finding::RightInAnotherSession { found: Box::new(found.clone()), doubt };
-                    return Err(End::error(check, Cause::Station, finding));
-                }
+            match self.look(look) {
+                Ok(()) => return Err(right_in_another_session(&found, doubt)),
+                // An answer that no sound board gives says less than what was found wrong.
+                Err(again) if again.is_failed() || again.is_answer() && !found.is_failed() => found = again,
+                Err(again) if again.is_answer() && self.doubt_of(&again).is_some() => {}
+                Err(again) => return Err(again),
             }
         }
-        match self.doubt(failed.check().0) {
-            None => Err(failed),
+        match self.doubt_of(&found) {
+            None => Err(found),
             Some(doubt) => {
-                let (check, _, found) = failed.check();
-                let finding = Finding::WrongOverDoubtfulLink { found: Box::new(found.clone()), doubt };
-                Err(End::error(check, Cause::Station, finding))
+                let finding = Finding::WrongOverDoubtfulLink { found: unasked(&found), doubt };
+                Err(End::error(found.check().0, Cause::Station, finding))
             }
         }
+    }
+
+    /// Does everything in another session, `number` of those of the run, from 1.
+    fn look(&mut self, number: u32) -> Result<(), End> {
+        self.open_session(number)?;
+        self.findings.begin_again();
+        self.all_but_identity()
+    }
+
+    /// Why what ended the run may come from the link. That nothing is known of the link is no reason to doubt an error.
+    pub(super) fn doubt_of(&mut self, end: &End) -> Option<Doubt> {
+        let doubt = self.doubt(end.check().0)?;
+        (end.is_failed() || doubt != Doubt::PacketsUncounted {}).then_some(doubt)
     }
 
     /// Opens a session in which no copy of an earlier one's requests means anything, `number` of those of the run, from 1.
@@ -71,4 +78,17 @@ impl Run<'_> {
         let is_doubtful = counted > sent || counters_alone && counted != sent;
         is_doubtful.then_some(Doubt::PacketsMiscounted { counted, sent })
     }
+}
+
+/// What `end` found, without what it asks for where that is of a board that no link disturbs.
+pub(super) fn unasked(end: &End) -> Box<Finding> {
+    Box::new(match end.check().2.clone() {
+        Finding::Problem(problem) => problem.unasked().into(),
+        found => found,
+    })
+}
+
+fn right_in_another_session(found: &End, doubt: Doubt) -> End {
+    let finding = Finding::RightInAnotherSession { found: unasked(found), doubt };
+    End::error(found.check().0, Cause::Station, finding)
 }

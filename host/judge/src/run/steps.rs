@@ -52,8 +52,8 @@ impl Run<'_> {
         self.identity()?;
         match self.all_but_identity() {
             // A soak has looked again at each burst by itself.
-            Err(failed) if self.findings.soak.is_some() => Err(failed),
-            Err(failed @ End::Failed { .. }) => self.look_again(failed),
+            Err(found) if self.findings.soak.is_some() => Err(found),
+            Err(found) if found.is_failed() || found.is_answer() => self.look_again(found),
             ended => ended,
         }
     }

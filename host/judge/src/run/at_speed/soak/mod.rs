@@ -15,7 +15,7 @@ use crate::progress::{Event, Step};
 use crate::result::{CheckName, Doubt, Finding, SoakInterval, SoakLength};
 use crate::run::findings::{During, End};
 use crate::run::plan::{DECOY, Generation, JUDGED, Segment};
-use crate::run::second_look::LOOKS;
+use crate::run::second_look::{LOOKS, unasked};
 use crate::run::steps::Run;
 use crate::verdict::Cause;
 use account::{Account, LONGEST_BURST, counted};
@@ -27,13 +27,16 @@ fn is_trapped(draw: u32) -> bool {
     draw % 2 == 1
 }
 
-/// What differed in a burst, or in the tables in front of it.
-fn difference(played: &Result<Played, End>) -> Option<Finding> {
-    match played {
-        Ok(played) => played.finding(),
-        Err(End::Failed { finding, .. }) => Some(finding.clone()),
-        Err(End::Error { .. }) => None,
-    }
+/// What differed in a burst, or in the tables in front of it, or what the board said of it that no sound board says.
+fn difference(played: &Result<Played, End>) -> Option<End> {
+    let ended = match played {
+        Ok(played) => match played.finding() {
+            Some(finding) => return Some(End::failed(CheckName::AtSpeed, finding)),
+            None => played.ended.as_ref().err(),
+        },
+        Err(end) => Some(end),
+    };
+    ended.filter(|end| end.is_failed() || end.is_answer()).cloned()
 }
 
 /// Ends a soak whose burst as `plan` had `time` and brought no frame: with one as long as any, that would go on for ever.
@@ -145,13 +148,15 @@ impl Run<'_> {
                 }
                 return played.ended;
             };
-            let Some(doubt) = self.doubt(CheckName::AtSpeed) else {
+            let Some(doubt) = self.doubt_of(&found) else {
                 let played = played?;
-                self.look_into(account, &played);
+                if found.is_failed() {
+                    self.look_into(account, &played);
+                }
                 return played.ended;
             };
-            tracing::warn!("{}; made again, since {}", found.sentence(), doubt.sentence());
-            *doubtful = Some((found, doubt));
+            tracing::warn!("{}; made again, since {}", found.check().2.sentence(), doubt.sentence());
+            *doubtful = Some((*unasked(&found), doubt));
             self.open_another_session()?;
         }
         doubtful.take().map_or(Ok(()), |doubtful| Err(wrong_over_doubtful_link(doubtful)))
