@@ -13,6 +13,7 @@ mod echoes;
 mod exercised;
 mod late_answers;
 mod lost_rows;
+mod outages;
 mod recordings;
 mod refusals;
 mod rules;

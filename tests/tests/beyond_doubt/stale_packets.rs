@@ -112,9 +112,9 @@ enum Ends {
 }
 
 /// A link that breaks when it is told to.
-struct Breakable {
-    link: Box<dyn Link>,
-    is_cut: Arc<AtomicBool>,
+pub(super) struct Breakable {
+    pub(super) link: Box<dyn Link>,
+    pub(super) is_cut: Arc<AtomicBool>,
 }
 
 impl Link for Breakable {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::wording;
+use super::{Finding, wording};
 
 /// Why a board may not be as the host made it, although it is sound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -32,4 +32,15 @@ impl Doubt {
     pub fn sentence(self) -> String {
         wording::because(self)
     }
+}
+
+/// What was to be looked at again, and why that came to nothing.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BrokenOff {
+    /// What was wrong.
+    pub found: Finding,
+    /// Why it may come from the link.
+    pub doubt: Doubt,
+    /// What the look in another session ended with.
+    pub reason: Finding,
 }

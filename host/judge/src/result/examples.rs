@@ -1,8 +1,8 @@
 //! One of every finding and of every defect, for the page of codes and for tests.
 
 use super::{
-    Account, Answer, BoardKind, BurstCount, ClampEnd, Corner, Counter, Counting, Defect, Doubt, Extent,
-    Finding, MadeWith, Memory, NoBurst, NotExercised, Problem, Reading, Repetition, RowSource, Rule,
+    Account, Answer, BoardKind, BrokenOff, BurstCount, ClampEnd, Corner, Counter, Counting, Defect, Doubt,
+    Extent, Finding, MadeWith, Memory, NoBurst, NotExercised, Problem, Reading, Repetition, RowSource, Rule,
     StaleFrames, Suspect,
 };
 use crate::verdict::Verdict;
@@ -135,7 +135,7 @@ fn on_entry_and_at_speed() -> [Finding; 5] {
     ]
 }
 
-fn unjudged() -> [Finding; 11] {
+fn unjudged() -> [Finding; 12] {
     let reason = Problem::new("no-answer", "no answer to ECHO in 8 tries; check that the board is powered");
     [
         Finding::RowLostOnce { row: 3, frame: 2 },
@@ -150,6 +150,11 @@ fn unjudged() -> [Finding; 11] {
             found: Box::new(Finding::CommitCrcWrong {}),
             doubt: Doubt::PacketsMiscounted { counted: 513, sent: 512 },
         },
+        Finding::SecondLookBrokenOff(Box::new(BrokenOff {
+            found: Finding::TableCrcWrong {},
+            doubt: Doubt::RequestsTwice { requests: 2 },
+            reason: reason.clone().into(),
+        })),
         Finding::NothingJudged {},
         Finding::DatapathUnknown { datapath: 3, known: 1 },
         Finding::HardwareRequired { board: BoardKind::Mock },

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Account, Answer, BoardKind, BurstCount, Corner, Counter, Defect, Doubt, NoBurst, Problem, Repetition,
-    Rule,
+    Account, Answer, BoardKind, BrokenOff, BurstCount, Corner, Counter, Defect, Doubt, NoBurst, Problem,
+    Repetition, Rule,
 };
 
 /// What a check or a whole run came to. In JSON `{"code": …, "parameters": …}`; a [`Problem`] has its own code.
@@ -368,6 +368,8 @@ pub enum Finding {
         /// Why it may come from the link.
         doubt: Doubt,
     },
+    /// What was wrong may come from the link, and the look in another session broke off.
+    SecondLookBrokenOff(Box<BrokenOff>),
     /// No frame came back.
     NothingJudged {},
     /// The board computes another datapath than this program judges.

@@ -50,7 +50,7 @@ pub use counter::Counter;
 pub use coverage::CoverageReport;
 pub use defect::{ClampEnd, Counting, Defect, MadeWith, Memory, Reading, RowSource, StaleFrames};
 pub use document::{Document, SCHEMA, Schema};
-pub use doubt::Doubt;
+pub use doubt::{BrokenOff, Doubt};
 pub use evidence::{Evidence, EvidenceReport};
 pub use extent::Extent;
 pub use finding::Finding;

@@ -130,7 +130,8 @@ impl Run<'_> {
         }
     }
 
-    fn come_back(&mut self, end: End) -> Result<(), End> {
+    /// Waits for a board that went away with `end`. Returns any other end as it is.
+    pub(super) fn come_back(&mut self, end: End) -> Result<(), End> {
         let again = self.findings.link.reconnections.len() < MOST;
         let Some(patience) = self.way_back.patience().filter(|_| end.is_outage() && again) else {
             return Err(end);

@@ -7,7 +7,7 @@ use super::counters::is_contradictory;
 use super::findings::{During, End};
 use super::steps::Run;
 use crate::progress::Step;
-use crate::result::{CheckName, Doubt, Finding};
+use crate::result::{BrokenOff, CheckName, Doubt, Finding};
 use crate::verdict::Cause;
 
 /// How often it is all done again until no request comes to the board twice.
@@ -28,21 +28,24 @@ impl Run<'_> {
                 // An answer that no sound board gives says less than what was found wrong.
                 Err(again) if again.is_failed() || again.is_answer() && !found.is_failed() => found = again,
                 Err(again) if again.is_answer() && self.doubt_of(&again).is_some() => {}
-                Err(again) => return Err(again),
+                Err(again) => return Err(broken_off(again, &found, doubt)),
             }
         }
         match self.doubt_of(&found) {
             None => Err(found),
             Some(doubt) => {
-                let finding = Finding::WrongOverDoubtfulLink { found: unasked(&found), doubt };
+                let finding = Finding::WrongOverDoubtfulLink { found: Box::new(unasked(&found)), doubt };
                 Err(End::error(found.check().0, Cause::Station, finding))
             }
         }
     }
 
-    /// Does everything in another session, `number` of those of the run, from 1.
+    /// Does everything in another session, `number` of those of the run, from 1. A board that goes away in front of it and comes back
+    /// is in one.
     fn look(&mut self, number: u32) -> Result<(), End> {
-        self.open_session(number)?;
+        if let Err(end) = self.open_session(number) {
+            self.come_back(end)?;
+        }
         self.findings.begin_again();
         self.all_but_identity()
     }
@@ -81,14 +84,23 @@ impl Run<'_> {
 }
 
 /// What `end` found, without what it asks for where that is of a board that no link disturbs.
-pub(super) fn unasked(end: &End) -> Box<Finding> {
-    Box::new(match end.check().2.clone() {
+pub(super) fn unasked(end: &End) -> Finding {
+    match end.check().2.clone() {
         Finding::Problem(problem) => problem.unasked().into(),
         found => found,
-    })
+    }
 }
 
 fn right_in_another_session(found: &End, doubt: Doubt) -> End {
-    let finding = Finding::RightInAnotherSession { found: unasked(found), doubt };
+    let finding = Finding::RightInAnotherSession { found: Box::new(unasked(found)), doubt };
     End::error(found.check().0, Cause::Station, finding)
+}
+
+/// What kept a second look from its end, behind what it was to clear up.
+fn broken_off(mut end: End, found: &End, doubt: Doubt) -> End {
+    if let End::Error { finding, .. } = &mut end {
+        let (found, reason) = (unasked(found), finding.clone());
+        *finding = Finding::SecondLookBrokenOff(Box::new(BrokenOff { found, doubt, reason }));
+    }
+    end
 }

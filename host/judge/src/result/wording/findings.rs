@@ -4,6 +4,8 @@ use super::{at_speed, designer, evidence, place, rules};
 use crate::report::wording::{board_name, count, differ, grouped};
 use crate::result::{Account, BoardKind, Defect, Doubt, Finding};
 
+const CHECK_THE_LINK: &str = "Check the link, and run again.";
+
 /// A finding in one sentence, without a full stop.
 #[must_use]
 pub fn sentence(finding: &Finding) -> String {
@@ -220,6 +222,12 @@ fn perhaps_of_link(finding: &Finding) -> String {
             sentence(found),
             because(*doubt)
         ),
+        Finding::SecondLookBrokenOff(it) => format!(
+            "{}; that may have come from the link, since {}, and the look in another session broke off: {}",
+            sentence(&it.found),
+            because(it.doubt),
+            sentence(&it.reason)
+        ),
         other => unjudged(other),
     }
 }
@@ -268,6 +276,9 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         }
         Finding::TableReadsWrong { defect, .. } => return Some(designer(defect)),
         Finding::TablesChanged { found } => return remedy(found),
+        Finding::SecondLookBrokenOff(it) => {
+            return Some(remedy(&it.reason).unwrap_or_else(|| CHECK_THE_LINK.to_owned()));
+        }
         Finding::SamplesDiffer { suspect: Some(suspect), .. }
         | Finding::DiffersAtSpeed { suspect: Some(suspect), .. } => return Some(designer(suspect)),
         Finding::SamplesDiffer { suspect: None, .. } => super::MAPS,
@@ -334,7 +345,7 @@ fn asked_of_caller(finding: &Finding) -> Option<String> {
         Finding::RowLostOnce { .. } => "Check cable and connectors, and run again.".to_owned(),
         Finding::RowLostAmongOthers { .. } => "Check cable, connectors and rate.".to_owned(),
         Finding::RightInAnotherSession { .. } | Finding::WrongOverDoubtfulLink { .. } => {
-            "Check the link, and run again.".to_owned()
+            CHECK_THE_LINK.to_owned()
         }
         _ => return None,
     })

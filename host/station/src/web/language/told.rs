@@ -9,6 +9,8 @@ use crate::said::Said;
 const ENGLISH: &str = "en";
 /// Parameters that say what a finding is about: what is to be done is asked of them first.
 const ABOUT: [&str; 4] = ["suspect", "defect", "found", "reason"];
+/// The parameter of a finding that may come from the link.
+const DOUBT: &str = "doubt";
 /// Parameters that are seconds.
 const TIMES: [&str; 4] = ["at", "seconds", "deadline", "waited"];
 
@@ -85,7 +87,9 @@ impl Words {
     }
 
     fn asked(&self, code: &str, parameters: &Value) -> Option<String> {
-        let inner = ABOUT.iter().find_map(|name| {
+        // What may come from the link asks for nothing of the board.
+        let about = if parameters.get(DOUBT).is_some() { &[] } else { &ABOUT[..] };
+        let inner = about.iter().find_map(|name| {
             let about = parameters.get(name)?;
             self.asked(about.get("code")?.as_str()?, about.get("parameters").unwrap_or(&Value::Null))
         });
@@ -251,6 +255,19 @@ mod tests {
         assert_eq!(german(&differ).0, told);
         let asked = of(Some("de"), None).remedy(Some(&differ), "in English");
         assert!(asked.text.starts_with("Bitstream neu laden") && asked.foreign.is_none(), "{asked:?}");
+        let doubted = said(
+            "wrong-over-doubtful-link",
+            json!({
+                "found": { "code": "table-crc-wrong", "parameters": {} },
+                "doubt": { "of": "requests-twice", "requests": 1 },
+            }),
+        );
+        let link = "Kabel und Verbindung prüfen, dann noch einmal prüfen";
+        assert_eq!(of(Some("de"), None).remedy(Some(&doubted), "in English").text, format!("{link}."));
+        let doubted = Said { message: "it may be; check the link, and run again".to_owned(), ..doubted };
+        let (why, asked) = of(Some("de"), None).parted(&doubted, Some("Check the link, and run again."));
+        assert!(why.text.ends_with("das kann von der Verbindung kommen"), "{why:?}");
+        assert_eq!(asked.unwrap().text, link);
         let missing = said("row-missing", json!({ "place": { "frame": 2, "row": 3 }, "attempts": 8 }));
         assert_eq!(german(&missing).0, "Zeile 3 von Bild 2 kam in 8 Versuchen nicht zurück");
         assert_eq!(of(Some("de"), None).remedy(None, "Look.").foreign, Some("en"));

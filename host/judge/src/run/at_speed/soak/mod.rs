@@ -156,7 +156,7 @@ impl Run<'_> {
                 return played.ended;
             };
             tracing::warn!("{}; made again, since {}", found.check().2.sentence(), doubt.sentence());
-            *doubtful = Some((*unasked(&found), doubt));
+            *doubtful = Some((unasked(&found), doubt));
             self.open_another_session()?;
         }
         doubtful.take().map_or(Ok(()), |doubtful| Err(wrong_over_doubtful_link(doubtful)))
