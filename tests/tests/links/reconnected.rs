@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use halfrow::result::Report;
+use halfrow::result::{NotExercised, Report};
 use halfrow::verdict::Cause;
 use halfrow_tests::dice::Dice;
 use halfrow_tests::parallel;
@@ -93,6 +93,27 @@ fn another_board_is_not_taken_for_the_one_that_went_away() {
         "{}",
         report.headline()
     );
+}
+
+/// An ECP5 has no number: two of one build look alike.
+#[test]
+fn of_a_board_without_a_number_that_came_back_it_is_told_that_it_may_be_another() {
+    for (board, is_known) in [("mock", false), ("mock,serial=17", true)] {
+        let folder = Folder::new();
+        let path = folder.path().join("board");
+        let served = Served::unplugged_once(board, &path, 3000, Some(Replug::Switched(board.to_owned())));
+        let target = served.target();
+        let report = come_to_an_end(move || System::TINY.judge_patiently(&target, Some(PATIENCE)));
+        assert_eq!(
+            (report.cause, report.link.reconnections.len()),
+            (Cause::Equal, 1),
+            "{}",
+            report.headline()
+        );
+        assert_eq!(!report.not_exercised.contains(&NotExercised::SameBoard {}), is_known, "{board}");
+    }
+    let undisturbed = System::TINY.judge_at("mock");
+    assert!(!undisturbed.not_exercised.contains(&NotExercised::SameBoard {}));
 }
 
 #[test]

@@ -182,6 +182,7 @@ pub fn not_exercised() -> Vec<NotExercised> {
         NotExercised::Rules {},
         NotExercised::Grids {},
         NotExercised::CountersOfPoorLinks {},
+        NotExercised::SameBoard {},
         NotExercised::Depths { bits: vec![8, 10] },
     ]
 }

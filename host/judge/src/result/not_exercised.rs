@@ -70,6 +70,8 @@ pub enum NotExercised {
     /// Counters that are compared over a sound link alone, of a board that counts damaged packets, or others than were sent, where
     /// the host saw nothing go wrong.
     CountersOfPoorLinks {},
+    /// Whether one board did all of it: the one that came back has no serial number, as the one that went away has none.
+    SameBoard {},
     /// Depths of the board that no frame had.
     Depths {
         /// Bits of a sample, each.

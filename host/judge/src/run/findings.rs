@@ -107,6 +107,8 @@ pub(super) struct Findings {
     pub(super) not_exercised: Vec<NotExercised>,
     /// Whether counters were not compared for what the board alone says of its link.
     pub(super) leaves_counters_out: bool,
+    /// Whether a board came back that has no number to be known by.
+    pub(super) is_unknown: bool,
     /// What was left untouched at the full pixel clock.
     pub(super) untested_at_speed: Vec<NotExercised>,
     /// Tables that frames in corners were made with, at the full pixel clock.
@@ -139,6 +141,7 @@ impl Findings {
             repeats_counted: 0,
             not_exercised: Vec::new(),
             leaves_counters_out: false,
+            is_unknown: false,
             untested_at_speed: Vec::new(),
             corners: Vec::new(),
             whole_at_speed: Vec::new(),
@@ -184,6 +187,7 @@ impl Findings {
         self.checks.retain(|check| matches!(check.name, CheckName::Judge | CheckName::Identity));
         self.not_exercised.clear();
         self.leaves_counters_out = false;
+        self.is_unknown = false;
         self.untested_at_speed.clear();
         self.corners.clear();
         self.whole_at_speed.clear();

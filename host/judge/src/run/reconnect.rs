@@ -145,6 +145,8 @@ impl Run<'_> {
             && board.welcome.build == self.board.welcome.build
             && board.capabilities == self.board.capabilities;
         *self.board = board;
+        // Two boards of one build that have no number look alike.
+        self.findings.is_unknown |= self.board.welcome.serial == 0;
         if is_same {
             return Ok(());
         }

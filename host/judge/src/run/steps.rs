@@ -133,6 +133,8 @@ impl Run<'_> {
         let untried = !self.findings.has_passed(CheckName::Rules);
         self.findings.not_exercised.extend(untried.then_some(NotExercised::Rules {}));
         self.findings.not_exercised.extend(no_grid.then_some(NotExercised::Grids {}));
+        let is_unknown = self.findings.is_unknown;
+        self.findings.not_exercised.extend(is_unknown.then_some(NotExercised::SameBoard {}));
         self.findings
             .not_exercised
             .extend(leaves_counters_out.then_some(NotExercised::CountersOfPoorLinks {}));

@@ -37,6 +37,9 @@ pub fn not_exercised(part: &NotExercised) -> String {
         NotExercised::CountersOfPoorLinks {} => {
             "counters that a poor link moves as well, since the board counts damaged packets, or others than were sent".to_owned()
         }
+        NotExercised::SameBoard {} => {
+            "that the board that came back is the one that went away, since it has no serial number".to_owned()
+        }
         NotExercised::Depths { bits } => {
             let depths: Vec<_> = bits.iter().map(u32::to_string).collect();
             format!("samples of {} bits", depths.join(" or "))
