@@ -7,11 +7,11 @@ use std::time::Duration;
 
 use halfrow::link::{Candidate, Link};
 use halfrow::progress::Silent;
-use halfrow::result::{CheckName, Finding, Outcome, Report};
-use halfrow::run::{RunOptions, verify};
+use halfrow::result::{CheckName, Finding, Outcome, Report, SoakLength};
+use halfrow::run::{Plan, RunOptions, verify};
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
-use halfrow_protocol::message::RowOut;
+use halfrow_protocol::message::{Records, RowOut};
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::patience::LIMIT;
@@ -46,6 +46,16 @@ fn board(wrong: bool) -> Box<dyn Link> {
     Altered::new(&Options::default(), alter).candidate().link
 }
 
+/// A board behind packets that `alter` rewrites, over a link that can be cut.
+fn breakable(
+    alter: impl FnMut(Toward, Passing) -> Vec<Passing> + Send + 'static,
+    is_cut: Arc<AtomicBool>,
+) -> Candidate {
+    let candidate = Altered::new(&Options::default(), alter).candidate();
+    let link: Box<dyn Link> = Box::new(Breakable { link: candidate.link, is_cut });
+    Candidate { link, ..candidate }
+}
+
 /// The report on such a board over a link that brings the first CONFIGURE twice and breaks at the greeting of the next session. The
 /// board comes back if the run waits for it so long.
 fn unplugged_in_front_of_the_second_look(wrong: Wrong, reconnect: Option<Duration>) -> Report {
@@ -61,9 +71,7 @@ fn unplugged_in_front_of_the_second_look(wrong: Wrong, reconnect: Option<Duratio
         let twice = is_first.then(|| packet.clone());
         twice.into_iter().chain([packet]).collect()
     };
-    let candidate = Altered::new(&Options::default(), alter).candidate();
-    let link: Box<dyn Link> = Box::new(Breakable { link: candidate.link, is_cut });
-    let candidate = Candidate { link, ..candidate };
+    let candidate = breakable(alter, is_cut);
     let back = move || Ok::<_, std::io::Error>(board(wrong == Wrong::Always));
     let candidate = Candidate { reopen: Some(Box::new(move || back().map_err(Into::into))), ..candidate };
     let options = RunOptions { reconnect, ..RunOptions::default() };
@@ -91,4 +99,27 @@ fn what_was_found_is_told_although_the_link_broke_in_front_of_the_second_look() 
     assert!(report.remedy().is_some_and(|remedy| remedy.contains("cable")), "{:?}", report.remedy());
     let failed = report.checks.iter().filter(|check| check.outcome == Outcome::Failed);
     assert_eq!(failed.map(|check| check.name).collect::<Vec<CheckName>>(), []);
+}
+
+/// BURST comes twice, a frame has another signature, and the link breaks at the greeting of the session in which it is made again.
+#[test]
+fn a_soak_that_breaks_off_in_front_of_a_second_look_tells_what_differed() {
+    let is_cut = Arc::new(AtomicBool::new(false));
+    let (cut, mut greetings) = (Arc::clone(&is_cut), 0);
+    let alter = move |toward, mut packet: Passing| {
+        greetings += usize::from(toward == Toward::Board && packet.is(Kind::Hello));
+        cut.store(greetings > 1, Ordering::Relaxed);
+        if toward == Toward::Host && packet.is(Kind::Records) {
+            packet.payload.get_mut(Records::HEAD).into_iter().for_each(|byte| *byte ^= 1);
+        }
+        let twice = (toward == Toward::Board && packet.is(Kind::Burst)).then(|| packet.clone());
+        twice.into_iter().chain([packet]).collect()
+    };
+    let soak = Some(SoakLength::Frames { frames: 3 });
+    let plan = Plan { soak, fail_fast: false, ..System::TINY.plan() };
+    let report = verify(&plan, breakable(alter, is_cut), &RunOptions::default(), &Silent).unwrap().report;
+    assert_eq!((report.verdict, report.cause), (Verdict::Error, Cause::Station), "{}", report.headline());
+    let Finding::SecondLookBrokenOff(broken_off) = &report.finding else { panic!("{}", report.headline()) };
+    assert!(matches!(broken_off.found, Finding::DiffersAtSpeed { .. }), "{}", report.headline());
+    assert_eq!(broken_off.reason.code(), "link-broke");
 }

@@ -28,7 +28,7 @@ impl Run<'_> {
                 // An answer that no sound board gives says less than what was found wrong.
                 Err(again) if again.is_failed() || again.is_answer() && !found.is_failed() => found = again,
                 Err(again) if again.is_answer() && self.doubt_of(&again).is_some() => {}
-                Err(again) => return Err(broken_off(again, &found, doubt)),
+                Err(again) => return Err(broken_off(again, unasked(&found), doubt)),
             }
         }
         match self.doubt_of(&found) {
@@ -97,9 +97,9 @@ fn right_in_another_session(found: &End, doubt: Doubt) -> End {
 }
 
 /// What kept a second look from its end, behind what it was to clear up.
-fn broken_off(mut end: End, found: &End, doubt: Doubt) -> End {
+pub(super) fn broken_off(mut end: End, found: Finding, doubt: Doubt) -> End {
     if let End::Error { finding, .. } = &mut end {
-        let (found, reason) = (unasked(found), finding.clone());
+        let reason = finding.clone();
         *finding = Finding::SecondLookBrokenOff(Box::new(BrokenOff { found, doubt, reason }));
     }
     end

@@ -9,6 +9,7 @@ use crate::result::{
 use crate::run::at_speed::burst::BurstPlan;
 use crate::run::at_speed::watched::Watched;
 use crate::run::findings::End;
+use crate::run::second_look::broken_off;
 use crate::verdict::Cause;
 
 use super::played::Played;
@@ -114,13 +115,18 @@ impl Account {
     /// Ends it at `now` on the run's clock with the first of these that there is:
     ///
     /// 1. a difference that is the board's, since nothing that comes later makes it right;
-    /// 2. what `ended` the bursts early;
+    /// 2. what `ended` the bursts early, behind a difference that no other session could be asked about;
     /// 3. a difference that may have come from the link;
     /// 4. that there was no frame to judge.
     pub(super) fn end(&mut self, now: Duration, ended: Result<(), End>) -> Result<(), End> {
         self.report.seconds = now.saturating_sub(self.begun).as_secs_f64();
         match (self.first.take(), ended, self.first_doubtful.take()) {
             (Some(end), _, _) => Err(self.of_all_frames(end)),
+            (
+                None,
+                Err(end),
+                Some(End::Error { finding: Finding::WrongOverDoubtfulLink { found, doubt }, .. }),
+            ) => Err(broken_off(end, *found, doubt)),
             (None, Err(end), _) | (None, Ok(()), Some(end)) => Err(end),
             (None, Ok(()), None) if self.report.frames == 0 => {
                 Err(End::error(CheckName::AtSpeed, Cause::NothingJudged, Finding::NothingJudged {}))
