@@ -6,6 +6,7 @@ An expression, condition or step that is not known here is an error, never passe
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import xml.etree.ElementTree
@@ -44,24 +45,28 @@ def outputs(file):
     return dict(line.split("=", 1) for line in file.read_text().splitlines())
 
 
-def use(step, known, work):
-    """What actions of GitHub itself do, as far as it matters here."""
+def use(step, known, work, failed):
+    """What actions of GitHub itself do, as far as it matters here, behind steps of which one may have failed."""
     match step["uses"].split("@")[0]:
         case "actions/cache":
             return {"cache-hit": ""}
         case "actions/upload-artifact":
+            name = filled(step["with"]["name"], known)
+            assert name and "/" not in name, f"GitHub takes no artefact of the name `{name}`"
             kept = list((work / filled(step["with"]["path"], known)).rglob("*"))
-            assert kept or step["with"]["if-no-files-found"] != "error", "there is nothing to keep"
+            assert kept or failed or step["with"]["if-no-files-found"] != "error", "there is nothing to keep"
             return {}
     raise ValueError(f"{step['uses']} is not known here")
 
 
-def github(folder, inputs):
-    """Runs the action: its exit code, and what it shows."""
+def github(folder, inputs, earlier=None):
+    """Runs the action, in a folder with the report of an `earlier` run if there is one: its exit code, and what it shows."""
     action = read("verify/action.yml")
     work, shown = folder / "work", folder / "shown"
     (folder / "temporary").mkdir(parents=True)
     work.mkdir()
+    if earlier:
+        shutil.copytree(earlier, work / inputs["report"])
     shown.touch()
     defaults = {name: each["default"] for name, each in action["inputs"].items()}
     known = {"inputs": defaults | inputs, "steps": {}, "runner": {"os": "Linux", "arch": "X64", "temp": str(folder / "temporary")}}
@@ -72,7 +77,7 @@ def github(folder, inputs):
         told = folder / f"outputs-{number}"
         told.touch()
         if "uses" in step:
-            known["steps"][step.get("id", number)] = {"outputs": use(step, known, work)}
+            known["steps"][step.get("id", number)] = {"outputs": use(step, known, work, failed)}
             continue
         variables = {name: filled(value, known) for name, value in step.get("env", {}).items()}
         variables |= {"GITHUB_ACTION_PATH": str(folder.parent / "action/ci/verify"), "GITHUB_OUTPUT": str(told),
@@ -115,6 +120,10 @@ def run(folder):
         told, failed, shown = github(folder / f"github-{row['name']}", given)
         assert (told, failed) == ("0", 0) and "| passed |" in shown and "FAIL" not in shown, (told, failed, shown)
         print(f"GitHub, {row['name']}: PASS, {shown.count('| passed |')} checks shown")
+    passed = folder / "github-mock/work/report-mock"
+    told, failed, shown = github(folder / "github-refused", {"report": "kept/report", "arguments": "--width 3"}, passed)
+    assert (told, failed) == ("2", 2) and "No report could be read" in shown, (told, failed, shown)
+    print("GitHub, a wrong call behind a PASS: refused, and nothing of the PASS is shown")
     told, failed, shown = github(folder / "github-broken", {"board": BROKEN})
     assert (told, failed) == ("1", 1) and "| FAIL |" in shown, (told, failed, shown)
     print("GitHub, a broken board: FAIL, shown and kept")

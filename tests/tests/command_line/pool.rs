@@ -23,6 +23,9 @@ fn verify(folder: &Folder, board: &str) -> Command {
     call
 }
 
+/// Where a report goes that may take the place of an earlier one.
+const INTO: [&str; 3] = ["--report", "out", "--overwrite"];
+
 /// What leases a board, and writes down when it is given back.
 const LEASES: &str = r#"#!/bin/sh
 echo "$@" > called
@@ -89,6 +92,17 @@ fn without_a_board_nothing_is_judged_and_it_is_said_why() {
         assert!(ended.code == Some(code) && ended.stderr.contains(said), "{board}: {ended:?}");
     }
     let folder = leased_by(nothing);
+    assert_eq!(finish(verify(&folder, "mock").args(INTO)).code, Some(0));
+    for extra in [&[][..], &["--within", "1"]] {
+        let ended = finish(verify(&folder, "pool:ulx3s").args(INTO).args(extra));
+        assert_eq!(ended.code, Some(3), "{ended:?}");
+        let report: serde_json::Value = serde_json::from_slice(&folder.read("out/report.json")).unwrap();
+        assert_eq!(
+            (&report["verdict"], &report["error"]["code"]),
+            (&"ERROR".into(), &"pool-without-board".into())
+        );
+        assert_eq!(report["board"]["target"], "pool:ulx3s");
+    }
     std::fs::remove_file(folder.path().join("halfrow-station")).unwrap();
     let ended = finish(&mut verify(&folder, "pool:ulx3s"));
     assert!(

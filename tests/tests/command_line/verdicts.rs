@@ -313,7 +313,10 @@ fn a_board_that_cannot_be_opened_has_a_report_too() {
         assert!(ended.stderr.contains(report["error"]["message"].as_str().unwrap()), "{report}");
         assert!(folder.text("out/report.xml").contains("errors=\"2\""));
     }
-    // A call that is wrong is no run.
+    // A call that is wrong is no run, and takes nothing away.
+    let wrong = folder.halfrow(small("verify", &[&into[..], &["--board", "serial"]].concat()));
+    assert_eq!(wrong.code, Some(2));
+    assert_eq!(folder.names("out"), ["report.html", "report.json", "report.xml"]);
     let wrong = folder.halfrow(small("verify", &["--report", "new", "--board", "serial"]));
     assert_eq!(wrong.code, Some(2));
     assert!(!folder.path().join("new").exists());

@@ -87,17 +87,21 @@ impl BoardArguments {
 
     /// The recording that the target names, if it is one.
     pub(super) fn replayed(&self, settings: &Settings) -> Result<Option<PathBuf>, Failure> {
-        Ok(link::recording_file(&self.target(settings)?).map(Path::to_owned))
+        Ok(link::recording_file(&self.named(settings)?).map(Path::to_owned))
+    }
+
+    /// The board that is named, or the pool of them.
+    pub(super) fn named(&self, settings: &Settings) -> Result<Target, Failure> {
+        match (&self.board, &settings.board) {
+            (Some(target), _) => Ok(target.clone()),
+            (None, Some(text)) => text.parse().map_err(Failure::call),
+            (None, None) => Ok(Target::mock()),
+        }
     }
 
     /// The board that is named, or that was got of the pool that is.
     pub(super) fn target(&self, settings: &Settings) -> Result<Target, Failure> {
-        let named = match (&self.board, &settings.board) {
-            (Some(target), _) => target.clone(),
-            (None, Some(text)) => text.parse().map_err(Failure::call)?,
-            (None, None) => Target::mock(),
-        };
-        pool::resolved(named).map_err(|error| match error {
+        pool::resolved(self.named(settings)?).map_err(|error| match error {
             PoolError::NoKind => Failure::call(error),
             error => Failure::error(error),
         })

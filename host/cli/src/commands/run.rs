@@ -13,16 +13,18 @@ use super::given::{Given, yes_or_no};
 use super::inputs::file_hash;
 use super::optics::{self, LensArguments};
 use super::table_file::{NamedTables, TableArgument};
-use super::{Context, Failure};
+use super::{Context, Failure, codes};
 use crate::exit::Exit;
+use crate::pool::PoolError;
 use crate::settings::Settings;
 use crate::{console, flags, text};
 use halfrow::call::{self, Files};
-use halfrow::link::{Class, OpenError, RecordingFile};
+use halfrow::link::RecordingFile;
 use halfrow::optics::Chosen;
 use halfrow::report::{self, ReportFolder};
 use halfrow::run::{self, Circumstances, Finished, Lack, Plan, RunOptions};
 use halfrow::target::Target;
+use halfrow::verdict::Cause;
 
 #[derive(Debug, Args)]
 pub(super) struct RunArguments {
@@ -177,6 +179,28 @@ impl RunArguments {
         let recording = record.map(|path| RecordingFile::prepare(path, overwrite)).transpose();
         Ok(Outputs { report: report.map_err(Failure::call)?, recording: recording.map_err(Failure::call)? })
     }
+
+    /// Writes the report of a run that a pool gave no board for, whose plan, options and input files `free` tells; and hands
+    /// the failure on.
+    pub(super) fn without_board(
+        &self,
+        failure: Failure,
+        context: &Context,
+        free: impl FnOnce() -> Result<(Plan, RunOptions, Vec<PathBuf>), Failure>,
+    ) -> Failure {
+        if failure.exit == Exit::Usage || !failure.error.is::<PoolError>() {
+            return failure;
+        }
+        let begun = free().and_then(|(plan, options, files)| {
+            let report = self.outputs(files, None, context)?.report;
+            Ok((plan, options, self.board.named(&context.settings)?, report))
+        });
+        match begun {
+            Ok((plan, options, target, report)) => not_begun(failure, (&plan, &options), &target, report),
+            // It would have been told what is wrong with the call, had there been a board.
+            Err(_) => failure,
+        }
+    }
 }
 
 /// The time of an `option` in seconds.
@@ -202,16 +226,23 @@ pub(super) fn conclude(
     Ok(report.cause.into())
 }
 
-/// Writes the report of a run whose board cannot be opened, so that nobody takes an earlier one for its own; and hands the failure on.
-pub(super) fn not_opened(
+/// Writes the report of a run that never began, as when its board cannot be opened, so that nobody takes an earlier one for its
+/// own; and hands the failure on. A call that is wrong is no run.
+pub(super) fn not_begun(
     failure: Failure,
     (plan, options): (&Plan, &RunOptions),
     target: &Target,
     folder: Option<ReportFolder>,
 ) -> Failure {
-    let error = failure.error.downcast_ref::<OpenError>().filter(|error| error.class() != Class::Call);
-    if let (Some(error), Some(folder)) = (error, folder)
-        && let Err(lack) = run::not_opened(plan, target, error, options).commit(folder)
+    let cause = match failure.exit {
+        Exit::Usage => return failure,
+        Exit::Busy => Cause::Busy,
+        Exit::Refused => Cause::Refused,
+        _ => Cause::Station,
+    };
+    let problem = codes::problem(failure.exit, &failure.error);
+    if let Some(folder) = folder
+        && let Err(lack) = run::not_begun(plan, target, cause, problem, options).commit(folder)
     {
         tell(&lack);
     }

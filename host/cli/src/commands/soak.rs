@@ -8,7 +8,7 @@ use halfrow_program::number::number;
 
 use super::board::refuse_recording;
 use super::given::Given;
-use super::run::{RunArguments, conclude, not_opened};
+use super::run::{RunArguments, conclude, not_begun};
 use super::{Context, Failure};
 use crate::exit::Exit;
 use crate::progress;
@@ -57,19 +57,26 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let files = run.input_files(settings);
     files.iter().try_for_each(|path| check_regular(path)).map_err(Failure::call)?;
     // Whoever waits for a board of a pool has no run yet that a signal could end in order.
-    refuse_recording(&run.board.target(settings)?)?;
+    let target = match run.board.target(settings) {
+        Ok(target) => target,
+        Err(failure) => {
+            let free =
+                || arguments.plan(&files, settings).map(|(plan, options)| (plan, options, files.clone()));
+            return Err(run.without_board(failure, context, free));
+        }
+    };
+    refuse_recording(&target)?;
     let (plan, options) = arguments.plan(&files, settings)?;
     run.board.check_fault(settings, &plan)?;
     let outputs = run.outputs(files, None, context)?;
-    let candidate = match run.board.candidate(settings) {
-        Ok(candidate) => candidate,
-        Err(failure) => {
-            return Err(not_opened(failure, (&plan, &options), &run.board.target(settings)?, outputs.report));
-        }
-    };
-    let watched = progress::for_stderr(context.quiet || context.json);
-    let finished = run::verify(&plan, candidate, &options, watched.as_ref())?;
-    conclude(finished, outputs.report, context)
+    let finished = run.board.candidate(settings).and_then(|candidate| {
+        let watched = progress::for_stderr(context.quiet || context.json);
+        Ok(run::verify(&plan, candidate, &options, watched.as_ref())?)
+    });
+    match finished {
+        Ok(finished) => conclude(finished, outputs.report, context),
+        Err(failure) => Err(not_begun(failure, (&plan, &options), &target, outputs.report)),
+    }
 }
 
 impl Arguments {

@@ -10,16 +10,16 @@ use super::board::{self, MOCK, Replays};
 use super::given::{Decider, Given};
 use super::inputs::{FrameName, InputArguments, frame_sources, tell_fitting};
 use super::listing;
-use super::run::{RunArguments, conclude, not_opened, seconds, tell};
+use super::run::{RunArguments, conclude, not_begun, seconds, tell};
 use super::{Context, Failure};
 use crate::exit::Exit;
 use crate::progress;
 use crate::settings::Settings;
 use halfrow::call;
 use halfrow::frames::{Builtin, check_regular};
-use halfrow::link::{self, Candidate, Lost, Recorder, Recording};
+use halfrow::link::{self, Candidate, Lost, Recorder, Recording, RecordingFile};
 use halfrow::optics::Chosen;
-use halfrow::run::{self, FrameSource, Plan, RecordedRun, RestoreError, RunOptions, Vary};
+use halfrow::run::{self, Finished, FrameSource, Plan, RecordedRun, RestoreError, RunOptions, Vary};
 
 #[derive(Debug, Args)]
 #[command(mut_args(|argument| board::helped(argument, Replays::Yes, MOCK)))]
@@ -63,7 +63,13 @@ fn within(text: &str) -> Result<f64, String> {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
     let board = &arguments.run.board;
-    let recording = board.recording(settings)?;
+    let recording = match board.recording(settings) {
+        Ok(recording) => recording,
+        Err(failure) if arguments.list => return Err(failure),
+        Err(failure) => {
+            return Err(arguments.run.without_board(failure, context, || arguments.free(context)));
+        }
+    };
     let frames = arguments.frames(settings)?;
     let files = arguments.input_files(&frames, settings);
     let (plan, options) = arguments.planned(recording.as_ref(), frames, &files, context)?;
@@ -74,25 +80,35 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         return listing::list(&plan, &target, context.json);
     }
     let outputs = arguments.run.outputs(files, arguments.record.as_deref(), context)?;
-    let mut candidate = match board.candidate_of(settings, recording) {
-        Ok(candidate) => candidate,
-        Err(failure) => {
-            return Err(not_opened(failure, (&plan, &options), &board.target(settings)?, outputs.report));
-        }
-    };
+    let finished = board
+        .candidate_of(settings, recording)
+        .and_then(|candidate| judge(candidate, (&plan, &options), outputs.recording, context));
+    match finished {
+        Ok(finished) => conclude(finished, outputs.report, context),
+        Err(failure) => Err(not_begun(failure, (&plan, &options), &board.target(settings)?, outputs.report)),
+    }
+}
+
+/// Judges the board behind `candidate`, and keeps what it answers if there is a file for it.
+fn judge(
+    mut candidate: Candidate,
+    (plan, options): (&Plan, &RunOptions),
+    recording: Option<RecordingFile>,
+    context: &Context,
+) -> Result<Finished, Failure> {
     let mut lost = Lost::default();
-    if let Some(file) = outputs.recording {
-        let run = RecordedRun::of(&plan, &options);
+    if let Some(file) = recording {
+        let run = RecordedRun::of(plan, options);
         let link = Recorder::begin(candidate.link, file, &run).map_err(Failure::error)?;
         lost = link.lost();
         candidate = Candidate { link: Box::new(link), ..candidate };
     }
     let watched = progress::for_stderr(context.quiet || context.json);
-    let mut finished = run::verify(&plan, candidate, &options, watched.as_ref())?;
+    let mut finished = run::verify(plan, candidate, options, watched.as_ref())?;
     if let Some(error) = lost.get() {
         tell(&finished.lose_recording(error));
     }
-    conclude(finished, outputs.report, context)
+    Ok(finished)
 }
 
 impl From<RestoreError> for Failure {
@@ -124,6 +140,14 @@ impl Arguments {
         plan.check_length().map_err(Failure::call)?;
         self.run.board.check_fault(settings, &plan)?;
         Ok((plan, options))
+    }
+
+    /// What is to be streamed on whatever board, and the files that it comes from.
+    fn free(&self, context: &Context) -> Result<(Plan, RunOptions, Vec<PathBuf>), Failure> {
+        let frames = self.frames(&context.settings)?;
+        let files = self.input_files(&frames, &context.settings);
+        let (plan, options) = self.plan(frames, &files, context)?;
+        Ok((plan, options, files))
     }
 
     /// What the options say is to be streamed, and where it comes from.

@@ -36,10 +36,11 @@ mod within;
 use tracing::error_span;
 
 use crate::board::OpenOptions;
-use crate::link::{Candidate, Link, OpenError, kinds};
+use crate::link::{Candidate, Link, kinds};
 use crate::progress::{Progress, Step};
 use crate::result::{CheckName, FileHash, Problem};
 use crate::target::{BoardKind, Target};
+use crate::verdict::Cause;
 
 use conclude::Begun;
 use findings::{End, Findings};
@@ -121,13 +122,20 @@ pub fn verify(
     span.in_scope(|| judge(plan, candidate, options, progress))
 }
 
-/// The report of a run by `plan` that never began, since the board of `target` cannot be opened.
+/// The report of a run by `plan` that never began for a `cause`, which `problem` tells, as when the board of `target` cannot be
+/// opened.
 #[must_use]
-pub fn not_opened(plan: &Plan, target: &Target, error: &OpenError, options: &RunOptions) -> Finished {
+pub fn not_begun(
+    plan: &Plan,
+    target: &Target,
+    cause: Cause,
+    problem: Problem,
+    options: &RunOptions,
+) -> Finished {
     let name = target.to_string();
     let kind = kinds::of(target).map_or(BoardKind::Hardware, |kind| kind.board);
     let findings = Findings::new(options, &name, kind, name.clone());
-    let end = End::error(CheckName::Identity, error.class().into(), Problem::of(error));
+    let end = End::error(CheckName::Identity, cause, problem);
     conclude::conclude(plan, findings, Some(end), options, Begun::now())
 }
 
