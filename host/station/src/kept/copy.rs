@@ -1,8 +1,9 @@
 //! Copies of a station's folder: the index of one moment, and every piece of evidence that it names.
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
+use std::fs::{self, DirBuilder, File, Permissions};
 use std::io;
+use std::os::unix::fs::{DirBuilderExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
 use crate::check::check;
@@ -103,7 +104,7 @@ fn made(to: &Path, fill: impl FnOnce(&Path) -> Result<Copied, CopyError>) -> Res
     if to.is_file() || (is_there && holds_anything(&to).map_err(refused)?) {
         return Err(exists());
     }
-    match fs::create_dir(&aside) {
+    match private_folder(&aside) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
             return Err(CopyError::UnderWay { path: aside });
         }
@@ -120,6 +121,11 @@ fn made(to: &Path, fill: impl FnOnce(&Path) -> Result<Copied, CopyError>) -> Res
         let _ = fs::remove_dir_all(&aside);
     }
     copied
+}
+
+/// Makes a folder that is for nobody else, whatever the umask: a copy has all that its station keeps from others.
+fn private_folder(path: &Path) -> io::Result<()> {
+    DirBuilder::new().mode(0o700).create(path)
 }
 
 /// Whether there is anything in `folder` but what a file system is made with.
@@ -161,11 +167,15 @@ fn into(from: &Folder, aside: &Path) -> Result<Copied, CopyError> {
     let to = Folder::new(aside);
     let refused = |source| CopyError::Io { path: aside.to_owned(), source };
     from.copy_database(&to.database())?;
-    File::open(to.database()).and_then(|file| file.sync_all()).map_err(refused)?;
+    let private = |file: File| {
+        file.set_permissions(Permissions::from_mode(0o600))?;
+        file.sync_all()
+    };
+    File::open(to.database()).and_then(private).map_err(refused)?;
     let spools = to.spools();
     let blobs = aside.join("blobs");
     for folder in [&spools, &blobs] {
-        fs::create_dir(folder).map_err(refused)?;
+        private_folder(folder).map_err(refused)?;
     }
     let copy = match Snapshot::take(&to) {
         Err(StoreError::Older { .. }) => {

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _};
+use std::path::Path;
 
 use halfrow_station::check::{Checked, check};
 use halfrow_station::history::runs::{Filter, Page, page};
@@ -93,6 +94,33 @@ fn a_folder_that_is_there_stays_the_one_that_it_is() {
     assert_eq!((after.ino(), after.mode()), (before.ino(), before.mode()));
     assert!(disk.join("lost+found").is_dir() && !disk.join(".partial").exists());
     assert_eq!(fs::read_dir(place.path()).unwrap().count(), 2, "nothing else is left there");
+}
+
+/// What anybody but the owner may do with what lies in `folder`, by its names.
+fn open_to_others(folder: &Path) -> Vec<(String, u32)> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| {
+        let entry = entry.unwrap();
+        (entry.file_name().into_string().unwrap(), entry.metadata().unwrap().mode() & 0o077)
+    });
+    entries.filter(|(_, mode)| *mode != 0).collect()
+}
+
+/// As the packaged station's own folder, wherever a copy lies and whatever makes it.
+#[test]
+fn a_copy_and_what_is_restored_of_it_are_for_nobody_else() {
+    let (made, place) = (made(), tempfile::tempdir().unwrap());
+    let [copy, into, again] = ["copy", "into", "again"].map(|name| place.path().join(name));
+    fs::create_dir(&into).unwrap();
+    fs::set_permissions(&into, fs::Permissions::from_mode(0o755)).unwrap();
+    backup(&made.folder(), &copy).unwrap();
+    backup(&made.folder(), &into).unwrap();
+    restore(&Folder::new(&copy), &again).unwrap();
+    for folder in [&copy, &into, &again] {
+        assert!(folder.join("station.db").is_file() && folder.join("blobs").is_dir());
+        assert_eq!(open_to_others(folder), [], "{}", folder.display());
+    }
+    // One that was there is whose it was.
+    assert_eq!(open_to_others(place.path()), [("into".to_owned(), 0o055)]);
 }
 
 #[test]
