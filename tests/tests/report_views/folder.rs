@@ -80,6 +80,30 @@ fn a_report_with_a_file_of_someone_else_in_it_is_left_alone() {
     assert!(path.join("notes.txt").exists());
 }
 
+/// As `mkdir -p` and `mktemp -d` make one before a run.
+#[test]
+fn an_empty_folder_is_a_place_for_a_report() {
+    for overwrite in [false, true] {
+        let station = TempDir::new().unwrap();
+        let path = station.path().join("today");
+        fs::create_dir(&path).unwrap();
+        write(&path, overwrite, &made::pass());
+        assert_eq!(names(&path), ["report.html", "report.json", "report.xml"]);
+        assert_eq!(names(station.path()), ["today"]);
+    }
+    // It is looked at again at the end.
+    let station = TempDir::new().unwrap();
+    let path = station.path().join("today");
+    fs::create_dir(&path).unwrap();
+    let prepared = [false, true].map(|overwrite| ReportFolder::prepare(&path, overwrite).unwrap());
+    fs::write(path.join("notes.txt"), "the fan was off").unwrap();
+    for prepared in prepared {
+        let refused = prepared.commit(&made::pass(), &[]).unwrap_err().to_string();
+        assert!(refused.contains("it also holds `notes.txt`") || refused.contains("exists"), "{refused}");
+    }
+    assert_eq!(names(&path), ["notes.txt"]);
+}
+
 #[test]
 fn a_file_in_the_way_is_refused() {
     let station = TempDir::new().unwrap();

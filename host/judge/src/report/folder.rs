@@ -104,7 +104,8 @@ impl ReportFolder {
     ///
     /// # Errors
     /// [`ReportError`] when the folder above does not exist or is not writable, when there is something at `path` that
-    /// is no earlier report or, without `overwrite`, anything, or when another run is about to put a report there.
+    /// is no earlier report or, without `overwrite`, anything but an empty folder, or when another run is about to put a report
+    /// there.
     pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, ReportError> {
         let path = &named(path);
         check(path, overwrite)?;
@@ -132,10 +133,11 @@ impl ReportFolder {
             self.write(view.name, &(view.render)(report, evidence)?)?;
         }
         let Self { path, overwrite, aside, .. } = self;
-        let placed = if overwrite { aside.replace(foreign) } else { aside.put_in_place() };
+        let occupied = |path: &Path| (!is_empty(path)).then(String::new);
+        let placed = if overwrite { aside.replace(foreign) } else { aside.replace(occupied) };
         placed.map_err(|misplaced| match misplaced {
-            Misplaced::Taken(None) => ReportError::Exists { path },
-            Misplaced::Taken(Some(why)) => ReportError::NotAReport { path, why },
+            Misplaced::Taken(Some(why)) if overwrite => ReportError::NotAReport { path, why },
+            Misplaced::Taken(_) => ReportError::Exists { path },
             Misplaced::Io(source) => ReportError::Place { path, source },
         })
     }
@@ -177,14 +179,20 @@ pub fn check(path: &Path, overwrite: bool) -> Result<(), ReportError> {
         }
         Ok(_) => match foreign(path) {
             Some(why) => Err(ReportError::NotAReport { path: path.to_owned(), why }),
-            None if overwrite => Ok(()),
+            None if overwrite || is_empty(path) => Ok(()),
             None => Err(ReportError::Exists { path: path.to_owned() }),
         },
     }
 }
 
-/// What shows that `path` is not just a report of halfrow's; none when it is. Replacing a folder removes all that is in
-/// it, so it may hold nothing else.
+/// Whether `path` is a folder with nothing in it, as scripts make one before a run.
+fn is_empty(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|found| found.is_dir())
+        && fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_none())
+}
+
+/// What shows that `path` is neither an empty folder nor just a report of halfrow's; none when it is. Replacing a folder removes
+/// all that is in it, so it may hold nothing else.
 fn foreign(path: &Path) -> Option<String> {
     if !fs::symlink_metadata(path).is_ok_and(|found| found.is_dir()) {
         return Some("it is no folder".to_owned());
@@ -197,7 +205,7 @@ fn foreign(path: &Path) -> Option<String> {
     if let Some(other) = entries.iter().map(fs::DirEntry::file_name).find(|name| !ours(name)) {
         return Some(format!("it also holds `{}`", other.display()));
     }
-    (!is_report(&path.join(JSON))).then(|| format!("it holds no {JSON} of halfrow's"))
+    (!entries.is_empty() && !is_report(&path.join(JSON))).then(|| format!("it holds no {JSON} of halfrow's"))
 }
 
 /// Whether a file is a report's JSON, by the two names that every report begins with.
