@@ -71,6 +71,9 @@ pub struct LaneState {
     /// Why it is out of service, what it is to test first, why nothing was saved, why no run was begun.
     #[serde(serialize_with = "said::as_text_if_any")]
     pub note: Option<Said>,
+    /// Whether its result is saved, and not at the plant yet, which must have it.
+    #[serde(skip)]
+    pub awaits_plant: bool,
     /// What a button can do with it now.
     #[serde(skip)]
     pub can: Vec<Act>,
@@ -86,6 +89,7 @@ impl From<&Lane> for LaneState {
             run: lane.run().map(str::to_owned),
             shown: lane.shown().cloned(),
             note: lane.note().cloned(),
+            awaits_plant: lane.awaits_plant(),
             can: lane.can(),
         }
     }

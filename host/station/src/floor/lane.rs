@@ -84,6 +84,12 @@ impl Lane {
         }
     }
 
+    /// Whether its result is saved, and not at the plant yet, which must have it.
+    #[must_use]
+    pub fn awaits_plant(&self) -> bool {
+        matches!(&self.phase, Phase::Unsaved { why, .. } if *why == Said::from(Saying::NotAtPlant))
+    }
+
     /// Whether a board is in it.
     #[must_use]
     pub fn is_present(&self) -> bool {

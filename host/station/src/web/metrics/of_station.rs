@@ -36,6 +36,11 @@ const UNSAVED: Metric = Metric {
     kind: Kind::Gauge,
     help: "Results that could not be saved yet; their lanes take no board.",
 };
+const AWAITS: Metric = Metric {
+    name: "halfrow_lane_awaits_plant",
+    kind: Kind::Gauge,
+    help: "1 while the lane is UNSAVED though its result is saved: the plant, which must have it, does not yet.",
+};
 const KILLS: Metric = Metric {
     name: "halfrow_lane_kills",
     kind: Kind::Counter,
@@ -103,8 +108,12 @@ fn lanes(text: &mut Text, lanes: &[LaneState]) {
             of.put(&[("lane", &lane.lane), ("state", word.name())], lane.state == word);
         }
     }
-    let unsaved = lanes.iter().filter(|lane| lane.state == Word::Unsaved).count();
-    text.of(&UNSAVED).put(&[], unsaved as u64);
+    let is_unsaved = |lane: &&LaneState| lane.state == Word::Unsaved && !lane.awaits_plant;
+    text.of(&UNSAVED).put(&[], lanes.iter().filter(is_unsaved).count() as u64);
+    let mut of = text.of(&AWAITS);
+    for lane in lanes {
+        of.put(&[("lane", &lane.lane)], lane.awaits_plant);
+    }
 }
 
 fn since_the_start(text: &mut Text, figures: &Figures) {

@@ -13,6 +13,7 @@ use super::text::{Figures, assert_sound, promtool, told};
 use crate::common;
 use crate::lanes::ends::{connected, silent_board};
 use crate::pages::station::{PUBLIC, SERIALS, Serving, Station};
+use crate::plant::server::Server;
 
 /// The labels of runs in this lane.
 fn of_lane(lane: &str) -> String {
@@ -117,9 +118,29 @@ fn a_lane_that_was_killed_and_a_result_that_is_not_saved_are_told() {
     scan(&serving, "2", SERIALS[1]);
     let unsaved = in_state(&serving, "2", "unsaved");
     assert_eq!(unsaved.at("halfrow_unsaved_results"), 1.0);
+    assert_eq!(unsaved.at("halfrow_lane_awaits_plant{lane=\"2\"}"), 0.0);
     fs::remove_file(&blobs).unwrap();
     fs::rename(&aside, &blobs).unwrap();
     once(&serving, "halfrow_unsaved_results", 0.0);
+}
+
+/// Whoever is woken looks at the plant, not at the disk.
+#[test]
+fn a_verdict_that_waits_for_the_plant_is_told_from_a_result_that_is_not_saved() {
+    let mut server = Server::prepared();
+    server.kill();
+    let web = format!(
+        "[web]\nlisten = \"127.0.0.1:0\"\n{}green = \"plant\"\n",
+        common::plant_settings(&server.url())
+    );
+    let station = Station::with(1, &web);
+    let serving = station.serve();
+    scan(&serving, "1", SERIALS[0]);
+    let waits = in_state(&serving, "1", "unsaved");
+    let of_lane = "halfrow_lane_awaits_plant{lane=\"1\"}";
+    assert_eq!((waits.at(of_lane), waits.at("halfrow_unsaved_results")), (1.0, 0.0));
+    server.again();
+    assert_eq!(in_state(&serving, "1", "pass").at(of_lane), 0.0);
 }
 
 /// What the lanes do is told also when nothing can be counted.
