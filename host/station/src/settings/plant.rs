@@ -8,7 +8,7 @@ use super::text::{GreenText, PlantText};
 use crate::input_error::Fault;
 use crate::published::PublicKey;
 use crate::secret::{self, SecretError};
-use crate::store::PlantAddress;
+use crate::store::{PlantAddress, PlantAddressError};
 
 /// The variable that may have the password.
 const PASSWORD: &str = "HALFROW_PLANT_PASSWORD";
@@ -38,7 +38,7 @@ pub struct PlantSettings {
 pub enum PlantSettingsError {
     /// Its address.
     #[error(transparent)]
-    Address(#[from] crate::store::PlantAddressError),
+    Address(#[from] PlantAddressError),
     /// Its password.
     #[error(transparent)]
     Secret(#[from] SecretError),
@@ -47,19 +47,24 @@ pub enum PlantSettingsError {
 impl PlantSettings {
     /// What the settings say, in a file whose folder is `folder`.
     pub(super) fn of(folder: &Path, text: &PlantText) -> Result<Self, Fault> {
-        let path = |name: &Option<String>| name.as_ref().map(|name| folder.join(name));
         let settings = Self {
             url: text.url.get_ref().clone(),
-            password_file: path(&text.password_file),
-            ca: path(&text.ca),
+            password_file: text.password_file.as_ref().map(|name| folder.join(name)),
+            ca: text.ca.as_ref().map(|name| folder.join(name.get_ref())),
             is_green_at_plant: text.green == GreenText::Plant,
             most_unsent: most_unsent(text.most_unsent.as_ref())?,
             most_filled: most_filled(text.most_filled.as_ref())?,
             trusts: text.trusts.iter().map(trusted).collect::<Result<_, _>>()?,
         };
         // A password is read when it is needed; all else is looked at when the station starts.
-        PlantAddress::new(&settings.url, None, settings.ca.as_deref())
-            .map_err(|error| Fault::input(text.url.span().start, "the plant", error))?;
+        PlantAddress::new(&settings.url, None, settings.ca.as_deref()).map_err(|error| {
+            match (&error, &text.ca) {
+                (PlantAddressError::Trust(_), Some(ca)) => {
+                    Fault::input(ca.span().start, "the file of the plant's certificates", error)
+                }
+                _ => Fault::input(text.url.span().start, "the plant", error),
+            }
+        })?;
         Ok(settings)
     }
 

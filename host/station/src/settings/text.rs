@@ -88,7 +88,7 @@ pub(super) struct AccessText {
 pub(super) struct PlantText {
     pub(super) url: Spanned<String>,
     pub(super) password_file: Option<String>,
-    pub(super) ca: Option<String>,
+    pub(super) ca: Option<Spanned<String>>,
     #[serde(default)]
     pub(super) green: GreenText,
     pub(super) most_unsent: Option<Spanned<u32>>,

@@ -108,6 +108,11 @@ const WRONG: &[(&str, &str, &str)] = &[
         "mysql://",
         "station.toml:12: the plant cannot be used: this is no address of a plant; write it as",
     ),
+    (
+        "localhost/plant\"",
+        "db.example/plant\"\nca = \"none.pem\"",
+        "station.toml:13: the file of the plant's certificates cannot be used: ",
+    ),
     ("green = \"plant\"", "green = \"blue\"", "station.toml:14: unknown variant `blue`"),
     (
         "most_unsent = 500",
