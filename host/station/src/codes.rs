@@ -193,6 +193,8 @@ codes::codes! {
         File [path] => "secret-file-unusable",
         Open [path] => "secret-file-open",
         Wrong [path, what] => "secret-file-wrong",
+        GivenOpen [path] => "given-secret-open",
+        Empty [path] => "given-secret-empty",
         NoRandomness => "secret-without-randomness",
     }
     BlobError {

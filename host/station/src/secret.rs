@@ -1,11 +1,12 @@
 //! Files of secrets, which nobody else may read.
 
-use std::fs::{self, File, Permissions};
+use std::fs::{self, File, Metadata, Permissions};
 use std::io::{self, Write as _};
-use std::os::unix::fs::{OpenOptionsExt as _, PermissionsExt as _};
+use std::os::unix::fs::{MetadataExt as _, OpenOptionsExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
 use halfrow::frames::written_aside::{folder_of, sync_folder};
+use nix::unistd::{getegid, geteuid};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use tempfile::Builder;
@@ -21,9 +22,24 @@ pub enum SecretError {
         /// The system's reason.
         source: io::Error,
     },
-    /// Others may read it.
+    /// Others may read what the station writes itself.
     #[error("others may read {0}, which has secrets; run: chmod 600 {0}", path.display())]
     Open {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Others may read what it is given.
+    #[error(
+        "others may read {0}, which has a secret; as the user of the station run: chmod 600 {0}; or as root, with the \
+         station's group: chown root:GROUP {0} && chmod 640 {0}", path.display()
+    )]
+    GivenOpen {
+        /// The file.
+        path: PathBuf,
+    },
+    /// There is no secret in it.
+    #[error("{} is empty; write the token or the password into it", path.display())]
+    Empty {
         /// The file.
         path: PathBuf,
     },
@@ -49,13 +65,49 @@ pub(crate) fn create(path: &Path, line: &str) -> io::Result<()> {
     sync_folder(folder_of(path))
 }
 
-/// The text of a file that nobody else may read.
-pub(crate) fn text(path: &Path) -> Result<String, SecretError> {
+/// The text of a file that the station writes itself, and that nobody else may read.
+pub(crate) fn own(path: &Path) -> Result<String, SecretError> {
     let refused = |source| SecretError::File { path: path.to_owned(), source };
-    if fs::metadata(path).map_err(refused)?.permissions().mode() & 0o077 != 0 {
+    if is_open(fs::metadata(path).map_err(refused)?.mode()) {
         return Err(SecretError::Open { path: path.to_owned() });
     }
     fs::read_to_string(path).map_err(refused)
+}
+
+/// The text of a file that the station is given, as a token: nobody but the station may read it, and root, whose it may be.
+pub(crate) fn text(path: &Path) -> Result<String, SecretError> {
+    let refused = |source| SecretError::File { path: path.to_owned(), source };
+    let about = Rights::of(&fs::metadata(path).map_err(refused)?);
+    if !about.is_closed(geteuid().as_raw(), getegid().as_raw()) {
+        return Err(SecretError::GivenOpen { path: path.to_owned() });
+    }
+    let text = fs::read_to_string(path).map_err(refused)?;
+    if text.trim().is_empty() { Err(SecretError::Empty { path: path.to_owned() }) } else { Ok(text) }
+}
+
+/// Whether a file of this mode is open to its group or to all.
+fn is_open(mode: u32) -> bool {
+    mode & 0o077 != 0
+}
+
+/// Who may do what with a file.
+struct Rights {
+    mode: u32,
+    owner: u32,
+    group: u32,
+}
+
+impl Rights {
+    fn of(about: &Metadata) -> Self {
+        Self { mode: about.mode(), owner: about.uid(), group: about.gid() }
+    }
+
+    /// Whether nobody else may read it, where `user` and `group` are ours. Root's, in Debian's way, may be read by our group, and
+    /// that group is for root to choose.
+    fn is_closed(&self, user: u32, group: u32) -> bool {
+        let is_for_group = self.mode & 0o037 == 0 && self.owner == 0 && (self.group == group || user == 0);
+        !is_open(self.mode) || is_for_group
+    }
 }
 
 /// Writes `secrets` to the file `path`, which nobody else may read, all or nothing; with `lasts`, a power cut does not take it back.
@@ -80,7 +132,7 @@ pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<T, SecretError> {
         path: path.to_owned(),
         what: error.message().to_owned(),
     };
-    toml::from_str(&text(path)?).map_err(wrong)
+    toml::from_str(&own(path)?).map_err(wrong)
 }
 
 /// As [`read`]; what there is by default, if there is no file.
@@ -93,4 +145,43 @@ pub(crate) fn write(path: &Path, secrets: &impl Serialize, lasts: bool) -> Resul
     let secrets = toml::to_string(secrets).map_err(io::Error::other);
     let secrets = secrets.map_err(|source| SecretError::File { path: path.to_owned(), source })?;
     keep(path, &secrets, lasts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_given_is_for_the_station_alone_or_by_its_group_where_it_is_roots() {
+        let cases = [
+            (0o100_600, 998, 998, true),
+            (0o100_400, 0, 0, true),
+            (0o100_640, 0, 998, true),
+            (0o100_440, 0, 998, true),
+            // Its owner is no root, the group may write, all may read, the group is another one.
+            (0o100_640, 998, 998, false),
+            (0o100_660, 0, 998, false),
+            (0o100_644, 0, 998, false),
+            (0o100_640, 0, 100, false),
+        ];
+        for (mode, owner, group, expected) in cases {
+            let rights = Rights { mode, owner, group };
+            assert_eq!(rights.is_closed(998, 998), expected, "{mode:o} {owner}:{group}");
+        }
+        // Root, who prepares a plant for a station.
+        let rights = |mode| Rights { mode, owner: 0, group: 998 };
+        assert_eq!([0o640, 0o644].map(|mode| rights(mode).is_closed(0, 0)), [true, false]);
+    }
+
+    #[test]
+    fn an_empty_file_is_no_secret() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mes.token");
+        create(&path, "").unwrap();
+        assert!(matches!(text(&path), Err(SecretError::Empty { .. })));
+        fs::write(&path, "A17\n").unwrap();
+        assert_eq!(text(&path).unwrap(), "A17\n");
+        fs::set_permissions(&path, Permissions::from_mode(0o644)).unwrap();
+        assert!(matches!(text(&path), Err(SecretError::GivenOpen { .. })));
+    }
 }

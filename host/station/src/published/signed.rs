@@ -74,7 +74,7 @@ impl SigningKey {
     /// [`SigningError`]
     pub fn load(path: &Path) -> Result<Self, SigningError> {
         let no_key = || SigningError::NoKey { path: path.to_owned() };
-        let document = BASE64_STANDARD.decode(secret::text(path)?.trim()).map_err(|_| no_key())?;
+        let document = BASE64_STANDARD.decode(secret::own(path)?.trim()).map_err(|_| no_key())?;
         Ed25519KeyPair::from_pkcs8(&document).map(Self).map_err(|_| no_key())
     }
 

@@ -28,7 +28,7 @@ impl Key {
         if !path.exists() {
             return Self::draw(path);
         }
-        let text = secret::text(path)?;
+        let text = secret::own(path)?;
         let wrong = || SecretError::Wrong {
             path: path.to_owned(),
             what: "it has no 64 hexadecimal digits".to_owned(),
