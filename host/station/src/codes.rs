@@ -125,6 +125,7 @@ codes::codes! {
     }
     SinkError {
         NoFolder [path] => "sink-without-folder",
+        ReadOnly [path] => "sink-folder-read-only",
         OtherFile [path] => "sink-has-other-file",
         Unread [path] => "sink-file-unreadable",
         Unreached [host] => "sink-unreached",
@@ -192,9 +193,9 @@ codes::codes! {
     SecretError {
         File [path] => "secret-file-unusable",
         Open [path] => "secret-file-open",
-        Wrong [path, what] => "secret-file-wrong",
         GivenOpen [path] => "given-secret-open",
         Empty [path] => "given-secret-empty",
+        Wrong [path, what] => "secret-file-wrong",
         NoRandomness => "secret-without-randomness",
     }
     BlobError {

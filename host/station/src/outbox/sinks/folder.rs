@@ -1,6 +1,8 @@
 //! A folder as a sink: a file for each run and each waiver.
 
-use std::fs;
+use std::fs::{self, Permissions};
+use std::io;
+use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 
 use halfrow::frames::written_aside::{WriteAsideError, write_aside};
@@ -28,8 +30,31 @@ impl FolderSink {
         }
         let path = self.folder.join(letter.id + letter.ending);
         match write_aside(&path, false, |file| file.write_all(&letter.bytes)) {
-            Err(WriteAsideError::Exists { .. }) => is_as(&path, &letter.bytes),
-            written => Ok(written?),
+            Err(WriteAsideError::Exists { .. }) => is_as(&path, &letter.bytes)?,
+            written => written.map_err(|error| self.unwritten(error))?,
+        }
+        self.open_to_readers(&path);
+        Ok(())
+    }
+
+    fn unwritten(&self, error: WriteAsideError) -> SinkError {
+        match error {
+            WriteAsideError::Io { ref source, .. } if source.kind() == io::ErrorKind::ReadOnlyFilesystem => {
+                SinkError::ReadOnly { path: self.folder.clone(), source: error }
+            }
+            error => error.into(),
+        }
+    }
+
+    /// Lets whoever may read the folder read a file in it: the service's umask is for what is the station's own.
+    fn open_to_readers(&self, path: &Path) {
+        let mode = |path: &Path| fs::metadata(path).map(|about| about.permissions().mode() & 0o777);
+        if let (Ok(folder), Ok(file)) = (mode(&self.folder), mode(path)) {
+            let wanted = 0o600 | (folder & 0o044);
+            if file != wanted {
+                // A file system without modes has its own way to say who may read.
+                let _ = fs::set_permissions(path, Permissions::from_mode(wanted));
+            }
         }
     }
 }
@@ -47,5 +72,23 @@ impl Sink for FolderSink {
 
     fn take(&mut self, parcel: &Parcel) -> Result<(), Undelivered> {
         Ok(self.put(parcel)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_read_only_folder_is_told_with_what_opens_it_to_the_service() {
+        let folder = PathBuf::from("/mnt/share/results");
+        let sink = FolderSink { name: "share".to_owned(), folder, format: Format::default() };
+        let failed = |kind| {
+            let path = sink.folder.join("run.json");
+            sink.unwritten(WriteAsideError::Io { path, source: io::Error::from(kind) }).to_string()
+        };
+        let said = failed(io::ErrorKind::ReadOnlyFilesystem);
+        assert!(said.contains("ReadWritePaths=/mnt/share/results below [Service]"), "{said}");
+        assert!(failed(io::ErrorKind::StorageFull).contains("has space"));
     }
 }

@@ -43,6 +43,17 @@ pub enum SinkError {
         /// The folder.
         path: PathBuf,
     },
+    /// Nothing may be written into its folder.
+    #[error(
+        "the folder {0} is read-only to the station; mount it writable, or let the service write to it: `systemctl edit \
+         halfrow-station`, with ReadWritePaths={0} below [Service]", path.display()
+    )]
+    ReadOnly {
+        /// The folder.
+        path: PathBuf,
+        /// The file that was not written.
+        source: WriteAsideError,
+    },
     /// It has a file of this name with other bytes.
     #[error(
         "{} is there already with other bytes, and nothing was changed: keep both, and find out which is right",
@@ -123,6 +134,7 @@ impl From<SinkError> for Undelivered {
         let said = Said::of(&error);
         match error {
             SinkError::NoFolder { .. }
+            | SinkError::ReadOnly { .. }
             | SinkError::Unreached { .. }
             | SinkError::Closed { .. }
             | SinkError::Unknown { .. }

@@ -1,10 +1,12 @@
 //! A folder that results are written to.
 
 use std::fs;
+use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
+use std::process::Command;
 
-use super::{did, send};
-use crate::common::{NO_AUDIT, query};
+use super::{did, send, settings};
+use crate::common::{Did, NO_AUDIT, program, query};
 use crate::history::made::Made;
 use crate::history::released::history;
 
@@ -42,7 +44,7 @@ fn each_run_is_a_file_with_the_bytes_that_are_exported_and_a_waiver_is_one_too()
         assert_eq!(names(&share), expected);
         for run in &runs {
             let data = folder.path().to_str().unwrap();
-            let exported = std::process::Command::new(crate::common::program())
+            let exported = Command::new(program())
                 .args(["export", run, "--format", format, "--data", data])
                 .output()
                 .unwrap();
@@ -51,6 +53,27 @@ fn each_run_is_a_file_with_the_bytes_that_are_exported_and_a_waiver_is_one_too()
         let waived: serde_json::Value =
             serde_json::from_slice(&fs::read(share.join(format!("{waiver}.waiver.json"))).unwrap()).unwrap();
         assert_eq!((&waived["operator"], &waived["reason"]), (&"engel".into(), &"it's \"as\" is".into()));
+    }
+}
+
+/// The service makes what is its own for nobody else; what it writes here is for whoever looks into the folder.
+#[test]
+fn whoever_may_read_the_folder_may_read_its_files_and_nobody_else() {
+    for (of_folder, of_files) in [(0o755, 0o644), (0o2770, 0o640), (0o700, 0o600)] {
+        let (folder, sink) = station("record");
+        let share = folder.path().join("share");
+        fs::create_dir(&share).unwrap();
+        fs::set_permissions(&share, fs::Permissions::from_mode(of_folder)).unwrap();
+        settings(folder.path(), &sink);
+        let call = "umask 077; exec \"$0\" outbox send --any-disk --settings \"$1\"";
+        let mut shell = Command::new("sh");
+        shell.args(["-c", call]).arg(program()).arg(folder.path().join("station.toml"));
+        let sent = Did::from(shell.output().unwrap());
+        assert!(sent.said.starts_with("10 sent, 0 not"), "{sent:?}");
+        for name in names(&share) {
+            let mode = fs::metadata(share.join(&name)).unwrap().permissions().mode() & 0o777;
+            assert_eq!(mode, of_files, "{name} in a folder of mode {of_folder:o}: {mode:o}");
+        }
     }
 }
 
