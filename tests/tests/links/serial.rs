@@ -57,6 +57,17 @@ fn a_port_in_use_is_busy_until_it_is_closed() {
     passes(&served);
 }
 
+/// Nobody finds a program to close that is the one which says so.
+#[test]
+fn a_port_that_this_program_has_open_is_not_said_to_be_another_s() {
+    let served = Served::on_a_serial_port("mock");
+    let target = served.target().parse().unwrap();
+    let _held = link::open(&target).unwrap();
+    let refused = link::open(&target).err().unwrap().to_string();
+    let own = format!("(process {}), which is this very program; wait until", std::process::id());
+    assert!(refused.contains("is in use by links") && refused.contains(&own), "{refused}");
+}
+
 /// Waits until the kernel, which takes its time, has carried what was written at one end of a pseudo-terminal to `end`.
 fn wait_for_bytes(end: &impl AsRawFd) {
     let ready = poll(&mut [PollFd::new(end.as_raw_fd(), PollFlags::POLLIN)], LIMIT.as_millis() as i32);

@@ -28,7 +28,7 @@ pub enum SerialError {
         remedy: String,
     },
     /// Somebody has it open.
-    #[error("{path} is in use by {}; close that program, then run again", by(.holders))]
+    #[error("{path} is in use by {}", by(.holders))]
     InUse {
         /// The port.
         path: PathBuf,

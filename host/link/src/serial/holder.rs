@@ -13,32 +13,56 @@ pub struct Holder {
     pub program: String,
 }
 
+impl Holder {
+    /// Whether it is this very process.
+    fn is_own(&self) -> bool {
+        self.process == std::process::id()
+    }
+}
+
 impl fmt::Display for Holder {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} (process {})", self.program, self.process)
     }
 }
 
-/// By whom a device is held, as an error says it.
+/// By whom a device is held, as an error says it, and what to do.
 pub(crate) fn by(holders: &[Holder]) -> String {
-    if holders.is_empty() {
-        return "another program".to_owned();
+    match holders {
+        [] => "another program; close that program, then run again".to_owned(),
+        [own] if own.is_own() => {
+            format!("{own}, which is this very program; wait until its other run is over, then run again")
+        }
+        others => {
+            let names: Vec<_> = others.iter().map(ToString::to_string).collect();
+            format!("{}; close that program, then run again", names.join(" and "))
+        }
     }
-    let names: Vec<_> = holders.iter().map(ToString::to_string).collect();
-    names.join(" and ")
 }
 
 /// Other processes that have `device` open, as far as this user may know: root sees all, others their own.
 #[must_use]
 pub fn holders(device: &Path) -> Vec<Holder> {
+    let mut all = all_holders(device);
+    all.retain(|holder| !holder.is_own());
+    all
+}
+
+/// Those who keep `device` from this call: as [`holders`], or this very process where it alone is known to have it open.
+pub(crate) fn keepers(device: &Path) -> Vec<Holder> {
+    let (own, others): (Vec<_>, Vec<_>) = all_holders(device).into_iter().partition(Holder::is_own);
+    if others.is_empty() { own } else { others }
+}
+
+fn all_holders(device: &Path) -> Vec<Holder> {
     let Ok(device) = fs::canonicalize(device) else { return Vec::new() };
     let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
     processes
         .filter_map(|entry| {
             let process: u32 = entry.file_name().to_str()?.parse().ok()?;
             let open = fs::read_dir(entry.path().join("fd")).ok()?;
-            let holds = process != std::process::id()
-                && open.flatten().any(|fd| fs::read_link(fd.path()).is_ok_and(|target| target == device));
+            let holds =
+                open.flatten().any(|fd| fs::read_link(fd.path()).is_ok_and(|target| target == device));
             let name = fs::read_to_string(entry.path().join("comm"));
             holds.then(|| Holder { process, program: name.unwrap_or_default().trim().to_owned() })
         })

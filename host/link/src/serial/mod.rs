@@ -20,8 +20,8 @@ use crate::target::Target;
 use options::SerialOptions;
 
 pub use error::SerialError;
-pub(crate) use holder::by;
 pub use holder::{Holder, holders};
+pub(crate) use holder::{by, keepers};
 
 /// Silence after which nothing stale is on its way any more: a USB chip holds bytes back for 16 ms.
 const QUIET: Duration = Duration::from_millis(20);
@@ -137,7 +137,7 @@ fn lock(path: &Path, options: SerialOptions) -> Result<TTYPort, SerialError> {
     let flow = if options.rts_cts { FlowControl::Hardware } else { FlowControl::None };
     let builder = serialport::new(path.to_string_lossy(), options.baud).flow_control(flow).exclusive(true);
     builder.open_native().map_err(|error| match error.kind {
-        ErrorKind::NoDevice => SerialError::InUse { path: path.to_owned(), holders: holders(path) },
+        ErrorKind::NoDevice => SerialError::InUse { path: path.to_owned(), holders: keepers(path) },
         ErrorKind::Io(kind) => failed(path, io::Error::new(kind, error.description)),
         // What a system answers to a question for terminals when it is asked of something else.
         _ if error.description.contains("typewriter") || error.description.contains("ioctl") => {

@@ -58,7 +58,7 @@ pub enum UsbError {
         name: String,
     },
     /// Somebody else uses it.
-    #[error("{} is in use by {}; end that program, then run again", .what, by(.holders))]
+    #[error("{} is in use by {}", .what, by(.holders))]
     Busy {
         /// The channel, or its serial port.
         what: String,

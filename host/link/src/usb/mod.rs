@@ -29,7 +29,7 @@ use packets::strip;
 use pump::Pump;
 use transport::Libusb;
 
-use super::serial::{Holder, holders};
+use super::serial::{Holder, keepers};
 use super::{Link, LinkError};
 use crate::target::Target;
 use crate::{LineErrors, OpenError};
@@ -108,7 +108,7 @@ fn claim(found: &Found, channel: Channel) -> Result<Libusb, UsbError> {
         rusb::Error::Access => UsbError::NotPermitted { name: name.clone() },
         rusb::Error::Busy => UsbError::Busy {
             what: format!("channel {} of {name}", channel.letter()),
-            holders: holders(&found.board.file),
+            holders: keepers(&found.board.file),
         },
         other => {
             let source = transport::failure(other);
@@ -129,7 +129,7 @@ fn serial_ports(place: &str, channel: Channel) -> Vec<PathBuf> {
 
 /// Who has a serial port open, if anybody has; they may be unknown. The driver would give the port up whoever reads it.
 fn held(port: &Path) -> Option<Vec<Holder>> {
-    let holders = holders(port);
+    let holders = keepers(port);
     (!holders.is_empty() || is_locked(port)).then_some(holders)
 }
 

@@ -64,7 +64,8 @@ def verify(
     progress: is called in this thread with ("step", words, 0), ("rows-expected", "", rows), ("frame", name, 0),
         ("rows", "", rows that came back since) and ("done", "", 0); what it raises ends the run.
 
-    Python's lock is released. Ctrl-C, or any signal handler that raises, ends the run, gives the board back, and raises here.
+    Python's lock is released. Ctrl-C, or any signal handler that raises, ends the run, gives the board back, and raises here; a
+    second one raises at once, and leaves the run to give the board back behind it.
     Raises InputError where the call is wrong or does not fit the board, HalfrowError where no board could be opened.
     """
     if isinstance(frames, (str, os.PathLike)) or isinstance(frames, np.ndarray) and frames.ndim == 2:
