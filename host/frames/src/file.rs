@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::{self, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use halfrow_model::Frame;
 
@@ -10,7 +10,8 @@ use super::format::Format;
 use super::preview::{RgbImage, encode_png_rgb};
 use super::size::MAX_FILE_BYTES;
 use super::{
-    Decoded, FrameShape, Orientation, PictureSize, ReadError, ReadOptions, WriteError, photograph, png,
+    DecodeError, Decoded, FrameShape, Orientation, PictureSize, ReadError, ReadOptions, WriteError,
+    photograph, png,
 };
 use crate::written_aside::{BUFFER, write_aside};
 
@@ -19,15 +20,63 @@ use crate::written_aside::{BUFFER, write_aside};
 /// # Errors
 /// [`ReadError`] when the file cannot be read or holds no frame as `how` describes it.
 pub fn read(path: &Path, how: &ReadOptions) -> Result<Frame, ReadError> {
-    read_fitted(path, how).map(|decoded| decoded.frame)
+    FrameFile::read(path)?.decode(how).map(|decoded| decoded.frame)
 }
 
-/// [`read`], and how a picture was fitted.
-///
-/// # Errors
-/// As those of [`read`].
-pub fn read_fitted(path: &Path, how: &ReadOptions) -> Result<Decoded, ReadError> {
-    decode(&bytes(path)?, path, how)
+/// The bytes of a file that is no longer than any frame. It may change meanwhile, so what is decoded and what is hashed is taken
+/// from these.
+#[derive(Debug)]
+pub struct FrameFile {
+    path: PathBuf,
+    bytes: Vec<u8>,
+}
+
+impl FrameFile {
+    /// The whole file `path`.
+    ///
+    /// # Errors
+    /// [`ReadError`] when it cannot be read, or is too long.
+    pub fn read(path: &Path) -> Result<Self, ReadError> {
+        let opened = File::open(path).map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
+        Self::of_open(opened, path)
+    }
+
+    /// What is left of `input`, which is the file `path`.
+    fn of_open(input: File, path: &Path) -> Result<Self, ReadError> {
+        let (path, mut bytes) = (path.to_owned(), Vec::new());
+        match input.take(MAX_FILE_BYTES as u64 + 1).read_to_end(&mut bytes) {
+            Err(source) => Err(ReadError::Io { path, source }),
+            Ok(_) if bytes.len() > MAX_FILE_BYTES => Err(ReadError::TooLong { path }),
+            Ok(_) => Ok(Self { path, bytes }),
+        }
+    }
+
+    /// All of it.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
+    /// Its frame, as [`read`] takes it, and how a picture was fitted.
+    ///
+    /// # Errors
+    /// [`ReadError`] when it holds no frame as `how` describes it.
+    pub fn decode(&self, how: &ReadOptions) -> Result<Decoded, ReadError> {
+        let _file = tracing::warn_span!("frame", path = %self.path.display()).entered();
+        super::decode_fitted(&self.bytes, how).map_err(|source| self.wrong(source))
+    }
+
+    /// Its picture, as [`read_rgb`] takes it.
+    ///
+    /// # Errors
+    /// [`ReadError`] when it holds no such picture.
+    pub fn decode_rgb(&self) -> Result<RgbImage, ReadError> {
+        png::decode_rgb(&self.bytes).map_err(|source| self.wrong(source))
+    }
+
+    fn wrong(&self, source: DecodeError) -> ReadError {
+        ReadError::Decode { path: self.path.clone(), source }
+    }
 }
 
 /// The frame in `input`, which is the file `path` from its beginning.
@@ -35,12 +84,7 @@ pub fn read_fitted(path: &Path, how: &ReadOptions) -> Result<Decoded, ReadError>
 /// # Errors
 /// As those of [`read`].
 pub(super) fn read_open(input: File, path: &Path, how: &ReadOptions) -> Result<Decoded, ReadError> {
-    decode(&all_of(input, path)?, path, how)
-}
-
-fn decode(bytes: &[u8], path: &Path, how: &ReadOptions) -> Result<Decoded, ReadError> {
-    let _file = tracing::warn_span!("frame", path = %path.display()).entered();
-    super::decode_fitted(bytes, how).map_err(|source| ReadError::Decode { path: path.to_owned(), source })
+    FrameFile::of_open(input, path)?.decode(how)
 }
 
 /// The picture in the PNG file `path`, in red, green and blue of 8 bits.
@@ -48,7 +92,7 @@ fn decode(bytes: &[u8], path: &Path, how: &ReadOptions) -> Result<Decoded, ReadE
 /// # Errors
 /// [`ReadError`] when the file cannot be read or holds no such picture.
 pub fn read_rgb(path: &Path) -> Result<RgbImage, ReadError> {
-    png::decode_rgb(&bytes(path)?).map_err(|source| ReadError::Decode { path: path.to_owned(), source })
+    FrameFile::read(path)?.decode_rgb()
 }
 
 /// The picture in the file `path`, in red, green and blue of 8 bits: a PNG as [`read_rgb`] takes it, or a photograph, turned as its
@@ -57,16 +101,18 @@ pub fn read_rgb(path: &Path) -> Result<RgbImage, ReadError> {
 /// # Errors
 /// [`ReadError`] when the file cannot be read or holds no such picture.
 pub fn read_shown(path: &Path) -> Result<RgbImage, ReadError> {
-    let bytes = bytes(path)?;
-    let shown = match photograph::Format::of(&bytes) {
-        Some(format) => photograph::shown(format, &bytes, PictureSize::Any).map(|(picture, _)| picture),
-        None => png::decode_rgb(&bytes),
-    };
-    shown.map_err(|source| ReadError::Decode { path: path.to_owned(), source })
+    let file = FrameFile::read(path)?;
+    match photograph::Format::of(&file.bytes) {
+        Some(format) => match photograph::shown(format, &file.bytes, PictureSize::Any) {
+            Ok((picture, _)) => Ok(picture),
+            Err(source) => Err(file.wrong(source)),
+        },
+        None => file.decode_rgb(),
+    }
 }
 
-/// Refuses what cannot be read twice: a pipe, which may also never begin, or a device. What is not there is left to be
-/// said by who reads it, and so is a folder.
+/// Refuses what cannot be read twice: a pipe, which may also never begin, or a device. Nobody could compare its hash with what
+/// was read. What is not there is left to be said by who reads it, and so is a folder.
 ///
 /// # Errors
 /// [`ReadError::NotRegular`].
@@ -77,22 +123,6 @@ pub fn check_regular(path: &Path) -> Result<(), ReadError> {
         }
         _ => Ok(()),
     }
-}
-
-/// All bytes of a file that is no longer than any frame.
-fn bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
-    let opened = File::open(path).map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
-    all_of(opened, path)
-}
-
-fn all_of(input: File, path: &Path) -> Result<Vec<u8>, ReadError> {
-    let mut bytes = Vec::new();
-    let read = input.take(MAX_FILE_BYTES as u64 + 1).read_to_end(&mut bytes);
-    read.map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
-    if bytes.len() > MAX_FILE_BYTES {
-        return Err(ReadError::TooLong { path: path.to_owned() });
-    }
-    Ok(bytes)
 }
 
 /// Writes `frame` to the file `path`, in the format that its extension names: `.pgm`, `.png`, `.tif` or `.tiff`, `.dng`, or

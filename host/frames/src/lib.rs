@@ -39,7 +39,7 @@ use halfrow_model::{BitDepth, Frame, Phase};
 pub use builtin::{Builtin, UnknownBuiltin};
 pub use error::{DecodeError, EncodeError, PackingError, ReadError, WriteError};
 pub use file::{
-    check_png, check_regular, read, read_fitted, read_rgb, read_shown, write, write_oriented, write_rgb,
+    FrameFile, check_png, check_regular, read, read_rgb, read_shown, write, write_oriented, write_rgb,
     write_rows,
 };
 pub use fitting::{Fitting, PictureSize};

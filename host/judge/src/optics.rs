@@ -18,9 +18,10 @@ use halfrow_model::{
 
 pub use view::View;
 
+use crate::call::Input;
 use crate::frames::Scene;
 use crate::kernels::{DamagedKernel, NamedKernel, UnknownKernel};
-use crate::lenses::{LensContentError, LensFileError};
+use crate::lenses::{LensContentError, LensFileError, LensModel};
 use crate::run::Plan;
 use crate::tables::{KernelFile, TableFile, TableFileError};
 
@@ -161,27 +162,36 @@ pub struct Optics {
     pub by: TablesBy,
     /// What the lens is, for people.
     pub name: String,
+    /// The file that describes it, if one does.
+    pub file: Option<Input>,
 }
 
 impl Optics {
     /// An equidistant lens, with its axis in row `centre_y`, or the middle, of the frames of `camera`.
     #[must_use]
     pub fn equidistant(camera: Camera, lens: Equidistant, centre_y: Option<f64>, by: TablesBy) -> Self {
-        Self { camera, lens, is_calibrated: false, centre_y, by, name: "equidistant lens".to_owned() }
+        let name = "equidistant lens".to_owned();
+        Self { camera, lens, is_calibrated: false, centre_y, by, name, file: None }
     }
 
-    /// The lens of `camera`, which was calibrated and is called `name`.
+    /// The lens of `camera`, of a `model` that was calibrated and is described by `file`.
     ///
     /// # Errors
     /// [`LensError`] when its radius is none that built-in frames can be rendered through.
-    pub fn calibrated(camera: Camera, name: String, by: TablesBy) -> Result<Self, LensError> {
+    pub fn calibrated(
+        camera: Camera,
+        model: LensModel,
+        file: Input,
+        by: TablesBy,
+    ) -> Result<Self, LensError> {
         Ok(Self {
             lens: Equidistant::from_radius(camera.radius())?,
             is_calibrated: true,
             centre_y: Some(camera.centre().1),
             camera,
             by,
-            name,
+            name: format!("{model} {}", file.path.display()),
+            file: Some(file),
         })
     }
 

@@ -1,10 +1,9 @@
 //! Frames in files, and frames to look at.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use halfrow::frames::{self, RawGeometry, RawLayout, ReadOptions, UnknownLayout, preview};
 use halfrow::model::Frame;
-use halfrow::result::FileHash;
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
 
@@ -90,17 +89,4 @@ pub(crate) fn frame_of(array: &Bound<'_, PyAny>, what: &str, bits: u32, phase: &
 pub(crate) fn array(py: Python<'_>, frame: Frame) -> PyResult<Bound<'_, PyArray2<u16>>> {
     let shape = [frame.height(), frame.width()];
     PyArray1::from_vec(py, frame.into_samples()).reshape(shape)
-}
-
-/// A file that was read.
-#[derive(Clone)]
-pub(crate) struct Input {
-    /// Its path, which need not be text, as that of a hash is.
-    pub(crate) path: PathBuf,
-    pub(crate) hash: FileHash,
-}
-
-/// The file `path`, which was read.
-pub(crate) fn input(path: &Path) -> PyResult<Input> {
-    Ok(Input { path: path.to_owned(), hash: FileHash::of(path).map_err(errors::failed)? })
 }

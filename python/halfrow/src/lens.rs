@@ -26,8 +26,6 @@ const EQUIDISTANT: &str = "equidistant:";
 #[pyclass(frozen, module = "halfrow")]
 pub(crate) struct Lens {
     pub(crate) optics: Optics,
-    /// The file that it was read from.
-    pub(crate) file: Option<frames::Input>,
 }
 
 #[pymethods]
@@ -133,12 +131,12 @@ impl Lens {
             }
             (Some(path), None) => {
                 let optics = Optics::of_file(path, view, TablesBy::Fitting).map_err(errors::optics)?;
-                return Ok(Self { optics, file: Some(frames::input(path)?) });
+                return Ok(Self { optics });
             }
         };
         let optics =
             Optics::of_equidistant(equidistant, view, TablesBy::Equation9).map_err(errors::optics)?;
-        Ok(Self { optics, file: None })
+        Ok(Self { optics })
     }
 }
 
@@ -150,14 +148,11 @@ pub(crate) enum LensLike<'py> {
 }
 
 impl LensLike<'_> {
-    /// The lens with the file that it was read from.
-    pub(crate) fn taken(self) -> PyResult<(Optics, Option<frames::Input>)> {
+    /// It.
+    pub(crate) fn taken(self) -> PyResult<Optics> {
         match self {
-            Self::Lens(lens) => Ok((lens.get().optics.clone(), lens.get().file.clone())),
-            Self::Name(name) => {
-                let Lens { optics, file } = Lens::seen(Some(name), &View::default())?;
-                Ok((optics, file))
-            }
+            Self::Lens(lens) => Ok(lens.get().optics.clone()),
+            Self::Name(name) => Ok(Lens::seen(Some(name), &View::default())?.optics),
         }
     }
 }

@@ -1,24 +1,24 @@
 //! From the options of a call to what a run does, and how.
 
 use std::ops::RangeInclusive;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use halfrow::board::Stop;
 use halfrow::board::deadlines::RetryLimit;
-use halfrow::call::{self, Voided};
-use halfrow::frames::{self, PictureSize, ReadOptions, UnknownBuiltin};
+use halfrow::call::{self, Input, Voided};
+use halfrow::frames::{FrameFile, PictureSize, ReadError, ReadOptions, UnknownBuiltin};
 use halfrow::link::Recording;
-use halfrow::model::{Geometry, Phase};
+use halfrow::model::{Frame, Geometry, Phase};
+use halfrow::result::FileHash;
 use halfrow::run::{Circumstances, Draws, RecordedRun, RunOptions, Vary};
 use halfrow::{FrameSource, Plan};
 use pyo3::prelude::*;
 
 use crate::errors::Whose;
-use crate::frames::Input;
 use crate::kernel::Kernel;
 use crate::tables::Tables;
-use crate::{arguments, choices, errors, frames as files};
+use crate::{arguments, choices, errors, frames};
 
 /// What stands before the name of a built-in frame.
 const BUILTIN: &str = "builtin:";
@@ -175,7 +175,7 @@ impl Options<'_> {
             retry_limit.share = percent / 100.0;
         }
         let arguments = std::mem::take(&mut self.arguments);
-        let hashes = files.into_iter().map(|file| file.hash).collect();
+        let hashes = files.into_iter().map(FileHash::from).collect();
         Ok(RunOptions {
             retry_limit,
             reconnect: choices::seconds("reconnect", self.reconnect)?,
@@ -188,7 +188,13 @@ impl Options<'_> {
     }
 }
 
-/// Frame `place` of a call: an array, `builtin:NAME` or a file, whose hash joins `files`.
+/// The frame in the file `path`, and what it was read from.
+fn read(path: &Path, how: &ReadOptions) -> Result<(Frame, Input), ReadError> {
+    let file = FrameFile::read(path)?;
+    Ok((file.decode(how)?.frame, Input::of_bytes(path, file.bytes())))
+}
+
+/// Frame `place` of a call: an array, `builtin:NAME` or a file, which joins `files`.
 fn source(
     given: &Bound<'_, PyAny>,
     place: usize,
@@ -205,12 +211,12 @@ fn source(
     let size = PictureSize::Exactly(geometry.width(), geometry.height());
     let how = ReadOptions { depth, phase, size, ..ReadOptions::default() };
     let (path, frame) = if let Ok(path) = given.extract::<PathBuf>() {
-        let read = given.py().detach(|| frames::read(&path, &how)).map_err(errors::input)?;
-        files.push(files::input(&path)?);
-        (path, read)
+        let (frame, input) = given.py().detach(|| read(&path, &how)).map_err(errors::input)?;
+        files.push(input);
+        (path, frame)
     } else {
         let name = format!("frames[{place}]");
-        let frame = files::frame_of(given, &name, depth.bits(), phase.name())?;
+        let frame = frames::frame_of(given, &name, depth.bits(), phase.name())?;
         (name.into(), frame)
     };
     call::check_size(&path, (frame.width(), frame.height()), &how, geometry).map_err(errors::input)?;

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use halfrow::call::Input;
 use halfrow::model::{Interpolant, RowFactor};
 use halfrow::optics::{self, Chosen, Optics, View};
 use halfrow::tables::{TableFile, datapath_of, mem};
@@ -9,10 +10,9 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use serde_json::{Map, Value};
 
-use crate::frames::Input;
 use crate::kernel::{Kernel, KernelLike};
 use crate::lens::{Lens, LensLike};
-use crate::{arguments, choices, errors, frames};
+use crate::{arguments, choices, errors};
 
 /// What a kernel without a name is called.
 const OF_FILE: &str = "the table file's";
@@ -48,15 +48,16 @@ impl Tables {
         #[pyo3(from_py_with = arguments::entries)] entries: Option<usize>,
         #[pyo3(from_py_with = arguments::kernel)] kernel: Option<KernelLike<'_>>,
     ) -> PyResult<Self> {
-        let (mut optics, file) = match lens {
+        let mut optics = match lens {
             Some(lens) => lens.taken()?,
-            None => (Lens::seen(None, &View::default())?.optics, None),
+            None => Lens::seen(None, &View::default())?.optics,
         };
         optics.by = choices::tables_by(rows, projection, entries, optics.by)?;
         let chosen = py.detach(|| optics::choose(None, optics, None)).map_err(errors::optics)?;
         let from = chosen.optics.source_of(&chosen.tables);
         let kernel = kernel.unwrap_or_else(|| KernelLike::Name(Interpolant::Hermite.name().into()));
-        Self::with_kernel(chosen, &from, Some(kernel), file.into_iter().collect())
+        let files = chosen.optics.file.iter().cloned().collect();
+        Self::with_kernel(chosen, &from, Some(kernel), files)
     }
 
     /// The tables in a file that `write` or `halfrow tables` has written: NAME.json, or NAME.mem for two files of memory images.
@@ -69,16 +70,16 @@ impl Tables {
         #[pyo3(from_py_with = arguments::kernel)] kernel: Option<KernelLike<'_>>,
     ) -> PyResult<Self> {
         let is_mem = path.extension().is_some_and(|extension| extension == "mem");
-        let (mut file, paths) = if is_mem {
-            let (tables, kernel) = mem::read(&path).map_err(errors::optics)?;
-            (TableFile { tables, kernel, about: None }, mem::paths(&path).to_vec())
+        let (mut file, files) = if is_mem {
+            let (tables, kernel, inputs) = mem::read(&path).map_err(errors::optics)?;
+            (TableFile { tables, kernel, about: None }, inputs.to_vec())
         } else {
-            (TableFile::read(&path).map_err(errors::optics)?, vec![path.clone()])
+            let (file, input) = TableFile::read(&path).map_err(errors::optics)?;
+            (file, vec![input])
         };
         let about = file.about.take().filter(|_| kernel.is_none());
         let optics = Optics::before(file.tables.geometry());
         let chosen = optics.and_then(|optics| optics::choose(Some((&path, file)), optics, None));
-        let files = paths.iter().map(|path| frames::input(path)).collect::<PyResult<_>>()?;
         let chosen = chosen.map_err(errors::optics)?;
         Ok(Self { about, ..Self::with_kernel(chosen, &path.display().to_string(), kernel, files)? })
     }
@@ -178,7 +179,7 @@ impl Tables {
     /// The lens that built-in frames are seen through; for tables of a file, which does not say it, the paper's.
     #[getter]
     fn lens(&self) -> Lens {
-        Lens { optics: self.chosen.optics.clone(), file: None }
+        Lens { optics: self.chosen.optics.clone() }
     }
 
     /// Where they come from, in words.

@@ -93,6 +93,17 @@ def test_values_have_the_types_that_they_are_said_to_have(small):
         check(halfrow.verify(target, tables=small), halfrow.Report, target)
 
 
+def test_what_is_hashed_is_what_was_judged(tmp_path, small):
+    """What replaces a file between two times that it is opened would be named by a hash that is not that of what was judged."""
+    small.write(tmp_path / "t.json")
+    halfrow.write_frame(tmp_path / "own.pgm", small.lens.frame("noise"))
+    judged = 'import halfrow; halfrow.verify(tables=halfrow.Tables.read("t.json"), frames=["own.pgm"], at_speed=0)'
+    traced = ["strace", "-f", "-qq", "-e", "trace=open,openat", "-o", "opened"]
+    subprocess.run([*traced, sys.executable, "-c", judged], cwd=tmp_path, check=True)
+    opened = (tmp_path / "opened").read_text()
+    assert [opened.count(f'"{name}"') for name in ("t.json", "own.pgm")] == [1, 1]
+
+
 def test_frames_of_a_call_are_judged(tmp_path, small):
     frame = small.lens.frame("zone-plate")
     halfrow.write_frame(tmp_path / "own.pgm", frame)

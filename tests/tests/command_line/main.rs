@@ -14,6 +14,7 @@ mod documents;
 mod explained;
 mod file_schemas;
 mod grids;
+mod hashed;
 mod help;
 mod info;
 mod lenses;

@@ -12,11 +12,11 @@ use crate::settings::Settings;
 use clap::Args;
 use halfrow_model::{Geometry, Phase};
 
-use halfrow::call::check_size;
+use halfrow::call::{Input, check_size};
 use halfrow::frames::{
-    self, Builtin, Decoded, Fitting, PictureSize, RawGeometry, RawLayout, ReadOptions, RowReader, Scene,
+    self, Builtin, Decoded, Fitting, FrameFile, PictureSize, RawGeometry, RawLayout, ReadOptions, RowReader,
+    Scene,
 };
-use halfrow::result::FileHash;
 use halfrow::run::FrameSource;
 
 /// How frame files are read.
@@ -120,7 +120,7 @@ impl FrameName {
     pub(super) fn frame(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<Decoded> {
         match self {
             Self::Builtin(builtin) => Ok(builtin.render(scene)?.into()),
-            Self::File(path) => read_frame(path, how, &scene.geometry),
+            Self::File(path) => Ok(read_frame(path, how, &scene.geometry)?.0),
         }
     }
 }
@@ -132,17 +132,20 @@ pub(super) fn tell_fitting(path: &Path, fitting: Option<Fitting>, quiet: bool) {
     }
 }
 
-/// These frames, the files' read whole, which must fit `geometry`; and of those that were, `tell` is told how.
+/// These frames, the files' read whole, which must fit `geometry`; and of those that were, `tell` is told how. What they were read
+/// from joins `inputs`.
 pub(super) fn frame_sources(
     names: Vec<FrameName>,
     how: &ReadOptions,
     geometry: &Geometry,
+    inputs: &mut Vec<Input>,
     tell: impl Fn(&Path, Option<Fitting>),
 ) -> anyhow::Result<Vec<FrameSource>> {
     let source = |name| match name {
         FrameName::Builtin(builtin) => Ok(FrameSource::Builtin(builtin)),
         FrameName::File(path) => {
-            let Decoded { frame, fitting, .. } = read_frame(&path, how, geometry)?;
+            let (Decoded { frame, fitting, .. }, file) = read_frame(&path, how, geometry)?;
+            inputs.push(Input::of_bytes(&path, file.bytes()));
             tell(&path, fitting);
             Ok(FrameSource::File { path, frame: Arc::new(frame) })
         }
@@ -150,13 +153,9 @@ pub(super) fn frame_sources(
     names.into_iter().map(source).collect()
 }
 
-fn read_frame(path: &Path, how: &ReadOptions, geometry: &Geometry) -> anyhow::Result<Decoded> {
-    let decoded = frames::read_fitted(path, how)?;
+fn read_frame(path: &Path, how: &ReadOptions, geometry: &Geometry) -> anyhow::Result<(Decoded, FrameFile)> {
+    let file = FrameFile::read(path)?;
+    let decoded = file.decode(how)?;
     check_size(path, (decoded.frame.width(), decoded.frame.height()), how, geometry)?;
-    Ok(decoded)
-}
-
-/// The file's SHA-256.
-pub(super) fn file_hash(path: &Path) -> anyhow::Result<FileHash> {
-    Ok(FileHash::of(path).map_err(|source| CallError::Unreadable { path: path.to_owned(), source })?)
+    Ok((decoded, file))
 }

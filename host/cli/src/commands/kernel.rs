@@ -12,15 +12,14 @@ use serde_json::{Map, Value, json};
 
 use super::document::{print_result, tell_result};
 use super::files::check_files;
-use super::inputs::file_hash;
 use super::{CallError, Context, Failure, optics, print};
 use crate::exit::Exit;
 use crate::{console, progress};
 use halfrow::call::Files;
-use halfrow::frames;
-use halfrow::frames::lying;
 use halfrow::frames::preview::RgbImage;
+use halfrow::frames::{FrameFile, lying};
 use halfrow::report::wording::count;
+use halfrow::result::sha256;
 use halfrow::tables::KernelFile;
 use halfrow_lab::training;
 use halfrow_lab::training::{Model, RIDGE, Spread, Trained, TrainingError, measure, noise_gain, train};
@@ -121,10 +120,11 @@ fn check_apart(paths: &[PathBuf], origins: &[Origin]) -> Result<(), CallError> {
 }
 
 fn photograph(path: &Path) -> anyhow::Result<(Origin, RgbImage)> {
-    let image = lying(frames::read_rgb(path)?);
+    let file = FrameFile::read(path)?;
+    let image = lying(file.decode_rgb()?);
     training::check(&image).with_context(|| format!("{} cannot be used", path.display()))?;
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-    Ok((Origin { name, sha256: file_hash(path)?.sha256 }, image))
+    Ok((Origin { name, sha256: sha256([file.bytes()]) }, image))
 }
 
 fn pictures(folder: &Path) -> std::io::Result<Vec<PathBuf>> {

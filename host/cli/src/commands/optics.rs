@@ -238,7 +238,7 @@ impl LensArguments {
     }
 
     fn calibrated(&self, path: &Path) -> anyhow::Result<Optics> {
-        let file = LensFile::read(path)?;
+        let (file, input) = LensFile::read(path)?;
         let pictures = match file.size {
             Some(size) if self.lens_pitch.is_none() => size,
             None if self.lens_pitch.is_none() && (self.width.is_none() || self.height.is_none()) => {
@@ -255,8 +255,7 @@ impl LensArguments {
                 .with_context(|| format!("the lens file {} does not fit", path.display()))?,
         };
         let camera = view.camera(geometry, lens, centre)?;
-        let name = format!("{} {}", file.model, path.display());
-        Ok(Optics::calibrated(camera, name, self.by(Rows::Fitted))?)
+        Ok(Optics::calibrated(camera, file.model, input, self.by(Rows::Fitted))?)
     }
 
     /// Pixels of the frame for each of a camera with pixels of `pitch`.
@@ -286,8 +285,9 @@ pub(super) fn choose(
     lens: &LensArguments,
     kernel_name: Option<&OsStr>,
 ) -> Result<Chosen, Failure> {
-    let (path, file) = named.map(|NamedTables { path, file }| (path, file)).unzip();
-    Ok(optics::choose(path.as_deref().zip(file), lens.optics()?, kernel_name)?)
+    let (input, file) = named.map(|NamedTables { input, file }| (input, file)).unzip();
+    let path = input.as_ref().map(|input| input.path.as_path());
+    Ok(optics::choose(path.zip(file), lens.optics()?, kernel_name)?)
 }
 
 /// A file of another datapath is refused like a board of another datapath.

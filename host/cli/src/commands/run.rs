@@ -10,7 +10,6 @@ use halfrow_program::number::{any, whole_number};
 use super::board::BoardArguments;
 use super::files::check_files;
 use super::given::{Given, yes_or_no};
-use super::inputs::file_hash;
 use super::optics::{self, LensArguments};
 use super::table_file::{NamedTables, TableArgument};
 use super::{Context, Failure, codes};
@@ -18,10 +17,11 @@ use crate::exit::Exit;
 use crate::pool::PoolError;
 use crate::settings::Settings;
 use crate::{console, flags, text};
-use halfrow::call::{self, Files};
+use halfrow::call::{self, Files, Input};
 use halfrow::link::RecordingFile;
 use halfrow::optics::Chosen;
 use halfrow::report::{self, ReportFolder};
+use halfrow::result::FileHash;
 use halfrow::run::{self, Circumstances, Finished, Lack, Plan, RunOptions};
 use halfrow::target::Target;
 use halfrow::verdict::Cause;
@@ -77,27 +77,24 @@ impl RunArguments {
         self.tables.read(given, &self.lens, settings)
     }
 
-    /// Tables and kernel to judge with, of `tables` if there are any.
-    pub(super) fn chosen(&self, tables: Option<NamedTables>, settings: &Settings) -> Result<Chosen, Failure> {
+    /// Tables and kernel to judge with, of `tables` if there are any, and the file that the tables or the lens were read from.
+    pub(super) fn chosen(
+        &self,
+        tables: Option<NamedTables>,
+        settings: &Settings,
+    ) -> Result<(Chosen, Vec<Input>), Failure> {
+        let of_tables = tables.as_ref().map(|tables| tables.input.clone());
         let chosen = optics::choose(tables, &self.lens, self.kernel(settings))?;
         chosen
             .tables
             .check_ring(chosen.tables.geometry().width().next_power_of_two())
             .map_err(Failure::call)?;
-        Ok(chosen)
+        let inputs = of_tables.into_iter().chain(chosen.optics.file.clone()).collect();
+        Ok((chosen, inputs))
     }
 
     fn kernel<'a>(&'a self, settings: &'a Settings) -> Option<&'a OsStr> {
         self.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new))
-    }
-
-    /// The table file that is named and is not that of `tables`.
-    pub(super) fn passed_over<'a>(
-        &'a self,
-        tables: Option<&NamedTables>,
-        settings: &'a Settings,
-    ) -> Option<&'a PathBuf> {
-        self.tables.path(settings).filter(|_| tables.is_none())
     }
 
     /// Tables and lens that are files.
@@ -120,17 +117,11 @@ impl RunArguments {
         seconds("--reconnect", self.reconnect.or(settings.reconnect))
     }
 
-    /// How a run is made that reads `files`, of whose hashes the report tells all but that of a table file `passed_over`.
-    pub(super) fn options(
-        &self,
-        files: &[PathBuf],
-        passed_over: Option<&PathBuf>,
-        settings: &Settings,
-    ) -> Result<RunOptions, Failure> {
-        let told = files.iter().filter(|path| Some(*path) != passed_over);
+    /// How a run is made that judges with what was read from `inputs`.
+    pub(super) fn options(&self, inputs: Vec<Input>, settings: &Settings) -> Result<RunOptions, Failure> {
         let circumstances = Circumstances {
             arguments: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
-            files: told.map(|path| file_hash(path)).collect::<Result<_, _>>().map_err(Failure::call)?,
+            files: inputs.into_iter().map(FileHash::from).collect(),
             draws: run::Draws::draw(),
             operator: self.operator(),
         };

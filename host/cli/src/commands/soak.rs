@@ -1,6 +1,5 @@
 //! `halfrow soak`
 
-use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
@@ -60,13 +59,12 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let target = match run.board.target(settings) {
         Ok(target) => target,
         Err(failure) => {
-            let free =
-                || arguments.plan(&files, settings).map(|(plan, options)| (plan, options, files.clone()));
+            let free = || arguments.plan(settings).map(|(plan, options)| (plan, options, files.clone()));
             return Err(run.without_board(failure, context, free));
         }
     };
     refuse_recording(&target)?;
-    let (plan, options) = arguments.plan(&files, settings)?;
+    let (plan, options) = arguments.plan(settings)?;
     run.board.check_fault(settings, &plan)?;
     let outputs = run.outputs(files, None, context)?;
     let finished = run.board.candidate(settings).and_then(|candidate| {
@@ -81,16 +79,12 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 
 impl Arguments {
     /// What is streamed first, and how long the board makes frames on its own.
-    fn plan(&self, files: &[PathBuf], settings: &Settings) -> Result<(Plan, RunOptions), Failure> {
+    fn plan(&self, settings: &Settings) -> Result<(Plan, RunOptions), Failure> {
         let tables = self.run.table_file(&self.given, settings)?;
-        let passed_over = self.run.passed_over(tables.as_ref(), settings);
-        let plan = self.run.chosen(tables, settings)?.plan(self.run.lens.phase);
-        let plan = plan.frames([FrameSource::Builtin(Builtin::Noise)]);
+        let (chosen, inputs) = self.run.chosen(tables, settings)?;
+        let plan = chosen.plan(self.run.lens.phase).frames([FrameSource::Builtin(Builtin::Noise)]);
         let plan = Plan { soak: Some(self.length.asked()), seed: self.run.seed(settings), ..plan };
         let patience = self.run.patience(settings)?.unwrap_or(PATIENCE);
-        Ok((
-            plan,
-            RunOptions { reconnect: Some(patience), ..self.run.options(files, passed_over, settings)? },
-        ))
+        Ok((plan, RunOptions { reconnect: Some(patience), ..self.run.options(inputs, settings)? }))
     }
 }

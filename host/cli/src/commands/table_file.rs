@@ -8,6 +8,7 @@ use super::given::{Decider, Given, IN_TABLE_FILES, written};
 use super::optics::LensArguments;
 use super::{CallError, Failure};
 use crate::settings::Settings;
+use halfrow::call::Input;
 use halfrow::optics::OpticsError;
 use halfrow::tables::TableFile;
 
@@ -24,7 +25,7 @@ pub(super) struct TableArgument {
 
 /// A table file that was read.
 pub(super) struct NamedTables {
-    pub(super) path: PathBuf,
+    pub(super) input: Input,
     pub(super) file: TableFile,
 }
 
@@ -50,12 +51,12 @@ impl TableArgument {
             tracing::info!("the table file {} is passed over, since {option} makes tables", path.display());
             return Ok(None);
         }
-        let file = TableFile::read(path).map_err(OpticsError::from)?;
+        let (file, input) = TableFile::read(path).map_err(OpticsError::from)?;
         let geometry = file.tables.geometry();
         let flags = IN_TABLE_FILES.into_iter().filter(|id| given.is_flag(id));
         let mut others = flags.filter(|id| !lens.agrees(id, geometry)).map(written);
         match others.next() {
-            None => Ok(Some(NamedTables { path: path.clone(), file })),
+            None => Ok(Some(NamedTables { input, file })),
             Some(option) if is_flag => refuse(&option, path, &file),
             Some(option) => {
                 tracing::info!(

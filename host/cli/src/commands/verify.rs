@@ -15,7 +15,7 @@ use super::{Context, Failure};
 use crate::exit::Exit;
 use crate::progress;
 use crate::settings::Settings;
-use halfrow::call;
+use halfrow::call::{self, Input};
 use halfrow::frames::{Builtin, check_regular};
 use halfrow::link::{self, Candidate, Lost, Recorder, Recording, RecordingFile};
 use halfrow::optics::Chosen;
@@ -168,16 +168,16 @@ impl Arguments {
             self.given.refuse_void(Decider::Record, &settings.keys()).map_err(Failure::call)?;
         }
         self.input.refuse_void(&self.given, settings)?;
-        // Each is read more than once, since its hash is reported.
+        // The report names each by its hash.
         files.iter().try_for_each(|path| check_regular(path)).map_err(Failure::call)?;
         let tables = self.run.table_file(&self.given, settings)?;
-        let passed_over = self.run.passed_over(tables.as_ref(), settings);
         let is_free = tables.is_none() && frames.is_empty();
-        let chosen = self.run.chosen(tables, settings)?;
-        let plan = Plan { vary: self.vary(is_free), ..self.plan_of(chosen, frames, context)? };
+        let (chosen, mut inputs) = self.run.chosen(tables, settings)?;
+        let plan = self.plan_of(chosen, frames, &mut inputs, context)?;
+        let plan = Plan { vary: self.vary(is_free), ..plan };
         // A recording is of one link.
         let reconnect = self.run.patience(settings)?.filter(|_| self.record.is_none());
-        Ok((plan, RunOptions { reconnect, ..self.run.options(files, passed_over, settings)? }))
+        Ok((plan, RunOptions { reconnect, ..self.run.options(inputs, settings)? }))
     }
 
     /// What is varied in a run of which neither tables nor frames are named: what the call does not say.
@@ -186,7 +186,14 @@ impl Arguments {
         Vary { centre: is_free && !has_centre, depth: is_free && !self.given.is_flag("bits") }
     }
 
-    fn plan_of(&self, chosen: Chosen, frames: Vec<FrameName>, context: &Context) -> Result<Plan, Failure> {
+    /// What is to be streamed of `chosen` and `frames`, whose files join `inputs`.
+    fn plan_of(
+        &self,
+        chosen: Chosen,
+        frames: Vec<FrameName>,
+        inputs: &mut Vec<Input>,
+        context: &Context,
+    ) -> Result<Plan, Failure> {
         let settings = &context.settings;
         let (geometry, phase) = (chosen.tables.geometry(), self.run.lens.phase);
         let how = self.input.read_options(geometry, phase, settings);
@@ -194,7 +201,7 @@ impl Arguments {
             Builtin::ALL.into_iter().map(FrameSource::Builtin).collect()
         } else {
             let tell = |path: &Path, fitting| tell_fitting(path, fitting, context.quiet);
-            frame_sources(frames, &how, geometry, tell).map_err(Failure::call)?
+            frame_sources(frames, &how, geometry, inputs, tell).map_err(Failure::call)?
         };
         Ok(Plan {
             frames,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use halfrow_frames::preview::{RgbImage, encode_png_rgb};
 use halfrow_frames::{
-    DecodeError, PictureSize, ReadError, ReadOptions, decode, is_photograph, mosaic, read, read_fitted,
+    DecodeError, FrameFile, PictureSize, ReadError, ReadOptions, decode, is_photograph, mosaic, read,
 };
 use halfrow_frames::{RowReader, read_rgb, read_shown};
 use halfrow_model::{BitDepth, Phase};
@@ -102,7 +102,7 @@ fn fitted_pictures_are_cropped_about_their_centre_and_scaled() {
         ),
     ] {
         let how = ReadOptions { size: PictureSize::Fitted(width, height), ..of_eight_bits(Phase::Grbg) };
-        let decoded = read_fitted(&path(name), &how).unwrap();
+        let decoded = FrameFile::read(&path(name)).unwrap().decode(&how).unwrap();
         let stem = name.split('.').next().unwrap();
         let (_, wanted) = shown(&format!("{stem}.fitted.png"), Phase::Grbg);
         assert_eq!((decoded.frame.width(), decoded.frame.height()), (width, height));
@@ -137,8 +137,8 @@ fn scaling_does_not_overshoot_white() {
 
 #[test]
 fn what_has_the_size_is_not_fitted_and_what_has_not_is_refused() {
-    let sized =
-        |size| read_fitted(&path("turned6.webp"), &ReadOptions { size, ..of_eight_bits(Phase::Grbg) });
+    let turned = FrameFile::read(&path("turned6.webp")).unwrap();
+    let sized = |size| turned.decode(&ReadOptions { size, ..of_eight_bits(Phase::Grbg) });
     assert_eq!(sized(PictureSize::Fitted(48, 72)).unwrap().fitting, None);
     assert_eq!(sized(PictureSize::Exactly(48, 72)).unwrap().fitting, None);
     let ReadError::Decode { source, .. } = sized(PictureSize::Exactly(72, 48)).unwrap_err() else { panic!() };

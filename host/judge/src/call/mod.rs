@@ -3,10 +3,12 @@
 //! Options go by the names that the caller gives them.
 
 mod files;
+mod input;
 mod options;
 mod size;
 
 pub use files::{Files, FilesError};
+pub use input::Input;
 pub use options::{
     BESIDE_RECORDING, FRAMES, NoTime, VoidOption, Voided, WHILE_RECORDED, WITHIN, seconds, within,
 };

@@ -15,6 +15,7 @@ use halfrow_model::CalibratedLens;
 
 pub use error::{LensContentError, LensFileError, WrongShape};
 
+use crate::call::Input;
 use crate::tables::text;
 
 /// The most columns and rows that pictures of a calibration may have.
@@ -55,14 +56,17 @@ pub struct LensFile {
 }
 
 impl LensFile {
-    /// The lens in the file `path`.
+    /// The lens in the file `path`, and what it was read from.
     ///
     /// # Errors
     /// [`LensFileError`] when the file cannot be read or holds no lens that can be used.
-    pub fn read(path: &Path) -> Result<Self, LensFileError> {
+    pub fn read(path: &Path) -> Result<(Self, Input), LensFileError> {
         let text = text::read(path, MAX_BYTES)
             .map_err(|source| LensFileError::Io { path: path.to_owned(), source })?;
-        Self::parse(&text).map_err(|source| LensFileError::Content { path: path.to_owned(), source })
+        match Self::parse(&text) {
+            Ok(lens) => Ok((lens, Input::of_bytes(path, text.as_bytes()))),
+            Err(source) => Err(LensFileError::Content { path: path.to_owned(), source }),
+        }
     }
 
     /// The lens that `text` describes, in whichever of the formats it is.

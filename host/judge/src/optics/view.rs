@@ -68,13 +68,13 @@ impl Optics {
     /// # Errors
     /// [`OpticsError`] when the file cannot be read, holds no lens, or one that such frames cannot have.
     pub fn of_file(path: &Path, view: &View, by: TablesBy) -> Result<Self, OpticsError> {
-        let file = LensFile::read(path)?;
+        let (file, input) = LensFile::read(path)?;
         let geometry = view.geometry(file.size.unwrap_or(PAPER_SIZE))?;
         let (lens, centre) = file
             .for_frame(geometry.width(), geometry.height())
             .map_err(|source| OpticsError::Shape { path: path.to_owned(), source })?;
         let camera = view.camera(geometry, lens, centre)?;
-        Ok(Self::calibrated(camera, format!("{} {}", file.model, path.display()), by)?)
+        Ok(Self::calibrated(camera, file.model, input, by)?)
     }
 
     /// An equidistant lens before frames of the paper's size with the axis in their middle, as far as `view` does not say it.

@@ -34,9 +34,6 @@ mod suspect;
 mod within;
 pub mod wording;
 
-use std::path::Path;
-use std::{fs, io};
-
 use serde::{Deserialize, Serialize};
 
 use crate::frames::street::EdgeDeviation;
@@ -289,14 +286,4 @@ pub struct FileHash {
     pub path: String,
     /// SHA-256 of its bytes.
     pub sha256: String,
-}
-
-impl FileHash {
-    /// That of the file `path`, which is read whole.
-    ///
-    /// # Errors
-    /// The system's, when it does not hand the file over.
-    pub fn of(path: &Path) -> io::Result<Self> {
-        Ok(Self { path: path.display().to_string(), sha256: sha256([fs::read(path)?]) })
-    }
 }

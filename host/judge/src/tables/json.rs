@@ -12,6 +12,7 @@ use serde_json::{Map, Value};
 
 use super::members::{Members, list, number};
 use super::{ContentError, Place, TableFileError, layout, text};
+use crate::call::Input;
 use halfrow_frames::written_aside::{WriteAsideError, write_aside};
 
 /// A table file: everything that a board is given before frames.
@@ -60,11 +61,11 @@ impl TableFile {
         Place::Kernel,
     ];
 
-    /// The table file `path`.
+    /// The table file `path`, and what it was read from.
     ///
     /// # Errors
     /// [`TableFileError`] when it cannot be read or [`Self::parse`] refuses its text.
-    pub fn read(path: &Path) -> Result<Self, TableFileError> {
+    pub fn read(path: &Path) -> Result<(Self, Input), TableFileError> {
         read(path, Self::parse)
     }
 
@@ -133,7 +134,7 @@ impl KernelFile {
     /// # Errors
     /// [`TableFileError`] when it cannot be read or [`Self::parse`] refuses its text.
     pub fn read(path: &Path) -> Result<Self, TableFileError> {
-        read(path, Self::parse)
+        read(path, Self::parse).map(|(file, _)| file)
     }
 
     /// The kernel file with the content `text`.
@@ -164,10 +165,13 @@ impl KernelFile {
     }
 }
 
-fn read<T>(path: &Path, parse: fn(&str) -> Result<T, ContentError>) -> Result<T, TableFileError> {
+fn read<T>(path: &Path, parse: fn(&str) -> Result<T, ContentError>) -> Result<(T, Input), TableFileError> {
     let text = text::read(path, text::MAX_BYTES)
         .map_err(|source| TableFileError::Io { path: path.to_owned(), source })?;
-    parse(&text).map_err(|source| TableFileError::content(path.to_owned(), source))
+    match parse(&text) {
+        Ok(content) => Ok((content, Input::of_bytes(path, text.as_bytes()))),
+        Err(source) => Err(TableFileError::content(path.to_owned(), source)),
+    }
 }
 
 fn write_text(path: &Path, overwrite: bool, text: &str) -> Result<(), WriteAsideError> {

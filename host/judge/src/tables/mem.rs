@@ -12,6 +12,7 @@ use halfrow_protocol::message::Datapath;
 
 use super::text::{self, quoted};
 use super::{DATAPATH, MemError, Place, TableFileError, WrongDatapath, datapath_of};
+use crate::call::Input;
 use halfrow_frames::written_aside::{Aside, Claim, WriteAsideError};
 
 /// Hexadecimal digits of a row factor, and of an entry of a grid.
@@ -57,19 +58,25 @@ pub fn write(
     Ok(vec![rows, nodes])
 }
 
-/// Reads both files for `path`, as [`paths`] names them.
+/// Reads both files for `path`, as [`paths`] names them, and says what they were read from.
 ///
 /// # Errors
 /// [`TableFileError`] when one of them cannot be read or is no memory image of tables.
-pub fn read(path: &Path) -> Result<(TableSet, Kernel), TableFileError> {
-    let [rows, kernel] = paths(path);
-    Ok((read_one(rows, parse_row_factors)?, read_one(kernel, parse_kernel)?))
+pub fn read(path: &Path) -> Result<(TableSet, Kernel, [Input; 2]), TableFileError> {
+    let [rows, nodes] = paths(path);
+    let (tables, rows) = read_one(rows, parse_row_factors)?;
+    let (kernel, nodes) = read_one(nodes, parse_kernel)?;
+    Ok((tables, kernel, [rows, nodes]))
 }
 
-fn read_one<T>(path: PathBuf, parse: fn(&str) -> Result<T, MemError>) -> Result<T, TableFileError> {
-    match text::read(&path, text::MAX_BYTES) {
-        Ok(text) => parse(&text).map_err(|source| TableFileError::mem(path, source)),
-        Err(source) => Err(TableFileError::Io { path, source }),
+fn read_one<T>(path: PathBuf, parse: fn(&str) -> Result<T, MemError>) -> Result<(T, Input), TableFileError> {
+    let text = match text::read(&path, text::MAX_BYTES) {
+        Ok(text) => text,
+        Err(source) => return Err(TableFileError::Io { path, source }),
+    };
+    match parse(&text) {
+        Ok(content) => Ok((content, Input::of_bytes(&path, text.as_bytes()))),
+        Err(source) => Err(TableFileError::mem(path, source)),
     }
 }
 

@@ -81,7 +81,9 @@ fn both_files_are_written_and_read_back() {
     let path = folder.path().join("line.mem");
     let kernel = Kernel::from(Interpolant::Keys);
     assert_eq!(mem::write(&path, &tables(), &kernel, false).unwrap(), mem::paths(&path));
-    assert_eq!(mem::read(&path).unwrap(), (tables(), kernel));
+    let (read, of_kernel, inputs) = mem::read(&path).unwrap();
+    assert_eq!((read, of_kernel), (tables(), kernel));
+    assert_eq!(inputs.map(|input| input.path), mem::paths(&path));
 }
 
 #[test]

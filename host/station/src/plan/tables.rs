@@ -95,7 +95,7 @@ impl TablesText {
     }
 
     fn of_file(&self, path: &Path, kernel: Option<&OsStr>) -> Result<Chosen, OpticsError> {
-        let file = TableFile::read(path)?;
+        let (file, _) = TableFile::read(path)?;
         let optics = Optics::before(file.tables.geometry())?;
         optics::choose(Some((path, file)), optics, kernel)
     }

@@ -1,0 +1,26 @@
+use std::path::{Path, PathBuf};
+
+use crate::result::{FileHash, sha256};
+
+/// A file that was read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Input {
+    /// Its path, which need not be text, as that of a [`FileHash`] is.
+    pub path: PathBuf,
+    /// SHA-256 of the bytes that were taken from it.
+    pub sha256: String,
+}
+
+impl Input {
+    /// The file `path`, of which `bytes` were taken. It may hold others by now, so it is not read again.
+    #[must_use]
+    pub fn of_bytes(path: &Path, bytes: &[u8]) -> Self {
+        Self { path: path.to_owned(), sha256: sha256([bytes]) }
+    }
+}
+
+impl From<Input> for FileHash {
+    fn from(input: Input) -> Self {
+        Self { path: input.path.display().to_string(), sha256: input.sha256 }
+    }
+}
