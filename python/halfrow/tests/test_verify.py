@@ -1,9 +1,11 @@
 """Boards judged: reports, files, progress, signals."""
 import copy
 import dataclasses
+import hashlib
 import inspect
 import json
 import os
+import pathlib
 import pickle
 import signal
 import subprocess
@@ -91,6 +93,14 @@ def test_values_have_the_types_that_they_are_said_to_have(small):
 
     for target in ("mock", "mock,fault=stuck-data", "mock,fault=wrong-datapath"):
         check(halfrow.verify(target, tables=small), halfrow.Report, target)
+
+
+def test_a_report_names_the_lens_s_file_by_its_hash(tmp_path, opencv):
+    hashed = hashlib.sha256(pathlib.Path(opencv).read_bytes()).hexdigest()
+    tables = halfrow.Tables.from_lens(halfrow.Lens(opencv, width=128, height=72))
+    for taken in (tables, halfrow.Tables.from_lens(tables.lens)):
+        report = halfrow.verify(tables=taken, frames=["builtin:bars"], at_speed=0)
+        assert [(file.path, file.sha256) for file in report.run.files] == [(str(opencv), hashed)]
 
 
 def test_what_is_hashed_is_what_was_judged(tmp_path, small):
