@@ -1,6 +1,7 @@
 //! The library's errors as Python's exceptions: the same codes, parameters, sentences and remedies.
 
 use std::error::Error;
+use std::io;
 use std::path::Path;
 
 use halfrow::optics::OpticsError;
@@ -14,6 +15,8 @@ const CONFLICT: &str = "usage-arguments-conflict";
 
 /// And of a name of tables that says nothing of their format.
 const TABLES_FORMAT: &str = "tables-format-unknown";
+/// And of a system that gives no thread.
+const NO_THREAD: &str = "run-thread-missing";
 /// What the command line finds before it begins: a name of no format, and what is there already.
 const NOT_WRITTEN: [&str; 3] = ["file-exists", "frame-extension-unknown", "report-exists"];
 
@@ -63,6 +66,14 @@ pub(crate) fn no_tables(path: &Path) -> PyErr {
     let mut problem = Problem::new(TABLES_FORMAT, told);
     problem.parameters.insert("path".to_owned(), path.display().to_string().into());
     exception(Whose::Call, &problem)
+}
+
+/// The exception for a run that the system gives no thread, as `error` says.
+pub(crate) fn no_thread(error: &io::Error) -> PyErr {
+    let told = format!(
+        "this computer has no thread left to judge on ({error}); end other programs, or allow this user more processes, then run again"
+    );
+    exception(Whose::World, &Problem::new(NO_THREAD, told))
 }
 
 /// The exception for an option that `error` says cannot be taken from Python: in the words of whoever called, and not of this package.

@@ -125,7 +125,9 @@ impl Lens {
             (None, _) => Equidistant::default(),
             (Some(_), Some(radius)) => {
                 let radius = radius.parse().map_err(|_| {
-                    errors::wrong_value(format!("`{radius}` is no radius; give {EQUIDISTANT} pixels"))
+                    errors::wrong_value(format!(
+                        "`{radius}` is no radius; give {EQUIDISTANT}RADIUS, that of the image of 180 degrees in pixels"
+                    ))
                 })?;
                 Equidistant::from_radius(radius).map_err(errors::input)?
             }

@@ -10,6 +10,8 @@ use halfrow::progress::{Event, Progress};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
+use crate::errors;
+
 /// How long a signal may wait for somebody to look.
 const LOOK: Duration = Duration::from_millis(20);
 
@@ -22,7 +24,7 @@ enum Told<T> {
 /// The result of `work`, whose events go to `listener`. Python's lock is free meanwhile.
 ///
 /// A signal handler or a listener that raises, as Ctrl-C does, sets `is_stopped`; the exception is passed on as soon as the work
-/// has ended in order, or at once when another is raised before.
+/// has ended in order, or at once when another is raised before; the work then goes on to that end behind it.
 pub(crate) fn watched<T: Send + 'static>(
     py: Python<'_>,
     listener: Option<&Bound<'_, PyAny>>,
@@ -30,12 +32,13 @@ pub(crate) fn watched<T: Send + 'static>(
     work: impl FnOnce(&dyn Progress) -> T + Send + 'static,
 ) -> PyResult<T> {
     let (sender, told) = mpsc::channel();
-    let worker = thread::spawn(move || {
+    let worker = thread::Builder::new().name("run".to_owned()).spawn(move || {
         let events = sender.clone();
         // Whoever called may be gone.
         let result = work(&move |event| _ = events.send(Told::Event(event)));
         _ = sender.send(Told::Result(result));
     });
+    let worker = worker.map_err(|error| errors::no_thread(&error))?;
     let told = Mutex::new(told);
     let mut raised: Option<PyErr> = None;
     loop {

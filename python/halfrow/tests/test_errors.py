@@ -3,6 +3,9 @@ import os
 import pathlib
 import pickle
 import re
+import subprocess
+import sys
+import textwrap
 
 import numpy as np
 import pytest
@@ -178,6 +181,31 @@ def test_an_argument_of_another_kind_is_named_with_what_it_takes(small, call, na
     assert raised.value.code == "usage-value-wrong"
     assert raised.value.message.startswith(f"{name} is {shown}") and raised.value.remedy
     assert "\n" not in str(raised.value)
+
+
+def test_a_radius_that_is_none_is_refused_with_what_to_write():
+    with pytest.raises(halfrow.InputError) as raised:
+        halfrow.Lens("equidistant:wide")
+    assert raised.value.message.startswith("`wide` is no radius; ")
+    assert raised.value.remedy == "Give equidistant:RADIUS, that of the image of 180 degrees in pixels."
+
+
+def test_a_run_that_gets_no_thread_is_an_error():
+    judged = textwrap.dedent(
+        """
+        import halfrow
+        try:
+            halfrow.verify(frames=["builtin:bars"], at_speed=0)
+        except halfrow.HalfrowError as error:
+            print(error.code, error.remedy)
+        """
+    )
+    # Nor would NumPy get any, which does not ask for one then.
+    alone = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+    refused = ["strace", "-f", "-qq", "-o", os.devnull, "-e", "inject=clone,clone3:error=EAGAIN"]
+    ended = subprocess.run([*refused, sys.executable, "-c", judged], env=alone, capture_output=True, text=True)
+    remedy = "End other programs, or allow this user more processes, then run again."
+    assert ended.stdout == f"run-thread-missing {remedy}\n", ended.stderr
 
 
 @pytest.mark.parametrize(
