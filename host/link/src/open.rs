@@ -7,7 +7,7 @@ use halfrow_mock::BoardFault;
 
 #[cfg(feature = "sim")]
 pub(crate) use super::simulated::{check_simulated, open_simulated};
-use super::{Candidate, Link, OpenError, Recording, ReplayLink, WireLink};
+use super::{Candidate, Link, OpenError, Recording, Reopener, ReplayLink, WireLink};
 use crate::kinds::{self, Kind};
 use crate::target::{BoardKind, Target};
 
@@ -33,8 +33,10 @@ pub fn open(target: &Target) -> Result<Candidate, OpenError> {
     let kind = kind(target)?;
     let link = (kind.open)(target)?;
     let again = target.clone();
-    let reopen = Box::new(move || Ok(open(&again)?.link));
-    Ok(Candidate { target: target.to_string(), kind: kind.board, link, reopen: Some(reopen) })
+    // What a recording says once it would say from its beginning again.
+    let is_there_again = kind.board != BoardKind::Replay;
+    let reopen = is_there_again.then(|| Box::new(move || Ok(open(&again)?.link)) as Reopener);
+    Ok(Candidate { target: target.to_string(), kind: kind.board, link, reopen })
 }
 
 /// What is broken in the board of a `mock` target, on purpose; none when nothing is, or the target is another.

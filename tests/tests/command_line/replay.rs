@@ -225,3 +225,13 @@ fn a_recording_cannot_be_written_nowhere() {
         "name another place with --record",
     );
 }
+
+/// It would answer from its beginning again.
+#[test]
+fn a_recording_is_not_opened_again() {
+    let folder = Folder::new();
+    let call = small("verify", &["--record", "run.rec", "--frame", "builtin:black", "--at-speed", "0"]);
+    assert_eq!(folder.halfrow(call).code, Some(0));
+    let target = format!("replay:{}", folder.path().join("run.rec").display()).parse().unwrap();
+    assert!(halfrow::link::open(&target).unwrap().reopen.is_none());
+}
