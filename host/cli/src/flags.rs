@@ -1,6 +1,6 @@
 //! The flags that the settings have that the libraries name in words: the one place where a remedy gets its flag.
 
-/// What sentences of the libraries say, and the flag for it. None of them is part of another.
+/// What sentences of the libraries say, and the flag for it, or what to call. None of them is part of another.
 pub const FLAGS: [(&str, &str); 22] = [
     ("allow it to be overwritten", "--overwrite"),
     ("another place for the recording", "--record"),

@@ -38,6 +38,9 @@ pub enum Builtin {
 }
 
 impl Builtin {
+    /// What stands before its name where a file could be named.
+    pub const PREFIX: &str = "builtin:";
+
     /// All built-in frames.
     pub const ALL: [Self; 12] = [
         Self::Black,
@@ -90,6 +93,14 @@ impl Builtin {
             Self::ZonePlate => "rings that become finer outwards: shows errors of interpolation",
             Self::Street => "a street through the fisheye lens: what a camera sees",
         }
+    }
+
+    /// The built-in frame that `text` names where a file could be named, if it names none.
+    ///
+    /// # Errors
+    /// [`UnknownBuiltin`] when no built-in frame has the name behind [`Self::PREFIX`].
+    pub fn named(text: &str) -> Result<Option<Self>, UnknownBuiltin> {
+        text.strip_prefix(Self::PREFIX).map(str::parse).transpose()
     }
 
     /// The frame, made for `scene`. The same scene always gives the same frame; the street's may differ in single

@@ -30,6 +30,9 @@ pub const PAPER_SIZE: (usize, usize) = (1920, 1080);
 /// The paper's image circle, in degrees.
 pub const PAPER_FIELD: f64 = 180.0;
 
+/// What stands before R, in pixels, where an equidistant lens is named in place of a lens file.
+pub const EQUIDISTANT: &str = "equidistant:";
+
 /// How tables are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TablesBy {

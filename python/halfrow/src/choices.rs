@@ -63,8 +63,8 @@ pub(crate) fn seconds(what: &'static str, seconds: Option<f64>) -> PyResult<Opti
 pub(crate) fn within(seconds: Option<f64>) -> PyResult<Option<Duration>> {
     let time = |seconds| {
         let wrong =
-            "within is no time to judge within; give a number of seconds, more than 0 and at most 1000000";
-        call::within(seconds).ok_or_else(|| errors::wrong_value(wrong))
+            || errors::wrong_value(format!("within is no time to judge within; {}", call::WITHIN_TAKES));
+        call::within(seconds).ok_or_else(wrong)
     };
     seconds.map(time).transpose()
 }

@@ -4,14 +4,11 @@ use std::path::PathBuf;
 
 use halfrow::frames::Builtin;
 use halfrow::model::Equidistant;
-use halfrow::optics::{Optics, PAPER_FIELD, TablesBy, View};
+use halfrow::optics::{EQUIDISTANT, Optics, PAPER_FIELD, TablesBy, View};
 use numpy::PyArray2;
 use pyo3::prelude::*;
 
 use crate::{arguments, choices, errors, frames};
-
-/// What stands before a radius in place of a lens file.
-const EQUIDISTANT: &str = "equidistant:";
 
 /// A fisheye lens before frames of some size.
 ///

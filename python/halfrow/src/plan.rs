@@ -1,13 +1,12 @@
 //! From the options of a call to what a run does, and how.
 
-use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use halfrow::board::Stop;
 use halfrow::board::deadlines::RetryLimit;
 use halfrow::call::{self, Input, Voided};
-use halfrow::frames::{FrameFile, PictureSize, ReadError, ReadOptions, UnknownBuiltin};
+use halfrow::frames::{Builtin, FrameFile, PictureSize, ReadError, ReadOptions};
 use halfrow::link::Recording;
 use halfrow::model::{Frame, Geometry, Phase};
 use halfrow::result::FileHash;
@@ -19,11 +18,6 @@ use crate::errors::Whose;
 use crate::kernel::Kernel;
 use crate::tables::Tables;
 use crate::{arguments, choices, errors, frames};
-
-/// What stands before the name of a built-in frame.
-const BUILTIN: &str = "builtin:";
-/// How often frames can be streamed.
-const REPEATS: RangeInclusive<u32> = 1..=1000;
 
 /// The options of `verify`, as halfrow/_verify.py packs them.
 #[derive(FromPyObject)]
@@ -110,9 +104,10 @@ impl Options<'_> {
         if self.record.is_some() {
             self.refuse(&call::WHILE_RECORDED)?;
         }
-        if !REPEATS.contains(&self.repeat) {
+        if !call::REPEATS.contains(&self.repeat) {
+            let (least, most) = (call::REPEATS.start(), call::REPEATS.end());
             return Err(errors::wrong_value(format!(
-                "frames cannot be repeated {} times; give 1 to 1000",
+                "frames cannot be repeated {} times; give {least} to {most}",
                 self.repeat
             )));
         }
@@ -203,9 +198,9 @@ fn source(
     files: &mut Vec<Input>,
 ) -> PyResult<FrameSource> {
     if let Ok(name) = given.extract::<String>()
-        && let Some(name) = name.strip_prefix(BUILTIN)
+        && let Some(builtin) = Builtin::named(&name).map_err(errors::input)?
     {
-        return Ok(FrameSource::Builtin(name.parse().map_err(errors::input::<UnknownBuiltin>)?));
+        return Ok(FrameSource::Builtin(builtin));
     }
     let depth = geometry.depth();
     let size = PictureSize::Exactly(geometry.width(), geometry.height());

@@ -65,8 +65,8 @@ pub(super) enum FrameName {
 impl FrameName {
     /// The frames with these names. A file's name need not be text.
     pub(super) fn all<S: AsRef<OsStr>>(names: &[S]) -> anyhow::Result<Vec<Self>> {
-        let read = |name: &S| match name.as_ref().to_str().and_then(|name| name.strip_prefix("builtin:")) {
-            Some(builtin) => Ok(Self::Builtin(builtin.parse()?)),
+        let read = |name: &S| match name.as_ref().to_str().map_or(Ok(None), Builtin::named)? {
+            Some(builtin) => Ok(Self::Builtin(builtin)),
             None => Ok(Self::File(PathBuf::from(name))),
         };
         names.iter().map(read).collect()

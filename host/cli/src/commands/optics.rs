@@ -14,7 +14,9 @@ use halfrow::kernels;
 use halfrow::lenses::LensFile;
 
 use super::table_file::NamedTables;
-use halfrow::optics::{self, Chosen, Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, TablesBy, View};
+use halfrow::optics::{
+    self, Chosen, EQUIDISTANT, Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, TablesBy, View,
+};
 
 /// The pixels of the paper's sensor, in micrometres.
 const DEFAULT_PITCH: f64 = 2.2;
@@ -93,10 +95,10 @@ enum LensName {
 
 impl LensName {
     fn read(text: OsString) -> Result<Self, String> {
-        match text.to_str().and_then(|text| text.strip_prefix("equidistant:")) {
+        match text.to_str().and_then(|text| text.strip_prefix(EQUIDISTANT)) {
             None => Ok(Self::File(PathBuf::from(text))),
             Some(radius) => radius.parse().map(Self::Equidistant).map_err(|_| {
-                "equidistant: takes the radius of the image of 180 degrees, in pixels".to_owned()
+                format!("{EQUIDISTANT} takes the radius of the image of 180 degrees, in pixels")
             }),
         }
     }

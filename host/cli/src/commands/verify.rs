@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use clap::builder::RangedI64ValueParser;
 use halfrow_program::number::any;
 
 use super::board::{self, MOCK, Replays};
@@ -31,7 +32,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE", env = "HALFROW_FRAME")]
     frame: Vec<OsString>,
     /// Stream the frames this often
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = repeats())]
     repeat: u32,
     /// Let the board make frames at its full pixel clock for so many seconds of that clock, 0 for none
     /// [default: 3 on hardware, three frames on any other board]
@@ -57,7 +58,12 @@ pub(super) struct Arguments {
 
 fn within(text: &str) -> Result<f64, String> {
     let seconds = text.parse().ok().filter(|&seconds| call::within(seconds).is_some());
-    seconds.ok_or_else(|| "give a number of seconds, more than 0 and at most 1000000".to_owned())
+    seconds.ok_or_else(|| call::WITHIN_TAKES.to_owned())
+}
+
+fn repeats() -> RangedI64ValueParser<u32> {
+    let (least, most) = call::REPEATS.into_inner();
+    clap::value_parser!(u32).range(i64::from(least)..=i64::from(most))
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {

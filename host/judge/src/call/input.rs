@@ -1,3 +1,5 @@
+//! Files that a call has read.
+
 use std::path::{Path, PathBuf};
 
 use crate::result::{FileHash, sha256};

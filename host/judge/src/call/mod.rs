@@ -10,6 +10,7 @@ mod size;
 pub use files::{Files, FilesError};
 pub use input::Input;
 pub use options::{
-    BESIDE_RECORDING, FRAMES, NoTime, VoidOption, Voided, WHILE_RECORDED, WITHIN, seconds, within,
+    BESIDE_RECORDING, FRAMES, NoTime, REPEATS, VoidOption, Voided, WHILE_RECORDED, WITHIN, WITHIN_TAKES,
+    seconds, within,
 };
 pub use size::{FrameOfOtherSize, check_size};

@@ -1,11 +1,17 @@
 //! Options that are times, and options that do nothing beside another thing.
 
+use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use thiserror::Error;
 
+/// How often a call can have its frames streamed.
+pub const REPEATS: RangeInclusive<u32> = 1..=1000;
+
 /// The longest time that a run can be asked to keep within, in seconds.
 const LONGEST: f64 = 1e6;
+/// What to give that [`within`] takes.
+pub const WITHIN_TAKES: &str = "give a number of seconds, more than 0 and at most 1000000";
 
 /// An option beside another thing that decides in its place.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

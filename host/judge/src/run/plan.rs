@@ -66,7 +66,7 @@ impl FrameSource {
     #[must_use]
     pub fn name(&self) -> String {
         match self {
-            Self::Builtin(builtin) => format!("builtin:{}", builtin.name()),
+            Self::Builtin(builtin) => format!("{}{builtin}", Builtin::PREFIX),
             Self::File { path, .. } => path.display().to_string(),
         }
     }

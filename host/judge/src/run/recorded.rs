@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::{Circumstances, Draws, FrameSource, JUDGED, Plan, RunOptions, Selection, Vary};
 use crate::board::Sent;
 use crate::board::deadlines::RetryLimit;
-use crate::frames::UnknownBuiltin;
+use crate::frames::{Builtin, UnknownBuiltin};
 use crate::link::{Recording, RecordingError};
 use crate::tables::{ContentError, TableFile};
 
@@ -158,13 +158,13 @@ impl RecordedRun {
         let first = commits.first_frames.get(&JUDGED).copied().unwrap_or_default();
         let numbered = self.frames.iter().enumerate();
         let numbered = numbered.map(|(index, name)| (name, first.wrapping_add(index as u16)));
-        let is_file = |(name, _): &(&String, u16)| !name.starts_with("builtin:");
+        let is_file = |(name, _): &(&String, u16)| !name.starts_with(Builtin::PREFIX);
         let files: BTreeSet<u16> = numbered.clone().filter(is_file).map(|(_, number)| number).collect();
         let sent = Sent::find(recording.sent(), |number| files.contains(&number));
         numbered
             .map(|(name, number)| {
-                if let Some(builtin) = name.strip_prefix("builtin:") {
-                    return Ok(FrameSource::Builtin(builtin.parse().map_err(value::<UnknownBuiltin>)?));
+                if let Some(builtin) = Builtin::named(name).map_err(value::<UnknownBuiltin>)? {
+                    return Ok(FrameSource::Builtin(builtin));
                 }
                 let samples = sent.frame(number, geometry.width(), geometry.height());
                 let frame = Frame::new(geometry.width(), geometry.depth(), phase, samples)

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use halfrow::FrameSource;
-use halfrow::frames::{self, PictureSize, ReadOptions};
+use halfrow::frames::{self, Builtin, PictureSize, ReadOptions};
 use halfrow::model::{BitDepth, Equidistant, Frame, Geometry, Phase};
 use halfrow::optics::{self, Chosen, Optics, OpticsError, TablesBy, View};
 use halfrow::tables::TableFile;
@@ -139,12 +139,10 @@ pub(super) fn frames(
 ) -> Result<Vec<FrameSource>, Fault> {
     let size = PictureSize::Exactly(geometry.width(), geometry.height());
     let how = ReadOptions { depth: geometry.depth(), phase, size, ..ReadOptions::default() };
-    let source = |name: &Spanned<String>| match name.get_ref().strip_prefix("builtin:") {
-        Some(builtin) => {
-            let parsed = builtin.parse().map(FrameSource::Builtin);
-            parsed.map_err(|error| Fault::input(name.span().start, format!("`{}`", name.get_ref()), error))
-        }
-        None => of_file(name, &how, geometry, files),
+    let source = |name: &Spanned<String>| match Builtin::named(name.get_ref()) {
+        Ok(Some(builtin)) => Ok(FrameSource::Builtin(builtin)),
+        Ok(None) => of_file(name, &how, geometry, files),
+        Err(error) => Err(Fault::input(name.span().start, format!("`{}`", name.get_ref()), error)),
     };
     names.iter().map(source).collect()
 }
