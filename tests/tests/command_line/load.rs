@@ -1,6 +1,7 @@
 //! `halfrow load`, with programs in openFPGALoader's place.
 
 use std::fs;
+use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -16,6 +17,9 @@ const NO_BOARD: &str = "echo 'JTAG init failed with: unable to open ftdi device'
 const WORKS: &str = r#"printf '%s\n' "$@" >called; printf 'Loading: 40%%\rLoading: 100%%\nDone\n'"#;
 /// One that hangs with a child, whose number it notes whole.
 const HANGS: &str = "sleep 1000 & echo $! >id; mv id child; echo started >&2; wait";
+
+/// One that works, and leaves a program behind that is of no group of its own and never stops talking.
+const LEAVES: &str = "setsid sh -c 'echo >left; exec yes progress' & until [ -e left ]; do sleep 0.01; done";
 
 /// A folder with `bin/openFPGALoader`, which does this.
 fn with_loader(script: &str) -> Folder {
@@ -207,6 +211,40 @@ fn a_loader_that_hangs_is_killed_at_the_deadline_with_all_that_it_started() {
     assert!(begun);
     let child = folder.text("child");
     wait_until("the loader's child to end", || !is_running(child.trim()));
+}
+
+#[test]
+fn a_program_that_a_loader_leaves_behind_cannot_talk_for_ever() {
+    let folder = with_loader(LEAVES);
+    recorded(&folder, "ulx3s", "00000001");
+    let ended = load(&folder, &["top.bit"]);
+    assert_eq!(ended.code, Some(0));
+}
+
+/// Whoever starts it may want to hear nothing of its own children.
+#[test]
+fn a_loader_s_end_is_known_where_signals_of_children_are_ignored() {
+    let folder = with_loader(WORKS);
+    recorded(&folder, "ulx3s", "00000001");
+    let wanted = command(&folder, &["top.bit"]);
+    let mut deaf = Command::new("env");
+    deaf.arg("--ignore-signal=CHLD").arg(wanted.get_program()).args(wanted.get_args());
+    deaf.envs(wanted.get_envs().filter_map(|(name, value)| Some((name, value?)))).current_dir(folder.path());
+    let ended = finish(&mut deaf);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+}
+
+#[test]
+fn a_board_that_is_silent_is_waited_for_no_longer_than_the_deadline() {
+    let folder = with_loader(WORKS);
+    recorded(&folder, "ulx3s", "00000001");
+    let silent = TcpListener::bind("127.0.0.1:0").unwrap();
+    let target = format!("tcp:{}", silent.local_addr().unwrap());
+    let call = ["top.bit", "--board", &target, "--deadline", "1", "--json"];
+    let code = || load(&folder, &call).json()["error"]["code"].clone();
+    // A busy machine may take longer to start a loader than that.
+    let code = (0..20).map(|_| code()).find(|code| code != "loader-late");
+    assert_eq!(code, Some("run-too-long".into()));
 }
 
 #[test]

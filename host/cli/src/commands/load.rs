@@ -24,7 +24,7 @@ use super::{Context, Failure, conclude};
 use crate::exit::Exit;
 use crate::progress::Told;
 use crate::{console, pool, signals};
-use halfrow::board::{Board, BoardError, OpenOptions};
+use halfrow::board::{Board, BoardError, OpenOptions, Stop};
 use halfrow::link::{self, Class};
 use halfrow::result::{BoardReport, Identity};
 use halfrow::run::Draws;
@@ -77,9 +77,10 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     }
     let signal = signals::stop();
     let stopped = move || Exit::stopped_by(signal.load(Ordering::Relaxed));
+    let stop = Stop::when(stopped.clone());
     let call = Call::new(onto.loader_name, onto.other_loader, &arguments.file, &arguments.options);
     call.run(arguments.deadline, &Told::on_stderr(context.quiet), &stopped)?;
-    let report = board.map(|target| greeted(&target, arguments.deadline, &stopped)).transpose()?;
+    let report = board.map(|target| greeted(&target, arguments.deadline, &stop, &stopped)).transpose()?;
     let compared = match (&report, &record) {
         (Some(report), Some(record)) => compare(report, record)?,
         _ => false,
@@ -148,35 +149,51 @@ fn warning(file: &Path, record: Option<&Record>) -> Option<String> {
 fn greeted(
     target: &Target,
     limit: Duration,
+    stop: &Stop,
     stopped: &dyn Fn() -> Option<StoppedBy>,
 ) -> Result<BoardReport, Failure> {
     let deadline = Instant::now() + limit;
+    let mut last = None;
     loop {
-        let (failure, may_change) = match greet(target) {
+        let left = deadline.saturating_duration_since(Instant::now());
+        let (failure, next) = match greet(target, stop.clone().within(Some(left))) {
             Ok(report) => return Ok(report),
             Err(failed) => failed,
         };
         if let Some(by) = stopped() {
             return Err(BoardError::Stopped(by).into());
         }
-        if !may_change || Instant::now() >= deadline {
-            return Err(failure);
+        match next {
+            Next::Never => return Err(failure),
+            // What a whole try has found says more than that another had no time.
+            Next::TooLate => return Err(last.unwrap_or(failure)),
+            Next::MayDiffer if Instant::now() >= deadline => return Err(failure),
+            Next::MayDiffer => last = Some(failure),
         }
         thread::sleep(Duration::from_millis(100));
     }
 }
 
-/// One try, and whether another may end otherwise.
-fn greet(target: &Target) -> Result<BoardReport, (Failure, bool)> {
+/// What another try is good for.
+enum Next {
+    Never,
+    MayDiffer,
+    TooLate,
+}
+
+/// One try, within what `stop` allows, and what another is good for.
+fn greet(target: &Target, stop: Stop) -> Result<BoardReport, (Failure, Next)> {
+    let again = |may_differ| if may_differ { Next::MayDiffer } else { Next::Never };
     let candidate = link::open(target).map_err(|error| {
-        let may_change = error.class() != Class::Call;
-        (error.into(), may_change)
+        let next = again(error.class() != Class::Call);
+        (error.into(), next)
     })?;
-    let options = OpenOptions { polite: true, ..Draws::draw().into() };
+    let options = OpenOptions { polite: true, stop, ..Draws::draw().into() };
     let mut board = Board::open(candidate.link, &options).map_err(|failed| {
+        let is_cut = matches!(failed.error, BoardError::Timeout { .. });
         let failure = Failure::from(failed);
-        let may_change = failure.exit == Exit::Error;
-        (failure, may_change)
+        let next = if is_cut { Next::TooLate } else { again(failure.exit == Exit::Error) };
+        (failure, next)
     })?;
     let identity = Identity::of(&board.welcome, &board.capabilities);
     let kind = candidate.kind.confirmed_by(board.capabilities.nature);

@@ -44,8 +44,8 @@ pub(in crate::commands) enum LoadError {
          `{other}`"
     )]
     LoaderMissing { other: String },
-    /// A loader that does not start.
-    #[error("`{call}` cannot be started; check that openFPGALoader may be executed here, or install it anew")]
+    /// A loader that does not start, or whose end nobody knows.
+    #[error("`{call}` cannot be run; check that openFPGALoader may be executed here, or install it anew")]
     LoaderNotStarted { call: String, source: io::Error },
     /// A loader that failed.
     #[error(

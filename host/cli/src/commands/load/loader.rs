@@ -4,12 +4,15 @@ use std::io::{self, Read};
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use nix::sys::signal::{Signal, killpg};
+use nix::sys::wait::{Id, WaitPidFlag, WaitStatus, waitid};
 use nix::unistd::Pid;
+use signal_hook::consts::SIGCHLD;
 
 use super::LoadError;
 use crate::commands::Failure;
@@ -23,8 +26,10 @@ use halfrow::verdict::StoppedBy;
 pub(super) const PROGRAM: &str = "openFPGALoader";
 /// How often the program is looked at.
 const LOOK: Duration = Duration::from_millis(10);
-/// The most that is kept of what it says, in bytes.
+/// The most that is kept of what it says, in bytes; a longer line is told in pieces.
 const MOST_KEPT: usize = 2000;
+/// The lines that may wait to be told. One that says more waits.
+const QUEUE: usize = 64;
 /// How long its last words may take when it has ended, should something that it started hold its streams open.
 const LAST_WORDS: Duration = Duration::from_secs(2);
 
@@ -71,23 +76,23 @@ impl Call {
         let begun = Instant::now();
         let mut loader = Loader::start(self)?;
         let end = loader.attended(begun + deadline, told, stopped);
-        let said = loader.end(told);
+        let (status, said) = loader.end(told);
         let call = self.line();
-        match end {
-            End::By(by) => Err(BoardError::Stopped(by).into()),
-            End::Late => {
+        match (end, status) {
+            (End::By(by), _) => Err(BoardError::Stopped(by).into()),
+            (End::Late, _) => {
                 let deadline = deadline.as_secs_f64();
                 Err(Failure::error(LoadError::LoaderLate { call, deadline, said }))
             }
-            End::Ended(Ok(status)) if status.success() => Ok(()),
-            End::Ended(Ok(status)) => Err(Failure::error(LoadError::LoaderFailed { call, status, said })),
-            End::Ended(Err(source)) => Err(Failure::error(LoadError::LoaderNotStarted { call, source })),
+            (End::Itself, Ok(status)) if status.success() => Ok(()),
+            (End::Itself, Ok(status)) => Err(Failure::error(LoadError::LoaderFailed { call, status, said })),
+            (End::Itself, Err(source)) => Err(Failure::error(LoadError::LoaderNotStarted { call, source })),
         }
     }
 }
 
 enum End {
-    Ended(io::Result<ExitStatus>),
+    Itself,
     Late,
     By(StoppedBy),
 }
@@ -100,6 +105,9 @@ struct Loader {
 
 impl Loader {
     fn start(call: &Call) -> Result<Self, Failure> {
+        let not_run = |source| Failure::error(LoadError::LoaderNotStarted { call: call.line(), source });
+        // Where that signal is ignored, as whoever started this program may have wished, nobody learns how a child ended.
+        signal_hook::flag::register(SIGCHLD, Arc::default()).map_err(not_run)?;
         let mut command = Command::new(PROGRAM);
         command.args(&call.options).arg(&call.file).process_group(0);
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -108,21 +116,23 @@ impl Loader {
                 exit: Exit::Usage,
                 error: LoadError::LoaderMissing { other: call.other.clone() }.into(),
             },
-            _ => Failure::error(LoadError::LoaderNotStarted { call: call.line(), source }),
+            _ => not_run(source),
         })?;
-        let (sender, lines) = channel();
+        let (sender, lines) = sync_channel(QUEUE);
         let streams: [Option<Box<dyn Read + Send>>; 2] = [
             child.stdout.take().map(|stream| Box::new(stream) as _),
             child.stderr.take().map(|stream| Box::new(stream) as _),
         ];
         let loader = Self { child, lines, said: String::new() };
-        for stream in streams.into_iter().flatten() {
-            if let Err(source) = hear(stream, sender.clone()) {
-                loader.kill();
-                return Err(Failure::error(LoadError::LoaderNotStarted { call: call.line(), source }));
+        let mut streams = streams.into_iter().flatten();
+        match streams.try_for_each(|stream| hear(stream, sender.clone())) {
+            Ok(()) => Ok(loader),
+            Err(source) => {
+                drop(sender);
+                let _ = loader.end(&Told::Nothing);
+                Err(not_run(source))
             }
         }
-        Ok(loader)
     }
 
     /// Hears it until it ends or has to.
@@ -134,8 +144,8 @@ impl Loader {
                 Err(RecvTimeoutError::Disconnected) => thread::sleep(LOOK),
                 Err(RecvTimeoutError::Timeout) => {}
             }
-            if let Some(ended) = self.child.try_wait().transpose() {
-                return End::Ended(ended);
+            if self.has_ended() {
+                return End::Itself;
             }
             if let Some(by) = stopped() {
                 return End::By(by);
@@ -157,28 +167,35 @@ impl Loader {
         self.said.drain(..cut.unwrap_or_default());
     }
 
-    fn kill(&self) {
-        if let Ok(group) = i32::try_from(self.child.id()) {
-            // Nothing is left to be killed when all have ended.
-            let _ = killpg(Pid::from_raw(group), Signal::SIGKILL);
-        }
+    fn id(&self) -> Pid {
+        Pid::from_raw(self.child.id().cast_signed())
     }
 
-    /// Sees that it is gone with all that it started, and returns the last that it said.
-    fn end(mut self, told: &Told) -> String {
-        self.kill();
-        let _ = self.child.wait();
+    /// Whether it has ended. It is not waited for yet: its number, which is its group's, might be another's then.
+    fn has_ended(&self) -> bool {
+        let look = WaitPidFlag::WEXITED | WaitPidFlag::WNOHANG | WaitPidFlag::WNOWAIT;
+        waitid(Id::Pid(self.id()), look) != Ok(WaitStatus::StillAlive)
+    }
+
+    /// Sees that it is gone with all of its group, and returns how it ended and the last that it said.
+    fn end(mut self, told: &Told) -> (io::Result<ExitStatus>, String) {
+        // Nothing is left to be killed when all have ended.
+        let _ = killpg(self.id(), Signal::SIGKILL);
+        let status = self.child.wait();
         let limit = Instant::now() + LAST_WORDS;
-        while let Ok(line) = self.lines.recv_timeout(limit.saturating_duration_since(Instant::now())) {
+        // What it left behind in another group may go on for ever.
+        while let Some(left) = limit.checked_duration_since(Instant::now())
+            && let Ok(line) = self.lines.recv_timeout(left)
+        {
             self.keep(&line, told);
         }
         told.done();
-        if self.said.is_empty() { "it said nothing".to_owned() } else { self.said }
+        (status, if self.said.is_empty() { "it said nothing".to_owned() } else { self.said })
     }
 }
 
 /// Sends the lines of a stream, which end with a line feed or, where they are progress, a carriage return.
-fn hear(stream: Box<dyn Read + Send>, lines: Sender<String>) -> io::Result<()> {
+fn hear(stream: Box<dyn Read + Send>, lines: SyncSender<String>) -> io::Result<()> {
     let hear = move || {
         let mut line = Vec::new();
         let tell = |line: &mut Vec<u8>| {
@@ -187,9 +204,11 @@ fn hear(stream: Box<dyn Read + Send>, lines: Sender<String>) -> io::Result<()> {
             text.is_empty() || lines.send(text).is_ok()
         };
         for byte in io::BufReader::new(stream).bytes().map_while(Result::ok) {
-            if byte != b'\n' && byte != b'\r' {
+            let is_end = byte == b'\n' || byte == b'\r';
+            if !is_end {
                 line.push(byte);
-            } else if !tell(&mut line) {
+            }
+            if (is_end || line.len() == MOST_KEPT) && !tell(&mut line) {
                 return;
             }
         }
@@ -201,6 +220,15 @@ fn hear(stream: Box<dyn Read + Send>, lines: Sender<String>) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_line_without_an_end_is_told_in_pieces() {
+        let (sender, lines) = sync_channel(QUEUE);
+        hear(Box::new(io::repeat(b'x').take(1 << 20)), sender).unwrap();
+        let pieces: Vec<_> = lines.iter().collect();
+        assert!(pieces.iter().all(|piece| piece.len() <= MOST_KEPT), "{}", pieces.len());
+        assert_eq!(pieces.concat().len(), 1 << 20);
+    }
 
     #[test]
     fn a_call_can_be_repeated_in_a_shell() {
