@@ -33,6 +33,10 @@ pub fn end(run: impl FnOnce() -> Exit) -> ExitCode {
 /// [`InternalError`] when it panics, on whatever thread that it waits for.
 pub fn guarded<T>(run: impl FnOnce() -> T) -> Result<T, InternalError> {
     panic::set_hook(Box::new(note));
+    // An earlier one was dealt with.
+    if let Ok(mut first) = FIRST.lock() {
+        *first = None;
+    }
     let ended = panic::catch_unwind(AssertUnwindSafe(run));
     ended.map_err(|_| {
         let first = FIRST.lock().ok().and_then(|mut first| first.take());
@@ -60,6 +64,8 @@ mod tests {
     #[test]
     fn a_panic_becomes_an_error_that_says_what_and_where() {
         assert_eq!(guarded(|| 7).unwrap(), 7);
+        // One that somebody has dealt with says nothing of the next.
+        assert!(guarded(|| panic::catch_unwind(|| panic!("a cloud")).is_err()).unwrap());
         let said = guarded(|| panic!("the sky fell")).map(|()| 0).unwrap_err().to_string();
         assert!(said.contains("the sky fell (") && said.contains("guard.rs:"), "{said}");
         let behind = || std::thread::scope(|scope| scope.spawn(|| panic!("below ground")).join().is_ok());

@@ -1,7 +1,9 @@
 //! Two threads that keep a device's endpoints busy, and the queues between them and the link.
 
+use std::any::Any;
 use std::collections::VecDeque;
 use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
@@ -148,7 +150,13 @@ impl Pump {
 
     fn spawn(&mut self, work: fn(&Shared)) -> io::Result<()> {
         let shared = Arc::clone(&self.shared);
-        self.threads.push(thread::Builder::new().name("usb".to_owned()).spawn(move || work(&shared))?);
+        let run = move || {
+            // Without a word, a thread that is gone would look like a board that is silent.
+            if let Err(panic) = catch_unwind(AssertUnwindSafe(|| work(&shared))) {
+                shared.fail(UsbFailure::Other(fault(panic.as_ref())));
+            }
+        };
+        self.threads.push(thread::Builder::new().name("usb".to_owned()).spawn(run)?);
         Ok(())
     }
 
@@ -200,10 +208,18 @@ impl Drop for Pump {
         drop(queues);
         self.shared.changed.notify_all();
         for thread in self.threads.drain(..) {
-            // A thread that panicked has said so.
+            // One that panicked has made the link fail.
             let _ = thread.join();
         }
     }
+}
+
+/// What is told of a panic.
+fn fault(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    let text = text.unwrap_or("for no reason that is known");
+    format!("the program itself has failed: {text}; report this line with the call that led to it")
 }
 
 #[cfg(test)]
@@ -219,6 +235,8 @@ mod tests {
         says: Mutex<VecDeque<Result<Vec<u8>, UsbFailure>>>,
         heard: Arc<Mutex<Vec<u8>>>,
         stuck: bool,
+        /// The program's own fault.
+        panics: bool,
     }
 
     impl Transport for Device {
@@ -231,6 +249,7 @@ mod tests {
         }
 
         fn read(&self, buffer: &mut [u8], wait: Duration) -> Result<usize, UsbFailure> {
+            assert!(!self.panics, "the sky fell");
             let next = self.says.lock().unwrap().pop_front();
             match next {
                 Some(said) => said.map(|bytes| {
@@ -275,6 +294,18 @@ mod tests {
         assert_eq!(incoming, [1, 2, 3]);
         // It stays so, and takes nothing more.
         assert!(pump.exchange(&[7], &mut incoming, LONG).is_err());
+    }
+
+    #[test]
+    fn a_thread_that_panics_is_no_silent_board() {
+        let pump = pump(Device { panics: true, ..Device::default() });
+        let begun = Instant::now();
+        while !pump.threads[0].is_finished() {
+            assert!(begun.elapsed() < LONG);
+            thread::sleep(BREATH / 100);
+        }
+        let failure = pump.exchange(&[], &mut Vec::new(), Duration::ZERO).unwrap_err();
+        assert!(failure.to_string().contains("the sky fell"), "{failure}");
     }
 
     #[test]
