@@ -113,15 +113,10 @@ impl TcpLink {
 
     fn closed(&self) -> LinkError {
         let (link, at) = (self.name(), self.now());
-        match String::from_utf8(self.text.clone()) {
-            Ok(text) if !self.zero_seen && !text.trim().is_empty() => {
-                let text = text.trim().to_owned();
-                if text.contains("in use") {
-                    LinkError::InUse { link, text }
-                } else {
-                    LinkError::NoBoardThere { link, text }
-                }
-            }
+        match words(&self.text).map(str::to_owned) {
+            // ser2net's `Port already in use` for its port, and `Object was already in use` for its device.
+            Some(text) if !self.zero_seen && text.contains("in use") => LinkError::InUse { link, text },
+            Some(text) if !self.zero_seen => LinkError::NoBoardThere { link, text },
             _ => LinkError::Closed { link, at },
         }
     }
@@ -154,6 +149,15 @@ impl Link for TcpLink {
     fn name(&self) -> String {
         format!("the connection to {}", self.address)
     }
+}
+
+/// The words that `bytes` are, which may have been cut within the last character.
+fn words(bytes: &[u8]) -> Option<&str> {
+    let whole = match str::from_utf8(bytes) {
+        Err(error) if error.error_len().is_none() => &bytes[..error.valid_up_to()],
+        _ => bytes,
+    };
+    str::from_utf8(whole).ok().map(str::trim).filter(|words| !words.is_empty())
 }
 
 /// Host and port, and the rate at the far end.

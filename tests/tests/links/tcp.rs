@@ -73,16 +73,21 @@ fn a_line_that_echoes_is_no_board_with_a_wrong_bitstream() {
 
 #[test]
 fn a_server_that_speaks_in_words_is_quoted() {
+    // One that is cut within a character, and one of ser2net whose device another program has.
+    let long = format!("{}é no board here", "a".repeat(199));
     for (words, code, sentence) in [
+        (long.as_str(), 3, "aaa` and no board"),
+        ("Device open failure: Object was already in use\r\n", 4, "another host is connected"),
         ("Device open failure: Value or file not found\r\n", 3, "plug the board in at the far end"),
         ("Port already in use\r\n", 4, "another host is connected"),
         ("SSH-2.0-OpenSSH_9.2\r\n", 3, "answered with the words `SSH-2.0-OpenSSH_9.2` and no board"),
     ] {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let target = format!("tcp:{}", listener.local_addr().unwrap());
+        let words = words.as_bytes().to_owned();
         let server = std::thread::spawn(move || {
             let mut host = listener.accept().unwrap().0;
-            host.write_all(words.as_bytes()).unwrap();
+            host.write_all(&words).unwrap();
         });
         ends(&verify(&target, &[]), code, sentence);
         server.join().unwrap();
