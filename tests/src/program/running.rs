@@ -99,6 +99,12 @@ impl Running {
         kill(process, Signal::from_str(&format!("SIG{signal}")).unwrap()).unwrap();
     }
 
+    /// Its number among the processes.
+    #[must_use]
+    pub fn id(&self) -> u32 {
+        self.child.id()
+    }
+
     /// Whether it has come to its end.
     #[must_use]
     pub fn has_ended(&mut self) -> bool {

@@ -1,5 +1,8 @@
 //! `halfrow serve`, and what a host that vanishes leaves behind.
 
+use std::net::TcpStream;
+use std::process::Command;
+
 use halfrow_tests::patience::wait_until;
 use halfrow_tests::program::{self, Folder, Running};
 use halfrow_tests::served::Served;
@@ -92,6 +95,26 @@ fn a_board_held_by_another_host_is_busy_over_the_network() {
     ends(&verify(&served.target(), &[]), 4, "another host holds the board");
     let taken = program::halfrow(["info", "--take-over", "--board", &served.target()]);
     assert_eq!(taken.code, Some(0), "{}", taken.stderr);
+}
+
+/// What it has open when it waits is all that it may have.
+#[test]
+fn a_host_that_cannot_be_let_in_is_told_of_and_served_when_it_can() {
+    let mut server = Server::start(&["--tcp", "0"]);
+    let id = server.running.id().to_string();
+    let limit = |files: &str| {
+        let mut command = Command::new("prlimit");
+        let ended = program::finish(command.args(["--pid", &id, &format!("--nofile={files}:")]));
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    };
+    limit("3");
+    let host = TcpStream::connect(server.target.strip_prefix("tcp:").unwrap()).unwrap();
+    server.running.wait_for("no host can be let in");
+    drop(host);
+    limit("256");
+    let ended = verify(&server.target, &[]);
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    assert_eq!(server.end("TERM"), Some(0));
 }
 
 /// A board keeps its tables from one session to the next, under a generation that the next may name, too.

@@ -1,8 +1,9 @@
 //! A TCP port that takes one host at a time.
 
-use std::io::Write;
+use std::io::{self, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
 use std::os::fd::AsRawFd;
+use std::thread;
 use std::time::{Duration, Instant};
 
 use super::{Hosted, ServeError, Traffic};
@@ -87,16 +88,17 @@ impl Port {
         board: &mut Hosted,
         ended: &mut dyn FnMut(Traffic) -> bool,
     ) -> Result<(), ServeError> {
+        let mut entrance = Entrance { listener: &self.listener, is_shut: false };
         let mut next: Option<(TcpStream, Instant)> = None;
         while !ended(Traffic::default()) {
-            let Some(host) = next.take().map(|(host, _)| host).or_else(|| self.accept()) else {
-                let _ = is_ready(self.listener.as_raw_fd(), false, TICK);
+            let Some(host) = next.take().map(|(host, _)| host).or_else(|| entrance.accept()) else {
+                entrance.wait();
                 continue;
             };
             let connected = Instant::now();
             board.attend(&host, &mut |traffic| {
                 if next.is_none() {
-                    next = self.accept().map(|host| (host, Instant::now()));
+                    next = entrance.accept().map(|host| (host, Instant::now()));
                 }
                 if next.is_some() && self.patience.ends(connected, traffic.heard) {
                     return true;
@@ -110,12 +112,40 @@ impl Port {
         }
         Ok(())
     }
+}
 
-    fn accept(&self) -> Option<TcpStream> {
-        let (host, from) = self.listener.accept().ok()?;
+/// Where hosts come in.
+struct Entrance<'a> {
+    listener: &'a TcpListener,
+    /// Whether the system lets nobody in, which has been told.
+    is_shut: bool,
+}
+
+impl Entrance<'_> {
+    fn accept(&mut self) -> Option<TcpStream> {
+        use io::ErrorKind::{ConnectionAborted, Interrupted, WouldBlock};
+        let accepted = self.listener.accept();
+        let shut = accepted.as_ref().err();
+        let shut = shut.filter(|error| !matches!(error.kind(), WouldBlock | Interrupted | ConnectionAborted));
+        if let Some(error) = shut.filter(|_| !self.is_shut) {
+            tracing::warn!(
+                "no host can be let in: {error}; end other programs, or allow this one more open files (ulimit -n)"
+            );
+        }
+        self.is_shut = shut.is_some();
+        let (host, from) = accepted.ok()?;
         host.set_nodelay(true).ok()?;
         never_block(host.as_raw_fd()).ok()?;
         tracing::info!("{from} has connected");
         Some(host)
+    }
+
+    /// Waits for the next host, or a tick. A host that cannot be let in is there all the time.
+    fn wait(&self) {
+        if self.is_shut {
+            thread::sleep(TICK);
+        } else {
+            let _ = is_ready(self.listener.as_raw_fd(), false, TICK);
+        }
     }
 }
