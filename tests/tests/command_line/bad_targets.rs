@@ -19,6 +19,8 @@ fn a_list_for_a_board_that_cannot_be_named_is_refused() {
         ("serial:/dev/x,baud=abc", "`baud=abc` is no option of `serial`"),
         ("serial", "write serial:PATH"),
         ("usb,foo=1", "`foo=1` is no option of `usb`"),
+        ("usb:", "write usb or usb:SERIAL"),
+        ("usb:,mode=fifo", "write usb or usb:SERIAL"),
         ("tcp:nope", "`nope` is no host and port"),
     ] {
         refused(&folder, &["verify", "--list", "--board", target], sentence);

@@ -59,7 +59,7 @@ pub(crate) struct UsbLink {
 impl UsbLink {
     /// Whether `target` has options of this kind.
     pub(crate) fn check(target: &Target) -> Result<(), OpenError> {
-        UsbOptions::of(target).map(drop)
+        asked(target).map(drop)
     }
 
     /// Opens the channel that `target` names, and makes it ready; nothing is said over it yet.
@@ -67,7 +67,7 @@ impl UsbLink {
     /// # Errors
     /// [`OpenError`] when the target is none, or no such chip can be had.
     pub(crate) fn open(target: &Target) -> Result<Self, OpenError> {
-        let options = UsbOptions::of(target)?;
+        let options = asked(target)?;
         let found = choose(target.address.as_deref())?;
         let (chip, name) = (found.chip, found.board.target());
         let channel = options.channel.map_or(chip.usual_channel(), Channel);
@@ -117,6 +117,14 @@ fn claim(found: &Found, channel: Channel) -> Result<Libusb, UsbError> {
     };
     let handle = found.device.open().map_err(failed)?;
     Libusb::claim(handle, channel.0, chip.endpoints(channel)).map_err(failed)
+}
+
+/// The options of a target whose address, if it has one, is a name: an empty one is one that somebody left out.
+fn asked(target: &Target) -> Result<UsbOptions, OpenError> {
+    if target.address.as_deref() == Some("") {
+        return Err(OpenError::address_missing(target));
+    }
+    UsbOptions::of(target)
 }
 
 /// The serial ports that the system's driver has made of the channel.
