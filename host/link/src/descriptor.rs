@@ -55,7 +55,8 @@ impl Pump {
         incoming: &mut Vec<u8>,
         wait: Duration,
     ) -> Result<usize, Gone> {
-        let deadline = Instant::now() + wait;
+        // None is for ever.
+        let deadline = Instant::now().checked_add(wait);
         loop {
             let received = self.receive(fd, incoming)?;
             let taken = match send(fd, outgoing) {
@@ -66,7 +67,7 @@ impl Pump {
             if received + taken > 0 {
                 return Ok(taken);
             }
-            let left = deadline.saturating_duration_since(Instant::now());
+            let left = deadline.map_or(Duration::MAX, |end| end.saturating_duration_since(Instant::now()));
             if left.is_zero() || !is_ready(fd, !outgoing.is_empty(), left)? {
                 return Ok(0);
             }
@@ -119,5 +120,24 @@ pub fn is_ready(fd: RawFd, to_write: bool, wait: Duration) -> Result<bool, Gone>
         Ok(ready) => Ok(ready > 0),
         Err(Errno::EINTR) => Ok(false),
         Err(error) => Err(Gone::Failed(error.into())),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write as _;
+    use std::os::fd::AsRawFd as _;
+    use std::os::unix::net::UnixStream;
+
+    use super::*;
+
+    #[test]
+    fn whoever_would_wait_for_ever_gets_what_comes() {
+        let (near, mut far) = UnixStream::pair().unwrap();
+        never_block(near.as_raw_fd()).unwrap();
+        far.write_all(b"here").unwrap();
+        let mut incoming = Vec::new();
+        let taken = Pump::default().exchange(near.as_raw_fd(), &[], &mut incoming, Duration::MAX).unwrap();
+        assert_eq!((taken, incoming.as_slice()), (0, b"here".as_slice()));
     }
 }

@@ -56,7 +56,9 @@ pub use halfrow_sim::TraceError;
 /// the board sends is taken while the host sends.
 pub trait Link: Send {
     /// Writes what the pipe takes of `outgoing`, appends to `incoming` what has arrived, and returns the number of bytes
-    /// taken. Returns as soon as a byte has moved either way, and without one when `wait` has passed.
+    /// taken. Returns as soon as a byte has moved either way, and without one when `wait` has passed, or earlier: when a signal
+    /// came, or so that whoever was asked to stop looks at that. So 0 does not say that `wait` is over; [`Self::now`] does. It may
+    /// also look some milliseconds longer, whatever `wait` is.
     ///
     /// # Errors
     /// [`LinkError`] when the pipe is broken; bytes that had moved before are accounted for in earlier calls.
