@@ -248,6 +248,17 @@ fn a_board_that_is_silent_is_waited_for_no_longer_than_the_deadline() {
 }
 
 #[test]
+fn a_record_that_has_no_end_is_refused() {
+    let folder = with_loader(WORKS);
+    std::os::unix::fs::symlink("/dev/zero", folder.path().join("top.bit.json")).unwrap();
+    refused(&folder, &["top.bit", "--onto", "ulx3s"], 2, "frame-file-is-no-regular-one");
+    fs::remove_file(folder.path().join("top.bit.json")).unwrap();
+    folder.write("top.bit.json", vec![b' '; (1 << 20) + 1]);
+    refused(&folder, &["top.bit", "--onto", "ulx3s"], 2, "input-unreadable");
+    assert!(!folder.path().join("called").exists());
+}
+
+#[test]
 fn a_signal_ends_the_loader_too() {
     let folder = with_loader(HANGS);
     recorded(&folder, "ulx3s", "00000001");

@@ -180,6 +180,21 @@ fn resources_come_from_the_synthesis_report_or_say_how_to_make_one() {
     refused(&folder, &call, "make it anew");
 }
 
+#[test]
+fn a_file_that_has_no_end_is_not_read_to_it() {
+    let folder = Folder::new();
+    folder.write("photograph.png", "is read behind the lines");
+    folder.write("long.json", " ".repeat((1 << 20) + 1));
+    std::fs::create_dir(folder.path().join("out")).unwrap();
+    let lines = ["fig4", "--photograph", "photograph.png", "--lines"];
+    for option in [lines.as_slice(), &["resources", "--synthesis"]] {
+        for file in ["long.json", "/dev/zero"] {
+            let call = [&["paper", "-o", "out"], option, &[file]].concat();
+            refused(&folder, &call, "it is longer than 1048576 bytes");
+        }
+    }
+}
+
 /// What was not tried is said where the result is said, which is not green then.
 #[test]
 fn a_page_of_which_a_part_was_not_tried_says_so_at_its_head() {

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The longest table file or settings file that is read: many times the largest tables there can be, and notes.
+/// The longest table file, settings file or other small file that is read: many times the largest tables there can be, and notes.
 pub const MAX_BYTES: u64 = 1 << 20;
 
 /// Characters of a foreign value that an error quotes.

@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 
 use halfrow::frames::preview::RgbImage;
 use halfrow::frames::{self, ReadError};
+use halfrow::tables::text;
 use halfrow_model::Equidistant;
 use serde::Deserialize;
 
@@ -109,7 +110,7 @@ impl MarkedPhotograph {
     pub fn read(photograph: &Path, lines: &Path) -> Result<Self, MarkedError> {
         let path = || lines.to_owned();
         let text =
-            std::fs::read_to_string(lines).map_err(|source| MarkedError::Io { path: path(), source })?;
+            text::read(lines, text::MAX_BYTES).map_err(|source| MarkedError::Io { path: path(), source })?;
         let content: Content =
             serde_json::from_str(&text).map_err(|source| MarkedError::Content { path: path(), source })?;
         let Circle { centre: [column, row], radius } = content.circle;

@@ -1,9 +1,9 @@
 //! The resource claim of Sect. 4.2: on average less than a tenth of a Spartan-6 LX25.
 
-use std::fs;
 use std::io;
 use std::path::Path;
 
+use halfrow::tables::text;
 use serde::Deserialize;
 
 use super::exhibit::{Accepted, Cell, Claim, Exhibit, Table};
@@ -44,7 +44,7 @@ const PAPER_BUILD: &str = "core, 5 taps, 1 bank";
 /// The claim, if there is a report at `path`; otherwise how to make one.
 pub(super) fn exhibit(path: &Path) -> Result<Exhibit, PaperError> {
     let mut exhibit = Exhibit::new(Item::Resources);
-    let text = match fs::read_to_string(path) {
+    let text = match text::read(path, text::MAX_BYTES) {
         Ok(text) => text,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             exhibit.open.push(format!(

@@ -10,6 +10,7 @@ use super::LoadError;
 use crate::commands::CallError;
 use halfrow::frames::check_regular;
 use halfrow::result::sha256;
+use halfrow::tables::text;
 
 /// How a bitstream was made. Keys that it does not know may come.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -48,11 +49,12 @@ pub(super) fn read(bitstream: &Path) -> Result<Option<Record>, anyhow::Error> {
     let bytes =
         fs::read(bitstream).map_err(|source| CallError::Unreadable { path: bitstream.to_owned(), source })?;
     let path = place(bitstream);
-    let text = match fs::read(&path) {
+    check_regular(&path)?;
+    let text = match text::read(&path, text::MAX_BYTES) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
         read => read.map_err(|source| CallError::Unreadable { path: path.clone(), source })?,
     };
-    let record: Record = serde_json::from_slice(&text)
+    let record: Record = serde_json::from_str(&text)
         .map_err(|source| LoadError::RecordMalformed { path: path.clone(), source })?;
     if sha256([bytes]) != record.sha256.to_lowercase() {
         let (path, record) = (bitstream.to_owned(), path);
