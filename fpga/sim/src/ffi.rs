@@ -10,6 +10,9 @@ use std::ffi::{CString, c_char, c_void};
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 
+#[cfg(feature = "library")]
+use crate::library::{FaultyBoard, LibraryError};
+
 /// The inputs of `halfrow_bridge` that a board under simulation has a use for.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
@@ -160,11 +163,30 @@ pub(crate) struct FaultyFunctions {
 }
 
 #[cfg(feature = "library")]
+impl FaultyBoard {
+    /// The build in the shared library `path`.
+    ///
+    /// # Safety
+    /// The library, whose own code runs when it is loaded, must be one that `scripts/hardware coverage` has built with this crate's
+    /// shim, and be loaded once in a process: the number of the fault is a variable of the library's, which all would share.
+    ///
+    /// # Errors
+    /// [`LibraryError`] when there is none.
+    pub unsafe fn load(path: &Path) -> Result<Self, LibraryError> {
+        // SAFETY: the caller makes the same promise.
+        Self::of(unsafe { FaultyFunctions::load(path) }, path)
+    }
+}
+
+#[cfg(feature = "library")]
 impl FaultyFunctions {
     /// Of the library `path`, which stays loaded.
-    pub(crate) fn load(path: &Path) -> Result<Self, libloading::Error> {
-        // SAFETY: what runs when it is loaded is the start of Verilator's own library; it is never unloaded, so that what it
-        // offers is there for good; its two names stand in shim/faulty.h with these types.
+    ///
+    /// # Safety
+    /// As [`FaultyBoard::load`].
+    unsafe fn load(path: &Path) -> Result<Self, libloading::Error> {
+        // SAFETY: what runs when it is loaded is the start of Verilator's own library, as the caller promises; it is never
+        // unloaded, so that what it offers is there for good; its two names stand in shim/faulty.h with these types.
         unsafe {
             let library = Box::leak(Box::new(libloading::Library::new(path)?));
             let functions =
@@ -176,7 +198,8 @@ impl FaultyFunctions {
 
     /// Its functions, with this fault for what is switched on next.
     pub(crate) fn choose(&mut self, fault: u16) -> &'static Functions<BridgeInputs, BridgeOutputs> {
-        // SAFETY: it is a variable of the library's, which nothing reads but what this thread calls.
+        // SAFETY: it is a variable of the library's, which nothing reads but `create`, and that is called by whoever has this
+        // object to itself: the caller of `load` promises that there is no other of the library.
         unsafe { *self.fault = fault };
         self.functions
     }

@@ -18,13 +18,12 @@ pub struct LibraryError {
 pub struct FaultyBoard(FaultyFunctions);
 
 impl FaultyBoard {
-    /// The build in the shared library `path`.
-    ///
-    /// # Errors
-    /// [`LibraryError`] when there is none.
-    pub fn load(path: &Path) -> Result<Self, LibraryError> {
-        let named = |source| LibraryError { path: path.display().to_string(), source };
-        FaultyFunctions::load(path).map(Self).map_err(named)
+    /// What `loaded` holds, which came of loading `path`.
+    pub(crate) fn of(
+        loaded: Result<FaultyFunctions, libloading::Error>,
+        path: &Path,
+    ) -> Result<Self, LibraryError> {
+        loaded.map(Self).map_err(|source| LibraryError { path: path.display().to_string(), source })
     }
 
     /// The board with this fault, 0 for none, switched on and reset. `seed` draws what its memories hold then; a board that is
