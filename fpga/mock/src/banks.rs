@@ -78,7 +78,7 @@ impl OutBanks {
 
     /// Whether a row is being collected that was made with the tables of this generation.
     #[must_use]
-    pub fn holds_generation(&self, generation: u8) -> bool {
+    pub(crate) fn holds_generation(&self, generation: u8) -> bool {
         self.filling.iter().any(|filling| filling.row.name.generation == generation)
     }
 

@@ -39,4 +39,4 @@ pub use crate::faults::{BoardFault, FAULTS, Streamed, catalogue};
 pub use crate::options::{BurstBuild, OptionError, Options, TapCount};
 pub use crate::player::{PlayError, Player, RowIn};
 pub use crate::settings::{Settings, SettingsError};
-pub use crate::tables::{Bank, Bound, MOST_GRID_ENTRY, Port, TableError, Tables};
+pub use crate::tables::{Bank, Bound, Port, TableError, Tables};

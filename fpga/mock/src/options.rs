@@ -186,7 +186,7 @@ impl Options {
 
     /// Entries of a bank, in which the highest frame finds its row factors.
     #[must_use]
-    pub fn bank_entries(&self) -> u16 {
+    pub(crate) fn bank_entries(&self) -> u16 {
         self.entries.max(self.max_height)
     }
 

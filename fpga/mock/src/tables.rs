@@ -17,7 +17,7 @@ pub(crate) use defects::{Drift, FlippedBit, Stale, TableDefects};
 pub use error::TableError;
 
 /// The largest entry of a grid.
-pub const MOST_GRID_ENTRY: u32 = (1 << 25) - 1;
+pub(crate) const MOST_GRID_ENTRY: u32 = (1 << 25) - 1;
 
 /// A bank of tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -253,13 +253,13 @@ impl Tables {
 
     /// The generation of the shadow bank: of rows that entered before the last commit took effect.
     #[must_use]
-    pub fn shadow_generation(&self) -> u8 {
+    pub(crate) fn shadow_generation(&self) -> u8 {
         self.contents(Bank::Shadow).generation
     }
 
     /// Whether a commit has not taken effect yet.
     #[must_use]
-    pub fn has_commit(&self) -> bool {
+    pub(crate) fn has_commit(&self) -> bool {
         self.commit.is_some()
     }
 
@@ -270,19 +270,19 @@ impl Tables {
 
     /// Whether this generation is the active one, or waits for its frame.
     #[must_use]
-    pub fn has_generation(&self, generation: u8) -> bool {
+    pub(crate) fn has_generation(&self, generation: u8) -> bool {
         let waits = self.commit.as_ref().is_some_and(|commit| commit.generation == generation);
         waits || generation != 0 && self.active.generation == generation
     }
 
     /// Whether row 0 of `frame` finds committed tables.
     #[must_use]
-    pub fn are_ready_for(&self, frame: u16) -> bool {
+    pub(crate) fn are_ready_for(&self, frame: u16) -> bool {
         self.active.generation != 0 || self.commit.as_ref().is_some_and(|commit| commit.first_frame == frame)
     }
 
     /// Forgets a commit that has not taken effect. Its tables stay in the shadow bank.
-    pub fn forget_commit(&mut self) {
+    pub(crate) fn forget_commit(&mut self) {
         self.commit = None;
     }
 

@@ -29,7 +29,7 @@ static LOST: AtomicBool = AtomicBool::new(false);
 
 /// No board was got.
 #[derive(Debug, thiserror::Error)]
-pub enum PoolError {
+pub(crate) enum PoolError {
     /// The target says no kind.
     #[error("`pool` is a board of a kind; write pool:KIND, as `halfrow-station board list` names the kinds")]
     NoKind,
@@ -87,7 +87,7 @@ enum Message {
 ///
 /// # Errors
 /// [`PoolError`]
-pub fn resolved(target: Target) -> Result<Target, PoolError> {
+pub(crate) fn resolved(target: Target) -> Result<Target, PoolError> {
     if target.kind != POOL {
         return Ok(target);
     }

@@ -18,7 +18,7 @@ use crate::{Boards, Build, offered};
 pub const ROWS: [u32; 4] = [0x3b58_4a0c, 0xa0a8_5d70, 0x068e_af3c, 0x4f53_a7e2];
 
 /// The CRC-32 of the content of these rows, which is their signature behind tables that change no sample.
-pub const CONTENTS: [u32; 4] = [0x3f30_8f73, 0x1470_85ad, 0x4de3_0b33, 0x4f53_a7e2];
+pub(crate) const CONTENTS: [u32; 4] = [0x3f30_8f73, 0x1470_85ad, 0x4de3_0b33, 0x4f53_a7e2];
 
 /// The signature of the page's frame of four rows.
 pub const FRAME: u32 = 0xc40b_35b2;
@@ -40,7 +40,7 @@ pub const ONE: Burst =
 pub const ENDLESS: Burst = Burst { frames: Burst::ENDLESS, mode: BurstMode::Repeating, ..ONE };
 
 /// What a board of this build says of its bursts; none if it makes none of the page's content.
-pub fn bursts_of(bench: &mut Bench) -> Option<Bursts> {
+pub(crate) fn bursts_of(bench: &mut Bench) -> Option<Bursts> {
     bench.capabilities().bursts.filter(|bursts| bursts.content == 1)
 }
 
@@ -122,7 +122,7 @@ impl Bench {
     }
 
     /// How far the burst is; no record is dropped.
-    pub fn burst_state(&mut self, unread: u32) -> BurstState {
+    pub(crate) fn burst_state(&mut self, unread: u32) -> BurstState {
         self.records(unread).state
     }
 }

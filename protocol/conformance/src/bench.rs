@@ -173,7 +173,7 @@ impl Bench {
     }
 
     /// The counters, which are cleared on the way if `clear`.
-    pub fn status_and(&mut self, clear: bool) -> Status {
+    pub(crate) fn status_and(&mut self, clear: bool) -> Status {
         let answer = self.done(&Request::Status { clear });
         let Reply::Status(status) = answer.reply() else { panic!("{answer:?}") };
         status

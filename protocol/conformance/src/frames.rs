@@ -57,7 +57,7 @@ pub fn ready(on: &dyn Boards, build: &Build, height: u16) -> Bench {
 
 /// The same; none if there is no such build.
 #[must_use]
-pub fn ready_if_offered(on: &dyn Boards, build: &Build, height: u16) -> Option<Bench> {
+pub(crate) fn ready_if_offered(on: &dyn Boards, build: &Build, height: u16) -> Option<Bench> {
     on.offers(build).then(|| ready(on, build, height))
 }
 

@@ -15,7 +15,7 @@ use crate::{Boards, Build, offered};
 pub(crate) const MOST: u32 = (1 << 25) - 1;
 
 /// What a board says of the grids that it takes; none of a datapath that the page does not describe.
-pub fn grids_of(bench: &mut Bench) -> Option<Grids> {
+pub(crate) fn grids_of(bench: &mut Bench) -> Option<Grids> {
     bench.capabilities().grids.filter(|grids| grids.further_datapath == 2)
 }
 

@@ -56,7 +56,7 @@ pub fn factors(height: u16, radius: f64) -> Vec<u32> {
 
 /// N and Z: segments of a row, and grid rows of a frame.
 #[must_use]
-pub fn grid_size(shape: Shape, width: u16, height: u16) -> (usize, usize) {
+pub(crate) fn grid_size(shape: Shape, width: u16, height: u16) -> (usize, usize) {
     let (columns, rows) = (1 << shape.k, 1 << shape.v);
     (usize::from(width).div_ceil(columns), (usize::from(height) - 1) / rows + 3)
 }

@@ -46,7 +46,7 @@ impl From<[i16; NODE_WEIGHTS]> for Node {
 impl Node {
     /// Whether the node needs the outer taps, which a five-tap build lacks.
     #[must_use]
-    pub fn needs_outer_taps(&self) -> bool {
+    pub(crate) fn needs_outer_taps(&self) -> bool {
         self.g0 != 0 || self.g6 != 0
     }
 

@@ -20,10 +20,10 @@ pub struct GridShape {
 
 impl GridShape {
     /// The greatest v.
-    pub const MOST_V: u8 = PLACE_BITS;
+    pub(crate) const MOST_V: u8 = PLACE_BITS;
 
     /// The ks that the mock's core takes.
-    pub const KS: [u8; 2] = [5, 6];
+    pub(crate) const KS: [u8; 2] = [5, 6];
 
     /// A grid row every 2^`v` rows, 1 to 6, and a node every 2^`k` columns, 5 or 6; none for other numbers.
     #[must_use]

@@ -81,7 +81,7 @@ pub struct Traffic {
 
 /// Why a host is attended to no longer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Left {
+pub(crate) enum Left {
     /// It hung up.
     Host,
     /// It was time to end.
@@ -135,7 +135,7 @@ impl Hosted {
     ///
     /// # Errors
     /// [`ServeError::Board`] when the board is gone.
-    pub fn attend(
+    pub(crate) fn attend(
         &mut self,
         door: &impl AsRawFd,
         ended: &mut dyn FnMut(Traffic) -> bool,
