@@ -88,7 +88,7 @@ pub(crate) struct Uart {
     /// Bytes that may still be sent although the board has raised RTS.
     overrun: u32,
     rxd: bool,
-    /// A millisecond that the core has not been told of.
+    /// Milliseconds that the core has not been told of.
     milliseconds: u64,
 }
 

@@ -72,6 +72,7 @@ impl Tap {
             }),
         }
     }
+
     /// The weight at distance `x`, below 2^14.
     pub(super) fn weight(&self, x: usize) -> i16 {
         let (node, t) = (x >> 8, (x & 255) as i32);
