@@ -22,23 +22,6 @@ use toml::Spanned;
 
 use halfrow::tables::text::{self, quoted};
 
-/// The keys of a settings file.
-const KEYS: [&str; 13] = [
-    "board",
-    "tables",
-    "kernel",
-    "frame",
-    "fit",
-    "report",
-    "overwrite",
-    "timeout",
-    "retry_limit",
-    "reconnect",
-    "at_speed",
-    "require_hardware",
-    "seed",
-];
-
 /// A settings file's values. Text is as it would be on the command line, and none of it is looked at here: a relative path
 /// starts where the program was started.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -92,7 +75,7 @@ pub enum SettingsError {
         source: io::Error,
     },
     /// A key that settings do not have.
-    #[error("{}, line {line}: there is no setting {key:?}; use one of {known}", path.display(), known = KEYS.join(", "))]
+    #[error("{}, line {line}: there is no setting {key:?}; use one of {known}", path.display(), known = known_keys().join(", "))]
     UnknownKey {
         /// The file.
         path: PathBuf,
@@ -135,22 +118,26 @@ impl Settings {
     /// The keys that have a value.
     #[must_use]
     pub fn keys(&self) -> Vec<&'static str> {
-        let given = [
-            self.board.is_some(),
-            self.tables.is_some(),
-            self.kernel.is_some(),
-            self.frame.is_some(),
-            self.fit.is_some(),
-            self.report.is_some(),
-            self.overwrite.is_some(),
-            self.timeout.is_some(),
-            self.retry_limit.is_some(),
-            self.reconnect.is_some(),
-            self.at_speed.is_some(),
-            self.require_hardware.is_some(),
-            self.seed.is_some(),
-        ];
-        KEYS.into_iter().zip(given).filter_map(|(key, given)| given.then_some(key)).collect()
+        self.given().into_iter().filter_map(|(key, is_given)| is_given.then_some(key)).collect()
+    }
+
+    /// Every key of a settings file, and whether it has a value.
+    fn given(&self) -> [(&'static str, bool); 13] {
+        [
+            ("board", self.board.is_some()),
+            ("tables", self.tables.is_some()),
+            ("kernel", self.kernel.is_some()),
+            ("frame", self.frame.is_some()),
+            ("fit", self.fit.is_some()),
+            ("report", self.report.is_some()),
+            ("overwrite", self.overwrite.is_some()),
+            ("timeout", self.timeout.is_some()),
+            ("retry_limit", self.retry_limit.is_some()),
+            ("reconnect", self.reconnect.is_some()),
+            ("at_speed", self.at_speed.is_some()),
+            ("require_hardware", self.require_hardware.is_some()),
+            ("seed", self.seed.is_some()),
+        ]
     }
 
     fn read(path: &Path) -> Result<Self, SettingsError> {
@@ -188,7 +175,7 @@ impl Settings {
             reason: error.message().to_owned(),
         };
         let keys: BTreeMap<Spanned<String>, IgnoredAny> = toml::from_str(text).map_err(refused)?;
-        let unknown = keys.into_keys().filter(|key| !KEYS.contains(&key.get_ref().as_str()));
+        let unknown = keys.into_keys().filter(|key| !known_keys().contains(&key.get_ref().as_str()));
         match unknown.min_by_key(|key| key.span().start) {
             None => toml::from_str(text).map_err(refused),
             Some(key) => Err(SettingsError::UnknownKey {
@@ -229,6 +216,10 @@ fn percent<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D:
     } else {
         Err(D::Error::custom(format!("{percent} is no share in percent, which is 0 to 100")))
     }
+}
+
+fn known_keys() -> [&'static str; 13] {
+    Settings::default().given().map(|(key, _)| key)
 }
 
 #[cfg(test)]
@@ -278,9 +269,19 @@ mod tests {
     }
 
     #[test]
+    fn a_key_is_given_that_has_a_value() {
+        for key in known_keys() {
+            let values = ["'x'", "['x']", "true", "1"];
+            let read =
+                values.iter().find_map(|value| toml::from_str::<Settings>(&format!("{key} = {value}")).ok());
+            assert_eq!(read.unwrap().keys(), [key]);
+        }
+    }
+
+    #[test]
     fn the_list_of_keys_is_that_of_the_fields() {
         let refused = toml::from_str::<Settings>("none = 0").unwrap_err();
         let listed: Vec<_> = refused.message().split('`').skip(3).step_by(2).collect();
-        assert_eq!(listed, KEYS);
+        assert_eq!(listed, known_keys());
     }
 }
