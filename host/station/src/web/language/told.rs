@@ -88,7 +88,7 @@ impl Words {
 
     fn asked(&self, code: &str, parameters: &Value) -> Option<String> {
         // What may come from the link asks for nothing of the board.
-        let about = if parameters.get(DOUBT).is_some() { &[] } else { &ABOUT[..] };
+        let about: &[&str] = if parameters.get(DOUBT).is_some() { &[] } else { &ABOUT };
         let inner = about.iter().find_map(|name| {
             let about = parameters.get(name)?;
             self.asked(about.get("code")?.as_str()?, about.get("parameters").unwrap_or(&Value::Null))
