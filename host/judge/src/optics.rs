@@ -317,8 +317,19 @@ impl Chosen {
 /// Hermite's.
 ///
 /// # Errors
-/// [`OpticsError`] when a kernel or row factors cannot be had.
+/// [`OpticsError`] when a kernel or row factors cannot be had, or no board takes them.
 pub fn choose(
+    file: Option<(&Path, TableFile)>,
+    optics: Optics,
+    kernel_name: Option<&OsStr>,
+) -> Result<Chosen, OpticsError> {
+    let chosen = unchecked(file, optics, kernel_name)?;
+    // The model, too: its paths agree on what a board takes, and on nothing else.
+    chosen.tables.check_ring(chosen.tables.geometry().width().next_power_of_two())?;
+    Ok(chosen)
+}
+
+fn unchecked(
     file: Option<(&Path, TableFile)>,
     optics: Optics,
     kernel_name: Option<&OsStr>,

@@ -73,11 +73,29 @@ fn rows_that_reach_beyond_the_ring_are_refused() {
     folder.write("far.json", file.to_string());
     // Column 0 comes from column 63, whose window reaches to 67: 32 beyond W/2 + 3.
     refused(&folder, &call, "row 1 needs samples 32 columns later than half a row of delay brings them");
+    let correct = ["correct", "builtin:black", "--model", "--tables", "far.json", "-o", "out.pgm"];
+    refused(&folder, &correct, "row 1 needs samples 32 columns later");
     file["centre2"] = 0.into();
     folder.write("far.json", file.to_string());
     // Column 63 comes from column 0, 63 + W/2 - 1 columns back, and the ring holds 63 before the newest.
     refused(&folder, &call, "row 1 needs samples 31 columns older than a ring of 64 still holds");
     assert_eq!(folder.halfrow(["verify", "--tables", "legal.json"]).code, Some(0));
+}
+
+/// The model would compute something all the same, by each of its paths something else.
+#[test]
+fn nothing_is_corrected_by_tables_that_no_board_takes() {
+    let folder = Folder::new();
+    let aside = ["--width", "64", "--height", "49", "--radius", "25", "--centre-x=63"];
+    let model = ["correct", "builtin:street", "--model", "-o", "out.pgm"];
+    refused(&folder, &[&model[..], &aside].concat(), "row 0 needs samples 14 columns later");
+    let size = ["--width", "64", "--height", "4", "--radius", "60", "--projection", "exact"];
+    let made = folder.halfrow([&["tables", "-o", "grid.json"], &size[..]].concat());
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    let mut file: Value = serde_json::from_slice(&folder.read("grid.json")).unwrap();
+    file["grid"][0] = (file["grid"][0].as_u64().unwrap() - 7_000_000).into();
+    folder.write("grid.json", file.to_string());
+    refused(&folder, &[&model[..], &["--tables", "grid.json"]].concat(), "row 0 begins left of the frame");
 }
 
 #[test]

@@ -85,10 +85,6 @@ impl RunArguments {
     ) -> Result<(Chosen, Vec<Input>), Failure> {
         let of_tables = tables.as_ref().map(|tables| tables.input.clone());
         let chosen = optics::choose(tables, &self.lens, self.kernel(settings))?;
-        chosen
-            .tables
-            .check_ring(chosen.tables.geometry().width().next_power_of_two())
-            .map_err(Failure::call)?;
         let inputs = of_tables.into_iter().chain(chosen.optics.file.clone()).collect();
         Ok((chosen, inputs))
     }

@@ -52,11 +52,7 @@ impl TablesText {
             (None, Some(name)) => self.of_lens(&files.take(name)?, kernel),
             (None, None) => self.of_radius(kernel),
         };
-        let chosen = chosen.map_err(|error| Fault::input(at, "what the plan says of tables", error))?;
-        let ring = chosen.tables.geometry().width().next_power_of_two();
-        let fits = chosen.tables.check_ring(ring);
-        fits.map_err(|error| Fault::input(at, "what the plan says of tables", error))?;
-        Ok(chosen)
+        chosen.map_err(|error| Fault::input(at, "what the plan says of tables", error))
     }
 
     /// Refuses what contradicts each other, and depths that no sample has.
