@@ -1,5 +1,6 @@
 //! A lens before the frame: the row factors for it, by Eq. 9 and fitted, and the error that they leave.
 
+use crate::grid::{height_in_circle, is_inner};
 use crate::lens::{Short, is_positive};
 use crate::projection::{is_outside, shrink_factor};
 use crate::{
@@ -42,6 +43,8 @@ pub struct Target {
     pub right_column: f64,
     /// The row that it would belong at if samples could change their row.
     pub right_row: f64,
+    /// Whether it is inner: up to 85 degrees off the axis, and within 0.9 of the height of the circle of 180 degrees.
+    pub is_inner: bool,
 }
 
 /// How far a sample is from where it belongs, in pixels of the corrected frame.
@@ -179,13 +182,15 @@ impl Camera {
     pub fn targets(&self, row: usize) -> impl Iterator<Item = Target> + '_ {
         let last = (self.geometry.width() - 1) as f64;
         let nearest_to_axis = self.half_field.cos();
+        let height = height_in_circle(self, row);
         let target = move |column| {
             let (x, y) = self.offset(column, row);
             let ray = self.lens.ray(x, y).filter(|ray| ray[2] >= nearest_to_axis)?;
             let (right, down) = self.lens.straightened(ray)?;
             let right_column = self.centre.0 + right;
             let inside = (0.0..=last).contains(&right_column);
-            inside.then_some(Target { column, right_column, right_row: self.centre.1 + down })
+            let (right_row, is_inner) = (self.centre.1 + down, is_inner(ray[2], height));
+            inside.then_some(Target { column, right_column, right_row, is_inner })
         };
         (0..self.geometry.width()).filter_map(target)
     }

@@ -134,7 +134,7 @@ pub fn write(path: &Path, frame: &Frame, overwrite: bool) -> Result<(), WriteErr
     write_oriented(path, frame, Orientation::default(), overwrite)
 }
 
-/// [`write()`] of a frame that is shown turned by `orientation`, which a DNG tells.
+/// [`write()`] of a frame that is shown turned by `orientation`, which a DNG and a TIFF tell.
 ///
 /// # Errors
 /// As those of [`write()`].

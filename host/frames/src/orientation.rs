@@ -16,6 +16,11 @@ impl Orientation {
         known.map_or_else(Self::default, Self)
     }
 
+    /// What the tag in the bytes of an EXIF block says; upright where there is none.
+    pub(super) fn of_exif(block: &[u8]) -> Self {
+        metadata::Orientation::from_exif_chunk(block).map_or_else(Self::default, Self)
+    }
+
     /// The tag's value, 1 to 8.
     pub(super) fn tag(self) -> u16 {
         self.0.to_exif().into()

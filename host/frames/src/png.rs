@@ -12,8 +12,8 @@ use super::{DecodeError, Orientation, ReadOptions, photograph, size};
 /// The first bytes of a PNG.
 pub(super) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// The frame in the bytes of a PNG: grey is a raw Bayer frame as it is; colour, palettes among it, is mosaicked; alpha
-/// is ignored.
+/// The frame in the bytes of a PNG: grey is a raw Bayer frame as it is; colour, palettes among it, is turned as its EXIF
+/// says, and mosaicked; alpha is ignored.
 ///
 /// # Errors
 /// [`DecodeError`] when the PNG is damaged, animated, followed by other bytes, or grey with fewer than 8 bits, or when a
@@ -22,7 +22,7 @@ pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
     picture(bytes)?.into_frame(how).map(|decoded| decoded.frame)
 }
 
-/// The picture in the bytes of a PNG in red, green and blue of 8 bits, as it is; alpha is ignored.
+/// The picture in the bytes of a PNG in red, green and blue of 8 bits, turned as its EXIF says; alpha is ignored.
 ///
 /// # Errors
 /// [`DecodeError`] when [`decode`] would refuse the PNG, when it is none, or when it is grey or has 16 bits.
@@ -118,8 +118,10 @@ fn read(input: &mut Cursor<&[u8]>) -> Result<Picture, DecodeError> {
         _ => (u8::MAX.into(), bytes.into_iter().map(u16::from).collect()),
     };
     let width = usize::try_from(output.width).unwrap_or(usize::MAX);
-    let (channels, orientation) = (output.color_type.samples(), Orientation::default());
-    Ok(Picture { width, channels, full, samples, orientation })
+    let channels = output.color_type.samples();
+    // The block may stand behind the picture.
+    let orientation = reader.info().exif_metadata.as_deref().map(Orientation::of_exif).unwrap_or_default();
+    Ok(Picture { width, channels, full, samples, orientation }.turned())
 }
 
 /// Refuses what would be too large or would not keep its samples, from the header alone.

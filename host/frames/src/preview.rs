@@ -3,8 +3,10 @@
 use std::io::Write;
 
 use halfrow_model::{Frame, Phase};
+use image::{DynamicImage, ImageBuffer};
 use png::{BitDepth, ColorType, EncodingError};
 
+use crate::Orientation;
 use crate::mosaic::{GREEN, channel};
 
 /// A picture of 8 bits in red, green and blue, coded for the screen.
@@ -16,6 +18,25 @@ pub struct RgbImage {
     pub height: usize,
     /// Red, green and blue of each pixel, row after row: 3 · width · height bytes.
     pub data: Vec<u8>,
+}
+
+impl RgbImage {
+    /// The picture of raw samples as it is seen, by their orientation.
+    #[must_use]
+    pub fn turned(self, orientation: Orientation) -> Self {
+        if orientation == Orientation::default() {
+            return self;
+        }
+        let side = |length| u32::try_from(length).unwrap_or(u32::MAX);
+        let pixels = ImageBuffer::from_raw(side(self.width), side(self.height), self.data);
+        let mut image = DynamicImage::ImageRgb8(pixels.unwrap_or_default());
+        image.apply_orientation(orientation.turn());
+        Self {
+            width: image.width() as usize,
+            height: image.height() as usize,
+            data: image.into_rgb8().into_raw(),
+        }
+    }
 }
 
 /// The frame as a picture: each missing colour is the mean of its neighbours of that colour (bilinear), and linear light

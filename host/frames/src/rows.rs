@@ -26,7 +26,7 @@ pub struct FrameShape {
     pub depth: BitDepth,
     /// The arrangement of the colours.
     pub phase: Phase,
-    /// How it is turned by who shows it, which a DNG tells.
+    /// How it is turned by who shows it, which a DNG and a TIFF tell.
     pub orientation: Orientation,
 }
 

@@ -4,8 +4,9 @@ use std::io::{Cursor, Seek, Write};
 
 use halfrow_model::{BitDepth, Frame};
 use tiff::decoder::{Decoder, DecodingResult};
-use tiff::encoder::TiffEncoder;
-use tiff::encoder::colortype::{Gray8, Gray16};
+use tiff::encoder::colortype::{ColorType as ColourType, Gray8, Gray16};
+use tiff::encoder::{TiffEncoder, TiffValue};
+use tiff::tags::Tag;
 use tiff::{ColorType, TiffError};
 
 use super::mosaic::Picture;
@@ -45,15 +46,41 @@ pub(super) fn picture(bytes: &[u8], how: &ReadOptions) -> Result<Picture, Decode
 /// # Errors
 /// The encoder's, or whatever `out` answers.
 pub fn encode(frame: &Frame, out: &mut (impl Write + Seek)) -> Result<(), TiffError> {
-    let (width, height) = (u32::try_from(frame.width())?, u32::try_from(frame.height())?);
-    let mut encoder = TiffEncoder::new(out)?;
+    encode_oriented(frame, Orientation::default(), out)
+}
+
+/// [`encode`] for who shows it turned by `orientation`.
+///
+/// # Errors
+/// As those of [`encode`].
+pub(super) fn encode_oriented(
+    frame: &Frame,
+    orientation: Orientation,
+    out: &mut (impl Write + Seek),
+) -> Result<(), TiffError> {
     match frame.depth() {
         BitDepth::Eight => {
             let bytes: Vec<u8> = frame.samples().iter().map(|sample| sample.to_be_bytes()[1]).collect();
-            encoder.write_image::<Gray8>(width, height, &bytes)
+            write::<Gray8>(frame, &bytes, orientation, out)
         }
-        _ => encoder.write_image::<Gray16>(width, height, frame.samples()),
+        _ => write::<Gray16>(frame, frame.samples(), orientation, out),
     }
+}
+
+fn write<Grey: ColourType>(
+    frame: &Frame,
+    samples: &[Grey::Inner],
+    orientation: Orientation,
+    out: &mut (impl Write + Seek),
+) -> Result<(), TiffError>
+where
+    [Grey::Inner]: TiffValue,
+{
+    let mut encoder = TiffEncoder::new(out)?;
+    let (width, height) = (u32::try_from(frame.width())?, u32::try_from(frame.height())?);
+    let mut image = encoder.new_image::<Grey>(width, height)?;
+    image.encoder().write_tag(Tag::Orientation, orientation.tag())?;
+    image.write_data(samples)
 }
 
 fn read(bytes: &[u8]) -> Result<Picture, DecodeError> {

@@ -104,6 +104,15 @@ pub enum OpticsError {
         #[source]
         source: LensContentError,
     },
+    /// Frames of the lens file's size, or behind its lens, cannot be.
+    #[error("the lens file {} cannot be used for these frames", path.display())]
+    Unfit {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        #[source]
+        source: LensContentError,
+    },
     /// The frames have a size that no board takes.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
@@ -121,7 +130,7 @@ pub enum OpticsError {
     Room(#[from] GridRoomError),
     /// The image circle misses the frame's rows.
     #[error(
-        "{}, so nothing would be stretched; check the lens, its centre and the size of the frames",
+        "{}, so nothing would be corrected; check the lens, its centre and the size of the frames",
         circle(*.outside, *.rows, *.radius, *.centre)
     )]
     OutsideCircle {
@@ -148,6 +157,18 @@ fn circle(outside: usize, rows: usize, radius: f64, centre: f64) -> String {
     format!(
         "{outside} of {rows} rows lie outside the image circle, whose radius is {radius:.3} pixels around row {centre:.1}"
     )
+}
+
+/// What `tables` of a lens do with rows outside of its image circle, behind the subject of a sentence. A grid goes on beyond
+/// 90 degrees, where the exact projection ends.
+#[must_use]
+pub fn outside_circle(tables: &TableSet) -> &'static str {
+    match tables.shape() {
+        None => "are not stretched",
+        Some(_) => {
+            "are stretched by the grid, beyond 90 degrees as the row next to the pole is, and not exactly"
+        }
+    }
 }
 
 /// A frame and the lens before it.
@@ -227,22 +248,23 @@ impl Optics {
         })
     }
 
-    /// Refuses `tables` of this lens that stretch nothing, as its image circle misses the rows, and warns when it
-    /// misses most.
+    /// Refuses `tables` of this lens that stretch nothing, or nothing that the lens sees, as its image circle misses the rows,
+    /// and warns when it misses most.
     ///
     /// # Errors
     /// [`OpticsError::OutsideCircle`]
     pub fn check_circle(&self, tables: &TableSet) -> Result<(), OpticsError> {
         let (rows, outside) = (self.camera.geometry().height(), self.camera.rows_outside_circle());
         let (radius, centre) = (self.camera.radius(), self.camera.centre().1);
-        let stretches = tables.units().any(|entry| entry != RowFactor::ONE.get());
+        let stretches = outside < rows && tables.units().any(|entry| entry != RowFactor::ONE.get());
         if outside > 0 && !stretches {
             return Err(OpticsError::OutsideCircle { outside, rows, radius, centre });
         }
         if 2 * outside > rows {
             tracing::warn!(
-                "{}, and are not stretched; check the lens, its centre and the size of the frames",
-                circle(outside, rows, radius, centre)
+                "{}, and {}; check the lens, its centre and the size of the frames",
+                circle(outside, rows, radius, centre),
+                outside_circle(tables)
             );
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! What tables leave of a lens's distortion.
 
-use halfrow_model::{Camera, TableSet};
+use halfrow_model::{Camera, TableSet, VISIBLE};
 use serde::Serialize;
 
 /// Mean and largest amount, in pixels.
@@ -10,6 +10,17 @@ pub struct Spread {
     pub mean: f64,
     /// The largest.
     pub max: f64,
+}
+
+/// The amounts in columns of one part of the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Part {
+    /// Mean and largest.
+    #[serde(flatten)]
+    pub amounts: Spread,
+    /// The share of its samples for which the amount is above 0.05 and can be seen, 0 to 1.
+    #[serde(rename = "share_above_0.05")]
+    pub visible: f64,
 }
 
 /// How far the samples of a frame are from where the exact projection of the lens puts them, in pixels of the corrected
@@ -22,7 +33,11 @@ pub struct Residuals {
     /// The samples that count.
     pub samples: usize,
     /// The amounts in columns: what the tables leave.
-    pub horizontal: Spread,
+    pub circle: Part,
+    /// Those of the inner part: up to 85 degrees off the axis, and within 0.9 of the height of the circle of 180 degrees.
+    pub inner: Part,
+    /// Those of the rest: the rim and what is next to the poles.
+    pub rim: Part,
     /// The amounts in rows, which no table changes: how far each sample is from the row at which the lens images its
     /// latitude above or below the axis.
     pub vertical: Spread,
@@ -34,18 +49,27 @@ impl Residuals {
     /// What `tables` leave in frames of `camera`.
     #[must_use]
     pub fn of(camera: &Camera, tables: &TableSet) -> Self {
-        let (mut horizontal, mut vertical) = (Sum::default(), Sum::default());
+        let (mut inner, mut rim, mut vertical) = (Sum::default(), Sum::default(), Sum::default());
         let mut row_of_map = |row| {
             let mut amounts = vec![0.0; camera.geometry().width()];
             for (target, residual) in camera.residuals(tables, row) {
-                amounts[target.column] = residual.columns.abs();
-                horizontal.add(residual.columns.abs());
+                let amount = residual.columns.abs();
+                amounts[target.column] = amount;
+                if target.is_inner { &mut inner } else { &mut rim }.add(amount);
                 vertical.add(residual.rows.abs());
             }
             amounts
         };
         let map = (0..camera.geometry().height()).map(&mut row_of_map).collect();
-        Self { samples: horizontal.count, horizontal: horizontal.spread(), vertical: vertical.spread(), map }
+        let circle = inner.and(&rim);
+        Self {
+            samples: circle.count,
+            circle: circle.part(),
+            inner: inner.part(),
+            rim: rim.part(),
+            vertical: vertical.spread(),
+            map,
+        }
     }
 }
 
@@ -54,6 +78,7 @@ struct Sum {
     count: usize,
     sum: f64,
     max: f64,
+    visible: usize,
 }
 
 impl Sum {
@@ -61,6 +86,20 @@ impl Sum {
         self.count += 1;
         self.sum += amount;
         self.max = self.max.max(amount);
+        self.visible += usize::from(amount > VISIBLE);
+    }
+
+    fn and(&self, other: &Self) -> Self {
+        Self {
+            count: self.count + other.count,
+            sum: self.sum + other.sum,
+            max: self.max.max(other.max),
+            visible: self.visible + other.visible,
+        }
+    }
+
+    fn part(&self) -> Part {
+        Part { amounts: self.spread(), visible: self.visible as f64 / self.count.max(1) as f64 }
     }
 
     fn spread(&self) -> Spread {

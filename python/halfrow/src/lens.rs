@@ -80,7 +80,7 @@ impl Lens {
         self.optics.camera.field_of_view().to_degrees()
     }
 
-    /// Rows that lie outside of the image circle, and are not stretched.
+    /// Rows that lie outside of the image circle. Row factors do not stretch them, and a grid not exactly.
     #[getter]
     fn rows_outside_circle(&self) -> usize {
         self.optics.camera.rows_outside_circle()

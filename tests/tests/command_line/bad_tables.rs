@@ -98,6 +98,26 @@ fn nothing_is_corrected_by_tables_that_no_board_takes() {
     refused(&folder, &[&model[..], &["--tables", "grid.json"]].concat(), "row 0 begins left of the frame");
 }
 
+/// Windows' editors write one, and show it nowhere.
+#[test]
+fn a_byte_order_mark_changes_nothing() {
+    let (folder, _) = legal();
+    folder.write("marked.json", format!("\u{feff}{}", folder.text("legal.json")));
+    let kernel: Value = serde_json::from_slice(&folder.read("legal.json")).unwrap();
+    let kernel = json!({ "datapath": 1, "kernel": kernel["kernel"] });
+    folder.write("kernel.json", format!("\u{feff}{kernel}"));
+    let correct = |tables: &str, kernel: &[&str]| {
+        let call =
+            ["correct", "builtin:noise", "--model", "--tables", tables, "-o", "out.pgm", "--overwrite"];
+        let ended = folder.halfrow([&call[..], kernel].concat());
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        folder.read("out.pgm")
+    };
+    let plain = correct("legal.json", &[]);
+    assert!(correct("marked.json", &[]) == plain);
+    assert!(correct("legal.json", &["--kernel", "kernel.json"]) == plain);
+}
+
 #[test]
 fn tables_of_another_datapath_are_refused_like_boards_of_another_datapath() {
     changed(

@@ -197,26 +197,52 @@ fn orientation(file: &[u8]) -> u16 {
     entries.filter(|&entry| short(entry) == 274).map(|entry| short(entry + 8)).next().unwrap()
 }
 
+/// `file` of the TIFF family with another orientation.
+fn turned(mut file: Vec<u8>, orientation: u8) -> Vec<u8> {
+    let entry = file.windows(8).position(|bytes| bytes == [18, 1, 3, 0, 1, 0, 0, 0]).unwrap();
+    file[entry + 8] = orientation;
+    file
+}
+
+/// By hand: the upper half of the scene is bright in a camera that hangs upside down, and so is at the bottom of what it reads out.
+#[test]
+fn what_a_camera_that_hangs_upside_down_has_seen_is_shown_upright() {
+    let folder = Folder::new();
+    let light = (0..16).flat_map(|row| [if row < 8 { 0_u8 } else { 255 }; 128]);
+    folder.write("in.pgm", b"P5\n128 16\n255\n".iter().copied().chain(light).collect::<Vec<u8>>());
+    let correct = |input: &str, more: &[&str]| {
+        let call = [&[input, "--bits", "8"], more, &["--preview", "look.png", "--overwrite"]].concat();
+        let ended = folder.halfrow(small("correct", &call));
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    };
+    let top = || halfrow::frames::read_rgb(&folder.path().join("look.png")).unwrap().data[0];
+    for name in ["frame.dng", "frame.tif"] {
+        correct("in.pgm", &["--model", "-o", name]);
+        assert_eq!(top(), 0, "{name} lies as it was read out");
+        folder.write("hanging", turned(folder.read(name), 3));
+        for how in [&["--model"][..], &["--board", "mock"]] {
+            correct("hanging", &[how, &["-o", "out.tif"]].concat());
+            assert_eq!((top(), orientation(&folder.read("out.tif"))), (255, 3), "{name}");
+        }
+    }
+}
+
 /// A camera that hangs upside down: its samples lie as they lay, and a viewer turns them as before.
 #[test]
 fn the_orientation_of_a_dng_is_kept() {
     let folder = Folder::new();
     let made = folder.halfrow(small("correct", &["builtin:noise", "--model", "-o", "in.dng"]));
     assert_eq!(made.code, Some(0), "{}", made.stderr);
-    let mut upright = folder.read("in.dng");
-    let entry = upright.windows(8).position(|bytes| bytes == [18, 1, 3, 0, 1, 0, 0, 0]).unwrap();
+    let upright = folder.read("in.dng");
     folder.write("upright.dng", &upright);
-    upright[entry + 8] = 3;
-    folder.write("hanging.dng", &upright);
+    folder.write("hanging.dng", turned(upright, 3));
     for (name, how) in [("model", ["--model", "--quiet"]), ("board", ["--board", "mock"])] {
         let call = [&["upright.dng", "hanging.dng", "-o", name, "--format", "dng"][..], &how].concat();
         let ended = folder.halfrow(small("correct", &call));
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-        let [mut hanging, upright] =
+        let [hanging, upright] =
             ["hanging", "upright"].map(|frame| folder.read(&format!("{name}/{frame}.dng")));
         assert_eq!((orientation(&hanging), orientation(&upright)), (3, 1), "{name}");
-        let entry = hanging.windows(8).position(|bytes| bytes == [18, 1, 3, 0, 1, 0, 0, 0]).unwrap();
-        hanging[entry + 8] = 1;
-        assert!(hanging == upright, "{name}");
+        assert!(turned(hanging, 1) == upright, "{name}");
     }
 }

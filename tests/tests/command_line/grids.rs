@@ -1,5 +1,7 @@
 //! `--projection exact`: tables that are a grid of factors, and boards that take them or do not.
 
+use std::path::PathBuf;
+
 use halfrow_tests::program::Folder;
 use serde_json::Value;
 
@@ -153,4 +155,52 @@ fn what_each_projection_leaves_is_told() {
     assert!(rim("equation-9") > 10.0 && rim("exact") > 0.05, "{told}");
     let text = folder.halfrow([&["lens"], &whole[..]].concat()).stdout;
     assert!(text.contains("rim max") && text.contains("level lines bend as before"), "{text}");
+}
+
+/// A grid goes on where the exact projection ends, so that none of its rows is as it was.
+#[test]
+fn a_lens_that_misses_the_frame_gives_no_grid_either() {
+    let folder = Folder::new();
+    let exact = ["--width", "192", "--height", "48", "--radius", "30", "--projection", "exact"];
+    let far = [&exact[..], &["--centre-y", "150"]].concat();
+    for call in [&["tables", "-o", "x.json"][..], &["lens"], &["verify", "-q"]] {
+        refused(&folder, &[call, &far].concat(), "48 of 48 rows lie outside the image circle");
+    }
+    // Of the |y| of 0.5 to 23.5 six on either side are above 18.
+    let high = ["--width", "192", "--height", "48", "--radius", "18"];
+    let told = |more: &[&str]| {
+        let call = [&["tables", "-o", "t.json", "--overwrite"], &high[..], more].concat();
+        let ended = folder.halfrow(call);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        ended.stdout
+    };
+    let rows = told(&[]);
+    assert!(rows.contains("12 rows lie outside the image circle and are not stretched"), "{rows}");
+    let grid = told(&["--projection", "exact"]);
+    assert!(
+        grid.contains(
+            "12 rows lie outside the image circle and are stretched by the grid, beyond 90 degrees"
+        ),
+        "{grid}"
+    );
+}
+
+/// The largest error is that of the inner picture or that of the rest, and none is larger, whatever counts as image circle.
+#[test]
+fn the_parts_of_what_is_left_are_parts_of_it() {
+    let lens =
+        PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../host/judge/tests/lenses/files/opencv-4.10.yml");
+    let lens = lens.display().to_string();
+    let small = ["--lens", &lens, "--width", "320", "--height", "180"];
+    let field = [&small[..], &["--field-of-view", "120"]].concat();
+    let whole = ["--width", "128", "--height", "100", "--radius", "60"].to_vec();
+    for more in [small.to_vec(), field, whole] {
+        let told = Folder::new().halfrow([&["lens", "--json"], &more[..]].concat()).json();
+        let left = &told["residual_px"];
+        for by in ["equation-9", "fitted", "exact"] {
+            let max = |part: &str| left["parts"][by][part]["max"].as_f64().unwrap();
+            let largest = left["horizontal"][by]["max"].as_f64().unwrap();
+            assert!((max("inner").max(max("rim")) - largest).abs() < 1e-12, "{more:?}, {by}: {left}");
+        }
+    }
 }

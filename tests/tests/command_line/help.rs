@@ -63,6 +63,17 @@ fn the_page_of_commands_shows_what_the_command_line_takes() {
     assert!(page.contains("the lens options make the tables. Options that make tables are refused"));
 }
 
+/// Each is refused there.
+#[test]
+fn the_help_of_frames_names_no_option_of_tables() {
+    let help = halfrow(["frames", "--help"]).stdout;
+    for option in ["--rows", "--projection", "--entries"] {
+        assert!(!help.contains(option), "{help}");
+        assert!(halfrow(["tables", "--help"]).stdout.contains(option));
+    }
+    assert!(help.contains("--radius"), "{help}");
+}
+
 /// What each command does without `--board`.
 #[test]
 fn the_board_s_default_is_that_of_the_command() {

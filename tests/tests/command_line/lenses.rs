@@ -266,7 +266,7 @@ fn a_lens_that_misses_the_frame_is_refused_or_told() {
         let said = "14 of 17 rows lie outside the image circle, whose radius is 1.571 pixels around row 8.0";
         assert!(ended.stderr.contains(said), "{}", ended.stderr);
     }
-    let sentence = "so nothing would be stretched; check the lens, its centre and the size of the frames";
+    let sentence = "so nothing would be corrected; check the lens, its centre and the size of the frames";
     for call in [&["tables", "-o", "x.json"][..], &["lens"], &["verify", "-q"]] {
         refused(&folder, &[call, &["--lens", "lens.json", "--centre-y", "1000"]].concat(), sentence);
     }

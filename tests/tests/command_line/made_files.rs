@@ -113,6 +113,23 @@ fn files_that_are_there_stay_as_they_are() {
 }
 
 #[test]
+fn endings_are_taken_in_any_case() {
+    let folder = Folder::new();
+    for (name, made) in
+        [("LENS.JSON", &["LENS.JSON"][..]), ("Lens.Mem", &["Lens.kernel.mem", "Lens.steps.mem"])]
+    {
+        let ended = folder.halfrow(small("tables", &["-o", name]));
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        assert!(
+            made.iter().all(|file| folder.names(".").contains(&(*file).to_owned())),
+            "{:?}",
+            folder.names(".")
+        );
+    }
+    assert_eq!(folder.names(".").len(), 3);
+}
+
+#[test]
 fn rows_outside_the_image_circle_are_allowed_and_counted() {
     let folder = Folder::new();
     let size = ["--width", "64", "--height", "100", "--radius", "40"];

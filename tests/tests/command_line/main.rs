@@ -34,6 +34,7 @@ mod signals;
 mod simulated;
 mod station;
 mod streams;
+mod unfit_lenses;
 mod varied;
 mod verdicts;
 mod within;

@@ -57,6 +57,21 @@ fn a_file_that_is_there_is_replaced_by_request_alone() {
 }
 
 #[test]
+fn a_hyphen_is_no_folder() {
+    let folder = Folder::new();
+    let hyphen = |call: &[&str], option: &str| {
+        refused(
+            &folder,
+            &small(call[0], &call[1..]),
+            &format!("a frame goes to a file, and `{option} -` names none"),
+        );
+    };
+    hyphen(&["correct", "builtin:black", "--model", "-o", "-"], "-o");
+    hyphen(&["correct", "builtin:black", "--model", "-o", "x.pgm", "--preview", "-"], "--preview");
+    hyphen(&["frames", "-o", "-"], "-o");
+}
+
+#[test]
 fn what_is_no_regular_file_is_never_replaced() {
     // A socket and a FIFO stand for devices: run as root, a broken check would replace a real one.
     let makers: [(&str, Make); 5] = [
@@ -227,7 +242,7 @@ fn manual_pages_are_written_into_a_folder_as_other_files_are() {
 
 #[test]
 fn tables_have_two_formats() {
-    for name in ["t.txt", "t", "t.JSON"] {
+    for name in ["t.txt", "t"] {
         refused(&Folder::new(), &small("tables", &["-o", name]), "end it in .json, or in .mem");
     }
 }

@@ -54,6 +54,25 @@ fn the_kernel_is_chosen_in_the_same_order() {
     assert_eq!(crc(&run(&folder, file, variable, &["--kernel", "nearest"])), named("nearest"));
 }
 
+/// The file is what the same call of `verify` judges by.
+#[test]
+fn tables_are_made_with_the_kernel_of_the_settings() {
+    let folder = Folder::new();
+    let made = |settings: &str, variable: Option<(&str, &str)>, more: &[&str]| {
+        folder.write(FILE, settings);
+        let call = small("tables", &["--settings", FILE, "-o", "made.json", "--overwrite"]);
+        let mut command = folder.command(call);
+        let ended = finish(command.args(more).envs(variable));
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        ended.stdout.rsplit_once(", ").unwrap().1.to_owned()
+    };
+    let (file, variable) = ("kernel = 'keys'\n", Some(("HALFROW_KERNEL", "linear")));
+    assert_eq!(made("", None, &[]), "hermite kernel\n");
+    assert_eq!(made(file, None, &[]), "keys kernel\n");
+    assert_eq!(made(file, variable, &[]), "linear kernel\n");
+    assert_eq!(made(file, variable, &["--kernel", "nearest"]), "nearest kernel\n");
+}
+
 #[test]
 fn a_station_that_requires_hardware_judges_nothing_else() {
     let folder = Folder::new();

@@ -1,5 +1,7 @@
 //! The exact projection at a lattice of outputs, and how far tables are from it.
 
+use std::f64::consts::FRAC_PI_2;
+
 use super::projection::{POLE, ProjectedRow};
 use crate::{Camera, RowValues, TableSet};
 
@@ -10,7 +12,7 @@ const INNER: f64 = 0.087_155_742_747_658_17;
 const INNER_ROWS: f64 = 0.9;
 
 /// An amount in columns that can be seen.
-const VISIBLE: f64 = 0.05;
+pub const VISIBLE: f64 = 0.05;
 
 /// Columns by which outputs are taken from wrong places, of one part of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -113,12 +115,22 @@ fn steps(count: usize, step: usize) -> Vec<usize> {
 /// The part in which the output that comes from column `source` of row `row` is.
 fn part(camera: &Camera, source: f64, row: usize) -> Part {
     let (x, y) = (source - camera.centre().0, row as f64 - camera.centre().1);
-    let height = y.abs() / camera.lens().lowest_row(std::f64::consts::FRAC_PI_2);
+    let height = height_in_circle(camera, row);
     match camera.lens().ray(x, y) {
-        Some([.., ahead]) if ahead >= INNER && height <= INNER_ROWS => Part::Inner,
+        Some([.., ahead]) if is_inner(ahead, height) => Part::Inner,
         Some([.., ahead]) if ahead >= 0.0 && height < POLE => Part::Rim,
         _ => Part::Outside,
     }
+}
+
+/// How far row `row` is from the axis, in parts of the height of the circle of 180 degrees.
+pub(crate) fn height_in_circle(camera: &Camera, row: usize) -> f64 {
+    (row as f64 - camera.centre().1).abs() / camera.lens().lowest_row(FRAC_PI_2)
+}
+
+/// Whether what is seen with cos θ = `ahead` in a row at `height` of [`height_in_circle`] is inner.
+pub(crate) fn is_inner(ahead: f64, height: f64) -> bool {
+    ahead >= INNER && height <= INNER_ROWS
 }
 
 #[derive(Default)]
@@ -158,5 +170,30 @@ impl Camera {
     #[must_use]
     pub fn grid_residuals(&self, tables: &TableSet, step: usize) -> GridResiduals {
         Lattice::new(self, step, step).residuals(tables)
+    }
+
+    /// [`Self::grid_residuals`] of several tables, which takes little longer than that of one.
+    #[must_use]
+    pub fn each_grid_residuals<const N: usize>(
+        &self,
+        tables: [&TableSet; N],
+        step: usize,
+    ) -> [GridResiduals; N] {
+        let lattice = Lattice::new(self, step, step);
+        tables.map(|tables| lattice.residuals(tables))
+    }
+
+    /// The share of the frame's outputs that show what is beyond 90 degrees off the axis, or a pole, 0 to 1.
+    #[must_use]
+    pub fn share_beyond(&self) -> f64 {
+        let (width, height) = (self.geometry().width(), self.geometry().height());
+        let shown = |row| {
+            if height_in_circle(self, row) < POLE {
+                ProjectedRow::new(self, row as f64).shown(width)
+            } else {
+                0
+            }
+        };
+        1.0 - (0..height).map(shown).sum::<usize>() as f64 / (width * height) as f64
     }
 }

@@ -11,7 +11,8 @@ mod shape;
 mod values;
 
 pub use choice::GridRoomError;
-pub use lattice::{GridResidual, GridResiduals};
+pub use lattice::{GridResidual, GridResiduals, VISIBLE};
+pub(crate) use lattice::{height_in_circle, is_inner};
 pub use shape::{GridShape, GridShapeError};
 pub use values::RowValues;
 pub(crate) use values::{Parabola, rounded};

@@ -52,6 +52,12 @@ impl<'a> ProjectedRow<'a> {
             }
     }
 
+    /// How many of the outputs at columns 0 to `width` − 1 the lens sees before it.
+    pub(super) fn shown(&self, width: usize) -> usize {
+        let [first, last] = self.outputs.map(|output| output + self.camera.centre().0);
+        (0..width).filter(|&column| (first..=last).contains(&(column as f64))).count()
+    }
+
     /// The column where the exact projection puts the source at `source`: where the lens images its longitude on the horizon.
     fn output(&self, source: f64) -> f64 {
         let lens = self.camera.lens();

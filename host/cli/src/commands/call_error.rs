@@ -72,6 +72,9 @@ pub(super) enum CallError {
     /// One file for several frames.
     #[error("{} is one file for {frames} frames; name a folder with {option}", path.display())]
     OneFile { path: PathBuf, frames: usize, option: &'static str },
+    /// Frames to stdout.
+    #[error("a frame goes to a file, and `{option} -` names none; give the name of a file or a folder")]
+    FramesToStdout { option: &'static str },
     /// An input whose output would have no name.
     #[error("{} has no file name; name a file", path.display())]
     Unnamed { path: PathBuf },

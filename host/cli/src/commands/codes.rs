@@ -44,6 +44,7 @@ codes::codes! {
         TablesFormat [path] => "tables-format-unknown",
         OtherFormat [path] => "frame-format-contradicted",
         OneFile [path, frames, option] => "one-file-for-several-frames",
+        FramesToStdout [option] => "frames-to-stdout",
         Unnamed [path] => "input-without-name",
         FramesShare [path] => "frames-share-a-file",
         FolderNotMade [path] => "folder-not-made",

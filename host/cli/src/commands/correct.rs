@@ -23,7 +23,7 @@ use crate::exit::Exit;
 use crate::settings::Settings;
 use crate::{console, progress};
 use halfrow::call::Files;
-use halfrow::frames::{self, Format, ReadOptions, Scene, WriteError, preview};
+use halfrow::frames::{self, Format, Orientation, ReadOptions, Scene, WriteError, preview};
 use halfrow::optics::Chosen;
 use halfrow::target::BoardKind;
 use places::{Places, Wanted};
@@ -126,12 +126,18 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// Writes the preview of the frame with this index, if one is asked for.
-    fn write_preview(&self, places: &Places, index: usize, corrected: &Frame) -> Result<(), WriteError> {
+    /// Writes the preview of the frame with this index, turned by `orientation`, if one is asked for.
+    fn write_preview(
+        &self,
+        places: &Places,
+        index: usize,
+        orientation: Orientation,
+        corrected: &Frame,
+    ) -> Result<(), WriteError> {
         let Some(path) = places.previews.get(index) else { return Ok(()) };
         let is_coded = self.arguments.preview_coded || self.inputs[index].is_photograph();
         let develop = if is_coded { preview::demosaic_coded } else { preview::demosaic };
-        frames::write_rgb(path, &develop(corrected), self.arguments.overwrite)
+        frames::write_rgb(path, &develop(corrected).turned(orientation), self.arguments.overwrite)
     }
 }
 

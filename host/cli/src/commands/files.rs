@@ -17,6 +17,11 @@ pub(super) fn check_files(files: &Files) -> Result<(), FilesError> {
     Ok(())
 }
 
+/// Refuses `-`, which many programs take for stdout, as a place of frames: it would become a folder of that name.
+pub(super) fn refuse_stdout(place: &Path, option: &'static str) -> Result<(), CallError> {
+    if place == Path::new("-") { Err(CallError::FramesToStdout { option }) } else { Ok(()) }
+}
+
 /// Makes a folder, and those that it lies in.
 pub(super) fn make_folder(folder: &Path) -> Result<(), CallError> {
     std::fs::create_dir_all(folder)

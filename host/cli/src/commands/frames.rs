@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Arg, Args};
 use halfrow_program::number::whole_number;
 use serde_json::json;
 
 use super::document::tell_result;
-use super::files::{check_files, make_folder};
-use super::optics::LensArguments;
+use super::files::{check_files, make_folder, refuse_stdout};
+use super::optics::{LensArguments, MAKING_TABLES};
 use super::{CallError, Context, Failure};
 use crate::console;
 use crate::exit::Exit;
@@ -16,6 +16,7 @@ use halfrow::call::Files;
 use halfrow::frames::{self, Builtin};
 
 #[derive(Debug, Args)]
+#[command(mut_args(without_tables))]
 pub(super) struct Arguments {
     #[command(flatten)]
     lens: LensArguments,
@@ -33,6 +34,12 @@ pub(super) struct Arguments {
     overwrite: bool,
 }
 
+/// Hides an option of tables, which a frame has not: who gives one is told.
+fn without_tables(argument: Arg) -> Arg {
+    let hidden = MAKING_TABLES.contains(&argument.get_id().as_str());
+    argument.hide(hidden)
+}
+
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     if let Some(option) = arguments.lens.says_how() {
         return Err(Failure::call(CallError::RowsOfFrame { option }));
@@ -41,6 +48,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let is_wanted = |frame: &Builtin| arguments.only.is_empty() || arguments.only.contains(frame);
     let chosen: Vec<_> = Builtin::ALL.into_iter().filter(is_wanted).collect();
     let folder = &arguments.output;
+    refuse_stdout(folder, "-o").map_err(Failure::call)?;
     let places: Vec<_> = chosen.iter().map(|frame| folder.join(format!("{}.pgm", frame.name()))).collect();
     check_files(
         &Files::new(arguments.overwrite)

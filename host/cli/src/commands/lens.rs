@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use halfrow_model::{GridResidual, GridResiduals, GridShape, TableError};
+use halfrow_model::{GridShape, TableError};
 use serde_json::{Map, Value, json};
 
 use super::document::print_result;
@@ -60,8 +60,6 @@ struct Left {
     /// Of a grid.
     shape: Option<GridShape>,
     residuals: Residuals,
-    /// Apart: where the picture is, and at its rim and poles.
-    parts: GridResiduals,
 }
 
 /// What there is to say.
@@ -74,9 +72,6 @@ struct Figures<'a> {
     /// Why a board would not take the tables that are asked for.
     illegal: Option<TableError>,
 }
-
-/// Columns from one output to the next at which parts of the picture are looked at.
-const STEP: usize = 5;
 
 impl<'a> Figures<'a> {
     fn of(optics: &'a Optics) -> Result<Self, OpticsError> {
@@ -98,8 +93,7 @@ impl<'a> Figures<'a> {
                 illegal = tables.check_ring(optics.camera.geometry().width().next_power_of_two()).err();
             }
             let residuals = Residuals::of(&optics.camera, &tables);
-            let parts = optics.camera.grid_residuals(&tables, STEP);
-            all.push(Left { by, shape: tables.shape(), residuals, parts });
+            all.push(Left { by, shape: tables.shape(), residuals });
         }
         Ok(Self { optics, all, no_grid, illegal })
     }
@@ -144,11 +138,10 @@ impl<'a> Figures<'a> {
         let mut lines = vec![format!("{head:<50} mean       max   inner max  above 0.05    rim max")];
         for left in &self.all {
             let name = left.by.how(left.shape);
-            let (horizontal, GridResiduals { inner, rim, .. }) =
-                (amounts(left.residuals.horizontal), left.parts);
-            let share = 100.0 * inner.share;
-            lines
-                .push(format!("  {name:<45} {horizontal} {:11.4} {share:9.2} % {:10.4}", inner.max, rim.max));
+            let Residuals { circle, inner, rim, .. } = &left.residuals;
+            let (all, share) = (amounts(circle.amounts), 100.0 * inner.visible);
+            let (inner, rim) = (inner.amounts.max, rim.amounts.max);
+            lines.push(format!("  {name:<45} {all} {inner:11.4} {share:9.2} % {rim:10.4}"));
         }
         lines.push(format!(
             "  {:<45} {}",
@@ -156,14 +149,16 @@ impl<'a> Figures<'a> {
             amounts(first.residuals.vertical)
         ));
         lines.push(
-            "inner: up to 85 degrees off the axis and 0.9 of the circle's height; rim: the rest of the circle, the poles among it."
+            "inner: up to 85 degrees off the axis and 0.9 of the height of the circle of 180 degrees, and the share of it that is \
+             off by more than 0.05; rim: the rest, the poles among it."
                 .to_owned(),
         );
         lines.push("Rows are kept (Eq. 7): level lines bend as before.".to_owned());
-        let beyond = 100.0 * first.parts.beyond;
+        let beyond = 100.0 * self.optics.camera.share_beyond();
         if beyond > 0.0 {
             lines.push(format!(
-                "{beyond:.1} % of the outputs show what lies beyond 90 degrees, without being stretched and not exactly."
+                "{beyond:.1} % of the outputs show what lies beyond 90 degrees, which has no exact place: a grid goes on there as \
+                 at the rim, above and below the poles as in the row next to them."
             ));
         }
         lines
@@ -173,17 +168,11 @@ impl<'a> Figures<'a> {
         let (camera, lens) = (&self.optics.camera, self.optics.camera.lens());
         let geometry = camera.geometry();
         let first = self.all.first().map(|left| &left.residuals);
-        let horizontal =
-            self.all.iter().map(|left| (left.by.name().to_owned(), json!(left.residuals.horizontal)));
-        let part = |part: GridResidual| json!({ "mean": part.mean, "max": part.max, "share_above_0.05": part.share });
-        let parts = self.all.iter().map(|left| {
-            let GridResiduals { circle, inner, rim, .. } = left.parts;
-            (
-                left.by.name().to_owned(),
-                json!({ "circle": part(circle), "inner": part(inner), "rim": part(rim) }),
-            )
-        });
-        let beyond = self.all.first().map(|left| left.parts.beyond);
+        let of_each = |json: fn(&Residuals) -> Value| {
+            let each = self.all.iter().map(|left| (left.by.name().to_owned(), json(&left.residuals)));
+            each.collect::<Map<_, _>>()
+        };
+        let parts = |Residuals { circle, inner, rim, .. }: &Residuals| json!({ "circle": circle, "inner": inner, "rim": rim });
         let shape = self.all.iter().find_map(|left| left.shape);
         json!({
             "lens": {
@@ -202,10 +191,10 @@ impl<'a> Figures<'a> {
             "illegal": self.illegal.as_ref().map(ToString::to_string),
             "samples": first.map(|residuals| residuals.samples),
             "residual_px": {
-                "horizontal": horizontal.collect::<Map<_, _>>(),
+                "horizontal": of_each(|left| json!(left.circle.amounts)),
                 "vertical": first.map(|residuals| residuals.vertical),
-                "parts": parts.collect::<Map<_, _>>(),
-                "share_beyond_90_degrees": beyond,
+                "parts": of_each(parts),
+                "share_beyond_90_degrees": camera.share_beyond(),
             },
             "map": map,
         })

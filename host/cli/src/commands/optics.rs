@@ -3,7 +3,7 @@
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, bail};
+use anyhow::bail;
 use clap::builder::{OsStringValueParser, TypedValueParser as _};
 use clap::{Args, ValueEnum};
 use halfrow_model::{BitDepth, Equidistant, Geometry, Kernel, LensError, Phase};
@@ -14,12 +14,13 @@ use halfrow::kernels;
 use halfrow::lenses::LensFile;
 
 use super::table_file::NamedTables;
-use halfrow::optics::{
-    self, Chosen, EQUIDISTANT, Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, TablesBy, View,
-};
+use halfrow::optics::{self, Chosen, EQUIDISTANT, Optics, OpticsError, PAPER_FIELD, TablesBy, View};
 
 /// The pixels of the paper's sensor, in micrometres.
 const DEFAULT_PITCH: f64 = 2.2;
+
+/// The options that say how tables are made.
+pub(super) const MAKING_TABLES: [&str; 3] = ["rows", "projection", "entries"];
 
 /// The size and depth of frames, the lens, and the optical centre. The defaults are the paper's system.
 #[derive(Clone, Debug, Args)]
@@ -241,23 +242,11 @@ impl LensArguments {
 
     fn calibrated(&self, path: &Path) -> anyhow::Result<Optics> {
         let (file, input) = LensFile::read(path)?;
-        let pictures = match file.size {
-            Some(size) if self.lens_pitch.is_none() => size,
-            None if self.lens_pitch.is_none() && (self.width.is_none() || self.height.is_none()) => {
-                bail!(CallError::LensSizeMissing { path: path.to_owned() })
-            }
-            _ => PAPER_SIZE,
-        };
-        let view = self.view();
-        let geometry = view.geometry(pictures)?;
-        let (lens, centre) = match self.lens_pitch {
-            Some(pitch) => (file.lens.scaled(self.scale_from(pitch)?)?, geometry.middle()),
-            None => file
-                .for_frame(geometry.width(), geometry.height())
-                .with_context(|| format!("the lens file {} does not fit", path.display()))?,
-        };
-        let camera = view.camera(geometry, lens, centre)?;
-        Ok(Optics::calibrated(camera, file.model, input, self.by(Rows::Fitted))?)
+        let scale = self.lens_pitch.map(|pitch| self.scale_from(pitch)).transpose()?;
+        if file.size.is_none() && scale.is_none() && (self.width.is_none() || self.height.is_none()) {
+            bail!(CallError::LensSizeMissing { path: path.to_owned() });
+        }
+        Ok(Optics::of_lens_file(input, &file, scale, &self.view(), self.by(Rows::Fitted))?)
     }
 
     /// Pixels of the frame for each of a camera with pixels of `pitch`.

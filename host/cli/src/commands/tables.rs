@@ -1,6 +1,6 @@
 //! `halfrow tables`
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -13,6 +13,7 @@ use super::{CallError, Context, Failure};
 use crate::console;
 use crate::exit::Exit;
 use halfrow::call::Files;
+use halfrow::optics::outside_circle;
 use halfrow::tables::{TableFile, mem};
 use halfrow_frames::written_aside::WriteAsideError;
 
@@ -20,8 +21,8 @@ use halfrow_frames::written_aside::WriteAsideError;
 pub(super) struct Arguments {
     #[command(flatten)]
     lens: LensArguments,
-    #[arg(long, help = optics::kernel_help(""), default_value = "hermite", value_name = "NAME|FILE")]
-    kernel: OsString,
+    #[arg(long, help = optics::kernel_help(" [default: hermite]"), value_name = "NAME|FILE", env = "HALFROW_KERNEL")]
+    kernel: Option<OsString>,
     /// Where to: FILE.json, or FILE.mem for two files that Verilog's $readmemh reads
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
@@ -32,18 +33,19 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let format = Format::of(&arguments.output).map_err(Failure::call)?;
+    let of_settings = context.settings.kernel.as_deref().map(OsStr::new);
+    let kernel = arguments.kernel.as_deref().or(of_settings);
     check_files(
         &Files::new(arguments.overwrite)
             .reads(&context.settings_file)
             .reads(arguments.lens.file())
-            .reads_kernel(Some(&arguments.kernel))
+            .reads_kernel(kernel)
             .writes("--output", format.places(&arguments.output)),
     )
     .map_err(Failure::call)?;
-    let chosen = optics::choose(None, &arguments.lens, Some(&arguments.kernel))?;
-    let geometry = *chosen.tables.geometry();
-    chosen.tables.check_ring(geometry.width().next_power_of_two()).map_err(Failure::call)?;
+    let chosen = optics::choose(None, &arguments.lens, kernel)?;
     let outside = chosen.optics.camera.rows_outside_circle();
+    let they = outside_circle(&chosen.tables);
     let file = TableFile { tables: chosen.tables, kernel: chosen.kernel, about: about(&chosen.source) };
     format.write(&file, &arguments.output, arguments.overwrite).map_err(Failure::error)?;
     if context.json {
@@ -57,7 +59,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         console::tell(&format!("wrote {}: {}", path.display(), chosen.source));
     }
     if outside > 0 {
-        console::tell(&format!("{outside} rows lie outside the image circle and are not stretched"));
+        console::tell(&format!("{outside} rows lie outside the image circle and {they}"));
     }
     Ok(Exit::Pass)
 }
@@ -79,7 +81,8 @@ enum Format {
 impl Format {
     /// The one that the name tells.
     fn of(path: &Path) -> Result<Self, CallError> {
-        match path.extension().and_then(|extension| extension.to_str()) {
+        let extension = path.extension().map(OsStr::to_ascii_lowercase).unwrap_or_default();
+        match extension.to_str() {
             Some("json") => Ok(Self::Json),
             Some("mem") => Ok(Self::Mem),
             _ => Err(CallError::TablesFormat { path: path.to_owned() }),

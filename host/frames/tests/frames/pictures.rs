@@ -205,23 +205,73 @@ fn oriented(orientation: u16, channels: u16, bits: u16) -> Vec<u8> {
     [b"II*\0\x08\0\0\0\x0a\0", &entries[..], &[0; 4], &strip].concat()
 }
 
-/// By TIFF 6.0: where the first row and column of the file are seen.
+/// A PNG of the same samples, its orientation in EXIF before the picture or `behind` it.
+fn oriented_png(orientation: u16, channels: usize, bits: u16, behind: bool) -> Vec<u8> {
+    let entry = [42, 8, 0, 1, 274, 3, 1, 0, orientation, 0, 0, 0].map(u16::to_le_bytes).concat();
+    let block = [b"II", &entry[..]].concat();
+    let samples: Vec<u8> = (1..=8).flat_map(|value| vec![value; channels * usize::from(bits / 8)]).collect();
+    let mut file = Vec::new();
+    let mut encoder = ::png::Encoder::new(&mut file, 4, 2);
+    encoder.set_color(if channels == 1 {
+        ::png::ColorType::Grayscale
+    } else if channels == 3 {
+        ::png::ColorType::Rgb
+    } else {
+        ::png::ColorType::Rgba
+    });
+    encoder.set_depth(if bits == 8 { ::png::BitDepth::Eight } else { ::png::BitDepth::Sixteen });
+    let mut writer = encoder.write_header().unwrap();
+    let exif = ::png::chunk::ChunkType(*b"eXIf");
+    if !behind {
+        writer.write_chunk(exif, &block).unwrap();
+    }
+    writer.write_image_data(&samples).unwrap();
+    if behind {
+        writer.write_chunk(exif, &block).unwrap();
+    }
+    writer.finish().unwrap();
+    file
+}
+
+/// By TIFF 6.0: orientation, width, and where the first row and column of the file are seen.
+const SEEN: [(u16, usize, [u16; 8]); 10] = [
+    (1, 4, [1, 2, 3, 4, 5, 6, 7, 8]),
+    (2, 4, [4, 3, 2, 1, 8, 7, 6, 5]),
+    (3, 4, [8, 7, 6, 5, 4, 3, 2, 1]),
+    (4, 4, [5, 6, 7, 8, 1, 2, 3, 4]),
+    (5, 2, [1, 5, 2, 6, 3, 7, 4, 8]),
+    (6, 2, [5, 1, 6, 2, 7, 3, 8, 4]),
+    (7, 2, [8, 4, 7, 3, 6, 2, 5, 1]),
+    (8, 2, [4, 8, 3, 7, 2, 6, 1, 5]),
+    // No orientation that there is.
+    (0, 4, [1, 2, 3, 4, 5, 6, 7, 8]),
+    (9, 4, [1, 2, 3, 4, 5, 6, 7, 8]),
+];
+
+#[test]
+fn a_png_in_colour_is_turned_as_its_exif_says() {
+    for (orientation, width, samples) in SEEN {
+        for (channels, bits, behind) in [(3, 8, false), (4, 8, true), (3, 16, true), (4, 16, false)] {
+            let file = oriented_png(orientation, channels, bits, behind);
+            let frame = decode(&file, &options(BitDepth::Eight)).unwrap();
+            assert_eq!(
+                (frame.width(), frame.samples()),
+                (width, &samples[..]),
+                "{orientation}, {channels} x {bits}"
+            );
+        }
+    }
+    let size = PictureSize::Exactly(2, 4);
+    let standing =
+        decode(&oriented_png(6, 3, 8, false), &ReadOptions { size, ..options(BitDepth::Eight) }).unwrap();
+    assert_eq!((standing.width(), standing.height()), (2, 4));
+    let raw = decode(&oriented_png(3, 1, 8, false), &options(BitDepth::Eight)).unwrap();
+    assert_eq!(raw.samples(), SEEN[0].2, "raw samples stay as they lie");
+}
+
 #[test]
 fn a_tiff_in_colour_is_turned_as_its_orientation_says() {
-    let seen = [
-        (1, 4, [1, 2, 3, 4, 5, 6, 7, 8]),
-        (2, 4, [4, 3, 2, 1, 8, 7, 6, 5]),
-        (3, 4, [8, 7, 6, 5, 4, 3, 2, 1]),
-        (4, 4, [5, 6, 7, 8, 1, 2, 3, 4]),
-        (5, 2, [1, 5, 2, 6, 3, 7, 4, 8]),
-        (6, 2, [5, 1, 6, 2, 7, 3, 8, 4]),
-        (7, 2, [8, 4, 7, 3, 6, 2, 5, 1]),
-        (8, 2, [4, 8, 3, 7, 2, 6, 1, 5]),
-        // No orientation that there is.
-        (0, 4, [1, 2, 3, 4, 5, 6, 7, 8]),
-        (9, 4, [1, 2, 3, 4, 5, 6, 7, 8]),
-    ];
-    for (orientation, width, samples) in seen {
+    for (orientation, width, samples) in SEEN {
         for (channels, bits) in [(3, 8), (3, 16), (4, 8), (4, 16)] {
             let file = oriented(orientation, channels, bits);
             let frame = decode(&file, &options(BitDepth::Eight)).unwrap();

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-use halfrow_model::LensError;
+use halfrow_model::{CameraError, GeometryError, LensError, MAX_RADIUS, MIN_RADIUS, Short};
 
 /// A file that holds no lens that can be used. The source says where and what to do.
 #[derive(Debug, thiserror::Error)]
@@ -101,6 +101,23 @@ pub enum LensContentError {
         "its camera matrix is not [fx, skew, cx; 0, fy, cy; 0, 0, 1]; take the matrix that the calibration returned"
     )]
     Matrix,
+    /// A lens that images nothing beside the axis, or nothing above it.
+    #[error("its focal lengths fx and fy are {} and {} pixels, and neither can be 0; calibrate the lens again", Short(*.fx), Short(*.fy))]
+    FocalLength {
+        /// Pixels for a unit to the right.
+        fx: f64,
+        /// Pixels for a unit down.
+        fy: f64,
+    },
+    /// An image radius that no lens has.
+    #[error(
+        "the radius of its image is {} pixels, outside {min} to {max:e}; check the focal length and the coefficients, or \
+         calibrate the lens again",
+        Short(*.0),
+        min = MIN_RADIUS,
+        max = MAX_RADIUS
+    )]
+    Radius(f64),
     /// A size that is none of a picture.
     #[error("its image size is not two whole numbers from 1 to {max}; give columns and rows", max = super::MAX_SIDE)]
     Size,
@@ -122,10 +139,10 @@ pub enum LensContentError {
     /// Frames of another shape than the calibration's.
     #[error(transparent)]
     Shape(#[from] WrongShape),
-    /// Lines of OCamCalib's file that are not there.
+    /// Lines of OCamCalib's file that are not there, or too many.
     #[error(
-        "it breaks off: {found} lines of numbers instead of 5 (direct polynomial, inverse polynomial, centre, affine \
-         parameters, image size); export it again"
+        "it has {found} lines of numbers instead of 5 (direct polynomial, inverse polynomial, centre, affine parameters, \
+         image size); export it again"
     )]
     Lines {
         /// Lines of numbers there.
@@ -140,6 +157,21 @@ pub enum LensContentError {
         found: usize,
         /// Numbers that should be there.
         wanted: usize,
+        /// What the line holds.
+        what: &'static str,
+    },
+    /// A polynomial of OCamCalib's file that does not begin with a count.
+    #[error(
+        "line {line}: {what} begins with {}, and how many coefficients follow is a whole number from 1 to {most}; export \
+         the file again",
+        Short(*.found),
+        most = super::MAX_COEFFICIENTS
+    )]
+    Count {
+        /// The line, from 1.
+        line: usize,
+        /// The number there.
+        found: f64,
         /// What the line holds.
         what: &'static str,
     },
@@ -171,6 +203,22 @@ pub enum LensContentError {
     /// The numbers make no lens.
     #[error(transparent)]
     Lens(#[from] LensError),
+    /// The lens is none for the frames.
+    #[error(transparent)]
+    Camera(CameraError),
+    /// Its pictures have a size that no board takes.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+}
+
+/// A radius that a file leads to is not for its reader to give.
+impl From<CameraError> for LensContentError {
+    fn from(error: CameraError) -> Self {
+        match error {
+            CameraError::Lens(LensError::Radius(radius)) => Self::Radius(radius),
+            other => Self::Camera(other),
+        }
+    }
 }
 
 /// Frames of another shape than the pictures that the lens was calibrated with.

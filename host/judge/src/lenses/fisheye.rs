@@ -41,6 +41,9 @@ pub(super) fn parse(text: &str) -> Result<LensFile, LensContentError> {
 fn camera(keys: &Keys<'_>) -> Result<LensFile, LensContentError> {
     check_model(keys)?;
     let [fx, skew, cx, fy, cy] = matrix(keys)?;
+    if fx == 0.0 || fy == 0.0 {
+        return Err(LensContentError::FocalLength { fx, fy });
+    }
     let coefficients = coefficients(keys)?;
     let size = size(keys)?;
     let lens = CalibratedLens::new(Profile::KannalaBrandt(coefficients), [[fx, skew], [0.0, fy]])?;

@@ -21,6 +21,9 @@ use crate::tables::text;
 /// The most columns and rows that pictures of a calibration may have.
 const MAX_SIDE: usize = 65_535;
 
+/// The most coefficients of a polynomial: programs fit under twenty, and each is computed with at every sample.
+const MAX_COEFFICIENTS: usize = 64;
+
 /// The longest lens file that is read: OpenCV's programs put every corner of every picture into theirs.
 const MAX_BYTES: u64 = 16 << 20;
 
@@ -74,14 +77,12 @@ impl LensFile {
     /// # Errors
     /// [`LensContentError`] when it describes none that can be used.
     pub fn parse(text: &str) -> Result<Self, LensContentError> {
-        let text = text.trim_start_matches('\u{feff}');
+        let text = text::without_mark(text);
         let mut lines = text.lines().map(str::trim);
-        match lines.find(|line| !line.is_empty() && !line.starts_with('#')) {
+        match lines.find(|line| !line.is_empty() && !is_comment(line)) {
             None => Err(LensContentError::Empty),
             Some(line) if line.starts_with('<') => Err(LensContentError::Xml),
-            Some(line) if line.starts_with(|first: char| first.is_ascii_digit() || first == '+') => {
-                ocamcalib::parse(text)
-            }
+            Some(line) if begins_with_number(line) => ocamcalib::parse(text),
             Some(_) => fisheye::parse(text),
         }
     }
@@ -119,6 +120,15 @@ impl LensFile {
         let scaled = |place: f64| (place + 0.5) * factor - 0.5;
         Ok((self.lens.scaled(factor)?, (scaled(self.centre.0), scaled(self.centre.1))))
     }
+}
+
+/// Whether `line` is a comment of YAML or of MATLAB, and not the header of YAML.
+fn is_comment(line: &str) -> bool {
+    line.starts_with('#') || line.starts_with('%') && !line.starts_with("%YAML")
+}
+
+fn begins_with_number(line: &str) -> bool {
+    line.trim_start_matches(['+', '-', '.']).starts_with(|first: char| first.is_ascii_digit())
 }
 
 /// Columns and rows of a picture, if they can be.

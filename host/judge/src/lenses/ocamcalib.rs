@@ -5,7 +5,7 @@
 
 use halfrow_model::{CalibratedLens, Profile};
 
-use super::{LensContentError, LensFile, LensModel, picture_size};
+use super::{LensContentError, LensFile, LensModel, MAX_COEFFICIENTS, picture_size};
 use crate::tables::text::quoted;
 
 /// The most pixels by which the inverse polynomial, which is a fit, may be off the direct one.
@@ -71,10 +71,12 @@ impl Line {
     /// The coefficients that follow their own number.
     fn polynomial(&self, what: &'static str) -> Result<&[f64], LensContentError> {
         let (&count, coefficients) = self.numbers.split_first().unwrap_or((&0.0, &[]));
-        if count == coefficients.len() as f64 {
+        if count.fract() != 0.0 || !(1.0..=MAX_COEFFICIENTS as f64).contains(&count) {
+            Err(LensContentError::Count { line: self.line, found: count, what })
+        } else if count == coefficients.len() as f64 {
             Ok(coefficients)
         } else {
-            Err(self.wrong((count.abs() as usize).saturating_add(1), what))
+            Err(self.wrong(count as usize + 1, what))
         }
     }
 

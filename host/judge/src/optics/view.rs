@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use halfrow_model::{BitDepth, CalibratedLens, Camera, Equidistant, Geometry};
+use halfrow_model::{BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, LensError};
 
 use super::{Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, TablesBy};
+use crate::call::Input;
 use crate::lenses::LensFile;
 
 /// Frames behind a lens. What is left out, the lens file says, and otherwise it is that of the paper.
@@ -59,6 +60,20 @@ impl View {
         let centre = (self.centre_x.unwrap_or(centre.0), self.centre_y.unwrap_or(centre.1));
         Ok(Camera::new(geometry, lens, centre, self.field_of_view)?)
     }
+
+    fn says_size(&self) -> bool {
+        self.width.is_some() || self.height.is_some()
+    }
+
+    /// Whether `error` is of the lens and not of what is said here.
+    fn is_innocent_of(&self, error: &CameraError) -> bool {
+        match error {
+            CameraError::Lens(LensError::FieldOfView(_)) => false,
+            CameraError::Lens(_) => true,
+            CameraError::Geometry(_) => self.centre_x.is_none(),
+            CameraError::CentreRow(_) => self.centre_y.is_none(),
+        }
+    }
 }
 
 impl Optics {
@@ -69,11 +84,37 @@ impl Optics {
     /// [`OpticsError`] when the file cannot be read, holds no lens, or one that such frames cannot have.
     pub fn of_file(path: &Path, view: &View, by: TablesBy) -> Result<Self, OpticsError> {
         let (file, input) = LensFile::read(path)?;
-        let geometry = view.geometry(file.size.unwrap_or(PAPER_SIZE))?;
-        let (lens, centre) = file
-            .for_frame(geometry.width(), geometry.height())
-            .map_err(|source| OpticsError::Shape { path: path.to_owned(), source })?;
-        let camera = view.camera(geometry, lens, centre)?;
+        Self::of_lens_file(input, &file, None, view, by)
+    }
+
+    /// The lens of `file`, which was read from `input`, as [`Self::of_file`] has it. With `scale`, the pixels of the frame for each of
+    /// its own, it is the lens alone, before frames of the paper's size with the axis in their middle.
+    ///
+    /// # Errors
+    /// [`OpticsError`] when such frames cannot have it.
+    pub fn of_lens_file(
+        input: Input,
+        file: &LensFile,
+        scale: Option<f64>,
+        view: &View,
+        by: TablesBy,
+    ) -> Result<Self, OpticsError> {
+        let unfit = |source| OpticsError::Unfit { path: input.path.clone(), source };
+        let pictures = file.size.filter(|_| scale.is_none());
+        let geometry = view.geometry(pictures.unwrap_or(PAPER_SIZE)).map_err(|error| match error {
+            OpticsError::Geometry(error) if pictures.is_some() && !view.says_size() => unfit(error.into()),
+            other => other,
+        })?;
+        let (lens, centre) = match scale {
+            Some(scale) => (file.lens.scaled(scale)?, geometry.middle()),
+            None => file
+                .for_frame(geometry.width(), geometry.height())
+                .map_err(|source| OpticsError::Shape { path: input.path.clone(), source })?,
+        };
+        let camera = view.camera(geometry, lens, centre).map_err(|error| match error {
+            OpticsError::Camera(error) if view.is_innocent_of(&error) => unfit(error.into()),
+            other => other,
+        })?;
         Ok(Self::calibrated(camera, file.model, input, by)?)
     }
 

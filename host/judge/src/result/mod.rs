@@ -245,7 +245,7 @@ pub struct TablesReport {
     pub bits: u32,
     /// C, twice the optical centre's column.
     pub centre2: u32,
-    /// Rows outside the image circle, which are not stretched; none when the tables are a file, which does not say.
+    /// Rows outside the image circle, which row factors do not stretch, and a grid not exactly; none when the tables are a file, which does not say.
     pub rows_outside_circle: Option<usize>,
     /// CRC-32 of the row factors, as on the wire.
     pub steps_crc32: String,

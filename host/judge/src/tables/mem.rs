@@ -27,7 +27,7 @@ const NODE_DIGITS: usize = WEIGHT_DIGITS * TAP_NAMES.len();
 /// The files that stand for `path`: NAME.steps.mem and NAME.kernel.mem for NAME.mem or NAME.
 #[must_use]
 pub fn paths(path: &Path) -> [PathBuf; 2] {
-    let is_mem = path.extension().is_some_and(|extension| extension == "mem");
+    let is_mem = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mem"));
     let name = if is_mem { path.with_extension("") } else { path.to_owned() };
     ["steps", "kernel"].map(|part| {
         let mut file = name.clone().into_os_string();

@@ -8,7 +8,7 @@ use halfrow_protocol::message::Datapath;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::{Map, Value};
 
-use super::text::quoted;
+use super::text::{quoted, without_mark};
 use super::{ContentError, Place, WrongDatapath};
 
 /// An object's members as they stand in the text: a key that comes twice is there twice.
@@ -41,7 +41,7 @@ impl<'de> Deserialize<'de> for Members {
 impl Members {
     /// The members of the JSON object `text`, each once.
     pub(super) fn parse(text: &str) -> Result<Self, ContentError> {
-        let members: Self = serde_json::from_str(text).map_err(json_error)?;
+        let members: Self = serde_json::from_str(without_mark(text)).map_err(json_error)?;
         let mut seen = HashSet::new();
         match members.0.iter().find(|(key, _)| !seen.insert(key)) {
             Some((key, _)) => Err(ContentError::RepeatedKey { key: quoted(key) }),

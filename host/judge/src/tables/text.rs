@@ -28,6 +28,11 @@ pub fn read(path: &Path, most: u64) -> io::Result<String> {
     })
 }
 
+/// `text` without the byte order mark that editors of Windows put before it and show nobody.
+pub(crate) fn without_mark(text: &str) -> &str {
+    text.trim_start_matches('\u{feff}')
+}
+
 /// The beginning of `text`, short enough to stand in a sentence.
 pub fn quoted(text: &str) -> String {
     match text.char_indices().nth(QUOTED) {

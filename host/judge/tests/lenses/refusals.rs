@@ -89,7 +89,7 @@ fn pictures_that_are_mirrored_or_upside_down_are_refused() {
     says(OPENCV_YAML, "552.25", "-552.25", "mirrored, upside down or flat");
     says(OPENCV_YAML, "549.125", "-549.125", "mirrored, upside down or flat");
     says(DSL215, "1.000314", "-1.000314", "mirrored, upside down or flat");
-    says(OPENCV_YAML, "549.125", "0.", "mirrored, upside down or flat");
+    says(OPENCV_YAML, "549.125", "0.", "fx and fy are 552.25 and 0 pixels, and neither can be 0");
 }
 
 #[test]
@@ -156,8 +156,35 @@ fn ocamcalib_s_numbers_are_looked_at() {
     says(DSL215, "-2.595395e+02", "2.595395e+02", "begins with 259.5395, and OCamCalib's begin below zero");
     says(DSL215, "388.557547", "488.557547", "the inverse polynomial is");
     says(DSL215, "388.557547 220.910537", "220.910537 388.557547", "off the direct one at 30 degrees");
-    assert_eq!(refusal("0\n229 364\n1 0 0\n480 752\n"), LensContentError::Sign(0.0));
-    assert!(matches!(refusal("99999999999999999999 1\n1 1\n1 0 0\n4 4\n"), LensContentError::Numbers { .. }));
+    assert_eq!(refusal("1 0\n229 364\n1 0 0\n480 752\n"), LensContentError::Sign(0.0));
+}
+
+#[test]
+fn ocamcalib_s_counts_are_counts() {
+    for (count, found) in [("2.5", "2.5"), ("0", "0"), ("1e30", "1e30"), ("-5", "-5"), ("65", "65")] {
+        let text = format!("{count} -259 1 2\n229 364\n1 0 0\n480 752\n");
+        let sentence = format!(
+            "line 1: the direct polynomial begins with {found}, and how many coefficients follow is a whole number from 1 to 64"
+        );
+        let refused = refusal(&text).to_string();
+        assert!(refused.contains(&sentence), "{count}: {refused}");
+    }
+    let many = format!("10000 -259{}\n229 364\n1 0 0\n480 752\n", " 0".repeat(9_999));
+    assert!(matches!(refusal(&many), LensContentError::Count { line: 1, .. }));
+}
+
+#[test]
+fn too_many_lines_do_not_break_off() {
+    let refused = refusal(&format!("{DSL215}\n1 2 3\n")).to_string();
+    assert!(refused.starts_with("it has 6 lines of numbers instead of 5 ("), "{refused}");
+}
+
+#[test]
+fn ocamcalib_s_file_is_known_behind_comments_of_matlab() {
+    for (old, new) in [("#polynomial", "%polynomial"), ("", "% made by export_data.m\n")] {
+        assert_eq!(LensFile::parse(&DSL215.replacen(old, new, 1)), LensFile::parse(DSL215), "{new}");
+    }
+    assert!(matches!(refusal("% nothing\n"), LensContentError::Empty));
 }
 
 #[test]

@@ -1,15 +1,12 @@
 //! What each way to make tables leaves of the exact projection, per lens, frame and optical centre.
 
-use halfrow_model::{Camera, CameraError, Equidistant, GridResidual, GridResiduals, TableSet};
+use halfrow_model::{Camera, CameraError, Equidistant, GridResidual, GridResiduals};
 use rayon::prelude::*;
 
 use super::cameras::{self, DSL215, FISHEYE_MODEL, FULL_HD, PAPER, SENSOR};
 use super::exhibit::{Accepted, Cell, Claim, Exhibit, Table};
 use super::ways::Way;
 use super::{Item, PaperError};
-
-/// Columns and rows from one output that is looked at to the next.
-const STEP: usize = 5;
 
 /// Entries of the smallest bank that a board with grids may have, and of the one for the full sensor.
 const BANK: usize = 2048;
@@ -58,9 +55,9 @@ pub(super) fn exhibit() -> Result<Exhibit, PaperError> {
     let mut exhibit = Exhibit::new(Item::Residuals);
     exhibit.remark(
         "How many columns of the fisheye picture an output is taken from beside its place in the exact projection (Eqs. 5 to 7), \
-         at every fifth column and row. The inner picture is what is up to 85° off the axis and within 0.9 of the image circle's \
-         height; the rim is the rest of the circle, the poles among it. What is beyond 90° is shown without being stretched, and \
-         has no place in the exact projection.",
+         at every output. The inner picture is what is up to 85° off the axis and within 0.9 of the image circle's \
+         height; the rim is the rest of the circle, the poles among it. What is beyond 90° has no place in the exact \
+         projection: a grid goes on there as at the rim, above and below the poles as in the row next to them.",
     );
     exhibit.remark(
         "A grid is the best of at most 2,048 entries, which every board with datapath 2 has room for, and of 4,096 for the full \
@@ -121,20 +118,20 @@ impl Left {
     fn of(case: &Case) -> Result<Self, PaperError> {
         let camera = (case.camera)()?;
         let (geometry, (column, row)) = (camera.geometry(), camera.centre());
-        let left = |tables: &TableSet| camera.grid_residuals(tables, STEP);
-        let [equation_9, fitted, exact] = Way::ALL.map(|way| way.tables(&camera, case.entries));
-        let exact = exact?;
+        let [equation_9, fitted, grid] = Way::ALL.map(|way| way.tables(&camera, case.entries));
+        let grid = grid?;
+        let [equation_9, fitted, exact] = camera.each_grid_residuals([&equation_9?, &fitted?, &grid], 1);
         Ok(Self {
             what: [
                 case.lens.to_owned(),
                 format!("{} x {}", geometry.width(), geometry.height()),
                 format!("{column:.1}, {row:.1}"),
             ],
-            equation_9: left(&equation_9?),
-            fitted: left(&fitted?),
-            shape: exact.shape().map_or_else(String::new, |shape| format!("{}, {}", shape.v(), shape.k())),
-            entries: exact.units().len(),
-            exact: left(&exact),
+            equation_9,
+            fitted,
+            shape: grid.shape().map_or_else(String::new, |shape| format!("{}, {}", shape.v(), shape.k())),
+            entries: grid.units().len(),
+            exact,
         })
     }
 

@@ -67,7 +67,7 @@ fn maps(exhibit: &mut Exhibit) -> Result<(), PaperError> {
     let camera = cameras::equidistant(MAP, lens.radius(), (RADIUS, RADIUS))?;
     let left = Way::ALL.map(|way| Ok((way, Residuals::of(&camera, &way.tables(&camera, ENTRIES)?))));
     let left = left.into_iter().collect::<Result<Vec<_>, PaperError>>()?;
-    let most = left.iter().map(|(_, left)| left.horizontal.max).fold(0.0, f64::max);
+    let most = left.iter().map(|(_, left)| left.circle.amounts.max).fold(0.0, f64::max);
     let samples = (MAP.1 * MAP.1) as f64;
     let mut rows = Vec::new();
     for (way, left) in &left {
@@ -79,11 +79,11 @@ fn maps(exhibit: &mut Exhibit) -> Result<(), PaperError> {
             caption: format!(
                 "{}: the error, from 0 (dark) to {most:.1} px (bright); {mean:.4} px on the average, {:.3} px at most.",
                 way.caption(),
-                left.horizontal.max
+                left.circle.amounts.max
             ),
             drawing: Drawing::Pixels(map.image, 3),
         });
-        let amounts = [Cell::Number(mean, 4), Cell::Number(left.horizontal.max, 4)];
+        let amounts = [Cell::Number(mean, 4), Cell::Number(left.circle.amounts.max, 4)];
         rows.push(std::iter::once(Cell::Text(way.name().to_owned())).chain(amounts).collect());
     }
     exhibit.tables.push(Table {

@@ -88,6 +88,6 @@ impl Job<'_> {
             .map_err(Failure::error)?;
         frames::write_oriented(&places.frames[index], &frame, orientation, self.arguments.overwrite)
             .map_err(Failure::error)?;
-        self.write_preview(places, index, &frame).map_err(Failure::error)
+        self.write_preview(places, index, orientation, &frame).map_err(Failure::error)
     }
 }

@@ -50,7 +50,7 @@ impl Job<'_> {
         if !kept.is_empty() {
             let corrected =
                 Frame::new(shape.width, shape.depth, shape.phase, kept).map_err(Failure::error)?;
-            self.write_preview(places, index, &corrected).map_err(Failure::error)?;
+            self.write_preview(places, index, shape.orientation, &corrected).map_err(Failure::error)?;
         }
         Ok(())
     }

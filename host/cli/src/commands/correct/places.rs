@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{bail, ensure};
 
 use super::super::CallError;
-use super::super::files::make_folder;
+use super::super::files::{make_folder, refuse_stdout};
 use super::super::inputs::FrameName;
 use halfrow::call::Files;
 use halfrow::frames::{Format, check_png};
@@ -58,6 +58,7 @@ impl Places {
         format: Format,
         option: &'static str,
     ) -> anyhow::Result<Vec<PathBuf>> {
+        refuse_stdout(place, option)?;
         let is_file = place.extension().is_some() && !place.is_dir();
         if is_file {
             let frames = inputs.len();

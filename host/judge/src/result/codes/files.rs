@@ -127,6 +127,7 @@ codes! {
     OpticsError {
         Kernel [name] => "kernel-not-found",
         Shape [path] => "lens-file-of-other-shape",
+        Unfit [path] => "lens-file-unfit",
         OutsideCircle [outside, rows, radius, centre] => "image-circle-misses-frame",
         = Room,
         = Damaged,
@@ -154,13 +155,18 @@ codes! {
         Matrix => "lens-matrix-wrong",
         Size => "lens-size-wrong",
         Centre [column, row, columns, rows] => "lens-centre-outside",
+        FocalLength [fx, fy] => "lens-focal-length-zero",
+        Radius (radius) => "lens-radius-out-of-range",
         Lines [found] => "ocam-lines-missing",
+        Count [line, found, what] => "ocam-count-wrong",
         Numbers [line, found, wanted, what] => "ocam-numbers-miscounted",
         Number [line, found] => "ocam-number-malformed",
         Sign (coefficient) => "ocam-sign-wrong",
         Inverse [distance, degrees] => "ocam-inverse-contradicts",
         = Shape,
         = Lens,
+        = Camera,
+        = Geometry,
     }
     ;
     VoidOption [option] => "option-without-effect"
