@@ -100,7 +100,7 @@ fn one_row_and_a_burst_are_a_run() {
     }
     let whole = judged("mock", least.with(Part::Corners, 1));
     let at_speed = whole.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap();
-    assert!(matches!(at_speed.finding, Finding::EqualAtSpeed { corners: 6, .. }), "{at_speed:?}");
+    assert!(matches!(at_speed.finding, Finding::EqualAtSpeed { corners: 10, .. }), "{at_speed:?}");
 }
 
 #[test]

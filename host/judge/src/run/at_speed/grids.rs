@@ -1,5 +1,7 @@
 //! Grids that no plan has, for two frames at the full pixel clock each, by turns with row factors.
 
+use std::iter;
+
 use halfrow_model::{Geometry, GridShape, MIN_WIDTH, RowFactor, TableSet};
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
@@ -11,8 +13,12 @@ use crate::run::variations::Build;
 
 /// Samples that such a frame has about. One of them goes over the link.
 const SAMPLES: usize = 1 << 13;
-/// v and k, the finest and the usual one.
-const SHAPES: [(u32, u32); 2] = [(1, 5), (5, 6)];
+/// v and k, the finest and the usual one in long rows, and every other v in short ones.
+const SHAPES: [(u32, u32); 6] = [(1, 5), (5, 6), (2, 6), (3, 5), (4, 6), (6, 5)];
+/// Those of them in long rows.
+const LONG: usize = 2;
+/// Rows behind the first grid row of frames with short ones.
+const ROWS_BEHIND: usize = 6;
 /// How often a grid is drawn, the next time half as far from 1.
 const TRIES: u32 = 8;
 
@@ -29,10 +35,16 @@ pub(super) fn grid_corners(
     let most = usize::from(capabilities.max_width).min(build.ring) & !1;
     let least = MIN_WIDTH.max(known.grid_width.into()).next_multiple_of(2).min(most);
     let corner = |(place, (v, k)): (usize, (u32, u32))| {
-        let shape = GridShape::new(v, k).ok().filter(|_| known.takes(k as u8))?;
-        let width = (fit(BY_TURNS[1 - place], most) & !1).max(least);
-        let height = (SAMPLES / width).clamp(1, capabilities.max_height.into());
-        let centre2 = [width - 1, fit(BY_TURNS[0], 2 * width - 2)][place];
+        let k = iter::once(k).chain(GridShape::K);
+        let shape = k.filter_map(|k| GridShape::new(v, k).ok()).find(|shape| known.takes(shape.k() as u8))?;
+        let (width, rows) = if place < LONG {
+            let width = (fit(BY_TURNS[1 - place], most) & !1).max(least);
+            (width, SAMPLES / width)
+        } else {
+            (least, (1 << v) + ROWS_BEHIND)
+        };
+        let height = rows.clamp(1, capabilities.max_height.into());
+        let centre2 = [width - 1, fit(BY_TURNS[0], 2 * width - 2)][place % LONG];
         let geometry = Geometry::new(width, height, *build.depths.last()?, centre2 as u32).ok()?;
         if shape.entries(&geometry) > known.entries.into() {
             return None;
@@ -58,21 +70,31 @@ fn drawn_grid(geometry: Geometry, shape: GridShape, ring: usize, draws: &mut Pcg
 }
 
 /// Entries column by column. The first node is nearer to 1 than most others, so that no row ends behind the frame, and no
-/// offset is further to the left than it moves the row to the right.
+/// offset is further to the left than it moves the row to the right. Some are to the right, by as much as a nearer one makes room for.
 fn drawn_entries(geometry: &Geometry, shape: GridShape, halvings: u32, draws: &mut Pcg64Mcg) -> Vec<u32> {
     let one = RowFactor::ONE.get();
     let half = one >> 1 >> halvings;
     let (rows, columns) = (shape.rows(geometry), shape.columns(geometry));
-    let first: Vec<u32> = (0..rows).map(|_| draws.next_u32() % half).collect();
-    let offset = |below: &u32| {
-        let most = (u64::from(geometry.centre2()) * u64::from(*below)) >> 12;
-        one - ((most * u64::from(draws.next_u32())) >> 32) as u32
+    let first: Vec<_> = (0..rows)
+        .map(|_| {
+            let is_right = draws.next_u32() % 2 == 1;
+            (draws.next_u32() % if is_right { half / 4 } else { half }, is_right)
+        })
+        .collect();
+    let mut offset = |&(below, is_right): &(u32, bool)| {
+        let drawn = u64::from(draws.next_u32());
+        // In units of 2^-13 column, of factors in units of 2^-24.
+        let to_left = (u64::from(geometry.centre2()) * u64::from(below)) >> 12;
+        let to_right = (geometry.width() as u64 * u64::from(half)) >> 13;
+        let part = |most: u64| ((most * drawn) >> 32) as u32;
+        if is_right { one + part(to_right) } else { one - part(to_left) }
     };
-    let mut entries: Vec<u32> = first.iter().map(offset).collect();
-    entries.extend(first.iter().map(|below| one - below));
-    entries.extend((2 * rows..columns * rows).map(|_| {
+    let mut entries: Vec<u32> = first.iter().map(&mut offset).collect();
+    entries.extend(first.iter().map(|(below, _)| one - below));
+    entries.extend((2 * rows..columns * rows).map(|place| {
         let (drawn, is_beyond) = (draws.next_u32() % half, draws.next_u32().is_multiple_of(8));
-        if is_beyond { one + drawn } else { one - half - drawn }
+        // Short rows have room for none as their second node.
+        if is_beyond && place >= 3 * rows { one + drawn } else { one - half - drawn }
     }));
     entries
 }
@@ -85,16 +107,53 @@ mod tests {
     /// What is drawn must hold the conditions of the widest and of the narrowest row at every centre.
     #[test]
     fn grids_are_legal_at_any_centre_and_stretch_far() {
-        let mut draws = Pcg64Mcg::new(1);
-        for (width, ring) in [(144, 256), (682, 1024), (1364, 2048), (2592, 4096)] {
+        let (mut draws, mut left, mut right) = (Pcg64Mcg::new(1), 0, 0);
+        for (width, ring) in [(64, 64), (144, 256), (682, 1024), (1364, 2048), (2592, 4096)] {
             for centre2 in [0, 1, width as u32 - 1, 2 * width as u32 - 2] {
                 for shape in GridShape::all() {
-                    let geometry = Geometry::new(width, 9, halfrow_model::BitDepth::Twelve, centre2).unwrap();
+                    let height = (1 << shape.v()) + ROWS_BEHIND;
+                    let geometry =
+                        Geometry::new(width, height, halfrow_model::BitDepth::Twelve, centre2).unwrap();
                     let tables = drawn_grid(geometry, shape, ring, &mut draws).unwrap();
+                    let offsets: Vec<_> = tables.units().take(shape.rows(&geometry)).collect();
+                    let one = RowFactor::ONE.get();
+                    right += usize::from(offsets.iter().any(|&offset| offset > one));
+                    left += usize::from(offsets.iter().any(|&offset| offset < one));
                     let least = tables.values(4).unwrap().factors().iter().copied().min().unwrap();
-                    assert!(least < 1 << 23, "{width}, {centre2}, {shape:?}: {least}");
+                    // The shortest rows have room for less.
+                    let most = if width > 64 { 1 << 23 } else { 3 << 22 };
+                    assert!(least < most, "{width}, {centre2}, {shape:?}: {least}");
                 }
             }
+        }
+        // Of 240 grids, and a quarter has a centre at column 0 and nowhere to go to the left.
+        assert!(right > 200 && left > 120, "{left}, {right}");
+    }
+
+    #[test]
+    fn every_v_has_a_corner_whatever_k_a_board_takes() {
+        let plan = crate::run::Plan::new(
+            TableSet::new(
+                Geometry::centred(64, 1, halfrow_model::BitDepth::Twelve).unwrap(),
+                vec![RowFactor::ONE],
+            )
+            .unwrap(),
+            halfrow_model::Interpolant::Hermite.into(),
+        );
+        for ks in [0x20, 0x40, 0x60] {
+            let mut board = crate::run::usual_capabilities(&plan, crate::board::BoardNature::Mock);
+            board.max_height = 128;
+            let grids = halfrow_protocol::message::Grids {
+                further_datapath: 2,
+                entries: 2048,
+                ks,
+                grid_blanking: 0,
+                grid_width: 0,
+            };
+            board.grids = Some(grids);
+            let corners = grid_corners(&board, 1, &mut Pcg64Mcg::new(1));
+            let vs: Vec<_> = corners.iter().filter_map(|it| it[0].tables.shape()).map(GridShape::v).collect();
+            assert_eq!(vs, [1, 5, 2, 3, 4, 6], "{ks:x}");
         }
     }
 }
