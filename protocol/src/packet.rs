@@ -206,6 +206,20 @@ impl Encoder {
         write_payload: impl FnOnce(&mut Vec<u8>),
         wire: &mut Vec<u8>,
     ) -> Result<(), TooLong> {
+        self.encode_altered(header, write_payload, |_| {}, wire)
+    }
+
+    /// The same of a packet that `alter` makes another one of in front of its CRC, such as no receiver takes.
+    ///
+    /// # Errors
+    /// As [`Self::encode`].
+    pub fn encode_altered(
+        &mut self,
+        header: &Header,
+        write_payload: impl FnOnce(&mut Vec<u8>),
+        alter: impl FnOnce(&mut [u8]),
+        wire: &mut Vec<u8>,
+    ) -> Result<(), TooLong> {
         self.packet.clear();
         self.packet.extend_from_slice(&[0; HEADER]);
         write_payload(&mut self.packet);
@@ -214,6 +228,7 @@ impl Encoder {
             return Err(TooLong(length));
         }
         self.packet[..HEADER].copy_from_slice(&header.write(length));
+        alter(&mut self.packet);
         let crc = crc32fast::hash(&self.packet);
         self.packet.extend_from_slice(&crc.to_le_bytes());
         wire.reserve(cobs::stuffed_length(self.packet.len()) + 2);

@@ -6,6 +6,7 @@
 
 mod at_speed;
 mod capabilities;
+mod careless;
 mod conduct;
 mod counters;
 mod damaged_packets;

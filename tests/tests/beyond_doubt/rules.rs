@@ -13,7 +13,7 @@ use halfrow_tests::system::{System, failed_check, judge_by_plan, open};
 const FRAME: u16 = 0x1234;
 
 /// The least run with the rules.
-pub(crate) fn plan() -> Plan {
+pub(super) fn plan() -> Plan {
     Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() }
 }
 
@@ -22,15 +22,23 @@ fn check(report: &Report) -> &Check {
 }
 
 /// The report on a board of which `alter` makes something else of what it says; none takes it away.
-fn saying(mut alter: impl FnMut(Passing) -> Option<Passing> + Send + 'static) -> Report {
+fn saying(alter: impl FnMut(Passing) -> Option<Passing> + Send + 'static) -> Report {
+    said_by(&Options::default(), alter)
+}
+
+/// The same of a board of the build `options`.
+pub(super) fn said_by(
+    options: &Options,
+    mut alter: impl FnMut(Passing) -> Option<Passing> + Send + 'static,
+) -> Report {
     let altered = move |toward, packet| match toward {
         Toward::Board => vec![packet],
         Toward::Host => alter(packet).into_iter().collect(),
     };
-    judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate())
+    judge_by_plan(&plan(), Altered::new(options, altered).candidate())
 }
 
-fn refusal(packet: &Passing) -> Option<Refusal> {
+pub(super) fn refusal(packet: &Passing) -> Option<Refusal> {
     match packet.reply() {
         Some(Reply::Refusal(refusal)) => Some(refusal),
         _ => None,
@@ -38,13 +46,13 @@ fn refusal(packet: &Passing) -> Option<Refusal> {
 }
 
 /// The packet as the reply of its kind, empty.
-fn carried_out(packet: &Passing, refusal: Refusal) -> Passing {
+pub(super) fn carried_out(packet: &Passing, refusal: Refusal) -> Passing {
     let mut header = packet.header;
     header.kind = refusal.kind;
     Passing { header, payload: Vec::new() }
 }
 
-pub(crate) fn broken(report: &Report) -> (Rule, &Answer, &Answer) {
+pub(super) fn broken(report: &Report) -> (Rule, &Answer, &Answer) {
     assert_eq!(failed_check(report), Some(CheckName::Rules), "{}", report.headline());
     assert!(report.remedy().is_some());
     match &report.finding {

@@ -17,6 +17,9 @@ use crate::link::{Link, LinkError, Severed};
 /// longer, the host may have been kept from running, and what it has not read yet says nothing against the board.
 const BRIEF: Duration = Duration::from_millis(50);
 
+/// Where a header has its version and its length (WIRE.md, 1).
+const MISNAMED: [usize; 3] = [0, 4, 5];
+
 /// How far a board's window can be ahead of the rows that came back: the most banks each way, and two rows in the core.
 const MOST_AHEAD: u32 = 2 * u8::MAX as u32 + 2;
 
@@ -179,6 +182,17 @@ impl Conversation {
             self.outgoing.extend_from_slice(&whole);
             let byte = self.outgoing.iter_mut().rev().nth(place);
             byte.into_iter().for_each(|byte| *byte ^= 1 << (place % 8));
+        }
+    }
+
+    /// Queues `request` with a CRC that is right, once for each bit of its version and of its length, of which that one is wrong.
+    pub(super) fn queue_misnamed(&mut self, request: &Request<'_>) {
+        let header = self.header(request.kind(), self.sequence);
+        for (byte, bit) in MISNAMED.into_iter().flat_map(|byte| (0..u8::BITS).map(move |bit| (byte, bit))) {
+            let alter = |packet: &mut [u8]| packet[byte] ^= 1 << bit;
+            let write = |payload: &mut Vec<u8>| request.write(payload);
+            let queued = self.encoder.encode_altered(&header, write, alter, &mut self.outgoing);
+            debug_assert!(queued.is_ok(), "a request is built to fit a packet");
         }
     }
 

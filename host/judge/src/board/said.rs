@@ -94,9 +94,11 @@ impl Board {
         self.conversation.sequence
     }
 
-    /// Sends `request` damaged, in each way in which a link can flip a bit of one byte, and waits for nothing.
+    /// Sends `request` so that it is none, and waits for nothing: damaged, in each way in which a link can flip a bit of one byte,
+    /// and of another version or length.
     pub(crate) fn give_damaged(&mut self, request: &Request<'_>) {
         self.conversation.queue_damaged(request);
+        self.conversation.queue_misnamed(request);
     }
 
     /// What came to the board and back more often than it was sent has its reason by now, and casts no doubt on what was found.

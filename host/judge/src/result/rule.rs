@@ -18,7 +18,7 @@ pub enum Rule {
     Entry,
     /// An entry is written where it belongs, and read from there.
     Address,
-    /// A packet with a flipped bit has no effect.
+    /// A packet with a flipped bit, of another version or of another length than it names has no effect.
     Damage,
     /// A packet of another session is refused, and has no effect.
     Session,

@@ -25,7 +25,8 @@ const TIMES: usize = 3;
 const TO_COME: u16 = 16;
 
 impl Rules<'_, '_> {
-    /// A row factor stays as it was written, though packets that would write another one came with a flipped bit.
+    /// A row factor stays as it was written, though packets that would write another one came with a flipped bit,
+    /// in another version or of another length than they name.
     pub(super) fn damage(&mut self) -> Result<(), End> {
         let mut said = self.behind_damage()?;
         for _ in 1..TIMES {
