@@ -17,6 +17,7 @@ mod lost_rows;
 mod outages;
 mod recordings;
 mod refusals;
+mod rule_by_rule;
 mod rules;
 mod seen_once;
 mod slow_clocks;

@@ -181,6 +181,7 @@ pub fn not_exercised() -> Vec<NotExercised> {
         NotExercised::TableChangeAtSpeed {},
         NotExercised::Rules {},
         NotExercised::Grids {},
+        NotExercised::FurtherRecords { filled: 1024 },
         NotExercised::CountersOfPoorLinks {},
         NotExercised::SameBoard {},
         NotExercised::Depths { bits: vec![8, 10] },

@@ -67,6 +67,11 @@ pub enum NotExercised {
     Rules {},
     /// Rows that a grid corrects, on a board that takes grids.
     Grids {},
+    /// Records of bursts beyond those that a burst fills, of a board that keeps more.
+    FurtherRecords {
+        /// As many are filled.
+        filled: u32,
+    },
     /// Counters that are compared over a sound link alone, of a board that counts damaged packets, or others than were sent, where
     /// the host saw nothing go wrong.
     CountersOfPoorLinks {},

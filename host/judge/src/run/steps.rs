@@ -12,6 +12,7 @@ use super::patterns::patterns;
 use super::plan::{Generation, Plan, Segment};
 use super::prepared::{self, PrepareError, Prepared};
 use super::reconnect::WayBack;
+use super::rules::MOST_FILLED;
 use super::variations::Build;
 use crate::board::{Board, BoardError, UnknownDatapath, grids, possible};
 use crate::progress::{Progress, Step};
@@ -132,6 +133,10 @@ impl Run<'_> {
         self.findings.not_exercised.append(&mut self.findings.untested_at_speed);
         let untried = !self.findings.has_passed(CheckName::Rules);
         self.findings.not_exercised.extend(untried.then_some(NotExercised::Rules {}));
+        let records = self.known_bursts().map_or(0, |bursts| u32::from(bursts.records));
+        let are_left = !untried && records > MOST_FILLED;
+        let further = are_left.then_some(NotExercised::FurtherRecords { filled: MOST_FILLED });
+        self.findings.not_exercised.extend(further);
         self.findings.not_exercised.extend(no_grid.then_some(NotExercised::Grids {}));
         let is_unknown = self.findings.is_unknown;
         self.findings.not_exercised.extend(is_unknown.then_some(NotExercised::SameBoard {}));

@@ -34,6 +34,9 @@ pub fn not_exercised(part: &NotExercised) -> String {
         }
         NotExercised::Rules {} => "what the board must refuse, keep and end".to_owned(),
         NotExercised::Grids {} => "grids, which are datapath 2".to_owned(),
+        NotExercised::FurtherRecords { filled } => {
+            format!("records of bursts behind the first {filled}")
+        }
         NotExercised::CountersOfPoorLinks {} => {
             "counters that a poor link moves as well, since the board counts damaged packets, or others than were sent".to_owned()
         }

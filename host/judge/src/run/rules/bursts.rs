@@ -10,17 +10,15 @@ use halfrow_protocol::message::{
 };
 
 use super::{FIRST_FACTOR, Rules, of_board};
-use crate::board::{BoardError, Fetched, Said};
+use crate::board::{BoardError, Fetched};
 use crate::result::{Answer, Rule};
 use crate::run::Generation;
 use crate::run::at_speed::{clock_hz, content, signer};
 use crate::run::findings::End;
 
-/// How many records are taken each time that a burst waits for free ones.
-const TAKEN: [u32; 4] = [5, 1, 9, 4];
 /// Frames of a burst that is to be right: every board has records for two.
 const FEW: u32 = 2;
-/// How long a burst may take beside the time that its frames take on the board's clock.
+/// How long a burst may take beside the time that its frames take on the board's clock, and once more for each packet of records.
 const PATIENCE: Duration = Duration::from_secs(5);
 /// The longest time between two looks at it: no link ends a shorter wait early.
 const LONGEST_IDLE: Duration = Duration::from_millis(250);
@@ -38,7 +36,7 @@ pub(super) struct Awaited {
 
 impl Awaited {
     /// It is to have so many records, and may be under way.
-    fn under_way(records: u32) -> Self {
+    pub(super) fn under_way(records: u32) -> Self {
         Self { ended: false, records: records as usize }
     }
 
@@ -58,11 +56,13 @@ impl From<Awaited> for Answer {
     }
 }
 
-/// A reply to RECORDS without what is not looked at: pauses are what a board cannot help, and of the flags one is known.
-fn looked_at(mut payload: Vec<u8>) -> Vec<u8> {
+/// A reply to RECORDS without what is not looked at: pauses are what a board cannot help, and of the flags one is known, which
+/// is looked at if it `tells`.
+pub(super) fn looked_at(mut payload: Vec<u8>, tells: bool) -> Vec<u8> {
     let records = payload.get_mut(Records::HEAD..).unwrap_or_default();
     for record in records.as_chunks_mut().0 {
-        *record = FrameRecord { pauses: 0, ..FrameRecord::from(*record) }.to_bytes();
+        let told = FrameRecord::from(*record);
+        *record = FrameRecord { pauses: 0, held_back: tells && told.held_back, ..told }.to_bytes();
     }
     payload
 }
@@ -134,7 +134,13 @@ impl Rules<'_, '_> {
     }
 
     /// What must be said of `burst` to whoever asks for `frames`, of which those in `held` waited for a record.
-    fn records(&self, burst: &Burst, frames: Range<u32>, state: BurstState, held: &[u32]) -> Vec<u8> {
+    pub(super) fn records(
+        &self,
+        burst: &Burst,
+        frames: Range<u32>,
+        state: BurstState,
+        held: &[u32],
+    ) -> Vec<u8> {
         let made = self.small.made(0, self.small.rows(), super::rows::GENERATION);
         let mut signer = signer(&made);
         let records = frames.clone().map(|n| {
@@ -166,6 +172,7 @@ impl Rules<'_, '_> {
         awaited: Awaited,
     ) -> Result<Fetched, End> {
         let time = self.time_of(frames);
+        let patience = time + PATIENCE * (1 + frames / Records::MOST as u32);
         let (mut idle, mut passed) = (time.min(LONGEST_IDLE), Duration::ZERO);
         loop {
             let fetched = self.run.board.records(burst.burst, from).map_err(of_board)?;
@@ -174,7 +181,7 @@ impl Rules<'_, '_> {
             if awaited.is_met_by(came) {
                 return Ok(fetched);
             }
-            if passed >= time + PATIENCE {
+            if passed >= patience {
                 return Err(super::broken(Rule::Ended, Kind::Records, awaited.into(), came.into()));
             }
             self.run.board.idle(idle).map_err(of_board)?;
@@ -182,68 +189,7 @@ impl Rules<'_, '_> {
         }
     }
 
-    /// A burst that waits for free records again and again: what is refused meanwhile, and what it tells again.
-    fn waiting(&mut self) -> Result<(), End> {
-        let kept = self.capabilities.bursts.map_or(0, |bursts| u32::from(bursts.records));
-        if kept as usize > Records::MOST {
-            return Ok(());
-        }
-        let taken = TAKEN.map(|taken| taken.min(kept));
-        let all = kept + taken.iter().sum::<u32>();
-        let Some(burst) = self.small_burst(2 * all) else { return Ok(()) };
-        let burst = self.start(burst)?;
-        let (mut from, mut held) = (0, Vec::new());
-        for taken in taken {
-            self.look(&burst, from, kept, Awaited::under_way(kept))?;
-            if from == 0 {
-                self.busy_with_burst(&burst)?;
-                // Fewer frames than were asked for first.
-                self.replied(Rule::Ended, &Request::Burst(Burst { frames: all, ..burst }), Vec::new())?;
-            }
-            self.told(Rule::Records, &burst, from..from + kept, BurstState::UnderWay, &held)?;
-            self.never_told(from..from + kept)?;
-            held.push(from + kept);
-            from += taken;
-        }
-        self.look(&burst, from, kept, Awaited::ended(all - from))?;
-        self.told(Rule::Records, &burst, from..all, BurstState::Ended, &held)?;
-        // One that has ended goes on no more, and its records stay behind a RESET.
-        self.replied(Rule::Ended, &Request::Burst(Burst { frames: 2 * all, ..burst }), Vec::new())?;
-        self.drop_rows()?;
-        for from in from..=all {
-            self.told(Rule::Records, &burst, from..all, BurstState::Ended, &held)?;
-        }
-        self.never_told(all..all)
-    }
-
-    /// The records of `frames` and no others must be there, of which those in `held` waited for a free one; they free those before.
-    fn told(
-        &mut self,
-        rule: Rule,
-        burst: &Burst,
-        frames: Range<u32>,
-        state: BurstState,
-        held: &[u32],
-    ) -> Result<(), End> {
-        let right = self.records(burst, frames.clone(), state, held);
-        let said = self.run.board.ask(Kind::Records, &frames.start.to_le_bytes()).map(|said| match said {
-            Said::Replied(payload) => Said::Replied(looked_at(payload)),
-            refused => refused,
-        });
-        self.judge(rule, Kind::Records, said, &Said::Replied(right))
-    }
-
-    /// What lies before or beyond the records of `frames` is refused.
-    fn never_told(&mut self, frames: Range<u32>) -> Result<(), End> {
-        let before = frames.start.checked_sub(1);
-        let beyond = (0..u32::BITS).filter_map(|bit| frames.end.checked_add(1 << bit));
-        for from in before.into_iter().chain(beyond) {
-            self.refused(Rule::Records, &Request::Records { from }, RefusalCode::Range, 0)?;
-        }
-        Ok(())
-    }
-
-    fn busy_with_burst(&mut self, burst: &Burst) -> Result<(), End> {
+    pub(super) fn busy_with_burst(&mut self, burst: &Burst) -> Result<(), End> {
         self.busy(Rule::UnderWay)?;
         let place = RowPlace { frame: 0, last: false, ..self.place(0) };
         self.row_refused(Rule::UnderWay, place, RefusalCode::Busy)?;
@@ -271,7 +217,7 @@ impl Rules<'_, '_> {
         self.replied(Rule::Ended, &Request::Burst(Burst { frames: 0, ..burst }), Vec::new())?;
         let ended = self.look(&burst, 0, FEW, Awaited::ended(FEW))?;
         let came = ended.records.len() as u32;
-        self.told(Rule::Records, &burst, 0..came, BurstState::Ended, &[])?;
+        self.told(Rule::Records, &burst, 0..came, BurstState::Ended, Some(&[]))?;
         // Of more than fit a packet it is not known where they end.
         if (came as usize) < Records::MOST { self.never_told(0..came) } else { Ok(()) }
     }
@@ -284,7 +230,7 @@ impl Rules<'_, '_> {
             self.run.board.cut(&burst, bytes).map_err(of_board)?;
             // Where the request was lost there is none.
             if let Some(came) = self.came_of(&burst)? {
-                self.told(Rule::Cut, &burst, 0..came, BurstState::Ended, &[])?;
+                self.told(Rule::Cut, &burst, 0..came, BurstState::Ended, Some(&[]))?;
             }
             self.right_frames(&[super::rows::FRAME])?;
             self.right_burst(Rule::Cut, BurstMode::Fresh)?;
@@ -310,11 +256,11 @@ impl Rules<'_, '_> {
     }
 
     /// A burst whose records must all be right.
-    fn right_burst(&mut self, rule: Rule, mode: BurstMode) -> Result<(), End> {
+    pub(super) fn right_burst(&mut self, rule: Rule, mode: BurstMode) -> Result<(), End> {
         let Some(burst) = self.small_burst(FEW) else { return Ok(()) };
         let burst = self.start(Burst { mode, ..burst })?;
         self.look(&burst, 0, FEW, Awaited::ended(FEW))?;
-        self.told(rule, &burst, 0..FEW, BurstState::Ended, &[])
+        self.told(rule, &burst, 0..FEW, BurstState::Ended, Some(&[]))
     }
 
     fn repeating(&mut self) -> Result<(), End> {

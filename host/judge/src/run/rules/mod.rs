@@ -13,6 +13,7 @@ mod rows;
 mod small;
 mod tables;
 mod trap;
+mod waiting;
 mod wide;
 mod without_effect;
 
@@ -32,6 +33,7 @@ use crate::verdict::Cause;
 use compared::Compared;
 pub(super) use price::price;
 use small::Small;
+pub(super) use waiting::MOST_FILLED;
 
 /// Bytes of a reply that a finding tells.
 const TOLD: usize = 32;

@@ -1,0 +1,125 @@
+//! Bursts that wait for free records, and what is told of them.
+
+use std::ops::Range;
+
+use halfrow_protocol::Kind;
+use halfrow_protocol::message::{Burst, BurstState, Records, RefusalCode, Request};
+
+use super::Rules;
+use super::bursts::{Awaited, looked_at};
+use crate::board::Said;
+use crate::result::Rule;
+use crate::run::findings::End;
+
+/// How many records are taken each time that a burst waits for free ones.
+const TAKEN: [u32; 4] = [5, 1, 9, 4];
+/// The most records that a burst fills: a slow board makes no more frames while anybody waits for it.
+pub(in crate::run) const MOST_FILLED: u32 = 1024;
+/// Records that fit into a packet.
+const AT_ONCE: u32 = Records::MOST as u32;
+
+impl Rules<'_, '_> {
+    /// Bursts that wait for the host to take records: what is refused meanwhile, and what they tell again.
+    pub(super) fn waiting(&mut self) -> Result<(), End> {
+        let kept = self.capabilities.bursts.map_or(0, |bursts| u32::from(bursts.records));
+        if kept > AT_ONCE { self.of_many_records(kept) } else { self.of_few_records(kept) }
+    }
+
+    /// A burst that waits for free records again and again, since a packet tells whether all are taken.
+    fn of_few_records(&mut self, kept: u32) -> Result<(), End> {
+        let taken = TAKEN.map(|taken| taken.min(kept));
+        let all = kept + taken.iter().sum::<u32>();
+        let Some(burst) = self.small_burst(2 * all) else { return Ok(()) };
+        let burst = self.start(burst)?;
+        let (mut from, mut held) = (0, Vec::new());
+        for taken in taken {
+            self.look(&burst, from, kept, Awaited::under_way(kept))?;
+            if from == 0 {
+                self.busy_with_burst(&burst)?;
+                // Fewer frames than were asked for first.
+                self.set_frames(&burst, all)?;
+            }
+            self.told(Rule::Records, &burst, from..from + kept, BurstState::UnderWay, Some(&held))?;
+            self.never_told(from..from + kept)?;
+            held.push(from + kept);
+            from += taken;
+        }
+        self.look(&burst, from, kept, Awaited::ended(all - from))?;
+        self.told(Rule::Records, &burst, from..all, BurstState::Ended, Some(&held))?;
+        self.stays(&burst, 2 * all)?;
+        for from in from..=all {
+            self.told(Rule::Records, &burst, from..all, BurstState::Ended, Some(&held))?;
+        }
+        self.never_told(all..all)
+    }
+
+    /// A burst that waits for free records without anybody seeing whether it does, so that frames may be held back or not.
+    fn of_many_records(&mut self, kept: u32) -> Result<(), End> {
+        let Some(burst) = self.small_burst(Burst::ENDLESS) else { return Ok(()) };
+        let burst = self.start(burst)?;
+        let taken = TAKEN[0].min(kept - AT_ONCE);
+        for from in [0, taken] {
+            let frames = from..from + AT_ONCE;
+            self.look(&burst, from, AT_ONCE, Awaited::under_way(AT_ONCE))?;
+            if from == 0 {
+                self.busy_with_burst(&burst)?;
+            }
+            self.told(Rule::Records, &burst, frames, BurstState::UnderWay, Some(&[]))?;
+            self.never_told(from..from + kept)?;
+        }
+        // One more than there are records for, so that it has not come there yet.
+        let all = Some(taken + kept + 1).filter(|_| kept <= MOST_FILLED);
+        self.set_frames(&burst, all.unwrap_or(0))?;
+        let from = taken + 1;
+        self.look(&burst, from, all.unwrap_or(AT_ONCE), Awaited::ended(AT_ONCE))?;
+        let end = all.unwrap_or(from + AT_ONCE);
+        let mut last = from..end;
+        for from in (from..end).step_by(Records::MOST) {
+            last = from..end.min(from + AT_ONCE);
+            self.told(Rule::Records, &burst, last.clone(), BurstState::Ended, None)?;
+        }
+        self.stays(&burst, 2 * end)?;
+        self.told(Rule::Records, &burst, last, BurstState::Ended, None)?;
+        let Some(all) = all else { return Ok(()) };
+        self.told(Rule::Records, &burst, all..all, BurstState::Ended, None)?;
+        self.never_told(all..all)
+    }
+
+    fn set_frames(&mut self, burst: &Burst, frames: u32) -> Result<(), End> {
+        self.replied(Rule::Ended, &Request::Burst(Burst { frames, ..*burst }), Vec::new())
+    }
+
+    /// One that has ended goes on no more, though it is set to `frames`, and its records stay behind a RESET.
+    fn stays(&mut self, burst: &Burst, frames: u32) -> Result<(), End> {
+        self.set_frames(burst, frames)?;
+        self.drop_rows()
+    }
+
+    /// The records of `frames` and no others must be there, of which those in `held` waited for a free one if that is known; they
+    /// free those before.
+    pub(super) fn told(
+        &mut self,
+        rule: Rule,
+        burst: &Burst,
+        frames: Range<u32>,
+        state: BurstState,
+        held: Option<&[u32]>,
+    ) -> Result<(), End> {
+        let right = self.records(burst, frames.clone(), state, held.unwrap_or_default());
+        let said = self.run.board.ask(Kind::Records, &frames.start.to_le_bytes()).map(|said| match said {
+            Said::Replied(payload) => Said::Replied(looked_at(payload, held.is_some())),
+            refused => refused,
+        });
+        self.judge(rule, Kind::Records, said, &Said::Replied(right))
+    }
+
+    /// What lies before or beyond the records of `frames` is refused.
+    pub(super) fn never_told(&mut self, frames: Range<u32>) -> Result<(), End> {
+        let before = frames.start.checked_sub(1);
+        let beyond = (0..u32::BITS).filter_map(|bit| frames.end.checked_add(1 << bit));
+        for from in before.into_iter().chain(beyond) {
+            self.refused(Rule::Records, &Request::Records { from }, RefusalCode::Range, 0)?;
+        }
+        Ok(())
+    }
+}
