@@ -1,12 +1,54 @@
 //! Boards that are sound but for one rule, which the least run with the rules finds.
 
 use halfrow::board::RefusalCode;
-use halfrow::result::Rule;
+use halfrow::result::{CheckName, Counter, Finding, Report, Rule};
 use halfrow_mock::Options;
-use halfrow_protocol::message::{FrameRecord, Records};
+use halfrow_protocol::message::{FrameRecord, NODES, Records, Refusal, Status};
+use halfrow_protocol::samples::{pack, unpack};
 use halfrow_protocol::{Kind, Reply};
+use halfrow_tests::altered::{Altered, Passing, Toward};
+use halfrow_tests::system::{failed_check, judge_by_plan};
 
-use super::rules::{broken, carried_out, refusal, said_by};
+use super::rules::{broken, carried_out, plan, refusal, said_by};
+
+/// The report on a board behind packets that `alter` rewrites, each into those that it returns.
+fn behind(alter: impl FnMut(Toward, Passing) -> Vec<Passing> + Send + 'static) -> Report {
+    judge_by_plan(&plan(), Altered::new(&Options::default(), alter).candidate())
+}
+
+/// The report on a board that gets other packets of a `kind` than are sent, as `alter` makes them.
+fn hearing(kind: Kind, alter: impl Fn(&mut Vec<u8>) + Send + 'static) -> Report {
+    behind(move |toward, mut packet| {
+        if toward == Toward::Board && packet.is(kind) {
+            alter(&mut packet.payload);
+        }
+        vec![packet]
+    })
+}
+
+/// The report on a board that answers a request of `kind` whose payload `is_meant` with what `alter` makes of its answer.
+fn answering(
+    kind: Kind,
+    is_meant: impl Fn(&[u8]) -> bool + Send + 'static,
+    alter: impl Fn(Passing) -> Passing + Send + 'static,
+) -> Report {
+    let mut meant = None;
+    behind(move |toward, packet| {
+        if toward == Toward::Board {
+            let is_meant = packet.is(kind) && is_meant(&packet.payload);
+            meant = is_meant.then_some(packet.header.sequence);
+        } else if meant == Some(packet.header.sequence) && !packet.is(Kind::RowOut) {
+            return vec![alter(packet)];
+        }
+        vec![packet]
+    })
+}
+
+/// A span's table, first entry and entries (WIRE.md, 10).
+fn span(payload: &[u8]) -> (u8, u16, u16) {
+    let number = |at: usize| u16::from_le_bytes([payload[at], payload[at + 1]]);
+    (payload[0], number(3), number(5))
+}
 
 /// Records do not fit into one packet then.
 fn many_records() -> Options {
@@ -40,4 +82,223 @@ fn a_board_of_many_records_tells_the_last_of_them() {
         Some(packet)
     });
     assert_eq!(broken(&report).0, Rule::Records);
+}
+
+/// Bits of a configuration of a depth.
+const DEPTHS: [u8; 3] = [8, 10, 12];
+/// Where CONFIGURE has the seed of gaps, and the depth (WIRE.md, 18).
+const GAP_SEED: usize = 8;
+const DEPTH: usize = 12;
+
+/// The board that gets it is set to what `stored` makes of a configuration which it refuses.
+fn storing(stored: impl Fn(&mut Vec<u8>) + Send + 'static) -> Report {
+    let (mut swallowed, mut stored_so_far) = (None, 0);
+    behind(move |toward, packet| {
+        let is_refused = packet.is(Kind::Configure) && packet.payload.starts_with(&[65, 0]);
+        if toward == Toward::Board && is_refused {
+            let mut other = packet.clone();
+            stored(&mut other.payload);
+            swallowed = Some(packet.header.sequence);
+            stored_so_far += 1;
+            return vec![other, packet];
+        }
+        if let Some(Reply::Status(status)) = packet.reply().filter(|_| toward == Toward::Host) {
+            // It was sent one packet.
+            let packets = status.packets - stored_so_far;
+            return vec![packet.saying(&Reply::Status(Status { packets, ..status }))];
+        }
+        let is_swallowed = toward == Toward::Host && swallowed == Some(packet.header.sequence);
+        if is_swallowed && packet.is(Kind::Configure) { Vec::new() } else { vec![packet] }
+    })
+}
+
+#[test]
+fn a_refused_configuration_must_not_be_stored() {
+    let as_small = |payload: &mut Vec<u8>| {
+        payload[..6].copy_from_slice(&[64, 0, 4, 0, 63, 0]);
+        payload[DEPTH] = 12;
+    };
+    let gaps = storing(as_small);
+    assert_eq!(broken(&gaps).0, Rule::Configuration);
+    let depth = storing(move |payload| {
+        as_small(payload);
+        payload[DEPTH] = 8;
+    });
+    assert_eq!(broken(&depth).0, Rule::Configuration);
+    let size = storing(|payload| payload[..2].copy_from_slice(&[66, 0]));
+    assert_eq!(broken(&size).0, Rule::Configuration);
+}
+
+#[test]
+fn every_bit_of_a_gap_seed_counts() {
+    for kept in [1_u32, 0xff, 0xffff, 0x7fff_ffff] {
+        let report = hearing(Kind::Configure, move |payload| {
+            if let Some(seed) = payload.get_mut(GAP_SEED..GAP_SEED + 4) {
+                seed.iter_mut().zip(kept.to_le_bytes()).for_each(|(byte, kept)| *byte &= kept);
+            }
+        });
+        assert_eq!(broken(&report).0, Rule::Configuration, "{kept:x}");
+    }
+}
+
+#[test]
+fn configurations_wait_for_rows_that_are_kept_and_for_those_inside_before_they_are_looked_at() {
+    let is_busy = |packet: &Passing| refusal(packet).filter(|refusal| refusal.code == RefusalCode::Busy);
+    let is_right = |payload: &[u8]| payload.len() == 13 && DEPTHS.contains(&payload[DEPTH]);
+    let taken = answering(Kind::Configure, is_right, move |packet| match is_busy(&packet) {
+        Some(refusal) => carried_out(&packet, refusal),
+        None => packet,
+    });
+    assert_eq!(broken(&taken).0, Rule::Inside);
+    let looked_at = answering(
+        Kind::Configure,
+        |_| true,
+        move |packet| match is_busy(&packet) {
+            Some(busy) => {
+                packet.saying(&Reply::Refusal(Refusal { code: RefusalCode::Range, detail: 5, ..busy }))
+            }
+            None => packet,
+        },
+    );
+    assert_eq!(broken(&looked_at).0, Rule::Inside);
+}
+
+#[test]
+fn samples_beyond_their_depth_go_in_as_they_are() {
+    for clips in [false, true] {
+        let mut depth = 12;
+        let report = behind(move |toward, mut packet| {
+            // Those that are refused are wider.
+            if toward == Toward::Board && packet.is(Kind::Configure) && packet.payload.starts_with(&[64, 0]) {
+                depth = *packet.payload.get(DEPTH).unwrap_or(&depth);
+            }
+            let most = (1_u16 << depth.min(12)) - 1;
+            if toward == Toward::Board && packet.is(Kind::RowIn) && packet.payload.len() == 12 + 96 {
+                let mut samples = [0; 64];
+                unpack(&packet.payload[12..], &mut samples);
+                let samples = samples.map(|sample| if clips { sample.min(most) } else { sample & most });
+                packet.payload.truncate(12);
+                pack(&samples, &mut packet.payload);
+            }
+            vec![packet]
+        });
+        assert_eq!(broken(&report).0, Rule::Samples);
+    }
+}
+
+#[test]
+fn samples_beyond_their_depth_are_counted() {
+    let report = said_by(&Options::default(), |packet| match packet.reply() {
+        Some(Reply::Status(status)) => {
+            Some(packet.saying(&Reply::Status(Status { samples_over: 0, ..status })))
+        }
+        _ => Some(packet),
+    });
+    assert_eq!(failed_check(&report), Some(CheckName::Rules), "{}", report.headline());
+    assert!(
+        matches!(
+            report.finding,
+            Finding::CounterWrong { counter: Counter::SamplesOver, counted: 0, right: 1.. }
+        ),
+        "{}",
+        report.headline()
+    );
+}
+
+/// What a later version may append, and fields that are not looked at.
+#[test]
+fn what_is_to_be_skipped_is_no_reason_to_refuse() {
+    for (kind, fields) in [
+        (Kind::Status, 1),
+        (Kind::TableWrite, 7),
+        (Kind::TableRead, 7),
+        (Kind::TableCrc, 7),
+        (Kind::Configure, 13),
+        (Kind::Reset, 5),
+        (Kind::RowIn, 12 + 96),
+        (Kind::Burst, 17),
+        (Kind::Records, 4),
+        (Kind::Expect, 8),
+    ] {
+        let report = hearing(kind, move |payload| {
+            if payload.len() == fields + 1 {
+                payload.truncate(fields - 1);
+            }
+        });
+        let rule = broken(&report).0;
+        assert!([Rule::Skipped, Rule::Trap].contains(&rule), "{kind}: {rule:?}");
+    }
+    let marked = hearing(Kind::RowIn, |payload| {
+        if payload[10] > 1 {
+            payload.truncate(11);
+        }
+    });
+    assert_eq!(broken(&marked).0, Rule::Skipped);
+}
+
+#[test]
+fn each_entry_of_a_packet_is_looked_at() {
+    let report = said_by(&Options::default(), |packet| {
+        let first =
+            refusal(&packet).filter(|refusal| refusal.code == RefusalCode::Range && refusal.detail == 0);
+        match first.filter(|refusal| refusal.kind == Kind::TableWrite.code()) {
+            Some(refusal) => Some(carried_out(&packet, refusal)),
+            None => Some(packet),
+        }
+    });
+    assert_eq!(broken(&report).0, Rule::Entry);
+}
+
+/// Row factors (0), the kernel (1), and a grid (3), whose memory goes on behind the rows.
+#[test]
+fn entries_are_written_and_summed_up_where_they_are_asked_for() {
+    let at_0 = |table: u8| {
+        move |payload: &mut Vec<u8>| {
+            if payload.len() > 6
+                && span(payload).0 == table
+                && span(payload).1 < NODES as u16
+                && span(payload).2 == 1
+            {
+                payload[3..5].fill(0);
+            }
+        }
+    };
+    for (kind, table) in [(Kind::TableWrite, 1), (Kind::TableCrc, 0), (Kind::TableCrc, 1)] {
+        let rule = broken(&hearing(kind, at_0(table))).0;
+        assert!([Rule::Address, Rule::Span].contains(&rule), "{kind}, {table}: {rule:?}");
+    }
+    let options = Options { max_height: 512, ..Options::default() };
+    let short = Altered::new(&options, |toward, mut packet: Passing| {
+        if toward == Toward::Board
+            && packet.is(Kind::TableWrite)
+            && packet.payload.len() == 11
+            && packet.payload[0] == 3
+        {
+            packet.payload[4] &= 3;
+        }
+        vec![packet]
+    });
+    let short = judge_by_plan(&plan(), short.candidate());
+    assert_eq!(broken(&short).0, Rule::Address);
+}
+
+#[test]
+fn tables_of_the_other_bank_are_written_while_a_row_is_inside() {
+    let is_empty = |payload: &[u8]| payload.len() == 7;
+    let report = answering(Kind::TableWrite, is_empty, |packet| {
+        let refusal = Refusal { code: RefusalCode::Busy, kind: Kind::TableWrite.code(), detail: 0 };
+        let header = halfrow_protocol::Header { kind: Kind::Refusal.code(), ..packet.header };
+        Passing { header, payload: packet.payload }.saying(&Reply::Refusal(refusal))
+    });
+    assert_eq!(broken(&report).0, Rule::Inside);
+}
+
+#[test]
+fn signatures_are_expected_of_the_rows_that_they_are_for() {
+    let report = hearing(Kind::Expect, |payload| {
+        if payload[..2] == [1, 0] {
+            payload[0] = 0;
+        }
+    });
+    assert_eq!(broken(&report).0, Rule::Trap);
 }

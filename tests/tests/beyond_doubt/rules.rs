@@ -293,7 +293,7 @@ fn a_burst_that_never_ends_is_told_with_what_was_said_of_it() {
         _ => Some(packet),
     });
     assert_eq!(broken(&report).0, Rule::Ended);
-    let said = "must answer RECORDS with a burst that has ended and 64 records, and answered with one under way and 64 records";
+    let said = "must answer RECORDS with a burst that has ended and 2 records, and answered with one under way and 2 records";
     assert!(report.headline().contains(said), "{}", report.headline());
 }
 

@@ -10,7 +10,9 @@ pub enum Rule {
     Payload,
     /// A kind that is no request is refused.
     Kind,
-    /// A configuration out of range is refused, and the field named.
+    /// Bytes behind a request's fields are skipped, and what means nothing in a row's place is not looked at.
+    Skipped,
+    /// A configuration out of range is refused, and the field named; the one in front stays as it was.
     Configuration,
     /// A span that is not in a table is refused.
     Span,
@@ -44,6 +46,8 @@ pub enum Rule {
     Inside,
     /// Rows come back in place whatever was refused between them.
     Rows,
+    /// Samples that are greater than their depth are counted, and go in as they are.
+    Samples,
     /// A row comes again as often as it is asked for, until it is acknowledged.
     Again,
     /// Rows of the greatest width come back right.

@@ -73,7 +73,10 @@ fn meaning(rule: Rule) -> &'static str {
     match rule {
         Rule::Payload => "a request is cut short or has a field without meaning",
         Rule::Kind => "the kind is no request",
-        Rule::Configuration => "a configuration out of range",
+        Rule::Skipped => {
+            "what stands behind a request's fields, or means nothing in a row's place, is not looked at"
+        }
+        Rule::Configuration => "a configuration is set as it is, or refused without effect",
         Rule::Span => "a span that is in no table",
         Rule::Entry => "a table's entry out of range",
         Rule::Address => "entries keep to their places",
@@ -88,8 +91,9 @@ fn meaning(rule: Rule) -> &'static str {
         Rule::RowPlace => "a row out of place",
         Rule::Window => "the window is as far ahead as row_banks_in says",
         Rule::Credit => "a row beyond the window",
-        Rule::Inside => "a row is inside the core",
+        Rule::Inside => "rows are inside the core, or kept for the host",
         Rule::Rows => "rows come back in place",
+        Rule::Samples => "samples beyond their depth go in as they are",
         Rule::Again => "a row comes again until it is acknowledged",
         Rule::Wide => "rows of the greatest width",
         Rule::RowNumber => "numbers of rows",

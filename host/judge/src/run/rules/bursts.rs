@@ -9,7 +9,7 @@ use halfrow_protocol::message::{
     Burst, BurstMode, BurstState, Entries, Expect, FrameRecord, Records, RefusalCode, Request, RowPlace, Span,
 };
 
-use super::{FIRST_FACTOR, Rules, of_board};
+use super::{FIRST_FACTOR, Rules, longer, of_board};
 use crate::board::{BoardError, Fetched};
 use crate::result::{Answer, Rule};
 use crate::run::Generation;
@@ -110,6 +110,11 @@ impl Rules<'_, '_> {
         }
         for (field, burst) in wrong {
             self.refused(Rule::Burst, &Request::Burst(burst), RefusalCode::Range, field)?;
+        }
+        let unnamed = Request::Burst(Burst { burst: 0, ..right });
+        for request in [unnamed, Request::Records { from: u32::MAX }] {
+            let kind = request.kind();
+            self.bytes_refused(Rule::Skipped, kind, &longer(&request), RefusalCode::Range, 0)?;
         }
         Ok(())
     }

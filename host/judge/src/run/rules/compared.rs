@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
-use halfrow_model::{Frame, row_signature};
+use halfrow_model::{BitDepth, Frame, Geometry, row_signature};
 
 use super::small::Small;
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
@@ -50,15 +50,47 @@ impl Compared {
         for number in numbers {
             let numbered = small.frame(number, tables);
             if let Ok(frame) = correct(tables, kernel, &numbered.frame) {
-                let (latency, generation) = (small.latency(tables.geometry()), *generation);
-                let pauses = pauses(self.gap_seed, frame.width(), frame.height());
-                let sent = (0..frame.height()).map(|row| row_signature(numbered.frame.row(row)));
-                let entered = sent.map(|sent| small.names_entered.then_some(sent)).collect();
-                self.right.push(Right { number, generation, frame, latency, pauses, entered });
+                self.expect(small, &numbered, frame, *generation);
             }
             self.frames.push_back(numbered);
         }
         self
+    }
+
+    /// Frame `number` of samples of 12 bits, made with `made` by a board that is set to `depth`; and how many of them are beyond it.
+    pub(super) fn of_twelve_bits(
+        small: &Small,
+        number: u16,
+        made: &Generation,
+        depth: BitDepth,
+    ) -> Option<(Self, u32)> {
+        let own = made.tables.geometry();
+        let twelve = Geometry::new(own.width(), own.height(), BitDepth::Twelve, own.centre2()).ok()?;
+        let tables = made.tables.with_geometry(twelve).ok()?;
+        let numbered = small.frame(number, &tables);
+        let over = numbered.frame.samples().iter().filter(|&&sample| sample > depth.max()).count();
+        // A depth is the end of an output's range, and changes nothing in front of that.
+        let whole = correct(&tables, &made.kernel, &numbered.frame).ok()?;
+        let samples = whole.samples().iter().map(|&sample| sample.min(depth.max())).collect();
+        let frame = Frame::new(whole.width(), whole.depth(), whole.phase(), samples).ok()?;
+        let mut compared = Self::default();
+        compared.expect(small, &numbered, frame, made.number);
+        compared.frames.push_back(numbered);
+        Some((compared, over as u32))
+    }
+
+    /// With `sent` to come back as `frame`, made by `generation`.
+    fn expect(&mut self, small: &Small, sent: &NumberedFrame, frame: Frame, generation: u8) {
+        let geometry = (frame.width(), frame.height());
+        let entered = sent.frame.rows().map(|row| small.names_entered.then(|| row_signature(row))).collect();
+        self.right.push(Right {
+            number: sent.number,
+            generation,
+            latency: small.latency_of(geometry.0),
+            pauses: pauses(self.gap_seed, geometry.0, geometry.1),
+            frame,
+            entered,
+        });
     }
 
     fn is_right(&self, row: &ReturnedRow<'_>) -> bool {

@@ -18,14 +18,16 @@ impl Rules<'_, '_> {
         grids(&self.capabilities)
     }
 
-    /// Entries of a grid of a bit too many, behind one that is right.
+    /// Entries of a grid of a bit too many, behind one that is right and in front of it.
     pub(super) fn grid_entries(&mut self) -> Result<(), End> {
         let most = *TableSet::GRID_RANGE.end();
         for wrong in (0..u32::BITS).map(|bit| 1_u32 << bit).filter(|&wrong| wrong > most) {
-            let bytes = [most, wrong].map(u32::to_le_bytes).concat();
-            let span = Span { table: Table::Grid, count: 2, ..FIRST_FACTOR };
-            let request = Request::TableWrite(Entries { span, bytes: &bytes });
-            self.refused(Rule::Entry, &request, RefusalCode::Range, 1)?;
+            for (place, entries) in [(1, [most, wrong]), (0, [wrong, most])] {
+                let bytes = entries.map(u32::to_le_bytes).concat();
+                let span = Span { table: Table::Grid, count: 2, ..FIRST_FACTOR };
+                let request = Request::TableWrite(Entries { span, bytes: &bytes });
+                self.refused(Rule::Entry, &request, RefusalCode::Range, place)?;
+            }
         }
         Ok(())
     }
@@ -44,7 +46,19 @@ impl Rules<'_, '_> {
             self.refused(Rule::Shape, &Request::Commit(commit), RefusalCode::Range, field)?;
         }
         self.refused(Rule::Shape, &Request::Commit(of(1, known)), RefusalCode::TableCrc, Table::Grid as u16)?;
+        self.kernel_of_grid(of(1, known))?;
         self.too_many_entries(grids, of(1, known))
+    }
+
+    /// `finest` of a grid that reads back right, beside a kernel that does not. The entries are row factors, which are a grid's as well.
+    fn kernel_of_grid(&mut self, finest: Commit) -> Result<(), End> {
+        let shape = finest.shape.and_then(|Shape { v, k }| GridShape::new(v.into(), k.into()).ok());
+        let entries = shape.map(|shape| shape.entries(&of_height(&self.small.geometry, self.height)));
+        let there = self.small.tables[1].tables.to_bytes();
+        let grid = entries.and_then(|entries| there.get(..entries * Table::Grid.entry_bytes()));
+        let Some(grid) = grid else { return Ok(()) };
+        let other = Commit { steps_crc: crc32fast::hash(grid), kernel_crc: !finest.kernel_crc, ..finest };
+        self.refused(Rule::Shape, &Request::Commit(other), RefusalCode::TableCrc, Table::Kernel as u16)
     }
 
     /// The finest grid of frames as high as they can be, where a bank does not hold it.

@@ -5,6 +5,8 @@
 mod bursts;
 mod commits;
 mod compared;
+mod configurations;
+mod depths;
 mod grids;
 mod power_up;
 mod price;
@@ -161,8 +163,12 @@ impl<'a, 'run> Rules<'a, 'run> {
 
     /// Asks what must be answered with `reply`.
     fn replied(&mut self, rule: Rule, request: &Request<'_>, reply: Vec<u8>) -> Result<(), End> {
-        let said = self.run.board.ask(request.kind(), &payload(request));
-        self.judge(rule, request.kind(), said, &Said::Replied(reply))
+        self.bytes_replied(rule, request.kind(), &payload(request), reply)
+    }
+
+    fn bytes_replied(&mut self, rule: Rule, kind: Kind, payload: &[u8], reply: Vec<u8>) -> Result<(), End> {
+        let said = self.run.board.ask(kind, payload);
+        self.judge(rule, kind, said, &Said::Replied(reply))
     }
 
     /// Sets the board for small frames of so many rows.
@@ -226,6 +232,13 @@ fn other_row(rule: Rule, row: usize, frame: u16) -> End {
 fn payload(request: &Request<'_>) -> Vec<u8> {
     let mut payload = Vec::new();
     request.write(&mut payload);
+    payload
+}
+
+/// The payload of `request`, with a byte behind its fields.
+fn longer(request: &Request<'_>) -> Vec<u8> {
+    let mut payload = payload(request);
+    payload.push(requests::NO_MEANING);
     payload
 }
 

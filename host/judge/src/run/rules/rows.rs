@@ -3,11 +3,11 @@
 use std::mem;
 
 use halfrow_protocol::Kind;
-use halfrow_protocol::message::{Commit, RefusalCode, Request, RowIn, RowPlace};
+use halfrow_protocol::message::{Commit, Entries, RefusalCode, Request, RowIn, RowPlace, Span};
 use halfrow_protocol::samples::pack;
 
 use super::compared::Compared;
-use super::{FIRST_FACTOR, Rules, broken, of_board, of_rows, other_row};
+use super::{FIRST_FACTOR, Rules, broken, longer, of_board, of_rows, other_row};
 use crate::board::BoardError;
 use crate::reference::correct;
 use crate::result::{Answer, CheckName, Counter, Finding, Rule};
@@ -20,6 +20,9 @@ use crate::verdict::Cause;
 pub(super) const GENERATION: u8 = 0x96;
 /// The frame whose rows are given out of order.
 pub(super) const FRAME: u16 = 0x1234;
+/// Where the flags of a row's place stand, in front of its generation, and the one of them that has a meaning (WIRE.md, 20).
+const FLAGS: usize = 10;
+const LAST: u8 = 1;
 /// How often a row is given that is to be inside the core.
 const LOOKS: u32 = 8;
 /// How often a row is asked for again.
@@ -32,6 +35,8 @@ const BYTES_TO_CUT: [usize; 8] = [0, 3, 9, 17, 30, 50, 77, 120];
 impl Rules<'_, '_> {
     pub(super) fn rows(&mut self) -> Result<(), End> {
         self.rows_again()?;
+        self.configurations()?;
+        self.depths()?;
         self.first_rows()?;
         if self.height > 2 {
             self.second_rows()?;
@@ -79,6 +84,16 @@ impl Rules<'_, '_> {
         self.refused(rule, &Request::RowIn(RowIn { place, packed: &packed }), code, 0)
     }
 
+    /// The same with what is not looked at: the other flags, the generation, and a byte behind the samples.
+    fn marked_row_refused(&mut self, place: RowPlace, code: RefusalCode) -> Result<(), End> {
+        let mut packed = Vec::new();
+        pack(&vec![0; place.width.into()], &mut packed);
+        let mut bytes = longer(&Request::RowIn(RowIn { place, packed: &packed }));
+        bytes[FLAGS] |= !LAST;
+        bytes[FLAGS + 1] = GENERATION;
+        self.bytes_refused(Rule::Skipped, Kind::RowIn, &bytes, code, 0)
+    }
+
     /// Behind a RESET nothing but row 0 in its place, and nothing beyond the window.
     fn first_rows(&mut self) -> Result<(), End> {
         self.window()?;
@@ -94,6 +109,8 @@ impl Rules<'_, '_> {
             self.row_refused(Rule::RowPlace, place, RefusalCode::Row)?;
         }
         let credit = self.run.board.credit();
+        self.marked_row_refused(second, RefusalCode::Row)?;
+        self.marked_row_refused(RowPlace { row_sequence: credit, ..first }, RefusalCode::Credit)?;
         let beyond = (0..u32::BITS).filter_map(|bit| credit.checked_add(1 << bit));
         for row_sequence in beyond.chain([credit]) {
             let place = RowPlace { row_sequence, ..first };
@@ -151,6 +168,11 @@ impl Rules<'_, '_> {
     fn second_rows(&mut self) -> Result<(), End> {
         self.enter()?;
         self.busy(Rule::Inside)?;
+        if self.capabilities.table_banks > 1 {
+            // No row uses the other bank.
+            let span = Span { count: 0, ..FIRST_FACTOR };
+            self.replied(Rule::Inside, &Request::TableWrite(Entries { span, bytes: &[] }), Vec::new())?;
+        }
         let second = self.place(1);
         let bits = (0..u16::BITS).map(|bit| 1 << bit);
         let frames = bits.clone().map(|bit| RowPlace { frame: FRAME ^ bit, ..second });
@@ -175,7 +197,8 @@ impl Rules<'_, '_> {
             Request::TableRead(FIRST_FACTOR),
             Request::TableCrc(FIRST_FACTOR),
             Request::Commit(commit),
-            Request::Configure(self.configuration()),
+            // One out of range waits as well.
+            Request::Configure(self.without_depth(self.configuration())),
         ];
         for request in requests {
             self.refused(rule, &request, RefusalCode::Busy, 0)?;
@@ -219,6 +242,9 @@ impl Rules<'_, '_> {
                 return Err(other_row(Rule::Again, 0, FRAME));
             }
         }
+        // Nothing is inside any more, but both rows are still kept.
+        let configure = Request::Configure(self.configuration());
+        self.refused(Rule::Inside, &configure, RefusalCode::Busy, 0)?;
         self.run.board.acknowledge(first.row_sequence + mem::take(&mut self.given).rows);
         self.configure(self.small.rows())
     }

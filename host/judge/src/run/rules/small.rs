@@ -51,7 +51,12 @@ impl Small {
 
     /// D of a frame, in pixel clocks.
     pub(super) fn latency(&self, geometry: &Geometry) -> u16 {
-        geometry.width() as u16 / 2 + self.latency
+        self.latency_of(geometry.width())
+    }
+
+    /// D of rows of `width` samples, in pixel clocks.
+    pub(super) fn latency_of(&self, width: usize) -> u16 {
+        width as u16 / 2 + self.latency
     }
 
     /// The tables at `place` for frames of so many rows, as generation `number`.

@@ -1,5 +1,8 @@
 //! Tables that must be refused, and entries at all places.
 
+use std::collections::BTreeSet;
+use std::ops::Range;
+
 use halfrow_model::RowFactor;
 use halfrow_protocol::message::{Bank, Entries, NODE_BYTES, NODES, RefusalCode, Request, Span, Table};
 
@@ -98,48 +101,83 @@ impl Rules<'_, '_> {
         Ok(())
     }
 
-    /// Row factors out of range, and weights of taps that are not there, behind entries that are right.
+    /// Row factors out of range, and weights of taps that are not there, behind entries that are right and in front of them.
     fn entries(&mut self) -> Result<(), End> {
         let one = RowFactor::ONE.get();
         let beyond = (RowFactor::BITS..u32::BITS).map(|bit| 1 << bit);
-        // One that is right before it, if there is room for two.
-        let before = self.capabilities.max_height.saturating_sub(1).min(1);
         for wrong in [0, one + 1, one | 1 << 12].into_iter().chain(beyond.filter(|&value| value > one)) {
-            let entries = [one].into_iter().take(before.into()).chain([wrong]);
-            let bytes: Vec<u8> = entries.flat_map(u32::to_le_bytes).collect();
-            let span = Span { count: before + 1, ..FIRST_FACTOR };
-            let request = Request::TableWrite(Entries { span, bytes: &bytes });
-            self.refused(Rule::Entry, &request, RefusalCode::Range, before)?;
+            // A table of one row has no room for two.
+            let lists = if self.capabilities.max_height > 1 {
+                vec![(1, vec![one, wrong]), (0, vec![wrong, one])]
+            } else {
+                vec![(0, vec![wrong])]
+            };
+            for (place, entries) in lists {
+                let bytes: Vec<u8> = entries.iter().flat_map(|entry| entry.to_le_bytes()).collect();
+                let span = Span { count: entries.len() as u16, ..FIRST_FACTOR };
+                let request = Request::TableWrite(Entries { span, bytes: &bytes });
+                self.refused(Rule::Entry, &request, RefusalCode::Range, place)?;
+            }
         }
         if self.known_grids().is_some() {
             self.grid_entries()?;
         }
-        let outer: &[usize] = if self.capabilities.taps < 7 { &[0, NODE_BYTES - 1] } else { &[] };
-        for outer in outer {
+        if self.capabilities.taps < 7 { self.outer_taps() } else { Ok(()) }
+    }
+
+    fn outer_taps(&mut self) -> Result<(), End> {
+        let first = 7;
+        let span = Span { table: Table::Kernel, bank: Bank::Shadow, port: 0, first, count: 2 };
+        for (node, outer) in [(0, 0), (0, NODE_BYTES - 1), (1, 0), (1, NODE_BYTES - 1)] {
             let mut bytes = [0; 2 * NODE_BYTES];
-            bytes[NODE_BYTES + outer] = 1;
-            let span = Span { table: Table::Kernel, bank: Bank::Shadow, port: 0, first: 7, count: 2 };
+            bytes[node * NODE_BYTES + outer] = 1;
             let request = Request::TableWrite(Entries { span, bytes: &bytes });
-            self.refused(Rule::Entry, &request, RefusalCode::Taps, 8)?;
+            self.refused(Rule::Entry, &request, RefusalCode::Taps, first + node as u16)?;
         }
         Ok(())
     }
 
-    /// Another row factor at each place that has one bit of an address, and all of them read.
+    /// Another entry at each place that has one bit of an address, all of them read, and summed up from there.
     fn addresses(&mut self) -> Result<(), End> {
-        let places = (0..u16::BITS).map(|bit| 1 << bit).filter(|&first| first < self.capabilities.max_height);
-        let places: Vec<_> = places.chain([0, self.capabilities.max_height - 1]).collect();
-        let entry = |first: u16| (u32::from(first) + 1).to_le_bytes();
-        let span = |first| Span { first, ..FIRST_FACTOR };
-        for &first in &places {
-            let request = Request::TableWrite(Entries { span: span(first), bytes: &entry(first) });
+        let mut places = Vec::new();
+        // The rows of a grid's memory are its first ones.
+        let grid = self.known_grids().map(|_| Table::Grid);
+        for (table, from) in [(Some(Table::RowFactors), 0), (grid, self.capabilities.max_height)] {
+            let Some(table) = table else { continue };
+            places.extend(places_in(from..self.entries_of(table)).into_iter().map(|first| (table, first)));
+        }
+        places.extend(places_in(0..NODE_COUNT).into_iter().map(|first| (Table::Kernel, first)));
+        let span = |table, first| Span { table, first, ..FIRST_FACTOR };
+        for &(table, first) in &places {
+            let request =
+                Request::TableWrite(Entries { span: span(table, first), bytes: &entry(table, first) });
             self.replied(Rule::Address, &request, Vec::new())?;
         }
-        for &first in &places {
-            let bytes = entry(first);
-            let reply = payload(&Request::TableWrite(Entries { span: span(first), bytes: &bytes }));
-            self.replied(Rule::Address, &Request::TableRead(span(first)), reply)?;
+        for (table, first) in places {
+            let (span, bytes) = (span(table, first), entry(table, first));
+            let reply = payload(&Request::TableWrite(Entries { span, bytes: &bytes }));
+            self.replied(Rule::Address, &Request::TableRead(span), reply)?;
+            let sum = crc32fast::hash(&bytes).to_le_bytes().to_vec();
+            self.replied(Rule::Address, &Request::TableCrc(span), sum)?;
         }
         Ok(())
     }
+}
+
+/// The first and last of `entries`, and those that have one bit of an address.
+fn places_in(entries: Range<u16>) -> BTreeSet<u16> {
+    let bits = (0..u16::BITS).map(|bit| 1 << bit);
+    bits.chain([entries.start, entries.end - 1]).filter(|place| entries.contains(place)).collect()
+}
+
+/// An entry that no other place has.
+fn entry(table: Table, place: u16) -> Vec<u8> {
+    let value = (u32::from(place) + 1).to_le_bytes();
+    if table != Table::Kernel {
+        return value.to_vec();
+    }
+    // Of one of the inner taps, which every board has.
+    let mut node = vec![0; NODE_BYTES];
+    node[2..4].copy_from_slice(&value[..2]);
+    node
 }

@@ -1,11 +1,12 @@
 //! Rows whose signatures are expected otherwise than they are, so that the board keeps them.
 
 use halfrow_model::{Content, Frame, row_signature};
+use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Burst, BurstMode, Expect, RefusalCode, Request};
 use halfrow_protocol::samples::pack;
 
 use super::bursts::Awaited;
-use super::{Rules, of_board};
+use super::{Rules, longer, of_board};
 use crate::reference::correct;
 use crate::result::Rule;
 use crate::run::Generation;
@@ -26,8 +27,10 @@ impl Rules<'_, '_> {
         let Some(frame) = self.trapped_frame() else { return Ok(()) };
         let rows: Vec<_> = (0..frame.height()).map(|row| frame.row(row)).collect();
         let signatures: Vec<_> = rows.iter().map(|row| row_signature(row)).collect();
-        self.trapping(&signatures)?;
+        self.expect_apart(&signatures)?;
+        self.trapping()?;
         self.replied(Rule::Trap, &Request::Trap, NOTHING_KEPT.to_vec())?;
+        self.bytes_replied(Rule::Skipped, Kind::Trap, &longer(&Request::Trap), NOTHING_KEPT.to_vec())?;
         for bit in 0..u32::BITS {
             let row = bit as usize % rows.len();
             let mut expected = signatures.clone();
@@ -36,7 +39,8 @@ impl Rules<'_, '_> {
             if let Some(last) = expected.last_mut().filter(|_| row + 1 < rows.len()) {
                 *last = !*last;
             }
-            self.trapping(&expected)?;
+            self.run.board.expect(&expected).map_err(of_board)?;
+            self.trapping()?;
             self.kept(row, rows[row])?;
         }
         self.drop_rows()?;
@@ -55,10 +59,20 @@ impl Rules<'_, '_> {
         correct(&tables, &kernel, &content.frame(tables.geometry(), self.small.phase)).ok()
     }
 
-    /// Has the board repeat a frame whose rows are expected to have these signatures.
-    fn trapping(&mut self, signatures: &[u32]) -> Result<(), End> {
+    /// Has these signatures expected, those behind the first row in a request of their own.
+    fn expect_apart(&mut self, signatures: &[u32]) -> Result<(), End> {
+        let bytes: Vec<_> = signatures.iter().map(|signature| signature.to_le_bytes()).collect();
+        let (head, rest) = bytes.split_at(1);
+        for (first, bytes) in [(0, head), (1, rest)] {
+            let expect = Request::Expect(Expect { first, bytes });
+            self.bytes_replied(Rule::Trap, Kind::Expect, &longer(&expect), Vec::new())?;
+        }
+        Ok(())
+    }
+
+    /// Has the board repeat a frame whose rows are expected to have the signatures that it was told.
+    fn trapping(&mut self) -> Result<(), End> {
         let Some(burst) = self.trap_burst() else { return Ok(()) };
-        self.run.board.expect(signatures).map_err(of_board)?;
         let burst = self.start(burst)?;
         self.look(&burst, 0, burst.frames, Awaited::ended(burst.frames)).map(drop)
     }

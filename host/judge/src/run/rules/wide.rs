@@ -24,7 +24,8 @@ impl Rules<'_, '_> {
     pub(super) fn wide(&mut self) -> Result<(), End> {
         let Some(made) = self.wide_tables() else { return Ok(()) };
         let Generation { number, tables, kernel } = &made;
-        let gap_seed = self.small.seed | 1;
+        // The other bits than those that streamed frames have their gaps drawn with.
+        let gap_seed = !self.small.seed | 1;
         let board = &mut self.run.board;
         let timing = RowTiming { gap_seed, ..RowTiming::default() };
         board.configure(tables.geometry(), timing).map_err(of_board)?;

@@ -1,0 +1,46 @@
+//! Samples beyond the depth of a board's frames: they are counted, and go in as they are.
+
+use halfrow_model::{BitDepth, Geometry};
+
+use super::compared::Compared;
+use super::rows::{FRAME, GENERATION};
+use super::{Rules, of_board};
+use crate::board::RowTiming;
+use crate::result::{CheckName, Counter, Finding, Rule};
+use crate::run::findings::End;
+use crate::run::variations::Build;
+
+/// Rows of a frame: the first one is not stretched.
+const ROWS: usize = 2;
+
+impl Rules<'_, '_> {
+    /// Samples of 12 bits at every depth that has fewer.
+    pub(super) fn depths(&mut self) -> Result<(), End> {
+        for depth in Build::of(&self.capabilities).depths {
+            if depth < BitDepth::Twelve {
+                self.samples_over(depth)?;
+            }
+        }
+        self.configure(self.small.rows())
+    }
+
+    fn samples_over(&mut self, depth: BitDepth) -> Result<(), End> {
+        let (own, rows) = (self.small.geometry, ROWS.min(self.small.rows()));
+        let Ok(geometry) = Geometry::new(own.width(), rows, depth, own.centre2()) else { return Ok(()) };
+        self.run.board.configure(&geometry, RowTiming::default()).map_err(of_board)?;
+        let made = self.small.made(0, rows, GENERATION);
+        let Some((compared, over)) = Compared::of_twelve_bits(&self.small, FRAME, &made, depth) else {
+            return Ok(());
+        };
+        let before = self.run.board.status(false).map_err(of_board)?;
+        self.frames(Rule::Samples, compared)?;
+        let status = self.run.board.status(false).map_err(of_board)?;
+        let counted = status.samples_over.wrapping_sub(before.samples_over);
+        // An old copy of a request may have cleared them.
+        if counted == over || !self.run.board.had_each_packet_once(&status) {
+            return Ok(());
+        }
+        let finding = Finding::CounterWrong { counter: Counter::SamplesOver, counted, right: over };
+        Err(End::failed(CheckName::Rules, finding))
+    }
+}
