@@ -1,12 +1,13 @@
-//! Boards that take packets which are none.
+//! Boards that take packets which are none, and links that make one whole again, which is no proof of such a board.
 
 use std::convert::Infallible;
 use std::mem;
 use std::time::Duration;
 
 use halfrow::link::{Candidate, WireLink};
-use halfrow::result::Rule;
+use halfrow::result::{Report, Rule};
 use halfrow::target::BoardKind;
+use halfrow::verdict::Verdict;
 use halfrow_mock::{Board, Options};
 use halfrow_pipe::{Endpoint, Pipe, PipeOptions};
 use halfrow_protocol::{Encoder, Header};
@@ -26,6 +27,8 @@ enum Unlooked {
 #[derive(Debug)]
 struct Careless {
     unlooked: Unlooked,
+    /// So many packets that are none it takes, and no more.
+    takes: usize,
     board: Board,
     piece: Vec<u8>,
     encoder: Encoder,
@@ -34,7 +37,8 @@ struct Careless {
 impl Careless {
     /// The packet as it would be with the CRC, the version and the length that it should have, if nothing else is wrong.
     fn taken(&mut self) -> Vec<u8> {
-        let bytes = unstuffed(&mem::take(&mut self.piece));
+        let piece = mem::take(&mut self.piece);
+        let bytes = unstuffed(&piece);
         let mut wire = Vec::new();
         if let [version, kind, s0, s1, l0, l1, 0, session, w0, w1, w2, w3, rest @ ..] = bytes.as_slice()
             && let Some((packet, told)) = bytes.split_last_chunk()
@@ -53,6 +57,12 @@ impl Careless {
             };
             let payload = &rest[..rest.len() - 4];
             self.encoder.encode(&header, |wire| wire.extend_from_slice(payload), &mut wire).unwrap();
+            if wire[1..wire.len() - 1] != piece {
+                match self.takes.checked_sub(1) {
+                    Some(left) => self.takes = left,
+                    None => wire.clear(),
+                }
+            }
         }
         wire
     }
@@ -96,14 +106,27 @@ impl Endpoint for Careless {
     }
 }
 
+/// The report on a board that takes so many packets which are none.
+fn report(unlooked: Unlooked, takes: usize) -> Report {
+    let board = Board::new(&Options::default(), None).unwrap();
+    let careless = Careless { unlooked, takes, board, piece: Vec::new(), encoder: Encoder::new() };
+    let link = WireLink::new(Pipe::new(careless, PipeOptions::default(), None), "a careless board", false);
+    judge_by_plan(&plan(), Candidate::new("careless", BoardKind::Mock, link))
+}
+
 #[test]
 fn a_board_that_takes_damaged_packets_fails() {
     for unlooked in [Unlooked::Crc, Unlooked::Version, Unlooked::Length] {
-        let board = Board::new(&Options::default(), None).unwrap();
-        let careless = Careless { unlooked, board, piece: Vec::new(), encoder: Encoder::new() };
-        let pipe = Pipe::new(careless, PipeOptions::default(), None);
-        let link = WireLink::new(pipe, "a careless board", false);
-        let report = judge_by_plan(&plan(), Candidate::new("careless", BoardKind::Mock, link));
+        let report = report(unlooked, usize::MAX);
         assert_eq!(broken(&report).0, Rule::Damage, "{unlooked:?}: {}", report.headline());
+    }
+}
+
+/// The link flips the very bit back, so that the packet is whole again.
+#[test]
+fn a_damaged_packet_that_a_link_makes_whole_again_makes_no_sound_board_fail() {
+    for takes in 1..=2 {
+        let report = report(Unlooked::Crc, takes);
+        assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
     }
 }

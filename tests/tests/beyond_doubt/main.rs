@@ -9,7 +9,6 @@ mod capabilities;
 mod careless;
 mod conduct;
 mod counters;
-mod damaged_packets;
 mod echoes;
 mod exercised;
 mod late_answers;
