@@ -9,6 +9,7 @@ mod capabilities;
 mod careless;
 mod conduct;
 mod counters;
+mod doubled;
 mod echoes;
 mod exercised;
 mod late_answers;

@@ -3,14 +3,16 @@
 use std::cell::Cell;
 use std::time::Duration;
 
-use halfrow::link::{Candidate, Link, LinkError};
+use halfrow::link::{Candidate, Link, LinkError, Recorder, RecordingFile};
+use halfrow::progress::Silent;
+use halfrow::run::{RecordedRun, RunOptions, verify};
 use halfrow::target::Target;
 use halfrow::verdict::Verdict;
 use halfrow_protocol::message::Commit;
 use halfrow_protocol::{Encoder, Header, Request};
 use halfrow_tests::dice::Dice;
 use halfrow_tests::program::Folder;
-use halfrow_tests::system::System;
+use halfrow_tests::system::{System, open};
 
 /// Where the exchanges of a recording begin: behind the magic and one line.
 fn first_exchange(recording: &[u8]) -> usize {
@@ -60,6 +62,28 @@ fn a_recording_whose_times_go_back_is_judged_or_refused() {
         folder.write("spoilt.rec", &spoilt);
         let ended = folder.halfrow(["verify", "--json", "--board", "replay:spoilt.rec"]);
         assert!(matches!(ended.code, Some(0 | 3)), "{name}: {:?} {}", ended.code, ended.stderr);
+    }
+}
+
+/// Earlier programs did not ask a board what came to it, and said nothing of that in their recordings.
+#[test]
+fn a_recording_of_a_run_that_asked_for_no_counts_is_judged_as_it_was() {
+    let folder = Folder::new();
+    let (plan, options) = (System::TINY.plan(), RunOptions { counts: false, ..RunOptions::default() });
+    for board in ["mock", "mock,fault=stuck-data", "mock,fault=drop,rate=3e-5,seed=3"] {
+        let (candidate, path) = (open(board), folder.path().join("run.rec"));
+        let file = RecordingFile::prepare(&path, true).unwrap();
+        let recorder = Recorder::begin(candidate.link, file, &RecordedRun::of(&plan, &options)).unwrap();
+        let candidate = Candidate { link: Box::new(recorder), ..candidate };
+        let report = verify(&plan, candidate, &options, &Silent).unwrap().report;
+        let recording = folder.read("run.rec");
+        let (head, exchanges) = recording.split_at(first_exchange(&recording));
+        let earlier = std::str::from_utf8(head).unwrap().replace("\"counts\":false,", "");
+        assert!(earlier.len() < head.len());
+        folder.write("earlier.rec", [earlier.as_bytes(), exchanges].concat());
+        let again = folder.halfrow(["verify", "--json", "--board", "replay:earlier.rec"]).json();
+        assert_eq!(again["verdict"], report.verdict.to_string(), "{board}: {}", again["headline"]);
+        assert_eq!(again["link"]["packets_out"], report.link.packets_out, "{board}");
     }
 }
 

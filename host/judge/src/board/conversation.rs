@@ -8,6 +8,7 @@ use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet};
 use super::answer::{Kept, take_reply};
 use super::asked::{Asking, LastAsked, Stray};
 use super::conduct::Conduct;
+use super::counted::Counted;
 use super::deadlines::{RetryLimit, Step};
 use super::tally::Tally;
 use super::{BoardError, Heard, OpenOptions, Stop};
@@ -44,6 +45,10 @@ pub(super) struct Conversation {
     pub(super) waited: Duration,
     /// What the session's rows have shown of the board.
     pub(super) conduct: Conduct,
+    /// What the board counts of what was sent.
+    pub(super) counted: Counted,
+    /// Whether it is asked for that wherever a packet may have been lost unseen.
+    pub(super) counts: bool,
     /// Requests that change the board and came to it more than once in this session, as far as can be seen.
     pub(super) repeated_changes: u64,
     /// The row sequence number behind all rows that were sent in this session.
@@ -74,6 +79,8 @@ impl Conversation {
             limit: options.retry_limit,
             waited: Duration::ZERO,
             conduct: Conduct::default(),
+            counted: Counted::default(),
+            counts: options.counts,
             repeated_changes: 0,
             rows_sent: 0,
             unwanted: 0,
@@ -292,6 +299,21 @@ impl Conversation {
 
     /// Asks until a reply that `accept` takes has come.
     pub(super) fn ask(
+        &mut self,
+        asking: &Asking<'_>,
+        step: Step,
+        accept: impl Fn(&Packet<'_>) -> bool,
+    ) -> Result<Kept, BoardError> {
+        let retries = self.tally.retries;
+        let answer = self.ask_until_answered(asking, step, accept)?;
+        self.counted.came(1);
+        if step == Step::Request && asking.kind() != Kind::Status {
+            self.count_behind(retries);
+        }
+        Ok(answer)
+    }
+
+    fn ask_until_answered(
         &mut self,
         asking: &Asking<'_>,
         step: Step,

@@ -1,8 +1,8 @@
 //! What a board counts, and what the host counts beside it.
 
-use halfrow_protocol::message::{Reply, Request, ResetLevel, Status};
+use halfrow_protocol::message::{ResetLevel, Status};
 
-use super::conversation::Conversation;
+use super::counted::Miscount;
 use super::deadlines::Step;
 use super::{Board, BoardError};
 
@@ -12,11 +12,7 @@ impl Board {
     /// # Errors
     /// [`BoardError`] when no answer comes.
     pub fn status(&mut self, clear: bool) -> Result<Status, BoardError> {
-        let status = status(&mut self.conversation, clear, Step::Request)?;
-        if clear {
-            self.counted_from = self.conversation.tally;
-        }
-        Ok(status)
+        self.conversation.status(clear, Step::Request)
     }
 
     /// The board's counters, although the run was stopped: then they are waited for as the end of a session is.
@@ -26,7 +22,7 @@ impl Board {
     pub(crate) fn status_although_stopped(&mut self) -> Result<Status, BoardError> {
         match self.status(false) {
             Err(BoardError::Stopped(_) | BoardError::Timeout { .. }) => {
-                self.conversation.disregarding_stop(|conversation| status(conversation, false, Step::Close))
+                self.conversation.disregarding_stop(|conversation| conversation.status(false, Step::Close))
             }
             status => status,
         }
@@ -35,19 +31,25 @@ impl Board {
     /// The packets that were sent since the board's counters were set back, all tries counted.
     #[must_use]
     pub(crate) fn packets_since_clear(&self) -> u64 {
-        self.tally().packets_out.saturating_sub(self.counted_from.packets_out)
+        self.tally().packets_out.saturating_sub(self.conversation.counted.from.packets_out)
     }
 
     /// The requests that were answered since the board's counters were set back.
     #[must_use]
     pub(crate) fn answered_since_clear(&self) -> u64 {
-        self.tally().answered.saturating_sub(self.counted_from.answered)
+        self.tally().answered.saturating_sub(self.conversation.counted.from.answered)
     }
 
     /// Whether every packet that was sent since the board's counters were set back came to it whole, and once.
     #[must_use]
     pub(crate) fn had_each_packet_once(&self, status: &Status) -> bool {
-        u64::from(status.packets) == self.packets_since_clear()
+        u64::from(status.packets) == self.packets_since_clear() && self.conversation.counted.is_calm()
+    }
+
+    /// The first count of packets in this session that no link brings about which only loses some.
+    #[must_use]
+    pub(crate) fn miscounted(&self) -> Option<Miscount> {
+        self.conversation.counted.wrong
     }
 
     /// Sets the counters back, and drops tables that an earlier session left: a board takes a generation that is active
@@ -68,11 +70,4 @@ impl Board {
     pub(crate) fn packets_numbered(&self) -> u32 {
         self.conversation.conduct.packets_numbered()
     }
-}
-
-fn status(conversation: &mut Conversation, clear: bool, step: Step) -> Result<Status, BoardError> {
-    conversation.request(&Request::Status { clear }, step, |reply| match reply {
-        Reply::Status(status) => Some(status),
-        _ => None,
-    })
 }

@@ -5,6 +5,7 @@ mod asked;
 mod bursts;
 mod conduct;
 mod conversation;
+mod counted;
 mod counters;
 pub mod deadlines;
 mod error;
@@ -25,11 +26,13 @@ use halfrow_protocol::{Kind, Packet, VERSION};
 use answer::take_reply;
 use asked::Asking;
 use conversation::Conversation;
+use counted::Counted;
 use deadlines::{RetryLimit, Step};
 
 use crate::link::Link;
 pub(crate) use bursts::{Fetched, Trapped};
 pub(crate) use conduct::Misconduct;
+pub(crate) use counted::Miscount;
 pub use error::{BoardError, Heard, OpenFailed};
 pub(crate) use legal::{LEAST_ENTRIES, MAX_LATENCY, grids, possible};
 pub(crate) use rows::{Given, Unjudged, Unreturned};
@@ -58,6 +61,9 @@ pub struct OpenOptions {
     pub take_over: bool,
     /// Leave it to its holder even over a link that is this program's alone: a board can have two links.
     pub polite: bool,
+    /// Have the board say how many packets came to it, behind every stream and behind whatever was asked again: one that comes
+    /// twice is told from one that is lost by that.
+    pub counts: bool,
     /// How many packets may be sent again.
     pub retry_limit: RetryLimit,
     /// What ends the run early.
@@ -76,8 +82,6 @@ pub struct RowTiming {
 /// An open session with a board.
 pub struct Board {
     conversation: Conversation,
-    /// What the link had done when the board's counters were set back.
-    counted_from: Tally,
     /// Its answer to the greeting.
     pub welcome: Welcome,
     /// What it can do.
@@ -110,7 +114,6 @@ impl Board {
             Ok(welcome) => welcome,
             Err(error) => return Err(OpenFailed::of(error, &conversation)),
         };
-        let counted_from = conversation.tally;
         let capabilities = conversation.request(&Request::Capabilities, Step::Request, |reply| match reply {
             Reply::Capabilities(capabilities) => Some(capabilities),
             _ => None,
@@ -118,7 +121,7 @@ impl Board {
         match capabilities {
             Ok(capabilities) => {
                 let (options, shapes) = (options.clone(), [None; 2]);
-                Ok(Self { conversation, counted_from, welcome, capabilities, options, shapes })
+                Ok(Self { conversation, welcome, capabilities, options, shapes })
             }
             Err(error) => {
                 let failed = OpenFailed::of(error, &conversation);
@@ -137,7 +140,6 @@ impl Board {
         self.options.nonce = nonce;
         self.conversation.leave_session();
         self.welcome = greet_or_take_over(&mut self.conversation, &self.options)?;
-        self.counted_from = self.conversation.tally;
         Ok(())
     }
 
@@ -294,6 +296,7 @@ fn close(conversation: &mut Conversation) {
 
 /// Opens a session. Over a link that is this program's alone nobody can be cut off: whoever holds the board was killed.
 fn greet_or_take_over(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welcome, BoardError> {
+    let sent = conversation.tally.packets_out;
     let greeted = match greet(conversation, options) {
         Err(BoardError::Held { .. }) if conversation.is_exclusive() && !options.polite => {
             tracing::warn!("the board is held by a run that was killed, and is taken over");
@@ -301,7 +304,11 @@ fn greet_or_take_over(conversation: &mut Conversation, options: &OpenOptions) ->
         }
         greeted => greeted,
     };
-    greeted.inspect(|welcome| conversation.session = welcome.session)
+    greeted.inspect(|welcome| {
+        conversation.session = welcome.session;
+        let tally = conversation.tally;
+        conversation.counted = Counted::in_new_session(tally, tally.packets_out - sent);
+    })
 }
 
 fn greet(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welcome, BoardError> {

@@ -73,8 +73,11 @@ impl Board {
         payload: &[u8],
     ) -> Result<Said, BoardError> {
         let own = mem::replace(&mut self.conversation.session, session);
+        // A session that is not open has nobody to ask.
+        let counts = mem::take(&mut self.conversation.counts);
         let said = self.ask(kind, payload);
         self.conversation.session = own;
+        self.conversation.counts = counts;
         match said {
             Err(BoardError::SessionLost) => {
                 Ok(Said::Refused(Refusal { code: RefusalCode::Session, kind: kind.code(), detail: 0 }))
@@ -108,6 +111,7 @@ impl Board {
     pub(crate) fn excuse_repeats(&mut self) -> Result<(), BoardError> {
         self.status(true)?;
         self.conversation.repeated_changes = 0;
+        self.conversation.counted.wrong = None;
         Ok(())
     }
 

@@ -13,13 +13,15 @@ pub enum Doubt {
         /// How many.
         requests: u64,
     },
-    /// The board counts other packets than were sent to it.
+    /// The board counts other packets than can have come to it, or than were sent.
     PacketsMiscounted {
         /// What it counts.
         counted: u64,
-        /// What was sent.
+        /// What was sent, without what is known to be lost.
         sent: u64,
     },
+    /// Nothing but counters is wrong that a link moves as well, which brings one packet twice and loses another.
+    CountersOfLinks {},
     /// The board does not tell how many packets came to it.
     PacketsUncounted {},
     /// What the board was asked and must have said did not come back, however often it was asked for.

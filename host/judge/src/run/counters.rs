@@ -64,6 +64,11 @@ pub(super) fn is_contradictory(status: &Status) -> bool {
     packets_counted(status, 1).is_err()
 }
 
+/// Whether it counts what nothing but a link brings about where the host had no reason to.
+pub(super) fn is_moved_by_links(status: &Status) -> bool {
+    [status.rows_repeated, status.rows_unneeded, status.refusals, status.foreign_packets] != [0; 4]
+}
+
 /// Each row that was taken or not needed, each refusal and each of the `answered` requests came in a packet of its own. What is
 /// foreign is refused, or an acknowledgement.
 fn packets_counted(status: &Status, answered: u64) -> Result<(), End> {

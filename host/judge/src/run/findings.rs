@@ -105,6 +105,8 @@ pub(super) struct Findings {
     pub(super) repeats_counted: u32,
     /// What was left untouched of a board that is right.
     pub(super) not_exercised: Vec<NotExercised>,
+    /// Whether the run was made again since counters were wrong that a link moves as well.
+    pub(super) counters_doubted: bool,
     /// Whether counters were not compared for what the board alone says of its link.
     pub(super) leaves_counters_out: bool,
     /// Whether a board came back that has no number to be known by.
@@ -140,6 +142,7 @@ impl Findings {
             rows_counted: 0,
             repeats_counted: 0,
             not_exercised: Vec::new(),
+            counters_doubted: false,
             leaves_counters_out: false,
             is_unknown: false,
             untested_at_speed: Vec::new(),

@@ -161,6 +161,7 @@ fn judge(
 fn open_options(options: &RunOptions) -> OpenOptions {
     OpenOptions {
         take_over: options.take_over,
+        counts: options.counts,
         retry_limit: options.retry_limit,
         stop: options.stop.clone().limited(options.timeout),
         ..options.circumstances.draws.into()

@@ -7,13 +7,18 @@ use crate::board::Stop;
 use crate::board::deadlines::RetryLimit;
 
 /// How a run is made. The default is a patient one: no time limit, the usual share of retries, an end when the board goes
-/// away, nobody cut off, any kind of board.
+/// away, nobody cut off, any kind of board, which is asked what came to it.
 #[derive(Clone, Debug)]
 pub struct RunOptions {
     /// The longest that the run may take on the link's clock.
     pub timeout: Option<Duration>,
     /// Who else can end it early.
     pub stop: Stop,
+    /// Have the board say how many packets came to it wherever one may have been lost unseen ([`OpenOptions::counts`]). A recording
+    /// that does not say so is of a run that did not.
+    ///
+    /// [`OpenOptions::counts`]: crate::board::OpenOptions::counts
+    pub counts: bool,
     /// The retries that it may have.
     pub retry_limit: RetryLimit,
     /// How long a board that goes away may stay away; none if the run ends then. Needs a
@@ -43,6 +48,7 @@ impl Default for RunOptions {
         Self {
             timeout: None,
             stop: Stop::default(),
+            counts: true,
             retry_limit: RetryLimit::default(),
             reconnect: None,
             take_over: false,

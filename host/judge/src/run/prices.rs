@@ -184,7 +184,7 @@ impl<'a> Prices<'a> {
 
     /// So many rows that follow each other. The slowest of way out, pixel clock and way back counts, or where answers take
     /// long what the board's banks have room for meanwhile. The first two go out before anything comes back, since a row
-    /// leaves while the next one enters.
+    /// leaves while the next one enters, and behind the last the board is asked what came to it.
     pub(super) fn rows(&self, rows: usize, width: usize, between: usize) -> f64 {
         let packed = (3 * width).div_ceil(2);
         let back = RowOut::HEAD + packed + RowOut::ENTERED;
@@ -195,7 +195,7 @@ impl<'a> Prices<'a> {
         // One of them has the row that the next one pushes out.
         let banks = self.capabilities.row_banks_in.min(self.capabilities.row_banks_out).saturating_sub(1);
         let in_banks = (self.rates.round_trip + out + back + 2.0 * played) / f64::from(banks.max(1));
-        alone + rows as f64 * back.max(played).max(in_banks)
+        alone + rows as f64 * back.max(played).max(in_banks) + self.short_request()
     }
 
     /// The plan's tables, written and read back.

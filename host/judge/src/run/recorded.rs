@@ -41,6 +41,9 @@ pub struct RecordedRun {
     at_speed: Option<Duration>,
     fail_fast: bool,
     take_over: bool,
+    /// A recording that does not say so holds no such requests.
+    #[serde(default)]
+    counts: bool,
     seed: u64,
     timeout: Option<Duration>,
     retries: u64,
@@ -102,6 +105,7 @@ impl RecordedRun {
             at_speed: plan.at_speed,
             fail_fast: plan.fail_fast,
             take_over: options.take_over,
+            counts: options.counts,
             seed: plan.seed,
             timeout: options.timeout,
             retries: options.retry_limit.fixed,
@@ -137,6 +141,7 @@ impl RecordedRun {
             timeout: run.timeout,
             retry_limit: RetryLimit { fixed: run.retries, share: run.retry_share },
             take_over: run.take_over,
+            counts: run.counts,
             keep_equal: true,
             circumstances: Circumstances {
                 arguments: run.arguments,

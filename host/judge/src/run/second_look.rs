@@ -3,9 +3,10 @@
 //! A link that delivers a copy of an old request behind newer ones can leave a sound board with old tables, counters or
 //! settings. In a session of its own no copy of an earlier session means anything.
 
-use super::counters::is_contradictory;
+use super::counters::{is_contradictory, is_moved_by_links};
 use super::findings::{During, End};
 use super::steps::Run;
+use crate::board::{Board, Miscount};
 use crate::progress::Step;
 use crate::result::{BrokenOff, CheckName, Doubt, Finding};
 use crate::verdict::Cause;
@@ -64,9 +65,8 @@ impl Run<'_> {
 
     /// Why the board may not be as the host made it in this session, although it is sound and `check` found something.
     pub(super) fn doubt(&mut self, check: CheckName) -> Option<Doubt> {
-        let repeated = self.board.repeated_changes();
-        if repeated > 0 {
-            return Some(Doubt::RequestsTwice { requests: repeated });
+        if let Some(doubt) = Doubt::of_requests(self.board) {
+            return Some(doubt);
         }
         // Without an answer nothing tells what the link did before, whatever keeps it away.
         let Ok(status) = self.board.status_although_stopped() else {
@@ -76,10 +76,35 @@ impl Run<'_> {
             // Such a board is wrong whatever the link did.
             return None;
         }
+        if let Some(doubt) = Doubt::of_packets(self.board) {
+            return Some(doubt);
+        }
         let (counted, sent) = (u64::from(status.packets), self.board.packets_since_clear());
         let counters_alone = check == CheckName::Counters;
-        let is_doubtful = counted > sent || counters_alone && counted != sent;
-        is_doubtful.then_some(Doubt::PacketsMiscounted { counted, sent })
+        if counted > sent || counters_alone && counted != sent {
+            return Some(Doubt::PacketsMiscounted { counted, sent });
+        }
+        // A board that miscounts does so again, and a packet that came twice does not come again.
+        let is_new = counters_alone && self.options.counts && !self.findings.counters_doubted;
+        self.findings.counters_doubted |= counters_alone;
+        (is_new && is_moved_by_links(&status)).then_some(Doubt::CountersOfLinks {})
+    }
+}
+
+impl Doubt {
+    /// What the host knows of the open session of `board` without asking it.
+    pub(super) fn of_session(board: &Board) -> Option<Self> {
+        Self::of_requests(board).or(Self::of_packets(board))
+    }
+
+    fn of_requests(board: &Board) -> Option<Self> {
+        let requests = board.repeated_changes();
+        (requests > 0).then_some(Self::RequestsTwice { requests })
+    }
+
+    fn of_packets(board: &Board) -> Option<Self> {
+        let Miscount { counted, sent } = board.miscounted()?;
+        Some(Self::PacketsMiscounted { counted, sent })
     }
 }
 

@@ -134,8 +134,9 @@ impl<'a> Stream<'a> {
                 self.ask_again()?;
             }
         }
-        // The last acknowledgement frees the board's banks; nobody waits for it.
+        // The last acknowledgement frees the board's banks; nobody waits for it, nor for those before.
         self.acknowledge();
+        self.conversation.count();
         Ok(())
     }
 
@@ -156,6 +157,11 @@ impl<'a> Stream<'a> {
     /// The oldest row that has not come back.
     fn missing(&self) -> u32 {
         self.arrivals.missing
+    }
+
+    /// A number that grows with each row that comes.
+    fn came(&self) -> u32 {
+        self.missing() + self.arrivals.ahead()
     }
 
     fn fetch(&mut self) {
@@ -198,7 +204,7 @@ impl<'a> Stream<'a> {
 
     fn receive(&mut self) -> Result<(), BoardError> {
         let wait = self.patience().saturating_sub(self.conversation.waited.saturating_sub(self.progress_at));
-        let missing = self.missing();
+        let (missing, came) = (self.missing(), self.came());
         self.arrivals.gap = false;
         self.arrivals.numbers.go_on(self.conversation.tally.packets_out, self.conversation.sequence);
         let (arrivals, mut taken) = (&mut self.arrivals, Ok(()));
@@ -213,6 +219,7 @@ impl<'a> Stream<'a> {
         )?;
         self.conversation.acknowledged = self.missing();
         self.conversation.tally.strays += std::mem::take(&mut self.arrivals.old_refusals);
+        self.conversation.counted.came((self.came() - came).into());
         taken?;
         if self.missing() > missing {
             let took = self.conversation.waited.saturating_sub(self.missing_since);

@@ -239,7 +239,14 @@ pub(crate) fn because(doubt: Doubt) -> String {
             format!("{} to change the board may have come to it twice", count(requests, "request"))
         }
         Doubt::PacketsMiscounted { counted, sent } => {
-            format!("the board counts {}, and {} were sent to it", count(counted, "packet"), grouped(sent))
+            format!(
+                "the board counts {}, and {} should have come to it",
+                count(counted, "packet"),
+                grouped(sent)
+            )
+        }
+        Doubt::CountersOfLinks {} => {
+            "a link that brings one packet twice and loses another moves such counters as well".to_owned()
         }
         Doubt::PacketsUncounted {} => "the board does not tell how many packets came to it".to_owned(),
         Doubt::AnswerLost {} => "a link can lose the same packet each time".to_owned(),

@@ -164,7 +164,7 @@ impl Run<'_> {
 
     /// Has the board make the burst of the draw `draw`, and compares every frame.
     fn play(&mut self, account: &mut Account, bursts: Bursts, draw: u32) -> Result<Played, End> {
-        if self.board.repeated_changes() > 0 {
+        if Doubt::of_session(self.board).is_some() {
             self.open_another_session()?;
         }
         let tables = self.tables_of_burst(draw)?;
