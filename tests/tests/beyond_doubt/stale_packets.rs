@@ -250,6 +250,34 @@ fn a_stop_amid_that_question_makes_no_error_of_a_board_that_is_wrong() {
     assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
 }
 
+/// What a host knows of a session that ended amid a segment is still true of what came back in it. The frames behind the old copy are
+/// wrong, and in the next session every one is right.
+#[test]
+fn an_old_copy_of_a_request_makes_no_sound_board_fail_that_goes_away_later() {
+    let is_cut = Arc::new(AtomicBool::new(false));
+    let (cuts, mut before, mut left) = (Arc::clone(&is_cut), None, None);
+    let alter = move |toward, packet: Passing| {
+        let read = Request::read(&Packet { header: packet.header, payload: &packet.payload });
+        let (Toward::Board, Ok(Request::Configure(configuration))) = (toward, read) else {
+            left = left.map(|left: u32| left.saturating_sub(u32::from(packet.is(Kind::RowOut))));
+            cuts.fetch_or(left == Some(0), Ordering::Relaxed);
+            return vec![packet];
+        };
+        let old = before.replace(packet.clone()).filter(|_| configuration.gap_seed != 0 && left.is_none());
+        left = left.or(old.as_ref().map(|_| 3));
+        [packet].into_iter().chain(old).collect()
+    };
+    let sound = || Altered::new(&halfrow_mock::Options::default(), |_, packet| vec![packet]).candidate().link;
+    let candidate = Altered::new(&halfrow_mock::Options::default(), alter).candidate();
+    let link = Box::new(Breakable { link: candidate.link, is_cut });
+    let candidate = Candidate { link, reopen: Some(Box::new(move || Ok(sound()))), ..candidate };
+    let options = RunOptions { reconnect: Some(Duration::from_secs(1000)), ..RunOptions::default() };
+    let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
+    assert_eq!(report.link.reconnections.len(), 1);
+    let is_known = matches!(report.finding, Finding::RightInAnotherSession { .. });
+    assert!(is_known, "{}", report.headline());
+}
+
 #[test]
 fn an_old_copy_of_a_request_makes_no_link_test_call_a_sound_board_wrong() {
     assert_eq!(wrong_of_link(false), (0, true));

@@ -119,6 +119,15 @@ impl Run<'_> {
     }
 }
 
+impl Seen {
+    /// Whether nothing of it is wrong, be it judged yet or not.
+    pub(super) fn is_right(&self) -> bool {
+        let rows =
+            self.wrong_generation.is_none() && self.wrong_latency.is_none() && self.wrong_entry.is_none();
+        rows && self.wrong_pauses.is_none() && self.changed_tables.is_none() && self.differences() == 0
+    }
+}
+
 /// What came in otherwise than it was sent explains what came out, however that may look.
 fn changed_on_entry(rows: usize, row: usize, frame: u16, differs: bool) -> End {
     if !differs {

@@ -8,7 +8,7 @@ use super::plan::Generation;
 use super::{Misfit, RunOptions};
 use crate::board::{Board, BoardError, Status, Tally};
 use crate::result::{
-    BoardReport, Check, CheckName, Finding, Identity, LinkReport, NotExercised, Outcome, Problem,
+    BoardReport, Check, CheckName, Doubt, Finding, Identity, LinkReport, NotExercised, Outcome, Problem,
     Reconnection, SoakReport, Suspect, WithinReport,
 };
 use crate::target::BoardKind;
@@ -86,6 +86,10 @@ impl<T> During<T> for Result<T, BoardError> {
 pub(super) struct Earlier {
     pub(super) tally: Tally,
     pub(super) seconds: Duration,
+    /// Whether something that is not judged yet was found wrong over one of them.
+    pub(super) found: bool,
+    /// Why that may have come from the link.
+    pub(super) doubt: Option<Doubt>,
 }
 
 /// What a run has found so far.
@@ -187,6 +191,7 @@ impl Findings {
     /// Forgets what was found of the open board, for a look in another session; names of bursts do not come again.
     pub(super) fn begin_again(&mut self) {
         (self.seen, self.rows_counted, self.repeats_counted) = (Seen::default(), 0, 0);
+        (self.earlier.found, self.earlier.doubt) = (false, None);
         self.checks.retain(|check| matches!(check.name, CheckName::Judge | CheckName::Identity));
         self.not_exercised.clear();
         self.leaves_counters_out = false;
@@ -221,8 +226,12 @@ impl Findings {
         self.link.seconds = (self.earlier.seconds + board.now()).as_secs_f64();
     }
 
-    /// Takes the counts of a link that broke.
+    /// Takes the counts of a link that broke. Of what was found wrong before, nothing else will tell what the link did.
     pub(super) fn keep_counts(&mut self, board: &Board) {
+        if self.earlier.found || !self.seen.is_right() {
+            let doubt = Doubt::of_session(board).unwrap_or(Doubt::PacketsUncounted {});
+            self.earlier.doubt.get_or_insert(doubt);
+        }
         self.earlier.tally += board.tally();
         self.earlier.seconds += board.now();
         (self.rows_counted, self.repeats_counted) = (0, 0);

@@ -7,11 +7,11 @@ use std::sync::Arc;
 use std::sync::mpsc;
 use std::time::Instant;
 
-use halfrow_model::{BitDepth, Frame, row_signature};
+use halfrow_model::row_signature;
 
 use super::exercised::SampleLevels;
 use super::findings::End;
-use super::kept::Kept;
+use super::kept::{Kept, as_found};
 use super::prepared::{PrepareError, Prepared};
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::compare::Comparison;
@@ -35,14 +35,6 @@ pub(super) struct Seen {
     pub(super) wrong_pauses: Option<Finding>,
     /// That tables had changed when they were read back.
     pub(super) changed_tables: Option<End>,
-}
-
-/// The samples that came back in place of `expected` as a frame, of the greatest depth where the frame's own cannot hold what a board
-/// has made of them.
-pub(super) fn as_found(expected: &Frame, samples: Vec<u16>) -> Option<Frame> {
-    let is_held = |&depth: &BitDepth| samples.iter().all(|&sample| sample <= depth.max());
-    let depth = [expected.depth(), BitDepth::Twelve].into_iter().find(is_held)?;
-    Frame::new(expected.width(), depth, expected.phase(), samples).ok()
 }
 
 /// Rows that entered the core otherwise than they were sent, by the board's own CRC.
@@ -169,6 +161,11 @@ impl<'a> Judge<'a> {
     /// The segment's first frame that has not come back whole.
     pub(super) fn frames_done(&self) -> usize {
         self.frames_done
+    }
+
+    /// Whether something that came back is wrong.
+    pub(super) fn has_found(&self) -> bool {
+        !self.seen.is_right() || self.in_flight.iter().any(|frame| frame.comparison.differences > 0)
     }
 
     /// Has the frames sent again that have not come back whole. Rows that did come back are not judged twice.
@@ -327,7 +324,7 @@ impl RowTraffic for Judge<'_> {
 mod tests {
     use std::sync::mpsc::channel;
 
-    use halfrow_model::{BitDepth, Phase};
+    use halfrow_model::{BitDepth, Frame, Phase};
 
     use super::*;
     use crate::progress::Silent;

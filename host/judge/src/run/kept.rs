@@ -2,8 +2,18 @@
 
 use std::ops::Deref;
 
+use halfrow_model::{BitDepth, Frame};
+
 use crate::compare::Comparison;
 use crate::result::{Evidence, EvidenceReport};
+
+/// The samples that came back in place of `expected` as a frame, of the greatest depth where the frame's own cannot hold what a board
+/// has made of them.
+pub(super) fn as_found(expected: &Frame, samples: Vec<u16>) -> Option<Frame> {
+    let is_held = |&depth: &BitDepth| samples.iter().all(|&sample| sample <= depth.max());
+    let depth = [expected.depth(), BitDepth::Twelve].into_iter().find(is_held)?;
+    Frame::new(expected.width(), depth, expected.phase(), samples).ok()
+}
 
 /// The share of the budget that counts by row and column have; frames have the rest.
 const SHARE_OF_COUNTS: usize = 16;

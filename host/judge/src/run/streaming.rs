@@ -40,6 +40,7 @@ impl Run<'_> {
 
     fn stream_to_the_end(&mut self, segment: &Segment, judge: &mut Judge<'_>) -> Result<(), End> {
         while let Err(error) = self.board.stream(judge) {
+            self.findings.earlier.found |= judge.has_found();
             let end = self.interrupted(segment, error);
             self.return_to(segment, judge.frames_done(), end)?;
             judge.begin_again();

@@ -20,7 +20,7 @@ use crate::result::{
     Account, CheckName, Defect, Evidence, Finding, FrameReport, FrameTiming, Problem, Repetition, Suspect,
 };
 use crate::run::findings::{During, End};
-use crate::run::judge::as_found;
+use crate::run::kept::as_found;
 use crate::run::plan::Generation;
 use crate::run::steps::Run;
 use crate::verdict::Cause;
