@@ -70,7 +70,11 @@ fn a_row_that_waits_for_its_successor_is_not_swallowed() {
 /// What a sound board's row 3 comes to that never leaves its front end, when `change` is made to its counters: as a
 /// swallowed row looks from here.
 fn withheld(change: fn(&mut Status)) -> Report {
-    judge(&System::TINY, move |_, packet| match packet.reply() {
+    judge(&System::TINY, move |_, packet| withhold(packet, change))
+}
+
+fn withhold(packet: Passing, change: fn(&mut Status)) -> Vec<Passing> {
+    match packet.reply() {
         Some(Reply::Status(mut status)) => {
             (status.rows_repeated, status.rows_unneeded) = (0, 3);
             change(&mut status);
@@ -78,7 +82,21 @@ fn withheld(change: fn(&mut Status)) -> Report {
         }
         Some(Reply::RowOut(row)) if row.place.row == 3 => Vec::new(),
         _ => vec![packet],
-    })
+    }
+}
+
+/// Counters are set back before a row is played again.
+#[test]
+fn a_packet_that_came_twice_before_excuses_no_board_that_swallows_rows() {
+    let mut is_doubled = false;
+    let report = judge(&System::TINY, move |toward, packet| {
+        let is_echo = toward == Toward::Board && packet.is(Kind::Echo);
+        if is_echo && !std::mem::replace(&mut is_doubled, true) {
+            return vec![packet.clone(), packet];
+        }
+        withhold(packet, |_| {})
+    });
+    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
 }
 
 type Denial = fn(&mut Status);
