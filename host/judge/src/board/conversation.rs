@@ -1,5 +1,7 @@
 //! Packets over a link: numbered, answered, asked again, counted.
 
+mod damaged;
+
 use std::time::Duration;
 
 use halfrow_protocol::message::{Reply, Request, RowIn, RowPlace};
@@ -17,9 +19,6 @@ use crate::link::{Link, LinkError, Severed};
 /// What an exchange that moved bytes adds to the time waited, at most. It returns as soon as a byte has moved: if it took
 /// longer, the host may have been kept from running, and what it has not read yet says nothing against the board.
 const BRIEF: Duration = Duration::from_millis(50);
-
-/// Where a header has its version and its length (WIRE.md, 1).
-const MISNAMED: [usize; 3] = [0, 4, 5];
 
 /// How far a board's window can be ahead of the rows that came back: the most banks each way, and two rows in the core.
 const MOST_AHEAD: u32 = 2 * u8::MAX as u32 + 2;
@@ -176,31 +175,6 @@ impl Conversation {
         let sequence = self.next_sequence();
         self.rows_sent = self.rows_sent.max(place.row_sequence.saturating_add(1));
         self.queue_packet(Kind::RowIn, sequence, |payload| RowIn::write_samples(place, samples, payload));
-    }
-
-    /// Queues `request` once for each byte that its packet has on the wire between two zeros, with a bit of that byte flipped.
-    pub(super) fn queue_damaged(&mut self, request: &Request<'_>) {
-        let from = self.outgoing.len();
-        self.queue(request, self.sequence);
-        // What is damaged is no packet.
-        self.tally.packets_out -= 1;
-        let whole = self.outgoing.split_off(from);
-        for place in 1..whole.len().saturating_sub(1) {
-            self.outgoing.extend_from_slice(&whole);
-            let byte = self.outgoing.iter_mut().rev().nth(place);
-            byte.into_iter().for_each(|byte| *byte ^= 1 << (place % 8));
-        }
-    }
-
-    /// Queues `request` with a CRC that is right, once for each bit of its version and of its length, of which that one is wrong.
-    pub(super) fn queue_misnamed(&mut self, request: &Request<'_>) {
-        let header = self.header(request.kind(), self.sequence);
-        for (byte, bit) in MISNAMED.into_iter().flat_map(|byte| (0..u8::BITS).map(move |bit| (byte, bit))) {
-            let alter = |packet: &mut [u8]| packet[byte] ^= 1 << bit;
-            let write = |payload: &mut Vec<u8>| request.write(payload);
-            let queued = self.encoder.encode_altered(&header, write, alter, &mut self.outgoing);
-            debug_assert!(queued.is_ok(), "a request is built to fit a packet");
-        }
     }
 
     fn queue_packet(&mut self, kind: Kind, sequence: u16, write_payload: impl FnOnce(&mut Vec<u8>)) {

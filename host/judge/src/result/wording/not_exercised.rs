@@ -9,13 +9,9 @@ pub fn not_exercised(part: &NotExercised) -> String {
     match part {
         NotExercised::InputBits { bits } => format!("{} of the samples going in", some("bit", bits)),
         NotExercised::OutputBits { bits } => format!("{} of the corrected samples", some("bit", bits)),
-        NotExercised::ColumnAddress { lines } => format!("{} of columns", some("address line", lines)),
-        NotExercised::LineMemoryAddress { lines } => {
-            format!("{} of the line memory", some("address line", lines))
-        }
-        NotExercised::RowTableAddress { lines } => {
-            format!("{} of the row table", some("address line", lines))
-        }
+        NotExercised::ColumnAddress { lines } => format!("{} of columns", addresses(lines)),
+        NotExercised::LineMemoryAddress { lines } => format!("{} of the line memory", addresses(lines)),
+        NotExercised::RowTableAddress { lines } => format!("{} of the row table", addresses(lines)),
         NotExercised::RowFactorBits { bits } => format!("{} of the row factors", some("bit", bits)),
         NotExercised::KernelNodes { nodes } => format!("kernel {}", some("node", nodes)),
         NotExercised::Taps { taps } => {
@@ -48,6 +44,11 @@ pub fn not_exercised(part: &NotExercised) -> String {
             format!("samples of {} bits", depths.join(" or "))
         }
     }
+}
+
+/// `address line 7`, `address lines 0 to 3, 7`
+fn addresses(lines: &[usize]) -> String {
+    some("address line", lines)
 }
 
 /// `bit 7`, `bits 0 to 3, 7`
