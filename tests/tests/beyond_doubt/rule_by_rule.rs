@@ -302,3 +302,49 @@ fn signatures_are_expected_of_the_rows_that_they_are_for() {
     });
     assert_eq!(broken(&report).0, Rule::Trap);
 }
+
+/// The report on a board that counts otherwise than it should, as `alter` has it.
+fn counting(alter: impl Fn(&mut Status) + Send + 'static) -> Report {
+    behind(move |toward, packet| match packet.reply() {
+        Some(Reply::Status(mut status)) if toward == Toward::Host => {
+            alter(&mut status);
+            vec![packet.saying(&Reply::Status(status))]
+        }
+        _ => vec![packet],
+    })
+}
+
+#[test]
+fn a_board_that_counts_fewer_refusals_than_came_fails() {
+    let reports = [
+        (Counter::Refusals, counting(|status| status.refusals = status.refusals.min(255))),
+        (Counter::ForeignPackets, counting(|status| status.foreign_packets = 0)),
+    ];
+    for (counter, report) in reports {
+        assert_eq!(failed_check(&report), Some(CheckName::Rules), "{}", report.headline());
+        let Finding::CounterWrong { counter: found, .. } = report.finding else {
+            panic!("{}", report.headline())
+        };
+        assert_eq!(found, counter);
+    }
+}
+
+#[test]
+fn a_row_that_comes_again_with_other_fields_fails() {
+    for field in 0..4 {
+        let report = behind(move |toward, packet| match packet.reply() {
+            Some(Reply::RowOut(row)) if toward == Toward::Host && row.repeats > 1 => {
+                let mut row = row;
+                match field {
+                    0 => row.first_latency ^= 1,
+                    1 => row.last_latency ^= 1,
+                    2 => row.pauses ^= 1,
+                    _ => row.entered = row.entered.map(|crc| crc ^ 1),
+                }
+                vec![packet.saying(&Reply::RowOut(row))]
+            }
+            _ => vec![packet],
+        });
+        assert_eq!(broken(&report).0, Rule::Again, "{field}: {}", report.headline());
+    }
+}

@@ -28,6 +28,10 @@ pub(crate) struct CameAgain {
     pub(crate) generation: u8,
     /// Its samples.
     pub(crate) samples: Vec<u16>,
+    /// Its latencies and pauses.
+    pub(crate) clocks: [u16; 3],
+    /// The CRC-32 of it as it entered, where the board is one that tells it.
+    pub(crate) entered: Option<u32>,
 }
 
 /// What `packet` says of the row at `place`, if it is one that was sent so many times before.
@@ -35,7 +39,13 @@ fn came_again(packet: &Packet<'_>, place: &RowPlace, repeats: u16) -> Option<Cam
     let Ok(Reply::RowOut(row)) = Reply::read(packet) else { return None };
     let mut samples = vec![0; row.place.width.into()];
     samples::unpack(row.packed, &mut samples);
-    let came = CameAgain { repeats: row.repeats, generation: row.generation, samples };
+    let came = CameAgain {
+        repeats: row.repeats,
+        generation: row.generation,
+        samples,
+        clocks: [row.first_latency, row.last_latency, row.pauses],
+        entered: row.entered,
+    };
     (row.place == *place && row.repeats >= repeats).then_some(came)
 }
 

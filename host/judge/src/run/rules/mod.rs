@@ -10,6 +10,7 @@ mod depths;
 mod grids;
 mod power_up;
 mod price;
+mod refused;
 mod requests;
 mod rows;
 mod small;
@@ -34,6 +35,7 @@ use crate::result::{Answer, CheckName, Doubt, Finding, Outcome, Rule};
 use crate::verdict::Cause;
 use compared::Compared;
 pub(super) use price::price;
+use refused::Refused;
 use small::Small;
 pub(super) use waiting::MOST_FILLED;
 
@@ -79,6 +81,8 @@ struct Rules<'a, 'run> {
     small: Small,
     /// Requests that were answered as they must be.
     right: usize,
+    /// Refusals among those.
+    refused: Refused,
     /// Rows of a frame, as the board is set.
     height: usize,
     /// Rows of the next frame that the board was given.
@@ -89,12 +93,21 @@ impl<'a, 'run> Rules<'a, 'run> {
     fn new(run: &'a mut Run<'run>) -> Option<Self> {
         let capabilities = run.board.capabilities.clone();
         let small = Small::new(&capabilities, run.plan.seed, run.plan.phase)?;
-        Some(Self { run, capabilities, small, right: 0, height: 0, given: Given::default() })
+        Some(Self {
+            run,
+            capabilities,
+            small,
+            right: 0,
+            refused: Refused::default(),
+            height: 0,
+            given: Given::default(),
+        })
     }
 
     /// Tries all of them, and returns how many requests were answered as they must be.
     fn all(mut self) -> Result<usize, End> {
         self.drop_rows()?;
+        let before = self.run.board.status(false).map_err(of_board)?;
         self.requests()?;
         self.tables()?;
         self.damage()?;
@@ -106,6 +119,7 @@ impl<'a, 'run> Rules<'a, 'run> {
             self.bursts()?;
             self.trap()?;
         }
+        self.refusals_counted(&before)?;
         self.power_up()?;
         Ok(self.right)
     }
@@ -121,6 +135,7 @@ impl<'a, 'run> Rules<'a, 'run> {
         let found = match said {
             Ok(said) if is_as(&said, right) => {
                 self.right += 1;
+                self.refused.note(right);
                 return Ok(());
             }
             Ok(said) => answer(&said),

@@ -234,11 +234,14 @@ impl Rules<'_, '_> {
         let (first, second) = (self.place(0), self.place(1));
         let rows = [(&first, frame.row(0)), (&second, frame.row(1))];
         let retries = self.run.board.tally().retries;
+        let mut at_first = None;
         for repeats in 0..=AGAIN {
             let came = self.run.board.again(rows, repeats).map_err(|error| of_rows(Rule::Again, error))?;
             let is_right = right.as_ref().is_none_or(|right| right.row(0) == came.samples);
             let is_counted = came.repeats == repeats || !self.is_calm(retries)?;
-            if !is_right || !is_counted || came.generation != GENERATION {
+            let beside = (came.clocks, came.entered.filter(|_| self.small.names_entered));
+            let is_same = *at_first.get_or_insert(beside) == beside;
+            if !is_right || !is_counted || !is_same || came.generation != GENERATION {
                 return Err(other_row(Rule::Again, 0, FRAME));
             }
         }
@@ -263,6 +266,11 @@ impl Rules<'_, '_> {
             self.give(1);
             let given = mem::take(&mut self.given).rows;
             self.run.board.drop_rows_behind(bytes, given).map_err(of_board)?;
+            // Whatever row was the last before, none but row 0 is the first.
+            for row in [1, 2] {
+                let place = RowPlace { row_sequence: self.run.board.acknowledged(), ..self.place(row) };
+                self.row_refused(Rule::RowPlace, place, RefusalCode::Row)?;
+            }
             self.right_frames(&[FRAME])?;
         }
         Ok(())

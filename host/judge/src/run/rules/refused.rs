@@ -1,0 +1,47 @@
+//! What was refused, beside what the board counts of it.
+
+use halfrow_protocol::message::RefusalCode;
+
+use super::{Rules, of_board};
+use crate::board::{Said, Status};
+use crate::result::{CheckName, Counter, Finding};
+use crate::run::findings::End;
+
+/// Refusals that came.
+#[derive(Default)]
+pub(super) struct Refused {
+    /// Those of the open session.
+    own: u32,
+    /// Those of others.
+    foreign: u32,
+}
+
+impl Refused {
+    /// Takes note of `said`, if it is a refusal.
+    pub(super) fn note(&mut self, said: &Said) {
+        match said {
+            Said::Refused(refusal) if refusal.code == RefusalCode::Session => self.foreign += 1,
+            Said::Refused(_) => self.own += 1,
+            Said::Replied(_) => {}
+        }
+    }
+}
+
+impl Rules<'_, '_> {
+    /// The board counts at least the refusals that came since it told `before`: whatever a link loses or doubles, none of them was
+    /// sent without a request.
+    pub(super) fn refusals_counted(&mut self, before: &Status) -> Result<(), End> {
+        let after = self.run.board.status(false).map_err(of_board)?;
+        let Refused { own, foreign } = self.refused;
+        let least = [
+            (Counter::Refusals, after.refusals, before.refusals.saturating_add(own)),
+            (Counter::ForeignPackets, after.foreign_packets, before.foreign_packets.saturating_add(foreign)),
+        ];
+        match least.into_iter().find(|&(_, counted, right)| counted < right) {
+            None => Ok(()),
+            Some((counter, counted, right)) => {
+                Err(End::failed(CheckName::Rules, Finding::CounterWrong { counter, counted, right }))
+            }
+        }
+    }
+}
