@@ -110,13 +110,17 @@ fn a_place_that_is_taken_during_the_run_is_left_alone() {
     folder.write("run.rec", "precious");
     folder.write("run.rec.partial", "evidence of yesterday");
     fs::create_dir(folder.path().join("out")).unwrap();
+    folder.write("out/notes", "somebody's own");
     first.send("INT");
     let ended = first.end();
     assert_eq!(ended.code, Some(130), "{}", ended.stderr);
     assert!(ended.stderr.contains("what there is of it is kept in run.rec.partial-2"), "{}", ended.stderr);
     assert!(ended.stderr.contains("the report could not be written: out exists"), "{}", ended.stderr);
     assert_eq!(folder.names("."), ["out", "run.rec", "run.rec.partial", "run.rec.partial-2"]);
-    assert_eq!((folder.text("run.rec"), folder.names("out").len()), ("precious".to_owned(), 0));
+    assert_eq!(
+        (folder.text("run.rec"), folder.names("out")),
+        ("precious".to_owned(), vec!["notes".to_owned()])
+    );
     assert_eq!(folder.text("run.rec.partial"), "evidence of yesterday");
     assert!(folder.read("run.rec.partial-2").starts_with(b"halfrow recording 1\n"));
 }
