@@ -75,6 +75,7 @@ def test_codes_of_runs_are_those_of_the_program(tmp_path, program, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "there.rec").write_text("")
     (tmp_path / "folder").mkdir()
+    (tmp_path / "folder" / "notes").write_text("")
     (tmp_path / "link.rec").symlink_to("there.rec")
     halfrow.write_frame("ok.pgm", np.zeros((32, 128), np.uint16))
     for name, shape in (("big.pgm", (64, 128)), ("narrow.pgm", (32, 4))):
