@@ -4,6 +4,8 @@ use std::time::Duration;
 
 use halfrow::result::Report;
 use halfrow::verdict::Verdict;
+use halfrow_protocol::Kind;
+use halfrow_tests::altered::{Toward, judge};
 use halfrow_tests::proxy::{Proxy, Suffers};
 use halfrow_tests::served::Served;
 use halfrow_tests::system::System;
@@ -49,4 +51,23 @@ fn on_the_virtual_clock_every_stall_within_the_patience_passes() {
             }
         }
     }
+}
+
+/// Each answer to STATUS comes with the one to the next try, so that no link loses anything and each is asked for twice.
+#[test]
+fn a_link_that_holds_each_count_back_comes_to_an_end() {
+    let mut held = None;
+    let report = judge(&System::TINY, move |toward, packet| {
+        if toward == Toward::Board || !packet.is(Kind::Status) {
+            return vec![packet];
+        }
+        match held.take() {
+            None => {
+                held = Some(packet);
+                Vec::new()
+            }
+            Some(first) => vec![first, packet],
+        }
+    });
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
 }

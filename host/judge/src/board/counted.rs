@@ -6,6 +6,9 @@ use super::conversation::Conversation;
 use super::deadlines::Step;
 use super::{BoardError, Tally};
 
+/// How often the board is asked once more since the request before was sent twice: over a link that holds every answer back each is.
+const COUNTS: usize = 3;
+
 /// A count of packets that no link brings about which only loses some.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Miscount {
@@ -70,6 +73,15 @@ impl Counted {
 impl Conversation {
     /// The board's counters, which `clear` sets back.
     pub(super) fn status(&mut self, clear: bool, step: Step) -> Result<Status, BoardError> {
+        let retries = self.tally.retries;
+        let status = self.ask_for_status(clear, step)?;
+        if step == Step::Request {
+            self.count_behind(retries);
+        }
+        Ok(status)
+    }
+
+    fn ask_for_status(&mut self, clear: bool, step: Step) -> Result<Status, BoardError> {
         let (sent, retries) = (self.tally.packets_out, self.tally.retries);
         let status = self.request(&Request::Status { clear }, step, |reply| match reply {
             Reply::Status(status) => Some(status),
@@ -83,19 +95,22 @@ impl Conversation {
         if clear {
             self.counted.set_back(self.tally);
         }
-        if step == Step::Request {
-            self.count_behind(retries);
-        }
         Ok(status)
     }
 
     /// Asks how many packets came to the board, where one may have been lost and nobody would ask for it again. Whatever keeps
     /// the answer away keeps the next one away as well, and must not stand in front of what came before.
     pub(super) fn count(&mut self) {
-        if self.counts
-            && let Err(error) = self.status(false, Step::Request)
-        {
-            tracing::debug!("the board does not count: {error}");
+        let most = if self.counts { COUNTS } else { 0 };
+        for _ in 0..most {
+            let retries = self.tally.retries;
+            if let Err(error) = self.ask_for_status(false, Step::Request) {
+                tracing::debug!("the board does not count: {error}");
+                return;
+            }
+            if self.tally.retries == retries {
+                return;
+            }
         }
     }
 
