@@ -42,12 +42,8 @@ const POOR: &[&str] =
 pub const HOPELESS_LINKS: &[Scenario] = &[
     stops("no byte gets through", ",fault=drop,rate=1", "no answer to HELLO in 6 tries"),
     stops("no answer gets through", ",fault=drop,rate=1,toward=host", "no answer to HELLO in 6 tries"),
-    stops(
-        "bits that flip all the time",
-        ",fault=flip,rate=1e-2",
-        "the link is too poor to judge a board over",
-    )
-    .or_when_late(POOR),
+    stops("bits that flip all the time", ",fault=flip,rate=1e-2", "no answer to ECHO in 8 tries")
+        .or_when_late(POOR),
     stops("bits that flip far too often", ",fault=flip,rate=1e-3,seed=1", "no answer to ECHO in 8 tries")
         .or_when_late(POOR),
     stops("bytes that get lost far too often", ",fault=drop,rate=1e-3", "no answer to ECHO in 8 tries")
