@@ -44,7 +44,9 @@ pub use corrector::{
 pub use fast::{Corrector, ModelPath, Signer, UnavailablePath, UnknownPath};
 pub use frame::{BitDepth, Frame, FrameError};
 pub use geometry::{Geometry, GeometryError, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
-pub use grid::{GridResidual, GridResiduals, GridRoomError, GridShape, GridShapeError, RowValues, VISIBLE};
+pub use grid::{
+    GridResidual, GridResiduals, GridRoomError, GridShape, GridShapeError, ResidualSum, RowValues,
+};
 pub use interpolant::{Interpolant, UnknownInterpolant};
 pub use kernel::{Kernel, KernelError, NODES, TAP_NAMES, Taps, WEIGHT_ONE};
 pub use lens::{Equidistant, LensError, MAX_RADIUS, MIN_RADIUS, Short, Spherical};

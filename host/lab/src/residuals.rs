@@ -1,6 +1,6 @@
 //! What tables leave of a lens's distortion.
 
-use halfrow_model::{Camera, TableSet, VISIBLE};
+use halfrow_model::{Camera, GridResidual, ResidualSum, TableSet};
 use serde::Serialize;
 
 /// Mean and largest amount, in pixels.
@@ -12,6 +12,12 @@ pub struct Spread {
     pub max: f64,
 }
 
+impl From<GridResidual> for Spread {
+    fn from(GridResidual { mean, max, .. }: GridResidual) -> Self {
+        Self { mean, max }
+    }
+}
+
 /// The amounts in columns of one part of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Part {
@@ -21,6 +27,12 @@ pub struct Part {
     /// The share of its samples for which the amount is above 0.05 and can be seen, 0 to 1.
     #[serde(rename = "share_above_0.05")]
     pub visible: f64,
+}
+
+impl From<GridResidual> for Part {
+    fn from(residual: GridResidual) -> Self {
+        Self { amounts: residual.into(), visible: residual.share }
+    }
 }
 
 /// How far the samples of a frame are from where the exact projection of the lens puts them, in pixels of the corrected
@@ -49,7 +61,7 @@ impl Residuals {
     /// What `tables` leave in frames of `camera`.
     #[must_use]
     pub fn of(camera: &Camera, tables: &TableSet) -> Self {
-        let (mut inner, mut rim, mut vertical) = (Sum::default(), Sum::default(), Sum::default());
+        let [mut inner, mut rim, mut vertical] = [ResidualSum::default(); 3];
         let mut row_of_map = |row| {
             let mut amounts = vec![0.0; camera.geometry().width()];
             for (target, residual) in camera.residuals(tables, row) {
@@ -63,46 +75,12 @@ impl Residuals {
         let map = (0..camera.geometry().height()).map(&mut row_of_map).collect();
         let circle = inner.and(&rim);
         Self {
-            samples: circle.count,
-            circle: circle.part(),
-            inner: inner.part(),
-            rim: rim.part(),
-            vertical: vertical.spread(),
+            samples: circle.count(),
+            circle: circle.residual().into(),
+            inner: inner.residual().into(),
+            rim: rim.residual().into(),
+            vertical: vertical.residual().into(),
             map,
         }
-    }
-}
-
-#[derive(Default)]
-struct Sum {
-    count: usize,
-    sum: f64,
-    max: f64,
-    visible: usize,
-}
-
-impl Sum {
-    fn add(&mut self, amount: f64) {
-        self.count += 1;
-        self.sum += amount;
-        self.max = self.max.max(amount);
-        self.visible += usize::from(amount > VISIBLE);
-    }
-
-    fn and(&self, other: &Self) -> Self {
-        Self {
-            count: self.count + other.count,
-            sum: self.sum + other.sum,
-            max: self.max.max(other.max),
-            visible: self.visible + other.visible,
-        }
-    }
-
-    fn part(&self) -> Part {
-        Part { amounts: self.spread(), visible: self.visible as f64 / self.count.max(1) as f64 }
-    }
-
-    fn spread(&self) -> Spread {
-        Spread { mean: self.sum / self.count.max(1) as f64, max: self.max }
     }
 }

@@ -3,6 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::projection::{POLE, ProjectedRow};
+use super::residual_sum::{GridResidual, ResidualSum};
 use crate::{Camera, RowValues, TableSet};
 
 /// cos θ up to which an output counts as inner: 85 degrees off the axis.
@@ -10,20 +11,6 @@ const INNER: f64 = 0.087_155_742_747_658_17;
 
 /// The part of the circle's height in which rows count as inner.
 const INNER_ROWS: f64 = 0.9;
-
-/// An amount in columns that can be seen.
-pub const VISIBLE: f64 = 0.05;
-
-/// Columns by which outputs are taken from wrong places, of one part of the frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct GridResidual {
-    /// The mean amount; 0 of no output.
-    pub mean: f64,
-    /// The largest.
-    pub max: f64,
-    /// The share of outputs for which it is above 0.05, 0 to 1.
-    pub share: f64,
-}
 
 /// What tables leave of the exact projection.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -80,7 +67,7 @@ impl Lattice {
 
     /// What `tables` leave.
     pub(super) fn residuals(&self, tables: &TableSet) -> GridResiduals {
-        let (mut inner, mut rim, mut beyond) = (Sum::default(), Sum::default(), 0);
+        let (mut inner, mut rim, mut beyond) = (ResidualSum::default(), ResidualSum::default(), 0);
         for (&row, wanted) in self.rows.iter().zip(self.wanted.chunks_exact(self.columns.len())) {
             let values = tables.values(row).unwrap_or_default();
             for (&column, &(wanted, part)) in self.columns.iter().zip(wanted) {
@@ -131,37 +118,6 @@ pub(crate) fn height_in_circle(camera: &Camera, row: usize) -> f64 {
 /// Whether what is seen with cos θ = `ahead` in a row at `height` of [`height_in_circle`] is inner.
 pub(crate) fn is_inner(ahead: f64, height: f64) -> bool {
     ahead >= INNER && height <= INNER_ROWS
-}
-
-#[derive(Default)]
-struct Sum {
-    count: usize,
-    sum: f64,
-    max: f64,
-    visible: usize,
-}
-
-impl Sum {
-    fn add(&mut self, amount: f64) {
-        self.count += 1;
-        self.sum += amount;
-        self.max = self.max.max(amount);
-        self.visible += usize::from(amount > VISIBLE);
-    }
-
-    fn and(&self, other: &Self) -> Self {
-        Self {
-            count: self.count + other.count,
-            sum: self.sum + other.sum,
-            max: self.max.max(other.max),
-            visible: self.visible + other.visible,
-        }
-    }
-
-    fn residual(&self) -> GridResidual {
-        let count = self.count.max(1) as f64;
-        GridResidual { mean: self.sum / count, max: self.max, share: self.visible as f64 / count }
-    }
 }
 
 impl Camera {

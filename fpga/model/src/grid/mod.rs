@@ -6,13 +6,15 @@ mod fit;
 mod lattice;
 mod normal;
 mod projection;
+mod residual_sum;
 mod rows;
 mod shape;
 mod values;
 
 pub use choice::GridRoomError;
-pub use lattice::{GridResidual, GridResiduals, VISIBLE};
+pub use lattice::GridResiduals;
 pub(crate) use lattice::{height_in_circle, is_inner};
+pub use residual_sum::{GridResidual, ResidualSum};
 pub use shape::{GridShape, GridShapeError};
 pub use values::RowValues;
 pub(crate) use values::{Parabola, rounded};
