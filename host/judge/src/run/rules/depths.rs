@@ -4,9 +4,9 @@ use halfrow_model::{BitDepth, Geometry};
 
 use super::compared::Compared;
 use super::rows::{FRAME, GENERATION};
-use super::{Rules, of_board};
+use super::{Rules, miscounted, of_board};
 use crate::board::RowTiming;
-use crate::result::{CheckName, Counter, Finding, Rule};
+use crate::result::{Counter, Rule};
 use crate::run::findings::End;
 use crate::run::variations::Build;
 
@@ -40,7 +40,6 @@ impl Rules<'_, '_> {
         if counted == over || !self.run.board.had_each_packet_once(&status) {
             return Ok(());
         }
-        let finding = Finding::CounterWrong { counter: Counter::SamplesOver, counted, right: over };
-        Err(End::failed(CheckName::Rules, finding))
+        Err(miscounted(Counter::SamplesOver, counted, over))
     }
 }

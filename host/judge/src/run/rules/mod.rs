@@ -31,7 +31,7 @@ use super::plan::Segment;
 use super::steps::Run;
 use crate::board::{BoardError, Capabilities, Given, RowTiming, Said};
 use crate::progress::Step;
-use crate::result::{Answer, CheckName, Doubt, Finding, Outcome, Rule};
+use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Outcome, Rule};
 use crate::verdict::Cause;
 use compared::Compared;
 pub(super) use price::price;
@@ -222,6 +222,10 @@ fn of_rows(rule: Rule, error: BoardError) -> End {
         }
         error => of_board(error),
     }
+}
+
+fn miscounted(counter: Counter, counted: u32, right: u32) -> End {
+    End::failed(CheckName::Rules, Finding::CounterWrong { counter, counted, right })
 }
 
 fn broken(rule: Rule, kind: Kind, right: Answer, found: Answer) -> End {

@@ -2,9 +2,9 @@
 
 use halfrow_protocol::message::RefusalCode;
 
-use super::{Rules, of_board};
+use super::{Rules, miscounted, of_board};
 use crate::board::{Said, Status};
-use crate::result::{CheckName, Counter, Finding};
+use crate::result::Counter;
 use crate::run::findings::End;
 
 /// Refusals that came.
@@ -39,9 +39,7 @@ impl Rules<'_, '_> {
         ];
         match least.into_iter().find(|&(_, counted, right)| counted < right) {
             None => Ok(()),
-            Some((counter, counted, right)) => {
-                Err(End::failed(CheckName::Rules, Finding::CounterWrong { counter, counted, right }))
-            }
+            Some((counter, counted, right)) => Err(miscounted(counter, counted, right)),
         }
     }
 }

@@ -7,7 +7,7 @@ use halfrow_protocol::message::{Commit, Entries, RefusalCode, Request, RowIn, Ro
 use halfrow_protocol::samples::pack;
 
 use super::compared::Compared;
-use super::{FIRST_FACTOR, Rules, broken, longer, of_board, of_rows, other_row};
+use super::{FIRST_FACTOR, Rules, broken, longer, miscounted, of_board, of_rows, other_row};
 use crate::board::BoardError;
 use crate::reference::correct;
 use crate::result::{Answer, CheckName, Counter, Finding, Rule};
@@ -79,16 +79,12 @@ impl Rules<'_, '_> {
 
     /// Asks for a black row at `place`, which must be refused.
     pub(super) fn row_refused(&mut self, rule: Rule, place: RowPlace, code: RefusalCode) -> Result<(), End> {
-        let mut packed = Vec::new();
-        pack(&vec![0; place.width.into()], &mut packed);
-        self.refused(rule, &Request::RowIn(RowIn { place, packed: &packed }), code, 0)
+        self.refused(rule, &Request::RowIn(RowIn { place, packed: &black(place) }), code, 0)
     }
 
     /// The same with what is not looked at: the other flags, the generation, and a byte behind the samples.
     fn marked_row_refused(&mut self, place: RowPlace, code: RefusalCode) -> Result<(), End> {
-        let mut packed = Vec::new();
-        pack(&vec![0; place.width.into()], &mut packed);
-        let mut bytes = longer(&Request::RowIn(RowIn { place, packed: &packed }));
+        let mut bytes = longer(&Request::RowIn(RowIn { place, packed: &black(place) }));
         bytes[FLAGS] |= !LAST;
         bytes[FLAGS + 1] = GENERATION;
         self.bytes_refused(Rule::Skipped, Kind::RowIn, &bytes, code, 0)
@@ -312,9 +308,14 @@ impl Rules<'_, '_> {
         let counts = [(Counter::NextRowIn, status.next_row_in), (Counter::NextRowOut, status.next_row_out)];
         match counts.into_iter().find(|&(_, counted)| counted != right) {
             None => Ok(()),
-            Some((counter, counted)) => {
-                Err(End::failed(CheckName::Rules, Finding::CounterWrong { counter, counted, right }))
-            }
+            Some((counter, counted)) => Err(miscounted(counter, counted, right)),
         }
     }
+}
+
+/// The samples of a black row.
+fn black(place: RowPlace) -> Vec<u8> {
+    let mut packed = Vec::new();
+    pack(&vec![0; place.width.into()], &mut packed);
+    packed
 }
