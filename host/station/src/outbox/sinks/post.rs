@@ -99,7 +99,7 @@ impl PostSink {
 fn read(path: &Path) -> Result<String, SinkSettingsError> {
     let text = secret::text(path)?;
     let token = text.trim();
-    if token.is_empty() || !token.bytes().all(|byte| byte.is_ascii_graphic()) {
+    if !token.bytes().all(|byte| byte.is_ascii_graphic()) {
         return Err(SinkSettingsError::Token { path: path.to_owned() });
     }
     Ok(token.to_owned())
