@@ -53,19 +53,11 @@ const D65: u16 = 21;
 /// From XYZ to linear sRGB by IEC 61966-2-1, in ten thousandths.
 const XYZ_TO_SRGB: [i32; 9] = [32406, -15372, -4986, -9689, 18758, 415, 557, -2040, 10570];
 
-/// Writes `frame` as a DNG, its samples as they are.
+/// Writes `frame` as a DNG, its samples as they are, for who shows it turned by `orientation`.
 ///
 /// # Errors
 /// The encoder's, or whatever `out` answers.
-pub fn encode(frame: &Frame, out: &mut (impl Write + Seek)) -> Result<(), TiffError> {
-    encode_oriented(frame, Orientation::default(), out)
-}
-
-/// [`encode`] for who shows it turned by `orientation`.
-///
-/// # Errors
-/// As those of [`encode`].
-pub(super) fn encode_oriented(
+pub fn encode(
     frame: &Frame,
     orientation: Orientation,
     out: &mut (impl Write + Seek),

@@ -81,8 +81,8 @@ impl Format {
         match self {
             Self::Pgm => pgm::encode(frame, &mut bytes)?,
             Self::Png => png::encode(frame, &mut bytes)?,
-            Self::Tiff => tiff::encode_oriented(frame, orientation, &mut Cursor::new(&mut bytes))?,
-            Self::Dng => dng::encode_oriented(frame, orientation, &mut Cursor::new(&mut bytes))?,
+            Self::Tiff => tiff::encode(frame, orientation, &mut Cursor::new(&mut bytes))?,
+            Self::Dng => dng::encode(frame, orientation, &mut Cursor::new(&mut bytes))?,
             Self::Raw => raw::encode(frame, RawLayout::U16Le, &mut bytes)?,
         }
         Ok(bytes)

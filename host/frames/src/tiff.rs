@@ -41,19 +41,12 @@ pub(super) fn picture(bytes: &[u8], how: &ReadOptions) -> Result<Picture, Decode
     Ok(Picture { orientation: told.orientation, ..picture }.turned())
 }
 
-/// Writes `frame` as grey samples, as they are: of 8 bits when that is its depth, else of 16; uncompressed.
+/// Writes `frame` as grey samples, as they are: of 8 bits when that is its depth, else of 16; uncompressed,
+/// and for who shows it turned by `orientation`.
 ///
 /// # Errors
 /// The encoder's, or whatever `out` answers.
-pub fn encode(frame: &Frame, out: &mut (impl Write + Seek)) -> Result<(), TiffError> {
-    encode_oriented(frame, Orientation::default(), out)
-}
-
-/// [`encode`] for who shows it turned by `orientation`.
-///
-/// # Errors
-/// As those of [`encode`].
-pub(super) fn encode_oriented(
+pub fn encode(
     frame: &Frame,
     orientation: Orientation,
     out: &mut (impl Write + Seek),

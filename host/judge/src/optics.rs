@@ -288,20 +288,24 @@ impl Optics {
 /// # Errors
 /// [`OpticsError`] when it is neither, or a file that cannot be used.
 pub fn kernel(name: &OsStr) -> Result<Kernel, OpticsError> {
-    kernel_file(name).map(|file| file.kernel)
+    kernel_file(name).map(|(file, _)| file.kernel)
 }
 
-/// The kernel file of this name, or that of a kernel by name, which has no notes.
+/// The kernel file of this name, and what it was read from; or that of a kernel by name, which has no notes and was read from
+/// nothing.
 ///
 /// # Errors
 /// As [`kernel`].
-pub fn kernel_file(name: &OsStr) -> Result<KernelFile, OpticsError> {
+pub fn kernel_file(name: &OsStr) -> Result<(KernelFile, Option<Input>), OpticsError> {
     match name.to_string_lossy().parse::<NamedKernel>() {
-        Ok(named) => Ok(KernelFile { kernel: named.kernel()?, about: None }),
+        Ok(named) => Ok((KernelFile { kernel: named.kernel()?, about: None }, None)),
         Err(unknown) if !Path::new(name).exists() => {
             Err(OpticsError::Kernel { name: name.display().to_string(), unknown })
         }
-        Err(_) => Ok(KernelFile::read(Path::new(name))?),
+        Err(_) => {
+            let (file, input) = KernelFile::read(Path::new(name))?;
+            Ok((file, Some(input)))
+        }
     }
 }
 
@@ -314,6 +318,8 @@ pub struct Chosen {
     pub tables: TableSet,
     /// The kernel.
     pub kernel: Kernel,
+    /// The kernel file that was named, if one was.
+    pub kernel_file: Option<Input>,
     /// Where both come from, for people.
     pub source: String,
     /// Rows outside of the lens's image circle; none for a file, which does not say.
@@ -356,7 +362,10 @@ fn unchecked(
     optics: Optics,
     kernel_name: Option<&OsStr>,
 ) -> Result<Chosen, OpticsError> {
-    let named = kernel_name.map(kernel).transpose()?;
+    let (named, kernel_file) = match kernel_name.map(kernel_file).transpose()? {
+        Some((named, input)) => (Some(named.kernel), input),
+        None => (None, None),
+    };
     let kernel_name = kernel_name.map(OsStr::to_string_lossy);
     let Some((path, file)) = file else {
         let tables = optics.tables()?;
@@ -366,12 +375,12 @@ fn unchecked(
         let kernel = named.unwrap_or_else(|| Kernel::from(Interpolant::Hermite));
         let rows_outside_circle = Some(optics.camera.rows_outside_circle());
         let source = format!("{from}, {name} kernel");
-        return Ok(Chosen { optics, tables, kernel, source, rows_outside_circle });
+        return Ok(Chosen { optics, tables, kernel, kernel_file, source, rows_outside_circle });
     };
     let mut source = path.display().to_string();
     if let Some(name) = kernel_name {
         source = format!("{source}, {name} kernel");
     }
     let kernel = named.unwrap_or(file.kernel);
-    Ok(Chosen { optics, tables: file.tables, kernel, source, rows_outside_circle: None })
+    Ok(Chosen { optics, tables: file.tables, kernel, kernel_file, source, rows_outside_circle: None })
 }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use halfrow::call::Input;
 use halfrow::model::{self, Interpolant, Taps, WEIGHT_ONE};
 use halfrow::optics;
 use halfrow::tables::KernelFile;
@@ -25,6 +26,8 @@ pub(crate) struct Kernel {
     pub(crate) name: String,
     /// What it was asked for by: its name or its file. None of weights.
     pub(crate) asked: Option<PathBuf>,
+    /// The file that it was read from.
+    pub(crate) file: Option<Input>,
 }
 
 #[pymethods]
@@ -32,8 +35,9 @@ impl Kernel {
     #[new]
     #[pyo3(signature = (name = PathBuf::from(Interpolant::Hermite.name())))]
     fn new(name: PathBuf) -> PyResult<Self> {
-        let KernelFile { kernel, about } = optics::kernel_file(name.as_os_str()).map_err(errors::optics)?;
-        Ok(Self { kernel, about, name: name.display().to_string(), asked: Some(name) })
+        let (KernelFile { kernel, about }, file) =
+            optics::kernel_file(name.as_os_str()).map_err(errors::optics)?;
+        Ok(Self { kernel, about, name: name.display().to_string(), asked: Some(name), file })
     }
 
     /// The kernel of real weights: an array of float64 of shape (65, 5), a row for x = 0, 1/32, …, 2 with the weights of
@@ -54,7 +58,7 @@ impl Kernel {
         let node = |node: usize| std::array::from_fn(|tap| weights[[node, tap]]);
         let nodes: Vec<[f64; 5]> = (0..weights.nrows()).map(node).collect();
         let kernel = model::Kernel::from_weights(&nodes).map_err(errors::input)?;
-        Ok(Self { kernel, about: None, name: name.to_owned(), asked: None })
+        Ok(Self { kernel, about: None, name: name.to_owned(), asked: None, file: None })
     }
 
     /// The samples that it reads: 5 or 7.

@@ -155,10 +155,11 @@ impl Options<'_> {
         let mut asked = tables.kernel_asked.clone();
         if let Some(kernel) = arguments::kernel(&self.kernel)? {
             let name;
-            Kernel { kernel: chosen.kernel, name, asked, .. } = kernel.taken()?;
+            Kernel { kernel: chosen.kernel, file: chosen.kernel_file, name, asked, .. } = kernel.taken()?;
             chosen.source = format!("{}, judged with the {name} kernel", chosen.source);
         }
-        Ok(Judged { plan: chosen.plan(phase), files: tables.files.clone(), kernel: asked })
+        let files = tables.files.iter().cloned().chain(chosen.kernel_file.clone()).collect();
+        Ok(Judged { plan: chosen.plan(phase), files, kernel: asked })
     }
 
     fn options(&mut self, files: Vec<Input>) -> PyResult<RunOptions> {

@@ -172,8 +172,8 @@ impl Tables {
     /// The kernel.
     #[getter]
     fn kernel(&self) -> Kernel {
-        let (kernel, name) = (self.chosen.kernel.clone(), self.kernel_name.clone());
-        Kernel { kernel, about: None, name, asked: self.kernel_asked.clone() }
+        let Chosen { kernel, kernel_file: file, .. } = self.chosen.clone();
+        Kernel { kernel, about: None, name: self.kernel_name.clone(), asked: self.kernel_asked.clone(), file }
     }
 
     /// The lens that built-in frames are seen through; for tables of a file, which does not say it, the paper's.
@@ -215,7 +215,13 @@ impl Tables {
     ) -> PyResult<Self> {
         let (mut kernel_name, mut kernel_asked) = (OF_FILE.to_owned(), None);
         if let Some(kernel) = kernel {
-            Kernel { kernel: chosen.kernel, name: kernel_name, asked: kernel_asked, .. } = kernel.taken()?;
+            Kernel {
+                kernel: chosen.kernel,
+                file: chosen.kernel_file,
+                name: kernel_name,
+                asked: kernel_asked,
+                ..
+            } = kernel.taken()?;
             chosen.source = format!("{from}, {kernel_name} kernel");
         }
         Ok(Self { chosen, about: None, kernel_name, kernel_asked, files })

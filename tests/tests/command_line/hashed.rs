@@ -30,6 +30,18 @@ fn what_is_hashed_is_what_was_judged() {
 }
 
 #[test]
+fn a_kernel_file_is_among_the_files_of_a_run() {
+    let folder = Folder::new();
+    folder.write("own.json", include_bytes!("../../../host/judge/src/kernels/sharp7.json"));
+    let call =
+        small("verify", &["--json", "--kernel", "own.json", "--frame", "builtin:black", "--at-speed", "0"]);
+    let files = &folder.halfrow(call.iter().copied()).json()["run"]["files"];
+    let hash = halfrow::result::sha256([include_bytes!("../../../host/judge/src/kernels/sharp7.json")]);
+    assert_eq!(*files, serde_json::json!([{ "path": "own.json", "sha256": hash }]));
+    opens_once(&folder, &call, "own.json");
+}
+
+#[test]
 fn what_names_a_photograph_of_a_kernel_is_what_it_was_fitted_to() {
     let folder = Folder::new();
     std::fs::create_dir(folder.path().join("photos")).unwrap();

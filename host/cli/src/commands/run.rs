@@ -77,7 +77,7 @@ impl RunArguments {
         self.tables.read(given, &self.lens, settings)
     }
 
-    /// Tables and kernel to judge with, of `tables` if there are any, and the file that the tables or the lens were read from.
+    /// Tables and kernel to judge with, of `tables` if there are any, and the files that they and the lens were read from.
     pub(super) fn chosen(
         &self,
         tables: Option<NamedTables>,
@@ -85,8 +85,8 @@ impl RunArguments {
     ) -> Result<(Chosen, Vec<Input>), Failure> {
         let of_tables = tables.as_ref().map(|tables| tables.input.clone());
         let chosen = optics::choose(tables, &self.lens, self.kernel(settings))?;
-        let inputs = of_tables.into_iter().chain(chosen.optics.file.clone()).collect();
-        Ok((chosen, inputs))
+        let inputs = [of_tables, chosen.optics.file.clone(), chosen.kernel_file.clone()];
+        Ok((chosen, inputs.into_iter().flatten().collect()))
     }
 
     fn kernel<'a>(&'a self, settings: &'a Settings) -> Option<&'a OsStr> {

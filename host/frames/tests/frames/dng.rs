@@ -1,6 +1,6 @@
 //! DNG files that Python's struct wrote byte by byte, and what must be read from them.
 
-use halfrow_frames::{DecodeError, PictureSize, ReadOptions, decode, dng};
+use halfrow_frames::{DecodeError, Orientation, PictureSize, ReadOptions, decode, dng};
 use halfrow_model::{BitDepth, Frame, Phase};
 
 /// 4 x 2 of [`SAMPLES`], BGGR, white at 4095, low byte first.
@@ -161,7 +161,7 @@ fn what_is_written_is_read_back_exactly() {
         let samples = (0..64 * 6).map(|place: u16| place.wrapping_mul(40_503) & depth.max()).collect();
         let frame = Frame::new(64, depth, phase, samples).unwrap();
         let mut file = std::io::Cursor::new(Vec::new());
-        dng::encode(&frame, &mut file).unwrap();
+        dng::encode(&frame, Orientation::default(), &mut file).unwrap();
         assert_eq!(
             decode(file.get_ref(), &ReadOptions { depth, phase, ..ReadOptions::default() }).unwrap(),
             frame

@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use halfrow_frames::{RawGeometry, RawLayout, ReadOptions, decode, dng, pgm, png, raw, tiff};
+use halfrow_frames::{Orientation, RawGeometry, RawLayout, ReadOptions, decode, dng, pgm, png, raw, tiff};
 use halfrow_model::{BitDepth, Frame, Phase};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -16,8 +16,8 @@ fn files() -> Vec<Vec<u8>> {
     let mut as_dng = Cursor::new(Vec::new());
     pgm::encode(&frame, &mut as_pgm).unwrap();
     png::encode(&frame, &mut as_png).unwrap();
-    tiff::encode(&frame, &mut as_tiff).unwrap();
-    dng::encode(&frame, &mut as_dng).unwrap();
+    tiff::encode(&frame, Orientation::default(), &mut as_tiff).unwrap();
+    dng::encode(&frame, Orientation::default(), &mut as_dng).unwrap();
     vec![as_pgm, as_png, as_tiff.into_inner(), as_dng.into_inner()]
 }
 

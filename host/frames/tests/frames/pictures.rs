@@ -1,7 +1,7 @@
 //! PNG and TIFF files that Python's zlib and struct wrote byte by byte, and what must be read from them. The scaled
 //! samples were computed there with exact fractions.
 
-use halfrow_frames::{DecodeError, PictureSize, ReadOptions, decode, png, tiff};
+use halfrow_frames::{DecodeError, Orientation, PictureSize, ReadOptions, decode, png, tiff};
 use halfrow_model::{BitDepth, Frame, FrameError, Phase};
 
 /// 4 x 2, grey, 16 bits: [`GREY`].
@@ -183,7 +183,7 @@ fn what_is_written_is_read_back_exactly() {
         let frame = Frame::new(64, depth, Phase::Grbg, samples).unwrap();
         let (mut as_png, mut as_tiff) = (Vec::new(), std::io::Cursor::new(Vec::new()));
         png::encode(&frame, &mut as_png).unwrap();
-        tiff::encode(&frame, &mut as_tiff).unwrap();
+        tiff::encode(&frame, Orientation::default(), &mut as_tiff).unwrap();
         assert_eq!(decode(&as_png, &options(depth)).unwrap(), frame);
         assert_eq!(decode(as_tiff.get_ref(), &options(depth)).unwrap(), frame);
     }

@@ -129,12 +129,12 @@ impl KernelFile {
     /// The keys, in the order of the file.
     pub(super) const KEYS: [Place; 3] = [Place::Datapath, Place::About, Place::Kernel];
 
-    /// The kernel file `path`.
+    /// The kernel file `path`, and what it was read from.
     ///
     /// # Errors
     /// [`TableFileError`] when it cannot be read or [`Self::parse`] refuses its text.
-    pub fn read(path: &Path) -> Result<Self, TableFileError> {
-        read(path, Self::parse).map(|(file, _)| file)
+    pub fn read(path: &Path) -> Result<(Self, Input), TableFileError> {
+        read(path, Self::parse)
     }
 
     /// The kernel file with the content `text`.

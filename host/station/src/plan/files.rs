@@ -1,8 +1,9 @@
-//! The files that a plan names, each read and hashed once.
+//! The files that a plan names, known by the hash of what was read from each.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use halfrow::call::Input;
 use halfrow::frames::check_regular;
 use halfrow::result::{FileHash, sha256};
 use toml::Spanned;
@@ -22,21 +23,32 @@ impl Files {
         Self { folder: plan.parent().unwrap_or(Path::new("")).to_owned(), named: Vec::new() }
     }
 
-    /// Where the file `name` is. It is hashed if it was not before.
-    pub(super) fn take(&mut self, name: &Spanned<String>) -> Result<PathBuf, Fault> {
+    /// Where the file `name` is.
+    pub(super) fn find(&self, name: &Spanned<String>) -> Result<PathBuf, Fault> {
         let path = self.folder.join(name.get_ref());
-        if self.named.iter().any(|file| file.path == *name.get_ref()) {
-            return Ok(path);
-        }
         let at = name.span().start;
         check_regular(&path)
             .map_err(|error| Fault::input(at, format!("the file {}", path.display()), error))?;
-        let bytes = fs::read(&path).map_err(|error| {
+        fs::metadata(&path).map_err(|error| {
             let what = format!("the file {} cannot be read: {error}", path.display());
             Fault::wrong(at, what, "check its name, and who may read it")
         })?;
-        self.named.push(FileHash { path: name.get_ref().clone(), sha256: sha256([bytes]) });
         Ok(path)
+    }
+
+    /// Notes what was `read` from the file `name`, which must be the same each time.
+    pub(super) fn note(&mut self, name: &Spanned<String>, read: Input) -> Result<(), Fault> {
+        let (path, sha256) = (name.get_ref().clone(), read.sha256);
+        match self.named.iter().find(|file| file.path == path) {
+            Some(file) if file.sha256 == sha256 => {}
+            Some(_) => {
+                let what = format!("the file {} changed while the plan was read", read.path.display());
+                let remedy = "read the plan again when nobody writes to its files";
+                return Err(Fault::wrong(name.span().start, what, remedy));
+            }
+            None => self.named.push(FileHash { path, sha256 }),
+        }
+        Ok(())
     }
 
     /// All of them, and the hash of the plan's `text` with them.
@@ -50,4 +62,21 @@ impl Files {
 pub(crate) fn plan_hash(text: &str, files: &[FileHash]) -> String {
     let lines = files.iter().map(|FileHash { path, sha256 }| format!("\n{path}\0{sha256}"));
     sha256(std::iter::once(text.to_owned()).chain(lines))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_changes_between_two_times_that_it_is_read_is_refused() {
+        let mut files = Files::beside(Path::new("plan.toml"));
+        let name = Spanned::new(0..5, "a.pgm".to_owned());
+        let mut note = |bytes: &[u8]| files.note(&name, Input::of_bytes(Path::new("a.pgm"), bytes));
+        note(b"one").unwrap();
+        note(b"one").unwrap();
+        note(b"other").unwrap_err();
+        let (named, _) = files.hashed("");
+        assert_eq!(named, [Input::of_bytes(Path::new("a.pgm"), b"one").into()]);
+    }
 }

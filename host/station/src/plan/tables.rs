@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use halfrow::FrameSource;
-use halfrow::frames::{self, Builtin, PictureSize, ReadOptions};
-use halfrow::model::{BitDepth, Equidistant, Frame, Geometry, Phase};
+use halfrow::call::Input;
+use halfrow::frames::{Builtin, FrameFile, PictureSize, ReadOptions};
+use halfrow::model::{BitDepth, Equidistant, Geometry, Phase};
 use halfrow::optics::{self, Chosen, Optics, OpticsError, TablesBy, View};
 use halfrow::tables::TableFile;
 use toml::Spanned;
@@ -14,6 +15,9 @@ use toml::Spanned;
 use super::files::Files;
 use super::text::{RowsText, TablesText};
 use crate::input_error::Fault;
+
+/// What was chosen, and what its table file was read from, if it has one.
+type FromFile = (Chosen, Option<Input>);
 
 impl TablesText {
     /// These, with what `over` says instead. A lens, a file and a radius take each other's place.
@@ -48,11 +52,23 @@ impl TablesText {
         let kernel = kernel.as_deref().map(Path::as_os_str);
         let at = self.place(step);
         let chosen = match (&self.file, &self.lens) {
-            (Some(name), _) => self.of_file(&files.take(name)?, kernel),
-            (None, Some(name)) => self.of_lens(&files.take(name)?, kernel),
+            (Some(name), _) => self.of_file(&files.find(name)?, kernel),
+            (None, Some(name)) => self.of_lens(&files.find(name)?, kernel),
             (None, None) => self.of_radius(kernel),
         };
-        chosen.map_err(|error| Fault::input(at, "what the plan says of tables", error))
+        let (chosen, table_file) =
+            chosen.map_err(|error| Fault::input(at, "what the plan says of tables", error))?;
+        let read = [
+            (&self.kernel, chosen.kernel_file.clone()),
+            (&self.file, table_file),
+            (&self.lens, chosen.optics.file.clone()),
+        ];
+        for (name, read) in read {
+            if let (Some(name), Some(read)) = (name, read) {
+                files.note(name, read)?;
+            }
+        }
+        Ok(chosen)
     }
 
     /// Refuses what contradicts each other, and depths that no sample has.
@@ -90,22 +106,22 @@ impl TablesText {
         View { width: of(&self.width), height: of(&self.height), depth, ..View::default() }
     }
 
-    fn of_file(&self, path: &Path, kernel: Option<&OsStr>) -> Result<Chosen, OpticsError> {
-        let (file, _) = TableFile::read(path)?;
+    fn of_file(&self, path: &Path, kernel: Option<&OsStr>) -> Result<FromFile, OpticsError> {
+        let (file, input) = TableFile::read(path)?;
         let optics = Optics::before(file.tables.geometry())?;
-        optics::choose(Some((path, file)), optics, kernel)
+        Ok((optics::choose(Some((path, file)), optics, kernel)?, Some(input)))
     }
 
-    fn of_lens(&self, path: &Path, kernel: Option<&OsStr>) -> Result<Chosen, OpticsError> {
+    fn of_lens(&self, path: &Path, kernel: Option<&OsStr>) -> Result<FromFile, OpticsError> {
         let by = self.rows_by(TablesBy::Fitting);
-        optics::choose(None, Optics::of_file(path, &self.view(), by)?, kernel)
+        Ok((optics::choose(None, Optics::of_file(path, &self.view(), by)?, kernel)?, None))
     }
 
-    fn of_radius(&self, kernel: Option<&OsStr>) -> Result<Chosen, OpticsError> {
+    fn of_radius(&self, kernel: Option<&OsStr>) -> Result<FromFile, OpticsError> {
         let radius = self.radius.as_ref().map(|radius| *radius.get_ref());
         let lens = radius.map_or_else(|| Ok(Equidistant::default()), Equidistant::from_radius)?;
         let by = self.rows_by(TablesBy::Equation9);
-        optics::choose(None, Optics::of_equidistant(lens, &self.view(), by)?, kernel)
+        Ok((optics::choose(None, Optics::of_equidistant(lens, &self.view(), by)?, kernel)?, None))
     }
 
     fn rows_by(&self, otherwise: TablesBy) -> TablesBy {
@@ -118,12 +134,12 @@ impl TablesText {
 }
 
 /// The kernel's name, or its file's path.
-fn kernel(name: &Spanned<String>, files: &mut Files) -> Result<PathBuf, Fault> {
+fn kernel(name: &Spanned<String>, files: &Files) -> Result<PathBuf, Fault> {
     use halfrow::kernels::NamedKernel;
     if name.get_ref().parse::<NamedKernel>().is_ok() {
         return Ok(PathBuf::from(name.get_ref()));
     }
-    files.take(name)
+    files.find(name)
 }
 
 /// The frames with these names: `builtin:NAME`, or files, which must have the size of the tables.
@@ -150,10 +166,11 @@ fn of_file(
     files: &mut Files,
 ) -> Result<FrameSource, Fault> {
     let at = name.span().start;
-    let path = files.take(name)?;
-    let read = frames::read(&path, how);
-    let frame: Frame =
+    let path = files.find(name)?;
+    let read = FrameFile::read(&path).and_then(|file| Ok((file.decode(how)?.frame, file)));
+    let (frame, file) =
         read.map_err(|error| Fault::input(at, format!("the frame {}", path.display()), error))?;
+    files.note(name, Input::of_bytes(&path, file.bytes()))?;
     let (size, wanted) = ((frame.width(), frame.height()), (geometry.width(), geometry.height()));
     if size != wanted {
         let what = format!(
