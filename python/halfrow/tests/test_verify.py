@@ -103,6 +103,15 @@ def test_a_report_names_the_lens_s_file_by_its_hash(tmp_path, opencv):
         assert [(file.path, file.sha256) for file in report.run.files] == [(str(opencv), hashed)]
 
 
+def test_a_report_names_the_kernel_s_file_by_its_hash(tmp_path, small):
+    own = tmp_path / "own.json"
+    halfrow.Kernel("sharp7").write(own)
+    hashed = hashlib.sha256(own.read_bytes()).hexdigest()
+    for given in (own, halfrow.Kernel(own)):
+        report = halfrow.verify(tables=small, kernel=given, frames=["builtin:black"], at_speed=0)
+        assert [(file.path, file.sha256) for file in report.run.files] == [(str(own), hashed)]
+
+
 def test_what_is_hashed_is_what_was_judged(tmp_path, small):
     """What replaces a file between two times that it is opened would be named by a hash that is not that of what was judged."""
     small.write(tmp_path / "t.json")
