@@ -37,6 +37,14 @@ fn a_pass_has_a_case_for_the_verdict_each_check_and_each_frame() {
 }
 
 #[test]
+fn a_frame_through_the_decoy_s_tables_is_named_so() {
+    let mut report = made::pass();
+    report.frames[0].generation = 1;
+    let name = "builtin:street, decoy tables (frame 1, grbg, least blanking (0 clocks))";
+    case(&suite(&report), "halfrow.frame", name);
+}
+
+#[test]
 fn the_suite_says_which_kind_of_board_it_was() {
     let suite = suite(&made::pass());
     let value = |name| {

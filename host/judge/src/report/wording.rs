@@ -12,6 +12,7 @@ use crate::result::{
     Account, BoardKind, BoardReport, Finding, FrameReport, LatencyReport, LinkReport, NotExercised, Outcome,
     Reconnection, Report, SoakDifference, SoakLength, SoakReport, StreetReport, Suspect,
 };
+use crate::run::DECOY;
 use crate::verdict::Verdict;
 
 pub use coverage::coverage;
@@ -78,10 +79,14 @@ pub fn says(headline: &str, remedy: &str) -> bool {
     headline.to_lowercase().contains(remedy.trim_end_matches('.').to_lowercase().as_str())
 }
 
-/// A frame's name, with what is set otherwise for it, and how much of it was streamed where that is not all.
+/// A frame's name, with what is told of its tables where they are not those to judge with, and how much of it was streamed
+/// where that is not all.
 #[must_use]
 pub fn frame_name(frame: &FrameReport) -> Cow<'_, str> {
     let mut name = plain(&frame.name);
+    if frame.generation == DECOY {
+        name = format!("{name}, decoy tables").into();
+    }
     if let Some(variation) = frame.variation {
         name = format!("{name}, {variation}").into();
     }
