@@ -22,6 +22,8 @@ const FEW: u32 = 2;
 const PATIENCE: Duration = Duration::from_secs(5);
 /// The longest time between two looks at it: no link ends a shorter wait early.
 const LONGEST_IDLE: Duration = Duration::from_millis(250);
+/// So many blankings between frames pass in a second at least, or they are not waited for.
+const LEAST_RATE: u32 = 100;
 /// Bytes that go to the board between the beginning of a burst and its end, so that it is cut at another place each time.
 const BYTES_TO_CUT: [usize; 8] = [0, 5, 11, 40, 77, 130, 211, 400];
 /// Keeps the seed of bursts from that of frames.
@@ -70,6 +72,7 @@ pub(super) fn looked_at(mut payload: Vec<u8>, tells: bool) -> Vec<u8> {
 impl Rules<'_, '_> {
     pub(super) fn bursts(&mut self) -> Result<(), End> {
         self.bursts_refused()?;
+        self.blankings()?;
         self.waiting()?;
         self.ended_early()?;
         self.cut()?;
@@ -115,6 +118,21 @@ impl Rules<'_, '_> {
         for request in [unnamed, Request::Records { from: u32::MAX }] {
             let kind = request.kind();
             self.bytes_refused(Rule::Skipped, kind, &longer(&request), RefusalCode::Range, 0)?;
+        }
+        Ok(())
+    }
+
+    /// Frames with blankings between them in which one high bit is set.
+    fn blankings(&mut self) -> Result<(), End> {
+        for bit in u8::BITS..u16::BITS {
+            let Some(burst) = self.small_burst(FEW) else { return Ok(()) };
+            let frame_blanking = burst.frame_blanking | 1 << bit;
+            if clock_hz(&self.capabilities) / u32::from(frame_blanking) < LEAST_RATE {
+                return Ok(());
+            }
+            let burst = self.start(Burst { frame_blanking, ..burst })?;
+            self.look(&burst, 0, FEW, Awaited::ended(FEW))?;
+            self.told(Rule::Burst, &burst, 0..FEW, BurstState::Ended, Some(&[]))?;
         }
         Ok(())
     }

@@ -11,6 +11,8 @@ use crate::run::findings::End;
 
 /// In a byte that has few values it is none of them.
 pub(super) const NO_MEANING: u8 = 0x80;
+/// From this bit on none is set in any level, table, bank or mode.
+const FIRST_BIT: u32 = 2;
 impl Rules<'_, '_> {
     pub(super) fn requests(&mut self) -> Result<(), End> {
         self.without_meaning()?;
@@ -65,15 +67,18 @@ impl Rules<'_, '_> {
             let (kind, whole) = (request.kind(), payload(&request));
             self.malformed(kind, &whole[..whole.len() - 1])?;
         }
-        // The reset's level; the span's table and bank; the burst's mode.
-        self.malformed(Kind::Reset, &[NO_MEANING, 0, 0, 0, 0])?;
-        self.malformed(Kind::TableCrc, &[NO_MEANING, 0, 0, 0, 0, 0, 0])?;
-        self.malformed(Kind::TableCrc, &[0, NO_MEANING, 0, 0, 0, 0, 0])?;
-        if let Some(burst) = burst {
-            let mut burst = payload(&Request::Burst(burst));
-            burst.pop();
-            burst.push(NO_MEANING);
-            self.malformed(Kind::Burst, &burst)?;
+        for bit in FIRST_BIT..u8::BITS {
+            let no_meaning = 1 << bit;
+            self.malformed(Kind::Reset, &[no_meaning, 0, 0, 0, 0])?;
+            // The span's table and bank.
+            self.malformed(Kind::TableCrc, &[no_meaning, 0, 0, 0, 0, 0, 0])?;
+            self.malformed(Kind::TableCrc, &[0, no_meaning, 0, 0, 0, 0, 0])?;
+            if let Some(burst) = burst {
+                let mut burst = payload(&Request::Burst(burst));
+                burst.pop();
+                burst.push(no_meaning);
+                self.malformed(Kind::Burst, &burst)?;
+            }
         }
         Ok(())
     }

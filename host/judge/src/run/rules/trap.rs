@@ -4,16 +4,26 @@ use halfrow_model::{Content, Frame, row_signature};
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Burst, BurstMode, Expect, RefusalCode, Request};
 use halfrow_protocol::samples::pack;
+use rand_pcg::Pcg64Mcg;
 
 use super::bursts::Awaited;
+use super::compared::Compared;
+use super::rows::{FRAME, GENERATION};
 use super::{Rules, longer, of_board};
 use crate::reference::correct;
 use crate::result::Rule;
 use crate::run::Generation;
+use crate::run::at_speed::drawn_factors;
 use crate::run::findings::End;
+use crate::run::parts::of_height;
+use crate::run::variations::Build;
 
 /// What TRAP says when no row was kept.
 const NOTHING_KEPT: [u8; 1] = [0];
+/// The most rows of the tallest frame: its tables and signatures take a link 30 ms at 3 Mbaud.
+const MOST_ROWS: usize = 1023;
+/// The generation that it is made with: no other that is active in the rules.
+const TALL: u8 = 0xc3;
 
 impl Rules<'_, '_> {
     /// Each bit of a signature expected wrong, in one row and in another.
@@ -24,7 +34,8 @@ impl Rules<'_, '_> {
         self.configure(self.small.tall())?;
         let past = Expect { first: self.capabilities.max_height - 1, bytes: &[[0; Expect::BYTES]; 2] };
         self.refused(Rule::Trap, &Request::Expect(past), RefusalCode::Range, past.first)?;
-        let Some(frame) = self.trapped_frame() else { return Ok(()) };
+        let made = self.small.made(0, self.height, GENERATION);
+        let Some(frame) = self.trapped_frame(&made) else { return Ok(()) };
         let rows: Vec<_> = (0..frame.height()).map(|row| frame.row(row)).collect();
         let signatures: Vec<_> = rows.iter().map(|row| row_signature(row)).collect();
         self.expect_apart(&signatures)?;
@@ -43,6 +54,7 @@ impl Rules<'_, '_> {
             self.trapping()?;
             self.kept(row, rows[row])?;
         }
+        self.tall_trapped()?;
         self.drop_rows()?;
         self.replied(Rule::Trap, &Request::Trap, NOTHING_KEPT.to_vec())
     }
@@ -51,12 +63,46 @@ impl Rules<'_, '_> {
         self.small_burst(2).map(|burst| Burst { mode: BurstMode::Trapped, ..burst })
     }
 
-    /// The frame that is repeated, as it must leave.
-    fn trapped_frame(&self) -> Option<Frame> {
+    /// The frame that is repeated, as it must leave if `made` makes it.
+    fn trapped_frame(&self, made: &Generation) -> Option<Frame> {
         let burst = self.trap_burst()?;
-        let Generation { tables, kernel, .. } = self.small.made(0, self.height, super::rows::GENERATION);
+        let Generation { tables, kernel, .. } = made;
         let content = Content { seed: burst.seed, frame: burst.first_frame };
-        correct(&tables, &kernel, &content.frame(tables.geometry(), self.small.phase)).ok()
+        correct(tables, kernel, &content.frame(tables.geometry(), self.small.phase)).ok()
+    }
+
+    /// With `made` active, the last row of a frame expected otherwise.
+    pub(super) fn last_row_trapped(&mut self, made: &Generation) -> Result<(), End> {
+        let bursts = self.run.known_bursts().is_ok() && self.has_trap();
+        let Some(frame) = self.trapped_frame(made).filter(|_| bursts) else { return Ok(()) };
+        let mut expected: Vec<_> = frame.rows().map(row_signature).collect();
+        let Some(last) = expected.last_mut() else { return Ok(()) };
+        *last = !*last;
+        let row = frame.height() - 1;
+        self.run.board.expect(&expected).map_err(of_board)?;
+        self.trapping()?;
+        self.kept(row, frame.row(row))
+    }
+
+    /// The same in a frame whose height has every bit set, below the greatest height.
+    fn tall_trapped(&mut self) -> Result<(), End> {
+        let most = usize::from(self.capabilities.max_height).min(MOST_ROWS);
+        let rows = (1 << (most + 1).ilog2()) - 1;
+        let own = of_height(&self.small.geometry, rows);
+        let mut draws = Pcg64Mcg::new(u128::from(self.small.seed) | 1 << 67);
+        let Some(tables) = drawn_factors(own, Build::of(&self.capabilities).ring, &mut draws) else {
+            return Ok(());
+        };
+        let made = Generation { number: TALL, tables, kernel: self.small.tables[0].kernel.clone() };
+        self.configure(rows)?;
+        self.run.board.upload(&made.tables, &made.kernel).map_err(of_board)?;
+        let Some(first_row) = made.upper(1) else { return Ok(()) };
+        self.configure(1)?;
+        let Generation { number, tables, kernel } = &first_row;
+        self.run.board.commit(tables, kernel, FRAME, *number).map_err(of_board)?;
+        self.frames(Rule::Rows, Compared::default().with(&self.small, [FRAME], &first_row))?;
+        self.configure(rows)?;
+        self.last_row_trapped(&made)
     }
 
     /// Has these signatures expected, those behind the first row in a request of their own.

@@ -36,6 +36,7 @@ impl Rules<'_, '_> {
         self.row_refused(Rule::RowPlace, place, RefusalCode::Row)?;
         let compared = Compared::with_gaps(gap_seed).with(&self.small, [FRAME], &made);
         self.frames(Rule::Wide, compared)?;
+        self.last_row_trapped(&made)?;
         // What follows is made with the small tables again.
         self.rows_again()
     }
