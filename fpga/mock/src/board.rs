@@ -101,11 +101,12 @@ impl Board {
         let header = packet.header;
         count(&mut self.status.packets);
         if header.kind != Kind::Hello.code() {
-            if !self.session.is_open(header.session) && !Defects::of(self.fault).takes_any_session {
+            if !self.session.is_open(header.session) && !Defects::of(self.fault).packets.takes_any_session {
                 return self.turn_away(&header);
             }
             self.session.heard(now);
-            self.acknowledge(header.window);
+            let frees_all = header.kind == Kind::RowAck.code() && Defects::of(self.fault).packets.frees_all;
+            self.acknowledge(if frees_all { u32::MAX } else { header.window });
         }
         let done = match Request::read(packet) {
             _ if !self.knows(header.kind) => Err((RefusalCode::Kind, 0)),

@@ -88,6 +88,10 @@ pub enum BoardFault {
     },
     /// Packets are carried out whatever session they name.
     AnySession,
+    /// A ROW_ACK frees every output bank, whatever rows it names.
+    GreedyAck,
+    /// A row that is sent again says that it was never sent before.
+    StuckRepeats,
     /// The board claims another datapath id.
     WrongDatapath,
     /// A bit of a row flips between its packet and the core.
@@ -274,6 +278,12 @@ pub const FAULTS: &[Fault<BoardFault>] = &[
     }),
     fault("any-session", "packets are carried out whatever session they name", &[], |_| {
         Ok(BoardFault::AnySession)
+    }),
+    fault("greedy-ack", "a ROW_ACK frees every output bank, whatever rows it names", &[], |_| {
+        Ok(BoardFault::GreedyAck)
+    }),
+    fault("stuck-repeats", "a row that is sent again says that it was never sent before", &[], |_| {
+        Ok(BoardFault::StuckRepeats)
     }),
     fault("wrong-datapath", "the board claims another datapath id", &[], |_| Ok(BoardFault::WrongDatapath)),
     fault(

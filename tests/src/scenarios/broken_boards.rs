@@ -60,6 +60,12 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
     fails("tables that change late", ",fault=late-swap", "the change of table banks between two frames"),
     fails("a pause that is not counted", ",fault=hidden-pause", "pixel clocks of most latency"),
     fails("packets of any session", ",fault=any-session", "a packet of another session has no effect"),
+    fails(
+        "an acknowledgement that frees every bank",
+        ",fault=greedy-ack",
+        "row_banks_out rows are kept until they are acknowledged",
+    ),
+    fails("a row that denies that it came before", ",fault=stuck-repeats", "says 0 both times"),
     fails("a commit that is not checked", ",fault=unchecked-commit", "the board must refuse COMMIT"),
     expect(
         "ERROR",

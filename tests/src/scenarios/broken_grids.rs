@@ -50,6 +50,12 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
         "a packet of another session has no effect",
     ),
     fails(
+        "an acknowledgement that frees every bank behind a grid",
+        ",fault=greedy-ack",
+        "row_banks_out rows are kept until they are acknowledged",
+    ),
+    fails("a row behind a grid that denies that it came before", ",fault=stuck-repeats", "says 0 both times"),
+    fails(
         "a commit of a grid that is not checked",
         ",fault=unchecked-commit",
         "the board must refuse COMMIT",

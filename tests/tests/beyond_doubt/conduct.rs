@@ -65,7 +65,7 @@ fn rows_are_no_answers_whatever_their_number() {
         }
         let is_answer = toward == Toward::Host && packet.is(Kind::Status);
         match last.take_if(|row| is_answer && packet.header.sequence > row.header.sequence + 256) {
-            Some(row) => vec![changed(&row, packet.header.sequence, |row, _| row.repeats = 1), packet],
+            Some(row) => vec![changed(&row, packet.header.sequence, |row, _| row.repeats = u16::MAX), packet],
             None => vec![packet],
         }
     }));

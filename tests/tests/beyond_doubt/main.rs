@@ -12,6 +12,7 @@ mod counters;
 mod doubled;
 mod echoes;
 mod exercised;
+mod kept_rows;
 mod late_answers;
 mod lost_rows;
 mod outages;

@@ -6,6 +6,7 @@ use halfrow_protocol::message::{RefusalCode, Reply, RowIn, RowOut, RowPlace, Sta
 use halfrow_protocol::{Header, Kind, samples};
 
 use super::{Board, Refused, count};
+use crate::faults::Defects;
 use crate::player;
 
 /// Rows that wait to be played, and the numbers that credit and acknowledgement are counted by.
@@ -140,7 +141,7 @@ impl Board {
             count(&mut self.status.rows_repeated);
             let repeats = self.rows.repeats.entry(row_sequence).or_default();
             *repeats = repeats.saturating_add(1);
-            let repeats = *repeats;
+            let repeats = if Defects::of(self.fault).packets.repeats_stand { 0 } else { *repeats };
             self.send_row(row_sequence, repeats);
         } else {
             count(&mut self.status.rows_unneeded);

@@ -20,17 +20,38 @@ pub(crate) struct Defects {
     pub(crate) burst: BurstDefects,
     /// What the board says of itself.
     pub(crate) claims: WrongClaims,
+    /// What it makes of packets.
+    pub(crate) packets: PacketDefects,
+}
+
+/// What is wrong with what a board makes of packets.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PacketDefects {
     /// Whether it carries out packets whatever session they name.
     pub(crate) takes_any_session: bool,
+    /// Whether a ROW_ACK frees all output banks.
+    pub(crate) frees_all: bool,
+    /// Whether no row says that it was sent before.
+    pub(crate) repeats_stand: bool,
+}
+
+impl PacketDefects {
+    fn of(fault: Option<BoardFault>) -> Self {
+        Self {
+            takes_any_session: matches!(fault, Some(BoardFault::AnySession)),
+            frees_all: matches!(fault, Some(BoardFault::GreedyAck)),
+            repeats_stand: matches!(fault, Some(BoardFault::StuckRepeats)),
+        }
+    }
 }
 
 impl Defects {
     /// What is wrong with a board with `fault`.
     pub(crate) fn of(fault: Option<BoardFault>) -> Self {
-        let mut defects = Self::default();
-        let Self { core, tables, player, burst, claims, takes_any_session } = &mut defects;
+        let mut defects = Self { packets: PacketDefects::of(fault), ..Self::default() };
+        let Self { core, tables, player, burst, claims, .. } = &mut defects;
         match fault {
-            None => {}
+            None | Some(BoardFault::AnySession | BoardFault::GreedyAck | BoardFault::StuckRepeats) => {}
             Some(BoardFault::StuckData { bit, value }) => core.data_lines = StuckBits::one(bit, value),
             Some(BoardFault::StuckAddress { bit, value }) => core.address_lines = StuckBits::one(bit, value),
             Some(BoardFault::RowFactor { row, bit, hidden }) => {
@@ -52,7 +73,6 @@ impl Defects {
                 tables.drift = Some(Drift { after, entry: row, bit });
             }
             Some(BoardFault::UncheckedCommit) => tables.unchecked = true,
-            Some(BoardFault::AnySession) => *takes_any_session = true,
             Some(BoardFault::WrongDatapath) => claims.datapath = 8,
             Some(BoardFault::SpoiltRow { row, column, bit }) => {
                 player.spoilt = Some(SpoiltSample { row, column, bit });

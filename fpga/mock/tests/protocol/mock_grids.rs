@@ -93,6 +93,10 @@ fn heard_of(fault: Option<BoardFault>) -> Vec<Heard> {
             heard.extend(bench.say(&tables[1].commit(2, 3)));
         }
         heard.extend(bench.send_all(4, 4 * frame..4 * (frame + 1)));
+        if frame == 0 {
+            bench.acknowledge(0);
+            heard.extend(bench.send_all(4, [0, 0]));
+        }
         bench.acknowledge(4 * (frame + 1));
     }
     bench.say(&Request::Reset(Reset { level: ResetLevel::Rows, next_row: 16 }));

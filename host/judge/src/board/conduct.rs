@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use halfrow_protocol::message::{RowOut, RowPlace};
-use halfrow_protocol::{Kind, Packet, Reply};
+use halfrow_protocol::message::{Refusal, RowOut, RowPlace};
+use halfrow_protocol::{Header, Kind, Packet, Reply};
 
 /// ROW_OUT packets that are remembered. One that a link held back for longer is not compared with the others.
 const PACKETS: usize = 256;
@@ -29,6 +29,13 @@ pub(crate) enum Misconduct {
         place: RowPlace,
         /// The number in both headers.
         number: u16,
+    },
+    /// A row was sent twice, by the board's own numbering of its packets, and says both times that it was sent as often before.
+    RepeatsStand {
+        /// The row.
+        place: RowPlace,
+        /// What it says.
+        repeats: u16,
     },
     /// A row left the board behind a later one, by the board's own numbering of its packets.
     OutOfOrder {
@@ -67,6 +74,9 @@ pub(super) struct Conduct {
     /// The digest of each of the last rows, by the row's number, what may differ from copy to copy left out.
     rows: BTreeMap<u32, u32>,
     furthest: Option<Furthest>,
+    came: u32,
+    /// The last row that was refused, by the number of its packet.
+    refused_row: Option<(u16, Refusal)>,
     misconduct: Option<Misconduct>,
 }
 
@@ -80,6 +90,16 @@ impl Conduct {
     pub(super) fn packets_numbered(&self) -> u32 {
         let count = self.furthest.as_ref().map_or(0, |furthest| furthest.count + 1);
         u32::try_from(count.max(0)).unwrap_or(u32::MAX)
+    }
+
+    /// The ROW_OUT packets that came, copies that a link makes left out.
+    pub(super) fn came(&self) -> u32 {
+        self.came
+    }
+
+    /// What the last row was refused with, if it was sent in the packet `number`.
+    pub(super) fn refused_row(&self, number: u16) -> Option<Refusal> {
+        self.refused_row.filter(|refused| refused.0 == number).map(|refused| refused.1)
     }
 
     /// Takes note of a row that is further than all before. A copy that a link held back for long has a number that has come round.
@@ -96,12 +116,18 @@ impl Conduct {
         self.misconduct.get_or_insert(misconduct);
     }
 
-    /// Takes what is a row, when rows before `sent` were sent.
+    /// Takes what is a row or refuses one, when rows before `sent` were sent.
     pub(super) fn packet(&mut self, packet: &Packet<'_>, sent: u32) {
-        if packet.header.kind == Kind::RowOut.code()
-            && let Ok(Reply::RowOut(row)) = Reply::read(packet)
-        {
-            self.row(packet.header.sequence, &row, sent);
+        let Header { kind, sequence, .. } = packet.header;
+        if ![Kind::RowOut.code(), Kind::Refusal.code()].contains(&kind) {
+            return;
+        }
+        match Reply::read(packet) {
+            Ok(Reply::RowOut(row)) => self.row(sequence, &row, sent),
+            Ok(Reply::Refusal(refusal)) if refusal.kind == Kind::RowIn.code() => {
+                self.refused_row = Some((sequence, refusal));
+            }
+            _ => {}
         }
     }
 
@@ -116,6 +142,10 @@ impl Conduct {
         if self.packets.iter().any(|earlier| earlier.is_another(&came)) {
             self.note(Misconduct::NumberedTwice { place, number });
         }
+        if self.packets.iter().any(|earlier| earlier.repeats_as(&came)) {
+            self.note(Misconduct::RepeatsStand { place, repeats: row.repeats });
+        }
+        self.came += u32::from(self.packets.iter().all(|earlier| earlier.number != number));
         if let Some(place) = self.packets.iter().find_map(|earlier| earlier.misordered(&came)) {
             self.note(Misconduct::OutOfOrder { place });
         }
@@ -139,6 +169,14 @@ impl Came {
         let same = (self.place.row_sequence, self.repeats, self.digest)
             == (other.place.row_sequence, other.repeats, other.digest);
         self.number == other.number && !same
+    }
+
+    /// Whether two packets of one row say that it was sent as often before.
+    fn repeats_as(&self, other: &Self) -> bool {
+        self.place.row_sequence == other.place.row_sequence
+            && self.number != other.number
+            && self.repeats == other.repeats
+            && self.repeats < u16::MAX
     }
 
     /// Of two rows that left for the first time, the one whose packet was numbered behind that of a later row.
@@ -226,6 +264,8 @@ mod tests {
         assert!(is(&[(0, 0, 0, 1), (1, 0, 1, 2)], |found| matches!(found, Misconduct::CopyDiffers { .. })));
         assert!(is(&[(0, 0, 0, 1), (0, 1, 0, 1)], |found| matches!(found, Misconduct::NumberedTwice { .. })));
         assert!(is(&[(0, 9, 0, 1)], |found| matches!(found, Misconduct::NeverSent { .. })));
+        assert!(is(&[(0, 0, 0, 1), (1, 0, 0, 1)], |found| matches!(found, Misconduct::RepeatsStand { .. })));
+        assert!(is(&[(5, 0, 2, 1), (4, 0, 2, 1)], |found| matches!(found, Misconduct::RepeatsStand { .. })));
     }
 
     /// Whichever of the two came first.

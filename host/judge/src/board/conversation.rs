@@ -34,9 +34,11 @@ pub(super) struct Conversation {
     /// 0 until a board has answered HELLO.
     pub(super) session: u8,
     /// The board's, the greatest of all packets.
-    window: u32,
+    pub(super) window: u32,
     /// The row sequence number before which every row has come back.
     pub(super) acknowledged: u32,
+    /// The same as packets tell it, where that is not all that came back.
+    pub(super) told: Option<u32>,
     pub(super) tally: Tally,
     pub(super) limit: RetryLimit,
     /// The time that was spent waiting at the link, by which deadlines go: a host that is kept from running, or has something
@@ -74,6 +76,7 @@ impl Conversation {
             session: 0,
             window: 0,
             acknowledged: 0,
+            told: None,
             tally: Tally::default(),
             limit: options.retry_limit,
             waited: Duration::ZERO,
@@ -93,6 +96,7 @@ impl Conversation {
     /// Forgets the session, and what belongs to it.
     pub(super) fn leave_session(&mut self) {
         (self.session, self.window, self.acknowledged, self.rows_sent, self.unwanted) = (0, 0, 0, 0, 0);
+        self.told = None;
         self.conduct = Conduct::default();
         self.asked = LastAsked::default();
         self.repeated_changes = 0;
@@ -186,7 +190,8 @@ impl Conversation {
 
     fn header(&self, kind: Kind, sequence: u16) -> Header {
         let session = if kind == Kind::Hello { 0 } else { self.session };
-        Header { kind: kind.code(), sequence, reply: false, session, window: self.acknowledged }
+        let window = self.told.unwrap_or(self.acknowledged);
+        Header { kind: kind.code(), sequence, reply: false, session, window }
     }
 
     /// Counts a retry. Those after which nothing turned out to be lost are no sign of a poor link.

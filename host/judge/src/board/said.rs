@@ -1,6 +1,6 @@
 //! Requests of any form, and what a board says to them: for whoever wants to know what it refuses.
 
-use std::mem;
+use std::{iter, mem};
 
 use halfrow_protocol::message::{Burst, Refusal, RefusalCode, Reply, Request, Reset, ResetLevel, RowPlace};
 use halfrow_protocol::{Kind, Packet, samples};
@@ -8,7 +8,7 @@ use halfrow_protocol::{Kind, Packet, samples};
 use super::answer::take_reply;
 use super::asked::Asking;
 use super::deadlines::Step;
-use super::{Board, BoardError, Given, RowTraffic, rows};
+use super::{Board, BoardError, Given, ReturnedRow, RowTraffic, rows};
 
 /// What a board said to a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,6 +32,24 @@ pub(crate) struct CameAgain {
     pub(crate) clocks: [u16; 3],
     /// The CRC-32 of it as it entered, where the board is one that tells it.
     pub(crate) entered: Option<u32>,
+}
+
+impl CameAgain {
+    /// It as a row that was at `place`.
+    pub(crate) fn row(&self, place: &RowPlace) -> ReturnedRow<'_> {
+        let [first_latency, last_latency, pauses] = self.clocks;
+        ReturnedRow {
+            frame: place.frame,
+            row: place.row.into(),
+            generation: self.generation,
+            first_latency,
+            last_latency,
+            pauses,
+            repeats: self.repeats,
+            entered: self.entered,
+            samples: &self.samples,
+        }
+    }
 }
 
 /// What `packet` says of the row at `place`, if it is one that was sent so many times before.
@@ -164,20 +182,21 @@ impl Board {
         self.reset_to(Reset { level: ResetLevel::Rows, next_row }, Step::Request)
     }
 
-    /// Waits for the first of two rows that were given and are not acknowledged, as it comes when it was sent `repeats` times before or
-    /// more often. It is asked for again, first of all if that is not the first time, and then with the one that pushes it out.
+    /// Waits for `row`, which was given and is not acknowledged, as it comes when it was sent `repeats` times before or more often. It
+    /// is asked for again, first of all if that is not the first time, and then with the one `behind` it that pushes it out.
     ///
     /// # Errors
     /// [`BoardError`] when it does not come.
     pub(crate) fn again(
         &mut self,
-        rows: [(&RowPlace, &[u16]); 2],
+        row: (&RowPlace, &[u16]),
+        behind: Option<(&RowPlace, &[u16])>,
         repeats: u16,
     ) -> Result<CameAgain, BoardError> {
-        let (attempts, [(place, _), _]) = (Step::Row.deadline().attempts, rows);
+        let (attempts, place) = (Step::Row.deadline().attempts, row.0);
         for attempt in 0..attempts {
             let asked = if attempt > 0 { 2 } else { repeats.min(1).into() };
-            for (place, samples) in rows.into_iter().take(asked) {
+            for (place, samples) in iter::once(row).chain(behind).take(asked) {
                 self.conversation.queue_row(place, samples);
             }
             let bytes = self.conversation.queued() + halfrow_protocol::MAX_PACKET;
@@ -200,6 +219,39 @@ impl Board {
             self.conversation.count_retry()?;
         }
         Err(BoardError::RowMissing { place: *place, attempts })
+    }
+
+    /// From now on packets acknowledge the rows before `row_sequence` alone, or all that came back if it is none.
+    pub(crate) fn tell(&mut self, row_sequence: Option<u32>) {
+        self.conversation.told = row_sequence;
+    }
+
+    /// Sends a ROW_ACK of all rows before `row_sequence`, which no other packet acknowledges thereby.
+    pub(crate) fn acknowledge_alone(&mut self, row_sequence: u32) {
+        let told = self.conversation.told.replace(row_sequence);
+        let sequence = self.conversation.next_sequence();
+        self.conversation.queue(&Request::RowAck, sequence);
+        self.conversation.told = told;
+    }
+
+    /// So many rows may come while something else is waited for.
+    pub(crate) fn disregard_rows(&mut self, rows: u32) {
+        self.conversation.unwanted = rows;
+    }
+
+    /// The ROW_OUT packets that came in this session, each counted once however often the link delivers it.
+    pub(crate) fn rows_came(&self) -> u32 {
+        self.conversation.conduct.came()
+    }
+
+    /// What the board refused the row with that was sent in the packet `number`, if that was the last that it refused.
+    pub(crate) fn refusal_of_row(&self, number: u16) -> Option<Refusal> {
+        self.conversation.conduct.refused_row(number)
+    }
+
+    /// The row sequence number before which the board lets rows be sent, the greatest that it said.
+    pub(crate) fn window(&self) -> u32 {
+        self.conversation.window
     }
 
     /// Counts all rows before `row_sequence` as come back.

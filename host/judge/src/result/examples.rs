@@ -64,7 +64,7 @@ fn right() -> Vec<(Option<Verdict>, Finding)> {
     found.into_iter().map(|finding| ((!is_left_out(&finding)).then_some(Verdict::Pass), finding)).collect()
 }
 
-fn of_the_board() -> [Finding; 18] {
+fn of_the_board() -> [Finding; 19] {
     let defect = || Box::new(Defect::LineMemoryDataStuck { bit: 5, value: 1 });
     let account = Account::Words { wrong: 40, explained: 40, others: 0 };
     let of_table = Box::new(Defect::TableDataStuck { table: Memory::Rows, weight: None, bit: 7, value: 1 });
@@ -96,6 +96,7 @@ fn of_the_board() -> [Finding; 18] {
         Finding::RowCopyDiffers { row: 3, frame: 2 },
         Finding::RowNeverSent { row: 3, frame: 2, sequence: 1083 },
         Finding::RowNumberedTwice { row: 3, frame: 2, number: 513 },
+        Finding::RowRepeatsStand { row: 3, frame: 2, repeats: 0 },
         Finding::RowOutOfOrder { row: 3, frame: 2 },
     ]
 }

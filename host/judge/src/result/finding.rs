@@ -333,6 +333,15 @@ pub enum Finding {
         /// The number in both headers.
         number: u16,
     },
+    /// A row was sent twice, and says both times that it was sent as often before.
+    RowRepeatsStand {
+        /// The row.
+        row: u16,
+        /// Its frame.
+        frame: u16,
+        /// Its `repeats`, both times.
+        repeats: u16,
+    },
     /// A row left the board behind a later one.
     RowOutOfOrder {
         /// The row that came too late.

@@ -50,6 +50,8 @@ pub enum Rule {
     Samples,
     /// A row comes again as often as it is asked for, until it is acknowledged.
     Again,
+    /// As many rows come as there are banks for them, and each is kept until it is acknowledged.
+    Banks,
     /// Rows of the greatest width come back right.
     Wide,
     /// Rows have their number, however great.

@@ -17,7 +17,7 @@ impl Run<'_> {
         let status = self.board.status(false).during(CheckName::Counters)?;
         self.findings.note_status(&status);
         self.findings.lap(CheckName::Counters);
-        if let Some(misconduct) = self.misconduct() {
+        if let Some(misconduct) = self.misconduct(CheckName::Frames) {
             return Err(misconduct);
         }
         let frames = self.frames(after.as_ref().err());

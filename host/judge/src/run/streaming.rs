@@ -45,7 +45,7 @@ impl Run<'_> {
             self.return_to(segment, judge.frames_done(), end)?;
             judge.begin_again();
         }
-        if let Some(misconduct) = self.misconduct() {
+        if let Some(misconduct) = self.misconduct(CheckName::Frames) {
             return Err(misconduct);
         }
         self.findings.rows_counted += judge.rows;
@@ -80,7 +80,7 @@ impl Run<'_> {
 
     /// A row did not come back, or the link broke.
     fn interrupted(&mut self, segment: &Segment, error: BoardError) -> End {
-        if let Some(misconduct) = self.misconduct() {
+        if let Some(misconduct) = self.misconduct(CheckName::Frames) {
             return misconduct;
         }
         match error {
@@ -98,7 +98,7 @@ impl Run<'_> {
     }
 
     /// What the board did with rows that no link can do, if it did.
-    pub(super) fn misconduct(&self) -> Option<End> {
+    pub(super) fn misconduct(&self, check: CheckName) -> Option<End> {
         let misconduct = self.board.misconduct()?;
         let finding = match misconduct {
             Misconduct::CopyDiffers { place } => {
@@ -111,8 +111,11 @@ impl Run<'_> {
             Misconduct::NumberedTwice { place, number } => {
                 Finding::RowNumberedTwice { row: place.row, frame: place.frame, number }
             }
+            Misconduct::RepeatsStand { place, repeats } => {
+                Finding::RowRepeatsStand { row: place.row, frame: place.frame, repeats }
+            }
             Misconduct::OutOfOrder { place } => Finding::RowOutOfOrder { row: place.row, frame: place.frame },
         };
-        Some(End::failed(CheckName::Frames, finding))
+        Some(End::failed(check, finding))
     }
 }

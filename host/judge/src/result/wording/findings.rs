@@ -188,6 +188,10 @@ fn of_conduct(finding: &Finding) -> String {
             "the board numbers its ROW_OUT packets wrongly: row {row} of frame {frame} has the number {number}, and so has \
              another one shortly before it"
         ),
+        Finding::RowRepeatsStand { row, frame, repeats } => format!(
+            "the board sent row {row} of frame {frame} again, and `repeats` says {repeats} both times: it is one greater \
+             each time"
+        ),
         Finding::RowOutOfOrder { row, frame } => format!(
             "the board reorders rows: row {row} of frame {frame} left it behind a later row, by the board's own numbers of \
              its packets"
@@ -324,6 +328,9 @@ fn asked_of_conduct(finding: &Finding) -> Option<String> {
         }
         Finding::RowNumberedTwice { .. } => {
             "Check the board's count of ROW_OUT packets, the sequence in their headers."
+        }
+        Finding::RowRepeatsStand { .. } => {
+            "Check where the board counts how often it sent a row, the `repeats` of ROW_OUT."
         }
         Finding::RowOutOfOrder { .. } => {
             "Check in which order the board plays its input banks and sends its output banks."

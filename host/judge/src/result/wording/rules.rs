@@ -95,6 +95,7 @@ fn meaning(rule: Rule) -> &'static str {
         Rule::Rows => "rows come back in place",
         Rule::Samples => "samples beyond their depth go in as they are",
         Rule::Again => "a row comes again until it is acknowledged",
+        Rule::Banks => "row_banks_out rows are kept until they are acknowledged, and no more are made",
         Rule::Wide => "rows of the greatest width",
         Rule::RowNumber => "numbers of rows",
         Rule::Burst => "what a burst can be",

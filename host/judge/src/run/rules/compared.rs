@@ -93,7 +93,8 @@ impl Compared {
         });
     }
 
-    fn is_right(&self, row: &ReturnedRow<'_>) -> bool {
+    /// Whether a row came back as it must, however often it was sent before.
+    pub(super) fn is_right(&self, row: &ReturnedRow<'_>) -> bool {
         let right = self.right.iter().find(|right| right.number == row.frame);
         right.is_some_and(|right| {
             [row.first_latency, row.last_latency] == [right.latency; 2]

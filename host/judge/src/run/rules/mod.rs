@@ -2,6 +2,7 @@
 //!
 //! It is all done with rows of the least width, so that it costs a link little, and last, since it leaves a board with no tables.
 
+mod banks;
 mod bursts;
 mod commits;
 mod compared;
@@ -64,8 +65,12 @@ impl Run<'_> {
             };
             match (rules.all(), last) {
                 (Err(end), Some(last)) if end.is_outage() => self.return_to(last, last.frames.len(), end)?,
-                (Err(end), _) => return Err(end),
+                (Err(end), _) if end.is_failed() => return Err(end),
+                (Err(end), _) => return Err(self.misconduct(CheckName::Rules).unwrap_or(end)),
                 (Ok(requests), _) => {
+                    if let Some(misconduct) = self.misconduct(CheckName::Rules) {
+                        return Err(misconduct);
+                    }
                     self.findings.passed(CheckName::Rules, Finding::RulesKept { requests });
                     return Ok(());
                 }
@@ -199,9 +204,20 @@ impl<'a, 'run> Rules<'a, 'run> {
 
     /// Streams frames, which must come back as `compared` has them.
     fn frames(&mut self, rule: Rule, mut compared: Compared) -> Result<(), End> {
+        self.streamed(&mut compared).map_err(|error| of_rows(rule, error))?;
+        compared.judge(rule)
+    }
+
+    fn streamed(&mut self, compared: &mut Compared) -> Result<(), BoardError> {
         let given = mem::take(&mut self.given);
-        self.run.board.stream_given(given, &mut compared).map_err(|error| of_rows(rule, error))?;
-        match compared.wrong {
+        self.run.board.stream_given(given, compared)
+    }
+}
+
+impl Compared {
+    /// Ends with the first row that is not as it must be.
+    fn judge(&self, rule: Rule) -> Result<(), End> {
+        match self.wrong {
             None => Ok(()),
             Some((row, frame)) => Err(other_row(rule, row, frame)),
         }

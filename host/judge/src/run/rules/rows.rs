@@ -24,7 +24,7 @@ pub(super) const FRAME: u16 = 0x1234;
 const FLAGS: usize = 10;
 const LAST: u8 = 1;
 /// How often a row is given that is to be inside the core.
-const LOOKS: u32 = 8;
+pub(super) const LOOKS: u32 = 8;
 /// How often a row is asked for again.
 const AGAIN: u16 = 3;
 /// The least bit of a row's number that a session does not reach by counting.
@@ -45,6 +45,7 @@ impl Rules<'_, '_> {
             self.again()?;
             self.cut_rows()?;
         }
+        self.banks()?;
         self.heights()?;
         self.numbers()
     }
@@ -228,11 +229,15 @@ impl Rules<'_, '_> {
         self.give(0);
         self.give(1);
         let (first, second) = (self.place(0), self.place(1));
-        let rows = [(&first, frame.row(0)), (&second, frame.row(1))];
+        let (row, behind) = ((&first, frame.row(0)), (&second, frame.row(1)));
         let retries = self.run.board.tally().retries;
         let mut at_first = None;
         for repeats in 0..=AGAIN {
-            let came = self.run.board.again(rows, repeats).map_err(|error| of_rows(Rule::Again, error))?;
+            let came = self
+                .run
+                .board
+                .again(row, Some(behind), repeats)
+                .map_err(|error| of_rows(Rule::Again, error))?;
             let is_right = right.as_ref().is_none_or(|right| right.row(0) == came.samples);
             let is_counted = came.repeats == repeats || !self.is_calm(retries)?;
             let beside = (came.clocks, came.entered.filter(|_| self.small.names_entered));
@@ -249,7 +254,7 @@ impl Rules<'_, '_> {
     }
 
     /// Whether nothing was sent again behind so many `retries`, and nothing came to the board twice.
-    fn is_calm(&mut self, retries: u64) -> Result<bool, End> {
+    pub(super) fn is_calm(&mut self, retries: u64) -> Result<bool, End> {
         let status = self.run.board.status(false).map_err(of_board)?;
         let board = &self.run.board;
         Ok(board.tally().retries == retries && board.had_each_packet_once(&status))

@@ -1,0 +1,261 @@
+//! Rows that a board keeps in its output banks until the host has them: as many as there are banks, and no more (WIRE.md, 4).
+
+use halfrow_protocol::Kind;
+use halfrow_protocol::message::RowPlace;
+
+use super::compared::Compared;
+use super::rows::{FRAME, GENERATION, LOOKS};
+use super::{Rules, answer, broken, miscounted, of_board, of_rows, other_row};
+use crate::board::{BoardError, NumberedFrame, Said, Status};
+use crate::result::{Answer, Counter, Rule};
+use crate::run::findings::End;
+
+/// Rows that wait behind full banks: the first of them takes the first bank that is free.
+const WAITING: u32 = 2;
+
+/// Rows that fill the banks, and those behind them.
+struct Kept {
+    /// The row sequence number of the first one.
+    first: u32,
+    /// How many the banks hold.
+    banks: u32,
+    /// Rows of a frame, whole frames of which fill the banks.
+    height: u32,
+    width: u16,
+    /// What they must be.
+    right: Compared,
+    /// What the board counted in front of them, the ROW_OUT packets that had come by then, and what had been sent again.
+    before: Status,
+    came: u32,
+    retries: u64,
+    /// How often rows were asked for that had come, and rows that needed no answer.
+    asked: u32,
+    unneeded: u32,
+    /// Whether no row was given once more than that.
+    is_exact: bool,
+}
+
+impl Kept {
+    /// Where row `row` belongs, counted from the first one.
+    fn place(&self, row: u32) -> RowPlace {
+        let (frame, row_of_it) = (row / self.height, row % self.height);
+        RowPlace {
+            row_sequence: self.first + row,
+            frame: FRAME.wrapping_add(frame as u16),
+            row: row_of_it as u16,
+            width: self.width,
+            last: row_of_it + 1 == self.height,
+        }
+    }
+
+    /// The frames of `rows` rows from row `from` on, which begins one.
+    fn frames(&self, from: u32, rows: u32) -> impl Iterator<Item = u16> + use<> {
+        let last = (from + rows - 1) / self.height;
+        (from / self.height..=last).map(|frame| FRAME.wrapping_add(frame as u16))
+    }
+
+    /// The samples of a row that is known: none of them goes anywhere.
+    fn black(&self) -> Vec<u16> {
+        vec![0; self.width.into()]
+    }
+}
+
+impl Rules<'_, '_> {
+    /// The banks are filled, each row is asked for again, one is acknowledged, and then all.
+    pub(super) fn banks(&mut self) -> Result<(), End> {
+        let mut kept = self.fill()?;
+        self.stay_away(&mut kept)?;
+        for row in 0..kept.banks {
+            self.comes_again(&mut kept, row, 1)?;
+        }
+        self.window_at_most(&kept, 0)?;
+        self.acknowledge_one(&mut kept)?;
+        for row in [1, kept.banks - 1].into_iter().take(kept.banks as usize - 1) {
+            self.comes_again(&mut kept, row, 2)?;
+        }
+        self.window_at_most(&kept, 1)?;
+        self.release(&mut kept)?;
+        self.rows_counted(&kept)?;
+        self.configure(self.small.rows())
+    }
+
+    /// Fills the banks: rows that are not acknowledged come as others do until there is no bank for another one.
+    fn fill(&mut self) -> Result<Kept, End> {
+        let banks = u32::from(self.capabilities.row_banks_out);
+        let height = (1..=self.small.tall() as u32).rev().find(|&rows| banks.is_multiple_of(rows));
+        let height = height.unwrap_or(1);
+        self.configure(height as usize)?;
+        let (first, width) = (self.run.board.acknowledged(), self.small.geometry.width() as u16);
+        let before = self.run.board.status(false).map_err(of_board)?;
+        let (came, retries) = (self.run.board.rows_came(), self.run.board.tally().retries);
+        let (right, asked, unneeded, is_exact) = (Compared::default(), 0, 0, true);
+        let mut kept =
+            Kept { first, banks, height, width, right, before, came, retries, asked, unneeded, is_exact };
+        let made = self.small.made(0, self.height, GENERATION);
+        let mut right = Compared::default().with(&self.small, kept.frames(0, banks), &made);
+        self.run.board.tell(Some(first));
+        let streamed = self.streamed(&mut right);
+        self.came(&kept, streamed)?;
+        right.judge(Rule::Banks)?;
+        kept.right = right.with(&self.small, kept.frames(banks, 1), &made);
+        Ok(kept)
+    }
+
+    /// What came of rows that the board has, or its silence.
+    fn came<T>(&mut self, kept: &Kept, came: Result<T, BoardError>) -> Result<T, End> {
+        let place = match came {
+            Ok(came) => return Ok(came),
+            Err(BoardError::RowMissing { place, .. }) => place,
+            Err(error) => return Err(of_board(error)),
+        };
+        let right = Answer::Row { row: place.row.into(), frame: place.frame };
+        if self.says_nothing(kept)? && self.is_silent_again(kept, &place)? {
+            return Err(broken(Rule::Banks, Kind::RowIn, right, Answer::Nothing {}));
+        }
+        Err(of_rows(Rule::Banks, BoardError::RowMissing { place, attempts: 1 }))
+    }
+
+    /// Whether the row at `place` stays away once more, although the board had all that was sent, by its own word.
+    fn is_silent_again(&mut self, kept: &Kept, place: &RowPlace) -> Result<bool, End> {
+        let black = kept.black();
+        let came = self.run.board.again((place, &black), None, 0);
+        Ok(matches!(came, Err(BoardError::RowMissing { .. })) && self.says_nothing(kept)?)
+    }
+
+    /// Whether the board had all that was sent to it, and says itself that it sent no other rows than those that came.
+    fn says_nothing(&mut self, kept: &Kept) -> Result<bool, End> {
+        let status = self.run.board.status(false).map_err(of_board)?;
+        let sent = |status: &Status| status.rows_out.saturating_add(status.rows_repeated);
+        let came = self.run.board.rows_came() - kept.came;
+        let is_all = sent(&status) == sent(&kept.before).saturating_add(came);
+        Ok(is_all && self.run.board.had_each_packet_once(&status))
+    }
+
+    /// Gives the rows behind the full banks, which must stay away, though they come twice.
+    fn stay_away(&mut self, kept: &mut Kept) -> Result<(), End> {
+        let made = self.small.made(0, self.height, GENERATION);
+        let all = kept.first + kept.banks + WAITING;
+        for look in 0..LOOKS {
+            kept.is_exact = look == 0;
+            for row in kept.banks..kept.banks + WAITING {
+                let place = kept.place(row);
+                let NumberedFrame { frame, .. } = self.small.frame(place.frame, &made.tables);
+                let number = self.run.board.give(&place, frame.row(place.row.into()));
+                self.given.numbers.push(number);
+            }
+            let status = self.run.board.status(false).map_err(of_board)?;
+            self.window_at_most(kept, 0)?;
+            if status.next_row_in == all {
+                self.given.rows = WAITING;
+                self.right += 1;
+                return self.unneeded(kept, kept.banks);
+            }
+        }
+        Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(kept.banks), attempts: LOOKS }))
+    }
+
+    /// Sends a row that the board has and that needs no answer, with other samples.
+    fn unneeded(&mut self, kept: &mut Kept, row: u32) -> Result<(), End> {
+        let number = self.run.board.give(&kept.place(row), &kept.black());
+        kept.unneeded += 1;
+        // Behind its answer there is none to the row.
+        self.run.board.status(false).map_err(of_board)?;
+        match self.run.board.refusal_of_row(number) {
+            None => Ok(()),
+            Some(refusal) => {
+                let found = answer(&Said::Refused(refusal));
+                Err(broken(Rule::Banks, Kind::RowIn, Answer::Nothing {}, found))
+            }
+        }
+    }
+
+    /// Row `row` comes again as it came, for the time `repeats`.
+    fn comes_again(&mut self, kept: &mut Kept, row: u32, repeats: u16) -> Result<(), End> {
+        let (place, black) = (kept.place(row), kept.black());
+        let came = self.run.board.again((&place, &black), None, repeats);
+        let came = self.came(kept, came)?;
+        kept.asked += 1;
+        let is_counted = came.repeats == repeats || !self.is_calm(kept.retries)?;
+        if !is_counted || !kept.right.is_right(&came.row(&place)) {
+            return Err(other_row(Rule::Banks, place.row.into(), place.frame));
+        }
+        self.right += 1;
+        Ok(())
+    }
+
+    /// The board's window is no further than that `freed` rows more than there are banks can have entered.
+    fn window_at_most(&self, kept: &Kept, freed: u32) -> Result<(), End> {
+        let rows = self.run.board.window() - kept.first;
+        let most = kept.banks + freed + u32::from(self.capabilities.row_banks_in);
+        if rows <= most {
+            return Ok(());
+        }
+        Err(broken(Rule::Banks, Kind::RowIn, Answer::Credit { rows: most }, Answer::Credit { rows }))
+    }
+
+    /// A ROW_ACK of the first row, which the board frees, and no other one; another row takes its place.
+    fn acknowledge_one(&mut self, kept: &mut Kept) -> Result<(), End> {
+        let is_pushed = kept.height == 1;
+        self.run.board.disregard_rows(is_pushed.into());
+        for _ in 0..LOOKS {
+            self.run.board.acknowledge_alone(kept.first + 1);
+            if self.one_is_acknowledged(kept)? {
+                self.run.board.disregard_rows(0);
+                self.right += 1;
+                if is_pushed {
+                    self.comes_again(kept, kept.banks, 1)?;
+                    self.run.board.acknowledge(kept.first + kept.banks + 1);
+                    self.given.rows -= 1;
+                }
+                return self.unneeded(kept, 0);
+            }
+        }
+        Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(0), attempts: LOOKS }))
+    }
+
+    /// Whether the board says that the first row is acknowledged, which it must once it had all packets.
+    fn one_is_acknowledged(&mut self, kept: &Kept) -> Result<bool, End> {
+        let status = self.run.board.status(false).map_err(of_board)?;
+        let (counted, right) = (status.next_row_out, kept.first + 1);
+        let is_told = counted != kept.first || self.run.board.had_each_packet_once(&status);
+        if is_told && counted != right {
+            return Err(miscounted(Counter::NextRowOut, counted, right));
+        }
+        Ok(is_told)
+    }
+
+    /// All rows that came are acknowledged, and those that waited must come right.
+    fn release(&mut self, kept: &mut Kept) -> Result<(), End> {
+        let came = self.run.board.acknowledged();
+        self.run.board.tell(None);
+        self.run.board.acknowledge_alone(came);
+        let made = self.small.made(0, self.height, GENERATION);
+        let (from, to) = (came - kept.first, kept.banks + WAITING);
+        let compared = Compared::default().with(&self.small, kept.frames(from, to - from), &made);
+        self.frames(Rule::Banks, compared)
+    }
+
+    /// What the board counts of all that.
+    fn rows_counted(&mut self, kept: &Kept) -> Result<(), End> {
+        let is_calm = kept.is_exact && self.is_calm(kept.retries)?;
+        let status = self.run.board.status(false).map_err(of_board)?;
+        let Kept { before, first, asked, unneeded, .. } = kept;
+        let rows = self.run.board.acknowledged() - first;
+        let counts = [
+            (Counter::RowsIn, status.rows_in, before.rows_in, rows, true),
+            (Counter::RowsOut, status.rows_out, before.rows_out, rows, true),
+            (Counter::RowsRepeated, status.rows_repeated, before.rows_repeated, *asked, is_calm),
+            (Counter::RowsUnneeded, status.rows_unneeded, before.rows_unneeded, *unneeded, is_calm),
+            (Counter::Refusals, status.refusals, before.refusals, 0, is_calm),
+        ];
+        let wrong = counts
+            .into_iter()
+            .find(|&(_, counted, before, more, compared)| compared && counted != before.saturating_add(more));
+        match wrong {
+            None => Ok(()),
+            Some((counter, counted, before, more, _)) => {
+                Err(miscounted(counter, counted, before.saturating_add(more)))
+            }
+        }
+    }
+}

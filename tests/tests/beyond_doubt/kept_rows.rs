@@ -1,0 +1,107 @@
+//! Boards that are sound but for the rows that they keep for the host: as many as they have banks for, until each is acknowledged.
+
+use std::collections::BTreeSet;
+
+use halfrow::result::{CheckName, Counter, Finding, Report, Rule};
+use halfrow_mock::Options;
+use halfrow_protocol::message::{Capabilities, Status};
+use halfrow_protocol::{Kind, Reply};
+use halfrow_tests::altered::{Altered, Passing, Toward};
+use halfrow_tests::system::{failed_check, judge_by_plan};
+
+use super::rules::{broken, plan, said_by};
+
+/// Bytes of a row's place, its number first (WIRE.md, 20).
+const PLACE: usize = 12;
+
+/// The report on a board with so many output banks that says it has `told`.
+fn telling(row_banks_out: u8, told: u8) -> Report {
+    let options = Options { row_banks_out, ..Options::default() };
+    said_by(&options, move |packet| match packet.reply() {
+        Some(Reply::Capabilities(capabilities)) => {
+            let told = Capabilities { row_banks_out: told, ..capabilities };
+            Some(packet.saying(&Reply::Capabilities(told)))
+        }
+        _ => Some(packet),
+    })
+}
+
+#[test]
+fn a_board_that_makes_more_rows_than_it_says_it_has_banks_for_fails() {
+    for told in [2, 3, 7] {
+        assert_eq!(broken(&telling(8, told)).0, Rule::Banks, "{told}");
+    }
+}
+
+#[test]
+fn a_board_that_stops_before_its_banks_are_full_fails() {
+    for told in [4, 8, 255] {
+        assert_eq!(broken(&telling(3, told)).0, Rule::Banks, "{told}");
+    }
+}
+
+#[test]
+fn any_number_of_banks_may_be_filled() {
+    for banks in [2, 3, 5, 23, 64, 255] {
+        let report = telling(banks, banks);
+        assert_eq!(failed_check(&report), None, "{banks}: {}", report.headline());
+    }
+}
+
+/// The report on a board that never hears the packets that are `swallowed`, and counts them all the same.
+fn deaf_to(mut swallowed: impl FnMut(Toward, &Passing) -> bool + Send + 'static) -> Report {
+    let mut missed = 0;
+    let altered = move |toward, packet: Passing| {
+        if swallowed(toward, &packet) {
+            missed += 1;
+            return Vec::new();
+        }
+        match packet.reply() {
+            Some(Reply::Status(status)) if toward == Toward::Host => {
+                let packets = status.packets + missed;
+                vec![packet.saying(&Reply::Status(Status { packets, ..status }))]
+            }
+            _ => vec![packet],
+        }
+    };
+    judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate())
+}
+
+#[test]
+fn a_board_that_ignores_acknowledgements_fails() {
+    let report = deaf_to(|_, packet| packet.is(Kind::RowAck));
+    assert_eq!(failed_check(&report), Some(CheckName::Rules), "{}", report.headline());
+    let Finding::CounterWrong { counter, .. } = report.finding else { panic!("{}", report.headline()) };
+    assert_eq!(counter, Counter::NextRowOut);
+}
+
+/// A row that is known is asked for with black samples.
+#[test]
+fn a_board_that_does_not_send_a_row_again_fails() {
+    let mut came = BTreeSet::new();
+    let report = deaf_to(move |toward, packet| {
+        let Some((row, samples)) = packet.payload.split_at_checked(PLACE) else { return false };
+        let number = row[..4].to_vec();
+        if toward == Toward::Host && packet.is(Kind::RowOut) {
+            came.insert(number);
+            return false;
+        }
+        packet.is(Kind::RowIn) && came.contains(&number) && samples.iter().all(|&byte| byte == 0)
+    });
+    assert_eq!(broken(&report).0, Rule::Banks);
+}
+
+#[test]
+fn a_row_that_says_that_it_never_came_before_fails() {
+    let report = said_by(&Options::default(), |packet| match packet.reply() {
+        Some(Reply::RowOut(row)) => {
+            let mut row = row;
+            row.repeats = 0;
+            Some(packet.saying(&Reply::RowOut(row)))
+        }
+        _ => Some(packet),
+    });
+    assert_eq!(failed_check(&report), Some(CheckName::Rules), "{}", report.headline());
+    let stands = matches!(report.finding, Finding::RowRepeatsStand { repeats: 0, .. });
+    assert!(stands, "{}", report.headline());
+}
