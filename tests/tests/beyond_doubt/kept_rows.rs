@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use halfrow::result::{CheckName, Counter, Finding, Report, Rule};
+use halfrow::result::{CheckName, Counter, Finding, RepeatedRow, Report, Rule};
 use halfrow_mock::Options;
 use halfrow_protocol::message::{Capabilities, Status};
 use halfrow_protocol::{Kind, Reply};
@@ -102,6 +102,6 @@ fn a_row_that_says_that_it_never_came_before_fails() {
         _ => Some(packet),
     });
     assert_eq!(failed_check(&report), Some(CheckName::Rules), "{}", report.headline());
-    let stands = matches!(report.finding, Finding::RowRepeatsStand { repeats: 0, .. });
+    let stands = matches!(report.finding, Finding::RowRepeatsStand(RepeatedRow { repeats: 0, .. }));
     assert!(stands, "{}", report.headline());
 }

@@ -80,12 +80,12 @@ fn an_error_that_an_old_copy_of_a_request_may_have_brought_about_is_looked_at_ag
     }
 }
 
-/// Refuses CONFIGURE in the first `sessions` sessions, behind a STATUS that came twice.
+/// Refuses CONFIGURE in the first `sessions` sessions, behind an ECHO that came twice.
 fn refusing(code: RefusalCode, sessions: usize) -> Report {
     let (mut greetings, mut twice) = (0, false);
     judge(&System::TINY, move |toward, packet: Passing| {
         greetings += usize::from(toward == Toward::Board && packet.is(Kind::Hello));
-        if toward == Toward::Board && packet.is(Kind::Status) && !twice {
+        if toward == Toward::Board && packet.is(Kind::Echo) && !twice {
             twice = true;
             return vec![packet.clone(), packet];
         }

@@ -4,6 +4,7 @@
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+mod answered_twice;
 mod at_speed;
 mod capabilities;
 mod careless;

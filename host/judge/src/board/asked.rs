@@ -60,6 +60,8 @@ pub(super) struct Stray {
     pub(super) needless: Option<Duration>,
     /// Whether the board may have been changed by a request that came twice.
     pub(super) changed: bool,
+    /// Whether it is one more answer to a request that was not sent again.
+    pub(super) is_second: bool,
 }
 
 /// The last requests.
@@ -95,7 +97,11 @@ impl LastAsked {
         let Some(asked) = known else {
             // A row may be refused.
             let changed = kind.is_some_and(may_change);
-            return (kind != Some(Kind::Refusal)).then_some(Stray { needless: None, changed });
+            return (kind != Some(Kind::Refusal)).then_some(Stray {
+                needless: None,
+                changed,
+                is_second: false,
+            });
         };
         let Some(took) = asked.took else {
             asked.took = Some(now.saturating_sub(asked.begun));
@@ -103,7 +109,7 @@ impl LastAsked {
         };
         let needless = (asked.again > 0).then_some(took);
         asked.again = asked.again.saturating_sub(1);
-        Some(Stray { needless, changed: asked.changes })
+        Some(Stray { needless, changed: asked.changes, is_second: needless.is_none() })
     }
 }
 

@@ -5,6 +5,8 @@ use std::collections::{BTreeMap, VecDeque};
 use halfrow_protocol::message::{Refusal, RowOut, RowPlace};
 use halfrow_protocol::{Header, Kind, Packet, Reply};
 
+use super::Said;
+
 /// ROW_OUT packets that are remembered. One that a link held back for longer is not compared with the others.
 const PACKETS: usize = 256;
 /// Rows of which the first copy is remembered.
@@ -75,6 +77,10 @@ pub(super) struct Conduct {
     rows: BTreeMap<u32, u32>,
     furthest: Option<Furthest>,
     came: u32,
+    doubled: u32,
+    /// The number of packets that must not be answered, and what they were answered with.
+    damaged: Option<u16>,
+    answer_to_damaged: Option<Said>,
     /// The last row that was refused, by the number of its packet.
     refused_row: Option<(u16, Refusal)>,
     misconduct: Option<Misconduct>,
@@ -90,6 +96,21 @@ impl Conduct {
     pub(super) fn packets_numbered(&self) -> u32 {
         let count = self.furthest.as_ref().map_or(0, |furthest| furthest.count + 1);
         u32::try_from(count.max(0)).unwrap_or(u32::MAX)
+    }
+
+    /// Packets of this number must not be answered.
+    pub(super) fn await_answer(&mut self, number: u16) {
+        (self.damaged, self.answer_to_damaged) = (Some(number), None);
+    }
+
+    /// What they were answered with, if they were.
+    pub(super) fn answer_to_damaged(&self) -> Option<&Said> {
+        self.answer_to_damaged.as_ref()
+    }
+
+    /// Copies of ROW_OUT packets that came.
+    pub(super) fn doubled(&self) -> u32 {
+        self.doubled
     }
 
     /// The ROW_OUT packets that came, copies that a link makes left out.
@@ -119,6 +140,9 @@ impl Conduct {
     /// Takes what is a row or refuses one, when rows before `sent` were sent.
     pub(super) fn packet(&mut self, packet: &Packet<'_>, sent: u32) {
         let Header { kind, sequence, .. } = packet.header;
+        if kind != Kind::RowOut.code() && self.damaged == Some(sequence) {
+            self.answer_to_damaged = Some(Said::of(packet));
+        }
         if ![Kind::RowOut.code(), Kind::Refusal.code()].contains(&kind) {
             return;
         }
@@ -145,7 +169,9 @@ impl Conduct {
         if self.packets.iter().any(|earlier| earlier.repeats_as(&came)) {
             self.note(Misconduct::RepeatsStand { place, repeats: row.repeats });
         }
-        self.came += u32::from(self.packets.iter().all(|earlier| earlier.number != number));
+        let is_new = self.packets.iter().all(|earlier| earlier.number != number);
+        self.came += u32::from(is_new);
+        self.doubled += u32::from(!is_new);
         if let Some(place) = self.packets.iter().find_map(|earlier| earlier.misordered(&came)) {
             self.note(Misconduct::OutOfOrder { place });
         }

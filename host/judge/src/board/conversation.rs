@@ -52,6 +52,10 @@ pub(super) struct Conversation {
     pub(super) counts: bool,
     /// Requests that change the board and came to it more than once in this session, as far as can be seen.
     pub(super) repeated_changes: u64,
+    /// Requests that change the board and were answered twice though sent once, of which the next count tells whether they came twice.
+    pub(super) doubled_changes: u64,
+    /// All requests that were answered twice though sent once.
+    pub(super) second_answers: u64,
     /// The row sequence number behind all rows that were sent in this session.
     rows_sent: u32,
     /// Rows that may come back although nobody takes them.
@@ -84,6 +88,8 @@ impl Conversation {
             counted: Counted::default(),
             counts: options.counts,
             repeated_changes: 0,
+            doubled_changes: 0,
+            second_answers: 0,
             rows_sent: 0,
             unwanted: 0,
             asked: LastAsked::default(),
@@ -99,7 +105,7 @@ impl Conversation {
         self.told = None;
         self.conduct = Conduct::default();
         self.asked = LastAsked::default();
-        self.repeated_changes = 0;
+        (self.repeated_changes, self.doubled_changes, self.second_answers) = (0, 0, 0);
     }
 
     /// The row sequence number before which rows may be sent: the board's window, as far as it can be true.
@@ -170,6 +176,7 @@ impl Conversation {
     /// Sends `asking` and waits for nothing: its answer means nothing when it comes.
     pub(super) fn tell(&mut self, asking: &Asking<'_>) {
         let sequence = self.next_sequence();
+        self.counted.is_blind = true;
         self.asked.asked(asking, sequence, self.now());
         self.queue_packet(asking.kind(), sequence, |payload| asking.write(payload));
     }
@@ -186,6 +193,7 @@ impl Conversation {
         let queued = self.encoder.encode(&header, write_payload, &mut self.outgoing);
         debug_assert!(queued.is_ok(), "a request is built to fit a packet");
         self.tally.packets_out += 1;
+        self.counted.is_blind |= matches!(kind, Kind::RowIn | Kind::RowAck);
     }
 
     fn header(&self, kind: Kind, sequence: u16) -> Header {
@@ -270,9 +278,11 @@ impl Conversation {
         Ok(())
     }
 
-    fn count_stray(&mut self, Stray { needless, changed }: Stray) {
+    fn count_stray(&mut self, Stray { needless, changed, is_second }: Stray) {
         self.tally.strays += 1;
-        self.repeated_changes += u64::from(changed);
+        self.second_answers += u64::from(is_second);
+        let changes = if is_second { &mut self.doubled_changes } else { &mut self.repeated_changes };
+        *changes += u64::from(changed);
         needless.into_iter().for_each(|took| self.was_late(took));
     }
 
@@ -288,6 +298,7 @@ impl Conversation {
         self.counted.came(1);
         if step == Step::Request && asking.kind() != Kind::Status {
             self.count_behind(retries);
+            self.settle();
         }
         Ok(answer)
     }

@@ -1,5 +1,7 @@
 //! The packets that a board counts beside those that were sent: by that one that came twice is told from one that was lost.
 
+use std::mem;
+
 use halfrow_protocol::message::{Reply, Request, Status};
 
 use super::conversation::Conversation;
@@ -31,6 +33,10 @@ pub(super) struct Counted {
     had: u64,
     /// Whether something else came to it meanwhile.
     is_disturbed: bool,
+    /// Whether a packet was sent since the last count of which nobody would miss the answer.
+    pub(super) is_blind: bool,
+    /// What had been sent again at the last count.
+    retries: u64,
     /// The first count in this session that shows that something else came to the board, or that somebody else set it back.
     pub(super) wrong: Option<Miscount>,
 }
@@ -38,7 +44,8 @@ pub(super) struct Counted {
 impl Counted {
     /// In a session that was just opened by so many packets.
     pub(super) fn in_new_session(from: Tally, greetings: u64) -> Self {
-        Self { from, greetings: greetings.saturating_sub(1), ..Self::default() }
+        let greetings = greetings.saturating_sub(1);
+        Self { from, greetings, retries: from.retries, ..Self::default() }
     }
 
     /// So many packets more had an effect.
@@ -66,7 +73,7 @@ impl Counted {
     }
 
     fn set_back(&mut self, from: Tally) {
-        *self = Self { from, wrong: self.wrong, ..Self::default() };
+        *self = Self { from, wrong: self.wrong, retries: from.retries, ..Self::default() };
     }
 }
 
@@ -90,12 +97,38 @@ impl Conversation {
         let retried = self.tally.retries > retries;
         // What is set back twice counts little at the second time.
         if self.counts && !(clear && retried) {
-            self.counted.take(&status, sent + 1, self.tally.packets_out);
+            self.take_count(&status, sent + 1);
         }
         if clear {
             self.counted.set_back(self.tally);
         }
         Ok(status)
+    }
+
+    /// Takes what a board counts that had `least` packets sent to it or more. Where none can have been lost unseen since the count
+    /// before, and as many came as were sent, what was answered twice came once.
+    fn take_count(&mut self, status: &Status, least: u64) {
+        let (was_blind, lost) = (self.counted.is_blind, self.counted.lost);
+        let is_calm = self.tally.retries == self.counted.retries;
+        self.counted.take(status, least, self.tally.packets_out);
+        let came_once = is_calm && !was_blind && self.counted.lost == lost && self.counted.wrong.is_none();
+        let doubled = mem::take(&mut self.doubled_changes);
+        self.repeated_changes += if came_once { 0 } else { doubled };
+        (self.counted.is_blind, self.counted.retries) = (false, self.tally.retries);
+    }
+
+    /// Asks for a count where something was answered twice.
+    pub(super) fn settle(&mut self) {
+        if self.doubled_changes > 0 {
+            self.count();
+        }
+    }
+
+    /// The same behind a board that answers twice, so that a second answer that is still under way is settled as well.
+    pub(super) fn settle_all(&mut self) {
+        if self.second_answers > 0 {
+            self.count();
+        }
     }
 
     /// Asks how many packets came to the board, where one may have been lost and nobody would ask for it again. Whatever keeps

@@ -153,7 +153,7 @@ impl Board {
     /// copy of one may have come late, behind others, and then the board is not as the host thinks that it is.
     #[must_use]
     pub(crate) fn repeated_changes(&self) -> u64 {
-        self.conversation.repeated_changes
+        self.conversation.repeated_changes + self.conversation.doubled_changes
     }
 
     /// The row sequence number before which every row has come back.

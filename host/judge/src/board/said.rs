@@ -19,6 +19,16 @@ pub(crate) enum Said {
     Replied(Vec<u8>),
 }
 
+impl Said {
+    /// What a packet says that is no row.
+    pub(super) fn of(packet: &Packet<'_>) -> Self {
+        match Reply::read(packet) {
+            Ok(Reply::Refusal(refusal)) => Self::Refused(refusal),
+            _ => Self::Replied(packet.payload.to_vec()),
+        }
+    }
+}
+
 /// A row that came once more.
 #[derive(Clone, Debug)]
 pub(crate) struct CameAgain {
@@ -126,10 +136,27 @@ impl Board {
     }
 
     /// Sends `request` so that it is none, and waits for nothing: damaged, in each way in which a link can flip a bit of one byte,
-    /// and of another version or length.
+    /// and of another version or length. All of them have a number that no packet has.
     pub(crate) fn give_damaged(&mut self, request: &Request<'_>) {
+        let number = self.conversation.next_sequence();
+        self.conversation.conduct.await_answer(number);
         self.conversation.queue_damaged(request);
         self.conversation.queue_misnamed(request);
+    }
+
+    /// What the board answered those packets with, if it did.
+    pub(crate) fn answer_to_damaged(&self) -> Option<Said> {
+        self.conversation.conduct.answer_to_damaged().cloned()
+    }
+
+    /// Requests that were answered, and those that were answered once more though sent once.
+    pub(crate) fn answers(&self) -> [u64; 2] {
+        [self.conversation.tally.answered, self.conversation.second_answers]
+    }
+
+    /// ROW_OUT packets that came twice.
+    pub(crate) fn rows_doubled(&self) -> u32 {
+        self.conversation.conduct.doubled()
     }
 
     /// What came to the board and back more often than it was sent has its reason by now, and casts no doubt on what was found.
@@ -138,7 +165,7 @@ impl Board {
     /// [`BoardError`] when the board does not set its counters back.
     pub(crate) fn excuse_repeats(&mut self) -> Result<(), BoardError> {
         self.status(true)?;
-        self.conversation.repeated_changes = 0;
+        (self.conversation.repeated_changes, self.conversation.doubled_changes) = (0, 0);
         self.conversation.counted.wrong = None;
         Ok(())
     }

@@ -2,8 +2,8 @@
 
 use super::{
     Account, Answer, BoardKind, BrokenOff, BurstCount, ClampEnd, Corner, Counter, Counting, Defect, Doubt,
-    Extent, Finding, MadeWith, Memory, NoBurst, NotExercised, Problem, Reading, Repetition, RowSource, Rule,
-    StaleFrames, Suspect,
+    Extent, Finding, MadeWith, Memory, NoBurst, NotExercised, NumberedRow, Problem, Reading, RepeatedRow,
+    Repetition, RowSource, Rule, StaleFrames, Suspect,
 };
 use crate::verdict::Verdict;
 
@@ -95,8 +95,8 @@ fn of_the_board() -> [Finding; 19] {
         Finding::RowSwallowed { row: 3, frame: 2, again: 3 },
         Finding::RowCopyDiffers { row: 3, frame: 2 },
         Finding::RowNeverSent { row: 3, frame: 2, sequence: 1083 },
-        Finding::RowNumberedTwice { row: 3, frame: 2, number: 513 },
-        Finding::RowRepeatsStand { row: 3, frame: 2, repeats: 0 },
+        Finding::RowNumberedTwice(NumberedRow { row: 3, frame: 2, number: 513 }),
+        Finding::RowRepeatsStand(RepeatedRow { row: 3, frame: 2, repeats: 0 }),
         Finding::RowOutOfOrder { row: 3, frame: 2 },
     ]
 }

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Account, Answer, BoardKind, BrokenOff, BurstCount, Corner, Counter, Defect, Doubt, NoBurst, Problem,
-    Repetition, Rule,
+    Account, Answer, BoardKind, BrokenOff, BurstCount, Corner, Counter, Defect, Doubt, NoBurst, NumberedRow,
+    Problem, RepeatedRow, Repetition, Rule,
 };
 
 /// What a check or a whole run came to. In JSON `{"code": …, "parameters": …}`; a [`Problem`] has its own code.
@@ -325,23 +325,9 @@ pub enum Finding {
         found: Answer,
     },
     /// Two different `ROW_OUT` packets have the same number.
-    RowNumberedTwice {
-        /// The row of the second one.
-        row: u16,
-        /// Its frame.
-        frame: u16,
-        /// The number in both headers.
-        number: u16,
-    },
+    RowNumberedTwice(NumberedRow),
     /// A row was sent twice, and says both times that it was sent as often before.
-    RowRepeatsStand {
-        /// The row.
-        row: u16,
-        /// Its frame.
-        frame: u16,
-        /// Its `repeats`, both times.
-        repeats: u16,
-    },
+    RowRepeatsStand(RepeatedRow),
     /// A row left the board behind a later one.
     RowOutOfOrder {
         /// The row that came too late.

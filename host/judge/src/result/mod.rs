@@ -56,7 +56,7 @@ pub use identity::{BurstsReport, Identity};
 pub use link::{LinkReport, Reconnection};
 pub use not_exercised::NotExercised;
 pub use problem::{Parameters, Problem};
-pub use rule::{Answer, Rule};
+pub use rule::{Answer, NumberedRow, RepeatedRow, Rule};
 pub use sha256::sha256;
 pub use soak::{SoakChart, SoakDifference, SoakInterval, SoakLength, SoakReport};
 pub use suspect::{Account, Suspect};

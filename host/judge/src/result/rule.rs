@@ -22,6 +22,8 @@ pub enum Rule {
     Address,
     /// A packet with a flipped bit, of another version or of another length than it names has no effect.
     Damage,
+    /// A request is answered once.
+    Once,
     /// A packet of another session is refused, and has no effect.
     Session,
     /// A commit of tables that read back otherwise is refused.
@@ -113,6 +115,30 @@ pub enum Answer {
     },
     /// A row that is not as it must be, in samples, latency, pauses or generation.
     OtherRow {},
+    /// An answer that came twice.
+    Twice {},
     /// Nothing, although requests behind it are answered.
     Nothing {},
+}
+
+/// One of two `ROW_OUT` packets that have the same number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct NumberedRow {
+    /// The row of the second one.
+    pub row: u16,
+    /// Its frame.
+    pub frame: u16,
+    /// The number in both headers.
+    pub number: u16,
+}
+
+/// A row that was sent again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RepeatedRow {
+    /// The row.
+    pub row: u16,
+    /// Its frame.
+    pub frame: u16,
+    /// Its `repeats`, both times.
+    pub repeats: u16,
 }

@@ -11,7 +11,7 @@ use super::plan::{SENSOR_BLANKING, Segment, Timing};
 use super::prepared::{PrepareError, Prepared};
 use super::steps::Run;
 use crate::board::{BoardError, MAX_LATENCY, Misconduct};
-use crate::result::{CheckName, Finding, FrameTiming, Problem};
+use crate::result::{CheckName, Finding, FrameTiming, NumberedRow, Problem, RepeatedRow};
 use crate::verdict::Cause;
 
 impl Run<'_> {
@@ -109,10 +109,10 @@ impl Run<'_> {
                 Finding::RowNeverSent { row, frame, sequence }
             }
             Misconduct::NumberedTwice { place, number } => {
-                Finding::RowNumberedTwice { row: place.row, frame: place.frame, number }
+                Finding::RowNumberedTwice(NumberedRow { row: place.row, frame: place.frame, number })
             }
             Misconduct::RepeatsStand { place, repeats } => {
-                Finding::RowRepeatsStand { row: place.row, frame: place.frame, repeats }
+                Finding::RowRepeatsStand(RepeatedRow { row: place.row, frame: place.frame, repeats })
             }
             Misconduct::OutOfOrder { place } => Finding::RowOutOfOrder { row: place.row, frame: place.frame },
         };

@@ -2,7 +2,7 @@
 
 use super::{at_speed, designer, evidence, place, rules};
 use crate::report::wording::{board_name, count, differ, grouped};
-use crate::result::{Account, BoardKind, Defect, Doubt, Finding};
+use crate::result::{Account, BoardKind, Defect, Doubt, Finding, NumberedRow, RepeatedRow};
 
 const CHECK_THE_LINK: &str = "Check the link, and run again.";
 
@@ -184,11 +184,11 @@ fn of_conduct(finding: &Finding) -> String {
         Finding::RowNeverSent { row, frame, sequence } => format!(
             "the board returned row {row} of frame {frame}, number {sequence} of the session, which it was never given"
         ),
-        Finding::RowNumberedTwice { row, frame, number } => format!(
+        Finding::RowNumberedTwice(NumberedRow { row, frame, number }) => format!(
             "the board numbers its ROW_OUT packets wrongly: row {row} of frame {frame} has the number {number}, and so has \
              another one shortly before it"
         ),
-        Finding::RowRepeatsStand { row, frame, repeats } => format!(
+        Finding::RowRepeatsStand(RepeatedRow { row, frame, repeats }) => format!(
             "the board sent row {row} of frame {frame} again, and `repeats` says {repeats} both times: it is one greater \
              each time"
         ),
@@ -326,10 +326,10 @@ fn asked_of_conduct(finding: &Finding) -> Option<String> {
         Finding::RowCopyDiffers { .. } => {
             "Check what else writes to the output banks while the board waits for the acknowledgement of a row."
         }
-        Finding::RowNumberedTwice { .. } => {
+        Finding::RowNumberedTwice(_) => {
             "Check the board's count of ROW_OUT packets, the sequence in their headers."
         }
-        Finding::RowRepeatsStand { .. } => {
+        Finding::RowRepeatsStand(_) => {
             "Check where the board counts how often it sent a row, the `repeats` of ROW_OUT."
         }
         Finding::RowOutOfOrder { .. } => {

@@ -36,6 +36,7 @@ fn must(right: &Answer, request: &str) -> String {
         }
         Answer::Row { row, frame } => format!("return row {row} of frame {frame} as it is made"),
         Answer::OtherRow {} => format!("answer {request} with another row"),
+        Answer::Twice {} => format!("answer {request} twice"),
         Answer::Nothing {} => format!("leave {request} unanswered"),
     }
 }
@@ -52,6 +53,7 @@ fn did(found: &Answer) -> String {
         }
         Answer::Row { row, frame } => format!("returned row {row} of frame {frame}"),
         Answer::OtherRow {} => "returned another".to_owned(),
+        Answer::Twice {} => "did so twice".to_owned(),
         Answer::Nothing {} => "did not".to_owned(),
     }
 }
@@ -81,6 +83,7 @@ fn meaning(rule: Rule) -> &'static str {
         Rule::Entry => "a table's entry out of range",
         Rule::Address => "entries keep to their places",
         Rule::Damage => "a damaged packet has no effect",
+        Rule::Once => "each request has one answer, and most had two",
         Rule::Session => "a packet of another session has no effect",
         Rule::CommitCrc => "a commit with another CRC than the tables have",
         Rule::Generation => "which generations a commit may name",

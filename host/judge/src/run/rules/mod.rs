@@ -124,6 +124,7 @@ impl<'a, 'run> Rules<'a, 'run> {
             self.bursts()?;
             self.trap()?;
         }
+        self.answered_once()?;
         self.refusals_counted(&before)?;
         self.power_up()?;
         Ok(self.right)

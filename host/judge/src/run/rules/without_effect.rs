@@ -2,11 +2,12 @@
 
 use std::iter;
 
+use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Entries, Refusal, RefusalCode, Request};
 
-use super::{FIRST_FACTOR, Rules, of_board, payload};
+use super::{FIRST_FACTOR, Rules, answer, broken, of_board, payload};
 use crate::board::{BoardError, Said};
-use crate::result::Rule;
+use crate::result::{Answer, Rule};
 use crate::run::findings::End;
 
 /// The row factor that must stay.
@@ -21,6 +22,9 @@ const READ: Request<'static> = Request::TableRead(FIRST_FACTOR);
 /// whole, and does so once.
 const TIMES: usize = 3;
 
+/// So many rows came once each where all that is answered twice is the board's.
+const ROWS: u32 = 64;
+
 /// So many sessions to come are left alone: what a link holds back could be theirs then.
 const TO_COME: u16 = 16;
 
@@ -30,11 +34,35 @@ impl Rules<'_, '_> {
     pub(super) fn damage(&mut self) -> Result<(), End> {
         let mut said = self.behind_damage()?;
         for _ in 1..TIMES {
-            if is_other(&said) {
+            if is_other(&said) || self.run.board.answer_to_damaged().is_some() {
                 said = self.behind_damage()?;
             }
         }
-        self.judge_kept(Rule::Damage, said)
+        self.judge_kept(Rule::Damage, said)?;
+        match self.run.board.answer_to_damaged() {
+            None => Ok(()),
+            Some(said) => {
+                self.run.board.excuse_repeats().map_err(of_board)?;
+                Err(broken(Rule::Damage, write(&OTHER).kind(), Answer::Nothing {}, answer(&said)))
+            }
+        }
+    }
+
+    /// Each request has one answer: a link that doubled them would double rows as well, or packets to the board, which counts those.
+    pub(super) fn answered_once(&mut self) -> Result<(), End> {
+        let board = &mut self.run.board;
+        let [answered, twice] = board.answers();
+        if board.rows_came() < ROWS || board.rows_doubled() > 0 || 2 * twice < answered {
+            return Ok(());
+        }
+        let status = board.status(false).map_err(of_board)?;
+        if !board.had_each_packet_once(&status) {
+            return Ok(());
+        }
+        // What came twice is what was found.
+        board.excuse_repeats().map_err(of_board)?;
+        let right = Answer::Replied { payload: String::new() };
+        Err(broken(Rule::Once, Kind::TableWrite, right, Answer::Twice {}))
     }
 
     /// What is said to be in the row factor's place behind damaged packets.

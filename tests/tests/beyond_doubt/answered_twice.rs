@@ -1,0 +1,104 @@
+//! Boards that answer what they must not, or more often than they may, and links that double packets as well.
+
+use halfrow::result::{Answer, CheckName, Finding, Report, Rule};
+use halfrow::verdict::Verdict;
+use halfrow_mock::Options;
+use halfrow_protocol::Kind;
+use halfrow_protocol::message::RowOut;
+use halfrow_protocol::samples::{pack, unpack};
+use halfrow_protocol::{Reply, message};
+use halfrow_tests::altered::{Altered, Passing, Toward, judge};
+use halfrow_tests::system::{System, failed_check, judge_by_plan};
+
+use super::rules::{broken, plan};
+
+/// The report on a board of which each packet that is `doubled` comes twice, and each row as `alter` makes it.
+fn doubling(
+    doubled: impl Fn(Toward, &Passing) -> bool + Send + 'static,
+    alter: impl Fn(Passing) -> Passing + Send + 'static,
+) -> Report {
+    let altered = move |toward, packet: Passing| {
+        let is_doubled = doubled(toward, &packet);
+        let packet = if packet.is(Kind::RowOut) { alter(packet) } else { packet };
+        let copy = is_doubled.then(|| packet.clone());
+        [packet].into_iter().chain(copy).collect()
+    };
+    judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate())
+}
+
+fn is_reply(toward: Toward, packet: &Passing) -> bool {
+    toward == Toward::Host && !packet.is(Kind::RowOut)
+}
+
+#[test]
+fn a_board_that_answers_everything_twice_fails() {
+    let report = doubling(is_reply, |packet| packet);
+    assert_eq!((broken(&report).0, broken(&report).2), (Rule::Once, &Answer::Twice {}));
+}
+
+#[test]
+fn a_link_that_doubles_packets_makes_no_sound_board_fail() {
+    let links: [fn(Toward, &Passing) -> bool; 3] = [
+        |_, _| true,
+        |toward, _| toward == Toward::Host,
+        |toward, packet| toward == Toward::Board && !packet.is(Kind::RowIn),
+    ];
+    for doubled in links {
+        let report = doubling(doubled, |packet| packet);
+        assert_ne!(report.verdict, Verdict::Fail, "{}", report.headline());
+    }
+}
+
+/// The row with another last sample.
+fn spoilt(packet: Passing) -> Passing {
+    let Some(Reply::RowOut(row)) = packet.reply() else { return packet };
+    let mut samples = vec![0; row.place.width.into()];
+    unpack(row.packed, &mut samples);
+    samples.last_mut().into_iter().for_each(|sample| *sample ^= 1);
+    let mut packed = Vec::new();
+    pack(&samples, &mut packed);
+    packet.saying(&Reply::RowOut(RowOut { packed: &packed, ..row }))
+}
+
+/// As many packets came to it as were sent, so that no request came twice.
+#[test]
+fn wrong_samples_of_a_board_that_answers_twice_are_its_own() {
+    let report = judge(&System::TINY, |toward, packet| {
+        let packet = if packet.is(Kind::RowOut) { spoilt(packet) } else { packet };
+        let copy = is_reply(toward, &packet).then(|| packet.clone());
+        [packet].into_iter().chain(copy).collect()
+    });
+    assert_eq!(failed_check(&report), Some(CheckName::Frames), "{}", report.headline());
+}
+
+/// Every refusal of what is no packet has the number of what it refuses.
+#[test]
+fn a_board_that_answers_damaged_packets_fails() {
+    let mut last = None;
+    let altered = move |toward: Toward, packet: Passing| {
+        if toward == Toward::Board {
+            return vec![packet];
+        }
+        // Behind the write that is kept come the damaged ones, under the next number.
+        let is_written = packet.is(Kind::TableWrite);
+        let is_read = packet.is(Kind::TableRead);
+        let before = std::mem::replace(&mut last, is_written.then_some(packet.header.sequence));
+        match before.filter(|number| is_read && packet.header.sequence == number.wrapping_add(2)) {
+            None => vec![packet],
+            Some(number) => {
+                let refusal = message::Refusal {
+                    code: message::RefusalCode::Payload,
+                    kind: Kind::TableWrite.code(),
+                    detail: 0,
+                };
+                let mut header = packet.header;
+                (header.kind, header.sequence) = (Kind::Refusal.code(), number.wrapping_add(1));
+                let own = Passing { header, payload: Vec::new() }.saying(&Reply::Refusal(refusal));
+                vec![own, packet]
+            }
+        }
+    };
+    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
+    let Finding::RuleBroken { rule, right, .. } = &report.finding else { panic!("{}", report.headline()) };
+    assert_eq!((*rule, right), (Rule::Damage, &Answer::Nothing {}));
+}
