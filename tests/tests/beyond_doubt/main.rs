@@ -22,6 +22,7 @@ mod refusals;
 mod rule_by_rule;
 mod rules;
 mod seen_once;
+mod session_rules;
 mod slow_clocks;
 mod soak;
 mod stale_packets;

@@ -37,6 +37,7 @@ impl Asking<'_> {
     fn changes(&self) -> bool {
         match self {
             Self::Request(Request::Status { clear }) => *clear,
+            Self::Bytes(Kind::Status, clear) => clear.first().is_some_and(|&clear| clear != 0),
             other => may_change(other.kind()),
         }
     }

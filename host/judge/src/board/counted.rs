@@ -72,7 +72,7 @@ impl Counted {
         self.lost == 0 && !self.is_disturbed
     }
 
-    fn set_back(&mut self, from: Tally) {
+    pub(super) fn set_back(&mut self, from: Tally) {
         *self = Self { from, wrong: self.wrong, retries: from.retries, ..Self::default() };
     }
 }

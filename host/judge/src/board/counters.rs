@@ -1,9 +1,11 @@
 //! What a board counts, and what the host counts beside it.
 
+use halfrow_protocol::Kind;
 use halfrow_protocol::message::{ResetLevel, Status};
 
 use super::counted::Miscount;
 use super::deadlines::Step;
+use super::said::Said;
 use super::{Board, BoardError};
 
 impl Board {
@@ -13,6 +15,16 @@ impl Board {
     /// [`BoardError`] when no answer comes.
     pub fn status(&mut self, clear: bool) -> Result<Status, BoardError> {
         self.conversation.status(clear, Step::Request)
+    }
+
+    /// Has the board set its counters back by `clear`, any number but 0, and returns what it says.
+    ///
+    /// # Errors
+    /// [`BoardError`] when no answer comes.
+    pub(crate) fn clear_by(&mut self, clear: u8) -> Result<Said, BoardError> {
+        let said = self.ask(Kind::Status, &[clear])?;
+        self.conversation.counted.set_back(self.conversation.tally);
+        Ok(said)
     }
 
     /// The board's counters, although the run was stopped: then they are waited for as the end of a session is.

@@ -13,6 +13,7 @@ mod legal;
 mod rows;
 mod said;
 mod sent;
+mod sessions;
 mod stop;
 mod tables;
 mod tally;
@@ -129,18 +130,6 @@ impl Board {
                 Err(failed)
             }
         }
-    }
-
-    /// Opens another session over the same link, by a nonce that none before had. Whatever is still under way of the one before means
-    /// nothing in it.
-    ///
-    /// # Errors
-    /// [`BoardError`] as of [`Self::open`].
-    pub(crate) fn open_another_session(&mut self, nonce: u32) -> Result<(), BoardError> {
-        self.options.nonce = nonce;
-        self.conversation.leave_session();
-        self.welcome = greet_or_take_over(&mut self.conversation, &self.options)?;
-        Ok(())
     }
 
     /// What the board did with rows in this session that no link can do.

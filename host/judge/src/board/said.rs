@@ -5,7 +5,7 @@ use std::{iter, mem};
 use halfrow_protocol::message::{Burst, Refusal, RefusalCode, Reply, Request, Reset, ResetLevel, RowPlace};
 use halfrow_protocol::{Kind, Packet, samples};
 
-use super::answer::take_reply;
+use super::answer::{Kept, take_reply};
 use super::asked::Asking;
 use super::deadlines::Step;
 use super::{Board, BoardError, Given, ReturnedRow, RowTraffic, rows};
@@ -82,6 +82,19 @@ fn is_of_no_session(packet: &Packet<'_>) -> bool {
     matches!(Reply::read(packet), Ok(Reply::Refusal(refusal)) if refusal.code == RefusalCode::Session)
 }
 
+/// What `answer` says to a request of `kind`.
+pub(super) fn said(kind: Kind, answer: &Kept) -> Result<Said, BoardError> {
+    let packet = answer.packet();
+    // What a reply says is looked at byte by byte by whoever asks.
+    if packet.header.kind == kind.code() && kind != Kind::Refusal {
+        return Ok(Said::Replied(packet.payload.to_vec()));
+    }
+    match take_reply(kind, answer, |_| None) {
+        Err(BoardError::Refused { refusal, .. }) => Ok(Said::Refused(refusal)),
+        said => said,
+    }
+}
+
 impl Board {
     /// Sends a request of `kind` with any payload, and returns what the board says to it.
     ///
@@ -89,44 +102,7 @@ impl Board {
     /// [`BoardError`] when it says nothing, or nothing that its kind can say.
     pub(crate) fn ask(&mut self, kind: Kind, payload: &[u8]) -> Result<Said, BoardError> {
         let answer = self.conversation.ask(&Asking::Bytes(kind, payload), Step::Request, |_| true)?;
-        let packet = answer.packet();
-        // What a reply says is looked at byte by byte by whoever asks.
-        if packet.header.kind == kind.code() && kind != Kind::Refusal {
-            return Ok(Said::Replied(packet.payload.to_vec()));
-        }
-        match take_reply(kind, &answer, |_| None) {
-            Err(BoardError::Refused { refusal, .. }) => Ok(Said::Refused(refusal)),
-            said => said,
-        }
-    }
-
-    /// Sends a request of `kind` under the number of the session `session`, which is not open, and returns what the board says to it.
-    ///
-    /// # Errors
-    /// As [`Self::ask`].
-    pub(crate) fn ask_in_session(
-        &mut self,
-        session: u8,
-        kind: Kind,
-        payload: &[u8],
-    ) -> Result<Said, BoardError> {
-        let own = mem::replace(&mut self.conversation.session, session);
-        // A session that is not open has nobody to ask.
-        let counts = mem::take(&mut self.conversation.counts);
-        let said = self.ask(kind, payload);
-        self.conversation.session = own;
-        self.conversation.counts = counts;
-        match said {
-            Err(BoardError::SessionLost) => {
-                Ok(Said::Refused(Refusal { code: RefusalCode::Session, kind: kind.code(), detail: 0 }))
-            }
-            said => said,
-        }
-    }
-
-    /// Number of the open session.
-    pub(crate) fn session(&self) -> u8 {
-        self.conversation.session
+        said(kind, &answer)
     }
 
     /// Sends a row, waits for nothing, and returns the number of its packet.
@@ -136,12 +112,25 @@ impl Board {
     }
 
     /// Sends `request` so that it is none, and waits for nothing: damaged, in each way in which a link can flip a bit of one byte,
-    /// and of another version or length. All of them have a number that no packet has.
-    pub(crate) fn give_damaged(&mut self, request: &Request<'_>) {
+    /// and of another version or length. All of them have a number that no packet has. Returns how many of them have a wrong CRC,
+    /// and how many are broken otherwise.
+    pub(crate) fn give_damaged(&mut self, request: &Request<'_>) -> [u32; 2] {
         let number = self.conversation.next_sequence();
         self.conversation.conduct.await_answer(number);
+        let from = self.conversation.queued();
         self.conversation.queue_damaged(request);
         self.conversation.queue_misnamed(request);
+        self.conversation.damage_behind(from)
+    }
+
+    /// Sends a request of `kind` with any payload, and waits for nothing.
+    pub(crate) fn give_bytes(&mut self, kind: Kind, payload: &[u8]) {
+        self.conversation.tell(&Asking::Bytes(kind, payload));
+    }
+
+    /// Of the requests that changed the board and came to it more than once, those beyond so many cast no doubt on what was found.
+    pub(crate) fn excuse_changes(&mut self, changes: u64) {
+        self.conversation.repeated_changes = changes;
     }
 
     /// What the board answered those packets with, if it did.

@@ -32,6 +32,14 @@ pub enum Counter {
     ForeignPackets,
     /// Whether a row is inside the core.
     CoreBusy,
+    /// Packets with a wrong CRC.
+    CrcErrors,
+    /// Packets with broken stuffing, size, version or length.
+    FramingErrors,
+    /// The least latency of a row, in pixel clocks.
+    LeastLatency,
+    /// The greatest, in pixel clocks.
+    MostLatency,
 }
 
 impl Counter {
@@ -52,6 +60,10 @@ impl Counter {
             Self::Packets => "packets that came to it",
             Self::ForeignPackets => "packets of another session",
             Self::CoreBusy => "rows inside the core",
+            Self::CrcErrors => "packets with a wrong CRC",
+            Self::FramingErrors => "packets with broken stuffing, size, version or length",
+            Self::LeastLatency => "pixel clocks as the least latency",
+            Self::MostLatency => "pixel clocks as the greatest latency",
         }
     }
 
@@ -60,7 +72,7 @@ impl Counter {
     pub(super) const fn bound(self) -> &'static str {
         match self {
             Self::RowsNumbered => "at most ",
-            Self::Packets => "at least ",
+            Self::Packets | Self::CrcErrors | Self::FramingErrors => "at least ",
             _ => "",
         }
     }

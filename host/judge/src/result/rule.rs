@@ -26,6 +26,12 @@ pub enum Rule {
     Once,
     /// A packet of another session is refused, and has no effect.
     Session,
+    /// A board that another host holds refuses a greeting, and says for how long.
+    Held,
+    /// A greeting opens the next session, once, in which nothing is left of the one before but tables and configuration.
+    NewSession,
+    /// A RESET with level 1 closes the session, one with another level does not, and neither of the first two drops tables.
+    Closed,
     /// A commit of tables that read back otherwise is refused.
     CommitCrc,
     /// A commit that names tables which are active or pending is answered, generation 0 is refused, and another is not both.
@@ -99,6 +105,13 @@ pub enum Answer {
         /// How many beyond the row that is waited for.
         rows: u32,
     },
+    /// A session.
+    Session {
+        /// Its number.
+        number: u8,
+    },
+    /// It took what it was given.
+    Taken {},
     /// How far a burst is.
     Burst {
         /// Whether it has ended.

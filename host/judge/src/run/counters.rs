@@ -84,7 +84,7 @@ fn packets_counted(status: &Status, answered: u64) -> Result<(), End> {
 
 /// ROW_OUT packets are numbered from 0 on, and each one is a row that came out or one that was sent again. Since no two have one number
 /// and none is behind a later row's, over a link that loses nothing they count from 0 without a gap.
-fn rows_numbered(status: &Status, counted: u32) -> Result<(), End> {
+pub(super) fn rows_numbered(status: &Status, counted: u32) -> Result<(), End> {
     let right = status.rows_out.saturating_add(status.rows_repeated);
     if counted <= right {
         return Ok(());
@@ -93,7 +93,7 @@ fn rows_numbered(status: &Status, counted: u32) -> Result<(), End> {
 }
 
 /// Packets that the board calls damaged.
-fn damaged(status: &Status) -> u32 {
+pub(super) fn damaged(status: &Status) -> u32 {
     status.crc_errors.saturating_add(status.framing_errors)
 }
 

@@ -111,6 +111,8 @@ pub(super) struct Findings {
     pub(super) not_exercised: Vec<NotExercised>,
     /// Whether the run was made again since counters were wrong that a link moves as well.
     pub(super) counters_doubted: bool,
+    /// Whether something was found wrong that no link brings about, whatever else it has done.
+    pub(super) beyond_links: bool,
     /// Whether counters were not compared for what the board alone says of its link.
     pub(super) leaves_counters_out: bool,
     /// Whether a board came back that has no number to be known by.
@@ -147,6 +149,7 @@ impl Findings {
             repeats_counted: 0,
             not_exercised: Vec::new(),
             counters_doubted: false,
+            beyond_links: false,
             leaves_counters_out: false,
             is_unknown: false,
             untested_at_speed: Vec::new(),
@@ -194,7 +197,7 @@ impl Findings {
         (self.earlier.found, self.earlier.doubt) = (false, None);
         self.checks.retain(|check| matches!(check.name, CheckName::Judge | CheckName::Identity));
         self.not_exercised.clear();
-        self.leaves_counters_out = false;
+        (self.leaves_counters_out, self.beyond_links) = (false, false);
         self.is_unknown = false;
         self.untested_at_speed.clear();
         self.corners.clear();

@@ -59,12 +59,25 @@ impl Run<'_> {
 
     /// Opens a session in which no copy of an earlier one's requests means anything, `number` of those of the run, from 1.
     pub(super) fn open_session(&mut self, number: u32) -> Result<(), End> {
-        let nonce = self.way_back.options.nonce.wrapping_add(NONCE + number);
+        let nonce = self.nonce(number);
         self.board.open_another_session(nonce).during(CheckName::Link)
+    }
+
+    fn nonce(&self, number: u32) -> u32 {
+        self.way_back.options.nonce.wrapping_add(NONCE + number)
+    }
+
+    /// The nonce of one more session that is opened for its own sake.
+    pub(super) fn next_nonce(&mut self) -> u32 {
+        self.sessions += 1;
+        self.nonce(LOOKS + self.sessions)
     }
 
     /// Why the board may not be as the host made it in this session, although it is sound and `check` found something.
     pub(super) fn doubt(&mut self, check: CheckName) -> Option<Doubt> {
+        if self.findings.beyond_links {
+            return None;
+        }
         if let Some(doubt) = self.findings.earlier.doubt.or(Doubt::of_requests(self.board)) {
             return Some(doubt);
         }

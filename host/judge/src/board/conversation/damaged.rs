@@ -1,6 +1,7 @@
 //! Packets that are none: a board must not carry them out.
 
 use halfrow_protocol::message::Request;
+use halfrow_protocol::{Damage, Decoder};
 
 use super::Conversation;
 
@@ -8,6 +9,20 @@ use super::Conversation;
 const MISNAMED: [usize; 3] = [0, 4, 5];
 
 impl Conversation {
+    /// How many packets with a wrong CRC, and how many that are broken otherwise, are queued behind so many bytes.
+    pub(in crate::board) fn damage_behind(&self, bytes: usize) -> [u32; 2] {
+        let (mut decoder, [mut crc, mut framing]) = (Decoder::new(), [0; 2]);
+        let mut queued = &self.outgoing[bytes..];
+        while let Some(packet) = decoder.next(&mut queued) {
+            match packet {
+                Ok(_) => {}
+                Err(Damage::Crc) => crc += 1,
+                Err(_) => framing += 1,
+            }
+        }
+        [crc, framing]
+    }
+
     /// Queues `request` once for each byte that its packet has on the wire between two zeros, with a bit of that byte flipped.
     pub(in crate::board) fn queue_damaged(&mut self, request: &Request<'_>) {
         let from = self.outgoing.len();

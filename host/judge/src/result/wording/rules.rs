@@ -30,6 +30,8 @@ fn must(right: &Answer, request: &str) -> String {
         Answer::Replied { payload } if payload.is_empty() => format!("carry out {request}"),
         Answer::Replied { payload } => format!("answer {request} with {payload}"),
         Answer::Credit { rows } => format!("give credit for {} behind {request}", count(*rows, "row")),
+        Answer::Session { number } => format!("answer {request} with session {number}"),
+        Answer::Taken {} => format!("take {request}"),
         Answer::Burst { ended, records } => {
             let state = if *ended { "that has ended" } else { "under way" };
             format!("answer {request} with a burst {state} and {}", count(*records, "record"))
@@ -47,6 +49,8 @@ fn did(found: &Answer) -> String {
         Answer::Replied { payload } if payload.is_empty() => "carried it out".to_owned(),
         Answer::Replied { payload } => format!("answered with {payload}"),
         Answer::Credit { rows } => format!("gave it for {rows}"),
+        Answer::Session { number } => format!("answered with session {number}"),
+        Answer::Taken {} => "took it without a word".to_owned(),
         Answer::Burst { ended, records } => {
             let state = if *ended { "that has ended" } else { "under way" };
             format!("answered with one {state} and {}", count(*records, "record"))
@@ -85,6 +89,9 @@ fn meaning(rule: Rule) -> &'static str {
         Rule::Damage => "a damaged packet has no effect",
         Rule::Once => "each request has one answer, and most had two",
         Rule::Session => "a packet of another session has no effect",
+        Rule::Held => "a board is held for 10 s behind its holder's last packet",
+        Rule::NewSession => "a greeting opens the next session, which keeps nothing but tables and settings",
+        Rule::Closed => "RESET closes a session with level 1 alone, and drops tables with level 2 alone",
         Rule::CommitCrc => "a commit with another CRC than the tables have",
         Rule::Generation => "which generations a commit may name",
         Rule::Shape => "a grid that the board cannot have is refused",

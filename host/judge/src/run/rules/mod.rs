@@ -7,6 +7,7 @@ mod bursts;
 mod commits;
 mod compared;
 mod configurations;
+mod counts;
 mod depths;
 mod grids;
 mod power_up;
@@ -14,6 +15,7 @@ mod price;
 mod refused;
 mod requests;
 mod rows;
+mod sessions;
 mod small;
 mod tables;
 mod trap;
@@ -30,7 +32,7 @@ use super::findings::End;
 use super::parts::{Part, of_height};
 use super::plan::Segment;
 use super::steps::Run;
-use crate::board::{BoardError, Capabilities, Given, RowTiming, Said};
+use crate::board::{BoardError, Capabilities, Given, RowTiming, Said, Status};
 use crate::progress::Step;
 use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Outcome, Rule};
 use crate::verdict::Cause;
@@ -86,8 +88,10 @@ struct Rules<'a, 'run> {
     small: Small,
     /// Requests that were answered as they must be.
     right: usize,
-    /// Refusals among those.
+    /// Refusals among those, of the open session.
     refused: Refused,
+    /// What the board had counted in front of them.
+    before: Status,
     /// Rows of a frame, as the board is set.
     height: usize,
     /// Rows of the next frame that the board was given.
@@ -104,6 +108,7 @@ impl<'a, 'run> Rules<'a, 'run> {
             small,
             right: 0,
             refused: Refused::default(),
+            before: Status::default(),
             height: 0,
             given: Given::default(),
         })
@@ -112,21 +117,26 @@ impl<'a, 'run> Rules<'a, 'run> {
     /// Tries all of them, and returns how many requests were answered as they must be.
     fn all(mut self) -> Result<usize, End> {
         self.drop_rows()?;
-        let before = self.run.board.status(false).map_err(of_board)?;
+        self.before = self.run.board.status(false).map_err(of_board)?;
         self.requests()?;
         self.tables()?;
         self.damage()?;
         self.other_sessions()?;
         self.commits()?;
         self.rows()?;
+        self.counts_stay()?;
+        self.refusals_counted()?;
+        self.counts()?;
+        self.sessions()?;
         self.wide()?;
         if self.run.known_bursts().is_ok() {
             self.bursts()?;
             self.trap()?;
         }
         self.answered_once()?;
-        self.refusals_counted(&before)?;
+        self.refusals_counted()?;
         self.power_up()?;
+        self.closed()?;
         Ok(self.right)
     }
 
@@ -177,9 +187,26 @@ impl<'a, 'run> Rules<'a, 'run> {
         code: RefusalCode,
         detail: u16,
     ) -> Result<(), End> {
+        let changes = self.run.board.repeated_changes();
         let said = self.run.board.ask(kind, payload);
         let right = Said::Refused(Refusal { code, kind: kind.code(), detail });
+        let is_unanswered = matches!(said, Err(BoardError::NoAnswer { .. }));
+        if is_unanswered && kind == Kind::RowIn && self.has_taken(payload) {
+            // It is known what became of each time that it was asked for.
+            self.run.board.excuse_changes(changes);
+            return Err(broken(rule, kind, answer(&right), Answer::Taken {}));
+        }
         self.judge(rule, kind, said, &right)
+    }
+
+    /// Whether the board knows the row in `payload`, by what it counts when that comes once more.
+    fn has_taken(&mut self, payload: &[u8]) -> bool {
+        let Ok(before) = self.run.board.status(false) else { return false };
+        self.run.board.give_bytes(Kind::RowIn, payload);
+        let Ok(after) = self.run.board.status(false) else { return false };
+        let known = |status: &Status| u64::from(status.rows_unneeded) + u64::from(status.rows_repeated);
+        let is_refused = after.refusals > before.refusals;
+        known(&after) > known(&before) && !is_refused && self.run.board.had_each_packet_once(&after)
     }
 
     /// Asks what must be answered with `reply`.

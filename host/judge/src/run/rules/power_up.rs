@@ -3,7 +3,7 @@
 use halfrow_model::{NODES, RowFactor};
 use halfrow_protocol::message::{Bank, Commit, NODE_BYTES, RefusalCode, Request, RowPlace, Table};
 
-use super::{Rules, of_board};
+use super::Rules;
 use crate::result::Rule;
 use crate::run::findings::End;
 
@@ -12,7 +12,7 @@ const GENERATION: u8 = 0xff;
 
 impl Rules<'_, '_> {
     pub(super) fn power_up(&mut self) -> Result<(), End> {
-        self.run.board.forget().map_err(of_board)?;
+        self.forget()?;
         let commit =
             Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: GENERATION, shape: None };
         self.not_ready(&Request::Commit(commit))?;

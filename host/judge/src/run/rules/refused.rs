@@ -3,12 +3,12 @@
 use halfrow_protocol::message::RefusalCode;
 
 use super::{Rules, miscounted, of_board};
-use crate::board::{Said, Status};
+use crate::board::Said;
 use crate::result::Counter;
 use crate::run::findings::End;
 
 /// Refusals that came.
-#[derive(Default)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Refused {
     /// Those of the open session.
     own: u32,
@@ -28,11 +28,11 @@ impl Refused {
 }
 
 impl Rules<'_, '_> {
-    /// The board counts at least the refusals that came since it told `before`: whatever a link loses or doubles, none of them was
+    /// The board counts at least the refusals that came in this session: whatever a link loses or doubles, none of them was
     /// sent without a request.
-    pub(super) fn refusals_counted(&mut self, before: &Status) -> Result<(), End> {
+    pub(super) fn refusals_counted(&mut self) -> Result<(), End> {
         let after = self.run.board.status(false).map_err(of_board)?;
-        let Refused { own, foreign } = self.refused;
+        let (Refused { own, foreign }, before) = (self.refused, self.before);
         let least = [
             (Counter::Refusals, after.refusals, before.refusals.saturating_add(own)),
             (Counter::ForeignPackets, after.foreign_packets, before.foreign_packets.saturating_add(foreign)),

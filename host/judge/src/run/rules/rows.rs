@@ -132,7 +132,7 @@ impl Rules<'_, '_> {
     }
 
     /// Gives row `row` of the frame, which is one of the first two: for those there is credit.
-    fn give(&mut self, row: u16) {
+    pub(super) fn give(&mut self, row: u16) {
         let place = self.place(row);
         let made = self.small.made(0, self.height, GENERATION);
         let frame = self.small.frame(FRAME, &made.tables);
@@ -143,7 +143,7 @@ impl Rules<'_, '_> {
 
     /// Gives row 0, and waits until it is inside the core. How long a row waits in front of it is not the wire's to say, so one that
     /// does not enter makes no board wrong.
-    fn enter(&mut self) -> Result<(), End> {
+    pub(super) fn enter(&mut self) -> Result<(), End> {
         let place = self.place(0);
         let mut has_come = false;
         for _ in 0..LOOKS {

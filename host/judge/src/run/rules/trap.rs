@@ -19,7 +19,7 @@ use crate::run::parts::of_height;
 use crate::run::variations::Build;
 
 /// What TRAP says when no row was kept.
-const NOTHING_KEPT: [u8; 1] = [0];
+pub(super) const NOTHING_KEPT: [u8; 1] = [0];
 /// The most rows of the tallest frame: its tables and signatures take a link 30 ms at 3 Mbaud.
 const MOST_ROWS: usize = 1023;
 /// The generation that it is made with: no other that is active in the rules.

@@ -5,9 +5,11 @@ use std::iter;
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Entries, Refusal, RefusalCode, Request};
 
+use super::counts::at_least;
+use super::sessions::TIMES;
 use super::{FIRST_FACTOR, Rules, answer, broken, of_board, payload};
 use crate::board::{BoardError, Said};
-use crate::result::{Answer, Rule};
+use crate::result::{Answer, Counter, Rule};
 use crate::run::findings::End;
 
 /// The row factor that must stay.
@@ -17,10 +19,6 @@ const KEPT: [u8; 4] = 1_u32.to_le_bytes();
 const OTHER: [u8; 4] = 0x1a5_u32.to_le_bytes();
 
 const READ: Request<'static> = Request::TableRead(FIRST_FACTOR);
-
-/// How often damaged packets must be carried out for the board to be wrong: a link that flips the very bit back makes one of them
-/// whole, and does so once.
-const TIMES: usize = 3;
 
 /// So many rows came once each where all that is answered twice is the board's.
 const ROWS: u32 = 64;
@@ -32,10 +30,12 @@ impl Rules<'_, '_> {
     /// A row factor stays as it was written, though packets that would write another one came with a flipped bit,
     /// in another version or of another length than they name.
     pub(super) fn damage(&mut self) -> Result<(), End> {
-        let mut said = self.behind_damage()?;
+        self.thrice(Self::damage_counted)?;
+        let mut said = self.behind_damage()?.0;
         for _ in 1..TIMES {
+            // A link that flips the very bit back makes one of them whole, and does so once.
             if is_other(&said) || self.run.board.answer_to_damaged().is_some() {
-                said = self.behind_damage()?;
+                said = self.behind_damage()?.0;
             }
         }
         self.judge_kept(Rule::Damage, said)?;
@@ -65,11 +65,32 @@ impl Rules<'_, '_> {
         Err(broken(Rule::Once, Kind::TableWrite, right, Answer::Twice {}))
     }
 
-    /// What is said to be in the row factor's place behind damaged packets.
-    fn behind_damage(&mut self) -> Result<Result<Said, BoardError>, End> {
+    /// What is said to be in the row factor's place behind damaged packets, and how many those were.
+    fn behind_damage(&mut self) -> Result<(Result<Said, BoardError>, [u32; 2]), End> {
         self.replied(Rule::Damage, &write(&KEPT), Vec::new())?;
-        self.run.board.give_damaged(&write(&OTHER));
-        Ok(self.read())
+        let damaged = self.run.board.give_damaged(&write(&OTHER));
+        Ok((self.read(), damaged))
+    }
+
+    /// At least three quarters of the damaged packets are counted as what they are: a link that loses so many loses others as well.
+    fn damage_counted(&mut self) -> Result<(), End> {
+        let before = self.run.board.status(false).map_err(of_board)?;
+        let (_, [crc, framing]) = self.behind_damage()?;
+        let after = self.run.board.status(false).map_err(of_board)?;
+        if !self.run.board.had_each_packet_once(&after) {
+            return Ok(());
+        }
+        let counted = [
+            after.crc_errors.saturating_sub(before.crc_errors),
+            after.framing_errors.saturating_sub(before.framing_errors),
+        ];
+        let least = [most_of(crc), most_of(framing)];
+        if counted[0] < least[0] && counted[1] < least[1] {
+            // What stands between host and board may keep to itself what is damaged.
+            return Ok(());
+        }
+        at_least(Counter::CrcErrors, counted[0], least[0])?;
+        at_least(Counter::FramingErrors, counted[1], least[1])
     }
 
     /// It stays so though packets of other sessions would write another one, and each of those is refused.
@@ -100,6 +121,11 @@ impl Rules<'_, '_> {
     }
 }
 
+/// Three quarters of so many.
+fn most_of(packets: u32) -> u32 {
+    packets - packets / 4
+}
+
 /// Whether the row factor is the one that must not have been written.
 fn is_other(said: &Result<Said, BoardError>) -> bool {
     matches!(said, Ok(Said::Replied(entry)) if entry.ends_with(&OTHER))
@@ -109,12 +135,12 @@ fn write(bytes: &[u8; 4]) -> Request<'_> {
     Request::TableWrite(Entries { span: FIRST_FACTOR, bytes })
 }
 
-/// The session before `open`, and those whose numbers differ from it in a bit.
-fn others(open: u8) -> impl Iterator<Item = u8> {
+/// None, the session before `open`, and those whose numbers differ from it in a bit.
+pub(super) fn others(open: u8) -> impl Iterator<Item = u8> {
     let before = if open == 1 { u8::MAX } else { open - 1 };
     // 255 follows 254, and 1 follows 255.
     let ahead = move |session: u8| (u16::from(session) + 255 - u16::from(open)) % 255;
     let with_a_bit = (0..u8::BITS).map(move |bit| open ^ 1 << bit);
     let apart = with_a_bit.filter(move |&session| session != 0 && ahead(session) > TO_COME);
-    iter::once(before).chain(apart.filter(move |&session| session != before))
+    [0, before].into_iter().chain(apart.filter(move |&session| session != before))
 }

@@ -211,8 +211,8 @@ impl Run<'_> {
     }
 
     fn open_another_session(&mut self) -> Result<(), End> {
-        self.sessions += 1;
-        self.open_session(LOOKS + self.sessions)
+        let nonce = self.next_nonce();
+        self.board.open_another_session(nonce).during(CheckName::Link)
     }
 
     /// Diagnoses what differed in a burst.

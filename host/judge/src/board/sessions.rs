@@ -1,0 +1,147 @@
+//! Sessions: another one, the open one's greeting once more, and what is said in one that is not open.
+
+use std::mem;
+
+use halfrow_protocol::Kind;
+use halfrow_protocol::message::{Hello, Refusal, RefusalCode, Request, ResetLevel, Welcome};
+
+use super::asked::Asking;
+use super::counted::Counted;
+use super::deadlines::Step;
+use super::said::{Said, said};
+use super::{Board, BoardError, OpenOptions, VERSION, greet, greet_or_take_over, is_for};
+
+impl Board {
+    /// Number of the open session.
+    pub(crate) fn session(&self) -> u8 {
+        self.conversation.session
+    }
+
+    /// Opens another session over the same link, by a nonce that none before had. Whatever is still under way of the one before means
+    /// nothing in it.
+    ///
+    /// # Errors
+    /// [`BoardError`] as of [`Self::open`].
+    pub(crate) fn open_another_session(&mut self, nonce: u32) -> Result<(), BoardError> {
+        self.options.nonce = nonce;
+        self.conversation.leave_session();
+        self.welcome = greet_or_take_over(&mut self.conversation, &self.options)?;
+        Ok(())
+    }
+
+    /// The same of a board that may be another host's by now, which keeps it then.
+    ///
+    /// # Errors
+    /// As [`Self::open_another_session`].
+    pub(crate) fn open_free_session(&mut self, nonce: u32) -> Result<(), BoardError> {
+        let given = self.options.clone();
+        self.options = OpenOptions { take_over: false, polite: true, ..given.clone() };
+        let opened = self.open_another_session(nonce);
+        self.options = OpenOptions { nonce, ..given };
+        opened
+    }
+
+    /// Sends the greeting of the open session once more, and goes on in the session that the board names then.
+    ///
+    /// # Errors
+    /// As [`Self::open_another_session`].
+    pub(crate) fn greet_again(&mut self) -> Result<Welcome, BoardError> {
+        let options = OpenOptions { take_over: false, ..self.options.clone() };
+        let conversation = &mut self.conversation;
+        let before = conversation.tally;
+        // What is answered in another session must be heard as well.
+        let own = mem::take(&mut conversation.session);
+        let greeted = greet(conversation, &options);
+        conversation.session = own;
+        let welcome = greeted?;
+        if welcome.session == own {
+            conversation.count_behind(before.retries);
+        } else {
+            conversation.leave_session();
+            conversation.session = welcome.session;
+            let sent = conversation.tally.packets_out - before.packets_out;
+            conversation.counted = Counted::in_new_session(conversation.tally, sent);
+        }
+        Ok(welcome)
+    }
+
+    /// Greets the board as another host does, which leaves it to its holder, and returns what it says. Were it to open a session, that is
+    /// closed.
+    ///
+    /// # Errors
+    /// As [`Self::ask`].
+    pub(crate) fn greet_as_another_host(&mut self) -> Result<Said, BoardError> {
+        let hello = Hello {
+            nonce: !self.options.nonce,
+            host: !self.options.host,
+            version_min: VERSION,
+            version_max: VERSION,
+            take_over: false,
+        };
+        self.conversation.queue_zeros(2);
+        let own = mem::take(&mut self.conversation.session);
+        let request = Request::Hello(hello);
+        let asking = Asking::Request(&request);
+        let answer = self.conversation.ask(&asking, Step::Hello, |packet| is_for(packet, hello.nonce));
+        self.conversation.session = own;
+        let answer = answer?;
+        if answer.header.kind == Kind::Hello.code() && answer.header.session != own {
+            self.close_foreign(answer.header.session);
+        }
+        said(Kind::Hello, &answer)
+    }
+
+    fn close_foreign(&mut self, session: u8) {
+        let reset = [ResetLevel::Session as u8, 0, 0, 0, 0];
+        if let Err(error) = self.ask_in_session(session, Kind::Reset, &reset) {
+            tracing::debug!("the session of another host was not closed: {error}");
+        }
+    }
+
+    /// Closes the session, and goes on as if it was open.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board refuses or does not answer.
+    pub(crate) fn close_session(&mut self) -> Result<(), BoardError> {
+        match self.reset(ResetLevel::Session, Step::Request) {
+            // What is said when the reply to the first try was lost.
+            Err(BoardError::SessionLost) => Ok(()),
+            closed => closed,
+        }
+    }
+
+    /// Sends a request of `kind` under the number of the session `session`, which is not open, and returns what the board says to it.
+    ///
+    /// # Errors
+    /// As [`Self::ask`].
+    pub(crate) fn ask_in_session(
+        &mut self,
+        session: u8,
+        kind: Kind,
+        payload: &[u8],
+    ) -> Result<Said, BoardError> {
+        let own = mem::replace(&mut self.conversation.session, session);
+        // A session that is not open has nobody to ask.
+        let counts = mem::take(&mut self.conversation.counts);
+        let said = self.ask(kind, payload);
+        self.conversation.session = own;
+        self.conversation.counts = counts;
+        match said {
+            Err(BoardError::SessionLost) => {
+                Ok(Said::Refused(Refusal { code: RefusalCode::Session, kind: kind.code(), detail: 0 }))
+            }
+            said => said,
+        }
+    }
+
+    /// Says under the number of the session `session`, which is not open, that all rows before `row_sequence` have come back. That is
+    /// not answered.
+    pub(crate) fn acknowledge_in_session(&mut self, session: u8, row_sequence: u32) {
+        let conversation = &mut self.conversation;
+        let own = mem::replace(&mut conversation.session, session);
+        let acknowledged = mem::replace(&mut conversation.acknowledged, row_sequence);
+        let sequence = conversation.next_sequence();
+        conversation.queue(&Request::RowAck, sequence);
+        (conversation.session, conversation.acknowledged) = (own, acknowledged);
+    }
+}

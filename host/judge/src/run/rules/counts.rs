@@ -1,0 +1,137 @@
+//! What the board counts, behind what moves it and what must not.
+
+use std::mem;
+
+use super::rows::{FRAME, GENERATION};
+use super::without_effect::others;
+use super::{Refused, Rules, miscounted, of_board, of_rows};
+use crate::board::{Said, Status};
+use crate::result::{Counter, Finding, Rule};
+use crate::run::counters::damaged;
+use crate::run::findings::End;
+
+/// Rows of a frame of which the first is asked for once more: the second pushes it out.
+const ROWS: usize = 2;
+/// How often a row is given that is not needed any more.
+const UNNEEDED: u32 = 4;
+/// What STATUS clears by as well as by 1.
+const CLEAR: u8 = 0x80;
+
+impl Rules<'_, '_> {
+    pub(super) fn counts(&mut self) -> Result<(), End> {
+        if self.height >= ROWS {
+            self.rows_counted()?;
+        }
+        self.cleared()
+    }
+
+    /// Neither a STATUS that is not to clear nor a RESET clears a counter.
+    pub(super) fn counts_stay(&mut self) -> Result<(), End> {
+        self.always(|rules| rules.counts_on(|_| Ok(())))?;
+        self.always(|rules| rules.counts_on(Self::drop_rows))
+    }
+
+    /// Rows are counted that are asked for again, that are not needed and that other sessions say to have.
+    fn rows_counted(&mut self) -> Result<(), End> {
+        self.configure(ROWS)?;
+        let tables = self.small.made(0, ROWS, GENERATION).tables;
+        let frame = self.small.frame(FRAME, &tables).frame;
+        let before = self.run.board.status(false).map_err(of_board)?;
+        self.give(0);
+        self.give(1);
+        let (first, second) = (self.place(0), self.place(1));
+        let rows = [(&first, frame.row(0)), (&second, frame.row(1))];
+        self.run.board.again(rows, 0).map_err(|error| of_rows(Rule::Again, error))?;
+        for session in others(self.run.board.session()) {
+            self.run.board.acknowledge_in_session(session, second.row_sequence + 1);
+        }
+        let status = self.run.board.status(false).map_err(of_board)?;
+        equal(Counter::NextRowIn, status.next_row_in, second.row_sequence + 1)?;
+        equal(Counter::NextRowOut, status.next_row_out, first.row_sequence)?;
+        let came = self.run.board.again(rows, 1).map_err(|error| of_rows(Rule::Again, error))?;
+        self.run.board.acknowledge(first.row_sequence + mem::take(&mut self.given).rows);
+        let status = self.run.board.status(false).map_err(of_board)?;
+        let repeated = before.rows_repeated.saturating_add(came.repeats.into());
+        at_least(Counter::RowsRepeated, status.rows_repeated, repeated)?;
+        for _ in 0..UNNEEDED {
+            self.run.board.give(&first, frame.row(0));
+        }
+        let unneeded = status.rows_unneeded.saturating_add(UNNEEDED);
+        let status = self.run.board.status(false).map_err(of_board)?;
+        if self.run.board.had_each_packet_once(&status) {
+            at_least(Counter::RowsUnneeded, status.rows_unneeded, unneeded)?;
+        }
+        self.configure(self.small.rows())
+    }
+
+    /// A count or a session that is wrong behind `scenario` each time is so by no late copy of a request: there are not so many. Rows may
+    /// be wrong since tables are.
+    pub(super) fn always(&mut self, scenario: fn(&mut Self) -> Result<(), End>) -> Result<(), End> {
+        let tried = self.thrice(scenario);
+        let is_of_requests = |end: &End| {
+            let finding = end.check().2;
+            matches!(
+                finding,
+                Finding::CounterWrong { .. } | Finding::RuleBroken { rule: Rule::NewSession, .. }
+            )
+        };
+        self.run.findings.beyond_links |= tried.as_ref().is_err_and(is_of_requests);
+        tried
+    }
+
+    /// What is counted of rows stays so behind `act`.
+    pub(super) fn counts_on(&mut self, act: impl FnOnce(&mut Self) -> Result<(), End>) -> Result<(), End> {
+        self.right_frames(&[FRAME])?;
+        let before = self.run.board.status(false).map_err(of_board)?;
+        act(self)?;
+        let after = self.run.board.status(false).map_err(of_board)?;
+        at_least(Counter::RowsIn, after.rows_in, before.rows_in)?;
+        at_least(Counter::RowsOut, after.rows_out, before.rows_out)?;
+        at_least(Counter::SamplesOver, after.samples_over, before.samples_over)
+    }
+
+    /// Any number but 0 clears all of them.
+    fn cleared(&mut self) -> Result<(), End> {
+        let said = self.run.board.clear_by(CLEAR).map_err(of_board)?;
+        if let Said::Replied(_) = said {
+            (self.refused, self.before) = (Refused::default(), Status::default());
+        }
+        let status = self.run.board.status(false).map_err(of_board)?;
+        self.not_counted(&status)
+    }
+
+    /// Nothing is counted by `status`, which came behind what sets all counters back.
+    pub(super) fn not_counted(&mut self, status: &Status) -> Result<(), End> {
+        let of_new_rows = [
+            (Counter::RowsIn, status.rows_in),
+            (Counter::RowsOut, status.rows_out),
+            (Counter::SamplesOver, status.samples_over),
+            (Counter::LeastLatency, status.least_latency),
+            (Counter::MostLatency, status.most_latency),
+        ];
+        if let Some((counter, counted)) = of_new_rows.into_iter().find(|&(_, counted)| counted != 0) {
+            // There was no new row, and no link makes one.
+            self.run.findings.beyond_links = true;
+            return Err(miscounted(counter, counted, 0));
+        }
+        let of_any_packet = [
+            (Counter::RowsRepeated, status.rows_repeated),
+            (Counter::RowsUnneeded, status.rows_unneeded),
+            (Counter::Refusals, status.refusals),
+            (Counter::ForeignPackets, status.foreign_packets),
+        ];
+        let is_calm = damaged(status) == 0 && self.run.board.had_each_packet_once(status);
+        match of_any_packet.into_iter().find(|&(_, counted)| is_calm && counted != 0) {
+            Some((counter, counted)) => Err(miscounted(counter, counted, 0)),
+            None => Ok(()),
+        }
+    }
+}
+
+fn equal(counter: Counter, counted: u32, right: u32) -> Result<(), End> {
+    if counted == right { Ok(()) } else { Err(miscounted(counter, counted, right)) }
+}
+
+pub(super) fn at_least(counter: Counter, counted: u32, right: u32) -> Result<(), End> {
+    if counted >= right { Ok(()) } else { Err(miscounted(counter, counted, right)) }
+}

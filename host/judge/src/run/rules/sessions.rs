@@ -1,0 +1,279 @@
+//! What opens a session and what ends one, what is gone then, and what stays.
+
+use std::time::Duration;
+
+use halfrow_protocol::Kind;
+use halfrow_protocol::message::{
+    Burst, BurstMode, Commit, Entries, Records, Refusal, RefusalCode, Request, Span, Table,
+};
+
+use super::bursts::Awaited;
+use super::rows::{FRAME, GENERATION};
+use super::trap::NOTHING_KEPT;
+use super::{FIRST_FACTOR, Refused, Rules, broken, miscounted, of_board};
+use crate::board::{BoardError, Given, Said, Status};
+use crate::result::{Answer, Counter, Doubt, Rule};
+use crate::run::Generation;
+use crate::run::counters::rows_numbered;
+use crate::run::findings::End;
+
+/// How often a board must do what it must not, where a link or its supply can bring it about, which neither does each time: a copy of
+/// an old greeting that comes late opens a session as well.
+pub(super) const TIMES: usize = 3;
+/// The most tenths of a second that a board is held for behind its holder's last packet, and half of that.
+const HELD: u16 = 100;
+const SURELY_HELD: Duration = Duration::from_secs(5);
+/// The frame that a commit waits for when its session ends, and the generation that it would make.
+const PENDING: (u16, u8) = (0x4321, 0x3c);
+/// Frames of a burst that is under way when its session ends: every board has records for two.
+const FEW: u32 = 2;
+
+impl Rules<'_, '_> {
+    pub(super) fn sessions(&mut self) -> Result<(), End> {
+        self.powered(Self::held)?;
+        self.always(Self::greeted_again)?;
+        self.numbers_of_sessions()?;
+        self.powered(Self::behind_rows)?;
+        if self.run.known_bursts().is_ok() {
+            self.powered(Self::behind_a_burst)?;
+        }
+        self.rows_again()
+    }
+
+    /// Tries `scenario` again where the board fails in it and has no tables any more, as one that has lost its power: that does not
+    /// come back each time.
+    fn powered(&mut self, scenario: fn(&mut Self) -> Result<(), End>) -> Result<(), End> {
+        for _ in 1..TIMES {
+            let tried = scenario(self);
+            let has_failed = tried.as_ref().is_err_and(End::is_failed);
+            if !has_failed || self.run.board.status(false).is_ok_and(|status| status.generation != 0) {
+                return tried;
+            }
+            self.run.findings.beyond_links = false;
+        }
+        scenario(self)
+    }
+
+    /// Tries `scenario` again where the board fails in it: what a link has done to it does not come back each time.
+    pub(super) fn thrice(&mut self, scenario: fn(&mut Self) -> Result<(), End>) -> Result<(), End> {
+        let mut tried = scenario(self);
+        for _ in 1..TIMES {
+            let Err(found) = &tried else { return tried };
+            if !found.is_failed() {
+                return tried;
+            }
+            tracing::warn!("{}; trying it again", found.check().2.sentence());
+            match scenario(self) {
+                // An answer that no sound board gives says less than what was found wrong.
+                Err(again) if again.is_answer() => return tried,
+                again => tried = again,
+            }
+        }
+        tried
+    }
+
+    /// Another host is told that the board is held, and for how long at most.
+    fn held(&mut self) -> Result<(), End> {
+        let begun = self.run.board.now();
+        self.run.board.status(false).map_err(of_board)?;
+        let said = self.run.board.greet_as_another_host();
+        if matches!(said, Ok(Said::Replied(_))) {
+            let took = self.run.board.now().saturating_sub(begun);
+            self.next_session()?;
+            if took > SURELY_HELD {
+                return Ok(());
+            }
+        }
+        let right = Refusal { code: RefusalCode::Held, kind: Kind::Hello.code(), detail: HELD };
+        let said = said.map(|said| match said {
+            // Of what is left another host is told more or less.
+            Said::Refused(held @ Refusal { detail: 1..HELD, .. }) => {
+                Said::Refused(Refusal { detail: HELD, ..held })
+            }
+            said => said,
+        });
+        self.judge(Rule::Held, Kind::Hello, said, &Said::Refused(right))
+    }
+
+    /// The greeting that opened the session opens no other one.
+    fn greeted_again(&mut self) -> Result<(), End> {
+        self.counts_on(|rules| {
+            let own = rules.run.board.session();
+            let again = rules.run.board.greet_again().map_err(of_board)?.session;
+            if again != own {
+                // Its window is not known before it has answered.
+                rules.run.board.status(false).map_err(of_board)?;
+                return Err(another_session(own, again));
+            }
+            rules.right += 1;
+            Ok(())
+        })
+    }
+
+    /// The number of each session follows that of the one before.
+    fn numbers_of_sessions(&mut self) -> Result<(), End> {
+        let mut wrong = None;
+        for _ in 0..TIMES {
+            let right = next(self.run.board.session());
+            self.next_session()?;
+            let found = self.run.board.session();
+            if found == right {
+                self.right += 1;
+                return Ok(());
+            }
+            wrong = Some(another_session(right, found));
+        }
+        wrong.map_or(Ok(()), Err)
+    }
+
+    /// A session that ends with rows inside and a commit pending.
+    fn behind_rows(&mut self) -> Result<(), End> {
+        self.drop_rows()?;
+        self.rows_again()?;
+        let two_banks = self.capabilities.table_banks > 1;
+        let (frame, generation) = PENDING;
+        if two_banks {
+            let Generation { tables, kernel, .. } = self.small.made(1, self.height, generation);
+            self.upload(1)?;
+            self.run.board.commit(&tables, &kernel, frame, generation).map_err(of_board)?;
+        }
+        if self.height > 2 {
+            self.enter()?;
+        }
+        let before = self.run.board.status(false).map_err(of_board)?;
+        self.given = Given::default();
+        self.next_session()?;
+        self.begun_anew(Rule::NewSession, &before)?;
+        if two_banks {
+            let span = Span { count: 0, ..FIRST_FACTOR };
+            let write = Request::TableWrite(Entries { span, bytes: &[] });
+            self.replied(Rule::NewSession, &write, Vec::new())?;
+            self.sums(Rule::NewSession, 1)?;
+        }
+        self.right_frames(&[frame, FRAME])?;
+        let status = self.run.board.status(false).map_err(of_board)?;
+        rows_numbered(&status, self.run.board.packets_numbered())
+    }
+
+    /// A session that ends while a burst is under way, with records and a row that was trapped.
+    fn behind_a_burst(&mut self) -> Result<(), End> {
+        self.drop_rows()?;
+        self.rows_again()?;
+        let Some(burst) = self.small_burst(Burst::ENDLESS) else { return Ok(()) };
+        let mode = if self.has_trap() { BurstMode::Trapped } else { BurstMode::Fresh };
+        if self.has_trap() {
+            // No row has this signature but by a rare chance.
+            self.run.board.expect(&vec![!0; self.height]).map_err(of_board)?;
+        }
+        let burst = self.start(Burst { mode, ..burst })?;
+        self.look(&burst, 0, FEW, Awaited::under_way(FEW))?;
+        let before = self.run.board.status(false).map_err(of_board)?;
+        self.next_session()?;
+        self.begun_anew(Rule::NewSession, &before)?;
+        self.right_frames(&[FRAME])?;
+        self.right_burst(Rule::NewSession, BurstMode::Fresh)
+    }
+
+    /// Behind all else: a RESET that closes the session, behind which the board may be another host's.
+    pub(super) fn closed(&mut self) -> Result<(), End> {
+        self.drop_rows()?;
+        self.rows_again()?;
+        let before = self.run.board.status(false).map_err(of_board)?;
+        let own = self.run.board.session();
+        self.ends_right()?;
+        self.run.board.close_session().map_err(of_board)?;
+        let said = self.run.board.ask_in_session(own, Kind::Status, &[0]);
+        let refusal = Refusal { code: RefusalCode::Session, kind: Kind::Status.code(), detail: 0 };
+        self.judge(Rule::Closed, Kind::Status, said, &Said::Refused(refusal))?;
+        match self.greet() {
+            Err(BoardError::Held { .. }) => Ok(()),
+            Err(error) => Err(of_board(error)),
+            Ok(()) => self.begun_anew(Rule::Closed, &before),
+        }
+    }
+
+    /// Drops configuration and tables, which leaves the session open.
+    pub(super) fn forget(&mut self) -> Result<(), End> {
+        for _ in 0..TIMES {
+            self.run.board.forget().map_err(of_board)?;
+            match self.run.board.status(false) {
+                Err(BoardError::SessionLost) => self.next_session()?,
+                status => return status.map(drop).map_err(of_board),
+            }
+        }
+        let (right, code) = (Answer::Replied { payload: String::new() }, RefusalCode::Session as u8);
+        Err(broken(Rule::Closed, Kind::Status, right, Answer::Refused { code, detail: 0 }))
+    }
+
+    /// Opens the next session. What is known of the link in the one before stays a reason to doubt.
+    pub(super) fn next_session(&mut self) -> Result<(), End> {
+        self.ends_right()?;
+        self.greet().map_err(of_board)
+    }
+
+    fn greet(&mut self) -> Result<(), BoardError> {
+        let doubt = Doubt::of_session(self.run.board);
+        let earlier = &mut self.run.findings.earlier.doubt;
+        *earlier = earlier.take().or(doubt);
+        let nonce = self.run.next_nonce();
+        self.run.board.open_free_session(nonce)?;
+        (self.refused, self.before) = (Refused::default(), Status::default());
+        Ok(())
+    }
+
+    /// What was seen of the session that ends.
+    pub(super) fn ends_right(&mut self) -> Result<(), End> {
+        self.run.misconduct().map_or(Ok(()), Err)
+    }
+
+    /// Behind a greeting no row, burst or commit is left of the session before, and no count; tables and configuration are as they
+    /// were when the board told `before`.
+    fn begun_anew(&mut self, rule: Rule, before: &Status) -> Result<(), End> {
+        let status = self.run.board.status(false).map_err(of_board)?;
+        self.not_counted(&status)?;
+        let not_there = [
+            (Counter::NextRowIn, status.next_row_in, 0),
+            (Counter::NextRowOut, status.next_row_out, 0),
+            (Counter::CoreBusy, status.core_busy, 0),
+            (Counter::Generation, status.generation, before.generation),
+        ];
+        let wrong = not_there.into_iter().find(|(_, counted, right)| counted != right);
+        if let Some((counter, counted, right)) = wrong {
+            return Err(miscounted(counter, counted, right));
+        }
+        // Without a configuration it is not ready, which comes first.
+        let other =
+            Commit { steps_crc: !0, kernel_crc: 0, first_frame: 0, generation: !GENERATION, shape: None };
+        self.refused(rule, &Request::Commit(other), RefusalCode::TableCrc, Table::RowFactors as u16)?;
+        if self.run.known_bursts().is_err() {
+            return Ok(());
+        }
+        self.no_records(rule)?;
+        if self.has_trap() {
+            self.replied(rule, &Request::Trap, NOTHING_KEPT.to_vec())?;
+        }
+        Ok(())
+    }
+
+    fn no_records(&mut self, rule: Rule) -> Result<(), End> {
+        let said = self.run.board.ask(Kind::Records, &[0; 4]).map(|said| match said {
+            Said::Replied(mut payload) => {
+                // Which burst was the last one is not the wire's to say.
+                payload.iter_mut().take(size_of::<u32>()).for_each(|byte| *byte = 0);
+                Said::Replied(payload)
+            }
+            refused => refused,
+        });
+        self.judge(rule, Kind::Records, said, &Said::Replied(vec![0; Records::HEAD]))
+    }
+}
+
+/// The number behind `session`: 1 follows 255.
+fn next(session: u8) -> u8 {
+    session % u8::MAX + 1
+}
+
+fn another_session(right: u8, found: u8) -> End {
+    let [right, found] = [right, found].map(|number| Answer::Session { number });
+    broken(Rule::NewSession, Kind::Hello, right, found)
+}

@@ -1,0 +1,149 @@
+//! Boards that are sound but for what opens a session and what ends one, and for what they count.
+
+use halfrow::result::{Answer, CheckName, Counter, Finding, Report, Rule};
+use halfrow_mock::Options;
+use halfrow_protocol::message::Status;
+use halfrow_protocol::{Kind, Reply};
+use halfrow_tests::altered::{Altered, Passing, Toward};
+use halfrow_tests::system::{failed_check, judge_by_plan};
+
+use super::rules::{broken, plan};
+
+/// The report on a board to which `alter` sends other packets than the host does.
+fn hearing(mut alter: impl FnMut(&mut Passing) + Send + 'static) -> Report {
+    let altered = move |toward, mut packet| {
+        if toward == Toward::Board {
+            alter(&mut packet);
+        }
+        vec![packet]
+    };
+    judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate())
+}
+
+/// The report on a board that counts otherwise.
+fn counting(mut alter: impl FnMut(Status) -> Status + Send + 'static) -> Report {
+    let altered = move |toward, packet: Passing| match packet.reply() {
+        Some(Reply::Status(status)) if toward == Toward::Host => {
+            vec![packet.saying(&Reply::Status(alter(status)))]
+        }
+        _ => vec![packet],
+    };
+    judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate())
+}
+
+fn miscounted(report: &Report) -> Counter {
+    assert_eq!(failed_check(report), Some(CheckName::Rules), "{}", report.headline());
+    match &report.finding {
+        Finding::CounterWrong { counter, .. } => *counter,
+        other => panic!("{}", other.sentence()),
+    }
+}
+
+/// A greeting's nonce and host (WIRE.md, 00).
+fn greeting(packet: &Passing) -> Option<(u32, u32)> {
+    let fields = packet.payload.as_chunks::<4>().0;
+    packet.is(Kind::Hello).then(|| (u32::from_le_bytes(fields[0]), u32::from_le_bytes(fields[1])))
+}
+
+#[test]
+fn another_host_must_not_get_a_board_that_is_held() {
+    let mut own = None;
+    let report = hearing(move |packet| {
+        if let Some((_, host)) = greeting(packet)
+            && *own.get_or_insert(host) != host
+        {
+            packet.payload[10] = 1;
+        }
+    });
+    assert_eq!(broken(&report).0, Rule::Held);
+}
+
+/// The board answers by the nonce that it was sent.
+#[test]
+fn a_greeting_that_is_repeated_must_open_no_session() {
+    let (mut greetings, mut again) = (Vec::new(), 0);
+    let altered = move |toward, mut packet: Passing| {
+        if toward == Toward::Board && packet.is(Kind::Hello) {
+            let own = greeting(&packet);
+            again = greetings.iter().filter(|&&earlier| earlier == own).count();
+            greetings.push(own);
+        }
+        if packet.is(Kind::Hello) {
+            packet.payload[3] ^= (again as u8) << 4;
+        }
+        vec![packet]
+    };
+    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
+    let (rule, right, found) = broken(&report);
+    assert_eq!(rule, Rule::NewSession);
+    assert!(
+        matches!((right, found), (Answer::Session { .. }, Answer::Session { .. })),
+        "{}",
+        report.headline()
+    );
+}
+
+/// The report on a board that carries out a RESET with level `given` as one with level `done`.
+fn resetting(given: u8, done: u8) -> Report {
+    hearing(move |packet| {
+        if packet.is(Kind::Reset) && packet.payload[0] == given {
+            packet.payload[0] = done;
+        }
+    })
+}
+
+#[test]
+fn level_1_of_reset_must_close_the_session_and_level_2_must_not() {
+    for (given, done) in [(1, 0), (2, 1)] {
+        assert_eq!(broken(&resetting(given, done)).0, Rule::Closed, "{given} as {done}");
+    }
+}
+
+#[test]
+fn what_another_session_says_that_it_has_must_free_no_bank() {
+    let mut own = 0;
+    let report = hearing(move |packet| {
+        if packet.is(Kind::RowIn) {
+            own = packet.header.session;
+        }
+        if packet.is(Kind::RowAck) {
+            packet.header.session = own;
+        }
+    });
+    assert_eq!(miscounted(&report), Counter::NextRowOut);
+}
+
+/// From the greetings on that the rules send.
+#[test]
+fn tables_must_stay_behind_a_greeting() {
+    let mut greetings = 0;
+    let altered = move |toward, packet: Passing| {
+        greetings += usize::from(toward == Toward::Host && packet.is(Kind::Hello));
+        match packet.reply() {
+            Some(Reply::Status(status)) if toward == Toward::Host && greetings > 1 && status.rows_in == 0 => {
+                vec![packet.saying(&Reply::Status(Status { generation: 0, ..status }))]
+            }
+            _ => vec![packet],
+        }
+    };
+    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
+    assert_eq!(miscounted(&report), Counter::Generation);
+}
+
+#[test]
+fn rows_that_are_asked_for_again_and_those_that_are_not_needed_must_be_counted() {
+    let report = counting(|status| Status { rows_repeated: 0, ..status });
+    assert_eq!(miscounted(&report), Counter::RowsRepeated);
+    let report = counting(|status| Status { rows_unneeded: 0, ..status });
+    assert_eq!(miscounted(&report), Counter::RowsUnneeded);
+}
+
+#[test]
+fn any_number_but_0_must_clear_the_counters() {
+    let report = hearing(|packet| {
+        if packet.is(Kind::Status) && packet.payload[0] > 1 {
+            packet.payload[0] = 0;
+        }
+    });
+    assert_eq!(miscounted(&report), Counter::RowsIn);
+}
