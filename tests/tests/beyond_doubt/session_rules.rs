@@ -147,3 +147,14 @@ fn any_number_but_0_must_clear_the_counters() {
     });
     assert_eq!(miscounted(&report), Counter::RowsIn);
 }
+
+/// No link has a copy of a request that clears at hand each time.
+#[test]
+fn a_board_that_clears_its_counters_whenever_it_is_asked_fails() {
+    let report = hearing(|packet| {
+        if packet.is(Kind::Status) {
+            packet.payload[0] = 1;
+        }
+    });
+    assert_eq!(failed_check(&report), Some(CheckName::Counters), "{}", report.headline());
+}

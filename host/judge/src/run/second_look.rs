@@ -13,6 +13,8 @@ use crate::verdict::Cause;
 
 /// How often it is all done again until no request comes to the board twice.
 pub(super) const LOOKS: u32 = 3;
+/// How often a board is asked that may set its counters back whenever it is.
+const COUNTS: usize = 4;
 /// Keeps the nonces of these sessions from those of boards that came back.
 const NONCE: u32 = 1 << 16;
 
@@ -90,7 +92,7 @@ impl Run<'_> {
             return None;
         }
         if let Some(doubt) = Doubt::of_packets(self.board) {
-            return Some(doubt);
+            return (!self.loses_count()).then_some(doubt);
         }
         let (counted, sent) = (u64::from(status.packets), self.board.packets_since_clear());
         let counters_alone = check == CheckName::Counters;
@@ -101,6 +103,15 @@ impl Run<'_> {
         let is_new = counters_alone && self.options.counts && !self.findings.counters_doubted;
         self.findings.counters_doubted |= counters_alone;
         (is_new && is_moved_by_links(&status)).then_some(Doubt::CountersOfLinks {})
+    }
+}
+
+impl Run<'_> {
+    /// Whether the board never counts more packets than when it was last asked, although that was one: no link has a late copy of
+    /// a request that clears the counters at hand each time.
+    fn loses_count(&mut self) -> bool {
+        let counts: Vec<_> = (0..COUNTS).map_while(|_| self.board.status(false).ok()).collect();
+        counts.len() == COUNTS && counts.windows(2).all(|two| two[1].packets <= two[0].packets)
     }
 }
 
