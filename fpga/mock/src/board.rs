@@ -18,7 +18,7 @@ use halfrow_protocol::message::{
 use halfrow_protocol::{Damage, Decoder, Encoder, Header, Kind, Packet};
 
 use crate::burst::Bursts;
-use crate::faults::{BoardFault, Defects};
+use crate::faults::{BoardFault, Conduct};
 use crate::options::{OptionError, Options};
 use crate::player::Player;
 use crate::tables::Tables;
@@ -101,11 +101,11 @@ impl Board {
         let header = packet.header;
         count(&mut self.status.packets);
         if header.kind != Kind::Hello.code() {
-            if !self.session.is_open(header.session) && !Defects::of(self.fault).packets.takes_any_session {
+            if !self.session.is_open(header.session) && !self.has(Conduct::AnySession) {
                 return self.turn_away(&header);
             }
             self.session.heard(now);
-            let frees_all = header.kind == Kind::RowAck.code() && Defects::of(self.fault).packets.frees_all;
+            let frees_all = header.kind == Kind::RowAck.code() && self.has(Conduct::GreedyAck);
             self.acknowledge(if frees_all { u32::MAX } else { header.window });
         }
         let done = match Request::read(packet) {
@@ -119,6 +119,11 @@ impl Board {
             self.refuse(&header, refused);
         }
         self.go_on();
+    }
+
+    /// Whether this is what is wrong with the board.
+    fn has(&self, conduct: Conduct) -> bool {
+        self.fault == Some(BoardFault::Conduct(conduct))
     }
 
     /// Counts a packet of a session that is not open, and says so.

@@ -86,12 +86,8 @@ pub enum BoardFault {
         /// The bit, 0 to 24.
         bit: u8,
     },
-    /// Packets are carried out whatever session they name.
-    AnySession,
-    /// A ROW_ACK frees every output bank, whatever rows it names.
-    GreedyAck,
-    /// A row that is sent again says that it was never sent before.
-    StuckRepeats,
+    /// Packets are treated otherwise than the wire has it.
+    Conduct(Conduct),
     /// The board claims another datapath id.
     WrongDatapath,
     /// A bit of a row flips between its packet and the core.
@@ -128,6 +124,25 @@ pub enum BoardFault {
         /// The row.
         row: u16,
     },
+}
+
+/// What a board does with packets that it must not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Conduct {
+    /// It carries them out whatever session they name.
+    AnySession,
+    /// It is taken by another host whoever holds it.
+    NeverHeld,
+    /// It goes on with the counters of the session before.
+    CountersKept,
+    /// It begins the count of ROW_OUT packets anew behind a RESET.
+    PacketsAnew,
+    /// It takes rows in any place of their frame.
+    RowsAnywhere,
+    /// It frees every output bank at a ROW_ACK, whatever rows that names.
+    GreedyAck,
+    /// It says of each row that is sent again that it was never sent before.
+    StuckRepeats,
 }
 
 /// A row that small frames have too is the default.
@@ -277,13 +292,25 @@ pub const FAULTS: &[Fault<BoardFault>] = &[
         Ok(BoardFault::UncheckedCommit)
     }),
     fault("any-session", "packets are carried out whatever session they name", &[], |_| {
-        Ok(BoardFault::AnySession)
+        Ok(BoardFault::Conduct(Conduct::AnySession))
+    }),
+    fault("never-held", "another host takes the board, whoever holds it", &[], |_| {
+        Ok(BoardFault::Conduct(Conduct::NeverHeld))
+    }),
+    fault("counters-kept", "a new session goes on with the counters of the one before", &[], |_| {
+        Ok(BoardFault::Conduct(Conduct::CountersKept))
+    }),
+    fault("packets-anew", "the count of ROW_OUT packets begins anew behind a RESET", &[], |_| {
+        Ok(BoardFault::Conduct(Conduct::PacketsAnew))
+    }),
+    fault("rows-anywhere", "rows are taken in any place of their frame", &[], |_| {
+        Ok(BoardFault::Conduct(Conduct::RowsAnywhere))
     }),
     fault("greedy-ack", "a ROW_ACK frees every output bank, whatever rows it names", &[], |_| {
-        Ok(BoardFault::GreedyAck)
+        Ok(BoardFault::Conduct(Conduct::GreedyAck))
     }),
     fault("stuck-repeats", "a row that is sent again says that it was never sent before", &[], |_| {
-        Ok(BoardFault::StuckRepeats)
+        Ok(BoardFault::Conduct(Conduct::StuckRepeats))
     }),
     fault("wrong-datapath", "the board claims another datapath id", &[], |_| Ok(BoardFault::WrongDatapath)),
     fault(

@@ -66,6 +66,14 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         "row_banks_out rows are kept until they are acknowledged",
     ),
     fails("a row that denies that it came before", ",fault=stuck-repeats", "says 0 both times"),
+    fails(
+        "any host at any time",
+        ",fault=never-held",
+        "a board is held for 10 s behind its holder's last packet",
+    ),
+    fails("counters of the session before", ",fault=counters-kept", "rows in, and it is 0"),
+    fails("ROW_OUT packets that are counted anew", ",fault=packets-anew", "by the board's own numbers"),
+    fails("rows in any place", ",fault=rows-anywhere", "took it without a word (a row out of place)"),
     fails("a commit that is not checked", ",fault=unchecked-commit", "the board must refuse COMMIT"),
     expect(
         "ERROR",

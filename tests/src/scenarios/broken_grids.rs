@@ -56,6 +56,22 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
     ),
     fails("a row behind a grid that denies that it came before", ",fault=stuck-repeats", "says 0 both times"),
     fails(
+        "any host at any time behind a grid",
+        ",fault=never-held",
+        "a board is held for 10 s behind its holder's last packet",
+    ),
+    fails("counters of the session before, behind a grid", ",fault=counters-kept", "rows in, and it is 0"),
+    fails(
+        "ROW_OUT packets that are counted anew behind a grid",
+        ",fault=packets-anew",
+        "by the board's own numbers",
+    ),
+    fails(
+        "rows in any place behind a grid",
+        ",fault=rows-anywhere",
+        "took it without a word (a row out of place)",
+    ),
+    fails(
         "a commit of a grid that is not checked",
         ",fault=unchecked-commit",
         "the board must refuse COMMIT",

@@ -5,7 +5,7 @@ use halfrow_mock::Options;
 use halfrow_protocol::message::Status;
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
-use halfrow_tests::system::{failed_check, judge_by_plan};
+use halfrow_tests::system::{failed_check, judge_by_plan, open};
 
 use super::rules::{broken, plan};
 
@@ -157,4 +157,11 @@ fn a_board_that_clears_its_counters_whenever_it_is_asked_fails() {
         }
     });
     assert_eq!(failed_check(&report), Some(CheckName::Counters), "{}", report.headline());
+}
+
+#[test]
+fn a_row_that_is_taken_where_it_must_be_refused_is_told_of_though_nothing_is_said() {
+    let report = judge_by_plan(&plan(), open("mock,fault=rows-anywhere"));
+    let (rule, _, found) = broken(&report);
+    assert_eq!((rule, found), (Rule::RowPlace, &Answer::Taken {}));
 }

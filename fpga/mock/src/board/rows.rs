@@ -6,7 +6,7 @@ use halfrow_protocol::message::{RefusalCode, Reply, RowIn, RowOut, RowPlace, Sta
 use halfrow_protocol::{Header, Kind, samples};
 
 use super::{Board, Refused, count};
-use crate::faults::Defects;
+use crate::faults::Conduct;
 use crate::player;
 
 /// Rows that wait to be played, and the numbers that credit and acknowledgement are counted by.
@@ -39,15 +39,20 @@ impl RowBanks {
         }
     }
 
-    /// The same banks in the same session, empty, and waiting for `next_row`.
-    pub(super) fn restarted(&self, next_row: u32) -> Self {
+    /// The same banks in the same session, empty, waiting for `next_row`, behind so many ROW_OUT packets.
+    pub(super) fn restarted(&self, next_row: u32, packets: u16) -> Self {
         Self {
             next_to_play: next_row,
             acknowledged: next_row,
             unsent: next_row,
-            packets: self.packets,
+            packets,
             ..Self::new(self.banks)
         }
+    }
+
+    /// ROW_OUT packets of the session.
+    pub(super) fn packets(&self) -> u16 {
+        self.packets
     }
 
     /// The row sequence number before which the host may send.
@@ -116,7 +121,11 @@ impl Board {
         let fits = place.width == settings.width
             && place.row < settings.height
             && place.last == (place.row == settings.height - 1);
-        if fits && self.follows(place) { Ok(()) } else { Err((RefusalCode::Row, 0)) }
+        if fits && (self.follows(place) || self.has(Conduct::RowsAnywhere)) {
+            Ok(())
+        } else {
+            Err((RefusalCode::Row, 0))
+        }
     }
 
     /// Whether committed tables will be there when the row enters; without a configuration there are none. While a row in front of it is missing, that may be the
@@ -139,10 +148,11 @@ impl Board {
     fn row_again(&mut self, row_sequence: u32) {
         if self.player.banks.first_from(row_sequence).is_some_and(|row| row.name.sequence == row_sequence) {
             count(&mut self.status.rows_repeated);
+            let stands = self.has(Conduct::StuckRepeats);
             let repeats = self.rows.repeats.entry(row_sequence).or_default();
             *repeats = repeats.saturating_add(1);
-            let repeats = if Defects::of(self.fault).packets.repeats_stand { 0 } else { *repeats };
-            self.send_row(row_sequence, repeats);
+            let told = if stands { 0 } else { *repeats };
+            self.send_row(row_sequence, told);
         } else {
             count(&mut self.status.rows_unneeded);
         }

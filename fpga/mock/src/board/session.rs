@@ -7,6 +7,7 @@ use halfrow_protocol::message::{Hello, RefusalCode, Reset, ResetLevel, Status, W
 
 use super::rows::RowBanks;
 use super::{Board, Refused};
+use crate::faults::Conduct;
 use crate::player::Player;
 use crate::tables::Tables;
 
@@ -89,7 +90,7 @@ impl Board {
             return Err((RefusalCode::Version, VERSION.into()));
         }
         let left = self.session.held_for(hello.host, now);
-        if !left.is_zero() && !hello.take_over {
+        if !left.is_zero() && !hello.take_over && !self.has(Conduct::NeverHeld) {
             // Rounded up, so that the board is free once the host has waited for so long.
             let tenths = left.as_nanos().div_ceil(TENTH.as_nanos());
             return Err((RefusalCode::Held, u16::try_from(tenths).unwrap_or(u16::MAX)));
@@ -98,7 +99,9 @@ impl Board {
             self.session.open(hello, now);
             self.bursts.forget();
             self.drop_rows(RowBanks::new(self.options.row_banks_in));
-            self.status = Status::default();
+            if !self.has(Conduct::CountersKept) {
+                self.status = Status::default();
+            }
         }
         Ok(Welcome {
             nonce: hello.nonce,
@@ -112,7 +115,9 @@ impl Board {
     /// Drops what `reset` says. The session itself is closed when the reply is out.
     pub(super) fn reset(&mut self, reset: &Reset) {
         self.bursts.abort();
-        self.drop_rows(self.rows.restarted(reset.next_row));
+        let packets = if self.has(Conduct::PacketsAnew) { 0 } else { self.rows.packets() };
+        let restarted = self.rows.restarted(reset.next_row, packets);
+        self.drop_rows(restarted);
         if reset.level == ResetLevel::Tables {
             self.tables = Tables::new(&self.options, self.fault);
             self.configured = false;

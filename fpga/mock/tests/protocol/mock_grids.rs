@@ -10,7 +10,7 @@ use halfrow_conformance::{Bench, Build, Heard, suite};
 use halfrow_mock::{Board, BoardFault, FAULTS, Options};
 use halfrow_pipe::Parameters;
 use halfrow_protocol::message::{
-    Bank, Burst, BurstMode, Commit, RefusalCode, Request, Reset, ResetLevel, Shape, Table,
+    Bank, Burst, BurstMode, Commit, Hello, RefusalCode, Request, Reset, ResetLevel, Shape, Table,
 };
 
 use crate::at_speed::Built;
@@ -74,8 +74,8 @@ fn fault(name: &str, given: &[(&str, &str)]) -> BoardFault {
     BoardFault::from_name(name, &mut given).unwrap()
 }
 
-/// All that a host hears of a board that plays frames of four rows through grids, makes frames itself, and is given one
-/// commit that it must refuse.
+/// All that a host hears of a board that plays frames of four rows through grids, makes frames itself, is given a commit and a row
+/// that it must refuse, and is greeted by another host.
 fn heard_of(fault: Option<BoardFault>) -> Vec<Heard> {
     let mut bench = configured(fault, 4);
     let mut heard = bench.say(&Request::Capabilities);
@@ -103,6 +103,14 @@ fn heard_of(fault: Option<BoardFault>) -> Vec<Heard> {
     let close = Burst { frames: 4, mode: BurstMode::Alternating, frame_blanking: 8, ..ONE };
     heard.extend(bench.say(&Request::Burst(close)));
     heard.extend(bench.say(&Request::Records { from: 0 }));
+    bench.say(&Request::Reset(Reset { level: ResetLevel::Rows, next_row: 17 }));
+    heard.extend(bench.send(&row(4, 17)));
+    bench.say(&Request::Reset(Reset { level: ResetLevel::Rows, next_row: 20 }));
+    heard.extend(bench.send_all(4, 20..24));
+    let other = Hello { nonce: 5, host: 77, version_min: 1, version_max: 1, take_over: false };
+    heard.extend(bench.say(&Request::Hello(other)));
+    bench.greet(&Hello { nonce: 6, take_over: true, ..other });
+    heard.extend(bench.say(&Request::Status { clear: false }));
     heard
 }
 

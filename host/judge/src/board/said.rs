@@ -1,6 +1,6 @@
 //! Requests of any form, and what a board says to them: for whoever wants to know what it refuses.
 
-use std::{iter, mem};
+use std::iter;
 
 use halfrow_protocol::message::{Burst, Refusal, RefusalCode, Reply, Request, Reset, ResetLevel, RowPlace};
 use halfrow_protocol::{Kind, Packet, samples};

@@ -75,7 +75,7 @@ impl Rules<'_, '_> {
         }
         self.window_at_most(&kept, 1)?;
         self.release(&mut kept)?;
-        self.rows_counted(&kept)?;
+        self.kept_counted(&kept)?;
         self.configure(self.small.rows())
     }
 
@@ -236,7 +236,7 @@ impl Rules<'_, '_> {
     }
 
     /// What the board counts of all that.
-    fn rows_counted(&mut self, kept: &Kept) -> Result<(), End> {
+    fn kept_counted(&mut self, kept: &Kept) -> Result<(), End> {
         let is_calm = kept.is_exact && self.is_calm(kept.retries)?;
         let status = self.run.board.status(false).map_err(of_board)?;
         let Kept { before, first, asked, unneeded, .. } = kept;

@@ -41,14 +41,15 @@ impl Rules<'_, '_> {
         self.give(1);
         let (first, second) = (self.place(0), self.place(1));
         let rows = [(&first, frame.row(0)), (&second, frame.row(1))];
-        self.run.board.again(rows, 0).map_err(|error| of_rows(Rule::Again, error))?;
+        self.run.board.again(rows[0], Some(rows[1]), 0).map_err(|error| of_rows(Rule::Again, error))?;
         for session in others(self.run.board.session()) {
             self.run.board.acknowledge_in_session(session, second.row_sequence + 1);
         }
         let status = self.run.board.status(false).map_err(of_board)?;
         equal(Counter::NextRowIn, status.next_row_in, second.row_sequence + 1)?;
         equal(Counter::NextRowOut, status.next_row_out, first.row_sequence)?;
-        let came = self.run.board.again(rows, 1).map_err(|error| of_rows(Rule::Again, error))?;
+        let came =
+            self.run.board.again(rows[0], Some(rows[1]), 1).map_err(|error| of_rows(Rule::Again, error))?;
         self.run.board.acknowledge(first.row_sequence + mem::take(&mut self.given).rows);
         let status = self.run.board.status(false).map_err(of_board)?;
         let repeated = before.rows_repeated.saturating_add(came.repeats.into());

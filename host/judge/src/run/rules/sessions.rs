@@ -12,7 +12,7 @@ use super::rows::{FRAME, GENERATION};
 use super::trap::NOTHING_KEPT;
 use super::{FIRST_FACTOR, Refused, Rules, broken, miscounted, of_board};
 use crate::board::{BoardError, Given, Said, Status};
-use crate::result::{Answer, Counter, Doubt, Rule};
+use crate::result::{Answer, CheckName, Counter, Doubt, Rule};
 use crate::run::Generation;
 use crate::run::counters::rows_numbered;
 use crate::run::findings::End;
@@ -223,7 +223,7 @@ impl Rules<'_, '_> {
 
     /// What was seen of the session that ends.
     pub(super) fn ends_right(&mut self) -> Result<(), End> {
-        self.run.misconduct().map_or(Ok(()), Err)
+        self.run.misconduct(CheckName::Rules).map_or(Ok(()), Err)
     }
 
     /// Behind a greeting no row, burst or commit is left of the session before, and no count; tables and configuration are as they

@@ -1,7 +1,5 @@
 //! Packets that must have no effect: those that the link has damaged, and those of another session.
 
-use std::iter;
-
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Entries, Refusal, RefusalCode, Request};
 
