@@ -56,7 +56,16 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",fault=slow-path,one-in=2000",
         "fails at the full pixel clock, seen in bit 5",
     ),
-    fails("a bit that flips when warm", ",fault=warm-bit,row=1,bit=11", "in row 1 first"),
+    fails(
+        "an address line that no row of the run is long enough for",
+        ",fault=stuck-address,bit=9",
+        "streamed it is wrong, too; the suspect is line memory, address bit 9",
+    ),
+    fails(
+        "a bit that flips when warm",
+        ",fault=warm-bit,row=1,bit=11",
+        "in row 1 first; streamed it is right",
+    ),
     fails("tables that change late", ",fault=late-swap", "the change of table banks between two frames"),
     fails("a pause that is not counted", ",fault=hidden-pause", "pixel clocks of most latency"),
     fails("packets of any session", ",fault=any-session", "a packet of another session has no effect"),

@@ -82,7 +82,11 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
         ",fault=slow-path,one-in=2000",
         "fails at the full pixel clock, seen in bit 5",
     ),
-    fails("a bit that flips when warm behind a grid", ",fault=warm-bit,row=1,bit=11", "in row 1 first"),
+    fails(
+        "a bit that flips when warm behind a grid",
+        ",fault=warm-bit,row=1,bit=11",
+        "in row 1 first; streamed it is right",
+    ),
     fails("grids that change late", ",fault=late-swap", "the change of table banks between two frames"),
     fails("a pause that is not counted behind a grid", ",fault=hidden-pause", "pixel clocks of most latency"),
     expect(

@@ -7,6 +7,7 @@ use halfrow::link;
 use halfrow::progress::Silent;
 use halfrow::result::{
     BurstCount, Check, CheckName, Defect, Finding, NoBurst, NotExercised, Outcome, Repetition, Report,
+    Streamed, Suspect,
 };
 use halfrow::run::{Plan, RunOptions, verify};
 use halfrow::verdict::{Cause, Verdict};
@@ -79,7 +80,7 @@ fn a_wrong_signature_fails_and_what_does_not_come_again_is_said() {
         panic!("{}", report.headline())
     };
     assert!(report.headline().contains("made again by itself, it was right"), "{}", report.headline());
-    assert_eq!(report.suspects[0].defect, Defect::OnlyAtSpeed { row: None, samples: 0, bits: Vec::new() });
+    assert_eq!(report.suspects[0].defect, Defect::SeenAtSpeed { row: None, samples: 0, bits: Vec::new() });
 }
 
 /// A fault of the mock, the place that is suspected, and a part of the sentence.
@@ -111,7 +112,7 @@ fn what_fails_at_full_speed_alone_passes_row_by_row_and_fails_in_a_burst() {
         let seen = judged(fault, None);
         assert_eq!(failed_check(&seen), Some(CheckName::AtSpeed), "{fault}: {}", seen.headline());
         assert!(seen.headline().contains(sentence), "{fault}: {}", seen.headline());
-        let suspected = seen.suspects.first().map(halfrow::result::Suspect::place).unwrap_or_default();
+        let suspected = seen.suspects.first().map(Suspect::place).unwrap_or_default();
         assert!(suspected.contains(place), "{fault}: {suspected}: {}", seen.headline());
         assert!(seen.remedy().is_some(), "{fault}");
     }
@@ -210,13 +211,53 @@ fn with_another_seed(toward: Toward, mut packet: Passing) -> Passing {
 fn a_frame_that_is_wrong_again_has_its_first_wrong_row_trapped() {
     let report = judge_each(&TINY, with_another_seed);
     assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{}", report.headline());
-    let Finding::DiffersAtSpeed { first: 0, repetition: Repetition::Trapped { row: 0, .. }, .. } =
+    let Finding::DiffersAtSpeed {
+        first: 0, repetition: Repetition::Trapped { row: 0, streamed, .. }, ..
+    } = report.finding
+    else {
+        panic!("{}", report.headline())
+    };
+    assert_eq!(streamed, Streamed::Right);
+    let places: Vec<_> = report.suspects.iter().map(|suspect| &suspect.defect).collect();
+    assert!(matches!(places[..], [Defect::OnlyAtSpeed { row: Some(0), samples: 1.., .. }, ..]), "{places:?}");
+}
+
+#[test]
+fn what_is_wrong_at_any_clock_is_not_called_a_matter_of_speed() {
+    let report = TINY.judge(",fault=row-factor,row=40,bit=20,hidden=true");
+    assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{}", report.headline());
+    assert!(
+        report.headline().contains("in row 40 first; streamed it is wrong, too"),
+        "{}",
+        report.headline()
+    );
+    let is_of_speed =
+        |suspect: &Suspect| matches!(suspect.defect, Defect::OnlyAtSpeed { .. } | Defect::SeenAtSpeed { .. });
+    assert!(!report.suspects.iter().any(is_of_speed), "{:?}", report.suspects);
+    assert!(report.suspects[0].place().contains("row 40's factor, bit 20"), "{}", report.headline());
+}
+
+/// What is kept is still told, and no more than is known.
+#[test]
+fn a_frame_that_cannot_be_streamed_again_is_said_to_be_seen_at_speed_alone() {
+    let mut is_kept = false;
+    let board = Altered::new(&Options::default(), move |toward, packet| {
+        is_kept |= matches!(packet.reply(), Some(Reply::Trap(Some(_))));
+        if is_kept && packet.is(Kind::RowIn) {
+            return Vec::new();
+        }
+        vec![with_another_seed(toward, packet)]
+    });
+    let report = TINY.judge_candidate(board.candidate());
+    assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{}", report.headline());
+    let Finding::DiffersAtSpeed { repetition: Repetition::Trapped { row: 0, streamed, .. }, .. } =
         report.finding
     else {
         panic!("{}", report.headline())
     };
+    assert_eq!(streamed, Streamed::NotTried);
     let places: Vec<_> = report.suspects.iter().map(|suspect| &suspect.defect).collect();
-    assert!(matches!(places[..], [Defect::OnlyAtSpeed { row: Some(0), samples: 1.., .. }, ..]), "{places:?}");
+    assert!(matches!(places[..], [Defect::SeenAtSpeed { row: Some(0), samples: 1.., .. }, ..]), "{places:?}");
 }
 
 #[test]

@@ -111,7 +111,7 @@ fn what_comes_once_in_a_while_is_told_each_time_and_ends_nothing() {
     for difference in trapped {
         let [first, ..] = &difference.suspects[..] else { panic!("{difference:?}") };
         assert!(
-            matches!(&first.defect, Defect::OnlyAtSpeed { row: Some(_), bits, .. } if bits == &[5]),
+            matches!(&first.defect, Defect::SeenAtSpeed { row: Some(_), bits, .. } if bits == &[5]),
             "{first:?}"
         );
     }

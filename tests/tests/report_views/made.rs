@@ -6,7 +6,7 @@ use halfrow::result::{
     Account, BoardKind, BoardReport, BurstsReport, Check, CheckName, Defect, Evidence, EvidenceReport,
     Finding, FrameReport, FrameTiming, Identity, LatencyReport, LinkReport, NotExercised, Outcome, Problem,
     Reading, Repetition, Report, RunReport, Schema, SoakChart, SoakDifference, SoakInterval, SoakLength,
-    SoakReport, StreetReport, Suspect, TablesReport,
+    SoakReport, Streamed, StreetReport, Suspect, TablesReport,
 };
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_model::{BitDepth, Frame, Phase};
@@ -48,12 +48,12 @@ pub(crate) fn pass() -> Report {
 
 /// Eight hours of which two frames differed, and one minute the board was away.
 pub(crate) fn soaked() -> Report {
-    let defect = Defect::OnlyAtSpeed { row: Some(3), samples: 1, bits: vec![11] };
+    let defect = Defect::SeenAtSpeed { row: Some(3), samples: 1, bits: vec![11] };
     let finding = Finding::DiffersAtSpeed {
         wrong: 1,
         frames: 2777,
         first: 17,
-        repetition: Repetition::Trapped { frames: 18, row: 3 },
+        repetition: Repetition::Trapped { frames: 18, row: 3, streamed: Streamed::NotTried },
         suspect: Some(Box::new(defect.clone())),
     };
     let suspects = vec![Suspect { defect, account: Account::Nothing, explained: 0.0 }];

@@ -65,6 +65,9 @@ pub enum Repetition {
         frames: u32,
         /// The row.
         row: usize,
+        /// What came back of the frame up to it where that was streamed.
+        #[serde(default)]
+        streamed: Streamed,
     },
     /// It was wrong again, and no row that differs was kept.
     NothingTrapped {
@@ -73,6 +76,29 @@ pub enum Repetition {
     },
     /// It could not be made again.
     Impossible {},
+}
+
+impl Repetition {
+    /// What is known of the frame at any other clock.
+    pub(crate) fn streamed(self) -> Streamed {
+        match self {
+            Self::Trapped { streamed, .. } => streamed,
+            _ => Streamed::NotTried,
+        }
+    }
+}
+
+/// What came back where a frame was streamed, row by row, that is wrong at speed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Streamed {
+    /// It was not streamed.
+    #[default]
+    NotTried,
+    /// It came back right.
+    Right,
+    /// It came back wrong, too.
+    Wrong,
 }
 
 /// What a board counts of a frame that it made on its own.

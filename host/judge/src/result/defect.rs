@@ -1,8 +1,11 @@
 //! The single defects that a diagnosis knows, as codes with parameters.
 
+mod parameters;
+
 use serde::{Deserialize, Serialize};
 
 use super::Extent;
+pub use parameters::{ClampEnd, Counting, MadeWith, Memory, Reading, RowSource, StaleFrames};
 
 /// A single defect of a board.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -194,8 +197,17 @@ pub enum Defect {
         /// So many rows.
         rows: usize,
     },
-    /// What is right row by row is wrong at the full pixel clock.
+    /// What is right row by row, the same frame with the same tables, is wrong at the full pixel clock.
     OnlyAtSpeed {
+        /// A row in which it was seen.
+        row: Option<usize>,
+        /// Samples of that row that differ.
+        samples: usize,
+        /// Bits of them that do.
+        bits: Vec<u32>,
+    },
+    /// Frames at the full pixel clock are wrong, and the same was not streamed row by row, so that it may be wrong at any clock.
+    SeenAtSpeed {
         /// A row in which it was seen.
         row: Option<usize>,
         /// Samples of that row that differ.
@@ -303,91 +315,4 @@ impl Defect {
     pub fn tagged(&self) -> (String, super::Parameters) {
         super::problem::tagged(self)
     }
-}
-
-/// What a broken bit makes of a word.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Reading {
-    /// What was uploaded, in the tables of `generation`.
-    pub uploaded: i64,
-    /// What is read instead.
-    pub read: i64,
-    /// The tables.
-    pub generation: u8,
-    /// Whether the other tables are read right.
-    pub only: bool,
-}
-
-/// From where the addresses of the line memory are counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Counting {
-    /// From the run's first sample.
-    Run,
-    /// From each frame's.
-    Frame,
-    /// From each row's.
-    Row,
-    /// From before the run.
-    Before,
-}
-
-/// Where outputs are not clamped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum ClampEnd {
-    /// Below 0.
-    Low,
-    /// Above the largest sample.
-    High,
-    /// Beyond either end.
-    Both,
-}
-
-/// Which memory holds a table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Memory {
-    /// The row factors'.
-    Rows,
-    /// The kernel's.
-    Kernel,
-}
-
-/// A frame that was made with other tables than it should.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct StaleFrames {
-    /// Its number.
-    pub frame: u16,
-    /// The generation that was committed for it.
-    pub committed: u8,
-    /// What its rows were made with.
-    pub made_with: Vec<MadeWith>,
-}
-
-/// Generations that a row was made with, or none for what a board holds when it was just switched on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct MadeWith {
-    /// That of the row factors.
-    pub factors: Option<u8>,
-    /// That of the kernel.
-    pub kernel: Option<u8>,
-}
-
-/// Where a row's samples come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum RowSource {
-    /// The corrected row so many rows below, in the frame so many later.
-    Output {
-        /// Frames later.
-        frames: isize,
-        /// Rows below.
-        rows: isize,
-    },
-    /// The row that went in so many rows below, made with this row's factor.
-    Input {
-        /// Rows below.
-        rows: isize,
-    },
 }

@@ -3,7 +3,7 @@
 use super::{
     Account, Answer, BoardKind, BrokenOff, BurstCount, ClampEnd, Corner, Counter, Counting, Defect, Doubt,
     Extent, Finding, MadeWith, Memory, NoBurst, NotExercised, NumberedRow, Problem, Reading, RepeatedRow,
-    Repetition, RowSource, Rule, StaleFrames, Suspect,
+    Repetition, RowSource, Rule, StaleFrames, Streamed, Suspect,
 };
 use crate::verdict::Verdict;
 
@@ -120,7 +120,7 @@ fn on_entry_and_at_speed() -> [Finding; 5] {
             wrong: 2,
             frames: 138,
             first: 17,
-            repetition: Repetition::Trapped { frames: 19, row: 3 },
+            repetition: Repetition::Trapped { frames: 19, row: 3, streamed: Streamed::Right },
             suspect: Some(Box::new(Defect::OnlyAtSpeed { row: Some(3), samples: 1, bits: vec![11] })),
         },
         Finding::MiscountedAtSpeed { frame: 17, count: BurstCount::Rows, counted: 1079, right: 1080 },
@@ -309,6 +309,7 @@ fn without_share() -> impl Iterator<Item = Suspect> {
     [
         Defect::RowsChangedOnEntry { rows: 9, first: 3, frame: 2 },
         Defect::OnlyAtSpeed { row: Some(3), samples: 1, bits: vec![11] },
+        Defect::SeenAtSpeed { row: Some(3), samples: 1, bits: vec![11] },
     ]
     .into_iter()
     .map(|defect| Suspect { defect, account: Account::Nothing, explained: 0.0 })

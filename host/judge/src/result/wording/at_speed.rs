@@ -3,7 +3,7 @@
 use super::places::list;
 use super::{LOGIC, TIMING, Words, place};
 use crate::report::wording::{count, differ, grouped, hertz, span};
-use crate::result::{BurstCount, Corner, Defect, Finding, NoBurst, Repetition};
+use crate::result::{BurstCount, Corner, Defect, Finding, NoBurst, Repetition, Streamed};
 
 pub(super) fn changed_on_entry(rows: usize, first: usize, frame: u16) -> Words {
     let others = if rows > 1 { format!(", the first of {rows}") } else { String::new() };
@@ -31,24 +31,39 @@ pub(super) fn tables_late(rows: usize) -> Words {
 }
 
 pub(super) fn only_at_speed(row: Option<usize>, samples: usize, bits: &[u32]) -> Words {
-    let at = |what: &str| format!("a path that fails at the full pixel clock{what}");
-    let ending = if bits.len() == 1 { "" } else { "s" };
-    let numbers = list(&bits.iter().map(|&bit| bit as usize).collect::<Vec<_>>());
-    let (place, seen) = match row {
-        None => (at(""), String::new()),
-        Some(row) => (
-            at(&format!(", seen in bit{ending} {numbers} of the corrected samples")),
-            format!("; row {row} was kept, in which {} {}", count(samples, "sample"), differ(samples)),
-        ),
-    };
+    let (bits, kept) = seen(row, samples, bits);
     Words {
         part: "timing",
-        place,
-        defect: format!("what was streamed row by row is right, and what runs without a pause is not{seen}"),
+        place: format!("a path that fails at the full pixel clock{bits}"),
+        defect: format!("what was streamed row by row is right, and what runs without a pause is not{kept}"),
         designer: "Check the timing of the datapath at this clock, and its supply while every clock carries a sample."
             .to_owned(),
         technician: TIMING,
     }
+}
+
+pub(super) fn seen_at_speed(row: Option<usize>, samples: usize, bits: &[u32]) -> Words {
+    let (bits, kept) = seen(row, samples, bits);
+    Words {
+        part: "timing or logic",
+        place: format!("a path that fails at the full pixel clock, and perhaps at any{bits}"),
+        defect: format!("seen at speed only in a frame that was not streamed{kept}"),
+        designer: "Stream a frame of this size with these tables: if it is right, check the timing of the datapath at this \
+                   clock, and its supply; if it is not, look for what depends on size, centre, depth and tables."
+            .to_owned(),
+        technician: TIMING,
+    }
+}
+
+/// The bits in which a path was seen to fail, and the row.
+fn seen(row: Option<usize>, samples: usize, bits: &[u32]) -> (String, String) {
+    let Some(row) = row else { return (String::new(), String::new()) };
+    let ending = if bits.len() == 1 { "" } else { "s" };
+    let numbers = list(&bits.iter().map(|&bit| bit as usize).collect::<Vec<_>>());
+    (
+        format!(", seen in bit{ending} {numbers} of the corrected samples"),
+        format!("; row {row} was kept, in which {} {}", count(samples, "sample"), differ(samples)),
+    )
 }
 
 /// A finding on frames at speed, if it is one.
@@ -160,8 +175,13 @@ fn shown(repetition: Repetition) -> String {
         Repetition::AllRight { frames } => {
             format!("; made again by itself, it was right {}", count(frames, "time"))
         }
-        Repetition::Trapped { frames, row } => {
-            format!("; made again, it differed at try {frames}, in row {row} first")
+        Repetition::Trapped { frames, row, streamed } => {
+            let streamed = match streamed {
+                Streamed::NotTried => "",
+                Streamed::Right => "; streamed it is right",
+                Streamed::Wrong => "; streamed it is wrong, too",
+            };
+            format!("; made again, it differed at try {frames}, in row {row} first{streamed}")
         }
         Repetition::NothingTrapped { frames } => {
             format!("; made again, it differed at try {frames}, and the board kept no row that does")

@@ -98,6 +98,7 @@ fn elsewhere(defect: &Defect) -> Words {
         }
         Defect::TablesChangeLate { rows } => at_speed::tables_late(*rows),
         Defect::OnlyAtSpeed { row, samples, bits } => at_speed::only_at_speed(*row, *samples, bits),
+        Defect::SeenAtSpeed { row, samples, bits } => at_speed::seen_at_speed(*row, *samples, bits),
         other => places::words(other),
     }
 }

@@ -99,6 +99,11 @@ impl BurstPlan {
         self.mode == BurstMode::Alternating && n % 2 == 1
     }
 
+    /// Whether its rows are as wide as those of `geometry`.
+    pub(super) fn has_width_of(&self, geometry: &Geometry) -> bool {
+        self.samples as usize == geometry.width() * usize::from(self.rows)
+    }
+
     /// What content is drawn from.
     pub(super) fn seed(&self) -> u32 {
         self.seed

@@ -10,6 +10,7 @@ mod predicted;
 mod price;
 mod repeated;
 mod soak;
+mod streamed;
 mod tables_late;
 mod watched;
 
@@ -25,7 +26,7 @@ use super::steps::Run;
 use crate::board::{Bank, Bursts, RowTiming};
 use crate::progress::Step;
 use crate::reference::correct;
-use crate::result::{BurstCount, CheckName, Corner, Finding, NoBurst, NotExercised, Outcome};
+use crate::result::{BurstCount, CheckName, Corner, Finding, NoBurst, NotExercised, Outcome, Streamed};
 use burst::BurstPlan;
 pub(super) use burst::content;
 pub(super) use price::{clock_hz, most_frames, price_of_corners, price_of_frames};
@@ -118,9 +119,21 @@ impl Run<'_> {
             return Err(self.wrong_at_speed(plan, tables, &watched));
         }
         if let Some(finding) = watched.miscounted {
-            return Err(miscounted(finding));
+            return Err(self.miscounted(finding, plan));
         }
         ended.map(|()| watched)
+    }
+
+    /// What ends a run with a count that is wrong in the burst `plan`. What loses or gains a clock may do so at full speed alone, and does
+    /// where rows as wide were streamed; whatever else is miscounted is the counter's own fault.
+    fn miscounted(&self, finding: Finding, plan: &BurstPlan) -> End {
+        use BurstCount::{LeastLatency, MostLatency};
+        let is_late = matches!(finding, Finding::MiscountedAtSpeed { count: LeastLatency | MostLatency, .. });
+        let is_streamed = plan.has_width_of(self.plan.tables.geometry());
+        let streamed = if is_streamed { Streamed::Right } else { Streamed::NotTried };
+        let suspects =
+            if is_late { repeated::at_speed(streamed, None).into_iter().collect() } else { Vec::new() };
+        End::Failed { check: CheckName::AtSpeed, finding, suspects }
     }
 
     /// Judges frames in each corner of what the board can be set to, and returns how many corners those are.
@@ -221,15 +234,6 @@ impl Run<'_> {
         };
         self.findings.note(CheckName::AtSpeed, outcome, finding);
     }
-}
-
-/// What ends a run with a count that is wrong. What loses or gains a clock fails at full speed alone; whatever else is miscounted
-/// is the counter's own fault.
-fn miscounted(finding: Finding) -> End {
-    use BurstCount::{LeastLatency, MostLatency};
-    let is_late = matches!(finding, Finding::MiscountedAtSpeed { count: LeastLatency | MostLatency, .. });
-    let suspects = if is_late { vec![repeated::only_at_speed(None)] } else { Vec::new() };
-    End::Failed { check: CheckName::AtSpeed, finding, suspects }
 }
 
 /// What bursts left untested at the full pixel clock, in which tables changed or not, and frames had pauses or not.

@@ -3,7 +3,7 @@
 use std::iter;
 use std::slice;
 
-use halfrow_model::{Content, row_signature};
+use halfrow_model::{Content, Phase, row_signature};
 use halfrow_protocol::message::BurstMode;
 
 use super::burst::BurstPlan;
@@ -17,7 +17,8 @@ use crate::diagnosis::{self, Case, Uploaded};
 use crate::frames::{Builtin, Scene};
 use crate::reference::correct;
 use crate::result::{
-    Account, CheckName, Defect, Evidence, Finding, FrameReport, FrameTiming, Problem, Repetition, Suspect,
+    Account, CheckName, Defect, Evidence, Finding, FrameReport, FrameTiming, Problem, Repetition, Streamed,
+    Suspect,
 };
 use crate::run::findings::{During, End};
 use crate::run::kept::as_found;
@@ -32,6 +33,12 @@ const TELLING: usize = 4;
 struct Again {
     repetition: Repetition,
     suspects: Vec<Suspect>,
+}
+
+/// Rows, and what they were made by.
+struct Seen {
+    made_by: Generation,
+    evidence: Evidence,
 }
 
 impl From<Repetition> for Again {
@@ -62,7 +69,7 @@ impl Run<'_> {
         });
         let Again { repetition, mut suspects } = again;
         if suspects.is_empty() {
-            suspects.push(only_at_speed(None));
+            suspects.extend(at_speed(repetition.streamed(), None));
         }
         let suspect = suspects.first().map(|suspect| Box::new(suspect.defect.clone()));
         let finding = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect };
@@ -106,13 +113,27 @@ impl Run<'_> {
         };
         // Records come by the handful, so that others may be there behind it.
         let frames = first.n + 1;
+        let content = plan.content(0);
         let trapped = self.board.trap().during(CheckName::AtSpeed)?;
-        let row = trapped.as_ref().map(|trapped| trapped.row);
-        let told = trapped.and_then(|trapped| self.suspects_of(generation, plan.content(0), &trapped));
-        let (Some(row), Some(suspects)) = (row, told) else {
+        let told = trapped.and_then(|trapped| Some((trapped.row, self.seen(generation, content, &trapped)?)));
+        let Some((row, seen)) = told else {
             return Ok(Repetition::NothingTrapped { frames }.into());
         };
-        Ok(Again { repetition: Repetition::Trapped { frames, row }, suspects })
+        // A soak goes on, and none of its time is for rows that a link carries.
+        let is_soak = self.plan.soak.is_some();
+        let right = seen.evidence.expected.samples();
+        let back = if is_soak { None } else { self.streamed(generation, content, right) };
+        let streamed = match &back {
+            None => Streamed::NotTried,
+            Some(back) if back.starts_with(right) => Streamed::Right,
+            Some(_) => Streamed::Wrong,
+        };
+        let whole = back.filter(|_| streamed == Streamed::Wrong);
+        let suspects = match whole.and_then(|back| self.whole(generation, content, back)) {
+            Some(whole) => self.diagnose_seen(&whole, content),
+            None => self.suspects_of(&seen, content, streamed),
+        };
+        Ok(Again { repetition: Repetition::Trapped { frames, row, streamed }, suspects })
     }
 
     /// Makes the tables of the other bank the active ones, which takes a frame.
@@ -127,48 +148,46 @@ impl Run<'_> {
         self.board.stream(&mut Unjudged(iter::once(frame))).during(CheckName::AtSpeed)
     }
 
-    /// The suspects by a trapped row of a frame that `generation` made of `content`; none if the row is as it should be.
+    /// What a trapped row of a frame shows that `generation` made of `content`; none if the row is as it should be.
     ///
     /// It is the first of its burst that differs, so those above it in the frame were right: the frame up to it bears witness.
-    fn suspects_of(
-        &self,
-        generation: &Generation,
-        content: Content,
-        trapped: &Trapped,
-    ) -> Option<Vec<Suspect>> {
+    fn seen(&self, generation: &Generation, content: Content, trapped: &Trapped) -> Option<Seen> {
         let Trapped { row, signature, samples } = trapped;
         let own = generation.tables.geometry();
         let is_row = *row < own.height() && samples.len() == own.width();
         if !is_row || row_signature(samples) != *signature {
             return None;
         }
-        let generation = generation.upper(row + 1)?;
-        let input = content.frame(generation.tables.geometry(), self.plan.phase);
-        let expected = correct(&generation.tables, &generation.kernel, &input).ok()?;
-        let mut found = expected.samples().to_vec();
+        let mut above = correct_up_to(generation, content, row + 1, self.plan.phase)?;
+        let mut found = above.evidence.expected.samples().to_vec();
         found[row * own.width()..].copy_from_slice(samples);
-        let found = as_found(&expected, found)?;
-        let comparison = Comparison::of_frames(&expected, &found);
-        let differing = comparison.differences;
-        if differing == 0 {
-            return None;
-        }
-        let only = only_at_speed(Some((*row, expected.row(*row), samples)));
-        let evidence = Evidence { index: 0, input, found, expected };
-        let mut suspects = self.diagnose_row(&generation, content, comparison, &evidence);
-        let is_told = differing >= TELLING && suspects.first().is_some_and(|first| first.explained >= 1.0);
-        suspects.insert(if is_told { 1 } else { 0 }, only);
-        Some(suspects)
+        above.evidence.found = as_found(&above.evidence.expected, found)?;
+        (above.evidence.found != above.evidence.expected).then_some(above)
     }
 
-    fn diagnose_row(
-        &self,
-        generation: &Generation,
-        content: Content,
-        comparison: Comparison,
-        evidence: &Evidence,
-    ) -> Vec<Suspect> {
-        let Generation { number, tables, kernel } = generation;
+    /// What the whole frame of `content` shows that was streamed through `generation` and came `back`.
+    fn whole(&self, generation: &Generation, content: Content, back: Vec<u16>) -> Option<Seen> {
+        let rows = generation.tables.geometry().height();
+        let mut whole = correct_up_to(generation, content, rows, self.plan.phase)?;
+        whole.evidence.found = as_found(&whole.evidence.expected, back)?;
+        Some(whole)
+    }
+
+    /// The suspects by what was `seen` of a row that a trap kept, the last of its rows.
+    fn suspects_of(&self, seen: &Seen, content: Content, streamed: Streamed) -> Vec<Suspect> {
+        let Evidence { expected, found, .. } = &seen.evidence;
+        let row = expected.height() - 1;
+        let kept = (row, expected.row(row), found.row(row));
+        let (differing, _) = changed(kept);
+        let mut suspects = self.diagnose_seen(seen, content);
+        let is_told = differing >= TELLING && suspects.first().is_some_and(|first| first.explained >= 1.0);
+        let place = usize::from(is_told);
+        suspects.splice(place..place, at_speed(streamed, Some(kept)));
+        suspects
+    }
+
+    fn diagnose_seen(&self, seen: &Seen, content: Content) -> Vec<Suspect> {
+        let Seen { made_by: Generation { number, tables, kernel }, evidence } = seen;
         let frame = FrameReport {
             name: "at speed".to_owned(),
             number: content.frame,
@@ -179,7 +198,7 @@ impl Run<'_> {
             variation: None,
             first_rows: None,
             rows: tables.geometry().height(),
-            comparison,
+            comparison: Comparison::of_frames(&evidence.expected, &evidence.found),
             seconds: 0.0,
         };
         diagnosis::diagnose(&Case {
@@ -191,17 +210,33 @@ impl Run<'_> {
     }
 }
 
-/// What fails at the full pixel clock alone, seen in `row` if one was trapped: its number, what it should be, what it is.
-pub(super) fn only_at_speed(row: Option<(usize, &[u16], &[u16])>) -> Suspect {
-    let defect = match row {
-        None => Defect::OnlyAtSpeed { row: None, samples: 0, bits: Vec::new() },
-        Some((row, expected, found)) => {
-            let changed = expected.iter().zip(found).map(|(expected, found)| expected ^ found);
-            let samples = changed.clone().filter(|&bits| bits != 0).count();
-            let all = changed.fold(0, |all, bits| all | bits);
-            let bits = (0..u16::BITS).filter(|bit| all >> bit & 1 == 1).collect();
-            Defect::OnlyAtSpeed { row: Some(row), samples, bits }
-        }
+/// The first `rows` rows of the frame that `generation` makes of `content`, found right.
+fn correct_up_to(generation: &Generation, content: Content, rows: usize, phase: Phase) -> Option<Seen> {
+    let made_by = generation.upper(rows)?;
+    let input = content.frame(made_by.tables.geometry(), phase);
+    let expected = correct(&made_by.tables, &made_by.kernel, &input).ok()?;
+    Some(Seen { evidence: Evidence { index: 0, input, found: expected.clone(), expected }, made_by })
+}
+
+/// A row of which samples differ: its number, what it should be, what it is.
+pub(super) type Kept<'a> = (usize, &'a [u16], &'a [u16]);
+
+/// What is wrong at the full pixel clock, seen in a row if one was kept, by what was seen where the same was `streamed`: none if it is
+/// wrong there as well.
+pub(super) fn at_speed(streamed: Streamed, kept: Option<Kept<'_>>) -> Option<Suspect> {
+    let (row, (samples, bits)) = (kept.map(|(row, ..)| row), kept.map(changed).unwrap_or_default());
+    let defect = match streamed {
+        Streamed::NotTried => Defect::SeenAtSpeed { row, samples, bits },
+        Streamed::Right => Defect::OnlyAtSpeed { row, samples, bits },
+        Streamed::Wrong => return None,
     };
-    Suspect { defect, account: Account::Nothing, explained: 0.0 }
+    Some(Suspect { defect, account: Account::Nothing, explained: 0.0 })
+}
+
+/// How many samples differ, and in which bits.
+fn changed((_, expected, found): Kept<'_>) -> (usize, Vec<u32>) {
+    let changed = expected.iter().zip(found).map(|(expected, found)| expected ^ found);
+    let samples = changed.clone().filter(|&bits| bits != 0).count();
+    let all = changed.fold(0, |all, bits| all | bits);
+    (samples, (0..u16::BITS).filter(|bit| all >> bit & 1 == 1).collect())
 }

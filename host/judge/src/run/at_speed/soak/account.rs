@@ -163,7 +163,10 @@ fn counted_behind(before: u64, mut end: End) -> End {
 /// Takes over the suspects of another difference if they were seen in a row, and those of the first were not.
 fn tell_more(first: &mut End, others: &[Suspect]) {
     let names_row = |suspects: &[Suspect]| {
-        suspects.iter().any(|it| !matches!(it.defect, Defect::OnlyAtSpeed { row: None, .. }))
+        let has_none = |defect: &Defect| {
+            matches!(defect, Defect::OnlyAtSpeed { row: None, .. } | Defect::SeenAtSpeed { row: None, .. })
+        };
+        suspects.iter().any(|it| !has_none(&it.defect))
     };
     if let End::Failed { finding: Finding::DiffersAtSpeed { suspect, .. }, suspects, .. } = first
         && !names_row(suspects)

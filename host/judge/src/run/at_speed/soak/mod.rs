@@ -222,7 +222,7 @@ impl Run<'_> {
         let at = at.unwrap_or_else(|| self.clock());
         let end = match &watched.miscounted {
             _ if !account.wants_more() => return,
-            Some(finding) if watched.wrong == 0 => super::miscounted(finding.clone()),
+            Some(finding) if watched.wrong == 0 => self.miscounted(finding.clone(), &played.plan),
             _ => self.wrong_at_speed(plan, tables, watched),
         };
         account.keep(played, at, end);
