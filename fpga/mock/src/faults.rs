@@ -90,6 +90,8 @@ pub enum BoardFault {
     Conduct(Conduct),
     /// The board claims another datapath id.
     WrongDatapath,
+    /// The board claims that a PLL clocks it, far slower than it is.
+    WrongClockClaim,
     /// A bit of a row flips between its packet and the core.
     SpoiltRow {
         /// The row of every frame.
@@ -313,6 +315,9 @@ pub const FAULTS: &[Fault<BoardFault>] = &[
         Ok(BoardFault::Conduct(Conduct::StuckRepeats))
     }),
     fault("wrong-datapath", "the board claims another datapath id", &[], |_| Ok(BoardFault::WrongDatapath)),
+    fault("wrong-clock-claim", "the board claims a pixel clock of 1 Hz, made by its PLL", &[], |_| {
+        Ok(BoardFault::WrongClockClaim)
+    }),
     fault(
         "spoilt-row",
         "a bit of a row flips between its packet and the core",

@@ -68,6 +68,11 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
     ),
     fails("tables that change late", ",fault=late-swap", "the change of table banks between two frames"),
     fails("a pause that is not counted", ",fault=hidden-pause", "pixel clocks of most latency"),
+    fails(
+        "a false claim of the pixel clock",
+        ",fault=wrong-clock-claim",
+        "the board names a pixel clock of 1 Hz, and its clock was seen to be",
+    ),
     fails("packets of any session", ",fault=any-session", "a packet of another session has no effect"),
     fails(
         "an acknowledgement that frees every bank",

@@ -45,6 +45,11 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
         "the tables changed during the run: grid row 2, node 2, bit 3",
     ),
     fails(
+        "a false claim of the pixel clock behind a grid",
+        ",fault=wrong-clock-claim",
+        "the board names a pixel clock of 1 Hz, and its clock was seen to be",
+    ),
+    fails(
         "packets of any session behind a grid",
         ",fault=any-session",
         "a packet of another session has no effect",

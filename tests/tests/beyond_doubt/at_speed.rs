@@ -6,8 +6,8 @@ use std::time::Duration;
 use halfrow::link;
 use halfrow::progress::Silent;
 use halfrow::result::{
-    BurstCount, Check, CheckName, Defect, Finding, NoBurst, NotExercised, Outcome, Repetition, Report,
-    Streamed, Suspect,
+    BurstCount, Check, CheckName, Defect, EqualAtSpeed, Finding, NoBurst, NotExercised, Outcome, Repetition,
+    Report, Streamed, Suspect,
 };
 use halfrow::run::{Plan, RunOptions, verify};
 use halfrow::verdict::{Cause, Verdict};
@@ -60,7 +60,7 @@ fn request(packet: &Passing) -> Request<'_> {
 fn a_sound_board_passes_with_three_frames_and_both_banks() {
     let report = TINY.judge("");
     assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
-    let Finding::EqualAtSpeed { frames: 3, held_back: 0, .. } = check(&report).finding else {
+    let Finding::EqualAtSpeed(EqualAtSpeed { frames: 3, held_back: 0, .. }) = check(&report).finding else {
         panic!("{}", check(&report).detail())
     };
     assert_eq!(check(&report).outcome, Outcome::Passed);
@@ -172,7 +172,7 @@ fn why_nothing_was_tested_at_speed_is_said() {
 #[test]
 fn with_one_bank_the_change_of_tables_stays_untested() {
     let report = TINY.judge(",table-banks=1");
-    assert!(matches!(check(&report).finding, Finding::EqualAtSpeed { frames: 3, .. }));
+    assert!(matches!(check(&report).finding, Finding::EqualAtSpeed(EqualAtSpeed { frames: 3, .. })));
     assert!(report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
 }
 

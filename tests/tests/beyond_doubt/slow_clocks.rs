@@ -1,4 +1,5 @@
-//! Boards with a slow pixel clock, behind links that say zeros between packets, which mean nothing: they pass.
+//! Boards with a slow pixel clock, behind links that say zeros between packets, which mean nothing: they pass, unless the clock is
+//! another one than they name.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -6,6 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use halfrow::link::{Candidate, Link, LinkError};
+use halfrow::result::{Check, Finding, NotExercised, Report};
 use halfrow::run::{Part, Plan, Selection};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
@@ -54,6 +56,12 @@ impl Link for Trickles {
 
 /// A sound board that makes few frames as slowly as its clock says. The mock's take no time.
 fn slow_board() -> Candidate {
+    board_of(0, |_| TAKES)
+}
+
+/// A board that says with `source` where its clock comes from, and takes as many milliseconds for few frames as `takes` says of the
+/// bursts that it has begun before.
+fn board_of(source: u8, takes: impl Fn(usize) -> u64 + Send + 'static) -> Candidate {
     let clock = Arc::new(AtomicU64::new(0));
     let (now, mut begun) = (Arc::clone(&clock), BTreeMap::new());
     let alter = move |toward, packet: Passing| {
@@ -61,13 +69,22 @@ fn slow_board() -> Candidate {
         let read = Packet { header: packet.header, payload: &packet.payload };
         match (toward, Request::read(&read), packet.reply()) {
             (Toward::Board, Ok(Request::Burst(burst)), _) if (1..=FEW).contains(&burst.frames) => {
-                begun.entry(burst.burst).or_insert(now);
+                let takes = takes(begun.len());
+                begun.entry(burst.burst).or_insert((now, takes));
+            }
+            (Toward::Host, _, Some(Reply::Capabilities(mut capabilities))) => {
+                capabilities.clock_source = source;
+                return vec![packet.saying(&Reply::Capabilities(capabilities))];
             }
             (Toward::Host, _, Some(Reply::Records(records)))
-                if begun.get(&records.burst).is_some_and(|begun| now < begun + TAKES) =>
+                if begun.get(&records.burst).is_some_and(|&(begun, takes)| now < begun + takes) =>
             {
-                let none = Records { state: BurstState::UnderWay, bytes: &[], ..records };
-                return vec![packet.saying(&Reply::Records(none))];
+                // One frame at a third of the time, another at two.
+                let (begun, takes) = begun[&records.burst];
+                let made = ((now - begun) * u64::from(FEW) / takes) as usize;
+                let come = made.saturating_sub(records.from as usize).min(records.bytes.len());
+                let some = Records { state: BurstState::UnderWay, bytes: &records.bytes[..come], ..records };
+                return vec![packet.saying(&Reply::Records(some))];
             }
             _ => {}
         }
@@ -93,4 +110,56 @@ fn its_frames_at_speed_are_waited_for() {
 #[test]
 fn its_bursts_are_waited_for_where_rules_are_tried() {
     passes(&Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() });
+}
+
+/// A clock_source of WIRE.md.
+const PIXCLK: u8 = 1;
+const PLL: u8 = 2;
+
+/// The report on a board whose frames at speed are all that is judged.
+fn judged(source: u8, takes: impl Fn(usize) -> u64 + Send + 'static) -> Report {
+    let parts = Some(Selection::least().with(Part::AtSpeed, 3));
+    judge_by_plan(&Plan { parts, ..System::TINY.plan() }, board_of(source, takes))
+}
+
+/// 3 frames of 520 clocks at 10 kHz are 156 ms.
+#[test]
+fn a_board_s_own_clock_is_the_one_that_it_names() {
+    let right = judged(PLL, |_| 156);
+    assert_eq!(right.verdict, Verdict::Pass, "{}", right.headline());
+    for (takes, sentence) in [(0, " or more"), (3000, " Hz to ")] {
+        let wrong = judged(PLL, move |_| takes);
+        assert_eq!(wrong.verdict, Verdict::Fail, "{takes} ms: {}", wrong.headline());
+        assert!(
+            matches!(wrong.finding, Finding::ClockNotAsNamed { clock_hz: CLOCK, .. }),
+            "{}",
+            wrong.headline()
+        );
+        assert!(wrong.headline().contains(sentence), "{}", wrong.headline());
+    }
+}
+
+/// Who feeds PIXCLK is not judged.
+#[test]
+fn another_clock_from_outside_is_named_beside_a_pass() {
+    let report = judged(PIXCLK, |_| 3000);
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    let is_named = |part: &NotExercised| matches!(part, NotExercised::NamedClock { clock_hz: CLOCK, .. });
+    assert!(report.not_exercised.iter().any(is_named), "{:?}", report.not_exercised);
+    let details: Vec<_> = report.checks.iter().map(Check::detail).collect();
+    assert!(details.iter().any(|detail| detail.contains("at a claimed 10.0 kHz")), "{details:?}");
+}
+
+/// A host that is frozen together with its clock sees a burst end before it can.
+#[test]
+fn what_is_seen_once_of_a_clock_is_looked_at_again() {
+    let report = judged(PLL, |before| if before == 0 { 0 } else { 156 });
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+}
+
+/// Nobody keeps to the clock of a mock.
+#[test]
+fn a_clock_that_is_the_host_s_own_is_not_looked_at() {
+    let report = judged(0, |_| 3000);
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
 }

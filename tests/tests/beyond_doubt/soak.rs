@@ -9,8 +9,8 @@ use halfrow::board::Stop;
 use halfrow::link::{self, Candidate};
 use halfrow::progress::{Event, Silent};
 use halfrow::result::{
-    CheckName, Defect, Finding, NoBurst, NotExercised, Repetition, Report, SoakDifference, SoakInterval,
-    SoakLength, SoakReport,
+    CheckName, Defect, EqualAtSpeed, Finding, NoBurst, NotExercised, Repetition, Report, SoakDifference,
+    SoakInterval, SoakLength, SoakReport,
 };
 use halfrow::run::{Plan, RunOptions, verify};
 use halfrow::verdict::{Cause, StoppedBy, Verdict};
@@ -80,7 +80,11 @@ fn a_sound_board_passes_with_all_frames_and_other_content_in_each_burst() {
     seeds.dedup();
     assert_eq!(seeds.len(), 3, "{seeds:x?}");
     let check = report.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap();
-    assert!(matches!(check.finding, Finding::EqualAtSpeed { frames: 3000, .. }), "{}", check.detail());
+    assert!(
+        matches!(check.finding, Finding::EqualAtSpeed(EqualAtSpeed { frames: 3000, .. })),
+        "{}",
+        check.detail()
+    );
     assert!(!report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
 }
 

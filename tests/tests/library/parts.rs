@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use halfrow::board::{Board, OpenOptions};
 use halfrow::frames::Builtin;
-use halfrow::result::{CheckName, Finding, NoBurst, NotExercised, Outcome, Report, SoakLength};
+use halfrow::result::{CheckName, EqualAtSpeed, Finding, NoBurst, NotExercised, Outcome, Report, SoakLength};
 use halfrow::run::{Build, FrameSource, Part, Plan, Prices, Rates, Selection};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
@@ -91,7 +91,10 @@ fn one_row_and_a_burst_are_a_run() {
     let [frame] = &report.frames[..] else { panic!("{:?}", report.frames) };
     assert_eq!((frame.first_rows, frame.rows, frame.comparison.samples), (Some(1), 1, 64));
     let at_speed = report.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap();
-    assert!(matches!(at_speed.finding, Finding::EqualAtSpeed { frames: 2, corners: 0, .. }), "{at_speed:?}");
+    assert!(
+        matches!(at_speed.finding, Finding::EqualAtSpeed(EqualAtSpeed { frames: 2, corners: 0, .. })),
+        "{at_speed:?}"
+    );
 
     // Both need what is behind row 0.
     for fault in ["row-factor,row=9,hidden=true", "warm-bit,after=1,row=9"] {
@@ -100,7 +103,10 @@ fn one_row_and_a_burst_are_a_run() {
     }
     let whole = judged("mock", least.with(Part::Corners, 1));
     let at_speed = whole.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap();
-    assert!(matches!(at_speed.finding, Finding::EqualAtSpeed { corners: 10, .. }), "{at_speed:?}");
+    assert!(
+        matches!(at_speed.finding, Finding::EqualAtSpeed(EqualAtSpeed { corners: 10, .. })),
+        "{at_speed:?}"
+    );
 }
 
 #[test]

@@ -20,6 +20,9 @@ pub(super) const ROW_FACTOR_PORTS: u8 = 1;
 /// Ports by which it reads nodes: i and i + 1 at once.
 pub(super) const KERNEL_PORTS: u8 = 2;
 
+/// A `clock_source` of WIRE.md.
+const PLL: u8 = 2;
+
 /// By how much the board's claims are over the truth; by nothing by default.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct WrongClaims {
@@ -27,6 +30,8 @@ pub(crate) struct WrongClaims {
     pub(crate) datapath: u16,
     /// L, in pixel clocks.
     pub(crate) latency: u8,
+    /// The pixel clock of a PLL that it has not got, in hertz.
+    pub(crate) pll_hz: Option<u32>,
 }
 
 /// What a build says of the grids that it takes.
@@ -61,8 +66,8 @@ impl Board {
             row_banks_out: options.row_banks_out,
             step_ports: ROW_FACTOR_PORTS,
             kernel_ports: KERNEL_PORTS,
-            clock_source: 0,
-            clock_hz: options.pixel_clock,
+            clock_source: if claims.pll_hz.is_some() { PLL } else { 0 },
+            clock_hz: claims.pll_hz.unwrap_or(options.pixel_clock),
             bursts: capability(options),
             entered: options.entered,
             grids: grids(options),

@@ -41,7 +41,6 @@ impl Defects {
             Fault::NoRounding => core.rounding = 0,
             Fault::DeadTap { tap, reads } => core.dead_tap = Some(DeadTap { tap, reads }),
             Fault::Late => core.extra_delay = 1,
-            Fault::WrongLatencyClaim => claims.latency = 1,
             Fault::LostRow { row } => player.lost_row = Some(row),
             Fault::StaleTable { hidden } => {
                 tables.stale = Some(if hidden { Stale::Hidden } else { Stale::Admitted });
@@ -51,7 +50,9 @@ impl Defects {
             }
             Fault::UncheckedCommit => tables.unchecked = true,
             Fault::Conduct(_) => {}
-            Fault::WrongDatapath => claims.datapath = 8,
+            Fault::WrongLatencyClaim | Fault::WrongDatapath | Fault::WrongClockClaim => {
+                *claims = wrong_claims(fault);
+            }
             Fault::SpoiltRow { row, column, bit } => {
                 player.spoilt = Some(SpoiltSample { row, column, bit });
             }
@@ -65,5 +66,15 @@ impl Defects {
             Fault::HiddenPause { row } => burst.hidden_pause = Some(row),
         }
         defects
+    }
+}
+
+/// What a board says of itself that is not so.
+fn wrong_claims(fault: Fault) -> WrongClaims {
+    match fault {
+        Fault::WrongLatencyClaim => WrongClaims { latency: 1, ..WrongClaims::default() },
+        Fault::WrongDatapath => WrongClaims { datapath: 8, ..WrongClaims::default() },
+        Fault::WrongClockClaim => WrongClaims { pll_hz: Some(1), ..WrongClaims::default() },
+        _ => WrongClaims::default(),
     }
 }

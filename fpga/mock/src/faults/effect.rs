@@ -35,7 +35,7 @@ impl BoardFault {
             Self::WarmBit { row, .. } | Self::HiddenPause { row } => {
                 streamed.lacks_speed().or_else(|| streamed.lacks_row(row))
             }
-            Self::SlowPath { .. } | Self::LateSwap => streamed.lacks_speed(),
+            Self::SlowPath { .. } | Self::LateSwap | Self::WrongClockClaim => streamed.lacks_speed(),
             Self::TapOffset { columns: 0 } => {
                 Some("columns=0 leaves the taps where they are; give -3 to -1 or 1 to 3".to_owned())
             }
@@ -56,7 +56,11 @@ impl BoardFault {
             Self::StaleTable { .. } | Self::LateSwap if build.table_banks == 1 => {
                 Err(OptionError::NoOtherBank)
             }
-            Self::SlowPath { .. } | Self::WarmBit { .. } | Self::LateSwap | Self::HiddenPause { .. }
+            Self::SlowPath { .. }
+            | Self::WarmBit { .. }
+            | Self::LateSwap
+            | Self::HiddenPause { .. }
+            | Self::WrongClockClaim
                 if build.bursts == BurstBuild::None =>
             {
                 Err(OptionError::NoBursts)

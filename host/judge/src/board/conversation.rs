@@ -64,7 +64,7 @@ pub(super) struct Conversation {
     /// The longest that an answer was held back that had been asked for again.
     slowest: Duration,
     /// When the last packet came in.
-    heard_at: Duration,
+    pub(super) heard_at: Duration,
     stop: Stop,
 }
 

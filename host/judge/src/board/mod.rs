@@ -169,6 +169,12 @@ impl Board {
         self.conversation.now()
     }
 
+    /// When the last packet came from the board, on the link's clock.
+    #[must_use]
+    pub(crate) fn heard_at(&self) -> Duration {
+        self.conversation.heard_at
+    }
+
     /// The bytes a second that the link carries, when that is known.
     #[must_use]
     pub fn bytes_per_second(&self) -> Option<f64> {

@@ -8,9 +8,11 @@ mod within;
 use std::borrow::Cow;
 
 use crate::board::MAX_LATENCY;
+use crate::result::wording::named_clock;
 use crate::result::{
-    Account, BoardKind, BoardReport, Finding, FrameReport, LatencyReport, LinkReport, NotExercised, Outcome,
-    Reconnection, Report, SoakDifference, SoakLength, SoakReport, StreetReport, Suspect,
+    Account, BoardKind, BoardReport, EqualAtSpeed, Finding, FrameReport, LatencyReport, LinkReport,
+    NotExercised, Outcome, Reconnection, Report, SoakDifference, SoakLength, SoakReport, StreetReport,
+    Suspect,
 };
 use crate::run::DECOY;
 use crate::verdict::Verdict;
@@ -124,11 +126,11 @@ pub fn facts(report: &Report) -> String {
 /// What was judged at the full pixel clock; none where the run did not come to that.
 fn at_speed(report: &Report) -> Option<String> {
     report.checks.iter().find_map(|check| match check.finding {
-        Finding::EqualAtSpeed { frames, clock_hz: 0, .. } => {
+        Finding::EqualAtSpeed(EqualAtSpeed { frames, clock_hz: 0, .. }) => {
             Some(format!("{} at speed", count(frames, "frame")))
         }
-        Finding::EqualAtSpeed { frames, clock_hz, .. } => {
-            Some(format!("{} at {}", count(frames, "frame"), hertz(clock_hz)))
+        Finding::EqualAtSpeed(EqualAtSpeed { frames, clock_hz, seen, .. }) => {
+            Some(format!("{} at {}", count(frames, "frame"), named_clock(clock_hz, seen)))
         }
         Finding::PausedAtSpeed { .. } | Finding::NothingAtSpeed { .. } => Some("none at speed".to_owned()),
         _ => None,

@@ -46,6 +46,56 @@ impl From<&TableSet> for Corner {
     }
 }
 
+/// Frames that the board made on its own, all of them right.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EqualAtSpeed {
+    /// Frames.
+    pub frames: u32,
+    /// The pixel clock that the board names, in hertz; 0 when it names none.
+    pub clock_hz: u32,
+    /// What was seen of that clock.
+    #[serde(default)]
+    pub seen: ClockSeen,
+    /// How long they took on that clock, in seconds.
+    pub seconds: Option<f64>,
+    /// Frames that waited until the host had the records of earlier ones.
+    pub held_back: u32,
+    /// Other settings at which frames were equal as well.
+    #[serde(default)]
+    pub corners: u32,
+}
+
+/// Between what a pixel clock was seen to be. No delay of host or link moves a bound past the truth.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ClockSeen {
+    /// The least that it can be, in hertz; none if that was not seen.
+    pub least_hz: Option<u32>,
+    /// The most that it can be, in hertz; none if that was not seen.
+    pub most_hz: Option<u32>,
+}
+
+impl ClockSeen {
+    /// By how many parts of it a named clock may be off, which is far more than crystals are.
+    const TOLERANCE: u64 = 5;
+
+    /// Whether a clock of `named` hertz can be meant by what was seen.
+    pub(crate) fn allows(self, named: u32) -> bool {
+        let more = |hertz: u32| u64::from(hertz) * (Self::TOLERANCE + 1);
+        let times = |hertz: u32| u64::from(hertz) * Self::TOLERANCE;
+        self.least_hz.is_none_or(|least| times(least) <= more(named))
+            && self.most_hz.is_none_or(|most| times(named) <= more(most))
+    }
+
+    /// Whether both bounds are as near to `named` hertz as a clock of that may be seen.
+    pub(crate) fn confirms(self, named: u32) -> bool {
+        let is_near = |bound: Option<u32>| {
+            let near = |hertz| Self { least_hz: Some(hertz), most_hz: Some(hertz) }.allows(named);
+            bound.is_some_and(near)
+        };
+        is_near(self.least_hz) && is_near(self.most_hz)
+    }
+}
+
 /// What making a frame again has shown that was wrong at speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "of", rename_all = "kebab-case")]

@@ -1,9 +1,9 @@
 //! One of every finding and of every defect, for the page of codes and for tests.
 
 use super::{
-    Account, Answer, BoardKind, BrokenOff, BurstCount, ClampEnd, Corner, Counter, Counting, Defect, Doubt,
-    Extent, Finding, MadeWith, Memory, NoBurst, NotExercised, NumberedRow, Problem, Reading, RepeatedRow,
-    Repetition, RowSource, Rule, StaleFrames, Streamed, Suspect,
+    Account, Answer, BoardKind, BrokenOff, BurstCount, ClampEnd, ClockSeen, Corner, Counter, Counting,
+    Defect, Doubt, EqualAtSpeed, Extent, Finding, MadeWith, Memory, NoBurst, NotExercised, NumberedRow,
+    Problem, Reading, RepeatedRow, Repetition, RowSource, Rule, StaleFrames, Streamed, Suspect,
 };
 use crate::verdict::Verdict;
 
@@ -34,13 +34,14 @@ fn right() -> Vec<(Option<Verdict>, Finding)> {
         Finding::TablesUnchanged {},
         Finding::TablesUnused {},
         Finding::CountersRight { rows: 17_280, damaged_unseen: 0 },
-        Finding::EqualAtSpeed {
+        Finding::EqualAtSpeed(EqualAtSpeed {
             frames: 138,
             clock_hz: 96_000_000,
+            seen: ClockSeen { least_hz: Some(95_000_000), most_hz: Some(103_000_000) },
             seconds: Some(3.0),
             held_back: 0,
             corners: 4,
-        },
+        }),
         Finding::PausedAtSpeed { frames: 138, paused: 2 },
         Finding::NothingAtSpeed { reason: NoBurst::BoardMakesNone {} },
         Finding::RulesKept { requests: 612 },
@@ -111,9 +112,13 @@ fn on_rules() -> [Finding; 1] {
     }]
 }
 
+/// A quarter of 96 MHz.
+const SLOW_CLOCK: ClockSeen = ClockSeen { least_hz: Some(22_100_000), most_hz: Some(24_600_000) };
+
 /// On what entered the core, and on frames that the board made on its own.
-fn on_entry_and_at_speed() -> [Finding; 5] {
+fn on_entry_and_at_speed() -> [Finding; 6] {
     [
+        Finding::ClockNotAsNamed { clock_hz: 96_000_000, seen: SLOW_CLOCK },
         Finding::RowsEnteredChanged { rows: 9, row: 3, frame: 2 },
         Finding::EntryMiscounted { rows: 9, row: 3, frame: 2 },
         Finding::DiffersAtSpeed {
@@ -179,6 +184,7 @@ pub fn not_exercised() -> Vec<NotExercised> {
         NotExercised::OneCentre { centre2: 1919 },
         NotExercised::CentreBits { bits: vec![8, 9, 10, 11] },
         NotExercised::FullSpeed {},
+        NotExercised::NamedClock { clock_hz: 96_000_000, seen: SLOW_CLOCK },
         NotExercised::TableChangeAtSpeed {},
         NotExercised::Rules {},
         NotExercised::Grids {},

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Account, Answer, BoardKind, BrokenOff, BurstCount, Corner, Counter, Defect, Doubt, NoBurst, NumberedRow,
-    Problem, RepeatedRow, Repetition, Rule,
+    Account, Answer, BoardKind, BrokenOff, BurstCount, ClockSeen, Corner, Counter, Defect, Doubt,
+    EqualAtSpeed, NoBurst, NumberedRow, Problem, RepeatedRow, Repetition, Rule,
 };
 
 /// What a check or a whole run came to. In JSON `{"code": …, "parameters": …}`; a [`Problem`] has its own code.
@@ -72,25 +72,20 @@ pub enum Finding {
         damaged_unseen: u32,
     },
     /// Frames that the board made on its own are the reference's, at the full pixel clock.
-    EqualAtSpeed {
-        /// Frames.
-        frames: u32,
-        /// The pixel clock in hertz; 0 when the board names none.
-        clock_hz: u32,
-        /// How long they took on that clock, in seconds.
-        seconds: Option<f64>,
-        /// Frames that waited until the host had the records of earlier ones.
-        held_back: u32,
-        /// Other settings at which frames were equal as well.
-        #[serde(default)]
-        corners: u32,
-    },
+    EqualAtSpeed(EqualAtSpeed),
     /// They are the reference's, and the enable was off in some.
     PausedAtSpeed {
         /// Frames.
         frames: u32,
         /// Those with pauses.
         paused: u32,
+    },
+    /// The pixel clock that the board makes is not the one that it names.
+    ClockNotAsNamed {
+        /// The one that it names, in hertz.
+        clock_hz: u32,
+        /// What was seen of it.
+        seen: ClockSeen,
     },
     /// The board made no frames on its own.
     NothingAtSpeed {

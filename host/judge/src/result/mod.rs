@@ -41,7 +41,7 @@ use crate::verdict::{Cause, Verdict};
 use not_exercised::InWords;
 
 pub use crate::target::BoardKind;
-pub use bursts::{BurstCount, Corner, NoBurst, Repetition, Streamed};
+pub use bursts::{BurstCount, ClockSeen, Corner, EqualAtSpeed, NoBurst, Repetition, Streamed};
 pub use check::{Check, CheckName, Outcome};
 pub use counter::Counter;
 pub use coverage::CoverageReport;

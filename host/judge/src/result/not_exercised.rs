@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Parameters, wording};
+use super::{ClockSeen, Parameters, wording};
 
 /// A part of the board, or a setting, that no frame of the run put to the test: a fault there would have gone unseen.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -63,6 +63,13 @@ pub enum NotExercised {
     FullSpeed {},
     /// A change of tables between two frames at the full pixel clock.
     TableChangeAtSpeed {},
+    /// The pixel clock that the board names, and is given from outside: another was seen.
+    NamedClock {
+        /// The one that it names, in hertz.
+        clock_hz: u32,
+        /// What was seen of it.
+        seen: ClockSeen,
+    },
     /// What the board must refuse, keep and end.
     Rules {},
     /// Rows that a grid corrects, on a board that takes grids.

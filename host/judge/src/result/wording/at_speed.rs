@@ -3,7 +3,9 @@
 use super::places::list;
 use super::{LOGIC, TIMING, Words, place};
 use crate::report::wording::{count, differ, grouped, hertz, span};
-use crate::result::{BurstCount, Corner, Defect, Finding, NoBurst, Repetition, Streamed};
+use crate::result::{
+    BurstCount, ClockSeen, Corner, Defect, EqualAtSpeed, Finding, NoBurst, Repetition, Streamed,
+};
 
 pub(super) fn changed_on_entry(rows: usize, first: usize, frame: u16) -> Words {
     let others = if rows > 1 { format!(", the first of {rows}") } else { String::new() };
@@ -69,8 +71,9 @@ fn seen(row: Option<usize>, samples: usize, bits: &[u32]) -> (String, String) {
 /// A finding on frames at speed, if it is one.
 pub(super) fn sentence(finding: &Finding) -> Option<String> {
     Some(match finding {
-        Finding::EqualAtSpeed { frames, clock_hz, seconds, held_back, corners } => {
-            equal(*frames, *clock_hz, *seconds, *held_back) + &elsewhere(*corners)
+        Finding::EqualAtSpeed(at_speed) => equal(at_speed) + &elsewhere(at_speed.corners),
+        Finding::ClockNotAsNamed { clock_hz, seen } => {
+            format!("the board names a pixel clock of {}, and {}", hertz(*clock_hz), seen_of_clock(*seen))
         }
         Finding::InCorner { corner: Corner { width, height, bits, centre2, grid }, found } => format!(
             "with frames of {width} x {height}, {bits} bits, centre {:.1}, drawn {} and kernels: {}",
@@ -130,6 +133,9 @@ pub(super) fn remedy(finding: &Finding) -> Option<String> {
         Finding::MiscountedAtSpeed { .. } => {
             "Check what the board counts of the frames that it makes: their samples were right."
         }
+        Finding::ClockNotAsNamed { .. } => {
+            "Check the settings of the board's PLL and its oscillator, and the clock that its capabilities name."
+        }
         Finding::InCorner { found, .. } => return found.remedy(),
         _ => return None,
     };
@@ -137,17 +143,40 @@ pub(super) fn remedy(finding: &Finding) -> Option<String> {
 }
 
 /// "138 frames at 96.0 MHz in 3.0 s, every sample equal"
-fn equal(frames: u32, clock_hz: u32, seconds: Option<f64>, held_back: u32) -> String {
+fn equal(at_speed: &EqualAtSpeed) -> String {
+    let EqualAtSpeed { frames, clock_hz, seen, seconds, held_back, .. } = *at_speed;
     let clock = match clock_hz {
         0 => " without a pause".to_owned(),
-        known => format!(" at {}", hertz(known)),
+        known => format!(" at {}", named_clock(known, seen)),
     };
     let time = seconds.map_or_else(String::new, |seconds| format!(" in {}", span(seconds)));
+    let bounds =
+        if seen == ClockSeen::default() { String::new() } else { format!("; {}", seen_of_clock(seen)) };
     let waited = match held_back {
         0 => String::new(),
         some => format!("; {some} of them waited until the records of others were read"),
     };
-    format!("{}{clock}{time}, every sample equal{waited}", count(frames, "frame"))
+    format!("{}{clock}{time}, every sample equal{bounds}{waited}", count(frames, "frame"))
+}
+
+/// `96.0 MHz` if it was `seen` to be that, else `a claimed 96.0 MHz`.
+pub(crate) fn named_clock(clock_hz: u32, seen: ClockSeen) -> String {
+    let claimed = if seen.confirms(clock_hz) { "" } else { "a claimed " };
+    format!("{claimed}{}", hertz(clock_hz))
+}
+
+/// `its clock was seen to be 91.2 MHz to 103.4 MHz`
+pub(super) fn seen_of_clock(seen: ClockSeen) -> String {
+    let between = match (seen.least_hz, seen.most_hz) {
+        (Some(least), Some(most)) if least > most => {
+            return "its clock was seen to be no steady one".to_owned();
+        }
+        (Some(least), Some(most)) => format!("{} to {}", hertz(least), hertz(most)),
+        (Some(least), None) => format!("{} or more", hertz(least)),
+        (None, Some(most)) => format!("{} or less", hertz(most)),
+        (None, None) => return "nothing was seen of it".to_owned(),
+    };
+    format!("its clock was seen to be {between}")
 }
 
 fn elsewhere(corners: u32) -> String {

@@ -12,6 +12,7 @@ mod tables;
 
 use super::{Defect, Memory};
 
+pub(crate) use at_speed::named_clock;
 pub use evidence::evidence;
 pub(super) use findings::because;
 pub(crate) use findings::broken_off;

@@ -1,6 +1,8 @@
 //! What no frame put to the test.
 
+use super::at_speed::seen_of_clock;
 use super::places::list;
+use crate::report::wording::hertz;
 use crate::result::NotExercised;
 
 /// It in words, so that "not exercised: …" makes a sentence.
@@ -28,6 +30,9 @@ pub fn not_exercised(part: &NotExercised) -> String {
         NotExercised::TableChangeAtSpeed {} => {
             "a change of tables between two frames at the full pixel clock".to_owned()
         }
+        NotExercised::NamedClock { clock_hz, seen } => {
+            format!("the pixel clock of {} that the board names, since {}", hertz(*clock_hz), seen_of_clock(*seen))
+        }
         NotExercised::Rules {} => "what the board must refuse, keep and end".to_owned(),
         NotExercised::Grids {} => "grids, which are datapath 2".to_owned(),
         NotExercised::FurtherRecords { filled } => {
@@ -39,11 +44,14 @@ pub fn not_exercised(part: &NotExercised) -> String {
         NotExercised::SameBoard {} => {
             "that the board that came back is the one that went away, since it has no serial number".to_owned()
         }
-        NotExercised::Depths { bits } => {
-            let depths: Vec<_> = bits.iter().map(u32::to_string).collect();
-            format!("samples of {} bits", depths.join(" or "))
-        }
+        NotExercised::Depths { bits } => depths(bits),
     }
+}
+
+/// `samples of 8 or 10 bits`
+fn depths(bits: &[u32]) -> String {
+    let depths: Vec<_> = bits.iter().map(u32::to_string).collect();
+    format!("samples of {} bits", depths.join(" or "))
 }
 
 /// `address line 7`, `address lines 0 to 3, 7`

@@ -104,6 +104,16 @@ impl BurstPlan {
         self.samples as usize == geometry.width() * usize::from(self.rows)
     }
 
+    /// Pixel clocks of `frames` frames, with the blanking in front of another one.
+    pub(super) fn clocks_of(&self, frames: u32) -> u64 {
+        self.clocks * u64::from(frames)
+    }
+
+    /// Records that the board keeps.
+    pub(super) fn records(&self) -> u32 {
+        self.bursts.records.into()
+    }
+
     /// What content is drawn from.
     pub(super) fn seed(&self) -> u32 {
         self.seed

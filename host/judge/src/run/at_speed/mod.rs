@@ -4,6 +4,7 @@
 //! signs its frames, and what is judged are the signatures.
 
 mod burst;
+mod clock;
 mod corners;
 mod grids;
 mod predicted;
@@ -26,7 +27,9 @@ use super::steps::Run;
 use crate::board::{Bank, Bursts, RowTiming};
 use crate::progress::Step;
 use crate::reference::correct;
-use crate::result::{BurstCount, CheckName, Corner, Finding, NoBurst, NotExercised, Outcome, Streamed};
+use crate::result::{
+    BurstCount, CheckName, ClockSeen, Corner, EqualAtSpeed, Finding, NoBurst, NotExercised, Outcome, Streamed,
+};
 use burst::BurstPlan;
 pub(super) use burst::content;
 pub(super) use price::{clock_hz, most_frames, price_of_corners, price_of_frames};
@@ -43,6 +46,16 @@ const USUAL: Duration = Duration::from_secs(3);
 pub(crate) const FEW: u32 = 3;
 /// The draw of the first corner's content, far from those of a soak.
 const FIRST_CORNER: u32 = 1 << 31;
+
+/// Nothing at a clock that nobody names.
+const NONE: EqualAtSpeed = EqualAtSpeed {
+    frames: 0,
+    clock_hz: 0,
+    seen: ClockSeen { least_hz: None, most_hz: None },
+    seconds: None,
+    held_back: 0,
+    corners: 0,
+};
 
 impl Run<'_> {
     /// Judges a burst, with the board back behind `last` if it goes away meanwhile.
@@ -92,6 +105,7 @@ impl Run<'_> {
         let tables = self.tables_at_speed()?;
         let plan = self.burst_plan(bursts, &tables);
         let watched = self.judge_frames(&plan, &tables)?;
+        let seen = self.judge_clock(&plan, &tables, &watched)?;
         let corners = if self.plan.amount(Part::Corners) > 0 { self.judge_corners(bursts)? } else { 0 };
         if watched.paused == 0 {
             let made_with = [JUDGED, DECOY].into_iter().take(tables.len());
@@ -99,7 +113,9 @@ impl Run<'_> {
         }
         let changes = plan.mode == BurstMode::Alternating;
         self.findings.untested_at_speed = untested(changes, watched.paused > 0);
-        self.note_right(&plan, watched.frames, watched.paused, watched.held_back, corners);
+        self.findings.untested_at_speed.extend(self.clock_not_exercised(seen));
+        let Watched { frames, paused, held_back, .. } = watched;
+        self.note_right(&plan, paused, EqualAtSpeed { frames, held_back, corners, seen, ..NONE });
         Ok(())
     }
 
@@ -223,13 +239,13 @@ impl Run<'_> {
         plan
     }
 
-    /// Takes note of `frames` as `plan` has them that are all right, of which `paused` had pauses and `held_back` waited for a record,
-    /// and of those in so many corners.
-    fn note_right(&mut self, plan: &BurstPlan, frames: u32, paused: u32, held_back: u32, corners: u32) {
-        let clock_hz = self.board.capabilities.clock_hz;
-        let seconds = (clock_hz > 0).then(|| plan.seconds(frames));
+    /// Takes note of frames as `plan` has them that are all right, of which `paused` had pauses.
+    fn note_right(&mut self, plan: &BurstPlan, paused: u32, right: EqualAtSpeed) {
+        let (clock_hz, frames) = (self.board.capabilities.clock_hz, right.frames);
+        let is_known = clock_hz > 0 && right.seen.allows(clock_hz);
+        let seconds = is_known.then(|| plan.seconds(frames));
         let (outcome, finding) = match paused {
-            0 => (Outcome::Passed, Finding::EqualAtSpeed { frames, clock_hz, seconds, held_back, corners }),
+            0 => (Outcome::Passed, Finding::EqualAtSpeed(EqualAtSpeed { clock_hz, seconds, ..right })),
             _ => (Outcome::Skipped, Finding::PausedAtSpeed { frames, paused }),
         };
         self.findings.note(CheckName::AtSpeed, outcome, finding);

@@ -7,9 +7,10 @@ use std::time::Duration;
 use halfrow_protocol::message::{Burst, BurstState, FrameRecord};
 
 use super::burst::BurstPlan;
+use super::clock::Stopwatch;
 use super::predicted;
 use crate::board::{Board, BoardError};
-use crate::result::{BurstCount, CheckName, Finding};
+use crate::result::{BurstCount, CheckName, ClockSeen, Finding};
 use crate::run::findings::{During, End};
 use crate::run::plan::Generation;
 use crate::run::steps::Run;
@@ -53,6 +54,8 @@ pub(super) struct Watched {
     pub(super) paused: u32,
     /// Frames that waited for a free record.
     pub(super) held_back: u32,
+    /// What they say of the pixel clock.
+    pub(super) clock: ClockSeen,
 }
 
 impl Watched {
@@ -96,6 +99,7 @@ struct Watch<'a> {
     generation: u8,
     ends_early: EndsEarly,
     predicted: Receiver<u32>,
+    watch: Stopwatch,
     /// Told when records have come, and when it is on the link's clock.
     told: &'a mut dyn FnMut(&Watched, Duration),
     /// How long no record has come.
@@ -105,6 +109,7 @@ struct Watch<'a> {
 impl Watch<'_> {
     /// Takes the records that are there, and says whether they were the last.
     fn look(&mut self, watched: &mut Watched) -> Result<bool, BoardError> {
+        let before = self.board.heard_at();
         let fetched = self.board.records(self.burst.burst, watched.frames);
         let fetched = fetched.map_err(|error| self.board.of_last_burst(error))?;
         for record in &fetched.records {
@@ -112,6 +117,7 @@ impl Watch<'_> {
             watched.take(self, expected, record);
             self.idle = Duration::ZERO;
         }
+        self.watch.note(self.plan, watched, &fetched, (before, self.board.heard_at()));
         if !fetched.records.is_empty() {
             (self.told)(watched, self.board.now());
         }
@@ -168,7 +174,9 @@ impl Run<'_> {
         let ended = thread::scope(|scope| {
             let predicted = predicted::ahead(scope, *plan, tables);
             let predicted = predicted.map_err(|error| error.during(CheckName::AtSpeed))?;
+            let asked = self.board.heard_at();
             self.board.burst(&burst).map_err(|error| End::board(CheckName::AtSpeed, &error))?;
+            let watch = Stopwatch::new(asked, self.board.heard_at());
             let watch = Watch {
                 board: self.board,
                 plan,
@@ -176,6 +184,7 @@ impl Run<'_> {
                 generation: tables.first().map_or(0, |active| active.number),
                 ends_early,
                 predicted,
+                watch,
                 told,
                 idle: Duration::ZERO,
             };

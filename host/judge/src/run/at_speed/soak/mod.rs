@@ -8,11 +8,12 @@ use std::time::Duration;
 
 use halfrow_protocol::message::BurstMode;
 
+use super::NONE;
 use super::burst::{BurstPlan, LONGEST_LOOK};
 use super::watched::{EndsEarly, Watched};
 use crate::board::{Bank, Bursts, RowTiming};
 use crate::progress::{Event, Step};
-use crate::result::{CheckName, Doubt, Finding, SoakInterval, SoakLength};
+use crate::result::{CheckName, Doubt, EqualAtSpeed, Finding, SoakInterval, SoakLength};
 use crate::run::findings::{During, End};
 use crate::run::plan::{DECOY, Generation, JUDGED, Segment};
 use crate::run::second_look::{LOOKS, unasked};
@@ -84,7 +85,7 @@ impl Run<'_> {
             );
             let [frames, paused, held_back] =
                 [account.report.frames, account.report.paused, account.report.held_back].map(counted);
-            self.note_right(&plan, frames, paused, held_back, 0);
+            self.note_right(&plan, paused, EqualAtSpeed { frames, held_back, ..NONE });
             self.findings.untested_at_speed = super::untested(changes, paused > 0);
         }
         self.findings.soak = Some(account.report);

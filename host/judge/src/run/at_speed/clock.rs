@@ -1,0 +1,195 @@
+//! The pixel clock that a board names, held against the host's.
+
+use std::time::Duration;
+
+use halfrow_protocol::message::{BurstState, Records};
+
+use super::burst::BurstPlan;
+use super::watched::Watched;
+use crate::board::{BoardNature, Fetched};
+use crate::result::{CheckName, ClockSeen, Finding, NotExercised};
+use crate::run::findings::End;
+use crate::run::plan::Generation;
+use crate::run::second_look::LOOKS;
+use crate::run::steps::Run;
+
+/// A `clock_source` of WIRE.md: it comes from outside.
+const PIXCLK: u8 = 1;
+/// It is made by the board.
+const PLL: u8 = 2;
+/// The shortest time in which too few frames tell of a clock: a board takes 50 ms at most until a burst begins (WIRE.md).
+const TELLING: Duration = Duration::from_millis(500);
+
+/// What bounds the clock of a burst, by the link's.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stopwatch {
+    /// The last packet that came before the burst was asked for.
+    asked: Duration,
+    /// From when on no frame waited, and how many there were by then.
+    since: (Duration, u32),
+    /// Frames that waited, or paused.
+    waited: u32,
+    /// The frame before which the host had all records, as far as the board knew when it was asked for others.
+    freed: u32,
+}
+
+impl Stopwatch {
+    /// Of a burst that was `asked` for, and had its reply by `answered`: it began in between.
+    pub(super) fn new(asked: Duration, answered: Duration) -> Self {
+        Self { asked, since: (answered, 0), waited: 0, freed: 0 }
+    }
+
+    /// Takes what `watched` frames say, of which the last were `fetched` behind what came `before`, and were there `at` a time.
+    ///
+    /// What is made cannot have taken longer than since the request, however late it is seen. What was not made when the board was
+    /// asked would have been made by then, however late the answer in front is seen to have come.
+    pub(super) fn note(
+        &mut self,
+        plan: &BurstPlan,
+        watched: &mut Watched,
+        fetched: &Fetched,
+        (before, at): (Duration, Duration),
+    ) {
+        let (made, waited, seen) = (watched.frames, watched.held_back + watched.paused, &mut watched.clock);
+        if made > 1 {
+            let least = hertz(plan.clocks_of(made - 1), at.saturating_sub(self.asked));
+            seen.least_hz = seen.least_hz.max(Some(least));
+        }
+        if std::mem::replace(&mut self.waited, waited) != waited {
+            self.since = (at, made);
+        }
+        let under_way = before.saturating_sub(self.since.0);
+        let may_wait = made - self.freed >= plan.records() || fetched.records.len() >= Records::MOST;
+        if fetched.state == BurstState::UnderWay && !may_wait && under_way >= TELLING {
+            let clocks = plan.clocks_of(made - self.since.1 + 1) + u64::from(plan.latency);
+            let most = hertz(clocks, under_way);
+            seen.most_hz = Some(seen.most_hz.map_or(most, |least| least.min(most)));
+        }
+        self.freed = made - fetched.records.len() as u32;
+    }
+}
+
+/// As many clocks in a time, in hertz.
+fn hertz(clocks: u64, time: Duration) -> u32 {
+    (clocks as f64 / time.max(Duration::from_micros(1)).as_secs_f64()) as u32
+}
+
+impl Run<'_> {
+    /// What was seen of the clock in the burst `plan`, if it is one of its own or from outside. Ends a run whose board makes another
+    /// clock than it names.
+    ///
+    /// The burst is made again where they differ: a host that was frozen with its clock sees a board do more than it can.
+    pub(super) fn judge_clock(
+        &mut self,
+        plan: &BurstPlan,
+        tables: &[Generation],
+        watched: &Watched,
+    ) -> Result<ClockSeen, End> {
+        let capabilities = &self.board.capabilities;
+        let (named, source) = (capabilities.clock_hz, capabilities.clock_source);
+        let is_real = capabilities.nature != BoardNature::Simulation && [PIXCLK, PLL].contains(&source);
+        if !is_real || named == 0 {
+            return Ok(ClockSeen::default());
+        }
+        let mut seen = watched.clock;
+        for _ in 1..LOOKS {
+            if seen.allows(named) {
+                return Ok(seen);
+            }
+            tracing::warn!(
+                "the board names a pixel clock of {named} Hz, and {seen:?} was seen; looking again"
+            );
+            seen = self.judge_frames(plan, tables)?.clock;
+        }
+        if source == PLL && !seen.allows(named) {
+            return Err(End::failed(CheckName::AtSpeed, Finding::ClockNotAsNamed { clock_hz: named, seen }));
+        }
+        Ok(seen)
+    }
+
+    /// That the board's clock is not the one that it names, which is another's fault where it comes from outside.
+    pub(super) fn clock_not_exercised(&self, seen: ClockSeen) -> Option<NotExercised> {
+        let clock_hz = self.board.capabilities.clock_hz;
+        (!seen.allows(clock_hz)).then_some(NotExercised::NamedClock { clock_hz, seen })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use halfrow_model::{BitDepth, Geometry};
+    use halfrow_protocol::message::{BurstMode, FrameRecord};
+
+    use super::*;
+    use crate::run::{Plan, usual_capabilities};
+
+    /// 64 x 8 samples and 8 clocks: 520 a frame.
+    fn plan() -> BurstPlan {
+        let geometry = Geometry::centred(64, 8, BitDepth::Twelve).unwrap();
+        let lens = halfrow_model::Equidistant::from_radius(10.0).unwrap();
+        let tables = halfrow_model::TableSet::from_lens(geometry, &lens, None).unwrap();
+        let plan = Plan::new(tables, halfrow_model::Interpolant::Hermite.into());
+        let board = usual_capabilities(&plan, BoardNature::Hardware);
+        BurstPlan::new(&geometry, 1, &board, board.bursts.unwrap(), BurstMode::Fresh, 0)
+    }
+
+    /// What is seen of a burst that began within the first 10 ms: records that come, those of them that waited, and when they were
+    /// asked for and had come, in milliseconds.
+    fn seen(looks: &[(u32, u32, u64, u64)]) -> [Option<u32>; 2] {
+        let mut watch = Stopwatch::new(Duration::ZERO, Duration::from_millis(10));
+        let mut watched = Watched::default();
+        let record = FrameRecord {
+            signature: 0,
+            samples: 0,
+            rows: 0,
+            least_latency: 0,
+            most_latency: 0,
+            pauses: 0,
+            generation: 0,
+            held_back: false,
+        };
+        for &(come, waited, asked, at) in looks {
+            watched.frames += come;
+            watched.held_back += waited;
+            let records = vec![record; come as usize];
+            let fetched = Fetched { state: BurstState::UnderWay, records };
+            let times = [asked, at].map(Duration::from_millis);
+            watch.note(&plan(), &mut watched, &fetched, times.into());
+        }
+        [watched.clock.least_hz, watched.clock.most_hz]
+    }
+
+    /// By hand: 10 frames in 1 s are at least 9·520 clocks a second. Less than 11 of them, and D = 44 at most, were made in 990 ms.
+    #[test]
+    fn a_clock_lies_between_what_was_made_and_what_was_not() {
+        assert_eq!(seen(&[(10, 0, 1000, 1000)]), [Some(4680), Some((11 * 520 + latency()) * 1000 / 990)]);
+        // However late the host looks, and whatever takes long.
+        assert_eq!(seen(&[(10, 0, 1000, 9000)]), [Some(520), Some((11 * 520 + latency()) * 1000 / 990)]);
+        assert_eq!(seen(&[(1, 0, 100, 110)]), [None, None]);
+    }
+
+    #[test]
+    fn frames_that_wait_for_a_host_say_nothing_of_a_slow_clock() {
+        // 64 records are all that the board keeps, of which it knows none to be read.
+        assert_eq!(seen(&[(64, 0, 5000, 5010)])[1], None);
+        assert_eq!(seen(&[(32, 0, 250, 260), (32, 0, 5000, 5010)])[1], None);
+        assert_eq!(seen(&[(10, 1, 5000, 5010)])[1], None);
+        // Behind them they do again.
+        let behind = seen(&[(10, 1, 5000, 5010), (4, 0, 6010, 6010)]);
+        assert_eq!(behind[1], Some(5 * 520 + latency()));
+    }
+
+    fn latency() -> u32 {
+        plan().latency.into()
+    }
+
+    #[test]
+    fn a_fifth_more_or_less_is_no_other_clock() {
+        let allows = |least_hz, most_hz| ClockSeen { least_hz, most_hz }.allows(1000);
+        assert!(allows(None, None) && allows(Some(1200), None) && allows(None, Some(834)));
+        assert!(!allows(Some(1201), None) && !allows(None, Some(833)));
+        let confirms = |least, most| ClockSeen { least_hz: least, most_hz: most }.confirms(1000);
+        assert!(
+            confirms(Some(900), Some(1100)) && !confirms(Some(900), None) && !confirms(Some(500), Some(1100))
+        );
+    }
+}
