@@ -104,7 +104,7 @@ fn one_row_and_a_burst_are_a_run() {
     let whole = judged("mock", least.with(Part::Corners, 1));
     let at_speed = whole.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap();
     assert!(
-        matches!(at_speed.finding, Finding::EqualAtSpeed(EqualAtSpeed { corners: 10, .. })),
+        matches!(at_speed.finding, Finding::EqualAtSpeed(EqualAtSpeed { corners: 16, .. })),
         "{at_speed:?}"
     );
 }

@@ -76,12 +76,43 @@ pub(in crate::run) fn drawn_factors(
     TableSet::new(geometry, std::iter::once(RowFactor::ONE).chain(others).collect()).ok()
 }
 
+/// Nodes of a wild kernel that have one thing in common.
+const BLOCK: usize = 8;
+
+/// A weight at the end of its range in every other block of nodes of a wild kernel, by turns at the lower one and the upper one: only
+/// where all of them are does a weighted sum need all of its bits.
+fn at_the_end(node: usize, size: u32) -> Option<i16> {
+    let (block, ends) = (node / BLOCK, [i16::MIN, i16::MAX]);
+    (size == WILD && block % 2 == 1).then(|| ends[block / 2 % 2])
+}
+
 /// Weights of any sign, and any size that 16 bits shifted down by `size` have.
 pub(in crate::run) fn drawn_kernel(taps: u8, size: u32, draws: &mut Pcg64Mcg) -> Option<Kernel> {
-    let weight = |tap: usize, drawn: u32| {
+    let weight = |tap: usize, node: usize, drawn: u32| {
         let is_outer = tap == 0 || tap == 4;
-        if is_outer && taps < 7 { 0 } else { (drawn >> 16) as i16 >> size }
+        if is_outer && taps < 7 { 0 } else { at_the_end(node, size).unwrap_or((drawn >> 16) as i16 >> size) }
     };
-    let nodes = (0..NODES).map(|_| std::array::from_fn(|tap| weight(tap, draws.next_u32())));
+    let nodes = (0..NODES).map(|node| std::array::from_fn(|tap| weight(tap, node, draws.next_u32())));
     Kernel::from_nodes(nodes.collect()).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// DATAPATH.md, "Signed bits that hold every legal case": 31 for the sum, so that 30 are too few.
+    #[test]
+    fn some_sum_of_a_wild_kernel_needs_all_of_its_bits() {
+        let kernel = drawn_kernel(7, WILD, &mut Pcg64Mcg::new(1)).unwrap();
+        let most = |[g0, r1, g4, r5, g6]: &[i16; 5]| {
+            // G2 black and R3 white, or the other way round, and all others as they add up to most.
+            let all = [g0, r1, g4, r5, g6].map(|&weight| i64::from(weight));
+            let sum = |signs: [i64; 5]| {
+                all.iter().zip(signs).map(|(weight, sign)| weight * sign * 4095).sum::<i64>()
+            };
+            [sum([1, -1, 1, -1, 1]), sum([1, 1, 1, 1, 1])].map(i64::abs).into_iter().max().unwrap_or(0)
+        };
+        let nodes = kernel.nodes().iter().filter(|node| most(node) >= 1 << 29).count();
+        assert!(nodes >= 32, "{nodes}");
+    }
 }

@@ -3,6 +3,7 @@
 use std::iter;
 
 use halfrow_model::{Geometry, GridShape, MIN_WIDTH, RowFactor, TableSet};
+use halfrow_protocol::message::Grids;
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
@@ -13,10 +14,13 @@ use crate::run::variations::Build;
 
 /// Samples that such a frame has about. One of them goes over the link.
 const SAMPLES: usize = 1 << 13;
-/// v and k, the finest and the usual one in long rows, and every other v in short ones.
-const SHAPES: [(u32, u32); 6] = [(1, 5), (5, 6), (2, 6), (3, 5), (4, 6), (6, 5)];
+/// v and k, the finest and the usual one in long rows, and all others in short ones.
+const SHAPES: [(u32, u32); 12] =
+    [(1, 5), (5, 6), (2, 6), (3, 5), (4, 6), (6, 5), (1, 6), (2, 5), (3, 6), (4, 5), (5, 5), (6, 6)];
 /// Those of them in long rows.
 const LONG: usize = 2;
+/// Those of them with a v that none in front has.
+const FIRST_K: usize = 6;
 /// Rows behind the first grid row of frames with short ones.
 const ROWS_BEHIND: usize = 6;
 /// How often a grid is drawn, the next time half as far from 1.
@@ -34,14 +38,14 @@ pub(super) fn grid_corners(
     let build = Build::of(capabilities);
     let most = usize::from(capabilities.max_width).min(build.ring) & !1;
     let least = MIN_WIDTH.max(known.grid_width.into()).next_multiple_of(2).min(most);
-    let corner = |(place, (v, k)): (usize, (u32, u32))| {
-        let k = iter::once(k).chain(GridShape::K);
-        let shape = k.filter_map(|k| GridShape::new(v, k).ok()).find(|shape| known.takes(shape.k() as u8))?;
+    let corner = |(place, shape): (usize, GridShape)| {
+        let v = shape.v();
         let (width, rows) = if place < LONG {
             let width = (fit(BY_TURNS[1 - place], most) & !1).max(least);
             (width, SAMPLES / width)
         } else {
-            (least, (1 << v) + ROWS_BEHIND)
+            // What v does is seen with the first k.
+            (least, if place < FIRST_K { 1 << v } else { 0 } + ROWS_BEHIND)
         };
         let height = rows.clamp(1, capabilities.max_height.into());
         let centre2 = [width - 1, fit(BY_TURNS[0], 2 * width - 2)][place % LONG];
@@ -57,7 +61,18 @@ pub(super) fn grid_corners(
         };
         made.map(generation).collect()
     };
-    SHAPES.into_iter().enumerate().filter_map(corner).collect()
+    shapes(known).into_iter().enumerate().filter_map(corner).collect()
+}
+
+/// The shapes that a board takes, each once: of a board of one k each v with that.
+fn shapes(known: Grids) -> Vec<GridShape> {
+    let mut shapes = Vec::new();
+    for (v, k) in SHAPES {
+        let made = iter::once(k).chain(GridShape::K).filter_map(|k| GridShape::new(v, k).ok());
+        let shape = made.into_iter().find(|shape| known.takes(shape.k() as u8));
+        shapes.extend(shape.filter(|shape| !shapes.contains(shape)));
+    }
+    shapes
 }
 
 /// A grid whose rows lie in the frame and in a ring of `ring` samples: factors of any size, beyond 1 some of them.
@@ -131,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn every_v_has_a_corner_whatever_k_a_board_takes() {
+    fn every_v_has_a_corner_with_each_k_that_a_board_takes() {
         let plan = crate::run::Plan::new(
             TableSet::new(
                 Geometry::centred(64, 1, halfrow_model::BitDepth::Twelve).unwrap(),
@@ -140,20 +155,14 @@ mod tests {
             .unwrap(),
             halfrow_model::Interpolant::Hermite.into(),
         );
-        for ks in [0x20, 0x40, 0x60] {
+        for (ks, others) in [(0x20, vec![]), (0x40, vec![]), (0x60, (1..=6).collect())] {
             let mut board = crate::run::usual_capabilities(&plan, crate::board::BoardNature::Mock);
             board.max_height = 128;
-            let grids = halfrow_protocol::message::Grids {
-                further_datapath: 2,
-                entries: 2048,
-                ks,
-                grid_blanking: 0,
-                grid_width: 0,
-            };
+            let grids = Grids { further_datapath: 2, entries: 2048, ks, grid_blanking: 0, grid_width: 0 };
             board.grids = Some(grids);
             let corners = grid_corners(&board, 1, &mut Pcg64Mcg::new(1));
             let vs: Vec<_> = corners.iter().filter_map(|it| it[0].tables.shape()).map(GridShape::v).collect();
-            assert_eq!(vs, [1, 5, 2, 3, 4, 6], "{ks:x}");
+            assert_eq!(vs, [vec![1, 5, 2, 3, 4, 6], others].concat(), "{ks:x}");
         }
     }
 }
