@@ -348,3 +348,34 @@ fn a_row_that_comes_again_with_other_fields_fails() {
         assert_eq!(broken(&report).0, Rule::Again, "{field}: {}", report.headline());
     }
 }
+
+#[test]
+fn an_echo_of_nothing_is_nothing() {
+    let report = answering(Kind::Echo, <[u8]>::is_empty, |mut packet| {
+        packet.payload.push(0);
+        packet
+    });
+    assert_eq!(broken(&report).0, Rule::Skipped);
+}
+
+/// The report on a board that has trapped nothing where it must say `is_lost`, of the row, and of whether signatures were told since the
+/// last RESET.
+fn trapping_less(is_lost: impl Fn(u16, bool) -> bool + Send + 'static) -> Report {
+    let mut is_told = false;
+    behind(move |_, packet| {
+        is_told = packet.is(Kind::Expect) || is_told && !packet.is(Kind::Reset);
+        match packet.reply() {
+            Some(Reply::Trap(Some(kept))) if is_lost(kept.row, is_told) => {
+                vec![packet.saying(&Reply::Trap(None))]
+            }
+            _ => vec![packet],
+        }
+    })
+}
+
+#[test]
+fn what_is_expected_stays_behind_a_reset_and_rows_far_down_are_trapped() {
+    for report in [trapping_less(|_, is_told| !is_told), trapping_less(|row, _| row >= 20)] {
+        assert_eq!(broken(&report).0, Rule::Trap);
+    }
+}

@@ -25,9 +25,9 @@ pub(crate) struct Defects {
 impl Defects {
     /// What is wrong with a board with `fault`.
     pub(crate) fn of(fault: Option<BoardFault>) -> Self {
-        let mut defects = Self::default();
-        let Self { core, tables, player, burst, claims } = &mut defects;
-        let Some(fault) = fault else { return defects };
+        let Some(fault) = fault else { return Self::default() };
+        let mut defects = Self { claims: wrong_claims(fault), ..Self::default() };
+        let Self { core, tables, player, burst, .. } = &mut defects;
         match fault {
             Fault::StuckData { bit, value } => core.data_lines = StuckBits::one(bit, value),
             Fault::StuckAddress { bit, value } => core.address_lines = StuckBits::one(bit, value),
@@ -49,10 +49,7 @@ impl Defects {
                 tables.drift = Some(Drift { after, entry: row, bit });
             }
             Fault::UncheckedCommit => tables.unchecked = true,
-            Fault::Conduct(_) => {}
-            Fault::WrongLatencyClaim | Fault::WrongDatapath | Fault::WrongClockClaim => {
-                *claims = wrong_claims(fault);
-            }
+            Fault::Conduct(_) | Fault::WrongLatencyClaim | Fault::WrongDatapath | Fault::WrongClockClaim => {}
             Fault::SpoiltRow { row, column, bit } => {
                 player.spoilt = Some(SpoiltSample { row, column, bit });
             }

@@ -79,9 +79,7 @@ fn meaning(rule: Rule) -> &'static str {
     match rule {
         Rule::Payload => "a request is cut short or has a field without meaning",
         Rule::Kind => "the kind is no request",
-        Rule::Skipped => {
-            "what stands behind a request's fields, or means nothing in a row's place, is not looked at"
-        }
+        Rule::Skipped => "what stands behind fields, or means nothing in a row's place, is not looked at",
         Rule::Configuration => "a configuration is set as it is, or refused without effect",
         Rule::Span => "a span that is in no table",
         Rule::Entry => "a table's entry out of range",

@@ -5,7 +5,8 @@ use halfrow_protocol::message::{
     Burst, BurstMode, Commit, Entries, RefusalCode, Request, Reset, ResetLevel, Span,
 };
 
-use super::{FIRST_FACTOR, Rules, longer, payload};
+use super::{FIRST_FACTOR, Rules, answer, broken, longer, payload};
+use crate::board::Said;
 use crate::result::Rule;
 use crate::run::findings::End;
 
@@ -19,7 +20,19 @@ impl Rules<'_, '_> {
         for kind in [Kind::RowOut, Kind::Refusal] {
             self.bytes_refused(Rule::Kind, kind, &[], RefusalCode::Kind, 0)?;
         }
-        self.longer()
+        self.longer()?;
+        self.echo_of_nothing()
+    }
+
+    /// What is echoed has no field behind which there may be more.
+    fn echo_of_nothing(&mut self) -> Result<(), End> {
+        match self.run.board.ask(Kind::Echo, &[]) {
+            Ok(Said::Replied(more)) if !more.is_empty() => {
+                let nothing = Said::Replied(Vec::new());
+                Err(broken(Rule::Skipped, Kind::Echo, answer(&nothing), answer(&Said::Replied(more))))
+            }
+            said => self.judge(Rule::Skipped, Kind::Echo, said, &Said::Replied(Vec::new())),
+        }
     }
 
     /// Requests with a byte behind their fields, which is skipped.

@@ -54,9 +54,13 @@ impl Rules<'_, '_> {
             self.trapping()?;
             self.kept(row, rows[row])?;
         }
-        self.tall_trapped()?;
         self.drop_rows()?;
-        self.replied(Rule::Trap, &Request::Trap, NOTHING_KEPT.to_vec())
+        self.replied(Rule::Trap, &Request::Trap, NOTHING_KEPT.to_vec())?;
+        // What is expected stays, whatever happens.
+        let last = (u32::BITS - 1) as usize % rows.len();
+        self.trapping()?;
+        self.kept(last, rows[last])?;
+        self.tall_trapped()
     }
 
     fn trap_burst(&self) -> Option<Burst> {
