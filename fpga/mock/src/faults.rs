@@ -1,5 +1,6 @@
 //! Faults by name: one part of the board out of order, on purpose.
 
+mod conduct;
 mod defects;
 mod effect;
 
@@ -7,6 +8,7 @@ use halfrow_pipe::{Fault, FaultError, FaultInfo, Parameter, Parameters, Place, R
 
 use crate::core::{NODES, Weight};
 
+pub use conduct::Conduct;
 pub(crate) use defects::Defects;
 pub use effect::Streamed;
 
@@ -126,25 +128,6 @@ pub enum BoardFault {
         /// The row.
         row: u16,
     },
-}
-
-/// What a board does with packets that it must not.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Conduct {
-    /// It carries them out whatever session they name.
-    AnySession,
-    /// It is taken by another host whoever holds it.
-    NeverHeld,
-    /// It goes on with the counters of the session before.
-    CountersKept,
-    /// It begins the count of ROW_OUT packets anew behind a RESET.
-    PacketsAnew,
-    /// It takes rows in any place of their frame.
-    RowsAnywhere,
-    /// It frees every output bank at a ROW_ACK, whatever rows that names.
-    GreedyAck,
-    /// It says of each row that is sent again that it was never sent before.
-    StuckRepeats,
 }
 
 /// A row that small frames have too is the default.

@@ -3,7 +3,7 @@
 use crate::run::prices::Prices;
 
 /// Requests that are waited for, one after the other, on a board that has everything.
-const REQUESTS: f64 = 1640.0;
+const REQUESTS: f64 = 1470.0;
 /// Bytes on the wire of all packets, those there and those back.
 const BYTES: f64 = 300_000.0;
 /// Bytes of a row that fills an output bank, comes, and comes again.
