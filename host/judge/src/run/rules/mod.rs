@@ -127,13 +127,13 @@ impl<'a, 'run> Rules<'a, 'run> {
         self.counts_stay()?;
         self.refusals_counted()?;
         self.counts()?;
+        self.answered_once()?;
         self.sessions()?;
         self.wide()?;
         if self.run.known_bursts().is_ok() {
             self.bursts()?;
             self.trap()?;
         }
-        self.answered_once()?;
         self.refusals_counted()?;
         self.power_up()?;
         self.closed()?;
