@@ -29,7 +29,7 @@ fn is_unplugged(options: &str) -> bool {
 fn at_every_packet_it_is_an_error_that_names_the_place() {
     for toward in ["board", "host"] {
         // Each of those that a run of frames needs, and some of the many behind them.
-        let packets: Vec<u32> = (0..160).chain((160..2400).step_by(56)).collect();
+        let packets: Vec<u32> = (0..160).chain((160..3200).step_by(76)).collect();
         let unplugged =
             parallel::map(&packets, |packet| is_unplugged(&format!("packet={packet},toward={toward}")));
         let run = unplugged.iter().take_while(|&&unplugged| unplugged).count();
