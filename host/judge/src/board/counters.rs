@@ -22,6 +22,8 @@ impl Board {
     /// # Errors
     /// [`BoardError`] when no answer comes.
     pub(crate) fn clear_by(&mut self, clear: u8) -> Result<Said, BoardError> {
+        // What came before is counted before it is forgotten.
+        self.status(false)?;
         let said = self.ask(Kind::Status, &[clear])?;
         self.conversation.counted.set_back(self.conversation.tally);
         Ok(said)
@@ -56,6 +58,12 @@ impl Board {
     #[must_use]
     pub(crate) fn had_each_packet_once(&self, status: &Status) -> bool {
         u64::from(status.packets) == self.packets_since_clear() && self.conversation.counted.is_calm()
+    }
+
+    /// Whether no packet was sent once more since the board's counters were set back.
+    #[must_use]
+    pub(crate) fn sent_nothing_again(&self) -> bool {
+        self.tally().retries == self.conversation.counted.from.retries
     }
 
     /// The first count of packets in this session that no link brings about which only loses some.

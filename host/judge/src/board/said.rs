@@ -130,7 +130,7 @@ impl Board {
 
     /// Of the requests that changed the board and came to it more than once, those beyond so many cast no doubt on what was found.
     pub(crate) fn excuse_changes(&mut self, changes: u64) {
-        self.conversation.repeated_changes = changes;
+        self.conversation.repeated_changes = changes.saturating_sub(self.conversation.doubled_changes);
     }
 
     /// What the board answered those packets with, if it did.

@@ -197,9 +197,12 @@ impl Rules<'_, '_> {
     fn acknowledge_one(&mut self, kept: &mut Kept) -> Result<(), End> {
         let is_pushed = kept.height == 1;
         self.run.board.disregard_rows(is_pushed.into());
+        let mut had_it = false;
         for _ in 0..LOOKS {
             self.run.board.acknowledge_alone(kept.first + 1);
-            if self.one_is_acknowledged(kept)? {
+            let status = self.run.board.status(false).map_err(of_board)?;
+            had_it = self.run.board.had_each_packet_once(&status);
+            if is_one_acknowledged(kept, &status)? {
                 self.run.board.disregard_rows(0);
                 self.right += 1;
                 if is_pushed {
@@ -210,18 +213,10 @@ impl Rules<'_, '_> {
                 return self.unneeded(kept, 0);
             }
         }
-        Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(0), attempts: LOOKS }))
-    }
-
-    /// Whether the board says that the first row is acknowledged, which it must once it had all packets.
-    fn one_is_acknowledged(&mut self, kept: &Kept) -> Result<bool, End> {
-        let status = self.run.board.status(false).map_err(of_board)?;
-        let (counted, right) = (status.next_row_out, kept.first + 1);
-        let is_told = counted != kept.first || self.run.board.had_each_packet_once(&status);
-        if is_told && counted != right {
-            return Err(miscounted(Counter::NextRowOut, counted, right));
+        if had_it {
+            return Err(miscounted(Counter::NextRowOut, kept.first, kept.first + 1));
         }
-        Ok(is_told)
+        Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(0), attempts: LOOKS }))
     }
 
     /// All rows that came are acknowledged, and those that waited must come right.
@@ -257,5 +252,14 @@ impl Rules<'_, '_> {
                 Err(miscounted(counter, counted, before.saturating_add(more)))
             }
         }
+    }
+}
+
+/// Whether `status` says that the first row is acknowledged; that no row is may be the link's doing, and nothing else.
+fn is_one_acknowledged(kept: &Kept, status: &Status) -> Result<bool, End> {
+    match status.next_row_out.wrapping_sub(kept.first) {
+        0 => Ok(false),
+        1 => Ok(true),
+        _ => Err(miscounted(Counter::NextRowOut, status.next_row_out, kept.first + 1)),
     }
 }

@@ -19,7 +19,7 @@ use crate::run::findings::End;
 /// Frames of a burst that is to be right: every board has records for two.
 const FEW: u32 = 2;
 /// How long a burst may take beside the time that its frames take on the board's clock, and once more for each packet of records.
-const PATIENCE: Duration = Duration::from_secs(5);
+pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 /// The longest time between two looks at it: no link ends a shorter wait early.
 const LONGEST_IDLE: Duration = Duration::from_millis(250);
 /// So many blankings between frames pass in a second at least, or they are not waited for.
@@ -178,11 +178,11 @@ impl Rules<'_, '_> {
         said
     }
 
-    /// How long so many small frames take on the board's clock.
-    fn time_of(&self, frames: u32) -> Duration {
-        let (geometry, blanking) = (&self.small.geometry, usize::from(self.capabilities.least_blanking));
+    /// How long so many frames take on the board's clock, of the size that it is set to.
+    pub(super) fn time_of(&self, frames: u32) -> Duration {
+        let blanking = usize::from(self.capabilities.least_blanking);
         let between = self.capabilities.bursts.map_or(0, |bursts| bursts.least_frame_blanking);
-        let clocks = geometry.height() * (geometry.width() + blanking) + usize::from(between);
+        let clocks = self.height * (self.width + blanking) + usize::from(between);
         Duration::from_secs_f64(f64::from(frames) * clocks as f64 / f64::from(clock_hz(&self.capabilities)))
     }
 

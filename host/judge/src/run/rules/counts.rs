@@ -5,7 +5,7 @@ use std::mem;
 use super::rows::{FRAME, GENERATION};
 use super::without_effect::others;
 use super::{Refused, Rules, miscounted, of_board, of_rows};
-use crate::board::{Said, Status};
+use crate::board::{Given, Said, Status};
 use crate::result::{Counter, Finding, Rule};
 use crate::run::counters::damaged;
 use crate::run::findings::End;
@@ -20,7 +20,7 @@ const CLEAR: u8 = 0x80;
 impl Rules<'_, '_> {
     pub(super) fn counts(&mut self) -> Result<(), End> {
         if self.height >= ROWS {
-            self.rows_counted()?;
+            self.thrice(Self::rows_counted)?;
         }
         self.cleared()
     }
@@ -33,6 +33,8 @@ impl Rules<'_, '_> {
 
     /// Rows are counted that are asked for again, that are not needed and that other sessions say to have.
     fn rows_counted(&mut self) -> Result<(), End> {
+        self.given = Given::default();
+        self.drop_rows()?;
         self.configure(ROWS)?;
         let tables = self.small.made(0, ROWS, GENERATION).tables;
         let frame = self.small.frame(FRAME, &tables).frame;
@@ -121,7 +123,9 @@ impl Rules<'_, '_> {
             (Counter::Refusals, status.refusals),
             (Counter::ForeignPackets, status.foreign_packets),
         ];
-        let is_calm = damaged(status) == 0 && self.run.board.had_each_packet_once(status);
+        let board = &self.run.board;
+        let is_calm =
+            damaged(status) == 0 && board.had_each_packet_once(status) && board.sent_nothing_again();
         match of_any_packet.into_iter().find(|&(_, counted)| is_calm && counted != 0) {
             Some((counter, counted)) => Err(miscounted(counter, counted, 0)),
             None => Ok(()),

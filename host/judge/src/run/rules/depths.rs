@@ -27,7 +27,7 @@ impl Rules<'_, '_> {
     fn samples_over(&mut self, depth: BitDepth) -> Result<(), End> {
         let (own, rows) = (self.small.geometry, ROWS.min(self.small.rows()));
         let Ok(geometry) = Geometry::new(own.width(), rows, depth, own.centre2()) else { return Ok(()) };
-        self.run.board.configure(&geometry, RowTiming::default()).map_err(of_board)?;
+        self.set(&geometry, RowTiming::default())?;
         let made = self.small.made(0, rows, GENERATION);
         let Some((compared, over)) = Compared::of_twelve_bits(&self.small, FRAME, &made, depth) else {
             return Ok(());

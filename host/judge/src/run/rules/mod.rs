@@ -25,6 +25,7 @@ mod without_effect;
 
 use std::mem;
 
+use halfrow_model::Geometry;
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Bank, Refusal, RefusalCode, Request, Span, Table};
 
@@ -92,7 +93,9 @@ struct Rules<'a, 'run> {
     refused: Refused,
     /// What the board had counted in front of them.
     before: Status,
-    /// Rows of a frame, as the board is set.
+    /// Columns of a frame, as the board is set.
+    width: usize,
+    /// Rows of it.
     height: usize,
     /// Rows of the next frame that the board was given.
     given: Given,
@@ -109,6 +112,7 @@ impl<'a, 'run> Rules<'a, 'run> {
             right: 0,
             refused: Refused::default(),
             before: Status::default(),
+            width: 0,
             height: 0,
             given: Given::default(),
         })
@@ -221,9 +225,13 @@ impl<'a, 'run> Rules<'a, 'run> {
 
     /// Sets the board for small frames of so many rows.
     fn configure(&mut self, rows: usize) -> Result<(), End> {
-        self.height = rows;
         let geometry = of_height(&self.small.geometry, rows);
-        self.run.board.configure(&geometry, RowTiming::default()).map_err(of_board)
+        self.set(&geometry, RowTiming::default())
+    }
+
+    fn set(&mut self, geometry: &Geometry, timing: RowTiming) -> Result<(), End> {
+        (self.width, self.height) = (geometry.width(), geometry.height());
+        self.run.board.configure(geometry, timing).map_err(of_board)
     }
 
     fn drop_rows(&mut self) -> Result<(), End> {

@@ -31,7 +31,7 @@ const FEW: u32 = 2;
 impl Rules<'_, '_> {
     pub(super) fn sessions(&mut self) -> Result<(), End> {
         self.powered(Self::held)?;
-        self.always(Self::greeted_again)?;
+        self.powered(|rules| rules.always(Self::greeted_again))?;
         self.numbers_of_sessions()?;
         self.powered(Self::behind_rows)?;
         if self.run.known_bursts().is_ok() {
@@ -97,6 +97,7 @@ impl Rules<'_, '_> {
 
     /// The greeting that opened the session opens no other one.
     fn greeted_again(&mut self) -> Result<(), End> {
+        self.rows_again()?;
         self.counts_on(|rules| {
             let own = rules.run.board.session();
             let again = rules.run.board.greet_again().map_err(of_board)?.session;
@@ -176,20 +177,32 @@ impl Rules<'_, '_> {
 
     /// Behind all else: a RESET that closes the session, behind which the board may be another host's.
     pub(super) fn closed(&mut self) -> Result<(), End> {
-        self.drop_rows()?;
-        self.rows_again()?;
-        let before = self.run.board.status(false).map_err(of_board)?;
-        let own = self.run.board.session();
+        for _ in 0..TIMES {
+            self.drop_rows()?;
+            self.rows_again()?;
+            let before = self.run.board.status(false).map_err(of_board)?;
+            let own = self.run.board.session();
+            self.close(own)?;
+            match self.greet() {
+                Err(BoardError::Held { .. }) => return Ok(()),
+                Err(error) => return Err(of_board(error)),
+                Ok(()) => {}
+            }
+            // Otherwise another host had it meanwhile, or its supply has failed.
+            if self.run.board.session() == next(own) {
+                self.begun_anew(Rule::Closed, &before)?;
+                break;
+            }
+        }
+        self.forget()
+    }
+
+    fn close(&mut self, session: u8) -> Result<(), End> {
         self.ends_right()?;
         self.run.board.close_session().map_err(of_board)?;
-        let said = self.run.board.ask_in_session(own, Kind::Status, &[0]);
+        let said = self.run.board.ask_in_session(session, Kind::Status, &[0]);
         let refusal = Refusal { code: RefusalCode::Session, kind: Kind::Status.code(), detail: 0 };
-        self.judge(Rule::Closed, Kind::Status, said, &Said::Refused(refusal))?;
-        match self.greet() {
-            Err(BoardError::Held { .. }) => Ok(()),
-            Err(error) => Err(of_board(error)),
-            Ok(()) => self.begun_anew(Rule::Closed, &before),
-        }
+        self.judge(Rule::Closed, Kind::Status, said, &Said::Refused(refusal))
     }
 
     /// Drops configuration and tables, which leaves the session open.

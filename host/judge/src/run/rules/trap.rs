@@ -6,7 +6,7 @@ use halfrow_protocol::message::{Burst, BurstMode, Expect, RefusalCode, Request};
 use halfrow_protocol::samples::pack;
 use rand_pcg::Pcg64Mcg;
 
-use super::bursts::Awaited;
+use super::bursts::{Awaited, PATIENCE};
 use super::compared::Compared;
 use super::rows::{FRAME, GENERATION};
 use super::{Rules, longer, of_board};
@@ -88,7 +88,7 @@ impl Rules<'_, '_> {
         self.kept(row, frame.row(row))
     }
 
-    /// The same in a frame whose height has every bit set, below the greatest height.
+    /// The same in a frame whose height has every bit set, below the greatest height, unless two of them take the board seconds.
     fn tall_trapped(&mut self) -> Result<(), End> {
         let most = usize::from(self.capabilities.max_height).min(MOST_ROWS);
         let rows = (1 << (most + 1).ilog2()) - 1;
@@ -99,6 +99,9 @@ impl Rules<'_, '_> {
         };
         let made = Generation { number: TALL, tables, kernel: self.small.tables[0].kernel.clone() };
         self.configure(rows)?;
+        if self.time_of(2) > PATIENCE {
+            return Ok(());
+        }
         self.run.board.upload(&made.tables, &made.kernel).map_err(of_board)?;
         let Some(first_row) = made.upper(1) else { return Ok(()) };
         self.configure(1)?;

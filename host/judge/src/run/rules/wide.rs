@@ -26,9 +26,8 @@ impl Rules<'_, '_> {
         let Generation { number, tables, kernel } = &made;
         // The other bits than those that streamed frames have their gaps drawn with.
         let gap_seed = !self.small.seed | 1;
+        self.set(tables.geometry(), RowTiming { gap_seed, ..RowTiming::default() })?;
         let board = &mut self.run.board;
-        let timing = RowTiming { gap_seed, ..RowTiming::default() };
-        board.configure(tables.geometry(), timing).map_err(of_board)?;
         board.upload(tables, kernel).map_err(of_board)?;
         board.commit(tables, kernel, FRAME, *number).map_err(of_board)?;
         let narrow = tables.geometry().width() as u16 - 2;

@@ -3,9 +3,8 @@
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Entries, Refusal, RefusalCode, Request};
 
-use super::counts::at_least;
 use super::sessions::TIMES;
-use super::{FIRST_FACTOR, Rules, answer, broken, of_board, payload};
+use super::{FIRST_FACTOR, Rules, answer, broken, miscounted, of_board, payload};
 use crate::board::{BoardError, Said};
 use crate::result::{Answer, Counter, Rule};
 use crate::run::findings::End;
@@ -70,7 +69,8 @@ impl Rules<'_, '_> {
         Ok((self.read(), damaged))
     }
 
-    /// At least three quarters of the damaged packets are counted as what they are: a link that loses so many loses others as well.
+    /// Damaged packets are counted as what they are. What stands between host and board may keep some of a kind to itself, as those
+    /// that do not unstuff, or all of both.
     fn damage_counted(&mut self) -> Result<(), End> {
         let before = self.run.board.status(false).map_err(of_board)?;
         let (_, [crc, framing]) = self.behind_damage()?;
@@ -82,13 +82,14 @@ impl Rules<'_, '_> {
             after.crc_errors.saturating_sub(before.crc_errors),
             after.framing_errors.saturating_sub(before.framing_errors),
         ];
-        let least = [most_of(crc), most_of(framing)];
-        if counted[0] < least[0] && counted[1] < least[1] {
-            // What stands between host and board may keep to itself what is damaged.
-            return Ok(());
+        let is_of_both = counted[0] > crc && counted[0] >= most_of(framing);
+        match counted {
+            [0, 0] => Ok(()),
+            [0, _] => Err(miscounted(Counter::CrcErrors, 0, crc)),
+            [_, 0] => Err(miscounted(Counter::FramingErrors, 0, framing)),
+            [counted, _] if is_of_both => Err(miscounted(Counter::CrcErrors, counted, crc)),
+            _ => Ok(()),
         }
-        at_least(Counter::CrcErrors, counted[0], least[0])?;
-        at_least(Counter::FramingErrors, counted[1], least[1])
     }
 
     /// It stays so though packets of other sessions would write another one, and each of those is refused.
