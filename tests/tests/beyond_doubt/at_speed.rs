@@ -143,6 +143,20 @@ fn every_count_of_a_record_is_compared() {
 }
 
 #[test]
+fn records_of_more_frames_than_were_asked_for_are_a_fault() {
+    let report = judge_each(&TINY, |toward, packet| match toward {
+        Toward::Host if packet.is(Kind::Records) => {
+            with_records(&packet, |_, _, records| records.extend(records.last().copied()))
+        }
+        _ => packet,
+    });
+    assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{}", report.headline());
+    let miscounted =
+        Finding::MiscountedAtSpeed { frame: 3, count: BurstCount::Records, counted: 4, right: 3 };
+    assert_eq!(report.finding, miscounted);
+}
+
+#[test]
 fn pauses_make_frames_no_frames_at_speed_and_not_wrong() {
     let report = with_record(|record| record.pauses = 7);
     assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());

@@ -139,22 +139,41 @@ fn a_board_s_own_clock_is_the_one_that_it_names() {
     }
 }
 
+fn is_named(part: &NotExercised) -> bool {
+    matches!(part, NotExercised::NamedClock { clock_hz: CLOCK, .. })
+}
+
 /// Who feeds PIXCLK is not judged.
 #[test]
 fn another_clock_from_outside_is_named_beside_a_pass() {
     let report = judged(PIXCLK, |_| 3000);
     assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
-    let is_named = |part: &NotExercised| matches!(part, NotExercised::NamedClock { clock_hz: CLOCK, .. });
     assert!(report.not_exercised.iter().any(is_named), "{:?}", report.not_exercised);
     let details: Vec<_> = report.checks.iter().map(Check::detail).collect();
     assert!(details.iter().any(|detail| detail.contains("at a claimed 10.0 kHz")), "{details:?}");
 }
 
-/// A host that is frozen together with its clock sees a burst end before it can.
+/// It can never be FAIL.
+#[test]
+fn a_clock_from_outside_is_looked_at_once() {
+    let most = Arc::new(AtomicU64::new(0));
+    let begun = Arc::clone(&most);
+    judged(PIXCLK, move |before| {
+        begun.fetch_max(before as u64 + 1, Ordering::Relaxed);
+        3000
+    });
+    assert_eq!(most.load(Ordering::Relaxed), 1);
+}
+
+/// A host that is frozen together with its clock sees a burst end before it can. Three short frames tell of neither bound what would clear
+/// it, and neither do they of a clock that was seen to be slow.
 #[test]
 fn what_is_seen_once_of_a_clock_is_looked_at_again() {
-    let report = judged(PLL, |before| if before == 0 { 0 } else { 156 });
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    for takes in [0, 3000] {
+        let report = judged(PLL, move |before| if before == 0 { takes } else { 156 });
+        assert_eq!(report.verdict, Verdict::Pass, "{takes} ms: {}", report.headline());
+        assert!(report.not_exercised.iter().any(is_named), "{takes} ms: {:?}", report.not_exercised);
+    }
 }
 
 /// Nobody keeps to the clock of a mock.

@@ -88,12 +88,22 @@ impl ClockSeen {
 
     /// Whether both bounds are as near to `named` hertz as a clock of that may be seen.
     pub(crate) fn confirms(self, named: u32) -> bool {
-        let is_near = |bound: Option<u32>| {
-            let near = |hertz| Self { least_hz: Some(hertz), most_hz: Some(hertz) }.allows(named);
-            bound.is_some_and(near)
-        };
-        is_near(self.least_hz) && is_near(self.most_hz)
+        is_near(self.least_hz, named) && is_near(self.most_hz, named)
     }
+
+    /// Whether each bound by which `wrong` rules out a clock of `named` hertz was seen here, as near to that as it may be.
+    pub(crate) fn clears(self, wrong: Self, named: u32) -> bool {
+        let is_fast = !Self { most_hz: None, ..wrong }.allows(named);
+        let is_slow = !Self { least_hz: None, ..wrong }.allows(named);
+        self.allows(named)
+            && (!is_fast || is_near(self.least_hz, named))
+            && (!is_slow || is_near(self.most_hz, named))
+    }
+}
+
+/// Whether there is a `bound`, and a clock of `named` hertz may be that.
+fn is_near(bound: Option<u32>, named: u32) -> bool {
+    bound.is_some_and(|hertz| ClockSeen { least_hz: Some(hertz), most_hz: Some(hertz) }.allows(named))
 }
 
 /// What making a frame again has shown that was wrong at speed.
@@ -165,4 +175,6 @@ pub enum BurstCount {
     MostLatency,
     /// The generation of its tables.
     Generation,
+    /// Records of the burst, of which each frame has one.
+    Records,
 }

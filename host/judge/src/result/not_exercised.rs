@@ -63,7 +63,7 @@ pub enum NotExercised {
     FullSpeed {},
     /// A change of tables between two frames at the full pixel clock.
     TableChangeAtSpeed {},
-    /// The pixel clock that the board names, and is given from outside: another was seen.
+    /// The pixel clock that the board names: another was seen, which is given from outside, or was not seen again.
     NamedClock {
         /// The one that it names, in hertz.
         clock_hz: u32,

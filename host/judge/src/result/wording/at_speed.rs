@@ -89,6 +89,9 @@ pub(super) fn sentence(finding: &Finding) -> Option<String> {
         Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect } => {
             differs((*wrong, *frames), *first, *repetition, suspect.as_deref())
         }
+        Finding::MiscountedAtSpeed { count: BurstCount::Records, counted, right, .. } => {
+            format!("the board gives {counted} records of {} at speed", count(*right, "frame"))
+        }
         Finding::MiscountedAtSpeed { frame, count, counted, right } => {
             format!(
                 "the board counts {counted} {} for frame {frame} at speed, and it is {right}",
@@ -226,5 +229,6 @@ fn words(count: BurstCount) -> &'static str {
         BurstCount::LeastLatency => "pixel clocks of least latency",
         BurstCount::MostLatency => "pixel clocks of most latency",
         BurstCount::Generation => "as generation",
+        BurstCount::Records => "records",
     }
 }

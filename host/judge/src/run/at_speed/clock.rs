@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use halfrow_protocol::message::{BurstState, Records};
 
+use super::USUAL;
 use super::burst::BurstPlan;
 use super::watched::Watched;
 use crate::board::{BoardNature, Fetched};
@@ -19,6 +20,8 @@ const PIXCLK: u8 = 1;
 const PLL: u8 = 2;
 /// The shortest time in which too few frames tell of a clock: a board takes 50 ms at most until a burst begins (WIRE.md).
 const TELLING: Duration = Duration::from_millis(500);
+/// Bursts in which a wrong clock is looked for at most, since some say nothing of it.
+const BURSTS: u32 = 2 * LOOKS;
 
 /// What bounds the clock of a burst, by the link's.
 #[derive(Clone, Copy, Debug)]
@@ -39,7 +42,8 @@ impl Stopwatch {
         Self { asked, since: (answered, 0), waited: 0, freed: 0 }
     }
 
-    /// Takes what `watched` frames say, of which the last were `fetched` behind what came `before`, and were there `at` a time.
+    /// Takes what `watched` frames say, of which the last were `fetched` from the frame `from` on, behind what came
+    /// `before`, and were there `at` a time.
     ///
     /// What is made cannot have taken longer than since the request, however late it is seen. What was not made when the board was
     /// asked would have been made by then, however late the answer in front is seen to have come.
@@ -48,6 +52,7 @@ impl Stopwatch {
         plan: &BurstPlan,
         watched: &mut Watched,
         fetched: &Fetched,
+        from: u32,
         (before, at): (Duration, Duration),
     ) {
         let (made, waited, seen) = (watched.frames, watched.held_back + watched.paused, &mut watched.clock);
@@ -65,7 +70,7 @@ impl Stopwatch {
             let most = hertz(clocks, under_way);
             seen.most_hz = Some(seen.most_hz.map_or(most, |least| least.min(most)));
         }
-        self.freed = made - fetched.records.len() as u32;
+        self.freed = from;
     }
 }
 
@@ -74,11 +79,50 @@ fn hertz(clocks: u64, time: Duration) -> u32 {
     (clocks as f64 / time.max(Duration::from_micros(1)).as_secs_f64()) as u32
 }
 
+/// What looks at a clock have come to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Weighed {
+    /// It may be the one that is named.
+    Right(ClockSeen),
+    /// It is another one.
+    Wrong(ClockSeen),
+    /// It was seen to be another one, and too few looks behind that say so or otherwise.
+    Open(ClockSeen),
+}
+
+/// Weighs what was `first` seen of a clock of `named` hertz, and what is seen whenever it is looked at `again`. A look that says nothing
+/// of the bound that is wrong neither clears nor confirms it: a busy host sees little, and a wrong board is not right by that.
+fn weigh<E>(
+    named: u32,
+    first: ClockSeen,
+    mut again: impl FnMut() -> Result<ClockSeen, E>,
+) -> Result<Weighed, E> {
+    let mut wrong = 1;
+    for _ in 1..BURSTS {
+        let seen = again()?;
+        if seen.clears(first, named) {
+            return Ok(Weighed::Right(seen));
+        }
+        wrong += u32::from(!seen.allows(named));
+        if wrong == LOOKS {
+            return Ok(Weighed::Wrong(seen));
+        }
+    }
+    Ok(Weighed::Open(first))
+}
+
+/// The burst in which a clock is looked at again, which need not be as long as what is asked for: a usual one tells.
+fn to_look_again(plan: &BurstPlan) -> BurstPlan {
+    let mut usual = *plan;
+    usual.frames = plan.frames.min(plan.frames_in(USUAL));
+    usual
+}
+
 impl Run<'_> {
     /// What was seen of the clock in the burst `plan`, if it is one of its own or from outside. Ends a run whose board makes another
     /// clock than it names.
     ///
-    /// The burst is made again where they differ: a host that was frozen with its clock sees a board do more than it can.
+    /// The burst is made again where the board makes the clock: a host that was frozen with its own sees a board do more than it can.
     pub(super) fn judge_clock(
         &mut self,
         plan: &BurstPlan,
@@ -86,28 +130,28 @@ impl Run<'_> {
         watched: &Watched,
     ) -> Result<ClockSeen, End> {
         let capabilities = &self.board.capabilities;
-        let (named, source) = (capabilities.clock_hz, capabilities.clock_source);
+        let (clock_hz, source) = (capabilities.clock_hz, capabilities.clock_source);
         let is_real = capabilities.nature != BoardNature::Simulation && [PIXCLK, PLL].contains(&source);
-        if !is_real || named == 0 {
+        if !is_real || clock_hz == 0 {
             return Ok(ClockSeen::default());
         }
-        let mut seen = watched.clock;
-        for _ in 1..LOOKS {
-            if seen.allows(named) {
-                return Ok(seen);
+        let first = watched.clock;
+        if source != PLL || first.allows(clock_hz) {
+            return Ok(first);
+        }
+        tracing::warn!(
+            "the board names a pixel clock of {clock_hz} Hz, and {first:?} was seen; looking again"
+        );
+        let plan = to_look_again(plan);
+        match weigh(clock_hz, first, || Ok(self.judge_frames(&plan, tables)?.clock))? {
+            Weighed::Wrong(seen) => {
+                Err(End::failed(CheckName::AtSpeed, Finding::ClockNotAsNamed { clock_hz, seen }))
             }
-            tracing::warn!(
-                "the board names a pixel clock of {named} Hz, and {seen:?} was seen; looking again"
-            );
-            seen = self.judge_frames(plan, tables)?.clock;
+            Weighed::Right(seen) | Weighed::Open(seen) => Ok(seen),
         }
-        if source == PLL && !seen.allows(named) {
-            return Err(End::failed(CheckName::AtSpeed, Finding::ClockNotAsNamed { clock_hz: named, seen }));
-        }
-        Ok(seen)
     }
 
-    /// That the board's clock is not the one that it names, which is another's fault where it comes from outside.
+    /// That the board's clock was seen not to be the one that it names, where that is no fault of the board's, or not certain.
     pub(super) fn clock_not_exercised(&self, seen: ClockSeen) -> Option<NotExercised> {
         let clock_hz = self.board.capabilities.clock_hz;
         (!seen.allows(clock_hz)).then_some(NotExercised::NamedClock { clock_hz, seen })
@@ -120,40 +164,43 @@ mod tests {
     use halfrow_protocol::message::{BurstMode, FrameRecord};
 
     use super::*;
+    use crate::board::Capabilities;
     use crate::run::{Plan, usual_capabilities};
 
-    /// 64 x 8 samples and 8 clocks: 520 a frame.
+    /// 64 x 8 samples and 8 clocks: 520 a frame, at 10 kHz.
     fn plan() -> BurstPlan {
         let geometry = Geometry::centred(64, 8, BitDepth::Twelve).unwrap();
         let lens = halfrow_model::Equidistant::from_radius(10.0).unwrap();
         let tables = halfrow_model::TableSet::from_lens(geometry, &lens, None).unwrap();
         let plan = Plan::new(tables, halfrow_model::Interpolant::Hermite.into());
-        let board = usual_capabilities(&plan, BoardNature::Hardware);
+        let board = Capabilities { clock_hz: 10_000, ..usual_capabilities(&plan, BoardNature::Hardware) };
         BurstPlan::new(&geometry, 1, &board, board.bursts.unwrap(), BurstMode::Fresh, 0)
     }
+
+    const RECORD: FrameRecord = FrameRecord {
+        signature: 0,
+        samples: 0,
+        rows: 0,
+        least_latency: 0,
+        most_latency: 0,
+        pauses: 0,
+        generation: 0,
+        held_back: false,
+    };
 
     /// What is seen of a burst that began within the first 10 ms: records that come, those of them that waited, and when they were
     /// asked for and had come, in milliseconds.
     fn seen(looks: &[(u32, u32, u64, u64)]) -> [Option<u32>; 2] {
         let mut watch = Stopwatch::new(Duration::ZERO, Duration::from_millis(10));
         let mut watched = Watched::default();
-        let record = FrameRecord {
-            signature: 0,
-            samples: 0,
-            rows: 0,
-            least_latency: 0,
-            most_latency: 0,
-            pauses: 0,
-            generation: 0,
-            held_back: false,
-        };
         for &(come, waited, asked, at) in looks {
             watched.frames += come;
             watched.held_back += waited;
-            let records = vec![record; come as usize];
+            let from = watched.frames - come;
+            let records = vec![RECORD; come as usize];
             let fetched = Fetched { state: BurstState::UnderWay, records };
             let times = [asked, at].map(Duration::from_millis);
-            watch.note(&plan(), &mut watched, &fetched, times.into());
+            watch.note(&plan(), &mut watched, &fetched, from, times.into());
         }
         [watched.clock.least_hz, watched.clock.most_hz]
     }
@@ -191,5 +238,57 @@ mod tests {
         assert!(
             confirms(Some(900), Some(1100)) && !confirms(Some(900), None) && !confirms(Some(500), Some(1100))
         );
+    }
+
+    const NAMED: u32 = 1000;
+    const FAST: ClockSeen = ClockSeen { least_hz: Some(1300), most_hz: None };
+    const SLOW: ClockSeen = ClockSeen { least_hz: None, most_hz: Some(700) };
+    const NOTHING: ClockSeen = ClockSeen { least_hz: None, most_hz: None };
+    /// By a host that was busy meanwhile.
+    const LITTLE: ClockSeen = ClockSeen { least_hz: Some(500), most_hz: Some(3000) };
+    const RIGHT: ClockSeen = ClockSeen { least_hz: Some(950), most_hz: Some(1050) };
+
+    /// What comes of `first`, and of `then` behind it over and over.
+    fn weighed(first: ClockSeen, then: &[ClockSeen]) -> Weighed {
+        let mut then = then.iter().copied().cycle();
+        weigh(NAMED, first, || then.next().ok_or(())).unwrap()
+    }
+
+    #[test]
+    fn a_look_that_says_nothing_of_a_clock_clears_nothing() {
+        for wrong in [FAST, SLOW] {
+            for nothing in [NOTHING, LITTLE] {
+                assert_eq!(weighed(wrong, &[nothing]), Weighed::Open(wrong));
+                assert_eq!(weighed(wrong, &[nothing, wrong]), Weighed::Wrong(wrong));
+                assert_eq!(weighed(wrong, &[nothing, RIGHT]), Weighed::Right(RIGHT));
+            }
+            assert_eq!(weighed(wrong, &[wrong]), Weighed::Wrong(wrong));
+        }
+        // The other bound alone says nothing of it.
+        let least = ClockSeen { most_hz: None, ..RIGHT };
+        assert_eq!(weighed(SLOW, &[least]), Weighed::Open(SLOW));
+        assert_eq!(weighed(FAST, &[least]), Weighed::Right(least));
+    }
+
+    /// 3 s of 10 kHz are 57 frames of 520 clocks.
+    #[test]
+    fn an_hour_is_not_made_again_for_the_clock() {
+        let frames = |asked| {
+            let mut plan = plan();
+            plan.frames = asked;
+            to_look_again(&plan).frames
+        };
+        assert_eq!([3, 57, 58, 70_000].map(frames), [3, 57, 57, 57]);
+    }
+
+    /// A board may say that it made more frames than were asked for.
+    #[test]
+    fn records_beyond_the_burst_are_no_frames_of_the_clock() {
+        let mut watch = Stopwatch::new(Duration::ZERO, Duration::from_millis(10));
+        let mut watched = Watched { frames: 2, ..Watched::default() };
+        let fetched = Fetched { state: BurstState::Ended, records: vec![RECORD; 3] };
+        let times = [1000, 1000].map(Duration::from_millis);
+        watch.note(&plan(), &mut watched, &fetched, 0, times.into());
+        assert_eq!((watched.clock.least_hz, watched.clock.most_hz, watch.freed), (Some(520), None, 0));
     }
 }

@@ -88,6 +88,15 @@ impl Watched {
             self.miscounted.get_or_insert(Finding::MiscountedAtSpeed { frame, count, counted, right });
         }
     }
+
+    /// Holds the `records` that came of the burst `plan` against its frames.
+    fn compare_count(&mut self, plan: &BurstPlan, records: u32) {
+        let (frame, count) = (plan.frames, BurstCount::Records);
+        if records > frame {
+            let finding = Finding::MiscountedAtSpeed { frame, count, counted: records, right: frame };
+            self.miscounted.get_or_insert(finding);
+        }
+    }
 }
 
 /// A burst that is under way.
@@ -109,15 +118,16 @@ struct Watch<'a> {
 impl Watch<'_> {
     /// Takes the records that are there, and says whether they were the last.
     fn look(&mut self, watched: &mut Watched) -> Result<bool, BoardError> {
-        let before = self.board.heard_at();
-        let fetched = self.board.records(self.burst.burst, watched.frames);
+        let (before, from) = (self.board.heard_at(), watched.frames);
+        let fetched = self.board.records(self.burst.burst, from);
         let fetched = fetched.map_err(|error| self.board.of_last_burst(error))?;
         for record in &fetched.records {
             let Ok(expected) = self.predicted.recv() else { break };
             watched.take(self, expected, record);
             self.idle = Duration::ZERO;
         }
-        self.watch.note(self.plan, watched, &fetched, (before, self.board.heard_at()));
+        watched.compare_count(self.plan, from.saturating_add(fetched.records.len() as u32));
+        self.watch.note(self.plan, watched, &fetched, from, (before, self.board.heard_at()));
         if !fetched.records.is_empty() {
             (self.told)(watched, self.board.now());
         }
