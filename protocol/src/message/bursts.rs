@@ -94,7 +94,7 @@ impl Burst {
 }
 
 /// What a board signed of one frame (AT-SPEED.md, *Record*). Counts stay at their greatest value instead of wrapping.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameRecord {
     /// CRC-32 of the rows' signatures, in the order in which they left.
     pub signature: u32,

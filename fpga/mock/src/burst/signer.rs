@@ -86,16 +86,7 @@ impl Signer {
 
     /// The frame `number` of the burst begins.
     pub(super) fn begin_frame(&mut self, number: u32, held_back: bool) {
-        let record = FrameRecord {
-            signature: 0,
-            samples: 0,
-            rows: 0,
-            least_latency: 0,
-            most_latency: 0,
-            pauses: 0,
-            generation: 0,
-            held_back,
-        };
+        let record = FrameRecord { held_back, ..FrameRecord::default() };
         self.frames.push_back(FrameInside { number, hasher: crc32fast::Hasher::new(), record });
     }
 

@@ -177,17 +177,6 @@ mod tests {
         BurstPlan::new(&geometry, 1, &board, board.bursts.unwrap(), BurstMode::Fresh, 0)
     }
 
-    const RECORD: FrameRecord = FrameRecord {
-        signature: 0,
-        samples: 0,
-        rows: 0,
-        least_latency: 0,
-        most_latency: 0,
-        pauses: 0,
-        generation: 0,
-        held_back: false,
-    };
-
     /// What is seen of a burst that began within the first 10 ms: records that come, those of them that waited, and when they were
     /// asked for and had come, in milliseconds.
     fn seen(looks: &[(u32, u32, u64, u64)]) -> [Option<u32>; 2] {
@@ -197,7 +186,7 @@ mod tests {
             watched.frames += come;
             watched.held_back += waited;
             let from = watched.frames - come;
-            let records = vec![RECORD; come as usize];
+            let records = vec![FrameRecord::default(); come as usize];
             let fetched = Fetched { state: BurstState::UnderWay, records };
             let times = [asked, at].map(Duration::from_millis);
             watch.note(&plan(), &mut watched, &fetched, from, times.into());
@@ -286,7 +275,7 @@ mod tests {
     fn records_beyond_the_burst_are_no_frames_of_the_clock() {
         let mut watch = Stopwatch::new(Duration::ZERO, Duration::from_millis(10));
         let mut watched = Watched { frames: 2, ..Watched::default() };
-        let fetched = Fetched { state: BurstState::Ended, records: vec![RECORD; 3] };
+        let fetched = Fetched { state: BurstState::Ended, records: vec![FrameRecord::default(); 3] };
         let times = [1000, 1000].map(Duration::from_millis);
         watch.note(&plan(), &mut watched, &fetched, 0, times.into());
         assert_eq!((watched.clock.least_hz, watched.clock.most_hz, watch.freed), (Some(520), None, 0));

@@ -48,21 +48,23 @@ impl Rules<'_, '_> {
             self.run.board.acknowledge_in_session(session, second.row_sequence + 1);
         }
         let status = self.run.board.status(false).map_err(of_board)?;
-        equal(Counter::NextRowIn, status.next_row_in, second.row_sequence + 1)?;
-        equal(Counter::NextRowOut, status.next_row_out, first.row_sequence)?;
+        equal([
+            (Counter::NextRowIn, status.next_row_in, second.row_sequence + 1),
+            (Counter::NextRowOut, status.next_row_out, first.row_sequence),
+        ])?;
         let came =
             self.run.board.again(rows[0], Some(rows[1]), 1).map_err(|error| of_rows(Rule::Again, error))?;
         self.run.board.acknowledge(first.row_sequence + mem::take(&mut self.given).rows);
         let status = self.run.board.status(false).map_err(of_board)?;
         let repeated = before.rows_repeated.saturating_add(came.repeats.into());
-        at_least(Counter::RowsRepeated, status.rows_repeated, repeated)?;
+        at_least([(Counter::RowsRepeated, status.rows_repeated, repeated)])?;
         for _ in 0..UNNEEDED {
             self.run.board.give(&first, frame.row(0));
         }
         let unneeded = status.rows_unneeded.saturating_add(UNNEEDED);
         let status = self.run.board.status(false).map_err(of_board)?;
         if self.run.board.had_each_packet_once(&status) {
-            at_least(Counter::RowsUnneeded, status.rows_unneeded, unneeded)?;
+            at_least([(Counter::RowsUnneeded, status.rows_unneeded, unneeded)])?;
         }
         self.configure(self.small.rows())
     }
@@ -88,9 +90,11 @@ impl Rules<'_, '_> {
         let before = self.run.board.status(false).map_err(of_board)?;
         act(self)?;
         let after = self.run.board.status(false).map_err(of_board)?;
-        at_least(Counter::RowsIn, after.rows_in, before.rows_in)?;
-        at_least(Counter::RowsOut, after.rows_out, before.rows_out)?;
-        at_least(Counter::SamplesOver, after.samples_over, before.samples_over)
+        at_least([
+            (Counter::RowsIn, after.rows_in, before.rows_in),
+            (Counter::RowsOut, after.rows_out, before.rows_out),
+            (Counter::SamplesOver, after.samples_over, before.samples_over),
+        ])
     }
 
     /// Any number but 0 clears all of them.
@@ -105,38 +109,47 @@ impl Rules<'_, '_> {
 
     /// Nothing is counted by `status`, which came behind what sets all counters back.
     pub(super) fn not_counted(&mut self, status: &Status) -> Result<(), End> {
-        let of_new_rows = [
-            (Counter::RowsIn, status.rows_in),
-            (Counter::RowsOut, status.rows_out),
-            (Counter::SamplesOver, status.samples_over),
-            (Counter::LeastLatency, status.least_latency),
-            (Counter::MostLatency, status.most_latency),
-        ];
-        if let Some((counter, counted)) = of_new_rows.into_iter().find(|&(_, counted)| counted != 0) {
-            // There was no new row, and no link makes one.
-            self.run.findings.beyond_links = true;
-            return Err(miscounted(counter, counted, 0));
-        }
-        let of_any_packet = [
-            (Counter::RowsRepeated, status.rows_repeated),
-            (Counter::RowsUnneeded, status.rows_unneeded),
-            (Counter::Refusals, status.refusals),
-            (Counter::ForeignPackets, status.foreign_packets),
-        ];
+        let of_new_rows = equal([
+            (Counter::RowsIn, status.rows_in, 0),
+            (Counter::RowsOut, status.rows_out, 0),
+            (Counter::SamplesOver, status.samples_over, 0),
+            (Counter::LeastLatency, status.least_latency, 0),
+            (Counter::MostLatency, status.most_latency, 0),
+        ]);
+        // There was no new row, and no link makes one.
+        self.run.findings.beyond_links |= of_new_rows.is_err();
+        of_new_rows?;
         let board = &self.run.board;
         let is_calm =
             damaged(status) == 0 && board.had_each_packet_once(status) && board.sent_nothing_again();
-        match of_any_packet.into_iter().find(|&(_, counted)| is_calm && counted != 0) {
-            Some((counter, counted)) => Err(miscounted(counter, counted, 0)),
-            None => Ok(()),
+        if !is_calm {
+            return Ok(());
         }
+        equal([
+            (Counter::RowsRepeated, status.rows_repeated, 0),
+            (Counter::RowsUnneeded, status.rows_unneeded, 0),
+            (Counter::Refusals, status.refusals, 0),
+            (Counter::ForeignPackets, status.foreign_packets, 0),
+        ])
     }
 }
 
-fn equal(counter: Counter, counted: u32, right: u32) -> Result<(), End> {
-    if counted == right { Ok(()) } else { Err(miscounted(counter, counted, right)) }
+/// Each counter, with what the board counts and what is right, must be right; the first that is not is told.
+pub(super) fn equal<const N: usize>(counts: [(Counter, u32, u32); N]) -> Result<(), End> {
+    all_right(counts, |counted, right| counted == right)
 }
 
-pub(super) fn at_least(counter: Counter, counted: u32, right: u32) -> Result<(), End> {
-    if counted >= right { Ok(()) } else { Err(miscounted(counter, counted, right)) }
+/// The same where a board may count more.
+pub(super) fn at_least<const N: usize>(counts: [(Counter, u32, u32); N]) -> Result<(), End> {
+    all_right(counts, |counted, right| counted >= right)
+}
+
+fn all_right<const N: usize>(
+    counts: [(Counter, u32, u32); N],
+    is_right: fn(u32, u32) -> bool,
+) -> Result<(), End> {
+    match counts.into_iter().find(|&(_, counted, right)| !is_right(counted, right)) {
+        None => Ok(()),
+        Some((counter, counted, right)) => Err(miscounted(counter, counted, right)),
+    }
 }

@@ -2,7 +2,8 @@
 
 use halfrow_protocol::message::RefusalCode;
 
-use super::{Rules, miscounted, of_board};
+use super::counts::at_least;
+use super::{Rules, of_board};
 use crate::board::Said;
 use crate::result::Counter;
 use crate::run::findings::End;
@@ -33,13 +34,9 @@ impl Rules<'_, '_> {
     pub(super) fn refusals_counted(&mut self) -> Result<(), End> {
         let after = self.run.board.status(false).map_err(of_board)?;
         let (Refused { own, foreign }, before) = (self.refused, self.before);
-        let least = [
+        at_least([
             (Counter::Refusals, after.refusals, before.refusals.saturating_add(own)),
             (Counter::ForeignPackets, after.foreign_packets, before.foreign_packets.saturating_add(foreign)),
-        ];
-        match least.into_iter().find(|&(_, counted, right)| counted < right) {
-            None => Ok(()),
-            Some((counter, counted, right)) => Err(miscounted(counter, counted, right)),
-        }
+        ])
     }
 }

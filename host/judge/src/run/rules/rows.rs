@@ -7,7 +7,8 @@ use halfrow_protocol::message::{Commit, Entries, RefusalCode, Request, RowIn, Ro
 use halfrow_protocol::samples::pack;
 
 use super::compared::Compared;
-use super::{FIRST_FACTOR, Rules, broken, longer, miscounted, of_board, of_rows, other_row};
+use super::counts::equal;
+use super::{FIRST_FACTOR, Rules, broken, longer, of_board, of_rows, other_row};
 use crate::board::BoardError;
 use crate::reference::correct;
 use crate::result::{Answer, CheckName, Counter, Finding, Rule};
@@ -310,11 +311,10 @@ impl Rules<'_, '_> {
     fn counted(&mut self) -> Result<(), End> {
         let status = self.run.board.status(false).map_err(of_board)?;
         let right = self.run.board.acknowledged();
-        let counts = [(Counter::NextRowIn, status.next_row_in), (Counter::NextRowOut, status.next_row_out)];
-        match counts.into_iter().find(|&(_, counted)| counted != right) {
-            None => Ok(()),
-            Some((counter, counted)) => Err(miscounted(counter, counted, right)),
-        }
+        equal([
+            (Counter::NextRowIn, status.next_row_in, right),
+            (Counter::NextRowOut, status.next_row_out, right),
+        ])
     }
 }
 

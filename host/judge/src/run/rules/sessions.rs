@@ -8,9 +8,10 @@ use halfrow_protocol::message::{
 };
 
 use super::bursts::Awaited;
+use super::counts::equal;
 use super::rows::{FRAME, GENERATION};
 use super::trap::NOTHING_KEPT;
-use super::{FIRST_FACTOR, Refused, Rules, broken, miscounted, of_board};
+use super::{FIRST_FACTOR, Refused, Rules, broken, of_board};
 use crate::board::{BoardError, Given, Said, Status};
 use crate::result::{Answer, CheckName, Counter, Doubt, Rule};
 use crate::run::Generation;
@@ -244,16 +245,12 @@ impl Rules<'_, '_> {
     fn begun_anew(&mut self, rule: Rule, before: &Status) -> Result<(), End> {
         let status = self.run.board.status(false).map_err(of_board)?;
         self.not_counted(&status)?;
-        let not_there = [
+        equal([
             (Counter::NextRowIn, status.next_row_in, 0),
             (Counter::NextRowOut, status.next_row_out, 0),
             (Counter::CoreBusy, status.core_busy, 0),
             (Counter::Generation, status.generation, before.generation),
-        ];
-        let wrong = not_there.into_iter().find(|(_, counted, right)| counted != right);
-        if let Some((counter, counted, right)) = wrong {
-            return Err(miscounted(counter, counted, right));
-        }
+        ])?;
         // Without a configuration it is not ready, which comes first.
         let other =
             Commit { steps_crc: !0, kernel_crc: 0, first_frame: 0, generation: !GENERATION, shape: None };
