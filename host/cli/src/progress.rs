@@ -125,7 +125,7 @@ impl Bar {
             };
             self.bar.set_style(style.with_key("rate", rate).with_key("left", left));
         }
-        self.bar.set_length(rows);
+        self.bar.set_length(self.bar.length().unwrap_or_default() + rows);
     }
 
     fn soaked(&self, soaked: &Soaked) {
@@ -215,7 +215,9 @@ impl Lines {
 impl Progress for Lines {
     fn event(&self, event: Event) {
         match event {
-            Event::RowsExpected(rows) => self.expected.store(rows, Ordering::Relaxed),
+            Event::RowsExpected(rows) => {
+                self.expected.fetch_add(rows, Ordering::Relaxed);
+            }
             Event::Rows(count) => self.count(count),
             Event::Soaked(soaked) => {
                 let (words, minute) = self.minutes.words(&soaked);

@@ -25,7 +25,7 @@ use crate::result::SoakLength;
 pub enum Event {
     /// A step begins that moves no rows.
     Step(Step),
-    /// This many rows will come back in all.
+    /// So many further rows will come back.
     RowsExpected(u64),
     /// The frame with this name is being sent.
     Frame(String),
@@ -105,7 +105,7 @@ pub trait Progress: Sync {
         self.event(Event::Step(step));
     }
 
-    /// This many rows will come back in all.
+    /// So many further rows will come back.
     fn rows_expected(&self, rows: u64) {
         self.event(Event::RowsExpected(rows));
     }

@@ -122,15 +122,15 @@ impl Run<'_> {
         // A soak goes on, and none of its time is for rows that a link carries.
         let is_soak = self.plan.soak.is_some();
         let right = seen.evidence.expected.samples();
-        let back = if is_soak { None } else { self.streamed(generation, content, right) };
+        let back = if is_soak { None } else { self.first_rows_streamed(generation, content, right) };
         let streamed = match &back {
             None => Streamed::NotTried,
             Some(back) if back.starts_with(right) => Streamed::Right,
             Some(_) => Streamed::Wrong,
         };
-        let whole = back.filter(|_| streamed == Streamed::Wrong);
-        let suspects = match whole.and_then(|back| self.whole(generation, content, back)) {
-            Some(whole) => self.diagnose_seen(&whole, content),
+        let wrong = back.filter(|_| streamed == Streamed::Wrong);
+        let suspects = match wrong.and_then(|back| self.seen_streamed(generation, content, back)) {
+            Some(seen) => self.diagnose_seen(&seen, content),
             None => self.suspects_of(&seen, content, streamed),
         };
         Ok(Again { repetition: Repetition::Trapped { frames, row, streamed }, suspects })
@@ -165,12 +165,12 @@ impl Run<'_> {
         (above.evidence.found != above.evidence.expected).then_some(above)
     }
 
-    /// What the whole frame of `content` shows that was streamed through `generation` and came `back`.
-    fn whole(&self, generation: &Generation, content: Content, back: Vec<u16>) -> Option<Seen> {
-        let rows = generation.tables.geometry().height();
-        let mut whole = correct_up_to(generation, content, rows, self.plan.phase)?;
-        whole.evidence.found = as_found(&whole.evidence.expected, back)?;
-        Some(whole)
+    /// What the first rows of the frame of `content` show that was streamed through `generation` and came `back`.
+    fn seen_streamed(&self, generation: &Generation, content: Content, back: Vec<u16>) -> Option<Seen> {
+        let rows = back.len() / generation.tables.geometry().width();
+        let mut seen = correct_up_to(generation, content, rows, self.plan.phase)?;
+        seen.evidence.found = as_found(&seen.evidence.expected, back)?;
+        Some(seen)
     }
 
     /// The suspects by what was `seen` of a row that a trap kept, the last of its rows.

@@ -6,20 +6,27 @@ use std::sync::Arc;
 use halfrow_model::Content;
 
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
+use crate::progress::Progress;
 use crate::run::plan::Generation;
 use crate::run::steps::Run;
 
-/// A frame that is kept as it comes back, up to where it is known to be right, or else to its end.
-struct UntilRight<'a> {
+/// Rows behind a wrong one that tell what is wrong with it alone from what is wrong with all: more of a frame say little more, and
+/// take minutes on a slow link.
+const FURTHER: usize = 64;
+
+/// A frame whose first rows are kept as they come back.
+struct FirstRows<'a> {
     frame: Option<NumberedFrame>,
-    samples: Vec<u16>,
-    /// What the first rows must be.
+    /// What the first of them must be; if they are, no others are wanted.
     right: &'a [u16],
+    /// Those wanted if they are not.
+    samples: Vec<u16>,
     /// Samples that have come.
     came: usize,
+    progress: &'a dyn Progress,
 }
 
-impl RowTraffic for UntilRight<'_> {
+impl RowTraffic for FirstRows<'_> {
     fn next_frame(&mut self) -> Option<NumberedFrame> {
         self.frame.take()
     }
@@ -30,27 +37,81 @@ impl RowTraffic for UntilRight<'_> {
             place.copy_from_slice(row.samples);
             self.came += row.samples.len();
         }
-        let is_right = self.came == self.right.len() && self.samples.starts_with(self.right);
-        if is_right { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        self.progress.row();
+        if self.came == self.right.len() {
+            if self.samples.starts_with(self.right) {
+                return ControlFlow::Break(());
+            }
+            let further = self.samples.len() - self.came;
+            self.progress.rows_expected((further / row.samples.len()) as u64);
+        }
+        if self.came < self.samples.len() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 }
 
 impl Run<'_> {
-    /// What comes back of the frame of `content`, by the tables of `generation` and the settings that the board has: no more than the
-    /// first rows if these are `right`; none if they do not come.
-    pub(super) fn streamed(
+    /// What comes back of the frame of `content`, by the tables of `generation` and the settings that the board has: the first rows,
+    /// and [`FURTHER`] ones unless these are `right`; none if they do not come.
+    pub(super) fn first_rows_streamed(
         &mut self,
         generation: &Generation,
         content: Content,
         right: &[u16],
     ) -> Option<Vec<u16>> {
-        let frame = content.frame(generation.tables.geometry(), self.plan.phase);
-        let samples = vec![0; frame.samples().len()];
+        let geometry = generation.tables.geometry();
+        let frame = content.frame(geometry, self.plan.phase);
+        let wanted = (right.len() + FURTHER * geometry.width()).min(frame.samples().len());
+        self.progress.frame("the frame that was wrong at speed, streamed");
+        self.progress.rows_expected((right.len() / geometry.width()) as u64);
         let frame = Some(NumberedFrame { number: content.frame, frame: Arc::new(frame) });
-        let mut rows = UntilRight { frame, samples, right, came: 0 };
+        let mut rows = FirstRows { frame, right, samples: vec![0; wanted], came: 0, progress: self.progress };
         // Others of the frame may be under way behind the last that matters.
         let streamed = self.board.stream(&mut rows).and_then(|()| self.board.drop_rows());
         let streamed = streamed.inspect_err(|error| tracing::warn!("the frame was not streamed: {error}"));
         streamed.ok().map(|()| rows.samples)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+
+    use super::*;
+    use crate::progress::Event;
+
+    const WIDTH: usize = 4;
+
+    /// How many of nine rows of `sample` are taken where two of 1 are right and three further ones are wanted otherwise, and the further
+    /// ones that a watcher is told of.
+    fn taken(sample: u16) -> (usize, Vec<Event>) {
+        let told = Mutex::new(Vec::new());
+        let progress = |event| told.lock().unwrap().push(event);
+        let right = [1; 2 * WIDTH];
+        let samples = vec![0; 5 * WIDTH];
+        let mut rows = FirstRows { frame: None, right: &right, samples, came: 0, progress: &progress };
+        let taken = (0..9).position(|row| {
+            let samples = &[sample; WIDTH];
+            let (first_latency, last_latency) = (14, 14);
+            let returned = ReturnedRow {
+                frame: 0,
+                row,
+                generation: 0,
+                first_latency,
+                last_latency,
+                pauses: 0,
+                repeats: 0,
+                entered: None,
+                samples,
+            };
+            rows.returned(&returned).is_break()
+        });
+        let told = told.into_inner().unwrap();
+        (taken.unwrap() + 1, told.into_iter().filter(|event| *event != Event::Rows(1)).collect())
+    }
+
+    #[test]
+    fn no_more_of_a_frame_is_taken_than_tells_something() {
+        assert_eq!(taken(1), (2, Vec::new()));
+        assert_eq!(taken(9), (5, vec![Event::RowsExpected(3)]));
     }
 }
