@@ -13,12 +13,12 @@ use super::conversation::Conversation;
 const MORE: Duration = Duration::from_millis(200);
 
 /// A packet that was kept.
-pub(super) struct Kept {
+pub(super) struct OwnedPacket {
     pub(super) header: Header,
     pub(super) payload: Vec<u8>,
 }
 
-impl Kept {
+impl OwnedPacket {
     pub(super) fn packet(&self) -> Packet<'_> {
         Packet { header: self.header, payload: &self.payload }
     }
@@ -54,7 +54,7 @@ impl Conversation {
 /// The expected part of a reply, or the error that stands in its place.
 pub(super) fn take_reply<T>(
     kind: Kind,
-    answer: &Kept,
+    answer: &OwnedPacket,
     take: impl FnOnce(Reply<'_>) -> Option<T>,
 ) -> Result<T, BoardError> {
     match Reply::read(&answer.packet()).map_err(|source| BoardError::Malformed { kind, source })? {

@@ -7,7 +7,7 @@ use std::time::Duration;
 use halfrow_protocol::message::{Reply, Request, RowIn, RowPlace};
 use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet};
 
-use super::answer::{Kept, take_reply};
+use super::answer::{OwnedPacket, take_reply};
 use super::asked::{Asking, LastAsked, Stray};
 use super::conduct::Conduct;
 use super::counted::Counted;
@@ -38,7 +38,7 @@ pub(super) struct Conversation {
     /// The row sequence number before which every row has come back.
     pub(super) acknowledged: u32,
     /// The same as packets tell it, where that is not all that came back.
-    pub(super) told: Option<u32>,
+    pub(super) acknowledges_to: Option<u32>,
     pub(super) tally: Tally,
     pub(super) limit: RetryLimit,
     /// The time that was spent waiting at the link, by which deadlines go: a host that is kept from running, or has something
@@ -80,7 +80,7 @@ impl Conversation {
             session: 0,
             window: 0,
             acknowledged: 0,
-            told: None,
+            acknowledges_to: None,
             tally: Tally::default(),
             limit: options.retry_limit,
             waited: Duration::ZERO,
@@ -102,7 +102,7 @@ impl Conversation {
     /// Forgets the session, and what belongs to it.
     pub(super) fn leave_session(&mut self) {
         (self.session, self.window, self.acknowledged, self.rows_sent, self.unwanted) = (0, 0, 0, 0, 0);
-        self.told = None;
+        self.acknowledges_to = None;
         self.conduct = Conduct::default();
         self.asked = LastAsked::default();
         (self.repeated_changes, self.doubled_changes, self.second_answers) = (0, 0, 0);
@@ -198,7 +198,7 @@ impl Conversation {
 
     fn header(&self, kind: Kind, sequence: u16) -> Header {
         let session = if kind == Kind::Hello { 0 } else { self.session };
-        let window = self.told.unwrap_or(self.acknowledged);
+        let window = self.acknowledges_to.unwrap_or(self.acknowledged);
         Header { kind: kind.code(), sequence, reply: false, session, window }
     }
 
@@ -292,13 +292,13 @@ impl Conversation {
         asking: &Asking<'_>,
         step: Step,
         accept: impl Fn(&Packet<'_>) -> bool,
-    ) -> Result<Kept, BoardError> {
+    ) -> Result<OwnedPacket, BoardError> {
         let retries = self.tally.retries;
         let answer = self.ask_until_answered(asking, step, accept)?;
         self.counted.came(1);
         if step == Step::Request && asking.kind() != Kind::Status {
             self.count_behind(retries);
-            self.settle();
+            self.count_doubled();
         }
         Ok(answer)
     }
@@ -308,7 +308,7 @@ impl Conversation {
         asking: &Asking<'_>,
         step: Step,
         accept: impl Fn(&Packet<'_>) -> bool,
-    ) -> Result<Kept, BoardError> {
+    ) -> Result<OwnedPacket, BoardError> {
         let (kind, sequence, begun) = (asking.kind(), self.next_sequence(), self.now());
         let attempts = step.deadline().attempts;
         self.asked.asked(asking, sequence, begun);
@@ -349,7 +349,7 @@ impl Conversation {
         asking: &Asking<'_>,
         sequence: u16,
         accept: impl Fn(&Packet<'_>) -> bool,
-    ) -> Result<Option<Kept>, BoardError> {
+    ) -> Result<Option<OwnedPacket>, BoardError> {
         let (mut answer, mut rows) = (None, 0);
         let doing = || format!("waiting for the answer to {}", asking.kind());
         self.exchange(wait, doing, |packet| {
@@ -358,7 +358,7 @@ impl Conversation {
             let is_row = header.kind == Kind::RowOut.code();
             rows += u64::from(is_row);
             if !is_row && header.sequence == sequence && accept(packet) {
-                answer.get_or_insert_with(|| Kept { header, payload: packet.payload.to_vec() });
+                answer.get_or_insert_with(|| OwnedPacket { header, payload: packet.payload.to_vec() });
             }
         })?;
         let unwanted = rows.min(self.unwanted.into());

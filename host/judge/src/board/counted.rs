@@ -118,14 +118,14 @@ impl Conversation {
     }
 
     /// Asks for a count where something was answered twice.
-    pub(super) fn settle(&mut self) {
+    pub(super) fn count_doubled(&mut self) {
         if self.doubled_changes > 0 {
             self.count();
         }
     }
 
     /// The same behind a board that answers twice, so that a second answer that is still under way is settled as well.
-    pub(super) fn settle_all(&mut self) {
+    pub(super) fn count_second_answers(&mut self) {
         if self.second_answers > 0 {
             self.count();
         }

@@ -5,7 +5,7 @@ use std::iter;
 use halfrow_protocol::message::{Burst, Refusal, RefusalCode, Reply, Request, Reset, ResetLevel, RowPlace};
 use halfrow_protocol::{Kind, Packet, samples};
 
-use super::answer::{Kept, take_reply};
+use super::answer::{OwnedPacket, take_reply};
 use super::asked::Asking;
 use super::deadlines::Step;
 use super::{Board, BoardError, Given, ReturnedRow, RowTraffic, rows};
@@ -83,7 +83,7 @@ fn is_of_no_session(packet: &Packet<'_>) -> bool {
 }
 
 /// What `answer` says to a request of `kind`.
-pub(super) fn said(kind: Kind, answer: &Kept) -> Result<Said, BoardError> {
+pub(super) fn said(kind: Kind, answer: &OwnedPacket) -> Result<Said, BoardError> {
     let packet = answer.packet();
     // What a reply says is looked at byte by byte by whoever asks.
     if packet.header.kind == kind.code() && kind != Kind::Refusal {
@@ -238,16 +238,16 @@ impl Board {
     }
 
     /// From now on packets acknowledge the rows before `row_sequence` alone, or all that came back if it is none.
-    pub(crate) fn tell(&mut self, row_sequence: Option<u32>) {
-        self.conversation.told = row_sequence;
+    pub(crate) fn acknowledge_to(&mut self, row_sequence: Option<u32>) {
+        self.conversation.acknowledges_to = row_sequence;
     }
 
     /// Sends a ROW_ACK of all rows before `row_sequence`, which no other packet acknowledges thereby.
     pub(crate) fn acknowledge_alone(&mut self, row_sequence: u32) {
-        let told = self.conversation.told.replace(row_sequence);
+        let before = self.conversation.acknowledges_to.replace(row_sequence);
         let sequence = self.conversation.next_sequence();
         self.conversation.queue(&Request::RowAck, sequence);
-        self.conversation.told = told;
+        self.conversation.acknowledges_to = before;
     }
 
     /// So many rows may come while something else is waited for.

@@ -11,7 +11,7 @@ use halfrow_model::row_signature;
 
 use super::exercised::SampleLevels;
 use super::findings::End;
-use super::kept::{Kept, as_found};
+use super::kept::{KeptFrames, as_found};
 use super::prepared::{PrepareError, Prepared};
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::compare::Comparison;
@@ -22,7 +22,7 @@ use crate::result::{Evidence, Finding, FrameReport, FrameTiming, LatencyReport, 
 #[derive(Default)]
 pub(super) struct Seen {
     pub(super) frames: Vec<FrameReport>,
-    pub(super) evidence: Kept,
+    pub(super) evidence: KeptFrames,
     pub(super) levels: SampleLevels,
     pub(super) latency: Option<LatencyReport>,
     /// The first row that names other tables than it should.

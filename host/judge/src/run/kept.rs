@@ -20,7 +20,7 @@ const SHARE_OF_COUNTS: usize = 16;
 
 /// What was kept of the frames that were streamed, in their order.
 #[derive(Default)]
-pub(super) struct Kept {
+pub(super) struct KeptFrames {
     evidence: Vec<Evidence>,
     bytes: usize,
     bytes_of_counts: usize,
@@ -29,7 +29,7 @@ pub(super) struct Kept {
     pinned: Option<usize>,
 }
 
-impl Kept {
+impl KeptFrames {
     /// Keeps a frame if it fits into `budget` bytes beside the others. One that differs takes the place of equal ones, the
     /// latest first, but not of one that is pinned; one that is equal is kept only where there is room.
     pub(super) fn offer(&mut self, evidence: Evidence, is_pinned: bool, budget: usize) {
@@ -78,7 +78,7 @@ impl Kept {
     }
 }
 
-impl Deref for Kept {
+impl Deref for KeptFrames {
     type Target = [Evidence];
 
     fn deref(&self) -> &[Evidence] {
@@ -112,7 +112,7 @@ mod tests {
     /// What is kept of frames that differ or not, where there is room for `room` of them; the one at `pinned` is pinned.
     fn kept(room: usize, pinned: usize, differing: &[bool]) -> (Vec<usize>, usize) {
         let budget = room * ONE * SHARE_OF_COUNTS / (SHARE_OF_COUNTS - 1);
-        let mut kept = Kept::default();
+        let mut kept = KeptFrames::default();
         for (index, &differs) in differing.iter().enumerate() {
             kept.offer(evidence(index, differs), index == pinned, budget);
         }
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn counts_stay_where_they_say_something_and_have_room() {
-        let (mut kept, one) = (Kept::default(), 4 * (64 + 2));
+        let (mut kept, one) = (KeptFrames::default(), 4 * (64 + 2));
         let mut comparison = Comparison::new(64, 2);
         assert!(kept.shorten(comparison.clone(), true, usize::MAX).by_row.is_empty());
         comparison.row(1, &[0; 64], &[1; 64]);

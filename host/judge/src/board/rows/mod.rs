@@ -57,7 +57,7 @@ pub(super) fn stream(
     given: Given,
 ) -> Result<(), BoardError> {
     let rows = given.rows;
-    conversation.settle_all();
+    conversation.count_second_answers();
     let mut stream = Stream::new(conversation, traffic, given, Step::Row.deadline().attempts);
     stream.sent += rows;
     stream.run()

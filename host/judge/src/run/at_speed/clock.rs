@@ -180,7 +180,7 @@ mod tests {
     /// What is seen of a burst that began within the first 10 ms: records that come, those of them that waited, and when they were
     /// asked for and had come, in milliseconds.
     fn seen(looks: &[(u32, u32, u64, u64)]) -> [Option<u32>; 2] {
-        let mut watch = Stopwatch::new(Duration::ZERO, Duration::from_millis(10));
+        let mut stopwatch = Stopwatch::new(Duration::ZERO, Duration::from_millis(10));
         let mut watched = Watched::default();
         for &(come, waited, asked, at) in looks {
             watched.frames += come;
@@ -189,7 +189,7 @@ mod tests {
             let records = vec![FrameRecord::default(); come as usize];
             let fetched = Fetched { state: BurstState::UnderWay, records };
             let times = [asked, at].map(Duration::from_millis);
-            watch.note(&plan(), &mut watched, &fetched, from, times.into());
+            stopwatch.note(&plan(), &mut watched, &fetched, from, times.into());
         }
         [watched.clock.least_hz, watched.clock.most_hz]
     }
@@ -273,11 +273,11 @@ mod tests {
     /// A board may say that it made more frames than were asked for.
     #[test]
     fn records_beyond_the_burst_are_no_frames_of_the_clock() {
-        let mut watch = Stopwatch::new(Duration::ZERO, Duration::from_millis(10));
+        let mut stopwatch = Stopwatch::new(Duration::ZERO, Duration::from_millis(10));
         let mut watched = Watched { frames: 2, ..Watched::default() };
         let fetched = Fetched { state: BurstState::Ended, records: vec![FrameRecord::default(); 3] };
         let times = [1000, 1000].map(Duration::from_millis);
-        watch.note(&plan(), &mut watched, &fetched, 0, times.into());
-        assert_eq!((watched.clock.least_hz, watched.clock.most_hz, watch.freed), (Some(520), None, 0));
+        stopwatch.note(&plan(), &mut watched, &fetched, 0, times.into());
+        assert_eq!((watched.clock.least_hz, watched.clock.most_hz, stopwatch.freed), (Some(520), None, 0));
     }
 }

@@ -219,11 +219,11 @@ fn correct_up_to(generation: &Generation, content: Content, rows: usize, phase: 
 }
 
 /// A row of which samples differ: its number, what it should be, what it is.
-pub(super) type Kept<'a> = (usize, &'a [u16], &'a [u16]);
+pub(super) type WrongRow<'a> = (usize, &'a [u16], &'a [u16]);
 
 /// What is wrong at the full pixel clock, seen in a row if one was kept, by what was seen where the same was `streamed`: none if it is
 /// wrong there as well.
-pub(super) fn at_speed(streamed: Streamed, kept: Option<Kept<'_>>) -> Option<Suspect> {
+pub(super) fn at_speed(streamed: Streamed, kept: Option<WrongRow<'_>>) -> Option<Suspect> {
     let (row, (samples, bits)) = (kept.map(|(row, ..)| row), kept.map(changed).unwrap_or_default());
     let defect = match streamed {
         Streamed::NotTried => Defect::SeenAtSpeed { row, samples, bits },
@@ -234,7 +234,7 @@ pub(super) fn at_speed(streamed: Streamed, kept: Option<Kept<'_>>) -> Option<Sus
 }
 
 /// How many samples differ, and in which bits.
-fn changed((_, expected, found): Kept<'_>) -> (usize, Vec<u32>) {
+fn changed((_, expected, found): WrongRow<'_>) -> (usize, Vec<u32>) {
     let changed = expected.iter().zip(found).map(|(expected, found)| expected ^ found);
     let samples = changed.clone().filter(|&bits| bits != 0).count();
     let all = changed.fold(0, |all, bits| all | bits);

@@ -108,7 +108,7 @@ struct Watch<'a> {
     generation: u8,
     ends_early: EndsEarly,
     predicted: Receiver<u32>,
-    watch: Stopwatch,
+    stopwatch: Stopwatch,
     /// Told when records have come, and when it is on the link's clock.
     told: &'a mut dyn FnMut(&Watched, Duration),
     /// How long no record has come.
@@ -127,7 +127,7 @@ impl Watch<'_> {
             self.idle = Duration::ZERO;
         }
         watched.compare_count(self.plan, from.saturating_add(fetched.records.len() as u32));
-        self.watch.note(self.plan, watched, &fetched, from, (before, self.board.heard_at()));
+        self.stopwatch.note(self.plan, watched, &fetched, from, (before, self.board.heard_at()));
         if !fetched.records.is_empty() {
             (self.told)(watched, self.board.now());
         }
@@ -186,7 +186,7 @@ impl Run<'_> {
             let predicted = predicted.map_err(|error| error.during(CheckName::AtSpeed))?;
             let asked = self.board.heard_at();
             self.board.burst(&burst).map_err(|error| End::board(CheckName::AtSpeed, &error))?;
-            let watch = Stopwatch::new(asked, self.board.heard_at());
+            let stopwatch = Stopwatch::new(asked, self.board.heard_at());
             let watch = Watch {
                 board: self.board,
                 plan,
@@ -194,7 +194,7 @@ impl Run<'_> {
                 generation: tables.first().map_or(0, |active| active.number),
                 ends_early,
                 predicted,
-                watch,
+                stopwatch,
                 told,
                 idle: Duration::ZERO,
             };

@@ -5,7 +5,7 @@ use halfrow_protocol::message::RowPlace;
 
 use super::compared::Compared;
 use super::counts::equal;
-use super::rows::{FRAME, GENERATION, LOOKS};
+use super::rows::{FRAME, GENERATION, TRIES};
 use super::{Rules, answer, broken, miscounted, of_board, of_rows, other_row};
 use crate::board::{BoardError, NumberedFrame, Said, Status};
 use crate::result::{Answer, Counter, Rule};
@@ -15,7 +15,7 @@ use crate::run::findings::End;
 const WAITING: u32 = 2;
 
 /// Rows that fill the banks, and those behind them.
-struct Kept {
+struct FilledBanks {
     /// The row sequence number of the first one.
     first: u32,
     /// How many the banks hold.
@@ -36,7 +36,7 @@ struct Kept {
     is_exact: bool,
 }
 
-impl Kept {
+impl FilledBanks {
     /// Where row `row` belongs, counted from the first one.
     fn place(&self, row: u32) -> RowPlace {
         let (frame, row_of_it) = (row / self.height, row % self.height);
@@ -81,7 +81,7 @@ impl Rules<'_, '_> {
     }
 
     /// Fills the banks: rows that are not acknowledged come as others do until there is no bank for another one.
-    fn fill(&mut self) -> Result<Kept, End> {
+    fn fill(&mut self) -> Result<FilledBanks, End> {
         let banks = u32::from(self.capabilities.row_banks_out);
         let height = (1..=self.small.tall() as u32).rev().find(|&rows| banks.is_multiple_of(rows));
         let height = height.unwrap_or(1);
@@ -90,12 +90,23 @@ impl Rules<'_, '_> {
         let before = self.run.board.status(false).map_err(of_board)?;
         let (came, retries) = (self.run.board.rows_came(), self.run.board.tally().retries);
         let (right, asked, unneeded, is_exact) = (Compared::default(), 0, 0, true);
-        let mut kept =
-            Kept { first, banks, height, width, right, before, came, retries, asked, unneeded, is_exact };
+        let mut kept = FilledBanks {
+            first,
+            banks,
+            height,
+            width,
+            right,
+            before,
+            came,
+            retries,
+            asked,
+            unneeded,
+            is_exact,
+        };
         let made = self.small.made(0, self.height, GENERATION);
         let mut right = Compared::default().with(&self.small, kept.frames(0, banks), &made);
-        self.run.board.tell(Some(first));
-        let streamed = self.streamed(&mut right);
+        self.run.board.acknowledge_to(Some(first));
+        let streamed = self.stream(&mut right);
         self.came(&kept, streamed)?;
         right.judge(Rule::Banks)?;
         kept.right = right.with(&self.small, kept.frames(banks, 1), &made);
@@ -103,7 +114,7 @@ impl Rules<'_, '_> {
     }
 
     /// What came of rows that the board has, or its silence.
-    fn came<T>(&mut self, kept: &Kept, came: Result<T, BoardError>) -> Result<T, End> {
+    fn came<T>(&mut self, kept: &FilledBanks, came: Result<T, BoardError>) -> Result<T, End> {
         let place = match came {
             Ok(came) => return Ok(came),
             Err(BoardError::RowMissing { place, .. }) => place,
@@ -117,14 +128,14 @@ impl Rules<'_, '_> {
     }
 
     /// Whether the row at `place` stays away once more, although the board had all that was sent, by its own word.
-    fn is_silent_again(&mut self, kept: &Kept, place: &RowPlace) -> Result<bool, End> {
+    fn is_silent_again(&mut self, kept: &FilledBanks, place: &RowPlace) -> Result<bool, End> {
         let black = kept.black();
         let came = self.run.board.again((place, &black), None, 0);
         Ok(matches!(came, Err(BoardError::RowMissing { .. })) && self.says_nothing(kept)?)
     }
 
     /// Whether the board had all that was sent to it, and says itself that it sent no other rows than those that came.
-    fn says_nothing(&mut self, kept: &Kept) -> Result<bool, End> {
+    fn says_nothing(&mut self, kept: &FilledBanks) -> Result<bool, End> {
         let status = self.run.board.status(false).map_err(of_board)?;
         let sent = |status: &Status| status.rows_out.saturating_add(status.rows_repeated);
         let came = self.run.board.rows_came() - kept.came;
@@ -133,10 +144,10 @@ impl Rules<'_, '_> {
     }
 
     /// Gives the rows behind the full banks, which must stay away, though they come twice.
-    fn stay_away(&mut self, kept: &mut Kept) -> Result<(), End> {
+    fn stay_away(&mut self, kept: &mut FilledBanks) -> Result<(), End> {
         let made = self.small.made(0, self.height, GENERATION);
         let all = kept.first + kept.banks + WAITING;
-        for look in 0..LOOKS {
+        for look in 0..TRIES {
             kept.is_exact = look == 0;
             for row in kept.banks..kept.banks + WAITING {
                 let place = kept.place(row);
@@ -152,11 +163,11 @@ impl Rules<'_, '_> {
                 return self.unneeded(kept, kept.banks);
             }
         }
-        Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(kept.banks), attempts: LOOKS }))
+        Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(kept.banks), attempts: TRIES }))
     }
 
     /// Sends a row that the board has and that needs no answer, with other samples.
-    fn unneeded(&mut self, kept: &mut Kept, row: u32) -> Result<(), End> {
+    fn unneeded(&mut self, kept: &mut FilledBanks, row: u32) -> Result<(), End> {
         let number = self.run.board.give(&kept.place(row), &kept.black());
         kept.unneeded += 1;
         // Behind its answer there is none to the row.
@@ -171,7 +182,7 @@ impl Rules<'_, '_> {
     }
 
     /// Row `row` comes again as it came, for the time `repeats`.
-    fn comes_again(&mut self, kept: &mut Kept, row: u32, repeats: u16) -> Result<(), End> {
+    fn comes_again(&mut self, kept: &mut FilledBanks, row: u32, repeats: u16) -> Result<(), End> {
         let (place, black) = (kept.place(row), kept.black());
         let came = self.run.board.again((&place, &black), None, repeats);
         let came = self.came(kept, came)?;
@@ -185,7 +196,7 @@ impl Rules<'_, '_> {
     }
 
     /// The board's window is no further than that `freed` rows more than there are banks can have entered.
-    fn window_at_most(&self, kept: &Kept, freed: u32) -> Result<(), End> {
+    fn window_at_most(&self, kept: &FilledBanks, freed: u32) -> Result<(), End> {
         let rows = self.run.board.window() - kept.first;
         let most = kept.banks + freed + u32::from(self.capabilities.row_banks_in);
         if rows <= most {
@@ -195,11 +206,11 @@ impl Rules<'_, '_> {
     }
 
     /// A ROW_ACK of the first row, which the board frees, and no other one; another row takes its place.
-    fn acknowledge_one(&mut self, kept: &mut Kept) -> Result<(), End> {
+    fn acknowledge_one(&mut self, kept: &mut FilledBanks) -> Result<(), End> {
         let is_pushed = kept.height == 1;
         self.run.board.disregard_rows(is_pushed.into());
         let mut had_it = false;
-        for _ in 0..LOOKS {
+        for _ in 0..TRIES {
             self.run.board.acknowledge_alone(kept.first + 1);
             let status = self.run.board.status(false).map_err(of_board)?;
             had_it = self.run.board.had_each_packet_once(&status);
@@ -217,13 +228,13 @@ impl Rules<'_, '_> {
         if had_it {
             return Err(miscounted(Counter::NextRowOut, kept.first, kept.first + 1));
         }
-        Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(0), attempts: LOOKS }))
+        Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(0), attempts: TRIES }))
     }
 
     /// All rows that came are acknowledged, and those that waited must come right.
-    fn release(&mut self, kept: &mut Kept) -> Result<(), End> {
+    fn release(&mut self, kept: &mut FilledBanks) -> Result<(), End> {
         let came = self.run.board.acknowledged();
-        self.run.board.tell(None);
+        self.run.board.acknowledge_to(None);
         self.run.board.acknowledge_alone(came);
         let made = self.small.made(0, self.height, GENERATION);
         let (from, to) = (came - kept.first, kept.banks + WAITING);
@@ -232,10 +243,10 @@ impl Rules<'_, '_> {
     }
 
     /// What the board counts of all that.
-    fn kept_counted(&mut self, kept: &Kept) -> Result<(), End> {
+    fn kept_counted(&mut self, kept: &FilledBanks) -> Result<(), End> {
         let is_calm = kept.is_exact && self.is_calm(kept.retries)?;
         let status = self.run.board.status(false).map_err(of_board)?;
-        let Kept { before, first, asked, unneeded, .. } = kept;
+        let FilledBanks { before, first, asked, unneeded, .. } = kept;
         let rows = self.run.board.acknowledged() - first;
         equal([
             (Counter::RowsIn, status.rows_in, before.rows_in.saturating_add(rows)),
@@ -253,7 +264,7 @@ impl Rules<'_, '_> {
 }
 
 /// Whether `status` says that the first row is acknowledged; that no row is may be the link's doing, and nothing else.
-fn is_one_acknowledged(kept: &Kept, status: &Status) -> Result<bool, End> {
+fn is_one_acknowledged(kept: &FilledBanks, status: &Status) -> Result<bool, End> {
     match status.next_row_out.wrapping_sub(kept.first) {
         0 => Ok(false),
         1 => Ok(true),

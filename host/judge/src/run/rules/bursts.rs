@@ -132,7 +132,7 @@ impl Rules<'_, '_> {
             }
             let burst = self.start(Burst { frame_blanking, ..burst })?;
             self.look(&burst, 0, FEW, Awaited::ended(FEW))?;
-            self.told(Rule::Burst, &burst, 0..FEW, BurstState::Ended, Some(&[]))?;
+            self.must_tell(Rule::Burst, &burst, 0..FEW, BurstState::Ended, Some(&[]))?;
         }
         Ok(())
     }
@@ -240,7 +240,7 @@ impl Rules<'_, '_> {
         self.replied(Rule::Ended, &Request::Burst(Burst { frames: 0, ..burst }), Vec::new())?;
         let ended = self.look(&burst, 0, FEW, Awaited::ended(FEW))?;
         let came = ended.records.len() as u32;
-        self.told(Rule::Records, &burst, 0..came, BurstState::Ended, Some(&[]))?;
+        self.must_tell(Rule::Records, &burst, 0..came, BurstState::Ended, Some(&[]))?;
         // Of more than fit a packet it is not known where they end.
         if (came as usize) < Records::MOST { self.never_told(0..came) } else { Ok(()) }
     }
@@ -253,7 +253,7 @@ impl Rules<'_, '_> {
             self.run.board.cut(&burst, bytes).map_err(of_board)?;
             // Where the request was lost there is none.
             if let Some(came) = self.came_of(&burst)? {
-                self.told(Rule::Cut, &burst, 0..came, BurstState::Ended, Some(&[]))?;
+                self.must_tell(Rule::Cut, &burst, 0..came, BurstState::Ended, Some(&[]))?;
             }
             self.right_frames(&[super::rows::FRAME])?;
             self.right_burst(Rule::Cut, BurstMode::Fresh)?;
@@ -283,7 +283,7 @@ impl Rules<'_, '_> {
         let Some(burst) = self.small_burst(FEW) else { return Ok(()) };
         let burst = self.start(Burst { mode, ..burst })?;
         self.look(&burst, 0, FEW, Awaited::ended(FEW))?;
-        self.told(rule, &burst, 0..FEW, BurstState::Ended, Some(&[]))
+        self.must_tell(rule, &burst, 0..FEW, BurstState::Ended, Some(&[]))
     }
 
     fn repeating(&mut self) -> Result<(), End> {

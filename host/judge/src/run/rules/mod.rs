@@ -240,11 +240,11 @@ impl<'a, 'run> Rules<'a, 'run> {
 
     /// Streams frames, which must come back as `compared` has them.
     fn frames(&mut self, rule: Rule, mut compared: Compared) -> Result<(), End> {
-        self.streamed(&mut compared).map_err(|error| of_rows(rule, error))?;
+        self.stream(&mut compared).map_err(|error| of_rows(rule, error))?;
         compared.judge(rule)
     }
 
-    fn streamed(&mut self, compared: &mut Compared) -> Result<(), BoardError> {
+    fn stream(&mut self, compared: &mut Compared) -> Result<(), BoardError> {
         let given = mem::take(&mut self.given);
         self.run.board.stream_given(given, compared)
     }

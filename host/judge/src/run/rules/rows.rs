@@ -25,7 +25,7 @@ pub(super) const FRAME: u16 = 0x1234;
 const FLAGS: usize = 10;
 const LAST: u8 = 1;
 /// How often a row is given that is to be inside the core.
-pub(super) const LOOKS: u32 = 8;
+pub(super) const TRIES: u32 = 8;
 /// How often a row is asked for again.
 const AGAIN: u16 = 3;
 /// The least bit of a row's number that a session does not reach by counting.
@@ -147,7 +147,7 @@ impl Rules<'_, '_> {
     pub(super) fn enter(&mut self) -> Result<(), End> {
         let place = self.place(0);
         let mut has_come = false;
-        for _ in 0..LOOKS {
+        for _ in 0..TRIES {
             self.give(0);
             let status = self.run.board.status(false).map_err(of_board)?;
             if status.core_busy == 1 {
@@ -156,7 +156,7 @@ impl Rules<'_, '_> {
             has_come = status.next_row_in > place.row_sequence;
         }
         if !has_come {
-            return Err(of_rows(Rule::Inside, BoardError::RowMissing { place, attempts: LOOKS }));
+            return Err(of_rows(Rule::Inside, BoardError::RowMissing { place, attempts: TRIES }));
         }
         let finding = Finding::CounterWrong { counter: Counter::CoreBusy, counted: 0, right: 1 };
         Err(End::error(CheckName::Rules, Cause::Station, finding))

@@ -39,16 +39,16 @@ impl Rules<'_, '_> {
                 // Fewer frames than were asked for first.
                 self.set_frames(&burst, all)?;
             }
-            self.told(Rule::Records, &burst, from..from + kept, BurstState::UnderWay, Some(&held))?;
+            self.must_tell(Rule::Records, &burst, from..from + kept, BurstState::UnderWay, Some(&held))?;
             self.never_told(from..from + kept)?;
             held.push(from + kept);
             from += taken;
         }
         self.look(&burst, from, kept, Awaited::ended(all - from))?;
-        self.told(Rule::Records, &burst, from..all, BurstState::Ended, Some(&held))?;
+        self.must_tell(Rule::Records, &burst, from..all, BurstState::Ended, Some(&held))?;
         self.stays(&burst, 2 * all)?;
         for from in from..=all {
-            self.told(Rule::Records, &burst, from..all, BurstState::Ended, Some(&held))?;
+            self.must_tell(Rule::Records, &burst, from..all, BurstState::Ended, Some(&held))?;
         }
         self.never_told(all..all)
     }
@@ -64,7 +64,7 @@ impl Rules<'_, '_> {
             if from == 0 {
                 self.busy_with_burst(&burst)?;
             }
-            self.told(Rule::Records, &burst, frames, BurstState::UnderWay, Some(&[]))?;
+            self.must_tell(Rule::Records, &burst, frames, BurstState::UnderWay, Some(&[]))?;
             self.never_told(from..from + kept)?;
         }
         // One more than there are records for, so that it has not come there yet.
@@ -76,12 +76,12 @@ impl Rules<'_, '_> {
         let mut last = from..end;
         for from in (from..end).step_by(Records::MOST) {
             last = from..end.min(from + AT_ONCE);
-            self.told(Rule::Records, &burst, last.clone(), BurstState::Ended, None)?;
+            self.must_tell(Rule::Records, &burst, last.clone(), BurstState::Ended, None)?;
         }
         self.stays(&burst, 2 * end)?;
-        self.told(Rule::Records, &burst, last, BurstState::Ended, None)?;
+        self.must_tell(Rule::Records, &burst, last, BurstState::Ended, None)?;
         let Some(all) = all else { return Ok(()) };
-        self.told(Rule::Records, &burst, all..all, BurstState::Ended, None)?;
+        self.must_tell(Rule::Records, &burst, all..all, BurstState::Ended, None)?;
         self.never_told(all..all)
     }
 
@@ -97,7 +97,7 @@ impl Rules<'_, '_> {
 
     /// The records of `frames` and no others must be there, of which those in `held` waited for a free one if that is known; they
     /// free those before.
-    pub(super) fn told(
+    pub(super) fn must_tell(
         &mut self,
         rule: Rule,
         burst: &Burst,
