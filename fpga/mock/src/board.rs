@@ -83,7 +83,7 @@ impl Board {
         while let Some(packet) = decoder.next(&mut bytes) {
             match packet {
                 Ok(packet) => self.packet(&packet, now),
-                Err(Damage::Crc) => count(&mut self.status.crc_errors),
+                Err(Damage::Crc) => self.damaged(),
                 Err(_) => count(&mut self.status.framing_errors),
             }
             self.play();
@@ -119,6 +119,13 @@ impl Board {
             self.refuse(&header, refused);
         }
         self.go_on();
+    }
+
+    fn damaged(&mut self) {
+        count(&mut self.status.crc_errors);
+        if self.has(Conduct::DamagedAck) {
+            self.acknowledge(u32::MAX);
+        }
     }
 
     /// Whether this is what is wrong with the board.

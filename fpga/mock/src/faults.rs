@@ -294,6 +294,9 @@ pub const FAULTS: &[Fault<BoardFault>] = &[
     fault("greedy-ack", "a ROW_ACK frees every output bank, whatever rows it names", &[], |_| {
         Ok(BoardFault::Conduct(Conduct::GreedyAck))
     }),
+    fault("damaged-ack", "a packet whose CRC is wrong frees every output bank", &[], |_| {
+        Ok(BoardFault::Conduct(Conduct::DamagedAck))
+    }),
     fault("stuck-repeats", "a row that is sent again says that it was never sent before", &[], |_| {
         Ok(BoardFault::Conduct(Conduct::StuckRepeats))
     }),

@@ -79,6 +79,11 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",fault=greedy-ack",
         "row_banks_out rows are kept until they are acknowledged",
     ),
+    fails(
+        "a damaged packet that frees every bank",
+        ",fault=damaged-ack",
+        "as the first row that is not acknowledged",
+    ),
     fails("a row that denies that it came before", ",fault=stuck-repeats", "says 0 both times"),
     fails(
         "any host at any time",

@@ -15,6 +15,8 @@ pub enum Conduct {
     RowsAnywhere,
     /// It frees every output bank at a ROW_ACK, whatever rows that names.
     GreedyAck,
+    /// It frees every output bank at a packet whose CRC is wrong.
+    DamagedAck,
     /// It says of each row that is sent again that it was never sent before.
     StuckRepeats,
 }

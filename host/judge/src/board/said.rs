@@ -123,6 +123,14 @@ impl Board {
         self.conversation.damage_behind(from)
     }
 
+    /// The same with ROW_ACKs of all rows before `row_sequence`.
+    pub(crate) fn acknowledge_damaged(&mut self, row_sequence: u32) -> [u32; 2] {
+        let before = self.conversation.acknowledges_to.replace(row_sequence);
+        let damaged = self.give_damaged(&Request::RowAck);
+        self.conversation.acknowledges_to = before;
+        damaged
+    }
+
     /// Sends a request of `kind` with any payload, and waits for nothing.
     pub(crate) fn give_bytes(&mut self, kind: Kind, payload: &[u8]) {
         self.conversation.tell(&Asking::Bytes(kind, payload));

@@ -66,6 +66,7 @@ impl Rules<'_, '_> {
     pub(super) fn banks(&mut self) -> Result<(), End> {
         let mut kept = self.fill()?;
         self.stay_away(&mut kept)?;
+        self.damaged_frees_none(&kept)?;
         for row in 0..kept.banks {
             self.comes_again(&mut kept, row, 1)?;
         }
@@ -179,6 +180,24 @@ impl Rules<'_, '_> {
                 Err(broken(Rule::Banks, Kind::RowIn, Answer::Nothing {}, found))
             }
         }
+    }
+
+    /// Damaged ROW_ACKs of all rows free none. What makes a damaged packet whole lets the board count fewer of them than were sent.
+    fn damaged_frees_none(&mut self, kept: &FilledBanks) -> Result<(), End> {
+        self.run.board.disregard_rows(WAITING);
+        let before = self.run.board.status(false).map_err(of_board)?;
+        let sent = self.run.board.acknowledge_damaged(kept.first + kept.banks);
+        let after = self.run.board.status(false).map_err(of_board)?;
+        self.run.board.disregard_rows(0);
+        if after.next_row_out == kept.first {
+            self.right += 1;
+            return Ok(());
+        }
+        let counted = |status: &Status| status.crc_errors.saturating_add(status.framing_errors);
+        if counted(&after).saturating_sub(counted(&before)) < sent.iter().sum() {
+            return Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(0), attempts: 1 }));
+        }
+        Err(miscounted(Counter::NextRowOut, after.next_row_out, kept.first))
     }
 
     /// Row `row` comes again as it came, for the time `repeats`.
