@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use halfrow::progress::{Event, Progress, Silent, Soaked};
-use halfrow::report::wording::{count, grouped, span};
+use halfrow::report::wording::{count, grouped, plain, span};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use crate::console;
@@ -49,7 +49,7 @@ impl Told {
             Self::Nothing => {}
             Self::Lines => console::diagnose(&line),
             Self::Last(bar) => {
-                bar.set_message(line.to_owned());
+                say(bar, line);
                 bar.tick();
             }
         }
@@ -61,6 +61,11 @@ impl Told {
             bar.finish_and_clear();
         }
     }
+}
+
+/// Puts behind a bar what others have named, of which a terminal is to obey nothing.
+fn say(bar: &ProgressBar, words: &str) {
+    bar.set_message(plain(words).into_owned());
 }
 
 /// The share of rows, and the time, from which on the rest can be told. The first rows wait for what is made once.
@@ -101,7 +106,7 @@ impl Progress for Bar {
                 self.bar.tick();
             }
             Event::RowsExpected(rows) => self.expect(rows),
-            Event::Frame(name) => self.bar.set_message(name),
+            Event::Frame(name) => say(&self.bar, &name),
             Event::Rows(count) => self.bar.inc(count),
             Event::Soaked(soaked) => self.soaked(&soaked),
             Event::Done => self.bar.finish_and_clear(),
@@ -254,6 +259,13 @@ mod tests {
     use halfrow::result::SoakLength;
 
     use super::*;
+
+    #[test]
+    fn a_terminal_obeys_no_name_of_a_frame() {
+        let bar = Bar::new();
+        bar.event(Event::Frame("A\u{1b}]0;title\u{7}.pgm".to_owned()));
+        assert_eq!(bar.bar.message(), "A\\u{1b}]0;title\\u{7}.pgm");
+    }
 
     #[test]
     fn the_time_that_is_left_is_told_when_enough_is_done_to_tell_it() {

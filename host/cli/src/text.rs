@@ -7,7 +7,6 @@ use comfy_table::{CellAlignment, Table, presets};
 
 use halfrow::report::wording::{self, grouped, mark, plain};
 use halfrow::result::{FrameReport, FrameTiming, Outcome, Report, SoakReport, Suspect};
-use halfrow::run::DECOY;
 use halfrow::verdict::Verdict;
 
 use crate::flags;
@@ -114,14 +113,13 @@ fn frames(report: &Report) -> String {
 
 /// A frame's name, and by what else it is told from another of the name.
 fn frame_label(frame: &FrameReport) -> String {
-    let decoy = (frame.generation == DECOY).then_some("decoy tables");
     let timing = match frame.timing {
         FrameTiming::LeastBlanking { .. } => None,
         FrameTiming::Blanking { .. } => Some("sensor blanking"),
         FrameTiming::Gaps { .. } => Some("gaps"),
     };
     let name = wording::frame_name(frame);
-    std::iter::once(&*name).chain(decoy).chain(timing).collect::<Vec<_>>().join(", ")
+    std::iter::once(&*name).chain(timing).collect::<Vec<_>>().join(", ")
 }
 
 /// What a soak judged, and when something differed.

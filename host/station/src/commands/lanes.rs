@@ -14,6 +14,7 @@ use super::publish::fetch_at_start;
 use crate::console;
 use crate::engine::News;
 use crate::exit::Exit;
+use crate::store::Store;
 
 /// How often it is looked whether a signal came.
 const LOOK: Duration = Duration::from_millis(100);
@@ -58,6 +59,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     engine.close(by);
     outbox.close();
+    engine.store().with(Store::fold_log);
     let _ = printer.join();
     Ok(by.map_or(Exit::Pass, |by| halfrow::Cause::Stopped(by).into()))
 }

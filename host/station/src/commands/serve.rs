@@ -15,6 +15,7 @@ use crate::console;
 use crate::engine::Engine;
 use crate::exit::Exit;
 use crate::settings::Settings;
+use crate::store::Store;
 use crate::web::{Access, App, Server, User, Who};
 
 /// How often systemd is told that the engine works.
@@ -83,5 +84,6 @@ pub(super) fn serve(
     engine.close(Some(by));
     outbox.close();
     server.close();
+    engine.store().with(Store::fold_log);
     Ok(halfrow::Cause::Stopped(by).into())
 }

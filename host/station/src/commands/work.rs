@@ -19,7 +19,7 @@ use crate::guard::guarded;
 use crate::outbox::Outbox;
 use crate::said::Said;
 use crate::settings::Settings;
-use crate::store::{Claim, PlantLink, SharedStore, Worker};
+use crate::store::{Claim, PlantLink, SharedStore, Store, Worker};
 use crate::work::{Judged, Work, WorkError};
 
 /// Take jobs of the plant, and judge the boards that they are about
@@ -67,6 +67,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Err(error) => Err(Failure::error(error)),
     };
     outbox.close();
+    work.store.with(Store::fold_log);
     ended?;
     Ok(signal.by().map_or(Exit::Pass, |by| halfrow::Cause::Stopped(by).into()))
 }

@@ -30,9 +30,10 @@ pub enum StoreError {
         /// The folder.
         folder: PathBuf,
     },
-    /// There is evidence, and no database.
+    /// There is evidence, and no database, or one with nothing in it.
     #[error(
-        "{} has evidence of earlier runs and no station.db; restore the folder from a copy, or name another folder",
+        "{} has evidence of earlier runs and no station.db that tells of them; bring back station.db and station.db-wal, restore the folder from a copy, or name \
+         another folder",
         folder.display()
     )]
     DatabaseGone {

@@ -86,10 +86,18 @@ impl Folder {
         self.0.join("station.db")
     }
 
-    /// Whether there is evidence, and no database that says whose: nothing may begin anew beside it.
-    fn lost_database(&self) -> bool {
-        let is_empty = fs::metadata(self.database()).map_or(true, |found| found.len() == 0);
-        is_empty && self.blobs().has_any()
+    /// Ends where there is evidence, and no database that says whose: nothing may begin anew beside it.
+    fn has_kept_database(&self) -> Result<(), StoreError> {
+        let is_lost = fs::metadata(self.database()).is_err() && self.blobs().has_any();
+        if is_lost { Err(StoreError::DatabaseGone { folder: self.0.clone() }) } else { Ok(()) }
+    }
+
+    /// The same of what `database` holds, which is nothing where its write-ahead log was left behind.
+    fn has_kept_tables(&self, database: &mut dyn Database) -> Result<(), StoreError> {
+        let tables = database.one("SELECT count(*) FROM sqlite_schema", &[], |row| row.get::<i64>(0));
+        let tables = tables.map_err(|source| StoreError::of_file(&self.database(), "to be read", source))?;
+        let is_lost = tables == 0 && self.blobs().has_any();
+        if is_lost { Err(StoreError::DatabaseGone { folder: self.0.clone() }) } else { Ok(()) }
     }
 
     /// The evidence.
@@ -188,9 +196,7 @@ impl Store {
             fs::create_dir_all(folder.0.join(place)).map_err(|source| folder.refused(source))?;
         }
         let lock = folder.lock()?;
-        if folder.lost_database() {
-            return Err(StoreError::DatabaseGone { folder: folder.0.clone() });
-        }
+        folder.has_kept_database()?;
         let path = folder.database();
         let place = &path;
         let refused = |doing| move |source: rusqlite::Error| StoreError::of_file(place, doing, source);
@@ -207,6 +213,7 @@ impl Store {
             .execute_batch("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON")
             .map_err(refused("to be safe"))?;
         let mut writer: Box<dyn Database> = Box::new(Sqlite::new(writer));
+        folder.has_kept_tables(&mut *writer)?;
         migrations::apply(&mut *writer, &path, clock::now_ms())?;
         crate::record::synced(&folder.0)?;
         Ok(Self {
@@ -226,6 +233,16 @@ impl Store {
     pub fn open_existing(folder: &Folder) -> Result<Self, StoreError> {
         folder.reader()?;
         Self::open(folder)
+    }
+
+    /// Brings what stands in the write-ahead log into the database, so that the one file has everything. Nothing is lost without it.
+    pub fn fold_log(&mut self) {
+        let folded = self.writer.one("PRAGMA wal_checkpoint(TRUNCATE)", &[], |row| row.get::<i64>(0));
+        match folded {
+            Ok(0) => {}
+            Ok(_) => tracing::info!("the write-ahead log stays beside the database, which somebody reads"),
+            Err(error) => tracing::warn!("the write-ahead log stays beside the database: {error}"),
+        }
     }
 
     /// Its folder.

@@ -50,13 +50,13 @@ impl Snapshot {
     /// # Errors
     /// [`StoreError`] when the database is not there or cannot be read.
     pub fn take(folder: &Folder) -> Result<Self, StoreError> {
-        if folder.lost_database() {
-            return Err(StoreError::DatabaseGone { folder: folder.0.clone() });
-        }
+        folder.has_kept_database()?;
         if folder.database().try_exists().is_ok_and(|is_there| !is_there) {
             return Err(StoreError::NoResults { folder: folder.0.clone() });
         }
-        let reader = RefCell::new(folder.reader()?);
+        let mut reader = folder.reader()?;
+        folder.has_kept_tables(&mut *reader)?;
+        let reader = RefCell::new(reader);
         let snapshot = Self { of: Of::Station(folder.clone()), reader };
         let found = snapshot.read("to be read", |reader| {
             reader.batch("BEGIN")?;

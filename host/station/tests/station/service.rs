@@ -62,3 +62,14 @@ fn a_signal_that_it_was_started_to_ignore_stays_ignored() {
     let serving = Serving::of(&mut shell);
     assert_eq!([Signal::SIGHUP, Signal::SIGTERM].map(|signal| serving.ignores(signal)), [true, false]);
 }
+
+/// A copy of the one file has everything, and systemd takes the end for none of its own making.
+#[test]
+fn a_station_that_is_stopped_leaves_one_whole_file() {
+    let station = Station::private(1);
+    let code = station.serve().stopped_by(Signal::SIGTERM).unwrap();
+    assert!(UNIT.lines().any(|line| line == format!("SuccessExitStatus={code}")), "{code}");
+    let log = fs::metadata(station.path("data").join("station.db-wal"));
+    assert!(log.map_or(0, |log| log.len()) == 0);
+    assert!(!station.query("SELECT n FROM schema_version").is_empty());
+}

@@ -265,6 +265,15 @@ fn nothing_begins_anew_beside_the_evidence_of_earlier_runs() {
     assert_eq!(refused(&folder), [true, true]);
     fs::write(folder.database(), "").unwrap();
     assert_eq!(refused(&folder), [true, true]);
+    let copied = rusqlite::Connection::open(folder.database()).unwrap();
+    // As the file is while its tables are in the write-ahead log alone.
+    copied
+        .execute_batch(
+            "PRAGMA journal_mode = WAL; CREATE TABLE t (n); DROP TABLE t; PRAGMA wal_checkpoint(TRUNCATE)",
+        )
+        .unwrap();
+    drop(copied);
+    assert_eq!(refused(&folder), [true, true]);
     // Without evidence there is nothing to lose.
     fs::remove_dir_all(kept.path().join("blobs")).unwrap();
     assert_eq!(refused(&folder), [false, false]);

@@ -176,6 +176,12 @@ impl Serving {
         self.child.try_wait().unwrap().is_none()
     }
 
+    /// What it ends with when `signal` stops it.
+    pub(crate) fn stopped_by(mut self, signal: Signal) -> Option<i32> {
+        self.signal(signal);
+        self.child.wait().unwrap().code()
+    }
+
     /// A browser that was never here.
     pub(crate) fn browser(&self, host: &str) -> Browser {
         let mut browser =
