@@ -124,6 +124,27 @@ fn sixteen_frames_of_noise_stay_under_four_megabytes_and_all_are_shown() {
     assert!(!page.contains("left out"));
 }
 
+/// The first frame that differs is the one that is looked at.
+#[test]
+fn of_many_frames_the_first_that_differ_keep_their_maps_and_what_is_left_out_is_said() {
+    let frame = |sample| made::sized_frame(64, 16, |_, _| sample);
+    let (input, right, wrong) = (frame(100), frame(200), frame(201));
+    let (mut report, _) = made::fail();
+    report.frames = (0..3000).map(|number| made::equal_frame((number, "builtin:grey"))).collect();
+    let mut evidence: Vec<_> = (0..3000)
+        .map(|index| Evidence { index, input: input.clone(), found: right.clone(), expected: right.clone() })
+        .collect();
+    for index in [0, 2, 2999] {
+        report.frames[index].comparison = Comparison::of_frames(&right, &wrong);
+        evidence[index].found = wrong.clone();
+    }
+    let page = page(&report, &evidence);
+    assert!(page.len() < 4_000_000, "{} bytes", page.len());
+    assert_eq!(page.matches("Where it differs").count(), 3);
+    assert_eq!(page.matches("<section class=\"frame\">").count(), 400);
+    assert!(page.contains("And 2,600 more frames that were kept."));
+}
+
 #[test]
 fn a_pass_stays_under_two_megabytes() {
     let (_, mut evidence) = noise();

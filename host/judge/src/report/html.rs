@@ -19,8 +19,8 @@ const STYLE: &str = include_str!("style.css");
 /// Forbids the page to load or run anything, whatever gets into it.
 const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inline'";
 
-/// The report as a page of under 2 MB for a PASS, and under 4 MB for anything else. Each frame of `evidence` has a section with pictures, which shrink, or give way
-/// from the last on, when they are too many.
+/// The report as a page of under 2 MB for a PASS, and under 4 MB for anything else. Frames of `evidence` have a section each, as far as there is room, with pictures, which
+/// shrink, or give way from the last on, when they are too many.
 ///
 /// # Errors
 /// The PNG encoder's.

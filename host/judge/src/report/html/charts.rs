@@ -42,7 +42,10 @@ fn bars(counts: &[u32], together: usize) -> (Vec<(usize, u64)>, u64) {
 }
 
 fn caption(most: u64, together: usize, what: &str) -> String {
-    format!("Differences in each {together} {what}s: at most {most}")
+    match together {
+        1 => format!("Differences in each {what}: at most {most}"),
+        _ => format!("Differences in each {together} {what}s: at most {most}"),
+    }
 }
 
 fn chart(class: &str, view: &str, path: &str, caption: &str) -> Markup {

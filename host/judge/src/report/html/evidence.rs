@@ -16,48 +16,93 @@ use crate::verdict::Verdict;
 /// Bytes of all pictures together, of a PASS and of anything else. Base 64 makes 1.5 and 3.4 MB of them, which leaves half a megabyte of
 /// 2 and of 4 to text and charts.
 const MOST_BYTES: (usize, usize) = (1_100_000, 2_550_000);
+/// Bytes of all maps and crops together, which leave the previews of sixteen frames 20 kB each.
+const MOST_OF_DETAILS: usize = MOST_BYTES.1 - 16 * 20_000;
 /// The widest preview of a frame that is wrong, and of one that is right, in pixels.
 const MAX_WIDTH: (usize, usize) = (960, 480);
-/// Bytes that the map and the crops of one frame stay under, even of noise.
-const DETAIL_BYTES: usize = 150_000;
+/// Frames that have a section.
+const MOST_SECTIONS: usize = 400;
 /// Windows of a frame that are shown sample by sample.
 const MOST_WINDOWS: usize = 3;
 /// Screen pixels to a sample there.
 const ZOOM: usize = 8;
 
-/// A section for each frame of `evidence`, in order.
+/// What was kept of a frame, and what is known of it.
+type Kept<'a> = (&'a Evidence, &'a FrameReport);
+
+/// A section for each frame of `evidence` for which there is room, in order. Those that differ have it first, and of those the first ones
+/// have maps and crops.
 ///
 /// # Errors
 /// The PNG encoder's.
 pub(super) fn sections(report: &Report, evidence: &[Evidence]) -> Result<Markup, EncodingError> {
-    let known = evidence.iter().filter_map(|kept| Some((kept, report.frames.get(kept.index)?)));
-    let known: Vec<_> = known.collect();
-    let mut left = if report.verdict == Verdict::Pass { MOST_BYTES.0 } else { MOST_BYTES.1 };
-    let mut sections = Vec::with_capacity(known.len());
-    for (place, (kept, frame)) in known.iter().enumerate() {
-        let share = left / (known.len() - place);
-        let (section, used) = section(report, frame, kept, share)?;
+    let known: Vec<_> =
+        evidence.iter().filter_map(|kept| Some((kept, report.frames.get(kept.index)?))).collect();
+    let (shown, left_out) = shown(known);
+    let most_bytes = if report.verdict == Verdict::Pass { MOST_BYTES.0 } else { MOST_BYTES.1 };
+    let (mut details, used) = all_details(&shown)?;
+    let mut left = most_bytes.saturating_sub(used);
+    let mut sections = Vec::with_capacity(shown.len());
+    for (place, kept) in shown.iter().enumerate() {
+        let share = left / (shown.len() - place);
+        let none = || html! { p { "Map and crops: left out to keep the page small." } };
+        let details = if differs(kept) { details.next().unwrap_or_else(none) } else { Markup::default() };
+        let (section, used) = section(report, kept, &details, share)?;
         left = left.saturating_sub(used);
         sections.push(section);
     }
-    Ok(html! { @for section in sections { (section) } })
+    Ok(html! {
+        @for section in sections { (section) }
+        @if left_out > 0 { section { p { "And " (count(left_out, "more frame")) " that were kept." } } }
+    })
 }
 
-/// One frame's section of at most `most_bytes` of pictures, and the bytes that it took.
+/// The frames that have a section, and how many have none.
+fn shown(mut known: Vec<Kept<'_>>) -> (Vec<Kept<'_>>, usize) {
+    let all = known.len();
+    let wrong = known.iter().filter(|kept| differs(kept)).count();
+    let (mut room, mut room_of_equal) = (MOST_SECTIONS, MOST_SECTIONS.saturating_sub(wrong));
+    known.retain(|kept| {
+        let room = if differs(kept) { &mut room } else { &mut room_of_equal };
+        let has_room = *room > 0;
+        *room -= usize::from(has_room);
+        has_room
+    });
+    let left_out = all - known.len();
+    (known, left_out)
+}
+
+fn differs((_, frame): &Kept<'_>) -> bool {
+    frame.comparison.differences > 0
+}
+
+/// The maps and crops of the first frames that differ, and the bytes of their pictures.
+fn all_details(shown: &[Kept<'_>]) -> Result<(impl Iterator<Item = Markup>, usize), EncodingError> {
+    let (mut all, mut used) = (Vec::new(), 0);
+    for (kept, frame) in shown.iter().filter(|kept| differs(kept)) {
+        let (details, bytes) = details(frame, kept)?;
+        if used + bytes > MOST_OF_DETAILS {
+            break;
+        }
+        used += bytes;
+        all.push(details);
+    }
+    Ok((all.into_iter(), used))
+}
+
+/// One frame's section of at most `most_bytes` of previews, and the bytes that they took.
 fn section(
     report: &Report,
-    frame: &FrameReport,
-    kept: &Evidence,
+    shown: &Kept<'_>,
+    details: &Markup,
     most_bytes: usize,
 ) -> Result<(Markup, usize), EncodingError> {
-    let differs = frame.comparison.differences > 0;
-    let (details, used) =
-        if differs && most_bytes > DETAIL_BYTES { details(frame, kept)? } else { Default::default() };
-    let left = most_bytes.saturating_sub(used);
-    let width = if differs { MAX_WIDTH.0 } else { MAX_WIDTH.1 };
-    let input = pictures::preview(&kept.input, width, left / 2)?;
-    let found = pictures::preview(&as_bright(kept), width, left - input.as_ref().map_or(0, Picture::len))?;
-    let used = used + [&input, &found].into_iter().flatten().map(Picture::len).sum::<usize>();
+    let (kept, frame) = shown;
+    let width = if differs(shown) { MAX_WIDTH.0 } else { MAX_WIDTH.1 };
+    let input = pictures::preview(&kept.input, width, most_bytes / 2)?;
+    let left = most_bytes - input.as_ref().map_or(0, Picture::len);
+    let found = pictures::preview(&as_bright(kept), width, left)?;
+    let used = [&input, &found].into_iter().flatten().map(Picture::len).sum();
     let markup = html! {
         section.frame {
             h2 {
