@@ -140,7 +140,7 @@ impl Site {
 
     /// Of three samples each of the row above, of this one, and of the one below.
     fn pixel(self, ((above, here), below): ((&[u16], &[u16]), &[u16])) -> [u16; 3] {
-        let sample = |row: &[u16], column: usize| u32::from(row[column]);
+        let sample = |row: &[u16], column: usize| u64::from(row[column]);
         let beside = sample(here, 0) + sample(here, 2);
         let upright = sample(above, 1) + sample(below, 1);
         let mut pixel = [here[1]; 3];
@@ -177,13 +177,13 @@ fn pixel(frame: &Frame, row: usize, column: usize) -> [u16; 3] {
 /// A mean of samples.
 #[derive(Clone, Copy, Default)]
 struct Mean {
-    sum: u32,
-    count: u32,
+    sum: u64,
+    count: u64,
 }
 
 impl Mean {
     fn add(&mut self, sample: u16) {
-        self.sum += u32::from(sample);
+        self.sum += u64::from(sample);
         self.count += 1;
     }
 

@@ -50,9 +50,7 @@ pub enum TablesBy {
 impl TablesBy {
     /// The entries that every board with datapath 2 has room for.
     pub const LEAST_ENTRIES: usize = crate::board::LEAST_ENTRIES as usize;
-}
 
-impl TablesBy {
     /// Its name: stable, lower case.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -164,10 +162,8 @@ fn circle(outside: usize, rows: usize, radius: f64, centre: f64) -> String {
 #[must_use]
 pub fn outside_circle(tables: &TableSet) -> &'static str {
     match tables.shape() {
-        None => "are not stretched",
-        Some(_) => {
-            "are stretched by the grid, beyond 90 degrees as the row next to the pole is, and not exactly"
-        }
+        None => "not stretched",
+        Some(_) => "stretched by the grid, beyond 90 degrees as the row next to the pole is, and not exactly",
     }
 }
 
@@ -262,7 +258,7 @@ impl Optics {
         }
         if 2 * outside > rows {
             tracing::warn!(
-                "{}, and {}; check the lens, its centre and the size of the frames",
+                "{}, and are {}; check the lens, its centre and the size of the frames",
                 circle(outside, rows, radius, centre),
                 outside_circle(tables)
             );

@@ -3,6 +3,7 @@
 use crate::board::{Board, BoardError, Heard, OpenOptions};
 use crate::link::discovery::Answer;
 use crate::link::{self, Class, OpenError};
+use crate::result::Problem;
 use crate::run::Draws;
 use crate::target::Target;
 use crate::verdict::Cause;
@@ -29,10 +30,13 @@ pub fn probe(target: &Target) -> Answer {
             Answer::Foreign { reason: error.to_string() }
         }
         Err(error) if error.cause() == Cause::Busy => Answer::Busy,
-        Err(error) => Answer::Failed { reason: crate::result::Problem::of(&error).sentence() },
+        Err(error) => Answer::Failed { reason: Problem::of(&error).sentence() },
     }
 }
 
 fn not_opened(error: &OpenError) -> Answer {
-    if error.class() == Class::Busy { Answer::Busy } else { Answer::Failed { reason: error.to_string() } }
+    match error.class() {
+        Class::Busy => Answer::Busy,
+        _ => Answer::Failed { reason: Problem::of(error).sentence() },
+    }
 }

@@ -51,6 +51,7 @@ struct Boards<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
+    arguments.targets.iter().try_for_each(halfrow::link::check).map_err(Failure::call)?;
     let mut devices: Vec<Found> = if arguments.targets.is_empty() {
         discovery::find()
     } else {

@@ -12,6 +12,7 @@ use super::{Context, Failure, conclude};
 use crate::exit::Exit;
 use halfrow::board::Board;
 use halfrow::link_test::{self, Figures, LinkTestError, Rate, RoundTrips, Throughput};
+use halfrow::report::wording::count;
 use halfrow::result::{BoardReport, Identity};
 
 #[derive(Debug, Args)]
@@ -62,11 +63,9 @@ fn text(figures: &Figures) -> String {
         [("to board", &figures.to_board), ("to host", &figures.to_host), ("together", &figures.together)];
     lines.extend(parts.map(|(name, both)| format!("{name:<12} {}", rates(both))));
     if errors.wrong > 0 {
-        let wrong = errors.wrong;
-        lines.push(format!(
-            "{:<12} {wrong} answers hold other bytes than were sent, under a right CRC",
-            "BOARD"
-        ));
+        let (answers, hold) =
+            (count(errors.wrong, "answer"), if errors.wrong == 1 { "holds" } else { "hold" });
+        lines.push(format!("{:<12} {answers} {hold} other bytes than were sent, under a right CRC", "BOARD"));
     }
     lines.join("\n")
 }

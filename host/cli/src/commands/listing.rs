@@ -146,7 +146,7 @@ fn table(links: &[OnLink]) -> Vec<String> {
         let of = |link: &OnLink| link.parts.get(place).map_or_else(String::new, |part| seconds(part.seconds));
         line(&part.part, part.amount.to_string(), &of)
     };
-    let head = line("part", "rows".to_owned(), &|link| link.link.clone());
+    let head = line("part", "amount".to_owned(), &|link| link.link.clone());
     let every = line("every run", String::new(), &|link| seconds(link.every_run));
     let whole = line("the whole run", String::new(), &|link| seconds(link.whole_run));
     [head, every].into_iter().chain(parts.iter().enumerate().map(part)).chain([whole]).collect()

@@ -14,6 +14,7 @@ use crate::console;
 use crate::exit::Exit;
 use halfrow::call::Files;
 use halfrow::optics::outside_circle;
+use halfrow::report::wording::count;
 use halfrow::tables::{TableFile, mem};
 use halfrow_frames::written_aside::WriteAsideError;
 
@@ -45,7 +46,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     .map_err(Failure::call)?;
     let chosen = optics::choose(None, &arguments.lens, kernel)?;
     let outside = chosen.optics.camera.rows_outside_circle();
-    let they = outside_circle(&chosen.tables);
+    let how = outside_circle(&chosen.tables);
     let file = TableFile { tables: chosen.tables, kernel: chosen.kernel, about: about(&chosen.source) };
     format.write(&file, &arguments.output, arguments.overwrite).map_err(Failure::error)?;
     if context.json {
@@ -59,7 +60,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         console::tell(&format!("wrote {}: {}", path.display(), chosen.source));
     }
     if outside > 0 {
-        console::tell(&format!("{outside} rows lie outside the image circle and {they}"));
+        console::tell(&format!("{} outside the image circle: {how}", count(outside, "row")));
     }
     Ok(Exit::Pass)
 }

@@ -1,10 +1,9 @@
 //! Looking at a place before anything is written to it.
 
-use std::ffi::OsString;
 use std::fs;
 use std::io;
 use std::os::unix::fs::MetadataExt as _;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use super::{WriteAsideError, folder_of, under_way};
 
@@ -65,9 +64,9 @@ pub struct Place(Identity);
 enum Identity {
     /// Device and inode of what is there.
     Taken(u64, u64),
-    /// Device and inode of the folder, and the name in it.
-    Free(u64, u64, OsString),
-    /// Not even the folder is there.
+    /// Device and inode of the nearest folder that is there, and the path in it.
+    Free(u64, u64, PathBuf),
+    /// No folder is there.
     Nowhere(PathBuf),
 }
 
@@ -78,16 +77,72 @@ impl Place {
         if let Ok(there) = fs::metadata(path) {
             return Self(Identity::Taken(there.dev(), there.ino()));
         }
-        Self(match (fs::metadata(folder_of(path)), path.file_name()) {
-            (Ok(folder), Some(name)) => Identity::Free(folder.dev(), folder.ino(), name.to_owned()),
-            _ => Identity::Nowhere(std::path::absolute(path).unwrap_or_else(|_| path.to_owned())),
-        })
+        let path = resolved(path);
+        let within = |above: &Path| {
+            let folder = fs::metadata(above).ok()?;
+            let rest = path.strip_prefix(above).ok()?.to_owned();
+            Some(Identity::Free(folder.dev(), folder.ino(), rest))
+        };
+        Self(path.ancestors().skip(1).find_map(within).unwrap_or(Identity::Nowhere(path)))
     }
 
     /// Whether `path` leads here, or to something inside.
     #[must_use]
     pub fn holds(&self, path: &Path) -> bool {
-        let above = path.ancestors().filter(|above| !above.as_os_str().is_empty());
-        above.map(Self::of).any(|above| above == *self)
+        resolved(path).ancestors().any(|above| Self::of(above) == *self)
+    }
+}
+
+/// `path` from the root on, without links and `..`; folders that are not there are taken as they would be made.
+fn resolved(path: &Path) -> PathBuf {
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let mut resolved = PathBuf::new();
+    for step in path.components() {
+        if step == Component::ParentDir {
+            resolved.pop();
+        } else {
+            resolved.push(step);
+        }
+        if let Ok(there) = resolved.canonicalize() {
+            resolved = there;
+        }
+    }
+    resolved
+}
+
+#[cfg(test)]
+mod tests {
+    use std::os::unix::fs::symlink;
+
+    use super::*;
+
+    #[test]
+    fn names_of_one_place_are_one_place_whether_it_is_there_or_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        symlink(".", at("same")).unwrap();
+        let names =
+            ["new/a.png", "same/new/a.png", "new/./a.png", "made/../new/a.png", "same/made/../new/a.png"];
+        let all = || names.map(|name| Place::of(&at(name)));
+        assert_eq!(all(), names.map(|_| Place::of(&at(names[0]))));
+        assert_ne!(Place::of(&at("new/b.png")), Place::of(&at("new/a.png")));
+        assert_ne!(Place::of(&at("a.png")), Place::of(&at("new/a.png")));
+        fs::create_dir_all(at("made/x")).unwrap();
+        fs::create_dir(at("new")).unwrap();
+        fs::write(at("new/a.png"), "").unwrap();
+        assert_eq!(all(), names.map(|_| Place::of(&at(names[0]))));
+    }
+
+    #[test]
+    fn what_lies_beside_a_folder_is_not_in_it_and_what_leads_into_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("out")).unwrap();
+        fs::write(at("out/inside"), "").unwrap();
+        symlink("out/inside", at("link")).unwrap();
+        let out = Place::of(&at("out"));
+        let held =
+            ["out", "out/inside", "out/new/one", "link", "out/../out/inside", "out/../beside", "beside"];
+        assert_eq!(held.map(|name| out.holds(&at(name))), [true, true, true, true, true, false, false]);
     }
 }

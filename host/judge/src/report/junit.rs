@@ -14,15 +14,12 @@ use super::wording::{self, plain};
 use crate::result::{Check, FrameReport, Outcome, Report};
 use crate::verdict::Verdict;
 
-/// The name of the suite and the head of all class names.
-const SUITE: &str = "halfrow verify";
-
 /// The report as an XML document.
 ///
 /// # Errors
 /// The XML writer's. No value that a [`Report`] can hold brings one about.
 pub fn render(report: &Report) -> Result<String, SerializeError> {
-    let mut suite = TestSuite::new(SUITE);
+    let mut suite = TestSuite::new(format!("halfrow {}", report.command()));
     suite.timestamp = report.run.started.parse().ok();
     suite.time = Duration::try_from_secs_f64(report.run.seconds).ok();
     for (name, value) in properties(report) {
@@ -85,7 +82,8 @@ fn verdict_case(report: &Report) -> TestCase {
         Verdict::Fail => Outcome::Failed,
         Verdict::Error => Outcome::Error,
     };
-    case("verify", "verdict", 0.0, status(outcome, &report.headline(), &wording::advice(report).join("\n")))
+    let advice = wording::advice(report).join("\n");
+    case(report.command(), "verdict", 0.0, status(outcome, &report.headline(), &advice))
 }
 
 fn check_case(check: &Check) -> TestCase {

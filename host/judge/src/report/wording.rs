@@ -183,7 +183,7 @@ pub fn street(street: &StreetReport) -> String {
 pub fn link(link: &LinkReport) -> String {
     let mut parts = vec![
         format!("{} out, {} in", bytes(link.bytes_out), bytes(link.bytes_in)),
-        format!("{} packets", grouped(link.packets_out.saturating_add(link.packets_in))),
+        count(link.packets_out.saturating_add(link.packets_in), "packet"),
     ];
     match (link.damaged_in.saturating_add(link.damaged_out), link.retries) {
         (0, 0) => parts.push("none damaged".to_owned()),

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::board::{Bursts, Capabilities, Welcome, grids};
+use crate::report::wording::count;
 
 /// What a board says of itself.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -83,7 +84,7 @@ impl BurstsReport {
     /// For people.
     fn text(&self) -> String {
         let trap = if self.trap { "a trap" } else { "no trap" };
-        format!("content {}, {} records, {trap}", self.content, self.records)
+        format!("content {}, {}, {trap}", self.content, count(self.records, "record"))
     }
 }
 
@@ -154,9 +155,9 @@ impl Identity {
             ("frame at most", format!("{} x {}", self.max_width, self.max_height)),
             ("depths", format!("{} bits", depths.join(", "))),
             ("taps", self.taps.to_string()),
-            ("L", format!("{} pixel clocks", self.latency)),
+            ("L", count(self.latency, "pixel clock")),
             ("M", format!("{} samples", self.ring)),
-            ("least blanking", format!("{} pixel clocks", self.least_blanking)),
+            ("least blanking", count(self.least_blanking, "pixel clock")),
             ("table banks", self.table_banks.to_string()),
             ("row banks", format!("{} in, {} out", self.row_banks_in, self.row_banks_out)),
             ("pixel clock", clock),

@@ -32,9 +32,12 @@ impl Problem {
     /// A problem without parameters and causes.
     #[must_use]
     pub fn new(code: &str, message: impl Into<String>) -> Self {
-        let message = message.into();
-        let remedy = remedy(&message);
-        Self { code: code.to_owned(), parameters: Parameters::new(), message, remedy, causes: Vec::new() }
+        Self::with(code, Parameters::new(), message.into())
+    }
+
+    fn with(code: &str, parameters: Parameters, message: String) -> Self {
+        let remedy = asked(&message, &parameters).and_then(|(_, asked)| remedy(asked));
+        Self { code: code.to_owned(), parameters, message, remedy, causes: Vec::new() }
     }
 
     /// An error of this library with its causes.
@@ -64,9 +67,9 @@ impl Problem {
     /// It without what to do about it.
     #[must_use]
     pub(crate) fn unasked(mut self) -> Self {
-        let causes = self.causes.iter_mut().map(|cause| &mut cause.message);
-        for message in std::iter::once(&mut self.message).chain(causes) {
-            if let Some((what, _)) = message.rsplit_once("; ") {
+        let causes = self.causes.iter_mut().map(|cause| (&mut cause.message, &cause.parameters));
+        for (message, parameters) in std::iter::once((&mut self.message, &self.parameters)).chain(causes) {
+            if let Some((what, _)) = asked(message, parameters) {
                 *message = what.to_owned();
             }
         }
@@ -91,7 +94,7 @@ impl Problem {
 
 fn one(error: &(dyn Error + 'static), lookup: codes::Lookup) -> Problem {
     let Coded { code, parameters } = lookup(error).unwrap_or_else(Coded::foreign);
-    Problem { parameters, ..Problem::new(&code, error.to_string()) }
+    Problem::with(&code, parameters, error.to_string())
 }
 
 impl fmt::Display for Problem {
@@ -102,10 +105,17 @@ impl fmt::Display for Problem {
 
 impl Error for Problem {}
 
-/// What a message asks for: messages of this program say what is wrong and, behind the last semicolon, what to do.
-fn remedy(message: &str) -> Option<String> {
-    let asked = message.rsplit_once("; ")?.1.trim();
-    let mut letters = asked.trim_end_matches('.').chars();
+/// What a message says, and what it asks for: messages of this program say what is wrong and, behind the last semicolon that stands in
+/// none of their names, what to do.
+fn asked<'a>(message: &'a str, parameters: &Parameters) -> Option<(&'a str, &'a str)> {
+    let names = parameters.values().filter_map(Value::as_str).filter(|name| name.contains("; "));
+    let masked = names.fold(message.to_owned(), |text, name| text.replace(name, &name.replace("; ", ", ")));
+    let at = masked.rfind("; ")?;
+    Some((message.get(..at)?, message.get(at + "; ".len()..)?))
+}
+
+fn remedy(asked: &str) -> Option<String> {
+    let mut letters = asked.trim().trim_end_matches('.').chars();
     let first = letters.next()?;
     Some(format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }
@@ -159,6 +169,17 @@ pub(super) fn tagged(value: &impl Serialize) -> (String, Parameters) {
 mod tests {
     use super::*;
     use crate::board::BoardError;
+
+    #[test]
+    fn no_part_of_a_name_is_what_to_do() {
+        let name = "w; rm -rf y.json";
+        let parameters = Parameters::from_iter([("path".to_owned(), name.into())]);
+        let about = |rest: &str| Problem::with("code", parameters.clone(), format!("{name} {rest}"));
+        assert_eq!(about("cannot be used").remedy, None);
+        let problem = about("cannot be used; give another one");
+        assert_eq!(problem.remedy.as_deref(), Some("Give another one."));
+        assert_eq!(problem.unasked().message, "w; rm -rf y.json cannot be used");
+    }
 
     #[test]
     fn what_to_do_is_a_whole_sentence() {

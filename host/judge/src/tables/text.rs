@@ -13,14 +13,14 @@ const QUOTED: usize = 40;
 /// The whole text of the file `path`.
 ///
 /// # Errors
-/// The system's, [`io::ErrorKind::InvalidData`] when it is not UTF-8, [`io::ErrorKind::FileTooLarge`] when it is longer than
+/// The system's, [`io::ErrorKind::InvalidData`] when it is not UTF-8, or longer than
 /// `most` bytes.
 pub fn read(path: &Path, most: u64) -> io::Result<String> {
     let mut bytes = Vec::new();
     File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most {
         let reason = format!("it is longer than {most} bytes");
-        return Err(io::Error::new(io::ErrorKind::FileTooLarge, reason));
+        return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
     }
     String::from_utf8(bytes).map_err(|error| {
         let reason = format!("it is no text from byte {} on", error.utf8_error().valid_up_to());

@@ -32,7 +32,7 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// The line between two rays of any length, u right, v down, w ahead, as far as it counts; none if too little does.
+    /// The line between two rays of any length, u right, v down, w ahead, as far as it counts; none if too little does, or both are one.
     #[must_use]
     pub(super) fn between(ends: [[f64; 3]; 2], held: Held) -> Option<Self> {
         let [from, to] = ends.map(unit);
@@ -43,7 +43,7 @@ impl Line {
             longitude.abs() < REACH.0.to_radians() && latitude.abs() < REACH.1.to_radians()
         };
         let directions: Vec<_> = directions.filter(counts).collect();
-        (directions.len() > SAMPLES / 8).then_some(Self { directions, held })
+        (from != to && directions.len() > SAMPLES / 8).then_some(Self { directions, held })
     }
 }
 

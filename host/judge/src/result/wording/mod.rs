@@ -41,9 +41,9 @@ const LOGIC: &str = "Make sure that the right bitstream is loaded and run again;
 /// What depends on when things happen may come and go with supply and temperature.
 const TIMING: &str = "Switch the board off and on, reload the bitstream and run three times; if it ever returns, set the board \
                       aside with its reports.";
-/// Nothing is known.
 /// What is asked for where no defect explains what differs.
 pub(crate) const MAPS: &str = "Look at the difference maps of a report.";
+/// Nothing is known.
 const REPORT: &str = "Reload the bitstream and run again with a report; if it returns, set the board aside, and hand the report \
                       to the designer.";
 

@@ -60,8 +60,7 @@ fn made_with_words(made: MadeWith, own: u8) -> String {
     }
 }
 
-/// "2, 4 to 8" for ascending numbers.
-/// `0 to 3, 7`
+/// Ascending numbers, as in "0 to 3, 7".
 pub(super) fn list(numbers: &[usize]) -> String {
     let runs = numbers.chunk_by(|a, b| a + 1 == *b);
     let words: Vec<_> = runs
