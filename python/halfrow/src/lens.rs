@@ -13,7 +13,7 @@ use crate::{arguments, choices, errors, frames};
 /// A fisheye lens before frames of some size.
 ///
 /// `lens` is a file of OpenCV's fisheye model (FileStorage, camera_info, camchain) or of OCamCalib, or "equidistant:RADIUS"
-/// with the radius of the image of 180 degrees in pixels; without it the lens is that of the paper, R = 1106.74 pixels.
+/// with the radius of the image of 180 degrees in pixels; without it the lens is that of the paper, R = 1106.697 pixels.
 ///
 /// `width` (even, 64 to 2592) and `height` (1 to 2048) are those of the lens file's pictures, or else 1920 x 1080; frames of
 /// another size scale the lens, and must have the same shape. `bits` is 8, 10 or 12. `centre_x` and `centre_y`, column and row

@@ -26,6 +26,9 @@ use halfrow::run::{self, Circumstances, Finished, Lack, Plan, RunOptions};
 use halfrow::target::Target;
 use halfrow::verdict::Cause;
 
+/// How long a board may stay away where no number is given.
+const PATIENCE: Duration = Duration::from_secs(30);
+
 #[derive(Debug, Args)]
 pub(super) struct RunArguments {
     #[command(flatten)]
@@ -40,10 +43,10 @@ pub(super) struct RunArguments {
     /// Who tests, for the report
     #[arg(long, value_name = "NAME", env = "HALFROW_OPERATOR")]
     operator: Option<String>,
-    /// Go on when the board goes away and comes back within so many seconds [30 if no number is given]
-    #[arg(long, value_name = "SECONDS", num_args = 0..=1, require_equals = true, default_missing_value = "30")]
+    /// Go on when the board goes away and comes back within so many seconds [if no number is given, 30, and 300 in a soak]
+    #[arg(long, value_name = "SECONDS", num_args = 0..=1, require_equals = true)]
     #[arg(env = "HALFROW_RECONNECT", value_parser = any::<f64>("a number of seconds"))]
-    reconnect: Option<f64>,
+    reconnect: Option<Option<f64>>,
     /// Replace what an earlier run has written
     #[arg(long, value_name = "YES|NO", num_args = 0..=1, require_equals = true, default_missing_value = "yes")]
     #[arg(env = "HALFROW_OVERWRITE", value_parser = yes_or_no)]
@@ -108,9 +111,15 @@ impl RunArguments {
         self.operator.clone().filter(|name| !name.trim().is_empty())
     }
 
-    /// How long a board may stay away; none if nothing is said of it.
-    pub(super) fn patience(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
-        seconds("--reconnect", self.reconnect.or(settings.reconnect))
+    /// How long a board may stay away: what the call says, where the `usual` stands for no number, or else the settings; none if neither
+    /// says anything.
+    pub(super) fn patience(
+        &self,
+        settings: Option<f64>,
+        usual: Duration,
+    ) -> Result<Option<Duration>, Failure> {
+        let named = self.reconnect.map(|named| named.unwrap_or(usual.as_secs_f64()));
+        seconds("--reconnect", named.or(settings))
     }
 
     /// How a run is made that judges with what was read from `inputs`.
@@ -125,7 +134,7 @@ impl RunArguments {
             timeout: self.board.timeout(settings)?,
             stop: self.board.stop(settings)?,
             retry_limit: self.board.retry_limit(settings),
-            reconnect: self.patience(settings)?,
+            reconnect: self.patience(settings.reconnect, PATIENCE)?,
             take_over: self.board.take_over,
             require_hardware: self.requires_hardware(settings),
             keep_equal: self.report_path(settings).is_some(),

@@ -84,7 +84,9 @@ impl Arguments {
         let (chosen, inputs) = self.run.chosen(tables, settings)?;
         let plan = chosen.plan(self.run.lens.phase).frames([FrameSource::Builtin(Builtin::Noise)]);
         let plan = Plan { soak: Some(self.length.asked()), seed: self.run.seed(settings), ..plan };
-        let patience = self.run.patience(settings)?.unwrap_or(PATIENCE);
+        // Settings are of all runs, and few of those last for hours.
+        let longer = settings.reconnect.filter(|&seconds| seconds > PATIENCE.as_secs_f64());
+        let patience = self.run.patience(longer, PATIENCE)?.unwrap_or(PATIENCE);
         Ok((plan, RunOptions { reconnect: Some(patience), ..self.run.options(inputs, settings)? }))
     }
 }

@@ -182,8 +182,9 @@ impl Arguments {
         let plan = self.plan_of(chosen, frames, &mut inputs, context)?;
         let plan = Plan { vary: self.vary(is_free), ..plan };
         // A recording is of one link.
-        let reconnect = self.run.patience(settings)?.filter(|_| self.record.is_none());
-        Ok((plan, RunOptions { reconnect, ..self.run.options(inputs, settings)? }))
+        let options = self.run.options(inputs, settings)?;
+        let reconnect = options.reconnect.filter(|_| self.record.is_none());
+        Ok((plan, RunOptions { reconnect, ..options }))
     }
 
     /// What is varied in a run of which neither tables nor frames are named: what the call does not say.
