@@ -57,6 +57,16 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         "fails at the full pixel clock, seen in bit 5",
     ),
     fails(
+        "a path of a bit beyond the depth that is too slow",
+        ",fault=slow-path,bit=13,one-in=1",
+        "streamed it is right; the suspect is a path that fails at the full pixel clock, seen in bit 13",
+    ),
+    fails(
+        "an address line that only rows behind the frames are long enough for",
+        ",fault=stuck-address,bit=9,bursts=no",
+        "the suspect is line memory, address bit 9",
+    ),
+    fails(
         "an address line that no row of the run is long enough for",
         ",fault=stuck-address,bit=9",
         "streamed it is wrong, too; the suspect is line memory, address bit 9",

@@ -118,6 +118,14 @@ fn what_fails_at_full_speed_alone_passes_row_by_row_and_fails_in_a_burst() {
     }
 }
 
+/// A corner's frames are the first that its tables make there.
+#[test]
+fn frames_made_with_other_tables_whole_are_stale_and_not_late() {
+    let report = System { height: 1, ..TINY }.judge(",fault=stale-table-hidden");
+    assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{}", report.headline());
+    assert!(matches!(report.suspects[0].defect, Defect::StaleTables { .. }), "{:?}", report.suspects);
+}
+
 /// What a board counts, how it is spoilt, and what it should be.
 type Count = (BurstCount, fn(&mut FrameRecord), u32);
 

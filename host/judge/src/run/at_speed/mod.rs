@@ -33,6 +33,7 @@ use crate::result::{
 use burst::BurstPlan;
 pub(super) use burst::content;
 pub(super) use price::{clock_hz, most_frames, price_of_corners, price_of_frames};
+pub(super) use repeated::Seen;
 use watched::{EndsEarly, Watched};
 
 pub(super) use corners::{BY_TURNS, CALM, drawn_factors, drawn_kernel, fit};

@@ -36,9 +36,9 @@ struct Again {
 }
 
 /// Rows, and what they were made by.
-struct Seen {
-    made_by: Generation,
-    evidence: Evidence,
+pub(in crate::run) struct Seen {
+    pub(in crate::run) made_by: Generation,
+    pub(in crate::run) evidence: Evidence,
 }
 
 impl From<Repetition> for Again {
@@ -130,7 +130,7 @@ impl Run<'_> {
         };
         let wrong = back.filter(|_| streamed == Streamed::Wrong);
         let suspects = match wrong.and_then(|back| self.seen_streamed(generation, content, back)) {
-            Some(seen) => self.diagnose_seen(&seen, content),
+            Some(seen) => self.diagnose_seen(&seen, "at speed", content.frame),
             None => self.suspects_of(&seen, content, streamed),
         };
         Ok(Again { repetition: Repetition::Trapped { frames, row, streamed }, suspects })
@@ -179,18 +179,22 @@ impl Run<'_> {
         let row = expected.height() - 1;
         let kept = (row, expected.row(row), found.row(row));
         let (differing, _) = changed(kept);
-        let mut suspects = self.diagnose_seen(seen, content);
-        let is_told = differing >= TELLING && suspects.first().is_some_and(|first| first.explained >= 1.0);
+        let mut suspects = self.diagnose_seen(seen, "at speed", content.frame);
+        // What came back right through the same lines is wrong in none of them.
+        let is_told = streamed != Streamed::Right
+            && differing >= TELLING
+            && suspects.first().is_some_and(|first| first.explained >= 1.0);
         let place = usize::from(is_told);
         suspects.splice(place..place, at_speed(streamed, Some(kept)));
         suspects
     }
 
-    fn diagnose_seen(&self, seen: &Seen, content: Content) -> Vec<Suspect> {
+    /// What rows of the frame `number` show that are no part of those that are streamed to be judged.
+    pub(in crate::run) fn diagnose_seen(&self, seen: &Seen, name: &str, frame: u16) -> Vec<Suspect> {
         let Seen { made_by: Generation { number, tables, kernel }, evidence } = seen;
         let frame = FrameReport {
-            name: "at speed".to_owned(),
-            number: content.frame,
+            name: name.to_owned(),
+            number: frame,
             sha256: String::new(),
             phase: self.plan.phase,
             generation: *number,

@@ -5,7 +5,7 @@ use halfrow_model::{Signer, TableSet, frame_signature};
 use super::burst::BurstPlan;
 use super::predicted::signer;
 use super::watched::{Watched, WrongFrame};
-use crate::result::{Account, Defect, Suspect};
+use crate::result::{Account, Defect, MadeWith, StaleFrames, Suspect};
 use crate::run::plan::Generation;
 
 /// The suspect if so many first rows of the first wrong frame, made with the tables of the other bank, give its signature.
@@ -18,7 +18,21 @@ pub(super) fn tables_late(plan: &BurstPlan, tables: &[Generation], watched: &Wat
         (watched.wrong_frames.len(), 1 + late.filter(|also| *also == Some(rows)).count());
     let account = Account::Signatures { wrong, explained };
     let share = explained as f64 / wrong as f64;
-    Some(Suspect { defect: Defect::TablesChangeLate { rows }, account, explained: share })
+    let first = watched.wrong_frames.first()?.n;
+    // All rows, or a frame that has none in front of it: no change came late, the bank is the other one.
+    let is_stale = first == 0 || rows == active.tables.geometry().height();
+    let defect =
+        if is_stale { stale(plan, [active, shadow], first) } else { Defect::TablesChangeLate { rows } };
+    Some(Suspect { defect, account, explained: share })
+}
+
+/// Frame `n` made with the tables of the bank that is not its own.
+fn stale(plan: &BurstPlan, banks: [&Generation; 2], n: u32) -> Defect {
+    let [own, other] =
+        if plan.is_of_shadow(n) { [banks[1], banks[0]] } else { banks }.map(|bank| bank.number);
+    let made_with = vec![MadeWith { factors: Some(other), kernel: Some(other) }];
+    let frames = vec![StaleFrames { frame: plan.content(n).frame, committed: own, made_with }];
+    Defect::StaleTables { rows: Vec::new(), frames }
 }
 
 /// How many first rows those are.

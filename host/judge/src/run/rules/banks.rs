@@ -109,7 +109,7 @@ impl Rules<'_, '_> {
         self.run.board.acknowledge_to(Some(first));
         let streamed = self.stream(&mut right);
         self.came(&kept, streamed)?;
-        right.judge(Rule::Banks)?;
+        self.judge_rows(Rule::Banks, &right)?;
         kept.right = right.with(&self.small, kept.frames(banks, 1), &made);
         Ok(kept)
     }

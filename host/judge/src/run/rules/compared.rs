@@ -2,18 +2,24 @@
 
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use halfrow_model::{BitDepth, Frame, Geometry, row_signature};
 
 use super::small::Small;
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::reference::correct;
+use crate::result::Evidence;
 use crate::run::Generation;
+use crate::run::at_speed::Seen;
+use crate::run::kept::as_found;
 use crate::run::pauses::pauses;
 
 /// What a frame must come back as.
 struct Right {
     number: u16,
+    /// What goes in, and what makes the frame of it; none of a frame that no tables make.
+    of: Option<(Arc<Frame>, Generation)>,
     generation: u8,
     frame: Frame,
     latency: u16,
@@ -29,8 +35,18 @@ pub(super) struct Compared {
     gap_seed: u32,
     frames: VecDeque<NumberedFrame>,
     right: Vec<Right>,
-    /// The first row that is not: its place in its frame, and the frame.
-    pub(super) wrong: Option<(usize, u16)>,
+    /// The first row that does not.
+    pub(super) wrong: Option<WrongRow>,
+}
+
+/// A row that is not as it must be.
+pub(super) struct WrongRow {
+    /// Its place in its frame.
+    pub(super) row: usize,
+    /// Its frame.
+    pub(super) frame: u16,
+    /// What the frame up to it shows, if its samples alone are wrong.
+    pub(super) seen: Option<Seen>,
 }
 
 impl Compared {
@@ -50,7 +66,8 @@ impl Compared {
         for number in numbers {
             let numbered = small.frame(number, tables);
             if let Ok(frame) = correct(tables, kernel, &numbered.frame) {
-                self.expect(small, &numbered, frame, *generation);
+                let of = Some((Arc::clone(&numbered.frame), made.clone()));
+                self.expect(small, &numbered, frame, (*generation, of));
             }
             self.frames.push_back(numbered);
         }
@@ -74,17 +91,24 @@ impl Compared {
         let samples = whole.samples().iter().map(|&sample| sample.min(depth.max())).collect();
         let frame = Frame::new(whole.width(), whole.depth(), whole.phase(), samples).ok()?;
         let mut compared = Self::default();
-        compared.expect(small, &numbered, frame, made.number);
+        compared.expect(small, &numbered, frame, (made.number, None));
         compared.frames.push_back(numbered);
         Some((compared, over as u32))
     }
 
-    /// With `sent` to come back as `frame`, made by `generation`.
-    fn expect(&mut self, small: &Small, sent: &NumberedFrame, frame: Frame, generation: u8) {
+    /// With `sent` to come back as `frame`, made by a generation.
+    fn expect(
+        &mut self,
+        small: &Small,
+        sent: &NumberedFrame,
+        frame: Frame,
+        (generation, of): (u8, Option<(Arc<Frame>, Generation)>),
+    ) {
         let geometry = (frame.width(), frame.height());
         let entered = sent.frame.rows().map(|row| small.names_entered.then(|| row_signature(row))).collect();
         self.right.push(Right {
             number: sent.number,
+            of,
             generation,
             latency: small.latency_of(geometry.0),
             pauses: pauses(self.gap_seed, geometry.0, geometry.1),
@@ -96,14 +120,44 @@ impl Compared {
     /// Whether a row came back as it must, however often it was sent before.
     pub(super) fn is_right(&self, row: &ReturnedRow<'_>) -> bool {
         let right = self.right.iter().find(|right| right.number == row.frame);
-        right.is_some_and(|right| {
-            [row.first_latency, row.last_latency] == [right.latency; 2]
-                && right.generation == row.generation
-                && right.pauses.get(row.row) == Some(&row.pauses)
-                && right.frame.row(row.row) == row.samples
-                && right.entered[row.row].is_none_or(|entered| row.entered == Some(entered))
-        })
+        right.is_some_and(|right| right.is_told_of(row) && right.frame.row(row.row) == row.samples)
     }
+
+    /// What is wrong with a row that is not.
+    fn wrong(&self, row: &ReturnedRow<'_>) -> WrongRow {
+        let mut others = self.right.iter().flat_map(|right| right.frame.rows());
+        let is_other = others.any(|other| other == row.samples);
+        let right = self.right.iter().find(|right| right.number == row.frame && right.is_told_of(row));
+        let right = right.filter(|_| !is_other);
+        WrongRow { row: row.row, frame: row.frame, seen: right.and_then(|right| right.seen(row)) }
+    }
+}
+
+impl Right {
+    /// Whether all that is told of a row but its samples is as it must be.
+    fn is_told_of(&self, row: &ReturnedRow<'_>) -> bool {
+        [row.first_latency, row.last_latency] == [self.latency; 2]
+            && self.generation == row.generation
+            && self.pauses.get(row.row) == Some(&row.pauses)
+            && self.entered[row.row].is_none_or(|entered| row.entered == Some(entered))
+    }
+
+    /// The frame up to `row`, the rows in front of which were right.
+    fn seen(&self, row: &ReturnedRow<'_>) -> Option<Seen> {
+        let (input, made) = self.of.as_ref()?;
+        let made_by = made.upper(row.row + 1)?;
+        let (input, expected) = (upper(input, row.row + 1)?, upper(&self.frame, row.row + 1)?);
+        let mut found = expected.samples().to_vec();
+        found.get_mut(row.row * expected.width()..)?.copy_from_slice(row.samples);
+        let found = as_found(&expected, found)?;
+        Some(Seen { made_by, evidence: Evidence { index: 0, input, expected, found } })
+    }
+}
+
+/// The first `rows` rows of `frame`.
+fn upper(frame: &Frame, rows: usize) -> Option<Frame> {
+    let samples = frame.samples().get(..rows * frame.width())?.to_vec();
+    Frame::new(frame.width(), frame.depth(), frame.phase(), samples).ok()
 }
 
 impl RowTraffic for Compared {
@@ -113,7 +167,7 @@ impl RowTraffic for Compared {
 
     fn returned(&mut self, row: &ReturnedRow<'_>) -> ControlFlow<()> {
         if !self.is_right(row) {
-            self.wrong.get_or_insert((row.row, row.frame));
+            self.wrong = Some(self.wrong.take().unwrap_or_else(|| self.wrong(row)));
         }
         ControlFlow::Continue(())
     }

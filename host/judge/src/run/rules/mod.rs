@@ -34,10 +34,11 @@ use super::parts::{Part, of_height};
 use super::plan::Segment;
 use super::steps::Run;
 use crate::board::{BoardError, Capabilities, Given, RowTiming, Said, Status};
+use crate::compare::Comparison;
 use crate::progress::Step;
 use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Outcome, Rule};
 use crate::verdict::Cause;
-use compared::Compared;
+use compared::{Compared, WrongRow};
 pub(super) use price::price;
 use refused::Refused;
 use small::Small;
@@ -241,22 +242,32 @@ impl<'a, 'run> Rules<'a, 'run> {
     /// Streams frames, which must come back as `compared` has them.
     fn frames(&mut self, rule: Rule, mut compared: Compared) -> Result<(), End> {
         self.stream(&mut compared).map_err(|error| of_rows(rule, error))?;
-        compared.judge(rule)
+        self.judge_rows(rule, &compared)
+    }
+
+    /// Ends with the first row that is not as it must be. Where its samples alone are wrong, no rule is broken, and the diagnosis tells of what.
+    fn judge_rows(&self, rule: Rule, compared: &Compared) -> Result<(), End> {
+        match &compared.wrong {
+            None => Ok(()),
+            Some(WrongRow { row, frame, seen: None }) => Err(other_row(rule, *row, *frame)),
+            Some(WrongRow { frame, seen: Some(seen), .. }) => {
+                let suspects = self.run.diagnose_seen(seen, "rules", *frame);
+                let compared = Comparison::of_frames(&seen.evidence.expected, &seen.evidence.found);
+                let finding = Finding::SamplesDiffer {
+                    differences: compared.differences,
+                    samples: compared.samples,
+                    differing_frames: 1,
+                    frames: 1,
+                    suspect: suspects.first().map(|suspect| Box::new(suspect.defect.clone())),
+                };
+                Err(End::Failed { check: CheckName::Rules, finding, suspects })
+            }
+        }
     }
 
     fn stream(&mut self, compared: &mut Compared) -> Result<(), BoardError> {
         let given = mem::take(&mut self.given);
         self.run.board.stream_given(given, compared)
-    }
-}
-
-impl Compared {
-    /// Ends with the first row that is not as it must be.
-    fn judge(&self, rule: Rule) -> Result<(), End> {
-        match self.wrong {
-            None => Ok(()),
-            Some((row, frame)) => Err(other_row(rule, row, frame)),
-        }
     }
 }
 
