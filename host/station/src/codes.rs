@@ -223,6 +223,7 @@ codes::codes! {
         Record [run] => "run-record-wrong",
         Contradiction [run] => "run-contradicts",
         Unkept [run, sha256] => "run-record-not-kept",
+        Unnamed [run, sha256] => "run-without-row",
         Job [job] => "job-without-run",
         Audit [id] => "audit-contradicts",
         Plan [run] => "run-plan-wrong",

@@ -48,6 +48,17 @@ pub enum Fault {
         /// The hash of its record.
         sha256: String,
     },
+    /// A record is among the evidence, and its run has no row.
+    #[error(
+        "the record {sha256} is of run {run}, which has no row: station.db has lost the run, or is from before it; put a later copy of \
+         station.db back, or move the record out of `blobs` when its run is written down elsewhere"
+    )]
+    Unnamed {
+        /// The run.
+        run: String,
+        /// The hash of its record.
+        sha256: String,
+    },
     /// A job is done, and the run that it is done by is not there.
     #[error("the job {job} is done, and its run is not there; look at it by `halfrow-station job list`")]
     Job {

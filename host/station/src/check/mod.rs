@@ -10,7 +10,7 @@ pub use fault::Fault;
 pub use plant::check_plant;
 
 use crate::plan::plan_hash;
-use crate::record::{Blobs, PlanRecord, Record};
+use crate::record::{Blobs, Piece, PlanRecord, Record, UnnamedRecord};
 use crate::store::{Folder, OpenRun, Rebinding, Rebuilt, Removed, Snapshot, StoreError, TABLES};
 
 /// What was looked at, and what is wrong.
@@ -33,6 +33,8 @@ pub struct Checked {
 /// # Errors
 /// [`StoreError`] when the database cannot be read at all.
 pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
+    // Listed first: a run has a row before it has a record.
+    let pieces = folder.blobs().all()?;
     let snapshot = Snapshot::take(folder)?;
     let mut faults: Vec<_> = snapshot.damage()?.into_iter().map(|said| Fault::Database { said }).collect();
     let (finals, open) = (snapshot.final_runs()?, snapshot.open_runs()?);
@@ -49,8 +51,17 @@ pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
     for (table, key) in TABLES {
         compare(table, snapshot.table(table, key), look.rebuilt.table(table, key), &mut faults)?;
     }
+    faults.extend(without_row(&folder.blobs(), &pieces, &snapshot)?);
     let Look { evidence, pruned, .. } = look;
     Ok(Checked { runs: finals.len(), open: open.len(), evidence, pruned, faults })
+}
+
+/// The records whose runs have no row. One that no row names is no fault where its run has one: it was not committed, and
+/// the run ends with another record.
+fn without_row(blobs: &Blobs, pieces: &[Piece], snapshot: &Snapshot) -> Result<Vec<Fault>, StoreError> {
+    let records = blobs.unnamed_records(pieces, &snapshot.named_evidence()?)?;
+    let lost = snapshot.without_row(records)?.into_iter();
+    Ok(lost.map(|UnnamedRecord { run, sha256, .. }| Fault::Unnamed { run, sha256 }).collect())
 }
 
 /// Something that the tables follow from.

@@ -22,8 +22,10 @@ pub(super) struct Backup {
 }
 
 pub(super) fn backup(arguments: &Backup) -> Result<Exit, Failure> {
-    let Copied { runs, evidence } = kept::backup(&arguments.data.folder(), &arguments.to)?;
-    print(&format!("{runs} runs and {evidence} pieces of evidence are in {}", arguments.to.display()))
+    let copied = kept::backup(&arguments.data.folder(), &arguments.to)?;
+    let Copied { runs, evidence, .. } = copied;
+    let to = arguments.to.display();
+    print(&format!("{runs} runs and {evidence} pieces of evidence are in {to}{}", with_unknown(copied)))
 }
 
 /// Make a station's folder from a backup, when all of it is as it was written
@@ -37,8 +39,20 @@ pub(super) struct Restore {
 }
 
 pub(super) fn restore(arguments: &Restore) -> Result<Exit, Failure> {
-    let Copied { runs, evidence } = kept::restore(&Folder::new(&arguments.from), &arguments.data)?;
-    print(&format!("{runs} runs and {evidence} pieces of evidence were read back, 0 faults found"))
+    let copied = kept::restore(&Folder::new(&arguments.from), &arguments.data)?;
+    let Copied { runs, evidence, unknown } = copied;
+    let rest = with_unknown(copied);
+    print(&format!(
+        "{runs} runs and {evidence} pieces of evidence were read back, {unknown} faults found{rest}"
+    ))
+}
+
+/// What is in a copy beside what its rows name.
+fn with_unknown(Copied { unknown, .. }: Copied) -> String {
+    if unknown == 0 {
+        return String::new();
+    }
+    format!("; with them {unknown} records of runs that no row names, which `halfrow-station check` tells")
 }
 
 /// Remove evidence that no row names, and that of old runs; records and rows are kept for ever

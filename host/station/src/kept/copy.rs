@@ -1,4 +1,4 @@
-//! Copies of a station's folder: the index of one moment, and every piece of evidence that it names.
+//! Copies of a station's folder: the index of one moment, every piece of evidence that it names, and the records that it does not.
 
 use std::collections::BTreeMap;
 use std::fs::{self, DirBuilder, File, Permissions};
@@ -6,8 +6,8 @@ use std::io;
 use std::os::unix::fs::{DirBuilderExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
-use crate::check::check;
-use crate::record::synced;
+use crate::check::{Fault, check};
+use crate::record::{Blobs, Piece, synced};
 use crate::store::{Folder, Snapshot, Store, StoreError};
 
 /// What a copy is called that is being made.
@@ -20,6 +20,8 @@ pub struct Copied {
     pub runs: usize,
     /// Records and attachments.
     pub evidence: usize,
+    /// Records of runs that have no row; what they name is copied, too.
+    pub unknown: usize,
 }
 
 /// A folder that is not copied. Nothing is there then that looks like a copy.
@@ -150,14 +152,16 @@ fn moved_into(aside: &Path, to: &Path) -> io::Result<()> {
     fs::remove_dir(aside)
 }
 
-/// Refuses a folder in which anything is not as it was written, as a fault of the one that is `named`.
+/// Refuses a folder in which anything is not as it was written, as a fault of the one that is `named`. What has lost runs is as it
+/// was written otherwise, and may be all that is left.
 fn sound(folder: &Folder, named: &Folder) -> Result<(), CopyError> {
-    let checked = check(folder)?;
-    match checked.faults.first() {
+    let mut faults = check(folder)?.faults;
+    faults.retain(|fault| !matches!(fault, Fault::Unnamed { .. }));
+    match faults.first() {
         None => Ok(()),
         Some(first) => Err(CopyError::Faulty {
             path: named.path().to_owned(),
-            faults: checked.faults.len(),
+            faults: faults.len(),
             first: first.to_string(),
         }),
     }
@@ -166,6 +170,8 @@ fn sound(folder: &Folder, named: &Folder) -> Result<(), CopyError> {
 fn into(from: &Folder, aside: &Path) -> Result<Copied, CopyError> {
     let to = Folder::new(aside);
     let refused = |source| CopyError::Io { path: aside.to_owned(), source };
+    // Listed first: a run has a row before it has a record.
+    let pieces = from.blobs().all().map_err(StoreError::from)?;
     from.copy_database(&to.database())?;
     let private = |file: File| {
         file.set_permissions(Permissions::from_mode(0o600))?;
@@ -186,22 +192,51 @@ fn into(from: &Folder, aside: &Path) -> Result<Copied, CopyError> {
         taken => taken?,
     };
     let runs = copy.final_runs()?;
+    let evidence = copy_named(&copy, &runs, &from.blobs(), &to.blobs())?;
+    let unknown = copy_unnamed(&copy, &pieces, &from.blobs(), &to.blobs())?;
+    synced(aside).map_err(StoreError::from)?;
+    Ok(Copied { runs: runs.len(), evidence, unknown })
+}
+
+/// Copies what rows name, and returns how many pieces.
+fn copy_named(
+    copy: &Snapshot,
+    runs: &[(String, String)],
+    from: &Blobs,
+    to: &Blobs,
+) -> Result<usize, StoreError> {
     let pruned = copy.pruned()?;
     // A record is never removed.
     let records = runs.iter().map(|(_, hash)| (hash.clone(), i64::MAX));
     let all: BTreeMap<_, _> = copy.attachments()?.into_iter().chain(records).collect();
     let mut evidence = 0;
     for (hash, ended_ms) in &all {
-        match from.blobs().get(hash) {
+        match from.get(hash) {
             Err(error) if error.is_gone() && pruned.explains(hash, *ended_ms) => {}
             bytes => {
-                to.blobs().put(&bytes.map_err(StoreError::from)?).map_err(StoreError::from)?;
+                to.put(&bytes?)?;
                 evidence += 1;
             }
         }
     }
-    synced(aside).map_err(StoreError::from)?;
-    Ok(Copied { runs: runs.len(), evidence })
+    Ok(evidence)
+}
+
+/// Copies the records among `pieces` that no row names, and what they name, and returns how many of them are of runs without a
+/// row.
+fn copy_unnamed(copy: &Snapshot, pieces: &[Piece], from: &Blobs, to: &Blobs) -> Result<usize, StoreError> {
+    let named = copy.named_evidence()?;
+    let records = from.unnamed_records(pieces, &named)?;
+    for record in &records {
+        to.put(&from.get(&record.sha256)?)?;
+        for hash in record.attachments.iter().filter(|hash| !named.contains(*hash)) {
+            match from.get(hash) {
+                Err(error) if error.is_gone() => {}
+                bytes => drop(to.put(&bytes?)?),
+            }
+        }
+    }
+    Ok(copy.without_row(records)?.len())
 }
 
 /// What is wrong with the database of the copy is wrong with the one that it is of.

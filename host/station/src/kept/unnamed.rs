@@ -6,10 +6,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use serde::Deserialize;
-
 use crate::record::{BlobError, Blobs, Piece};
-use crate::store::{Store, StoreError};
+use crate::store::{Snapshot, Store, StoreError};
 
 /// How long it is kept, for somebody who asks what happened.
 const KEPT: Duration = Duration::from_secs(86_400);
@@ -57,41 +55,14 @@ pub fn prune_unnamed(store: &mut Store, operator: &str) -> Result<Unnamed, Store
 
 /// The evidence that may go.
 fn old_pieces(store: &Store, blobs: &Blobs) -> Result<Vec<Piece>, StoreError> {
-    let named = store.named_evidence()?;
-    let unnamed: Vec<_> = blobs.all()?.into_iter().filter(|piece| !named.contains(&piece.hash)).collect();
-    let mut kept = BTreeSet::new();
-    for Piece { hash, .. } in &unnamed {
-        if let Some(names) = named_by_record(&blobs.path(hash))? {
-            kept.insert(hash.clone());
-            kept.extend(names);
-        }
-    }
-    let may_go = |piece: &Piece| is_old(piece.modified) && !kept.contains(&piece.hash);
-    Ok(unnamed.into_iter().filter(may_go).collect())
-}
-
-/// The evidence that this file names, if it is a record, of this or another version.
-fn named_by_record(path: &Path) -> Result<Option<Vec<String>>, BlobError> {
-    #[derive(Deserialize)]
-    struct Record {
-        #[serde(rename = "schema")]
-        _schema: u32,
-        #[serde(rename = "run")]
-        _run: Run,
-        attachments: Vec<Attachment>,
-    }
-    #[derive(Deserialize)]
-    struct Run {
-        #[serde(rename = "id")]
-        _id: String,
-    }
-    #[derive(Deserialize)]
-    struct Attachment {
-        sha256: String,
-    }
-    let bytes = fs::read(path).map_err(|source| BlobError::Read { path: path.to_owned(), source })?;
-    let record = serde_json::from_slice::<Record>(&bytes).ok();
-    Ok(record.map(|record| record.attachments.into_iter().map(|one| one.sha256).collect()))
+    let named = Snapshot::take(store.folder())?.named_evidence()?;
+    let all = blobs.all()?;
+    let records = blobs.unnamed_records(&all, &named)?.into_iter();
+    let kept: BTreeSet<_> =
+        records.flat_map(|record| [vec![record.sha256], record.attachments].concat()).collect();
+    let may_go =
+        |piece: &Piece| is_old(piece.modified) && !named.contains(&piece.hash) && !kept.contains(&piece.hash);
+    Ok(all.into_iter().filter(may_go).collect())
 }
 
 /// What a run wrote down that is over, or that no row names.

@@ -116,7 +116,8 @@ impl Blobs {
         }
     }
 
-    /// Every piece of evidence that is there, whether a row names it or not. What has no hash for a name is none.
+    /// Every piece of evidence that is there, whether a row names it or not. What has no hash for a name is none, nor is what
+    /// goes meanwhile.
     ///
     /// # Errors
     /// [`BlobError`] when the folder cannot be read.
@@ -126,6 +127,9 @@ impl Blobs {
             move |source| BlobError::Folder { path, source }
         };
         let mut pieces = Vec::new();
+        if !self.folder.exists() {
+            return Ok(pieces);
+        }
         for folder in fs::read_dir(&self.folder).map_err(refused(&self.folder))? {
             let folder = folder.map_err(refused(&self.folder))?.path();
             if !folder.is_dir() {
@@ -133,9 +137,15 @@ impl Blobs {
             }
             for entry in fs::read_dir(&folder).map_err(refused(&folder))? {
                 let entry = entry.map_err(refused(&folder))?;
-                let (path, known) = (entry.path(), entry.metadata().map_err(refused(&folder))?);
                 let hash = entry.file_name().to_string_lossy().into_owned();
-                if known.is_file() && is_hash(&hash) && path == self.path(&hash) {
+                if !is_hash(&hash) || entry.path() != self.path(&hash) {
+                    continue;
+                }
+                let known = match entry.metadata() {
+                    Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
+                    known => known.map_err(refused(&folder))?,
+                };
+                if known.is_file() {
                     let modified = known.modified().map_err(refused(&folder))?;
                     pieces.push(Piece { hash, bytes: known.len(), modified });
                 }

@@ -3,6 +3,7 @@
 mod blobs;
 mod conclude;
 mod step;
+mod unnamed;
 
 use halfrow::Verdict;
 use halfrow::result::FileHash;
@@ -15,6 +16,7 @@ pub use step::{
     BoardSeen, DeviceSeen, Measured, MeasuredOutcome, RunCause, StepOutcome, StepRecord, SuspectRecord,
     judged,
 };
+pub(crate) use unnamed::UnnamedRecord;
 
 /// What a PASS says when nobody could tell whether the board has the serial number that was scanned.
 pub const IDENTITY_NOT_CHECKED: &str = "identity not checked";

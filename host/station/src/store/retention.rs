@@ -10,6 +10,7 @@ use super::{Folder, Snapshot, Store, StoreError, statements as sql};
 use crate::clock;
 use crate::ids;
 use crate::ids::NoRandomness;
+use crate::record::UnnamedRecord;
 
 impl Folder {
     /// Where it is.
@@ -30,6 +31,27 @@ impl Snapshot {
     /// The hashes of all attachments, each with when the last run ended that has it, in milliseconds since 1970, UTC.
     pub(crate) fn attachments(&self) -> Result<Vec<(String, i64)>, StoreError> {
         self.rows("to tell its evidence", sql::ATTACHMENTS, &[], |row| Ok((row.get(0)?, row.get(1)?)))
+    }
+
+    /// The hashes of all evidence that a row names, records among it.
+    pub(crate) fn named_evidence(&self) -> Result<BTreeSet<String>, StoreError> {
+        let named =
+            self.rows("to tell what evidence has a row", sql::NAMED_EVIDENCE, &[], |row| row.get(0))?;
+        Ok(named.into_iter().collect())
+    }
+
+    /// Those of `records` whose runs have no row, not even an open one.
+    pub(crate) fn without_row(
+        &self,
+        mut records: Vec<UnnamedRecord>,
+    ) -> Result<Vec<UnnamedRecord>, StoreError> {
+        if !records.is_empty() {
+            let over = self.final_runs()?.into_iter().map(|(run, _)| run);
+            let known: BTreeSet<_> =
+                over.chain(self.open_runs()?.into_iter().map(|open| open.run.id)).collect();
+            records.retain(|record| !known.contains(&record.run));
+        }
+        Ok(records)
     }
 
     /// What evidence was removed since it was old.
@@ -64,17 +86,6 @@ impl Store {
             values![before_ms],
             |row| row.get(0),
         )
-    }
-
-    /// The hashes of all evidence that a row names.
-    pub(crate) fn named_evidence(&self) -> Result<BTreeSet<String>, StoreError> {
-        let named = Snapshot::take(&self.folder)?.rows(
-            "to tell what evidence has a row",
-            sql::NAMED_EVIDENCE,
-            &[],
-            |row| row.get(0),
-        )?;
-        Ok(named.into_iter().collect())
     }
 
     /// Enters in the audit that all of these are removed, and why.

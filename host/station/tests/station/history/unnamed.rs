@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, SystemTime};
 
-use halfrow_station::check::check;
-use halfrow_station::kept::{Unnamed, prune_unnamed};
+use halfrow_station::check::{Fault, check};
+use halfrow_station::kept::{Copied, Unnamed, backup, prune_unnamed, restore};
 use halfrow_station::run::recover;
 use halfrow_station::store::Folder;
 
@@ -88,6 +88,46 @@ fn a_record_that_no_row_names_stays_and_what_it_names() {
     for hash in &theirs {
         made.folder().blobs().get(hash).unwrap();
     }
+}
+
+/// A database that is put back from last night lies beside today's records, and goes on without their runs.
+#[test]
+fn a_record_whose_run_has_no_row_is_told_and_is_in_every_copy() {
+    let mut made = Made::new();
+    let run = made.run(&Run { evidence: vec!["seen"], ..Run::of("S1", End::Fail(&["memory"])) });
+    let [seen] = &query(made.as_ref(), "SELECT sha256 FROM attachment")[..] else { panic!() };
+    let [record] = &query(made.as_ref(), "SELECT record_sha256 FROM run")[..] else { panic!() };
+    let folder = made.closed();
+    fs::copy(Made::new().closed().path().join("station.db"), folder.path().join("station.db")).unwrap();
+    let place = tempfile::tempdir().unwrap();
+    let [copy, again] = ["copy", "again"].map(|name| place.path().join(name));
+    let copied = Copied { runs: 0, evidence: 0, unknown: 1 };
+    assert_eq!(backup(&Folder::new(folder.path()), &copy).unwrap(), copied);
+    assert_eq!(restore(&Folder::new(&copy), &again).unwrap(), copied);
+    for place in [folder.path(), &copy, &again] {
+        let checked = check(&Folder::new(place)).unwrap();
+        let [Fault::Unnamed { run: told, sha256 }] = &checked.faults[..] else { panic!("{checked:?}") };
+        assert_eq!((told, sha256), (&run, record));
+        Folder::new(place).blobs().get(seen).unwrap();
+    }
+    let (code, said, _) = did(&folder, &["check"]);
+    assert!(code == 3 && said.contains(&run) && said.contains(record), "{said}");
+    let copied = did(&folder, &["backup", place.path().join("third").to_str().unwrap()]).1;
+    assert!(copied.contains("1 records of runs that no row names"), "{copied}");
+}
+
+/// The power went between the record and its row: the next start ends the run as ERROR, with another record.
+#[test]
+fn a_record_that_came_to_no_row_is_no_fault() {
+    let mut made = Made::new();
+    let run = made.run(&Run::of("S1", End::Open));
+    let left = serde_json::json!({ "schema": 1, "run": { "id": run }, "attachments": [] }).to_string();
+    made.folder().blobs().put(left.as_bytes()).unwrap();
+    is_sound(&made.folder());
+    recover(&mut made.store).unwrap();
+    is_sound(&made.folder());
+    let place = tempfile::tempdir().unwrap();
+    assert_eq!(backup(&made.folder(), &place.path().join("copy")).unwrap().unknown, 0);
 }
 
 #[test]

@@ -1,0 +1,66 @@
+//! Records that no row names.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io;
+
+use serde::Deserialize;
+
+use super::{BlobError, Blobs, Piece};
+
+/// A record, of this or another version, that no row names. Where its run has a row, its program ended between the two;
+/// where it has none, this is all that tells of it.
+#[derive(Clone, Debug)]
+pub(crate) struct UnnamedRecord {
+    /// Its hash.
+    pub sha256: String,
+    /// The run.
+    pub run: String,
+    /// The hashes of the evidence that it names.
+    pub attachments: Vec<String>,
+}
+
+impl Blobs {
+    /// The records among `pieces` that are not among those that rows have `named`. What is gone by now was none.
+    ///
+    /// # Errors
+    /// [`BlobError`] when a piece cannot be read.
+    pub(crate) fn unnamed_records(
+        &self,
+        pieces: &[Piece],
+        named: &BTreeSet<String>,
+    ) -> Result<Vec<UnnamedRecord>, BlobError> {
+        let unnamed = pieces.iter().filter(|piece| !named.contains(&piece.hash));
+        unnamed.filter_map(|piece| self.as_record(&piece.hash).transpose()).collect()
+    }
+
+    fn as_record(&self, hash: &str) -> Result<Option<UnnamedRecord>, BlobError> {
+        let path = self.path(hash);
+        let bytes = match fs::read(&path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+            read => read.map_err(|source| BlobError::Read { path, source })?,
+        };
+        let Ok(Record { run, attachments, .. }) = serde_json::from_slice(&bytes) else { return Ok(None) };
+        let attachments = attachments.into_iter().map(|one| one.sha256).collect();
+        Ok(Some(UnnamedRecord { sha256: hash.to_owned(), run: run.id, attachments }))
+    }
+}
+
+/// What records of every version have.
+#[derive(Deserialize)]
+struct Record {
+    #[serde(rename = "schema")]
+    _schema: u32,
+    run: Run,
+    attachments: Vec<Attachment>,
+}
+
+#[derive(Deserialize)]
+struct Run {
+    id: String,
+}
+
+#[derive(Deserialize)]
+struct Attachment {
+    sha256: String,
+}
