@@ -315,7 +315,8 @@ fn whole(
 fn limit(name: &Spanned<String>, text: &LimitText, steps: &[Step]) -> Result<Limit, Fault> {
     let at = name.span().start;
     let Some(measurement) = Measurement::named(name.get_ref()) else {
-        let known: Vec<_> = MEASUREMENTS.iter().map(|known| known.name).collect();
+        let names = MEASUREMENTS.iter().map(|known| known.name);
+        let known: Vec<_> = names.filter(|name| *name != SAMPLES_DIFFERING).collect();
         let what = format!("nothing is measured that is called {}", name.get_ref());
         return Err(Fault::wrong(at, what, format!("name one of {}", known.join(", "))));
     };

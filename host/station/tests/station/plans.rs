@@ -196,7 +196,8 @@ const BAD: [(&str, &str, &str); 37] = [
     (
         "\"latency.clocks\" = { most = 1004",
         "\"latency.clock\" = { most = 1004",
-        "plan.toml:39: nothing is measured that is called latency.clock; name",
+        "plan.toml:39: nothing is measured that is called latency.clock; name one of run.seconds, link.round_trip, link.to_board, link.to_host, \
+         link.together, link.retries, latency.clocks, latency.microseconds, verify.retries, verify.seconds",
     ),
     (
         "\"run.seconds\" = { most = 60 }",
