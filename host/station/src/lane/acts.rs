@@ -134,7 +134,10 @@ impl Common<'_> {
         }
         let Plan { production, builds, device, .. } = self.plan;
         if production.require_hardware && kind != BoardKind::Hardware {
-            Some(Try::refused(Saying::HardwareAlone { kind: kind.to_string() }, "Check the lane's target."))
+            let refused =
+                Try::refused(Saying::HardwareAlone { kind: kind.to_string() }, "Check the lane's target.");
+            // As `halfrow verify` ends, where hardware was required and this was none.
+            Some(Try { exit: Exit::NothingJudged, ..refused })
         } else if !builds.contains(&seen.build) {
             let (build, builds) = (seen.build.clone(), builds.join(", "));
             Some(Try::refused(

@@ -75,7 +75,7 @@ fn a_build_that_the_plan_does_not_name_is_refused_before_a_frame_is_sent() {
     let did = station.run("CAT00001", "mock");
     assert_eq!(
         (did.code, station.query("SELECT cause FROM run")),
-        (Some(6), vec!["refused".to_owned()]),
+        (Some(5), vec!["refused".to_owned()]),
         "{did:?}"
     );
     assert!(did.said.contains("the board is a mock, and the plan takes hardware alone"), "{did:?}");
