@@ -176,6 +176,7 @@ codes::codes! {
         Malformed [sha256] => "published-plan-malformed",
         Damaged [sha256, found] => "published-plan-damaged",
         Folder [path] => "plan-folder-unusable",
+        Uncopied [path] => "plan-not-copied",
         Unwritten => "plan-not-kept",
     }
     FetchError {
@@ -253,6 +254,7 @@ codes::codes! {
         UnderWay [path] => "copy-of-runs-under-way",
         Io [path] => "copy-not-written",
         Faulty [path, faults, first] => "copy-faulty",
+        = Plans,
         = Store,
     }
     ExportError {

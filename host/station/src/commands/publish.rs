@@ -247,9 +247,13 @@ pub(super) fn fetch_at_start(path: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     let kept = Kept::of(&published.data);
-    let has_all = published.plans.iter().all(|plan| kept.statement(plan, published.trusts()).is_some());
-    if !has_all {
-        return all_fetched(&kept, offers(&published));
+    let is_missing = |plan: &&PlanName| kept.statement(plan, published.trusts()).is_none();
+    let missing: Vec<_> = published.plans.iter().filter(is_missing).map(PlanName::to_string).collect();
+    if !missing.is_empty() {
+        let (missing, folder) = (missing.join(", "), kept.folder().display());
+        return all_fetched(&kept, offers(&published)).inspect_err(|_| {
+            console::error(&format_args!("no copy of {missing} is in {folder}, so the plant is needed"));
+        });
     }
     let Some(offers) = offers_in_time(published) else {
         let seconds = IN_TIME.as_secs();

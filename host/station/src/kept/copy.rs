@@ -1,4 +1,5 @@
-//! Copies of a station's folder: the index of one moment, every piece of evidence that it names, and the records that it does not.
+//! Copies of a station's folder: the index of one moment, every piece of evidence that it names, the records that it does not,
+//! and the plans of the plant.
 
 use std::collections::BTreeMap;
 use std::fs::{self, DirBuilder, File, Permissions};
@@ -7,6 +8,7 @@ use std::os::unix::fs::{DirBuilderExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
 use crate::check::{Fault, check};
+use crate::published::{BundleError, Kept};
 use crate::record::{Blobs, Piece, synced};
 use crate::store::{Folder, Snapshot, Store, StoreError};
 
@@ -57,6 +59,9 @@ pub enum CopyError {
         /// The first of them.
         first: String,
     },
+    /// The plans of the plant.
+    #[error(transparent)]
+    Plans(#[from] BundleError),
     /// A store.
     #[error(transparent)]
     Store(#[from] StoreError),
@@ -179,10 +184,11 @@ fn into(from: &Folder, aside: &Path) -> Result<Copied, CopyError> {
     };
     File::open(to.database()).and_then(private).map_err(refused)?;
     let spools = to.spools();
-    let blobs = aside.join("blobs");
-    for folder in [&spools, &blobs] {
+    let (blobs, plans) = (aside.join("blobs"), Kept::of(aside));
+    for folder in [&spools, &blobs, plans.folder()] {
         private_folder(folder).map_err(refused)?;
     }
+    Kept::of(from.path()).copy_to(&plans)?;
     let copy = match Snapshot::take(&to) {
         Err(StoreError::Older { .. }) => {
             // Whoever opens it to write brings it up to date.

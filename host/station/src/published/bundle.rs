@@ -69,6 +69,14 @@ pub enum BundleError {
         /// The system's reason.
         source: io::Error,
     },
+    /// What was kept cannot be read to be copied.
+    #[error("{} cannot be read, which the plans of the plant are kept in; check who may read it", path.display())]
+    Uncopied {
+        /// The file or the folder.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
     /// One of its files cannot.
     #[error(transparent)]
     Unwritten(#[from] WriteAsideError),
@@ -164,7 +172,7 @@ fn check_name(name: &str) -> Result<(), BundleError> {
 }
 
 /// Writes the file unless it is there with just this.
-fn keep(path: &Path, content: &[u8]) -> Result<(), BundleError> {
+pub(super) fn keep(path: &Path, content: &[u8]) -> Result<(), BundleError> {
     if fs::read(path).is_ok_and(|there| there == content) {
         return Ok(());
     }

@@ -1,13 +1,14 @@
 //! The plans that a station has fetched.
 
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use halfrow::frames::written_aside::write_aside;
 use halfrow::result::sha256;
 use serde::{Deserialize, Serialize};
 
-use super::bundle::PLAN;
+use super::bundle::{PLAN, keep};
 use super::{BundleError, PublicKey, Statement};
 use crate::history::PlanName;
 use crate::plan::Plan;
@@ -51,6 +52,30 @@ impl Kept {
         self.folder.join(&statement.sha256).join(PLAN)
     }
 
+    /// Copies all of it to `other`, which has nothing yet. What holds comes before the plans, which are there before it is said that they
+    /// hold.
+    ///
+    /// # Errors
+    /// [`BundleError`]
+    pub(crate) fn copy_to(&self, other: &Self) -> Result<(), BundleError> {
+        if !self.folder.exists() {
+            return Ok(());
+        }
+        let mut folders = vec![self.folder.clone()];
+        while let Some(folder) = folders.pop() {
+            let refused = |source| BundleError::Uncopied { path: folder.clone(), source };
+            for entry in fs::read_dir(&folder).map_err(refused)? {
+                let path = entry.map_err(refused)?.path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else if let Ok(name) = path.strip_prefix(&self.folder) {
+                    copy(&path, &other.folder.join(name))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Whether the plan is here with every file that it names, as it was published.
     pub(super) fn is_whole(&self, statement: &Statement) -> bool {
         Plan::load(&self.file(statement)).is_ok_and(|plan| plan.sha256 == statement.sha256)
@@ -60,7 +85,8 @@ impl Kept {
         serde_json::from_slice(&fs::read(self.holds(plan)).ok()?).ok()
     }
 
-    pub(super) fn folder(&self) -> &Path {
+    /// Where they are.
+    pub(crate) fn folder(&self) -> &Path {
         &self.folder
     }
 
@@ -73,5 +99,14 @@ impl Kept {
     /// Where it is kept what holds; a product may be called what no file can be.
     fn holds(&self, PlanName { product, plan }: &PlanName) -> PathBuf {
         self.folder.join(sha256([format!("{product}\0{plan}")]) + ".json")
+    }
+}
+
+/// Copies a file that may be an unfinished one, and gone by now.
+fn copy(from: &Path, to: &Path) -> Result<(), BundleError> {
+    match fs::read(from) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        Err(source) => Err(BundleError::Uncopied { path: from.to_owned(), source }),
+        Ok(content) => keep(to, &content),
     }
 }
