@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use halfrow_station::plan::limits::{Blame, MEASUREMENTS};
+use halfrow_station::plan::limits::{Blame, MEASUREMENTS, Measurement};
 use halfrow_station::plan::{Act, JSON_SCHEMA, Plan, Seed};
 use serde_json::Value;
 
@@ -316,4 +316,21 @@ fn the_plan_of_the_page_is_one_by_the_schema() {
     let errors: Vec<_> =
         validator.iter_errors(&as_json(plan).unwrap()).map(|error| error.to_string()).collect();
     assert_eq!(errors, Vec::<String>::new());
+}
+
+/// Which limits there are, and whom each blames, is told on the page and to whoever writes a plan with the schema.
+#[test]
+fn the_page_and_the_schema_tell_what_can_have_a_limit() {
+    let page = include_str!("../../../../docs/station.md");
+    let schema: Value = serde_json::from_str(JSON_SCHEMA).unwrap();
+    let limits = &schema["$defs"]["limits"]["properties"];
+    let settable = MEASUREMENTS.iter().filter(|known| known.name != "frames.samples_differing");
+    let mut table = String::new();
+    for Measurement { name, unit, made_by, blames, meaning } in settable {
+        let (by, blames) = (serde_json::to_value(made_by).unwrap(), blames.name());
+        let by = by.as_str().unwrap();
+        table += &format!("| `{name}` | {unit} | {by} | {blames} | {meaning} |\n");
+        assert_eq!(limits[name]["description"], format!("{meaning} (blames: {blames})"));
+    }
+    assert!(page.contains(&format!("|---|---|---|---|---|\n{table}\n")), "docs/station.md has not\n{table}");
 }
