@@ -180,3 +180,35 @@ fn a_board_that_labgrid_lends_is_named_by_its_place() {
         "station.toml:24: lane 1 has the board `labgrid:cam-1` already; give each lane a board of its own"
     );
 }
+
+/// The words of `text` between backticks.
+fn ticked(text: &str) -> Vec<&str> {
+    text.split('`').skip(1).step_by(2).collect()
+}
+
+/// Every key that is taken where `text` has the key `nix`.
+fn known(text: &str) -> Vec<String> {
+    let said = load(text).map(drop).unwrap_err();
+    assert!(said.contains("unknown field `nix`"), "{said}");
+    let expected = said.split("expected").nth(1).unwrap().split(';').next().unwrap();
+    ticked(expected).into_iter().map(str::to_owned).collect()
+}
+
+/// The error about a key that is none sends its reader there.
+#[test]
+fn the_page_names_every_key() {
+    let page = include_str!("../../../../docs/station.md");
+    let table = page.split("\n### All settings\n").nth(1).unwrap().split("\n#").next().unwrap();
+    let mut named = vec!["schema".to_owned()];
+    for row in table.lines().filter(|line| line.starts_with("| `[")) {
+        let cells: Vec<_> = row.split(" | ").collect();
+        for head in ticked(cells[0]) {
+            assert_eq!(known(&format!("schema = 1\n{head}\nnix = 1\n")), ticked(cells[1]), "{head}");
+            named.push(head.trim_matches(['[', ']']).to_owned());
+        }
+    }
+    let mut all = known("nix = 1\n");
+    all.sort();
+    named.sort();
+    assert_eq!(named, all);
+}
