@@ -12,6 +12,8 @@ use crate::runs::bench::Station;
 
 const SCHEMA: &str = include_str!("../../schema/station-1.json");
 
+const RECORD: &str = include_str!("../../schema/record-1.json");
+
 fn did(arguments: &[&str]) -> Did {
     Command::new(program()).args(arguments).output().unwrap().into()
 }
@@ -143,9 +145,73 @@ fn a_document_with_a_key_that_the_schema_does_not_know_is_refused() {
     document(&Did { said: did.said.replacen("\"codes\"", "\"moons\"", 2), ..did });
 }
 
+/// What a record has that is otherwise than its schema says, or a report in it than that of `halfrow`.
+fn misread(record: &Value) -> Vec<String> {
+    let [schema, report] = [RECORD, include_str!("../../../schema/halfrow-1.json")]
+        .map(|schema| jsonschema::validator_for(&serde_json::from_str(schema).unwrap()).unwrap());
+    let steps = record["steps"].as_array().into_iter().flatten();
+    let reports = steps.filter(|step| step["kind"] == "verify" && step["evidence"].is_object());
+    let wrong = reports.flat_map(|step| report.iter_errors(&step["evidence"]));
+    schema.iter_errors(record).chain(wrong).map(|error| error.to_string()).collect()
+}
+
+/// Of a PASS with every kind of step, a FAIL, an ERROR and a run that was found open.
+#[test]
+fn every_record_is_as_its_schema_says() {
+    let link = "[[step]]\nkind = \"link\"\nseconds = 0.01\n[[step]]";
+    let limits = "[limits]\n\"run.seconds\" = { most = 60 }\n";
+    let station = Station::with(&format!("{}{limits}", PLAN.replace("[[step]]", link)));
+    let boards = ["mock,serial=17", "mock,fault=stuck-data", "tcp:127.0.0.1:1", "mock"];
+    for (serial, board) in ["CAT00001", "CAT00002", "CAT00003", "CAT00004"].into_iter().zip(boards) {
+        station.run(serial, board);
+    }
+    let last = "UPDATE run SET state = 'open', verdict = NULL, cause = NULL, exit_code = NULL, headline = NULL, ended_ms = NULL,
+                record_sha256 = NULL WHERE unit_id = (SELECT id FROM unit WHERE serial = 'CAT00004')";
+    let database = rusqlite::Connection::open(station.store().database()).unwrap();
+    assert_eq!(database.execute(last, []).unwrap(), 1);
+    station.run("CAT00005", "mock");
+    let data = station.data().display().to_string();
+    let mut causes = BTreeSet::new();
+    for run in station.query("SELECT id FROM run") {
+        let record: Value = serde_json::from_str(&did(&["export", &run, "--data", &data]).said).unwrap();
+        assert_eq!(misread(&record), Vec::<String>::new(), "{record:#}");
+        causes.insert(record["conclusion"]["cause"].as_str().unwrap().to_owned());
+        // The control: a key less, or more.
+        for key in record.as_object().unwrap().keys() {
+            let mut less = record.clone();
+            less.as_object_mut().unwrap().remove(key);
+            assert_eq!(misread(&less).len(), 1, "{key}");
+        }
+        let mut more = record;
+        more["run"]["moon"] = 1.into();
+        assert_eq!(misread(&more).len(), 1);
+    }
+    assert_eq!(causes.into_iter().collect::<Vec<_>>(), ["board", "crash", "link", "none"]);
+}
+
+/// Records are kept for ever: the schema takes those of every release.
+#[test]
+fn the_records_of_earlier_programs_are_as_the_schema_says() {
+    let released = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/station/history/released");
+    let mut records = 0;
+    for release in fs::read_dir(released).unwrap().map(|entry| entry.unwrap().path().join("blobs")) {
+        let folders = fs::read_dir(release).into_iter().flatten();
+        for file in folders.flat_map(|folder| fs::read_dir(folder.unwrap().path()).unwrap()) {
+            let bytes = fs::read(file.unwrap().path()).unwrap();
+            let Ok(record) = serde_json::from_slice::<Value>(&bytes) else { continue };
+            if record.get("conclusion").is_some() {
+                assert_eq!(misread(&record), Vec::<String>::new(), "{record:#}");
+                records += 1;
+            }
+        }
+    }
+    assert!(records >= 6, "{records}");
+}
+
 #[test]
 fn schema_and_pages_are_those_in_the_repository_and_no_code_stands_twice() {
     assert_eq!(did(&["schema"]).said, SCHEMA);
+    assert_eq!(did(&["schema", "record"]).said, RECORD);
     assert_eq!(did(&["codes"]).said, include_str!("../../../../docs/STATION-CODES.md"));
     assert_eq!(did(&["commands"]).said, include_str!("../../../../docs/STATION-COMMANDS.md"));
     let codes = document(&did(&["codes", "--json"]));
