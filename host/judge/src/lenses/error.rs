@@ -63,6 +63,14 @@ pub enum LensContentError {
         /// The keys that it goes by.
         keys: String,
     },
+    /// Two keys that differ by case or punctuation alone.
+    #[error("`{second}` says again what `{first}` says; leave one of them")]
+    Twice {
+        /// The key that is there first.
+        first: String,
+        /// The other one.
+        second: String,
+    },
     /// A value of the wrong kind.
     #[error("`{key}` is {found}, not {wanted}; correct it, or calibrate again")]
     Kind {

@@ -5,6 +5,8 @@
 
 use halfrow_model::{CalibratedLens, Profile};
 
+use saphyr::Yaml;
+
 use super::tree::{Keys, documents, number, numbers, without_header};
 use super::{LensContentError, LensFile, LensModel, picture_size};
 use crate::tables::text::quoted;
@@ -26,7 +28,20 @@ const OUR_NAMES: [&str; 7] =
 pub(super) fn parse(text: &str) -> Result<LensFile, LensContentError> {
     let text = without_header(text);
     let documents = documents(&text)?;
-    let root = documents.first().and_then(Keys::of).ok_or(LensContentError::NoKeys)?;
+    // A line `---` at the end begins a document of nothing.
+    let documents: Vec<_> = documents.iter().filter(|document| !document.is_null()).collect();
+    let lenses = documents.iter().map(|document| lens(document)).collect::<Result<Vec<_>, _>>()?;
+    let first = lenses.first().ok_or(LensContentError::NoKeys)?;
+    // A camera that tells its calibration again and again has one lens.
+    if lenses.iter().any(|lens| lens != first) {
+        return Err(LensContentError::Cameras(format!("{} documents", lenses.len())));
+    }
+    Ok(first.clone())
+}
+
+/// The one lens that a document describes.
+fn lens(document: &Yaml<'_>) -> Result<LensFile, LensContentError> {
+    let root = Keys::of(document).ok_or(LensContentError::NoKeys)?;
     let cameras = root.cameras();
     match cameras.as_slice() {
         [] => camera(&root),
@@ -39,6 +54,8 @@ pub(super) fn parse(text: &str) -> Result<LensFile, LensContentError> {
 }
 
 fn camera(keys: &Keys<'_>) -> Result<LensFile, LensContentError> {
+    let names: [&[&str]; 7] = [&MATRIX, &FOUR_INTRINSICS, &DISTORTION, &MODELS, &SIZE, &WIDTH, &HEIGHT];
+    names.concat().into_iter().try_for_each(|name| keys.check_once(name))?;
     check_model(keys)?;
     let [fx, skew, cx, fy, cy] = matrix(keys)?;
     if fx == 0.0 || fy == 0.0 {

@@ -66,6 +66,17 @@ impl<'a> Keys<'a> {
         names.iter().find_map(found)
     }
 
+    /// Refuses two keys that are `name`, of which nobody could tell which one is meant.
+    pub(super) fn check_once(&self, name: &str) -> Result<(), LensContentError> {
+        let mut found = self.0.iter().map(|(key, _)| *key).filter(|key| bare(key) == bare(name));
+        match (found.next(), found.next()) {
+            (Some(first), Some(second)) => {
+                Err(LensContentError::Twice { first: quoted(first), second: quoted(second) })
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// As [`Self::find`], for `what` that must be there.
     pub(super) fn get(
         &self,

@@ -223,3 +223,24 @@ fn a_file_that_cannot_be_read_is_named() {
     let refused = LensFile::read(&path).unwrap_err();
     assert!(matches!(refused, LensFileError::Content { source: LensContentError::Xml, .. }));
 }
+
+#[test]
+fn a_file_of_two_lenses_is_taken_for_neither() {
+    let other = CAMERA_INFO.replace("552.25", "900.5");
+    let two = format!("{CAMERA_INFO}\n---\n{other}");
+    assert_eq!(refusal(&two), LensContentError::Cameras("2 documents".to_owned()));
+    // `rostopic echo` ends each message with that line, and says the same of a camera again and again.
+    for again in [format!("{CAMERA_INFO}\n---\n"), format!("{CAMERA_INFO}\n---\n{CAMERA_INFO}\n---\n")] {
+        assert_eq!(LensFile::parse(&again), LensFile::parse(CAMERA_INFO));
+    }
+}
+
+#[test]
+fn a_key_that_is_there_in_two_spellings_is_refused() {
+    says(
+        CAMERA_INFO,
+        "distortion_model: equidistant",
+        "distortion_model: equidistant\nDistortionModel: equidistant",
+        "`DistortionModel` says again what `distortion_model` says; leave one of them",
+    );
+}

@@ -148,6 +148,7 @@ codes! {
         Syntax [line, column, reason] => "lens-file-malformed",
         NoKeys => "lens-file-without-keys",
         Missing [what, keys] => "lens-key-missing",
+        Twice [first, second] => "lens-key-twice",
         Kind [key, found, wanted] => "lens-value-of-wrong-kind",
         Cameras (found) => "lens-file-of-several-cameras",
         Model [name] => "lens-model-unknown",
