@@ -98,7 +98,7 @@ fn decode_fitted(bytes: &[u8], how: &ReadOptions) -> Result<Decoded, DecodeError
     if let Some(geometry) = how.raw {
         raw::decode(bytes, geometry, how).map(Decoded::from)
     } else if bytes.starts_with(png::MAGIC) {
-        png::picture(bytes)?.into_frame(how)
+        png::picture(bytes, how.size)?.into_frame(how)
     } else if tiff::MAGICS.iter().any(|magic| bytes.starts_with(magic)) {
         tiff::picture(bytes, how)?.into_frame(how)
     } else if bytes.starts_with(pgm::MAGIC) {

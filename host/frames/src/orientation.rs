@@ -26,6 +26,11 @@ impl Orientation {
         self.0.to_exif().into()
     }
 
+    /// The columns and rows that a picture is seen with, of those that it lies in its file with.
+    pub(super) fn seen(self, (width, height): (usize, usize)) -> (usize, usize) {
+        if is_quarter_turn(self.0) { (height, width) } else { (width, height) }
+    }
+
     /// The same for pictures.
     pub(super) fn turn(self) -> metadata::Orientation {
         self.0
@@ -37,4 +42,10 @@ impl Default for Orientation {
     fn default() -> Self {
         Self(metadata::Orientation::NoTransforms)
     }
+}
+
+/// Whether rows become columns.
+pub(super) fn is_quarter_turn(orientation: metadata::Orientation) -> bool {
+    use metadata::Orientation::{Rotate90, Rotate90FlipH, Rotate270, Rotate270FlipH};
+    matches!(orientation, Rotate90 | Rotate90FlipH | Rotate270 | Rotate270FlipH)
 }

@@ -10,11 +10,11 @@ use std::path::Path;
 
 use image::codecs::bmp::BmpDecoder;
 use image::codecs::webp::WebPDecoder;
-use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageResult, Limits};
 
 use super::error::BROKEN_OFF;
 use super::jpeg::{self, Jpeg};
+use super::orientation::is_quarter_turn;
 use super::preview::RgbImage;
 use super::{DecodeError, Decoded, Fitting, PictureSize, ReadOptions, mosaic};
 
@@ -155,9 +155,4 @@ fn image(mut decoder: Box<dyn ImageDecoder + '_>) -> ImageResult<image::RgbImage
     limits.max_alloc = Some(MAX_PIXELS * 4);
     decoder.set_limits(limits)?;
     DynamicImage::from_decoder(decoder).map(DynamicImage::into_rgb8)
-}
-
-fn is_quarter_turn(orientation: Orientation) -> bool {
-    use Orientation::{Rotate90, Rotate90FlipH, Rotate270, Rotate270FlipH};
-    matches!(orientation, Rotate90 | Rotate90FlipH | Rotate270 | Rotate270FlipH)
 }

@@ -7,7 +7,7 @@ use png::{ColorType, Decoder, DecodingError, Encoder, EncodingError, Info, Trans
 
 use super::mosaic::Picture;
 use super::preview::RgbImage;
-use super::{DecodeError, Orientation, ReadOptions, photograph, size};
+use super::{DecodeError, Orientation, PictureSize, ReadOptions, photograph, size};
 
 /// The first bytes of a PNG.
 pub(super) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
@@ -19,7 +19,7 @@ pub(super) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// [`DecodeError`] when the PNG is damaged, animated, followed by other bytes, or grey with fewer than 8 bits, or when a
 /// sample is above `how.depth`.
 pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
-    picture(bytes)?.into_frame(how).map(|decoded| decoded.frame)
+    picture(bytes, how.size)?.into_frame(how).map(|decoded| decoded.frame)
 }
 
 /// The picture in the bytes of a PNG in red, green and blue of 8 bits, turned as its EXIF says; alpha is ignored.
@@ -32,7 +32,7 @@ pub(super) fn decode_rgb(bytes: &[u8]) -> Result<RgbImage, DecodeError> {
             .map_or("what is no PNG".to_owned(), |it| format!("a {}", it.name()));
         return Err(DecodeError::Unsupported { what, remedy: "give a PNG in colour, 8 bits a sample" });
     }
-    picture(bytes)?.into_rgb().ok_or(DecodeError::Unsupported {
+    picture(bytes, PictureSize::Any)?.into_rgb().ok_or(DecodeError::Unsupported {
         what: "a PNG that is not in colour with 8 bits a sample".to_owned(),
         remedy: "give the photograph itself, in red, green and blue",
     })
@@ -80,19 +80,19 @@ pub(super) fn write(
     writer.finish()
 }
 
-/// The picture that `bytes` hold, with nothing behind it.
+/// The picture that `bytes` hold, with nothing behind it, unpacked only if it can be of the `size` asked for.
 ///
 /// # Errors
 /// Those of [`decode`] that are the PNG's.
-pub(super) fn picture(bytes: &[u8]) -> Result<Picture, DecodeError> {
+pub(super) fn picture(bytes: &[u8], size: PictureSize) -> Result<Picture, DecodeError> {
     let mut input = Cursor::new(bytes);
-    let picture = read(&mut input)?;
+    let picture = read(&mut input, size)?;
     let read = usize::try_from(input.position()).unwrap_or(usize::MAX);
     size::exact(bytes.len(), read)?;
     Ok(picture)
 }
 
-fn read(input: &mut Cursor<&[u8]>) -> Result<Picture, DecodeError> {
+fn read(input: &mut Cursor<&[u8]>, size: PictureSize) -> Result<Picture, DecodeError> {
     let compressed = input.get_ref().len();
     let mut decoder = Decoder::new(input);
     decoder.set_transformations(Transformations::EXPAND);
@@ -106,22 +106,46 @@ fn read(input: &mut Cursor<&[u8]>) -> Result<Picture, DecodeError> {
             remedy: "save each picture as a file of its own",
         });
     }
+    check_size(reader.info(), size)?;
     let length = reader.output_buffer_size().ok_or(DecodeError::Png(DecodingError::LimitsExceeded))?;
     size::plausible(compressed, length)?;
     let mut bytes = vec![0; length];
     let output = reader.next_frame(&mut bytes).map_err(DecodeError::Png)?;
     reader.finish().map_err(DecodeError::Png)?;
-    let (full, samples) = match output.bit_depth {
-        png::BitDepth::Sixteen => {
-            (u16::MAX, bytes.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect())
-        }
-        _ => (u8::MAX.into(), bytes.into_iter().map(u16::from).collect()),
-    };
+    let (channels, full, samples) = widened(&bytes, output.bit_depth, output.color_type.samples());
+    drop(bytes);
     let width = usize::try_from(output.width).unwrap_or(usize::MAX);
-    let channels = output.color_type.samples();
     // The block may stand behind the picture.
     let orientation = reader.info().exif_metadata.as_deref().map(Orientation::of_exif).unwrap_or_default();
     Ok(Picture { width, channels, full, samples, orientation }.turned())
+}
+
+/// Channels, full brightness and samples of the `bytes` of a picture without its alpha, which stands behind grey or the colours.
+fn widened(bytes: &[u8], depth: png::BitDepth, channels: usize) -> (usize, u16, Vec<u16>) {
+    let kept = channels - usize::from(channels.is_multiple_of(2));
+    let width = if depth == png::BitDepth::Sixteen { 2 } else { 1 };
+    let mut samples = Vec::with_capacity(bytes.len() / width / channels * kept);
+    for pixel in bytes.chunks_exact(width * channels) {
+        let colours = pixel[..width * kept].chunks_exact(width);
+        samples.extend(colours.map(|sample| sample.iter().fold(0, |high, &low| high << 8 | u16::from(low))));
+    }
+    (kept, if width == 2 { u16::MAX } else { u8::MAX.into() }, samples)
+}
+
+/// Refuses a picture in colour that is not of the `size` asked for, however it is turned.
+fn check_size(header: &Info<'_>, size: PictureSize) -> Result<(), DecodeError> {
+    if matches!(header.color_type, ColorType::Grayscale | ColorType::GrayscaleAlpha) {
+        return Ok(());
+    }
+    let (width, height) = size::checked(header.width.into(), header.height.into())?;
+    let fitting = match &header.exif_metadata {
+        Some(block) => size.fitting(Orientation::of_exif(block).seen((width, height))),
+        // It may still come behind the picture.
+        None => size
+            .fitting((width, height))
+            .or_else(|refused| size.fitting((height, width)).map_err(|_| refused)),
+    };
+    fitting.map(drop)
 }
 
 /// Refuses what would be too large or would not keep its samples, from the header alone.

@@ -31,6 +31,9 @@ pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
 /// Those of [`decode`] that are the file's.
 pub(super) fn picture(bytes: &[u8], how: &ReadOptions) -> Result<Picture, DecodeError> {
     let told = tiff_directory::check(bytes)?;
+    if told.is_coloured {
+        how.size.fitting(told.orientation.seen(told.size))?;
+    }
     let picture = match told.array {
         None => read(bytes)?,
         Some(array) => {

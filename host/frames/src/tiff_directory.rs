@@ -64,9 +64,13 @@ impl FilterArray {
     }
 }
 
-/// What a TIFF or DNG tells of its picture beside sizes and codings.
+/// What a TIFF or DNG tells of its picture beside its codings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Told {
+    /// Its columns and rows, as it lies in the file.
+    pub(super) size: (usize, usize),
+    /// Whether each pixel has red, green and blue.
+    pub(super) is_coloured: bool,
     /// The filter array that raw samples lie under.
     pub(super) array: Option<FilterArray>,
     /// How the picture is turned by who shows it.
@@ -104,7 +108,8 @@ pub(super) fn check(bytes: &[u8]) -> Result<Told, DecodeError> {
     }
     let samples = width * height * if channels == 1 { 1 } else { 3 };
     size::plausible(bytes.len(), samples * if bits == 8 { 1 } else { 2 })?;
-    Ok(Told { array, orientation: Orientation::of_tag(one(Orientation::TAG, 1)) })
+    let (size, is_coloured) = ((width, height), channels > 1);
+    Ok(Told { size, is_coloured, array, orientation: Orientation::of_tag(one(Orientation::TAG, 1)) })
 }
 
 fn no_bayer_pattern() -> DecodeError {

@@ -305,3 +305,25 @@ fn samples_deeper_than_any_frame_are_to_be_scaled() {
          samples of 16 bits by 16, of 14 bits by 4"
     );
 }
+
+/// What stands for the samples here is spoilt, which only who unpacks it finds.
+#[test]
+fn a_picture_of_another_size_is_refused_before_it_is_unpacked() {
+    let size = PictureSize::Exactly(64, 16);
+    let how = ReadOptions { size, ..options(BitDepth::Eight) };
+    let other = |file: &[u8], found: (usize, usize)| {
+        let refused = decode(file, &how).unwrap_err();
+        let DecodeError::OtherSize { width, height, .. } = refused else { panic!("{refused}") };
+        assert_eq!((width, height), found);
+    };
+    for behind in [false, true] {
+        let mut spoilt = oriented_png(6, 4, 16, behind);
+        let start = spoilt.windows(4).position(|name| name == b"IDAT").unwrap() + 4;
+        spoilt[start..start + 8].fill(0);
+        // Where EXIF stands behind the picture nobody knows yet how it lies.
+        other(&spoilt, if behind { (4, 2) } else { (2, 4) });
+    }
+    let mut spoilt = oriented(6, 3, 8);
+    spoilt.truncate(spoilt.len() - 3);
+    other(&spoilt, (2, 4));
+}
