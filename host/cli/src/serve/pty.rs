@@ -72,9 +72,12 @@ impl AsRawFd for Pty {
     }
 }
 
-/// A symbolic link, which goes when it is dropped.
+/// A symbolic link, which goes when it is dropped, unless it is another's by then.
 #[derive(Debug)]
-pub struct Name(PathBuf);
+pub struct Name {
+    path: PathBuf,
+    target: PathBuf,
+}
 
 impl Name {
     /// Links `path` to `target`. One that a killed server left behind, and that leads nowhere, is replaced.
@@ -89,12 +92,33 @@ impl Name {
             Err(_) => {}
         }
         symlink(target, path).map_err(door)?;
-        Ok(Self(path.to_owned()))
+        Ok(Self { path: path.to_owned(), target: target.to_owned() })
     }
 }
 
 impl Drop for Name {
     fn drop(&mut self) {
-        let _ = fs::remove_file(&self.0);
+        if fs::read_link(&self.path).is_ok_and(|target| target == self.target) {
+            let _ = fs::remove_file(&self.path);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_that_another_server_has_by_now_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("board");
+        let [first, second] = ["first", "second"].map(|name| folder.path().join(name));
+        let earlier = Name::link(&path, &first).unwrap();
+        fs::remove_file(&path).unwrap();
+        let later = Name::link(&path, &second).unwrap();
+        drop(earlier);
+        assert_eq!(fs::read_link(&path).unwrap(), second);
+        drop(later);
+        assert!(fs::symlink_metadata(&path).is_err());
     }
 }
