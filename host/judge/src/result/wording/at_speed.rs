@@ -1,7 +1,7 @@
 //! What frames at the full pixel clock have shown, and what enters the core.
 
 use super::places::list;
-use super::{LOGIC, TIMING, Words, place};
+use super::{LOGIC, TIMING, Words, suspicion};
 use crate::report::wording::{count, differ, grouped, hertz, span};
 use crate::result::{
     BurstCount, ClockSeen, Corner, Defect, EqualAtSpeed, Finding, NoBurst, Repetition, Streamed,
@@ -114,8 +114,7 @@ fn differs(
     repetition: Repetition,
     suspect: Option<&Defect>,
 ) -> String {
-    let suspicion =
-        suspect.map_or_else(String::new, |suspect| format!("; the suspect is {}", place(suspect)));
+    let suspicion = suspect.map_or_else(String::new, |suspect| format!("; {}", suspicion(Some(suspect))));
     format!(
         "{} of {} {} at speed, the first is frame {}{}{suspicion}",
         grouped(wrong),

@@ -1,6 +1,6 @@
 //! What a finding says, and what it asks for.
 
-use super::{at_speed, designer, evidence, place, rules};
+use super::{at_speed, designer, evidence, place, rules, suspicion};
 use crate::report::wording::{board_name, count, differ, grouped};
 use crate::result::{Account, BoardKind, Defect, Doubt, Finding, NumberedRow, RepeatedRow};
 
@@ -98,10 +98,7 @@ fn of_board(finding: &Finding) -> String {
         Finding::TablesChanged { found } => format!("the tables changed during the run: {}", sentence(found)),
         Finding::SamplesDiffer { differences, samples, differing_frames, frames, suspect } => {
             let differ = samples_differ((*differences, *samples), (*differing_frames, *frames));
-            match suspect {
-                Some(suspect) => format!("{differ}; the suspect is {}", place(suspect)),
-                None => format!("{differ}; no single defect that is known explains them"),
-            }
+            format!("{differ}; {}", suspicion(suspect.as_deref()))
         }
         Finding::CounterWrong { counter, counted, right } => {
             format!("the board counts {counted} {}, and it is {}{right}", counter.words(), counter.bound())
@@ -124,10 +121,11 @@ fn samples_differ(
     (differing_frames, frames): (usize, usize),
 ) -> String {
     format!(
-        "{} of {} {}, in {differing_frames} of {}",
+        "{} of {} {}, in {} of {}",
         grouped(differences),
         count(samples, "sample"),
         differ(differences),
+        grouped(differing_frames),
         count(frames, "frame")
     )
 }

@@ -59,6 +59,14 @@ pub fn place(defect: &Defect) -> String {
     words(defect).place
 }
 
+/// Which defect is behind samples that differ, as the end of a sentence.
+fn suspicion(suspect: Option<&Defect>) -> String {
+    match suspect {
+        None | Some(Defect::NoneKnown { .. }) => "no single defect that is known explains them".to_owned(),
+        Some(suspect) => format!("the suspect is {}", place(suspect)),
+    }
+}
+
 /// Where the designer of the board looks next, in one sentence.
 #[must_use]
 pub fn designer(defect: &Defect) -> String {
@@ -115,4 +123,34 @@ const fn memory(table: Memory) -> &'static str {
 /// `stuck at 1`
 fn stuck(value: u8) -> String {
     format!("stuck at {value}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::result::Finding;
+
+    #[test]
+    fn what_no_defect_explains_is_said_so_and_large_numbers_are_grouped() {
+        let suspect = Defect::NoneKnown {
+            rows: None,
+            columns: None,
+            least: None,
+            most: None,
+            bright: None,
+            frames: 3607,
+            of_frames: 3607,
+        };
+        let differ = Finding::SamplesDiffer {
+            differences: 105,
+            samples: 39_398_400,
+            differing_frames: 3607,
+            frames: 3607,
+            suspect: Some(Box::new(suspect)),
+        };
+        assert_eq!(
+            sentence(&differ),
+            "105 of 39,398,400 samples differ, in 3,607 of 3,607 frames; no single defect that is known explains them"
+        );
+    }
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{LOGIC, REPORT, TIMING, Words, tables};
+use crate::report::wording::{count, grouped};
 use crate::result::{Defect, Extent, MadeWith, RowSource, StaleFrames};
 
 pub(super) fn words(defect: &Defect) -> Words {
@@ -150,7 +151,7 @@ fn clauses(defect: &Defect) -> Vec<String> {
         columns.map(|columns| extent("column", columns)),
         sizes,
         bright,
-        Some(format!("in {frames} of {of_frames} frames")),
+        Some(format!("in {} of {}", grouped(*frames), count(*of_frames, "frame"))),
     ]
     .into_iter()
     .flatten()
