@@ -1,6 +1,9 @@
 //! Lines of the line memory.
 
+use halfrow_model::{BitDepth, Geometry, Interpolant, RowFactor, TableSet};
+
 use crate::bench::{Bench, assert_named, fault, narrow, wide};
+use crate::scenes::Random;
 
 #[test]
 fn every_data_line_is_named_with_its_level() {
@@ -63,4 +66,37 @@ fn an_address_line_is_named_although_later_frames_were_not_kept() {
     seen.evidence.retain(|evidence| evidence.index % 2 == 0);
     let suspects = bench.judge(&seen);
     assert_eq!((suspects[0].part(), suspects.len()), ("address bit", 1), "{suspects:#?}");
+}
+
+/// Frames whose factors are of every size that a ring of 2048 allows, behind `rows_before` other rows.
+fn of_every_size(seed: u64, rows_before: u16) -> Bench {
+    let mut random = Random::new(seed);
+    let one_row = Geometry::centred(1364, 1, BitDepth::Twelve).unwrap();
+    let is_legal = |factor| {
+        TableSet::new(one_row, vec![RowFactor::new(factor).unwrap()]).unwrap().check_ring(2048).is_ok()
+    };
+    let one = RowFactor::ONE.get();
+    let mut drawn = || {
+        let mut factor = 1 + random.below(one.into()) as u32;
+        while !is_legal(factor) {
+            factor = factor.midpoint(one);
+        }
+        RowFactor::new(factor).unwrap()
+    };
+    let geometry = Geometry::centred(1364, 24, BitDepth::Twelve).unwrap();
+    let tables = TableSet::new(geometry, (0..24).map(|_| drawn()).collect()).unwrap();
+    Bench { rows_before, ..Bench::of(tables, 2048, Interpolant::Hermite) }
+}
+
+/// A row that is stretched much reads few columns, and many counts of the ring give it alike.
+#[test]
+fn an_address_line_is_named_by_one_frame_of_rows_that_are_stretched_much() {
+    for (seed, bit) in [1, 2, 3].into_iter().flat_map(|seed| [6, 8, 9].map(|bit| (seed, bit))) {
+        let bench = of_every_size(seed, seed as u16);
+        let mut seen = bench.play(Some(fault(&format!("stuck-address,bit={bit}"))));
+        seen.evidence.retain(|evidence| evidence.index == 2);
+        let suspects = bench.judge(&seen);
+        let first = (suspects[0].place(), suspects[0].explained);
+        assert_eq!(first, (format!("line memory, address bit {bit}"), 1.0), "seed {seed}: {suspects:#?}");
+    }
 }

@@ -143,7 +143,7 @@ fn is_too_short(row: &[u16], found: &[u16], at_once: &[u16], undisturbed: &[u16]
 }
 
 /// The outputs of a row that are made before the next row can begin.
-fn sure(width: usize) -> Range<usize> {
+pub(super) fn sure(width: usize) -> Range<usize> {
     0..width / 2 - LOOK_AHEAD
 }
 

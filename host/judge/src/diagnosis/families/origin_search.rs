@@ -7,25 +7,40 @@ use crate::result::Counting;
 
 /// The share of a row that the right count must explain.
 const ENOUGH: f64 = 0.95;
+/// Rows that a count is weighed by: many counts give a row alike that is stretched much and so reads few columns.
+const ROWS: usize = 8;
 
-/// The address line and the count that explain the row that differs most, when there are such.
+/// Each address line with the count that explains the rows best that differ most, when there is such a count.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
-    let Some(row) = witnesses.differing.iter().max_by_key(|row| row.differences) else { return Vec::new() };
+    let rows = rows_that_differ_most(witnesses);
     memory_address::rings(witnesses)
         .filter_map(|ring| {
-            Some(memory_address::hypothesis(ring, Origin::Run(best_count(ring, row)?), Counting::Before))
+            let first = best_count(ring, &rows)?;
+            Some(memory_address::hypothesis(ring, Origin::Run(first), Counting::Before))
         })
         .collect()
 }
 
-/// The count at the run's first sample that explains `row` best. Which addresses share a cell repeats with twice the
-/// distance of the two.
-fn best_count(ring: BrokenRing, row: &Witness<'_>) -> Option<usize> {
-    let period = 2 << ring.bit;
-    let share = |first| {
+/// The rows that differ most where nothing but the row itself matters, the foremost first.
+fn rows_that_differ_most<'w, 'a>(witnesses: &'w Witnesses<'a>) -> Vec<&'w Witness<'a>> {
+    let differences = |row: &Witness<'_>| {
+        let sure = memory_address::sure(row.found.len());
+        row.differing_columns().filter(|column| sure.contains(column)).count()
+    };
+    let mut rows: Vec<_> = witnesses.differing.iter().map(|row| (differences(row), row)).collect();
+    rows.sort_by_key(|(differences, _)| std::cmp::Reverse(*differences));
+    rows.into_iter().take(ROWS).map(|(_, row)| row).collect()
+}
+
+/// The count at the run's first sample that explains the first of `rows` and, of those that do, all of them best. Which
+/// addresses share a cell repeats with twice the distance of the two.
+fn best_count(ring: BrokenRing, rows: &[&Witness<'_>]) -> Option<usize> {
+    let share = |first, row: &Witness<'_>| {
         let base = Origin::Run(first).base(row);
         Score::of_row(&ring.before_next_row(row, base), row).share()
     };
-    let likely = (0..period).map(|first| (first, share(first))).filter(|(_, share)| *share >= ENOUGH);
-    likely.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(first, _)| first)
+    let foremost = rows.first()?;
+    let likely = (0..2 << ring.bit).filter(|&first| share(first, foremost) >= ENOUGH);
+    let weighed = likely.map(|first| (first, rows.iter().map(|row| share(first, row)).sum::<f64>()));
+    weighed.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(first, _)| first)
 }
