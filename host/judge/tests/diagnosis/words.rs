@@ -1,6 +1,8 @@
 //! Single words of the tables, whose faults a read-back may hide.
 
-use crate::bench::{assert_named, fault, narrow, wide};
+use halfrow_model::Interpolant;
+
+use crate::bench::{Bench, assert_named, fault, narrow, wide};
 
 #[test]
 fn a_bit_of_a_rows_factor_is_named() {
@@ -26,6 +28,20 @@ fn the_highest_bit_of_a_rows_factor_is_named_first() {
     for (bench, row) in [(narrow(), 2), (narrow(), 14), (wide(), 5)] {
         let suspects = bench.diagnose(fault(&format!("row-factor,row={row},bit=24")));
         assert_eq!(suspects[0].place(), format!("row {row}'s factor, bit 24"), "{suspects:#?}");
+    }
+}
+
+/// Beyond the image circle every factor is 1, and each bit makes it more, where a part of the row cannot be foretold.
+#[test]
+fn a_bit_of_a_factor_of_one_is_named_first() {
+    for (width, height, radius, row) in [(320, 200, 80.0, 5), (128, 96, 40.0, 5), (64, 15, 20.0, 7)] {
+        let bench = Bench::new(width, height, radius, 2048, Interpolant::Hermite);
+        for bit in 0..24 {
+            let suspects = bench.diagnose(fault(&format!("row-factor,row={row},bit={bit},hidden=true")));
+            let place = format!("row {row}'s factor, bit {bit}");
+            let is_first = suspects.first().is_none_or(|first| first.place() == place);
+            assert!(is_first, "{width} x {height}, bit {bit}: {suspects:#?}");
+        }
     }
 }
 

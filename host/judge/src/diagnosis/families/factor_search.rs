@@ -35,10 +35,11 @@ fn any_value<'a>(witnesses: &Witnesses<'a>, row: usize) -> Option<Hypothesis<'a>
         return None;
     }
     let (&least, &most) = (factors.first()?.start(), factors.last()?.end());
+    let ring = witnesses.case.ring;
     let defect = Defect::RowFactorWrong { row, generation, least, most, uploaded };
     Some(Hypothesis::new(defect, move |witness| {
         let mine = witness.row == row && witness.uploaded.generation == generation;
-        mine.then(|| with_entry(witness, least))
+        mine.then(|| with_entry(witness, least, ring))
     }))
 }
 

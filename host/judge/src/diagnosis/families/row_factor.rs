@@ -18,6 +18,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
 }
 
 fn entry<'a>(witnesses: &Witnesses<'a>, row: usize) -> Vec<Hypothesis<'a>> {
+    let ring = witnesses.case.ring;
     let words: Vec<_> = witnesses
         .generations()
         .iter()
@@ -29,7 +30,7 @@ fn entry<'a>(witnesses: &Witnesses<'a>, row: usize) -> Vec<Hypothesis<'a>> {
         let (above_one, reading) = (is_illegal(&read), reading(&words, &read, i64::from));
         Hypothesis::new(Defect::RowFactorBitWrong { row, bit, reading, above_one }, move |witness| {
             let read = changed(&read, &witness.uploaded).filter(|_| witness.row == row);
-            read.map(|entry| with_entry(witness, entry))
+            read.map(|entry| with_entry(witness, entry, ring))
         })
     })
     .collect()
@@ -40,7 +41,8 @@ fn is_illegal(read: &[Word]) -> bool {
     read.iter().any(|word| word.1 > RowFactor::ONE.get())
 }
 
-/// The witness's row made with another entry of the table.
-pub(super) fn with_entry(witness: &Witness<'_>, entry: u32) -> Prediction {
-    RowTables { stretch: Stretch::Factor(entry), ..witness.tables() }.corrected(witness.samples()).into()
+/// The witness's row made with another entry of the table, on a board with a ring of `ring` samples.
+pub(super) fn with_entry(witness: &Witness<'_>, entry: u32, ring: usize) -> Prediction {
+    let tables = RowTables { stretch: Stretch::Factor(entry), ..witness.tables() };
+    Prediction::partly(tables.corrected(witness.samples()), tables.foretold(ring))
 }

@@ -16,40 +16,41 @@ const NODE_BITS: u32 = 7;
 /// Every data and address line of both tables, and row tables that are read one entry too early or too late.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let Some(geometry) = witnesses.geometry() else { return Vec::new() };
+    let ring = witnesses.case.ring;
     let row_bits = usize::BITS - (geometry.height() - 1).leading_zeros();
     let generations = witnesses.generations();
     let weights =
         (0..TAP_NAMES.len()).flat_map(|tap| StuckLine::all(WEIGHT_BITS).map(move |line| (tap, line)));
     StuckLine::all(RowFactor::BITS)
-        .map(factor_data)
-        .chain(StuckLine::all(row_bits).map(factor_address))
-        .chain([-1, 1].map(neighbour))
+        .map(move |line| factor_data(line, ring))
+        .chain(StuckLine::all(row_bits).map(move |line| factor_address(line, ring)))
+        .chain([-1, 1].map(|distance| neighbour(distance, ring)))
         .chain(StuckLine::all(NODE_BITS).map(|line| node_address(&generations, line)))
         .chain(weights.map(|(tap, line)| weight_data(&generations, tap, line)))
         .collect()
 }
 
-fn factor_data<'a>(line: StuckLine) -> Hypothesis<'a> {
+fn factor_data<'a>(line: StuckLine, ring: usize) -> Hypothesis<'a> {
     let defect = Defect::RowTableDataStuck { bit: line.bit, value: line.value() };
     Hypothesis::new(defect, move |witness| {
         let uploaded = witness.uploaded.tables.row_factor(witness.row)?.get();
         let entry = line.carry(uploaded);
-        (entry != uploaded).then(|| with_entry(witness, entry))
+        (entry != uploaded).then(|| with_entry(witness, entry, ring))
     })
 }
 
-fn factor_address<'a>(line: StuckLine) -> Hypothesis<'a> {
+fn factor_address<'a>(line: StuckLine, ring: usize) -> Hypothesis<'a> {
     let defect = Defect::RowTableAddressStuck { bit: line.bit, value: line.value() };
-    from_other_entry(defect, move |row| Some(line.carry(row as u32) as usize))
+    from_other_entry(defect, ring, move |row| Some(line.carry(row as u32) as usize))
 }
 
-fn neighbour<'a>(distance: isize) -> Hypothesis<'a> {
+fn neighbour<'a>(distance: isize, ring: usize) -> Hypothesis<'a> {
     let defect = Defect::RowTableAddressOff { entries: distance };
-    from_other_entry(defect, move |row| row.checked_add_signed(distance))
+    from_other_entry(defect, ring, move |row| row.checked_add_signed(distance))
 }
 
 /// Rows made with the entry of another row. What lies beyond the table is not known.
-fn from_other_entry<'a>(defect: Defect, entry: impl Fn(usize) -> Option<usize> + 'a) -> Hypothesis<'a> {
+fn from_other_entry<'a>(defect: Defect, ring: usize, entry: impl Fn(usize) -> Option<usize> + 'a) -> Hypothesis<'a> {
     Hypothesis::new(defect, move |witness| {
         let factors = witness.uploaded.tables.row_factors()?;
         let other = entry(witness.row);
@@ -57,7 +58,7 @@ fn from_other_entry<'a>(defect: Defect, entry: impl Fn(usize) -> Option<usize> +
             return None;
         }
         let read = other.and_then(|row| factors.get(row));
-        Some(read.map_or_else(Prediction::unknown, |read| with_entry(witness, read.get())))
+        Some(read.map_or_else(Prediction::unknown, |read| with_entry(witness, read.get(), ring)))
     })
 }
 
