@@ -26,7 +26,7 @@ pub enum Defect {
     RowFactorWrong {
         /// The row.
         row: usize,
-        /// The tables in which it is wrong.
+        /// The tables in which it is wrong, the newest of several.
         generation: u8,
         /// The least factor that gives what was seen.
         least: u32,
@@ -34,6 +34,8 @@ pub enum Defect {
         most: u32,
         /// What was uploaded.
         uploaded: u32,
+        /// Whether the other tables are read right.
+        only: bool,
     },
     /// One bit of one entry of a grid.
     GridEntryBitWrong {
@@ -65,7 +67,7 @@ pub enum Defect {
         node: usize,
         /// The tap that the word weighs.
         weight: String,
-        /// The tables in which it is wrong.
+        /// The tables in which it is wrong, the newest of several.
         generation: u8,
         /// The least value that gives what was seen, in units of 2^-14.
         least: i64,
@@ -73,6 +75,8 @@ pub enum Defect {
         most: i64,
         /// What was uploaded.
         uploaded: i16,
+        /// Whether the other tables are read right.
+        only: bool,
     },
     /// A data line of the line memory.
     LineMemoryDataStuck {

@@ -229,6 +229,7 @@ fn in_tables() -> Vec<Defect> {
             least: 15_999_999,
             most: 16_000_001,
             uploaded: 16_000_100,
+            only: true,
         },
         Defect::GridEntryBitWrong {
             column: 12,
@@ -245,6 +246,7 @@ fn in_tables() -> Vec<Defect> {
             least: -120,
             most: -120,
             uploaded: -128,
+            only: true,
         },
         Defect::StaleTables {
             rows: Vec::new(),

@@ -186,6 +186,35 @@ fn a_factor_of_any_value_is_found() {
     assert!(figures[0].abs_diff(wrong.get()) < 4096, "{}", suspects[0].evidence());
 }
 
+/// A cell that lost two bits holds another value in each generation's tables.
+#[test]
+fn a_factor_that_is_wrong_in_two_bits_is_found_in_all_tables() {
+    let bench = wide();
+    let suspects = diagnose(&bench, |frame, input, expected| {
+        let Generation { tables, kernel, .. } = &bench.generations[generation(frame)];
+        let mut samples = expected.samples().to_vec();
+        let wrong = RowFactor::new(tables.row_factor(4).unwrap().get() ^ 0b11 << 18).unwrap();
+        let output = &mut samples[4 * input.width()..][..input.width()];
+        correct_row(&bench.geometry, wrong, kernel, input.row(4), output);
+        samples
+    });
+    assert_eq!(certain(&suspects), ("row factor", "row 4's factor".to_owned()), "{suspects:#?}");
+    assert!(!suspects[0].evidence().contains("generation"), "{}", suspects[0].evidence());
+}
+
+#[test]
+fn a_weight_that_is_wrong_in_two_bits_is_found_in_all_tables() {
+    let bench = wide();
+    let suspects = diagnose(&bench, |frame, input, _| {
+        let Generation { tables, kernel, .. } = &bench.generations[generation(frame)];
+        let mut nodes = kernel.nodes().to_vec();
+        nodes[16][2] ^= 0b11 << 11;
+        correct(tables, &Kernel::from_nodes(nodes).unwrap(), input).unwrap().samples().to_vec()
+    });
+    assert_eq!(certain(&suspects), ("kernel word", "kernel node 16, weight g4".to_owned()), "{suspects:#?}");
+    assert!(!suspects[0].evidence().contains("generation"), "{}", suspects[0].evidence());
+}
+
 #[test]
 fn a_weight_of_any_value_is_found() {
     let bench = wide();

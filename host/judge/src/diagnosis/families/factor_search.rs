@@ -1,11 +1,14 @@
 //! A row's table entry with any value: found from the row itself.
 
+use std::cmp::Reverse;
 use std::ops::RangeInclusive;
 
 use halfrow_model::{RowFactor, source_by_entry};
 
 use super::first_where;
 use super::row_factor::{FEW_ROWS, with_entry};
+use super::table_word::{Word, changed};
+use crate::diagnosis::Uploaded;
 use crate::diagnosis::datapath::{RowTables, Stretch};
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::{Witness, Witnesses};
@@ -16,51 +19,88 @@ const BUDGET: usize = 1_000_000;
 /// Frames whose row must agree.
 const FRAMES: usize = 32;
 
-/// The factors that rows were really made with, when few rows differ. Those that are one bit off were tried before.
+/// The factors that rows were really made with, when few rows differ, those of each generation for themselves: a cell that
+/// lost several bits holds another value in each. Those that are one bit off were tried before.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let rows = if witnesses.rows.len() <= FEW_ROWS { &witnesses.rows[..] } else { &[] };
     rows.iter().filter_map(|&row| any_value(witnesses, row)).collect()
 }
 
+/// What a row was made with instead of its entry in the tables of a generation.
+struct Found {
+    generation: u8,
+    uploaded: u32,
+    factors: Vec<RangeInclusive<u32>>,
+}
+
 fn any_value<'a>(witnesses: &Witnesses<'a>, row: usize) -> Option<Hypothesis<'a>> {
-    let mut seen: Vec<_> = witnesses.sample(usize::MAX).filter(|witness| witness.row == row).collect();
-    seen.sort_by_key(|witness| std::cmp::Reverse(witness.differences));
-    let generation = seen.first()?.uploaded.generation;
-    let uploaded = seen.first()?.uploaded.tables.row_factor(row)?.get();
-    seen.retain(|witness| witness.uploaded.generation == generation);
-    seen.truncate(FRAMES);
-    let factors = matching_factors(&seen)?;
-    let one_bit = |bit: u32| factors.iter().any(|range| range.contains(&(uploaded ^ (1_u32 << bit))));
-    if (0..RowFactor::BITS).any(one_bit) {
+    let generations = witnesses.generations();
+    let mut seen: Vec<_> = generations.iter().filter_map(|uploaded| seen(witnesses, uploaded, row)).collect();
+    seen.sort_by_key(|rows| Reverse(rows.first().map(|row| row.differences)));
+    let mut budget = BUDGET;
+    let mut found: Vec<_> = seen.iter().filter_map(|rows| search(rows, &mut budget)).collect();
+    found.sort_by_key(|found| found.generation);
+    let is_off_by = |bit: u32| found.iter().all(|found| found.has(found.uploaded ^ (1_u32 << bit)));
+    if (0..RowFactor::BITS).any(is_off_by) {
         return None;
     }
+    let &Found { generation, uploaded, ref factors } = found.last()?;
     let (&least, &most) = (factors.first()?.start(), factors.last()?.end());
+    let only = found.len() < generations.len();
+    let defect = Defect::RowFactorWrong { row, generation, least, most, uploaded, only };
+    let entry = |found: &Found| Some((found.generation, *found.factors.first()?.start()));
+    let read: Vec<Word> = found.iter().filter_map(entry).collect();
     let ring = witnesses.case.ring;
-    let defect = Defect::RowFactorWrong { row, generation, least, most, uploaded };
     Some(Hypothesis::new(defect, move |witness| {
-        let mine = witness.row == row && witness.uploaded.generation == generation;
-        mine.then(|| with_entry(witness, least, ring))
+        let read = changed(&read, &witness.uploaded).filter(|_| witness.row == row);
+        read.map(|entry| with_entry(witness, entry, ring))
     }))
+}
+
+/// The row in frames made with these tables, those first that differ most; none if it differs in none.
+fn seen<'w, 'a>(
+    witnesses: &'w Witnesses<'a>,
+    uploaded: &Uploaded<'_>,
+    row: usize,
+) -> Option<Vec<&'w Witness<'a>>> {
+    let is_seen =
+        |witness: &&Witness<'_>| witness.row == row && witness.uploaded.generation == uploaded.generation;
+    let mut seen: Vec<_> = witnesses.sample(usize::MAX).filter(is_seen).collect();
+    seen.sort_by_key(|witness| Reverse(witness.differences));
+    seen.truncate(FRAMES);
+    seen.first().is_some_and(|witness| witness.differences > 0).then_some(seen)
+}
+
+fn search(seen: &[&Witness<'_>], budget: &mut usize) -> Option<Found> {
+    let first = seen.first()?;
+    let uploaded = first.uploaded.tables.row_factor(first.row)?.get();
+    let factors = matching_factors(seen, budget).filter(|factors| !factors.is_empty())?;
+    Some(Found { generation: first.uploaded.generation, uploaded, factors })
+}
+
+impl Found {
+    fn has(&self, factor: u32) -> bool {
+        self.factors.iter().any(|range| range.contains(&factor))
+    }
 }
 
 /// The factors that give every sample of the row, in ascending ranges; none if there is none or too many are possible.
 ///
 /// The farther an output is from the optical centre, the finer its source depends on the factor. So ranges of factors that
 /// give the samples next to the centre are divided, output by output, and those that give another sample are dropped.
-fn matching_factors(seen: &[&Witness<'_>]) -> Option<Vec<RangeInclusive<u32>>> {
+fn matching_factors(seen: &[&Witness<'_>], budget: &mut usize) -> Option<Vec<RangeInclusive<u32>>> {
     let first = seen.first()?;
     let geometry = first.geometry();
     let distance = |column: &usize| (2 * *column as i64 - i64::from(geometry.centre2())).unsigned_abs();
     let mut columns: Vec<_> = (0..geometry.width()).filter(|column| distance(column) > 0).collect();
     columns.sort_by_key(distance);
     let mut ranges = vec![RowFactor::RANGE];
-    let mut budget = BUDGET;
     for column in columns {
         let mut kept: Vec<RangeInclusive<u32>> = Vec::new();
         for range in ranges {
             let mut start = *range.start();
             while start <= *range.end() {
-                budget = budget.checked_sub(1)?;
+                *budget = budget.checked_sub(1)?;
                 let end = last_alike(first, start, column, *range.end());
                 if seen.iter().all(|row| gives(row, start, column)) {
                     join(&mut kept, start..=end);

@@ -15,23 +15,41 @@ const ROWS: usize = 192;
 /// All values of a word, and one.
 const VALUES: Range<i64> = i16::MIN as i64..i16::MAX as i64 + 1;
 
-/// The weights that outputs of one generation were really made with, at the nodes that all differing samples need.
+/// The weights that outputs were really made with, those of each generation for themselves, at the nodes that all
+/// differing samples need.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
-    let Some(first) = witnesses.differing.first() else { return Vec::new() };
-    common_words(witnesses)
-        .into_iter()
-        .filter_map(|word| any_value(witnesses, &first.uploaded, word))
-        .collect()
+    common_words(witnesses).into_iter().filter_map(|word| any_value(witnesses, word)).collect()
 }
 
-fn any_value<'a>(
-    witnesses: &Witnesses<'a>,
-    uploaded: &Uploaded<'a>,
-    word: KernelWord,
-) -> Option<Hypothesis<'a>> {
+fn any_value<'a>(witnesses: &Witnesses<'a>, word: KernelWord) -> Option<Hypothesis<'a>> {
+    let generations = witnesses.generations();
+    let found: Vec<_> = generations
+        .iter()
+        .filter_map(|uploaded| Some((uploaded, values(witnesses, uploaded.generation, word)?)))
+        .collect();
+    let (last, values) = found.last()?;
+    let defect = Defect::KernelWordWrong {
+        node: word.node,
+        weight: word.weight(),
+        generation: last.generation,
+        least: values.start,
+        most: values.end - 1,
+        uploaded: word.of(last.kernel)?,
+        only: found.len() < generations.len(),
+    };
+    let kernel = |(uploaded, values): &(&Uploaded<'_>, Range<i64>)| {
+        Some((uploaded.generation, word.replaced(uploaded.kernel, values.start as i16)?))
+    };
+    Some(super::with_kernels(defect, found.iter().filter_map(kernel).collect()))
+}
+
+/// The values of the word that give every sample made with it by the tables of a generation; none if none does, or if none
+/// of them differs.
+fn values(witnesses: &Witnesses<'_>, generation: u8, word: KernelWord) -> Option<Range<i64>> {
     let mut values = VALUES;
-    let rows = witnesses.sample(ROWS).filter(|row| row.uploaded.generation == uploaded.generation);
-    for row in rows {
+    let mut differ = false;
+    for row in witnesses.sample(ROWS).filter(|row| row.uploaded.generation == generation) {
+        differ |= row.differences > 0;
         let tables = row.tables();
         for column in 0..row.found.len() {
             let node = tables.source(column).node;
@@ -40,12 +58,7 @@ fn any_value<'a>(
             }
         }
     }
-    let (least, most) = (values.start, values.end - 1);
-    let (generation, old) = (uploaded.generation, word.of(uploaded.kernel)?);
-    let (node, weight) = (word.node, word.weight());
-    let defect = Defect::KernelWordWrong { node, weight, generation, least, most, uploaded: old };
-    let kernel = word.replaced(uploaded.kernel, least as i16)?;
-    Some(super::with_kernels(defect, [(generation, kernel)].into()))
+    differ.then_some(values)
 }
 
 /// Those of the values that give the sample that was found; none if none does. An output moves one way with a weight.

@@ -50,7 +50,11 @@ fn neighbour<'a>(distance: isize, ring: usize) -> Hypothesis<'a> {
 }
 
 /// Rows made with the entry of another row. What lies beyond the table is not known.
-fn from_other_entry<'a>(defect: Defect, ring: usize, entry: impl Fn(usize) -> Option<usize> + 'a) -> Hypothesis<'a> {
+fn from_other_entry<'a>(
+    defect: Defect,
+    ring: usize,
+    entry: impl Fn(usize) -> Option<usize> + 'a,
+) -> Hypothesis<'a> {
     Hypothesis::new(defect, move |witness| {
         let factors = witness.uploaded.tables.row_factors()?;
         let other = entry(witness.row);

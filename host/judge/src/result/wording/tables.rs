@@ -9,15 +9,15 @@ pub(super) fn as_seen(defect: &Defect) -> Option<Words> {
         Defect::RowFactorBitWrong { row, bit, reading, above_one } => {
             row_bit(*row, *bit, reading, *above_one)
         }
-        Defect::RowFactorWrong { row, generation, least, most, uploaded } => {
-            row_value(*row, *generation, (*least, *most), *uploaded)
+        Defect::RowFactorWrong { row, generation, least, most, uploaded, only } => {
+            row_value(*row, only.then_some(*generation), (*least, *most), *uploaded)
         }
         Defect::GridEntryBitWrong { column, row, bit, reading, illegal } => {
             grid_bit((*column, *row), *bit, reading, *illegal)
         }
         Defect::KernelWordBitWrong { node, weight, bit, reading } => word_bit(*node, weight, *bit, reading),
-        Defect::KernelWordWrong { node, weight, generation, least, most, uploaded } => {
-            word_value((*node, weight), *generation, (*least, *most), *uploaded)
+        Defect::KernelWordWrong { node, weight, generation, least, most, uploaded, only } => {
+            word_value((*node, weight), only.then_some(*generation), (*least, *most), *uploaded)
         }
         _ => return None,
     })
@@ -28,9 +28,9 @@ fn row_bit(row: usize, bit: u32, reading: &Reading, above_one: bool) -> Words {
     row_factor(row, format!("row {row}'s factor, bit {bit}"), format!("{}{illegal}", read(reading)))
 }
 
-fn row_value(row: usize, generation: u8, values: (u32, u32), uploaded: u32) -> Words {
+fn row_value(row: usize, only: Option<u8>, values: (u32, u32), uploaded: u32) -> Words {
     let values = (i64::from(values.0), i64::from(values.1));
-    row_factor(row, format!("row {row}'s factor"), read_value(values, uploaded.into(), generation))
+    row_factor(row, format!("row {row}'s factor"), read_value(values, uploaded.into(), only))
 }
 
 fn row_factor(row: usize, place: String, defect: String) -> Words {
@@ -72,8 +72,8 @@ fn word_bit(node: usize, weight: &str, bit: u32, reading: &Reading) -> Words {
     kernel_word(node, weight, &format!(", bit {bit}"), read(reading))
 }
 
-fn word_value(word: (usize, &str), generation: u8, values: (i64, i64), uploaded: i16) -> Words {
-    kernel_word(word.0, word.1, "", read_value(values, uploaded.into(), generation))
+fn word_value(word: (usize, &str), only: Option<u8>, values: (i64, i64), uploaded: i16) -> Words {
+    kernel_word(word.0, word.1, "", read_value(values, uploaded.into(), only))
 }
 
 fn kernel_word(node: usize, weight: &str, bit: &str, defect: String) -> Words {
@@ -91,13 +91,17 @@ fn kernel_word(node: usize, weight: &str, bit: &str, defect: String) -> Words {
 /// "reading 5 for 7", with the generation when others are right.
 fn read(reading: &Reading) -> String {
     let Reading { uploaded, read, generation, only } = reading;
-    let only = if *only { format!(" in the tables of generation {generation} only") } else { String::new() };
-    format!("reading {read} for {uploaded}{only}")
+    format!("reading {read} for {uploaded}{}", in_tables(only.then_some(*generation)))
 }
 
-fn read_value((least, most): (i64, i64), uploaded: i64, generation: u8) -> String {
+fn read_value((least, most): (i64, i64), uploaded: i64, only: Option<u8>) -> String {
     let others = if least == most { String::new() } else { format!(" (or another up to {most})") };
-    format!("reading {least}{others} for {uploaded} in the tables of generation {generation}")
+    format!("reading {least}{others} for {uploaded}{}", in_tables(only))
+}
+
+/// The one generation of tables, if others are right.
+fn in_tables(only: Option<u8>) -> String {
+    only.map_or_else(String::new, |generation| format!(" in the tables of generation {generation} only"))
 }
 
 /// The words of what was seen when a table was read back.
