@@ -19,10 +19,9 @@ pub(super) fn tables_late(plan: &BurstPlan, tables: &[Generation], watched: &Wat
     let account = Account::Signatures { wrong, explained };
     let share = explained as f64 / wrong as f64;
     let first = watched.wrong_frames.first()?.n;
-    // All rows, or a frame that has none in front of it: no change came late, the bank is the other one.
-    let is_stale = first == 0 || rows == active.tables.geometry().height();
+    // In front of the first frame there is none, and no change that could come late.
     let defect =
-        if is_stale { stale(plan, [active, shadow], first) } else { Defect::TablesChangeLate { rows } };
+        if first == 0 { stale(plan, [active, shadow], first) } else { Defect::TablesChangeLate { rows } };
     Some(Suspect { defect, account, explained: share })
 }
 

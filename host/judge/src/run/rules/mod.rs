@@ -36,7 +36,7 @@ use super::steps::Run;
 use crate::board::{BoardError, Capabilities, Given, RowTiming, Said, Status};
 use crate::compare::Comparison;
 use crate::progress::Step;
-use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Outcome, Rule};
+use crate::result::{Answer, CheckName, Counter, Defect, Doubt, Finding, Outcome, Rule, Suspect};
 use crate::verdict::Cause;
 use compared::{Compared, WrongRow};
 pub(super) use price::price;
@@ -245,24 +245,26 @@ impl<'a, 'run> Rules<'a, 'run> {
         self.judge_rows(rule, &compared)
     }
 
-    /// Ends with the first row that is not as it must be. Where its samples alone are wrong, no rule is broken, and the diagnosis tells of what.
+    /// Ends with the first row that is not as it must be. Where its samples alone are wrong, and a part is known that makes them so, no
+    /// rule is broken.
     fn judge_rows(&self, rule: Rule, compared: &Compared) -> Result<(), End> {
-        match &compared.wrong {
-            None => Ok(()),
-            Some(WrongRow { row, frame, seen: None }) => Err(other_row(rule, *row, *frame)),
-            Some(WrongRow { frame, seen: Some(seen), .. }) => {
-                let suspects = self.run.diagnose_seen(seen, "rules", *frame);
+        let Some(WrongRow { row, frame, seen }) = &compared.wrong else { return Ok(()) };
+        let is_known = |suspect: &Suspect| !matches!(suspect.defect, Defect::NoneKnown { .. });
+        if let Some(seen) = seen {
+            let suspects = self.run.diagnose_seen(seen, "rules", *frame);
+            if let Some(first) = suspects.first().filter(|first| is_known(first)) {
                 let compared = Comparison::of_frames(&seen.evidence.expected, &seen.evidence.found);
                 let finding = Finding::SamplesDiffer {
                     differences: compared.differences,
                     samples: compared.samples,
                     differing_frames: 1,
                     frames: 1,
-                    suspect: suspects.first().map(|suspect| Box::new(suspect.defect.clone())),
+                    suspect: Some(Box::new(first.defect.clone())),
                 };
-                Err(End::Failed { check: CheckName::Rules, finding, suspects })
+                return Err(End::Failed { check: CheckName::Rules, finding, suspects });
             }
         }
+        Err(other_row(rule, *row, *frame))
     }
 
     fn stream(&mut self, compared: &mut Compared) -> Result<(), BoardError> {
