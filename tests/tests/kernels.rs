@@ -161,3 +161,69 @@ fn a_trained_kernel_corrects_frames_alike_in_the_model_and_on_a_board() {
     assert!(corrected("mine.json", "board.pgm", &["--board", "mock,taps=five"]) == model);
     assert!(corrected("hermite", "hermite.pgm", &["--model"]) != model);
 }
+
+/// A photograph without any detail beside those of [`folder_of_pictures`].
+fn add_a_flat_one(folder: &Folder, name: &str) {
+    let image = RgbImage { width: 96, height: 64, data: vec![90; 3 * 96 * 64] };
+    write_rgb(&folder.path().join(name), &image, false).unwrap();
+}
+
+#[test]
+fn what_was_not_measured_has_no_figure() {
+    let folder = folder_of_pictures();
+    std::fs::remove_file(folder.path().join("photos/a.png")).unwrap();
+    let said = train(&folder, &["-o", "mine.json"]);
+    assert!(said.stdout.contains("by the kernel of the others not measured; noise gain"), "{}", said.stdout);
+    let said = train(&folder, &["-o", "mine.json", "--overwrite", "--json"]).json();
+    assert_eq!(said["held_out_db"], Value::Null);
+}
+
+#[test]
+fn a_photograph_whose_others_determine_no_kernel_costs_no_kernel() {
+    let folder = folder_of_pictures();
+    add_a_flat_one(&folder, "photos/c.png");
+    let said = train(&folder, &["-o", "three.json"]).stdout;
+    assert!(said.contains(", of 2 of them); noise gain"), "{said}");
+    std::fs::remove_file(folder.path().join("photos/a.png")).unwrap();
+    let ended = train(&folder, &["-o", "mine.json"]);
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    assert!(ended.stdout.contains("by the kernel of the others not measured"), "{}", ended.stdout);
+    let file: Value = serde_json::from_slice(&folder.read("mine.json")).unwrap();
+    assert_eq!(file["about"]["figures"]["held_out_gains_db"], serde_json::json!([null, null]));
+}
+
+#[test]
+fn a_photograph_that_comes_back_exactly_spoils_no_figure() {
+    let folder = folder_of_pictures();
+    let measure = |more: &[&str]| {
+        let call = ["kernel", "measure", "--quiet", "--kernel", "sharp5", "--images", "photos"];
+        folder.halfrow(call.into_iter().chain(more.iter().copied()))
+    };
+    let before = measure(&["--json"]).json()["gains_db"].clone();
+    add_a_flat_one(&folder, "photos/c.png");
+    let behind = measure(&["--json"]).json()["gains_db"].clone();
+    assert_eq!((&behind[0]["gain"], &behind[0]["exact"]), (&before[0]["gain"], &1.into()));
+    let said = measure(&[]).stdout;
+    assert!(said.contains("linear warp, as in Table 1") && !said.contains("NaN"), "{said}");
+    assert!(said.contains("; 1 photograph comes back exactly, and is left out"), "{said}");
+    for name in ["photos/a.png", "photos/b.png"] {
+        std::fs::remove_file(folder.path().join(name)).unwrap();
+    }
+    let said = measure(&[]).stdout;
+    assert!(
+        said.contains("  no figure  linear warp, as in Table 1; 1 photograph comes back exactly"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_pipe_among_the_photographs_is_refused_and_not_waited_for() {
+    let folder = folder_of_pictures();
+    let pipe = folder.path().join("photos/z.png");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    // Whoever reads it finds its end.
+    std::thread::spawn(move || std::fs::OpenOptions::new().write(true).open(pipe));
+    let refused = train(&folder, &["-o", "mine.json"]);
+    assert_eq!(refused.code, Some(2), "{}{}", refused.stdout, refused.stderr);
+    assert!(refused.stderr.contains("z.png is a pipe or a device"), "{}", refused.stderr);
+}

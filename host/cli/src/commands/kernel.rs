@@ -17,12 +17,14 @@ use crate::exit::Exit;
 use crate::{console, progress};
 use halfrow::call::Files;
 use halfrow::frames::preview::RgbImage;
-use halfrow::frames::{FrameFile, lying};
+use halfrow::frames::{FrameFile, check_regular, lying};
 use halfrow::report::wording::count;
 use halfrow::result::sha256;
 use halfrow::tables::KernelFile;
 use halfrow_lab::training;
-use halfrow_lab::training::{Model, RIDGE, Spread, Trained, TrainingError, measure, noise_gain, train};
+use halfrow_lab::training::{
+    Gains, Model, RIDGE, Spread, Trained, TrainingError, measure, noise_gain, train,
+};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -120,6 +122,7 @@ fn check_apart(paths: &[PathBuf], origins: &[Origin]) -> Result<(), CallError> {
 }
 
 fn photograph(path: &Path) -> anyhow::Result<(Origin, RgbImage)> {
+    check_regular(path)?;
     let file = FrameFile::read(path)?;
     let image = lying(file.decode_rgb()?);
     training::check(&image).with_context(|| format!("{} cannot be used", path.display()))?;
@@ -154,27 +157,36 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     let about = about(&origins, &trained).map_err(Failure::error)?;
     let file = KernelFile { about: Some(about), kernel: trained.kernel.clone() };
     file.write(&arguments.output, arguments.overwrite).map_err(Failure::error)?;
-    let held_out = Spread::of(&trained.held_out);
     if context.json {
         let rest = json!({
             "file": arguments.output.display().to_string(), "photographs": images.len(), "gain_db": trained.gain,
-            "held_out_db": held_out, "mean_noise_gain": mean_noise_gain(&trained.kernel),
+            "held_out_db": held_out(&trained), "mean_noise_gain": mean_noise_gain(&trained.kernel),
         });
         tell_result("kernel", Exit::Pass, None, rest)?;
         return Ok(Exit::Pass);
     }
     console::tell(&format!(
-        "{}: {:+.2} dB over Hermite on them; each by the kernel of the others {:+.2} dB \
-         ({:+.2} to {:+.2}); noise gain {:.3}",
+        "{}: {:+.2} dB over Hermite on them; each by the kernel of the others {}; noise gain {:.3}",
         count(images.len(), "photograph"),
         trained.gain,
-        held_out.mean,
-        held_out.least,
-        held_out.most,
+        held_out_text(&trained),
         mean_noise_gain(&trained.kernel)
     ));
     console::tell(&format!("wrote {}", arguments.output.display()));
     Ok(Exit::Pass)
+}
+
+/// The gains of photographs by the kernel of the others, as far as they were measured.
+fn held_out(trained: &Trained) -> Option<Spread> {
+    Spread::of(&trained.held_out.iter().flatten().copied().collect::<Vec<_>>())
+}
+
+fn held_out_text(trained: &Trained) -> String {
+    let Some(Spread { mean, least, most }) = held_out(trained) else { return "not measured".to_owned() };
+    let measured = trained.held_out.iter().flatten().count();
+    let some =
+        if measured < trained.held_out.len() { format!(", of {measured} of them") } else { String::new() };
+    format!("{mean:+.2} dB ({least:+.2} to {most:+.2}{some})")
 }
 
 /// Where a kernel comes from, as its file tells.
@@ -189,7 +201,7 @@ fn about(origins: &[Origin], trained: &Trained) -> anyhow::Result<Map<String, Va
         "figures".to_owned(),
         json!({
             "gain_over_hermite_db": rounded(trained.gain),
-            "held_out_gains_db": trained.held_out.iter().copied().map(rounded).collect::<Vec<_>>(),
+            "held_out_gains_db": trained.held_out.iter().map(|gain| gain.map(rounded)).collect::<Vec<_>>(),
             "mean_noise_gain": rounded(mean_noise_gain(&trained.kernel)),
         }),
     );
@@ -205,7 +217,8 @@ fn rounded(figure: f64) -> f64 {
 }
 
 fn mean_noise_gain(kernel: &Kernel) -> f64 {
-    Spread::of(&noise_gain(kernel)).mean
+    let gains = noise_gain(kernel);
+    gains.iter().sum::<f64>() / gains.len() as f64
 }
 
 fn rows(images: &[RgbImage]) -> u64 {
@@ -228,11 +241,24 @@ fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
         return Ok(Exit::Pass);
     }
     let mut lines = vec![format!("{name} on {}, over Hermite in dB", count(images.len(), "photograph"))];
-    lines.extend(measured.iter().map(|gains| {
-        let Spread { mean, least, most } = gains.gain;
-        format!("  {mean:+.3} ({least:+.3} to {most:+.3})  {}, {:.4}", gains.condition, gains.hermite)
-    }));
-    lines.push(format!("  noise gain {:.3} ({:.3} to {:.3})", noise.mean, noise.least, noise.most));
+    lines.extend(measured.iter().map(gains_text));
+    lines.extend(
+        noise.map(|Spread { mean, least, most }| format!("  noise gain {mean:.3} ({least:.3} to {most:.3})")),
+    );
     print(&lines.join("\n"))?;
     Ok(Exit::Pass)
+}
+
+fn gains_text(gains: &Gains) -> String {
+    let exact = match gains.exact {
+        0 => String::new(),
+        1 => "; 1 photograph comes back exactly, and is left out".to_owned(),
+        more => format!("; {} come back exactly, and are left out", count(more, "photograph")),
+    };
+    match gains.gain.zip(gains.hermite) {
+        Some((Spread { mean, least, most }, hermite)) => {
+            format!("  {mean:+.3} ({least:+.3} to {most:+.3})  {}, {hermite:.4}{exact}", gains.condition)
+        }
+        None => format!("  no figure  {}{exact}", gains.condition),
+    }
 }

@@ -47,24 +47,23 @@ pub struct Spread {
 pub struct Gains {
     /// The condition, in words.
     pub condition: String,
-    /// PSNR by Hermite in dB, the mean of all photographs.
-    pub hermite: f64,
-    /// By how much the kernel is better.
-    pub gain: Spread,
+    /// PSNR by Hermite in dB, the mean of the photographs that do not come back exactly; none without such.
+    pub hermite: Option<f64>,
+    /// By how much the kernel is better on those.
+    pub gain: Option<Spread>,
+    /// The photographs that come back exactly by one of the two, which no figure in dB tells.
+    pub exact: usize,
 }
 
 impl Spread {
-    /// Of `gains`; zeros of none.
+    /// Of `gains`, if there are any.
     #[must_use]
-    pub fn of(gains: &[f64]) -> Self {
-        if gains.is_empty() {
-            return Self { mean: 0.0, least: 0.0, most: 0.0 };
-        }
-        Self {
+    pub fn of(gains: &[f64]) -> Option<Self> {
+        (!gains.is_empty()).then(|| Self {
             mean: gains.iter().sum::<f64>() / gains.len() as f64,
             least: gains.iter().copied().fold(f64::INFINITY, f64::min),
             most: gains.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        }
+        })
     }
 }
 
@@ -113,9 +112,16 @@ pub fn measure(
     });
     let scores = scores.collect::<Result<Vec<_>, _>>()?;
     let gains = Condition::ALL.into_iter().enumerate().map(|(place, condition)| {
-        let hermite: Vec<f64> = scores.iter().map(|scores| scores[place][0]).collect();
-        let gains: Vec<f64> = scores.iter().map(|scores| scores[place][1] - scores[place][0]).collect();
-        Gains { condition: condition.name(), hermite: Spread::of(&hermite).mean, gain: Spread::of(&gains) }
+        let inexact = scores.iter().map(|scores| scores[place]);
+        let inexact = inexact.filter(|both| both.iter().all(|score| score.is_finite()));
+        let (hermite, gains): (Vec<f64>, Vec<f64>) =
+            inexact.map(|[hermite, own]| (hermite, own - hermite)).unzip();
+        Gains {
+            condition: condition.name(),
+            hermite: Spread::of(&hermite).map(|spread| spread.mean),
+            gain: Spread::of(&gains),
+            exact: scores.len() - gains.len(),
+        }
     });
     Ok(gains.collect())
 }

@@ -28,8 +28,9 @@ use halfrow::progress::Progress;
 pub struct Trained {
     /// The weights.
     pub kernel: Kernel,
-    /// The gain over Hermite on each photograph by the kernel of all the others, in dB; none for a photograph alone.
-    pub held_out: Vec<f64>,
+    /// The gain over Hermite on each photograph by the kernel of all the others, in dB; none where they determine no kernel, or
+    /// where it has no detail to gain on.
+    pub held_out: Vec<Option<f64>>,
     /// The gain over Hermite on the photographs it was fitted to, in dB.
     pub gain: f64,
 }
@@ -71,6 +72,9 @@ impl TrainingError {
     }
 }
 
+/// The square of an error, in levels of 255, that is none: what is left of it is the rounding of the equations.
+const EXACT: f64 = 1e-6;
+
 /// The kernel that fits `photographs` best under all of [`Model::ALL`], each photograph weighing the same whatever its size.
 ///
 /// # Errors
@@ -91,12 +95,13 @@ pub fn train(
         all.add(equations, 1.0);
     }
     let kernel = all.kernel(taps)?;
-    let mut held_out = Vec::new();
-    for equations in each.iter().filter(|_| each.len() > 1) {
+    let held_out = each.iter().map(|equations| {
         let mut others = all.clone();
         others.add(equations, -1.0);
-        held_out.push(gain(equations, &others.kernel(taps)?));
-    }
+        let has_detail = equations.error(&Interpolant::Hermite.into()) > EXACT;
+        others.kernel(taps).ok().filter(|_| has_detail).map(|kernel| gain(equations, &kernel))
+    });
+    let held_out = held_out.collect();
     Ok(Trained { gain: gain(&all, &kernel), kernel, held_out })
 }
 
