@@ -80,6 +80,29 @@ fn a_report_with_a_file_of_someone_else_in_it_is_left_alone() {
     assert!(path.join("notes.txt").exists());
 }
 
+#[test]
+fn a_folder_by_a_name_of_a_report_and_a_report_of_another_program_are_left_alone() {
+    let station = TempDir::new().unwrap();
+    let path = station.path().join("today");
+    write(&path, false, &made::pass());
+    fs::remove_file(path.join("report.html")).unwrap();
+    fs::create_dir(path.join("report.html")).unwrap();
+    fs::write(path.join("report.html/chapter1.tex"), "all of it").unwrap();
+    let refused = ReportFolder::prepare(&path, true).unwrap_err().to_string();
+    assert!(refused.contains("its `report.html` is no file"), "{refused}");
+    assert!(path.join("report.html/chapter1.tex").exists());
+    fs::remove_dir_all(path.join("report.html")).unwrap();
+    for other in [
+        r#"{"verdict": 1, "board": 2, "findings": []}"#,
+        r#"{"schema": "x-1", "command": "verify", "verdict": "PASS", "exit_code": 0, "board": {}}"#,
+        r#"{"schema": 1, "command": "boards", "verdict": "PASS", "exit_code": 0, "board": {}}"#,
+    ] {
+        fs::write(path.join("report.json"), other).unwrap();
+        let refused = ReportFolder::prepare(&path, true).unwrap_err().to_string();
+        assert!(refused.contains("it holds no report.json of halfrow's"), "{refused}");
+    }
+}
+
 /// As `mkdir -p` and `mktemp -d` make one before a run.
 #[test]
 fn an_empty_folder_is_a_place_for_a_report() {

@@ -10,6 +10,7 @@ use serde::de::IgnoredAny;
 
 use super::{VIEWS, json};
 use crate::result::{Evidence, Report};
+use crate::verdict::Verdict;
 use halfrow_frames::written_aside::{AsideFolder, Claim, Misplaced, WriteAsideError};
 
 const JSON: &str = "report.json";
@@ -205,17 +206,27 @@ fn foreign(path: &Path) -> Option<String> {
     if let Some(other) = entries.iter().map(fs::DirEntry::file_name).find(|name| !ours(name)) {
         return Some(format!("it also holds `{}`", other.display()));
     }
+    let is_file = |entry: &&fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_file());
+    if let Some(other) = entries.iter().find(|entry| !is_file(entry)) {
+        return Some(format!("its `{}` is no file", other.file_name().display()));
+    }
     (!entries.is_empty() && !is_report(&path.join(JSON))).then(|| format!("it holds no {JSON} of halfrow's"))
 }
 
-/// Whether a file is a report's JSON, by the two names that every report begins with.
+/// Whether a file is a report's JSON, by what every report begins with, of whatever shape.
 fn is_report(path: &Path) -> bool {
     #[derive(Deserialize)]
     struct Head {
+        #[serde(rename = "schema")]
+        _schema: u32,
+        command: String,
         #[serde(rename = "verdict")]
-        _verdict: IgnoredAny,
+        _verdict: Verdict,
+        #[serde(rename = "exit_code")]
+        _exit_code: u8,
         #[serde(rename = "board")]
         _board: IgnoredAny,
     }
-    File::open(path).is_ok_and(|file| serde_json::from_reader::<_, Head>(BufReader::new(file)).is_ok())
+    let head = File::open(path).map(|file| serde_json::from_reader::<_, Head>(BufReader::new(file)));
+    matches!(head, Ok(Ok(head)) if ["verify", "soak"].contains(&head.command.as_str()))
 }
