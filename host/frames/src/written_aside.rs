@@ -8,6 +8,7 @@ mod folder;
 mod lock;
 mod place;
 mod rename;
+mod rights;
 mod under_way;
 
 use std::fs::{self, File};
@@ -19,6 +20,7 @@ use tempfile::NamedTempFile;
 pub use claim::Claim;
 pub use folder::{AsideFolder, Misplaced};
 pub use place::{Place, check, check_folder, clear};
+use rights::Rights;
 pub use under_way::abandon_all;
 
 /// Bytes that are written at once.
@@ -92,7 +94,7 @@ pub struct Aside {
 }
 
 impl Aside {
-    /// A file for `path` with what `write` puts into it and the permissions of an ordinary file.
+    /// A file for `path` with what `write` puts into it, and the rights of the file that it replaces, or of an ordinary one.
     ///
     /// # Errors
     /// As [`write_aside`].
@@ -128,7 +130,8 @@ impl Aside {
         kept_for: Option<&std::ffi::OsStr>,
         claim: Option<Claim>,
     ) -> Result<Self, WriteAsideError> {
-        let (file, noted) = under_way::file(folder_of(path), kept_for)
+        let rights = if overwrite { Rights::of(path) } else { None };
+        let (file, noted) = under_way::file(folder_of(path), kept_for, rights)
             .map_err(|source| WriteAsideError::Io { path: path.to_owned(), source })?;
         // What is worth keeping is not kept back.
         let capacity = if kept_for.is_some() { STREAM_BUFFER } else { BUFFER };

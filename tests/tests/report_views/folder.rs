@@ -103,6 +103,21 @@ fn a_folder_by_a_name_of_a_report_and_a_report_of_another_program_are_left_alone
     }
 }
 
+#[cfg(unix)]
+#[test]
+fn a_report_that_replaces_one_is_open_to_the_same_people() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let station = TempDir::new().unwrap();
+    let path = station.path().join("today");
+    write(&path, false, &made::pass());
+    let mode = || fs::metadata(&path).unwrap().permissions().mode() & 0o7777;
+    for kept in [0o700, 0o2770] {
+        fs::set_permissions(&path, fs::Permissions::from_mode(kept)).unwrap();
+        write(&path, true, &made::pass());
+        assert_eq!(mode(), kept, "{kept:o}");
+    }
+}
+
 /// As `mkdir -p` and `mktemp -d` make one before a run.
 #[test]
 fn an_empty_folder_is_a_place_for_a_report() {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
+use super::rights::Rights;
 use super::under_way::{self, Noted};
 use super::{folder_of, rename, sync_folder};
 
@@ -42,12 +43,12 @@ impl From<io::Error> for Misplaced {
 }
 
 impl AsideFolder {
-    /// A folder for `target`, with the permissions of an ordinary one.
+    /// A folder for `target`, with the rights of what is there, or of an ordinary one.
     ///
     /// # Errors
     /// The system's reason.
     pub fn new(target: &Path) -> io::Result<Self> {
-        let (dir, held, noted) = under_way::folder(folder_of(target))?;
+        let (dir, held, noted) = under_way::folder(folder_of(target), Rights::of(target))?;
         Ok(Self { dir, target: target.to_owned(), _held: held, _noted: noted })
     }
 

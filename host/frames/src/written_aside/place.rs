@@ -37,7 +37,7 @@ pub fn check(path: &Path, overwrite: bool) -> Result<(), WriteAsideError> {
 pub fn check_folder(folder: &Path, may_be_made: bool) -> io::Result<()> {
     match fs::metadata(folder) {
         // Only the system knows of quotas, of read-only mounts, and of folders that have no files.
-        Ok(_) => under_way::file(folder, None).map(drop),
+        Ok(_) => under_way::file(folder, None, None).map(drop),
         Err(error) if error.kind() == io::ErrorKind::NotFound && may_be_made && !is_link(folder) => {
             check_folder(folder_of(folder), true)
         }

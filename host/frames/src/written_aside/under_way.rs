@@ -20,6 +20,7 @@ use tempfile::{NamedTempFile, TempDir};
 
 use super::lock::{self, Tried};
 use super::rename;
+use super::rights::Rights;
 
 const PREFIX: &str = ".halfrow-";
 const ASIDE: &str = ".aside";
@@ -80,8 +81,12 @@ pub fn abandon_all() -> bool {
     is_any
 }
 
-/// A locked file in `folder` that will be `kept_for`, if it is worth that.
-pub(super) fn file(folder: &Path, kept_for: Option<&OsStr>) -> io::Result<(NamedTempFile, Noted)> {
+/// A locked file in `folder` that will be `kept_for`, if it is worth that; of an ordinary file's rights, or of those that are given.
+pub(super) fn file(
+    folder: &Path,
+    kept_for: Option<&OsStr>,
+    rights: Option<Rights>,
+) -> io::Result<(NamedTempFile, Noted)> {
     let suffix = kept_for.map_or_else(
         || OsString::from(ASIDE),
         |name| {
@@ -91,27 +96,32 @@ pub(super) fn file(folder: &Path, kept_for: Option<&OsStr>) -> io::Result<(Named
     );
     for _ in 0..TRIES {
         let (file, noted) = made(|| {
-            let file = builder(&suffix, 0o666).tempfile_in(folder)?;
+            let file = builder(&suffix, rights.map_or(0o666, Rights::mode)).tempfile_in(folder)?;
             let path = file.path().to_owned();
             Ok((file, path))
         })?;
         if is_ours(file.as_file(), file.path()) {
+            rights.map_or(Ok(()), |rights| rights.give(file.as_file()))?;
             return Ok((file, noted));
         }
     }
     Err(io::ErrorKind::ResourceBusy.into())
 }
 
-/// A locked folder in `parent`, with what holds its lock.
-pub(super) fn folder(parent: &Path) -> io::Result<(TempDir, File, Noted)> {
+/// A locked folder in `parent`, with what holds its lock; of an ordinary folder's rights, or of those that are given.
+pub(super) fn folder(parent: &Path, rights: Option<Rights>) -> io::Result<(TempDir, File, Noted)> {
     for _ in 0..TRIES {
         let (folder, noted) = made(|| {
-            let folder = builder(OsStr::new(ASIDE), 0o777).tempdir_in(parent)?;
+            let mode = rights.map_or(0o777, Rights::mode);
+            let folder = builder(OsStr::new(ASIDE), mode).tempdir_in(parent)?;
             let path = folder.path().to_owned();
             Ok((folder, path))
         })?;
         match lock::open(folder.path()) {
-            Ok(held) if is_ours(&held, folder.path()) => return Ok((folder, held, noted)),
+            Ok(held) if is_ours(&held, folder.path()) => {
+                rights.map_or(Ok(()), |rights| rights.give(&held))?;
+                return Ok((folder, held, noted));
+            }
             Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
             _ => {}
         }
