@@ -139,7 +139,7 @@ impl Aside {
         Ok(Self { out, path: path.to_owned(), overwrite, _claim: claim, _noted: noted })
     }
 
-    /// Renames the file into its place, once its bytes are on the disk, and sees that the new name is too.
+    /// Renames the file into its place, once its bytes are on the disk, and does what can be done for the new name to be, too.
     ///
     /// # Errors
     /// [`WriteAsideError`] when the place has been taken meanwhile and may not be, or the system refuses.
@@ -147,10 +147,9 @@ impl Aside {
         let written = self.whole();
         let Self { out, path, overwrite, .. } = self;
         let file = out.into_parts().0;
-        match written.and_then(|()| place(file, &path, overwrite).map_err(|(error, _)| error)) {
-            Ok(()) => synced(&path),
-            Err(error) => Err(error),
-        }
+        written.and_then(|()| place(file, &path, overwrite).map_err(|(error, _)| error))?;
+        settle(&path);
+        Ok(())
     }
 
     /// [`Self::put_in_place`], or else keeps what there is under a name that nothing else has.
@@ -165,10 +164,9 @@ impl Aside {
             Ok(()) => place(file, &path, overwrite),
             Err(error) => Err((error, file)),
         };
-        match placed {
-            Ok(()) => synced(&path).map_err(|source| Unfinished { kept: None, source }),
-            Err((source, file)) => Err(unfinished(file, &path, source)),
-        }
+        placed.map_err(|(source, file)| unfinished(file, &path, source))?;
+        settle(&path);
+        Ok(())
     }
 
     /// Keeps what there is under a name that nothing else has, since writing on failed with `source`.
@@ -247,17 +245,22 @@ pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-fn synced(path: &Path) -> Result<(), WriteAsideError> {
-    sync_folder(folder_of(path)).map_err(|source| WriteAsideError::Io { path: path.to_owned(), source })
+/// Makes the name of what is whole and in its place last. Whatever fails here takes nothing of it away.
+fn settle(path: &Path) {
+    if let Err(error) = sync_folder(folder_of(path)) {
+        tracing::warn!(path = %path.display(), %error, "it is written, and a power cut may take it away again");
+    }
 }
 
-/// Makes the names in `folder` last through a power cut, where its file system knows how to.
+/// Makes the names in `folder` last through a power cut, where its file system knows how to and it may be listed.
 ///
 /// # Errors
 /// The system's reason.
 pub fn sync_folder(folder: &Path) -> io::Result<()> {
-    match File::open(folder)?.sync_all() {
-        Err(error) if matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => {
+    use io::ErrorKind::{InvalidInput, PermissionDenied, Unsupported};
+    match File::open(folder).and_then(|folder| folder.sync_all()) {
+        Err(error) if matches!(error.kind(), InvalidInput | PermissionDenied | Unsupported) => {
+            tracing::info!(folder = %folder.display(), %error, "its names are not brought to the disk at once");
             Ok(())
         }
         synced => synced,

@@ -36,6 +36,7 @@ mod station;
 mod streams;
 mod unfit_lenses;
 mod varied;
+mod unlisted;
 mod verdicts;
 mod within;
 

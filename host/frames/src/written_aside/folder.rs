@@ -9,7 +9,7 @@ use tempfile::TempDir;
 
 use super::rights::Rights;
 use super::under_way::{self, Noted};
-use super::{folder_of, rename, sync_folder};
+use super::{folder_of, rename, settle, sync_folder};
 
 /// How often a place is looked at again that changes between two looks.
 const LOOKS: usize = 100;
@@ -64,7 +64,8 @@ impl AsideFolder {
     pub fn put_in_place(self) -> Result<(), Misplaced> {
         sync_folder(self.path())?;
         self.moved()?;
-        self.done()
+        self.done();
+        Ok(())
     }
 
     /// Renames it into its place. What is there goes, unless `foreign` says why it may not.
@@ -77,7 +78,10 @@ impl AsideFolder {
             match self.moved() {
                 Err(Misplaced::Taken(_)) => {}
                 Err(error) => return Err(error),
-                Ok(()) => return self.done(),
+                Ok(()) => {
+                    self.done();
+                    return Ok(());
+                }
             }
             if let Some(why) = foreign(&self.target) {
                 return Err(Misplaced::Taken(Some(why)));
@@ -86,7 +90,8 @@ impl AsideFolder {
                 Ok(()) => return self.drop_earlier(foreign),
                 Err(error) if error.kind() == io::ErrorKind::Unsupported => {
                     self.exchange()?;
-                    return self.done();
+                    self.done();
+                    return Ok(());
                 }
                 Err(error) if error.kind() == io::ErrorKind::NotFound && self.path().exists() => {}
                 Err(error) => return Err(error.into()),
@@ -108,7 +113,8 @@ impl AsideFolder {
             rename::swap(self.path(), &self.target)?;
             return Err(Misplaced::Taken(Some(why)));
         }
-        Ok(sync_folder(folder_of(&self.target))?)
+        settle(&self.target);
+        Ok(())
     }
 
     /// Swaps in three steps. What is moved out of the way comes back when ours is not taken.
@@ -128,11 +134,11 @@ impl AsideFolder {
         under_way::to_free_name(&self.target, &[name, OsStr::new(EARLIER)].into_iter().collect::<OsString>())
     }
 
-    fn done(self) -> Result<(), Misplaced> {
+    fn done(self) {
         let Self { dir, target, .. } = self;
         // It has another name by now, under which it stays.
         let _ = dir.keep();
-        Ok(sync_folder(folder_of(&target))?)
+        settle(&target);
     }
 }
 
@@ -188,7 +194,7 @@ mod tests {
         aside(&target, "first").put_in_place().unwrap();
         let second = aside(&target, "second");
         second.exchange().unwrap();
-        second.done().unwrap();
+        second.done();
         assert_eq!((text(&target), entries(station.path())), ("second".to_owned(), 1));
         let killed = aside(&target, "killed");
         let earlier = killed.move_away().unwrap();
