@@ -7,6 +7,7 @@ use std::sync::Mutex;
 
 use crate::console;
 use crate::exit::Exit;
+use crate::signals;
 
 /// A panic.
 #[derive(Debug, thiserror::Error)]
@@ -20,6 +21,8 @@ static FIRST: Mutex<Option<String>> = Mutex::new(None);
 
 /// What `run` ends with, as the process's exit code; a panic is an error, which is told.
 pub fn end(run: impl FnOnce() -> Exit) -> ExitCode {
+    // Where the system takes no handler, such a write ends the program, and nothing else is another.
+    let _ = signals::outlive_file_limit();
     let exit = guarded(run).unwrap_or_else(|fault| {
         console::error(&fault);
         Exit::Error
