@@ -25,11 +25,18 @@ static FIRST: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
 /// Whether somebody looks at it.
 static IS_HEEDED: AtomicBool = AtomicBool::new(false);
 
+/// Signals that cannot be waited for.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "the program cannot wait for signals; end other programs, or allow this user more processes and open files (`ulimit -u`, `ulimit -n`)"
+)]
+pub struct Unheard(#[from] io::Error);
+
 /// Waits for signals from now on, on a thread of its own.
 ///
 /// # Errors
-/// The system's, when it takes no handler or has no thread left.
-pub fn watch() -> io::Result<()> {
+/// [`Unheard`] when the system takes no handler or has no thread left.
+pub fn watch() -> Result<(), Unheard> {
     let mut wanted = vec![SIGINT, SIGTERM];
     // Whoever starts a program with `nohup` wants it to outlive the terminal.
     if !is_ignored(SIGHUP) {

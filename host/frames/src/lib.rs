@@ -17,6 +17,7 @@ mod jpeg;
 mod mosaic;
 mod narrow;
 mod orientation;
+pub mod parallel;
 mod patterns;
 pub mod pgm;
 mod photograph;

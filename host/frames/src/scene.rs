@@ -1,20 +1,8 @@
 //! What a built-in frame is made for: its size and depth, its colours, and the lens it is seen through.
 
-use std::error::Error as _;
-use std::sync::LazyLock;
-
 use halfrow_model::{Equidistant, Frame, FrameError, Geometry, Phase};
-use rayon::prelude::*;
 
-/// Whether there are threads that share the work; they are started if nobody has done that. Where the system gives none, a frame is made
-/// without: rayon would panic.
-fn is_shared() -> bool {
-    static STARTED: LazyLock<bool> = LazyLock::new(|| {
-        // An error without a cause says that they are there.
-        rayon::ThreadPoolBuilder::new().build_global().err().is_none_or(|error| error.source().is_none())
-    });
-    *STARTED
-}
+use super::parallel;
 
 /// The circumstances of a built-in frame. The default is the paper's: 1920 x 1080, 12 bits, GRBG, its lens.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -52,12 +40,7 @@ impl Scene {
     pub(super) fn frame_of_rows(&self, fill: impl Fn(usize, &mut [u16]) + Sync) -> Result<Frame, FrameError> {
         let width = self.geometry.width();
         let mut samples = vec![0; width * self.geometry.height()];
-        let fill = |(row, samples): (usize, &mut [u16])| fill(row, samples);
-        if is_shared() {
-            samples.par_chunks_exact_mut(width).enumerate().for_each(fill);
-        } else {
-            samples.chunks_exact_mut(width).enumerate().for_each(fill);
-        }
+        parallel::fill_rows(&mut samples, width, fill);
         Frame::new(width, self.geometry.depth(), self.phase, samples)
     }
 

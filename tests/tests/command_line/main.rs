@@ -34,9 +34,10 @@ mod signals;
 mod simulated;
 mod station;
 mod streams;
+mod threads;
 mod unfit_lenses;
-mod varied;
 mod unlisted;
+mod varied;
 mod verdicts;
 mod within;
 

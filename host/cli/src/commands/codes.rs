@@ -16,6 +16,7 @@ use crate::exit::Exit;
 use crate::pool::PoolError;
 use crate::serve::ServeError;
 use crate::settings::SettingsError;
+use crate::signals::Unheard;
 use halfrow::result::codes::{self, CodeList, Coded};
 use halfrow::result::{Finding, Problem, examples};
 use halfrow::run::{RECORDING_LOST, REPORT_LOST};
@@ -163,6 +164,8 @@ codes::codes! {
         NoBursts => "fault-without-bursts",
         = Value,
     }
+    ;
+    Unheard => "signals-unheard"
 }
 
 fn known(error: &(dyn Error + 'static)) -> Option<Coded> {

@@ -1,7 +1,7 @@
 //! What each way to make tables leaves of the exact projection, per lens, frame and optical centre.
 
+use halfrow::frames::parallel;
 use halfrow_model::{Camera, CameraError, Equidistant, GridResidual, GridResiduals};
-use rayon::prelude::*;
 
 use super::cameras::{self, DSL215, FISHEYE_MODEL, FULL_HD, PAPER, SENSOR};
 use super::exhibit::{Accepted, Cell, Claim, Exhibit, Table};
@@ -65,7 +65,8 @@ pub(super) fn exhibit() -> Result<Exhibit, PaperError> {
          computed elsewhere.",
     );
     let (mut ways, mut parts) = (Vec::new(), Vec::new());
-    let all = CASES.par_iter().map(Left::of).collect::<Result<Vec<_>, _>>()?;
+    let all = parallel::map(&CASES, |_, case| Left::of(case));
+    let all = all.into_iter().collect::<Result<Vec<_>, _>>()?;
     for (case, left) in CASES.iter().zip(&all) {
         exhibit.claims.push(claim(case, left));
         ways.push(left.ways());

@@ -3,10 +3,10 @@
 use halfrow_model::{Frame, Interpolant, Kernel, TableSet};
 use rand_core::Rng;
 use rand_pcg::Pcg32;
-use rayon::prelude::*;
 
 use super::{Model, TrainingError, Warp};
 use crate::paper::psnr;
+use halfrow::frames::parallel;
 use halfrow::frames::preview::{RgbImage, demosaic_coded};
 use halfrow::progress::Progress;
 use halfrow::reference;
@@ -104,13 +104,13 @@ pub fn measure(
     progress: &dyn Progress,
 ) -> Result<Vec<Gains>, TrainingError> {
     let kernels = [Kernel::from(Interpolant::Hermite), kernel.clone()];
-    let scores = photographs.par_iter().enumerate().map(|(index, photograph)| {
+    let scores = parallel::map(photographs, |index, photograph| {
         progress.frame(&format!("photograph {}", index + 1));
         let scores = scores(photograph, &kernels);
         progress.rows(photograph.height as u64);
         scores
     });
-    let scores = scores.collect::<Result<Vec<_>, _>>()?;
+    let scores = scores.into_iter().collect::<Result<Vec<_>, _>>()?;
     let gains = Condition::ALL.into_iter().enumerate().map(|(place, condition)| {
         let inexact = scores.iter().map(|scores| scores[place]);
         let inexact = inexact.filter(|both| both.iter().all(|score| score.is_finite()));

@@ -1,11 +1,10 @@
 //! Frames corrected by the reference model, row by row, as many at a time as there are processors.
 
 use halfrow_model::{Corrector, Frame};
-use rayon::prelude::*;
 
 use super::places::Places;
 use super::{Failure, Job};
-use halfrow::frames::{self, FrameShape, WriteError};
+use halfrow::frames::{self, FrameShape, WriteError, parallel};
 use halfrow::progress::Progress;
 use halfrow::reference;
 
@@ -14,7 +13,7 @@ impl Job<'_> {
     pub(super) fn by_model(&self, places: &Places, progress: &dyn Progress) -> Result<(), Failure> {
         places.make_folders().map_err(Failure::error)?;
         let corrector = || reference::corrector(&self.chosen.kernel);
-        (0..self.inputs.len()).into_par_iter().try_for_each_init(corrector, |corrector, index| {
+        parallel::try_each(self.inputs.len(), corrector, |corrector, index| {
             self.correct_one(places, index, corrector)?;
             progress.rows(self.scene.geometry.height() as u64);
             Ok(())
