@@ -61,8 +61,20 @@ fn a_real_link_is_measured_and_its_board_left_free() {
 }
 
 #[test]
-fn a_link_that_breaks_or_is_too_poor_is_an_error() {
-    ends(&measure("mock,speed=1200000,fault=flip,rate=1e-4"), 3, "the link is too poor");
+fn a_poor_link_is_measured_to_its_end() {
+    let poor = "mock,speed=1200000,fault=flip,rate=1e-4";
+    ends(&halfrow(["link", "--json", "--retry-limit", "1", "--board", poor]), 3, "the link is too poor");
+    let ended = measure(poor);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let errors = &ended.json()["link"]["errors"];
+    assert!(
+        errors["damaged_out"].as_u64() > Some(20) && errors["damaged_in"].as_u64() > Some(20),
+        "{errors}"
+    );
+}
+
+#[test]
+fn a_link_that_breaks_is_an_error() {
     let served = Served::on_a_serial_port("mock,fault=disconnect,packet=30");
     ends(&measure(&served.target()), 3, "the link broke while waiting for the answer to");
     let gone = halfrow(["link", "--seconds", "0", "--board", "mock"]);

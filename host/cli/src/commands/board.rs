@@ -32,7 +32,7 @@ pub(super) struct BoardArguments {
     /// The longest that the run may take, in seconds: of this computer's clock or the link's, whichever is over first
     #[arg(long, value_name = "SECONDS", env = "HALFROW_TIMEOUT", value_parser = any::<f64>("a number of seconds"))]
     timeout: Option<f64>,
-    /// Packets that may be sent again, in percent of those sent, beyond 16; above it the link is too poor [default: 5]
+    /// Packets that may be sent again, in percent of those sent, beyond 16; above it the link is too poor [default: 5; `link` has none]
     #[arg(long, value_name = "PERCENT", env = "HALFROW_RETRY_LIMIT", value_parser = number("percent", 0.0..=100.0))]
     retry_limit: Option<f64>,
     /// Take the board over from another host that holds it
@@ -165,6 +165,13 @@ impl BoardArguments {
             stop: self.stop(settings)?.limited(self.timeout(settings)?),
             ..draws.unwrap_or_else(Draws::draw).into()
         })
+    }
+
+    /// [`Self::open_options`] where a link is measured: however poor it is, unless the call itself says what is too poor.
+    pub(super) fn measuring_options(&self, settings: &Settings) -> Result<OpenOptions, Failure> {
+        let options = self.open_options(settings, None)?;
+        let retry_limit = if self.retry_limit.is_some() { options.retry_limit } else { RetryLimit::NONE };
+        Ok(OpenOptions { retry_limit, ..options })
     }
 
     /// What ends the run early: a signal, the loss of a board of a pool, or the call's limit on this computer's clock.

@@ -80,6 +80,9 @@ impl Default for RetryLimit {
 }
 
 impl RetryLimit {
+    /// As many as it takes, where nothing is judged.
+    pub const NONE: Self = Self { fixed: u64::MAX, share: 0.0 };
+
     /// The most retries among `packets` packets.
     #[must_use]
     pub fn of(self, packets: u64) -> u64 {
