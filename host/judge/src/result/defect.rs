@@ -5,7 +5,7 @@ mod parameters;
 use serde::{Deserialize, Serialize};
 
 use super::Extent;
-pub use parameters::{ClampEnd, Counting, MadeWith, Memory, Reading, RowSource, StaleFrames};
+pub use parameters::{ClampEnd, Counting, Instead, MadeWith, Memory, Reading, RowSource, StaleFrames};
 
 /// A single defect of a board.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -123,6 +123,16 @@ pub enum Defect {
     ClampMissing {
         /// Where.
         end: ClampEnd,
+    },
+    /// The optical centre is not what was set.
+    CentreIgnored {
+        /// What stands in its place.
+        instead: Instead,
+    },
+    /// The bits of a sample are not what was set.
+    DepthIgnored {
+        /// What stands in their place.
+        instead: Instead,
     },
     /// A data line of the row table, as the datapath reads it.
     RowTableDataStuck {

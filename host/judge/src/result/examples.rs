@@ -2,8 +2,8 @@
 
 use super::{
     Account, Answer, BoardKind, BrokenOff, BurstCount, ClampEnd, ClockSeen, Corner, Counter, Counting,
-    Defect, Doubt, EqualAtSpeed, Extent, Finding, MadeWith, Memory, NoBurst, NotExercised, NumberedRow,
-    Problem, Reading, RepeatedRow, Repetition, RowSource, Rule, StaleFrames, Streamed, Suspect,
+    Defect, Doubt, EqualAtSpeed, Extent, Finding, Instead, MadeWith, Memory, NoBurst, NotExercised,
+    NumberedRow, Problem, Reading, RepeatedRow, Repetition, RowSource, Rule, StaleFrames, Streamed, Suspect,
 };
 use crate::verdict::Verdict;
 
@@ -277,6 +277,8 @@ fn of_logic() -> Vec<Defect> {
         Defect::WeightRoundingMissing {},
         Defect::RoundingMissing {},
         Defect::ClampMissing { end: ClampEnd::High },
+        Defect::CentreIgnored { instead: Instead::Usual },
+        Defect::DepthIgnored { instead: Instead::FrameBefore },
         Defect::RowsExchanged { source: RowSource::Output { frames: 0, rows: -1 }, mostly: false },
         Defect::RowShifted { columns: 1 },
         Defect::ColumnPairsExchanged {},

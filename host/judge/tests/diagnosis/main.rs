@@ -10,6 +10,7 @@ mod grids;
 mod memory;
 mod read_back;
 mod scenes;
+mod settings;
 mod share;
 mod tables;
 mod taps;

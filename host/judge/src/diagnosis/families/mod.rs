@@ -12,6 +12,7 @@ mod memory_data;
 mod origin_search;
 mod places;
 mod row_factor;
+mod settings;
 mod table_lines;
 mod table_word;
 mod taps;
@@ -37,6 +38,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
         memory_address::propose,
         taps::propose,
         arithmetic::propose,
+        settings::propose,
         table_lines::propose,
         grid_lines::propose,
         generations::propose,

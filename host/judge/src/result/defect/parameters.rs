@@ -41,6 +41,18 @@ pub enum ClampEnd {
     Both,
 }
 
+/// What stands in the place of a setting that the board does not take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Instead {
+    /// The middle of the row, or 12 bits.
+    Usual,
+    /// That of the run's first frame.
+    FirstFrame,
+    /// That of the frame before.
+    FrameBefore,
+}
+
 /// Which memory holds a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

@@ -1,7 +1,7 @@
 //! Logic that computes something else.
 
 use super::{LOGIC, Words};
-use crate::result::ClampEnd;
+use crate::result::{ClampEnd, Instead};
 
 pub(super) fn tap_offset(columns: i64) -> Words {
     let side = if columns < 0 { "left" } else { "right" };
@@ -82,6 +82,34 @@ pub(super) fn clamp(end: ClampEnd) -> Words {
         defect: "letting such sums wrap".to_owned(),
         designer: "Check the comparison that clamps the output to 0 and 2^B - 1.".to_owned(),
         technician: LOGIC,
+    }
+}
+
+pub(super) fn centre_ignored(instead: Instead) -> Words {
+    Words {
+        part: "setting",
+        place: "the setting of the optical centre".to_owned(),
+        defect: not_taken(instead, "the middle of the row"),
+        designer: "Check when the centre that CONFIGURE sets reaches the source columns.".to_owned(),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn depth_ignored(instead: Instead) -> Words {
+    Words {
+        part: "setting",
+        place: "the setting of the depth".to_owned(),
+        defect: not_taken(instead, "12 bits"),
+        designer: "Check when the depth that CONFIGURE sets reaches the output's clamp.".to_owned(),
+        technician: LOGIC,
+    }
+}
+
+fn not_taken(instead: Instead, usual: &str) -> String {
+    match instead {
+        Instead::Usual => format!("taking {usual} instead"),
+        Instead::FirstFrame => "keeping that of the run's first frame".to_owned(),
+        Instead::FrameBefore => "keeping that of the frame before".to_owned(),
     }
 }
 

@@ -101,6 +101,8 @@ fn elsewhere(defect: &Defect) -> Words {
         Defect::WeightRoundingMissing {} => logic::weight_rounding(),
         Defect::RoundingMissing {} => logic::rounding(),
         Defect::ClampMissing { end } => logic::clamp(*end),
+        Defect::CentreIgnored { instead } => logic::centre_ignored(*instead),
+        Defect::DepthIgnored { instead } => logic::depth_ignored(*instead),
         Defect::ColumnPairsExchanged {} => logic::pairs_exchanged(),
         Defect::RowsChangedOnEntry { rows, first, frame } => {
             at_speed::changed_on_entry(*rows, *first, *frame)

@@ -1,0 +1,59 @@
+//! A setting of CONFIGURE that the board does not take.
+
+use halfrow_model::{BitDepth, Geometry};
+
+use crate::diagnosis::Case;
+use crate::diagnosis::datapath::{RowTables, Stretch};
+use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
+use crate::diagnosis::witnesses::{Witness, Witnesses};
+use crate::result::{Defect, Instead};
+
+/// The optical centre and the depth, each with what may stand in its place.
+pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
+    let case = witnesses.case;
+    [Instead::Usual, Instead::FirstFrame, Instead::FrameBefore]
+        .into_iter()
+        .flat_map(|instead| [centre(case, instead), depth(case, instead)])
+        .collect()
+}
+
+/// A grid leads to columns of its own, whatever the centre.
+fn centre(case: Case<'_>, instead: Instead) -> Hypothesis<'_> {
+    Hypothesis::new(Defect::CentreIgnored { instead }, move |witness| {
+        let own = witness.geometry();
+        let centre2 = match instead {
+            Instead::Usual => own.width() as u32 - 1,
+            Instead::FirstFrame => made_for(&case, 0)?.centre2(),
+            Instead::FrameBefore => made_for(&case, witness.frame.checked_sub(1)?)?.centre2(),
+        };
+        let is_factor = matches!(witness.tables().stretch, Stretch::Factor(_));
+        is_factor.then(|| made_by(&case, witness, own.depth(), centre2)).flatten()
+    })
+}
+
+fn depth(case: Case<'_>, instead: Instead) -> Hypothesis<'_> {
+    Hypothesis::new(Defect::DepthIgnored { instead }, move |witness| {
+        let depth = match instead {
+            Instead::Usual => BitDepth::Twelve,
+            Instead::FirstFrame => made_for(&case, 0)?.depth(),
+            Instead::FrameBefore => made_for(&case, witness.frame.checked_sub(1)?)?.depth(),
+        };
+        made_by(&case, witness, depth, witness.geometry().centre2())
+    })
+}
+
+/// Size, depth and centre of the frame at `index`.
+fn made_for<'a>(case: &Case<'a>, index: usize) -> Option<&'a Geometry> {
+    let generation = case.frames.get(index)?.generation;
+    let uploaded = case.uploaded.iter().rfind(|uploaded| uploaded.generation == generation)?;
+    Some(uploaded.tables.geometry())
+}
+
+/// The row with these settings; none where they are its own.
+fn made_by(case: &Case<'_>, witness: &Witness<'_>, depth: BitDepth, centre2: u32) -> Option<Prediction> {
+    let own = witness.geometry();
+    let geometry = Geometry::new(own.width(), own.height(), depth, centre2).ok()?;
+    let tables = RowTables { geometry: &geometry, ..witness.tables() };
+    let made = || Prediction::partly(tables.corrected(witness.samples()), tables.foretold(case.ring));
+    (geometry != *own).then(made)
+}

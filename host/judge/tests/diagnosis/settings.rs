@@ -1,0 +1,60 @@
+//! Boards that do not take a setting.
+
+use halfrow::result::Suspect;
+use halfrow_model::{BitDepth, Frame, Geometry, TableSet, correct};
+
+use crate::bench::{Bench, Generation, Seen, off_centre};
+
+/// The bench of 8 bits and a centre of its own, behind a decoy whose centre is the middle.
+fn bench() -> Bench {
+    let mut bench = off_centre();
+    let decoy = &mut bench.generations[0];
+    let factors: Vec<_> = decoy.tables.row_factors().unwrap().to_vec();
+    decoy.tables = TableSet::new(Geometry::centred(192, 24, BitDepth::Eight).unwrap(), factors).unwrap();
+    bench
+}
+
+/// What is said of a board that makes each frame, by its index, with the settings that `made` gives.
+fn diagnose(bench: &Bench, made: impl Fn(usize, &Geometry) -> Geometry) -> Suspect {
+    let mut seen = Seen { frames: Vec::new(), evidence: Vec::new() };
+    for (index, (generation, input, expected)) in bench.sound_frames().into_iter().enumerate() {
+        let Generation { tables, kernel, .. } = &bench.generations[usize::from(generation) - 1];
+        let geometry = made(index, tables.geometry());
+        let tables = TableSet::new(geometry, tables.row_factors().unwrap().to_vec()).unwrap();
+        let samples = input.samples().to_vec();
+        let put_in = Frame::new(input.width(), geometry.depth(), input.phase(), samples).unwrap();
+        seen.take(generation, input, expected, correct(&tables, kernel, &put_in).unwrap());
+    }
+    seen.keep_all(bench.sound_frames());
+    let suspects = bench.judge(&seen);
+    let [only] = &suspects[..] else { panic!("{suspects:#?}") };
+    assert_eq!((only.part(), only.explained), ("setting", 1.0), "{only:#?}");
+    only.clone()
+}
+
+#[test]
+fn a_centre_that_is_not_taken_is_named() {
+    let middle = diagnose(&bench(), |_, own| Geometry::centred(192, 24, own.depth()).unwrap());
+    assert_eq!(middle.place(), "the setting of the optical centre");
+    assert!(middle.evidence().starts_with("taking the middle of the row instead"), "{}", middle.evidence());
+}
+
+/// Frame 2 is the first behind the decoy.
+#[test]
+fn a_centre_that_is_taken_a_frame_late_is_named() {
+    let late = diagnose(&bench(), |index, own| match index {
+        2 => Geometry::centred(192, 24, own.depth()).unwrap(),
+        _ => *own,
+    });
+    assert_eq!(late.place(), "the setting of the optical centre");
+    assert!(late.evidence().starts_with("keeping that of the frame before"), "{}", late.evidence());
+}
+
+#[test]
+fn a_depth_that_is_not_taken_is_named() {
+    let deep = diagnose(&bench(), |_, own| {
+        Geometry::new(own.width(), own.height(), BitDepth::Twelve, own.centre2()).unwrap()
+    });
+    assert_eq!(deep.place(), "the setting of the depth");
+    assert!(deep.evidence().starts_with("taking 12 bits instead"), "{}", deep.evidence());
+}
