@@ -307,6 +307,13 @@ pub enum Defect {
         /// Its level.
         value: u8,
     },
+    /// An address line of a table, at 0 for writing and right for reading.
+    TableWriteAddressStuck {
+        /// The table.
+        table: Memory,
+        /// The line.
+        bit: u32,
+    },
     /// Every entry of a table reads back as its neighbour.
     TableAddressOff {
         /// The table.

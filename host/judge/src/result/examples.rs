@@ -309,6 +309,7 @@ fn read_back() -> impl Iterator<Item = Defect> {
         },
         Defect::TableDataStuck { table, weight: None, bit: 7, value: 1 },
         Defect::TableAddressStuck { table, bit: 2, value: 0 },
+        Defect::TableWriteAddressStuck { table, bit: 2 },
         Defect::TableAddressOff { table, entries: 1 },
         Defect::TableLevelStuck { table, value: 0 },
     ]

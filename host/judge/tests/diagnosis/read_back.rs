@@ -111,6 +111,20 @@ fn an_address_line_stuck_for_writing_too_is_named() {
     assert_eq!(first(&suspects), ("row table, address bit 5".to_owned(), 1.0));
 }
 
+/// In a memory with two ports, half of the cells are never written, and hold what they held.
+#[test]
+fn an_address_line_stuck_for_writing_alone_is_named() {
+    let mut cells = vec![1 << 24; 100];
+    factors().into_iter().enumerate().for_each(|(row, factor)| cells[row & !4] = factor);
+    let suspects = read_factors(&cells);
+    assert_eq!(suspects.len(), 1, "{suspects:#?}");
+    assert_eq!(first(&suspects).0, "row table, write address bit 2");
+    let nodes = *Kernel::from(Interpolant::Hermite).nodes();
+    let written = |node: usize| if node & 16 > 0 { [0; 5] } else { nodes[(node | 16).min(64)] };
+    let suspects = read_nodes(|node, weights| *weights = written(node));
+    assert_eq!(first(&suspects).0, "kernel memory, write address bit 4");
+}
+
 #[test]
 fn entries_read_one_place_off_are_named() {
     let suspects =

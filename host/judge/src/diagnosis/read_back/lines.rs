@@ -20,16 +20,20 @@ struct Line<'a> {
 
 /// The lines that explain all `wrong` words and change no other.
 pub(super) fn suspects(expected: Words<'_>, found: Words<'_>, wrong: usize) -> Vec<Suspect> {
-    let fitting: Vec<_> = lines(expected)
-        .filter_map(|line| Some((explained(&line, expected, found)?, line)))
-        .filter(|(explained, _)| *explained >= LEAST_EXPLAINED)
-        .collect();
+    let explaining = |lines: &mut dyn Iterator<Item = Line<'_>>| {
+        let explaining = lines.filter_map(|line| Some((explained(&line, expected, found)?, line.defect)));
+        explaining.filter(|(explained, _)| *explained >= LEAST_EXPLAINED).collect::<Vec<_>>()
+    };
+    let mut fitting = explaining(&mut lines(expected));
+    if fitting.is_empty() {
+        fitting = explaining(&mut write_lines(expected));
+    }
     let others = fitting.len().saturating_sub(1);
     fitting
         .into_iter()
         .take(NAMED)
-        .map(|(explained, line)| Suspect {
-            defect: line.defect,
+        .map(|(explained, defect)| Suspect {
+            defect,
             account: Account::Words { wrong, explained, others },
             explained: explained as f64 / wrong as f64,
         })
@@ -49,9 +53,9 @@ fn explained(line: &Line<'_>, expected: Words<'_>, found: Words<'_>) -> Option<u
     Some(explained)
 }
 
+/// The lines of which it is known what every word reads as.
 fn lines(words: Words<'_>) -> impl Iterator<Item = Line<'_>> {
-    let entries = words.count() / words.per_entry();
-    let address_bits = usize::BITS - entries.saturating_sub(1).leading_zeros();
+    let address_bits = address_bits(words);
     let levels = [0, 1];
     let data = (0..words.bits()).flat_map(move |bit| levels.map(|level| (bit, level)));
     let address = (0..address_bits).flat_map(move |bit| levels.map(|level| (bit, level)));
@@ -59,6 +63,17 @@ fn lines(words: Words<'_>) -> impl Iterator<Item = Line<'_>> {
         .chain(address.map(move |(bit, level)| address_line(words, bit, level)))
         .chain([shifted(words, -1), shifted(words, 1)])
         .chain(levels.map(move |level| all(words, level)))
+}
+
+/// The address lines stuck for writing alone, at 0. One that is stuck at 1 leaves right entries and cells that were never
+/// written.
+fn write_lines(words: Words<'_>) -> impl Iterator<Item = Line<'_>> {
+    (0..address_bits(words)).map(move |bit| write_address_line(words, bit))
+}
+
+fn address_bits(words: Words<'_>) -> u32 {
+    let entries = words.count() / words.per_entry();
+    usize::BITS - entries.saturating_sub(1).leading_zeros()
 }
 
 /// A data line of the whole table or, in a kernel, of the memory of one weight.
@@ -89,6 +104,20 @@ fn address_line(words: Words<'_>, bit: u32, value: u8) -> Line<'_> {
     Line {
         defect: Defect::TableAddressStuck { table: words.memory(), bit, value },
         read: Box::new(move |index| word_of(words, read(index / words.per_entry()), index)),
+    }
+}
+
+/// An address line stuck at 0 for writing alone: of two entries for one cell the later stays, and the other cell is never
+/// written.
+fn write_address_line(words: Words<'_>, bit: u32) -> Line<'_> {
+    Line {
+        defect: Defect::TableWriteAddressStuck { table: words.memory(), bit },
+        read: Box::new(move |index| {
+            let entry = index / words.per_entry();
+            let is_written = entry >> bit & 1 == 0;
+            let later = || word_of(words, entry | 1 << bit, index).or_else(|| words.word(index));
+            is_written.then(later).flatten()
+        }),
     }
 }
 

@@ -131,6 +131,10 @@ pub(super) fn read_back(defect: &Defect) -> Option<Words> {
             };
             (table, format!("{}, address bit {bit}", memory(*table)), stuck.to_owned())
         }
+        Defect::TableWriteAddressStuck { table, bit } => {
+            let place = format!("{}, write address bit {bit}", memory(*table));
+            (table, place, "this bit stuck at 0 for writing, and right for reading,".to_owned())
+        }
         Defect::TableAddressOff { table, entries } => {
             let side = if *entries < 0 { "before" } else { "after" };
             let place = format!("{}, its address", memory(*table));
