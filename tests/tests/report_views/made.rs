@@ -98,7 +98,8 @@ pub(crate) fn fail() -> (Report, Vec<Evidence>) {
     let mut second = equal_frame((2, "frames/<script>alert(1)</script>&.pgm"));
     second.comparison = Comparison::of_frames(&expected, &found);
     second.rows = 40;
-    let reading = Reading { uploaded: 16_000_000, read: 16_000_016, generation: 2, only: false };
+    let reading =
+        Reading { uploaded: 16_000_000, read: 16_000_016, generation: 2, only: false, alike: Vec::new() };
     let defect = Defect::RowFactorBitWrong { row: 3, bit: 4, reading, above_one: false };
     let account = Account::Samples { differing: 5, explained: 5, contradicted: 0, others: 0, set_in: false };
     let finding = Finding::SamplesDiffer {

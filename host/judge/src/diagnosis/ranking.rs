@@ -23,6 +23,7 @@ const LEAST_SHARE: f64 = 0.2;
 const CONVINCING: f64 = 0.5;
 
 /// A defect and how well it does.
+#[derive(Clone)]
 pub(super) struct Ranked {
     /// The defect.
     pub(super) defect: Defect,
@@ -68,10 +69,9 @@ fn by_share(a: &Score, b: &Score) -> Ordering {
 pub(super) fn suspects(ranked: &[Ranked], summary: impl FnOnce() -> Suspect) -> Vec<Suspect> {
     let alike = ranked.iter().take_while(|candidate| candidate.is_as_good_as(ranked.first())).count();
     let named = if alike > 0 { alike } else { ranked.len() };
-    let others = alike.saturating_sub(1);
-    let mut suspects: Vec<_> = ranked
+    let (defects, others) = entries(ranked.iter().take(named), alike);
+    let mut suspects: Vec<_> = defects
         .iter()
-        .take(named)
         .filter(|candidate| candidate.score.share() >= LEAST_SHARE)
         .map(|candidate| suspect(candidate, others))
         .collect();
@@ -82,7 +82,43 @@ pub(super) fn suspects(ranked: &[Ranked], summary: impl FnOnce() -> Suspect) -> 
     suspects
 }
 
+/// The candidates of which the first `alike` explain everything, and how many of these there are beside the first. Those that
+/// are bits of one word are one.
+fn entries<'r>(ranked: impl Iterator<Item = &'r Ranked>, alike: usize) -> (Vec<Ranked>, usize) {
+    let mut words: Vec<Ranked> = Vec::new();
+    for (place, candidate) in ranked.enumerate() {
+        let is_known = place < alike && words.iter_mut().any(|word| word.takes(candidate));
+        if !is_known {
+            words.push(candidate.clone());
+        }
+    }
+    let others = words.len().saturating_sub(1);
+    (words, if alike > 0 { others } else { 0 })
+}
+
 impl Ranked {
+    /// Takes the bit of another candidate that breaks the same word.
+    fn takes(&mut self, other: &Self) -> bool {
+        let (own, of_other) = (&mut self.defect, &other.defect);
+        let (reading, bit) = match (own, of_other) {
+            (
+                Defect::RowFactorBitWrong { row, reading, .. },
+                Defect::RowFactorBitWrong { row: other, bit, .. },
+            ) if row == other => (reading, *bit),
+            (
+                Defect::GridEntryBitWrong { column, row, reading, .. },
+                Defect::GridEntryBitWrong { column: at, row: other, bit, .. },
+            ) if (&*column, &*row) == (at, other) => (reading, *bit),
+            (
+                Defect::KernelWordBitWrong { node, weight, reading, .. },
+                Defect::KernelWordBitWrong { node: other, weight: of, bit, .. },
+            ) if (&*node, &*weight) == (other, of) => (reading, *bit),
+            _ => return false,
+        };
+        reading.alike.push(bit);
+        true
+    }
+
     /// Whether both explain everything, and both from the run's beginning on if the best does.
     fn is_as_good_as(&self, best: Option<&Self>) -> bool {
         self.score.is_exact() && best.is_some_and(|best| (best.before > 0) == (self.before > 0))

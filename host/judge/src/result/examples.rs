@@ -214,7 +214,7 @@ pub fn suspects() -> Vec<Suspect> {
 }
 
 fn in_tables() -> Vec<Defect> {
-    let reading = |read, uploaded| Reading { uploaded, read, generation: 2, only: true };
+    let reading = |read, uploaded| Reading { uploaded, read, generation: 2, only: true, alike: Vec::new() };
     let made = MadeWith { factors: Some(1), kernel: Some(1) };
     vec![
         Defect::RowFactorBitWrong {

@@ -295,6 +295,18 @@ pub(crate) fn grid() -> Bench {
     Bench::of(camera.grid_by_formula(shape), 256, Interpolant::Hermite)
 }
 
+/// Whether the suspect is the part at `place`, or bits of one word that this bit is among.
+pub(crate) fn is_told(suspect: &Suspect, place: &str) -> bool {
+    let told = suspect.place();
+    let several = told.split_once(", one of bits ").zip(place.split_once(", bit "));
+    several.map_or(told == place, |((word, bits), (own, bit))| {
+        let bit: u32 = bit.parse().unwrap();
+        let mut runs = bits.split(", ").map(|run| run.split_once(" to ").unwrap_or((run, run)));
+        word == own
+            && runs.any(|(first, last)| (first.parse().unwrap()..=last.parse().unwrap()).contains(&bit))
+    })
+}
+
 /// A fault must be explained by the part at `place`, wholly and by nothing else.
 pub(crate) fn assert_named(bench: &Bench, text: &str, place: &str) {
     let suspects = bench.diagnose(fault(text));

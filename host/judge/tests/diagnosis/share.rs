@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
-use halfrow::result::{Evidence, Suspect};
+use halfrow::result::Evidence;
 use halfrow_model::{Frame, Interpolant};
 
-use crate::bench::{Bench, Seen, fault, narrow, off_centre, wide};
+use crate::bench::{Bench, Seen, fault, is_told, narrow, off_centre, wide};
 use crate::scenes::Random;
 
 /// A fault as in a target string, and the place that must be named.
@@ -62,18 +62,17 @@ fn tally(faults: u64) -> Tally {
         let bench: &Bench = &benches[(seed % 3) as usize];
         let (text, place) = random_fault(&mut Random::new(seed), bench.geometry.height() as u64);
         let suspects = bench.diagnose(fault(&text));
-        let places: Vec<_> = suspects.iter().map(Suspect::place).collect();
         let certain = suspects.len() == 1 && suspects[0].explained == 1.0;
-        let count = match places.iter().position(|named| *named == place) {
+        let count = match suspects.iter().position(|suspect| is_told(suspect, &place)) {
             _ if suspects.is_empty() => &mut tally.invisible,
-            Some(0) if places.len() == 1 => &mut tally.alone,
+            Some(0) if suspects.len() == 1 => &mut tally.alone,
             Some(0) => &mut tally.first_of_several,
             Some(_) => &mut tally.among_several,
             None if certain => &mut tally.wrong_for_certain,
             None => &mut tally.not_named,
         };
         *count += 1;
-        if places.first().is_some_and(|named| *named != place) {
+        if suspects.first().is_some_and(|first| !is_told(first, &place)) {
             println!("{text}: {suspects:#?}");
         }
     }

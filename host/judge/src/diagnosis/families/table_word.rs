@@ -35,5 +35,6 @@ pub(super) fn changed(words: &[Word], uploaded: &Uploaded<'_>) -> Option<u32> {
 pub(super) fn reading(before: &[Word], after: &[Word], value: impl Fn(u32) -> i64) -> Reading {
     let (generation, read) = after.last().copied().unwrap_or_default();
     let uploaded = before.iter().find(|word| word.0 == generation).map_or(read, |word| word.1);
-    Reading { uploaded: value(uploaded), read: value(read), generation, only: after.len() < before.len() }
+    let only = after.len() < before.len();
+    Reading { uploaded: value(uploaded), read: value(read), generation, only, alike: Vec::new() }
 }

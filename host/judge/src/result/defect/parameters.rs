@@ -13,6 +13,9 @@ pub struct Reading {
     pub generation: u8,
     /// Whether the other tables are read right.
     pub only: bool,
+    /// Other bits of the word of which each, broken alone, gives the same samples.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub alike: Vec<u32>,
 }
 
 /// From where the addresses of the line memory are counted.

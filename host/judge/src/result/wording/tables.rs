@@ -1,5 +1,6 @@
 //! Words of tables that are wrong: as the samples show it, and as they read back.
 
+use super::places::list;
 use super::{LOGIC, MEMORY, Words, memory};
 use crate::result::{Defect, Memory, Reading};
 
@@ -25,7 +26,11 @@ pub(super) fn as_seen(defect: &Defect) -> Option<Words> {
 
 fn row_bit(row: usize, bit: u32, reading: &Reading, above_one: bool) -> Words {
     let illegal = if above_one { ", above 1, where only part of the row can be foretold," } else { "" };
-    row_factor(row, format!("row {row}'s factor, bit {bit}"), format!("{}{illegal}", read(reading)))
+    row_factor(
+        row,
+        format!("row {row}'s factor, {}", bits(bit, reading)),
+        format!("{}{illegal}", read(reading)),
+    )
 }
 
 fn row_value(row: usize, only: Option<u8>, values: (u32, u32), uploaded: u32) -> Words {
@@ -51,7 +56,7 @@ fn grid_bit(entry: (usize, usize), bit: u32, reading: &Reading, illegal: bool) -
     let (column, row) = entry;
     Words {
         part: "grid entry",
-        place: format!("{}, bit {bit}", grid_entry(entry)),
+        place: format!("{}, {}", grid_entry(entry), bits(bit, reading)),
         defect: format!("{}{illegal}", read(reading)),
         designer: format!(
             "Check entry ({column}, {row}) of the grid as the datapath reads it, and the memory that holds it."
@@ -69,7 +74,7 @@ fn grid_entry((column, row): (usize, usize)) -> String {
 }
 
 fn word_bit(node: usize, weight: &str, bit: u32, reading: &Reading) -> Words {
-    kernel_word(node, weight, &format!(", bit {bit}"), read(reading))
+    kernel_word(node, weight, &format!(", {}", bits(bit, reading)), read(reading))
 }
 
 fn word_value(word: (usize, &str), only: Option<u8>, values: (i64, i64), uploaded: i16) -> Words {
@@ -90,8 +95,22 @@ fn kernel_word(node: usize, weight: &str, bit: &str, defect: String) -> Words {
 
 /// "reading 5 for 7", with the generation when others are right.
 fn read(reading: &Reading) -> String {
-    let Reading { uploaded, read, generation, only } = reading;
-    format!("reading {read} for {uploaded}{}", in_tables(only.then_some(*generation)))
+    let Reading { uploaded, read, generation, only, alike } = reading;
+    let tables = in_tables(only.then_some(*generation));
+    match alike.as_slice() {
+        [] => format!("reading {read} for {uploaded}{tables}"),
+        _ => format!("any one of these bits inverted{tables}"),
+    }
+}
+
+/// "bit 3", or all that come to the same.
+fn bits(bit: u32, reading: &Reading) -> String {
+    if reading.alike.is_empty() {
+        return format!("bit {bit}");
+    }
+    let mut bits: Vec<_> = [bit].iter().chain(&reading.alike).map(|&bit| bit as usize).collect();
+    bits.sort_unstable();
+    format!("one of bits {}", list(&bits))
 }
 
 fn read_value((least, most): (i64, i64), uploaded: i64, only: Option<u8>) -> String {
