@@ -15,6 +15,7 @@ mod bindings;
 mod clock_agreement;
 mod database;
 mod error;
+mod folder;
 mod migrations;
 mod outbox;
 mod plant;
@@ -29,20 +30,19 @@ mod table;
 mod waivers;
 
 use std::collections::BTreeMap;
-use std::fs::{self, File, TryLockError};
-use std::path::{Path, PathBuf};
+use std::fs::{self, File};
 use std::sync::Arc;
-use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use halfrow::Verdict;
-use rusqlite::{Connection, OpenFlags};
+use rusqlite::Connection;
 use uuid::Uuid;
 
 pub use bindings::{Admission, Change, RebindError, Rebinding, is_device};
 use database::Sqlite;
 pub(crate) use database::{Database, DatabaseError, Row as Found, Value, values};
 pub use error::StoreError;
+pub use folder::Folder;
 pub use outbox::{AuditLine, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Standing, Tried, Unsent};
 pub use plant::{
     Claim, Job, Kept, LEASE_MS, Lease, NewJob, PlanOfJob, Plant, PlantAddress, PlantAddressError, PlantError,
@@ -60,93 +60,10 @@ pub use waivers::{NoWaiver, Waiver};
 
 use crate::clock::{self, HeardClock};
 use crate::ids;
-use crate::record::{Blobs, PlanRecord, Record, RunHead};
+use crate::record::{PlanRecord, Record, RunHead};
 
 /// How long a reader waits for a writer.
 const PATIENCE: Duration = Duration::from_secs(10);
-
-/// How long a program may take to leave the folder that has just ended, and how often it is looked.
-const LEAVES: Duration = Duration::from_secs(1);
-const AGAIN: Duration = Duration::from_millis(20);
-
-/// The folder of a station.
-#[derive(Clone, Debug)]
-pub struct Folder(PathBuf);
-
-impl Folder {
-    /// The station's folder `path`, whether it is there or not.
-    #[must_use]
-    pub fn new(path: &Path) -> Self {
-        Self(path.to_owned())
-    }
-
-    /// The database.
-    #[must_use]
-    pub fn database(&self) -> PathBuf {
-        self.0.join("station.db")
-    }
-
-    /// Ends where there is evidence, and no database that says whose: nothing may begin anew beside it.
-    fn has_kept_database(&self) -> Result<(), StoreError> {
-        let is_lost = fs::metadata(self.database()).is_err() && self.blobs().has_any();
-        if is_lost { Err(StoreError::DatabaseGone { folder: self.0.clone() }) } else { Ok(()) }
-    }
-
-    /// The same of what `database` holds, which is nothing where its write-ahead log was left behind.
-    fn has_kept_tables(&self, database: &mut dyn Database) -> Result<(), StoreError> {
-        let tables = database.one("SELECT count(*) FROM sqlite_schema", &[], |row| row.get::<i64>(0));
-        let tables = tables.map_err(|source| StoreError::of_file(&self.database(), "to be read", source))?;
-        let is_lost = tables == 0 && self.blobs().has_any();
-        if is_lost { Err(StoreError::DatabaseGone { folder: self.0.clone() }) } else { Ok(()) }
-    }
-
-    /// The evidence.
-    #[must_use]
-    pub fn blobs(&self) -> Blobs {
-        Blobs::new(self.0.join("blobs"))
-    }
-
-    /// What the run of this id writes down while it is under way.
-    #[must_use]
-    pub fn spool(&self, run: &str) -> PathBuf {
-        self.spools().join(run)
-    }
-
-    /// What all runs that are under way write down.
-    #[must_use]
-    pub fn spools(&self) -> PathBuf {
-        self.0.join("spool")
-    }
-
-    fn refused(&self, source: std::io::Error) -> StoreError {
-        StoreError::Folder { folder: self.0.clone(), source }
-    }
-
-    fn lock(&self) -> Result<File, StoreError> {
-        let file = File::options().create(true).truncate(false).write(true).open(self.0.join("station.lock"));
-        let file = file.map_err(|source| self.refused(source))?;
-        let until = Instant::now() + LEAVES;
-        loop {
-            match file.try_lock() {
-                Ok(()) => return Ok(file),
-                Err(TryLockError::WouldBlock) if Instant::now() < until => thread::sleep(AGAIN),
-                Err(TryLockError::WouldBlock) => return Err(StoreError::InUse { folder: self.0.clone() }),
-                Err(TryLockError::Error(source)) => return Err(self.refused(source)),
-            }
-        }
-    }
-
-    /// A connection that cannot write.
-    fn reader(&self) -> Result<Box<dyn Database>, StoreError> {
-        let path = self.database();
-        let open = || {
-            let reader = Connection::open_with_flags(&path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
-            reader.busy_timeout(PATIENCE)?;
-            Ok(Box::new(Sqlite::new(reader)) as Box<dyn Database>)
-        };
-        open().map_err(|source: DatabaseError| StoreError::of_file(&path, "to be read", source))
-    }
-}
 
 /// A run that is open.
 #[derive(Clone, Debug, PartialEq, Eq)]

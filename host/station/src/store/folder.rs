@@ -1,0 +1,95 @@
+//! The folder of a station, and what lies in it.
+
+use std::fs::{self, File, TryLockError};
+use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use rusqlite::{Connection, OpenFlags};
+
+use super::database::Sqlite;
+use super::{Database, DatabaseError, PATIENCE, StoreError};
+use crate::record::Blobs;
+
+/// How long a program may take to leave the folder that has just ended, and how often it is looked.
+const LEAVES: Duration = Duration::from_secs(1);
+const AGAIN: Duration = Duration::from_millis(20);
+
+/// The folder of a station.
+#[derive(Clone, Debug)]
+pub struct Folder(pub(super) PathBuf);
+
+impl Folder {
+    /// The station's folder `path`, whether it is there or not.
+    #[must_use]
+    pub fn new(path: &Path) -> Self {
+        Self(path.to_owned())
+    }
+
+    /// The database.
+    #[must_use]
+    pub fn database(&self) -> PathBuf {
+        self.0.join("station.db")
+    }
+
+    /// Ends where there is evidence, and no database that says whose: nothing may begin anew beside it.
+    pub(super) fn has_kept_database(&self) -> Result<(), StoreError> {
+        let is_lost = fs::metadata(self.database()).is_err() && self.blobs().has_any();
+        if is_lost { Err(StoreError::DatabaseGone { folder: self.0.clone() }) } else { Ok(()) }
+    }
+
+    /// The same of what `database` holds, which is nothing where its write-ahead log was left behind.
+    pub(super) fn has_kept_tables(&self, database: &mut dyn Database) -> Result<(), StoreError> {
+        let tables = database.one("SELECT count(*) FROM sqlite_schema", &[], |row| row.get::<i64>(0));
+        let tables = tables.map_err(|source| StoreError::of_file(&self.database(), "to be read", source))?;
+        let is_lost = tables == 0 && self.blobs().has_any();
+        if is_lost { Err(StoreError::DatabaseGone { folder: self.0.clone() }) } else { Ok(()) }
+    }
+
+    /// The evidence.
+    #[must_use]
+    pub fn blobs(&self) -> Blobs {
+        Blobs::new(self.0.join("blobs"))
+    }
+
+    /// What the run of this id writes down while it is under way.
+    #[must_use]
+    pub fn spool(&self, run: &str) -> PathBuf {
+        self.spools().join(run)
+    }
+
+    /// What all runs that are under way write down.
+    #[must_use]
+    pub fn spools(&self) -> PathBuf {
+        self.0.join("spool")
+    }
+
+    pub(super) fn refused(&self, source: std::io::Error) -> StoreError {
+        StoreError::Folder { folder: self.0.clone(), source }
+    }
+
+    pub(super) fn lock(&self) -> Result<File, StoreError> {
+        let file = File::options().create(true).truncate(false).write(true).open(self.0.join("station.lock"));
+        let file = file.map_err(|source| self.refused(source))?;
+        let until = Instant::now() + LEAVES;
+        loop {
+            match file.try_lock() {
+                Ok(()) => return Ok(file),
+                Err(TryLockError::WouldBlock) if Instant::now() < until => thread::sleep(AGAIN),
+                Err(TryLockError::WouldBlock) => return Err(StoreError::InUse { folder: self.0.clone() }),
+                Err(TryLockError::Error(source)) => return Err(self.refused(source)),
+            }
+        }
+    }
+
+    /// A connection that cannot write.
+    pub(super) fn reader(&self) -> Result<Box<dyn Database>, StoreError> {
+        let path = self.database();
+        let open = || {
+            let reader = Connection::open_with_flags(&path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
+            reader.busy_timeout(PATIENCE)?;
+            Ok(Box::new(Sqlite::new(reader)) as Box<dyn Database>)
+        };
+        open().map_err(|source: DatabaseError| StoreError::of_file(&path, "to be read", source))
+    }
+}
