@@ -74,8 +74,8 @@ fn fault(name: &str, given: &[(&str, &str)]) -> BoardFault {
     BoardFault::from_name(name, &mut given).unwrap()
 }
 
-/// All that a host hears of a board that plays frames of four rows through grids, makes frames itself, is given a commit and a row
-/// that it must refuse, and is greeted by another host.
+/// All that a host hears of a board that plays frames of four rows through grids, makes frames itself, is given a damaged packet, a commit and a
+/// row that it must refuse, and is greeted by another host.
 fn heard_of(fault: Option<BoardFault>) -> Vec<Heard> {
     let mut bench = configured(fault, 4);
     let mut heard = bench.say(&Request::Capabilities);
@@ -96,6 +96,11 @@ fn heard_of(fault: Option<BoardFault>) -> Vec<Heard> {
         if frame == 0 {
             bench.acknowledge(0);
             heard.extend(bench.send_all(4, [0, 0]));
+            let mut damaged = bench.packet(&Request::Echo(&[1; 4]));
+            // In the payload, behind twelve bytes of header, a zero and the stuffing's first byte.
+            damaged[15] ^= 2;
+            heard.extend(bench.receive(&damaged));
+            heard.extend(bench.send_all(4, [0]));
         }
         bench.acknowledge(4 * (frame + 1));
     }
