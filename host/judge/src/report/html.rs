@@ -134,7 +134,7 @@ fn asked(asked: &str, has_maps: bool) -> &str {
         (false, _) => asked,
         (true, true) => "Look at the difference maps below.",
         (true, false) => {
-            "No map shows it: every frame that was streamed is right, and what differs does so at full speed alone."
+            "No map shows it: every frame that has one is right, and what differs does so at full speed or behind the frames alone."
         }
     }
 }
