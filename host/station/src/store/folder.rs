@@ -34,15 +34,18 @@ impl Folder {
 
     /// Ends where there is evidence, and no database that says whose: nothing may begin anew beside it.
     pub(super) fn has_kept_database(&self) -> Result<(), StoreError> {
-        let is_lost = fs::metadata(self.database()).is_err() && self.blobs().has_any();
-        if is_lost { Err(StoreError::DatabaseGone { folder: self.0.clone() }) } else { Ok(()) }
+        self.refuse_lost(fs::metadata(self.database()).is_err())
     }
 
     /// The same of what `database` holds, which is nothing where its write-ahead log was left behind.
     pub(super) fn has_kept_tables(&self, database: &mut dyn Database) -> Result<(), StoreError> {
         let tables = database.one("SELECT count(*) FROM sqlite_schema", &[], |row| row.get::<i64>(0));
         let tables = tables.map_err(|source| StoreError::of_file(&self.database(), "to be read", source))?;
-        let is_lost = tables == 0 && self.blobs().has_any();
+        self.refuse_lost(tables == 0)
+    }
+
+    fn refuse_lost(&self, is_empty: bool) -> Result<(), StoreError> {
+        let is_lost = is_empty && self.blobs().has_any();
         if is_lost { Err(StoreError::DatabaseGone { folder: self.0.clone() }) } else { Ok(()) }
     }
 
