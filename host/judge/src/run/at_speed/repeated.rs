@@ -3,7 +3,7 @@
 use std::iter;
 use std::slice;
 
-use halfrow_model::{Content, Phase, row_signature};
+use halfrow_model::{Content, Frame, Phase, row_signature};
 use halfrow_protocol::message::BurstMode;
 
 use super::burst::BurstPlan;
@@ -39,6 +39,23 @@ struct Again {
 pub(in crate::run) struct Seen {
     pub(in crate::run) made_by: Generation,
     pub(in crate::run) evidence: Evidence,
+}
+
+impl Seen {
+    /// Rows that `made_by` makes of `input`, found as they are `expected`.
+    pub(in crate::run) fn right(made_by: Generation, input: Frame, expected: Frame) -> Self {
+        Self { made_by, evidence: Evidence { index: 0, input, found: expected.clone(), expected } }
+    }
+
+    /// The same with a last row of these samples; none if they are not as many as a row has.
+    pub(in crate::run) fn ending_in(mut self, samples: &[u16]) -> Option<Self> {
+        let expected = &self.evidence.expected;
+        let mut found = expected.samples().to_vec();
+        let last = found.len().checked_sub(samples.len()).filter(|_| samples.len() == expected.width())?;
+        found[last..].copy_from_slice(samples);
+        self.evidence.found = as_found(expected, found)?;
+        Some(self)
+    }
 }
 
 impl From<Repetition> for Again {
@@ -158,10 +175,7 @@ impl Run<'_> {
         if !is_row || row_signature(samples) != *signature {
             return None;
         }
-        let mut above = correct_up_to(generation, content, row + 1, self.plan.phase)?;
-        let mut found = above.evidence.expected.samples().to_vec();
-        found[row * own.width()..].copy_from_slice(samples);
-        above.evidence.found = as_found(&above.evidence.expected, found)?;
+        let above = correct_up_to(generation, content, row + 1, self.plan.phase)?.ending_in(samples)?;
         (above.evidence.found != above.evidence.expected).then_some(above)
     }
 
@@ -219,15 +233,15 @@ fn correct_up_to(generation: &Generation, content: Content, rows: usize, phase: 
     let made_by = generation.upper(rows)?;
     let input = content.frame(made_by.tables.geometry(), phase);
     let expected = correct(&made_by.tables, &made_by.kernel, &input).ok()?;
-    Some(Seen { evidence: Evidence { index: 0, input, found: expected.clone(), expected }, made_by })
+    Some(Seen::right(made_by, input, expected))
 }
 
 /// A row of which samples differ: its number, what it should be, what it is.
-pub(super) type WrongRow<'a> = (usize, &'a [u16], &'a [u16]);
+pub(super) type TrappedRow<'a> = (usize, &'a [u16], &'a [u16]);
 
 /// What is wrong at the full pixel clock, seen in a row if one was kept, by what was seen where the same was `streamed`: none if it is
 /// wrong there as well.
-pub(super) fn at_speed(streamed: Streamed, kept: Option<WrongRow<'_>>) -> Option<Suspect> {
+pub(super) fn at_speed(streamed: Streamed, kept: Option<TrappedRow<'_>>) -> Option<Suspect> {
     let (row, (samples, bits)) = (kept.map(|(row, ..)| row), kept.map(changed).unwrap_or_default());
     let defect = match streamed {
         Streamed::NotTried => Defect::SeenAtSpeed { row, samples, bits },
@@ -238,7 +252,7 @@ pub(super) fn at_speed(streamed: Streamed, kept: Option<WrongRow<'_>>) -> Option
 }
 
 /// How many samples differ, and in which bits.
-fn changed((_, expected, found): WrongRow<'_>) -> (usize, Vec<u32>) {
+fn changed((_, expected, found): TrappedRow<'_>) -> (usize, Vec<u32>) {
     let changed = expected.iter().zip(found).map(|(expected, found)| expected ^ found);
     let samples = changed.clone().filter(|&bits| bits != 0).count();
     let all = changed.fold(0, |all, bits| all | bits);

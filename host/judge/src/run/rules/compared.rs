@@ -9,10 +9,8 @@ use halfrow_model::{BitDepth, Frame, Geometry, row_signature};
 use super::small::Small;
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::reference::correct;
-use crate::result::Evidence;
 use crate::run::Generation;
 use crate::run::at_speed::Seen;
-use crate::run::kept::as_found;
 use crate::run::pauses::pauses;
 
 /// What a frame must come back as.
@@ -147,10 +145,7 @@ impl Right {
         let (input, made) = self.of.as_ref()?;
         let made_by = made.upper(row.row + 1)?;
         let (input, expected) = (upper(input, row.row + 1)?, upper(&self.frame, row.row + 1)?);
-        let mut found = expected.samples().to_vec();
-        found.get_mut(row.row * expected.width()..)?.copy_from_slice(row.samples);
-        let found = as_found(&expected, found)?;
-        Some(Seen { made_by, evidence: Evidence { index: 0, input, expected, found } })
+        Seen::right(made_by, input, expected).ending_in(row.samples)
     }
 }
 
@@ -166,8 +161,8 @@ impl RowTraffic for Compared {
     }
 
     fn returned(&mut self, row: &ReturnedRow<'_>) -> ControlFlow<()> {
-        if !self.is_right(row) {
-            self.wrong = Some(self.wrong.take().unwrap_or_else(|| self.wrong(row)));
+        if self.wrong.is_none() && !self.is_right(row) {
+            self.wrong = Some(self.wrong(row));
         }
         ControlFlow::Continue(())
     }
