@@ -14,6 +14,7 @@ pub mod campaign;
 pub mod cases;
 pub mod dice;
 pub mod late_host;
+pub mod not_tested;
 pub mod parallel;
 pub mod patience;
 pub mod photographs;

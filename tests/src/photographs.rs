@@ -1,29 +1,37 @@
 //! Photographs of the folder `HALFROW_IMAGES`, or of `../shared/kodak` beside the project, as frames.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use halfrow::frames::{ReadOptions, read};
 use halfrow_model::{Frame, Geometry};
 
-/// The photographs in their order; none when there is no such folder, which is said past the harness, since that keeps
-/// what passing tests print.
+use crate::not_tested::not_tested;
+
+/// The photographs in their order. Without `HALFROW_IMAGES` there may be none, which is told as not tested.
+///
+/// # Panics
+/// When the folder that `HALFROW_IMAGES` names cannot be read or holds none.
 #[must_use]
-#[allow(clippy::disallowed_methods)]
 pub fn paths() -> Vec<PathBuf> {
-    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/kodak");
-    let folder = std::env::var_os("HALFROW_IMAGES").map_or_else(|| PathBuf::from(beside), PathBuf::from);
-    let Ok(entries) = std::fs::read_dir(&folder) else {
-        let _ = writeln!(
-            std::io::stderr(),
-            "NOT TESTED on photographs: set HALFROW_IMAGES to the folder of kodim01.png to kodim24.png"
-        );
-        return Vec::new();
-    };
-    let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "png"));
+    let named = std::env::var_os("HALFROW_IMAGES").map(PathBuf::from);
+    let beside = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/kodak"));
+    let mut paths = photographs_in(named.as_deref().unwrap_or(beside)).unwrap_or_default();
     paths.sort();
+    if let (Some(named), true) = (named, paths.is_empty()) {
+        panic!("HALFROW_IMAGES names {}, where no .png file can be found", named.display());
+    }
+    if paths.is_empty() {
+        not_tested(
+            "what needs photographs",
+            "set HALFROW_IMAGES to the folder of kodim01.png to kodim24.png",
+        );
+    }
     paths
+}
+
+fn photographs_in(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let paths = std::fs::read_dir(folder)?.filter_map(|entry| Some(entry.ok()?.path()));
+    Ok(paths.filter(|path| path.extension().is_some_and(|extension| extension == "png")).collect())
 }
 
 /// The photograph's mosaic, repeated until it fills the frame. Its sides are even, so the colours go on.

@@ -1,5 +1,7 @@
 //! The `halfrow` program, started as a user starts it.
 
+#[cfg(unix)]
+pub mod another_user;
 mod built;
 pub mod documents;
 mod running;
@@ -109,36 +111,6 @@ impl Folder {
         let mut command = command(arguments);
         command.current_dir(self.path());
         command
-    }
-
-    /// A command that will start `halfrow` in this folder as a user who may read nobody else's files: this one, or if
-    /// it is root, the one of the number 65534.
-    ///
-    /// # Panics
-    /// If the program cannot be built or put where that user may start it.
-    #[cfg(unix)]
-    #[must_use]
-    pub fn as_nobody(&self, arguments: &[&str]) -> Command {
-        use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _};
-        use std::os::unix::process::CommandExt as _;
-        let command = self.command(arguments.iter().copied());
-        if fs::metadata(self.path()).unwrap().uid() != 0 {
-            return command;
-        }
-        let program = self.path().join("halfrow-of-nobody");
-        fs::copy(command.get_program(), &program).unwrap();
-        for path in [self.path(), &program] {
-            fs::set_permissions(path, fs::Permissions::from_mode(0o755)).unwrap();
-        }
-        let mut nobody = Command::new(program);
-        for (name, value) in command.get_envs() {
-            match value {
-                Some(value) => nobody.env(name, value),
-                None => nobody.env_remove(name),
-            };
-        }
-        nobody.args(arguments).current_dir(self.path()).stdin(Stdio::null()).uid(65534);
-        nobody
     }
 
     /// Runs `halfrow` in this folder to its end.

@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde_json::Value;
 
+use crate::not_tested::not_tested;
 use crate::parallel;
 use crate::program::{Ended, error_sentence, halfrow};
 use crate::served::Served;
@@ -65,8 +66,8 @@ impl fmt::Display for Surprise {
 /// The paper's lens on fewer pixels.
 pub(crate) const SMALLER: &[&str] = &["--width", "128", "--height", "72", "--radius", "73.78"];
 
-/// Whether the clock of the board that `target` names is a virtual one, so that nobody is ever late.
-fn is_on_a_virtual_clock(target: &str) -> bool {
+/// Whether the board that `target` names is in the program that judges it, which is then never late.
+fn is_in_process(target: &str) -> bool {
     ["mock", "sim"].contains(&kind(target))
 }
 
@@ -81,7 +82,7 @@ impl Scenario {
     pub fn suits(&self, board: &str) -> bool {
         match self.on {
             On::AnyBoard => true,
-            On::OwnWire => is_on_a_virtual_clock(board),
+            On::OwnWire => is_in_process(board),
             On::MockOnly => kind(board) == "mock",
         }
     }
@@ -128,7 +129,7 @@ impl Scenario {
         let arguments = self.arguments.iter().chain(smaller).copied();
         let ended = halfrow(["verify", "--json", "--board", target].into_iter().chain(arguments));
         let said = ended.json();
-        let when_late = if is_on_a_virtual_clock(target) { &[] } else { self.when_late };
+        let when_late = if is_in_process(target) { &[] } else { self.when_late };
         let expected = [&[self.sentence], when_late].concat();
         let as_expected = ended.code == Some(self.exit_code)
             && said["exit_code"] == self.exit_code
@@ -157,7 +158,7 @@ pub fn run_all(scenarios: &[Scenario], board: &str) -> Vec<Value> {
 #[must_use]
 pub fn run_each(scenarios: &[&Scenario], board: &str) -> Vec<Value> {
     let suited: Vec<_> = scenarios.iter().filter(|scenario| scenario.suits(board)).collect();
-    no_surprise(if is_on_a_virtual_clock(board) {
+    no_surprise(if is_in_process(board) {
         parallel::map(&suited, |scenario| scenario.run(board))
     } else {
         // One device.
@@ -183,11 +184,25 @@ fn no_surprise(results: Vec<Result<Value, Box<Surprise>>>) -> Vec<Value> {
     reports.into_iter().filter_map(Result::ok).collect()
 }
 
-/// The targets to run scenarios on: the mock, or those that `HALFROW_TEST_BOARDS` names, with spaces between.
-#[must_use]
-pub fn boards() -> Vec<String> {
+/// Runs those of `scenarios` that suit each of the boards of `HALFROW_TEST_BOARDS`, targets with spaces between, or else the
+/// mock, and returns their reports. A board that none of them suits is told as not tested by them.
+///
+/// # Panics
+/// When any of them comes to anything else than it should, or the variable names no board.
+pub fn run_all_on_boards(scenarios: &[Scenario]) -> Vec<Value> {
     let named = std::env::var("HALFROW_TEST_BOARDS").unwrap_or_else(|_| "mock".to_owned());
-    named.split_whitespace().map(str::to_owned).collect()
+    let boards: Vec<_> = named.split_whitespace().collect();
+    assert!(!boards.is_empty(), "HALFROW_TEST_BOARDS names no board; name one, as in mock, or unset it");
+    boards.into_iter().flat_map(|board| run_those_that_suit(scenarios, board)).collect()
+}
+
+fn run_those_that_suit(scenarios: &[Scenario], board: &str) -> Vec<Value> {
+    if !scenarios.iter().any(|scenario| scenario.suits(board)) {
+        let first = scenarios.first().map_or("", |scenario| scenario.name);
+        let what = format!("{} scenarios, `{first}` the first of them", scenarios.len());
+        not_tested(&what, &format!("none of them suits {board}"));
+    }
+    run_all(scenarios, board)
 }
 
 /// The result in one sentence: of a run, or of a call that was refused.

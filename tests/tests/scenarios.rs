@@ -5,16 +5,11 @@
 
 use halfrow::board::deadlines::Step;
 use halfrow_tests::program::halfrow;
-use halfrow_tests::scenario::{Scenario, boards, run_all};
+use halfrow_tests::scenario::{Scenario, run_all_on_boards};
 use halfrow_tests::scenarios::{
     self, BROKEN_BOARDS, BROKEN_GRIDS, HOPELESS_LINKS, MISFITS, REPAIRED_LINKS, SLOW_LINKS, SOUND_BOARDS,
 };
 use serde_json::Value;
-
-/// The reports of `scenarios` on all boards.
-fn on_all_boards(scenarios: &[Scenario]) -> Vec<Value> {
-    boards().iter().flat_map(|board| run_all(scenarios, board)).collect()
-}
 
 /// Samples that were compared, and those that differed.
 fn samples(report: &Value) -> (u64, u64) {
@@ -25,7 +20,7 @@ fn samples(report: &Value) -> (u64, u64) {
 
 #[test]
 fn sound_boards_pass_with_every_sample_compared() {
-    for report in on_all_boards(SOUND_BOARDS) {
+    for report in run_all_on_boards(SOUND_BOARDS) {
         let (width, height) = (report["tables"]["width"].as_u64(), report["tables"]["height"].as_u64());
         let frames = report["frames"].as_array().unwrap().len() as u64;
         assert_eq!(samples(&report), (width.unwrap() * height.unwrap() * frames, 0));
@@ -35,38 +30,38 @@ fn sound_boards_pass_with_every_sample_compared() {
 
 #[test]
 fn broken_boards_fail_and_the_broken_part_is_named() {
-    for report in on_all_boards(BROKEN_BOARDS) {
+    for report in run_all_on_boards(BROKEN_BOARDS) {
         assert!(report["remedy"].is_string() || report["exit_code"] == 6, "{}", report["board"]["target"]);
     }
 }
 
 #[test]
 fn broken_boards_fail_and_the_broken_part_is_named_behind_a_grid_as_well() {
-    for report in on_all_boards(BROKEN_GRIDS) {
+    for report in run_all_on_boards(BROKEN_GRIDS) {
         assert!(report["remedy"].is_string() || report["exit_code"] == 6, "{}", report["board"]["target"]);
     }
 }
 
 #[test]
 fn what_a_link_spoils_is_asked_for_again() {
-    for report in on_all_boards(REPAIRED_LINKS) {
+    for report in run_all_on_boards(REPAIRED_LINKS) {
         assert_ne!(report["link"]["retries"], 0, "{}", report["board"]["target"]);
     }
 }
 
 #[test]
 fn a_link_that_is_slow_or_out_of_order_costs_no_verdict() {
-    on_all_boards(SLOW_LINKS);
+    run_all_on_boards(SLOW_LINKS);
 }
 
 #[test]
 fn a_link_that_is_too_poor_is_no_fault_of_the_board() {
-    on_all_boards(HOPELESS_LINKS);
+    run_all_on_boards(HOPELESS_LINKS);
 }
 
 #[test]
 fn what_does_not_fit_the_board_is_refused_without_a_verdict() {
-    on_all_boards(MISFITS);
+    run_all_on_boards(MISFITS);
 }
 
 /// Whoever makes a board goes by the page.

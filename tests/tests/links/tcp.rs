@@ -5,6 +5,7 @@ use std::net::{TcpListener, TcpStream};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
+use halfrow_tests::not_tested::not_tested;
 use halfrow_tests::served::Served;
 
 use crate::{ends, passes, verify};
@@ -21,7 +22,7 @@ fn a_board_behind_a_tcp_port_passes_again_and_again() {
 #[test]
 fn a_board_behind_an_ipv6_port_passes() {
     if TcpListener::bind("[::1]:0").is_err() {
-        eprintln!("this computer has no IPv6");
+        not_tested("a board behind an IPv6 port", "this computer has no IPv6");
         return;
     }
     let served = Served::on_a_tcp_port("[::1]", "mock");
