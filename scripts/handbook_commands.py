@@ -8,7 +8,7 @@ folder of its own, with the repository's folders beside it, and must end with ex
     ```sh not-run="REASON"  is not run, since …
 and so may a comment in front of a block, <!-- not run: REASON -->, or <!-- commands of this page are not run: REASON -->. A fence of `text`
 behind commands is what they print: … stands for anything in a line, and a line of … alone for any lines. 3001 becomes a port that is free.
-A fence of `python from=FILE` is a part of that file, line for line. What is run or not: every option that stands behind a command, in a block or in `code`, must be one of COMMANDS.md or STATION-COMMANDS.md."""
+A fence of `python from=FILE` is a part of that file, line for line. What is run or not: every command, and every option behind it, in a block or in `code`, must be one of COMMANDS.md or STATION-COMMANDS.md."""
 
 import os
 import pathlib
@@ -158,12 +158,16 @@ def unknown(page, known):
     for call in re.finditer(r"(?:`|^|^ +|sudo -u halfrow )(halfrow(?:-station)?)((?: [^`\n|#;]*)?)", text, re.M):
         program, words = call[1], call[2].split(" -- ")[0].split()
         name, given = program, [word.split("=")[0] for word in words if re.match(r"--[a-z]", word)]
+        where = f"{page.relative_to(ROOT)}:{text[:call.start()].count(chr(10)) + 1}"
         for word in words:
             if f"{name} {word}" in known:
                 name = f"{name} {word}"
+        is_prose = call.start() == call.start(1) and text.count("```", 0, call.start()) % 2 == 0
+        if name == program and not is_prose and words and re.fullmatch("(?!help$)[a-z][a-z-]*", words[0]):
+            yield f"{where}: {program} has no command {words[0]}"
         for option in given:
-            if name != program and option not in known[name]:
-                yield f"{page.relative_to(ROOT)}:{text[:call.start()].count(chr(10)) + 1}: {name} has no {option}"
+            if option not in known[name]:
+                yield f"{where}: {name} has no {option}"
 
 
 def changed(page):
