@@ -1,6 +1,19 @@
 //! Work shared out to all processors, or to more workers than those.
 
+use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread::JoinHandle;
+
+/// Waits for what works beside a test, if it still does, when the test needs it no more.
+///
+/// # Panics
+/// When it panicked, which no test that passes would show; not while the test itself panics.
+pub(crate) fn end_beside<T>(worker: Option<JoinHandle<T>>) {
+    let Some(Err(panic)) = worker.map(JoinHandle::join) else { return };
+    if !std::thread::panicking() {
+        resume_unwind(panic);
+    }
+}
 
 /// The result of `work` for every item, in the order of the items.
 ///

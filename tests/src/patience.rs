@@ -42,14 +42,25 @@ pub fn end_of(child: &mut Child) -> ExitStatus {
 /// # Panics
 /// When it does not within [`LIMIT`], and when `work` panics.
 pub fn come_to_an_end<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
+    come_to_an_end_within(LIMIT, work).unwrap_or_else(|| panic!("it hangs: nothing came of it in {LIMIT:?}"))
+}
+
+/// The result of `work`; none if there is none within `limit`: then it is left behind.
+///
+/// # Panics
+/// When `work` panics.
+pub fn come_to_an_end_within<T: Send + 'static>(
+    limit: Duration,
+    work: impl FnOnce() -> T + Send + 'static,
+) -> Option<T> {
     let (say, hear) = channel();
     let thread = thread::spawn(move || {
         // Nobody listens any more when it took too long.
         let _ = say.send(work());
     });
-    match hear.recv_timeout(LIMIT) {
-        Ok(result) => result,
-        Err(RecvTimeoutError::Timeout) => panic!("it hangs: nothing came of it in {LIMIT:?}"),
+    match hear.recv_timeout(limit) {
+        Ok(result) => Some(result),
+        Err(RecvTimeoutError::Timeout) => None,
         Err(RecvTimeoutError::Disconnected) => resume_unwind(thread.join().unwrap_err()),
     }
 }

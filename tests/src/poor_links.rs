@@ -7,12 +7,12 @@ mod draw;
 mod kept;
 mod table;
 
-use std::sync::mpsc::channel;
 use std::time::Duration;
 
 use halfrow::verdict::Verdict;
 
 use crate::parallel;
+use crate::patience::come_to_an_end_within;
 use crate::proxy::{Proxy, Suffers};
 use crate::served::Served;
 use crate::system::System;
@@ -101,12 +101,10 @@ pub fn run(cases: &[Case], bound: Duration, kept: &Kept) -> PoorLinks {
 impl Case {
     /// Judges the board on a thread of its own, which is left behind if it does not end.
     fn judge_within(&self, bound: Duration) -> (Came, String) {
-        let (sender, receiver) = channel();
         let case = self.clone();
-        std::thread::spawn(move || sender.send(case.judge()));
-        match receiver.recv_timeout(bound) {
-            Ok((verdict, headline)) => (Came::To(verdict), headline),
-            Err(_) => (Came::Nowhere, format!("no end within {} s", bound.as_secs_f64())),
+        match come_to_an_end_within(bound, move || case.judge()) {
+            Some((verdict, headline)) => (Came::To(verdict), headline),
+            None => (Came::Nowhere, format!("no end within {} s", bound.as_secs_f64())),
         }
     }
 

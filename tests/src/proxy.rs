@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use halfrow_protocol::{Decoder, Encoder, Kind};
 
 use crate::dice::Dice;
+use crate::parallel::end_beside;
 
 /// How often it is looked whether to end.
 const TICK: Duration = Duration::from_millis(20);
@@ -92,7 +93,7 @@ impl Proxy {
 impl Drop for Proxy {
     fn drop(&mut self) {
         self.ended.store(true, Ordering::Relaxed);
-        let _ = self.thread.take().map(JoinHandle::join);
+        end_beside(self.thread.take());
     }
 }
 

@@ -11,6 +11,8 @@ use std::time::Duration;
 use halfrow::link;
 use halfrow_cli::serve::{Hosted, Name, Port, Pty, ServeError, Traffic};
 
+use crate::parallel::end_beside;
+
 /// How long a board is away that is plugged in again. No outcome hangs on it: what was there before is gone at once.
 const AWAY: Duration = Duration::from_millis(50);
 
@@ -149,6 +151,6 @@ impl Drop for Served {
     fn drop(&mut self) {
         self.ended.store(true, Ordering::Relaxed);
         // A board whose wire broke is as good an end as any.
-        let _ = self.thread.take().map(JoinHandle::join);
+        end_beside(self.thread.take());
     }
 }

@@ -72,9 +72,12 @@ impl WholeBoard {
 
     fn stream(&mut self, frames: &[&Frame], played: &mut Played) {
         let frames: Vec<_> = frames.iter().map(|&frame| Arc::new(frame.clone())).collect();
-        let mut numbers = self.next_frame..;
-        self.next_frame += frames.len() as u16;
-        let frames = frames.into_iter().map(|frame| NumberedFrame { number: numbers.next().unwrap(), frame });
+        let first = self.next_frame;
+        self.next_frame = self.next_frame.wrapping_add(frames.len() as u16);
+        let frames = frames
+            .into_iter()
+            .zip(0..)
+            .map(|(frame, index)| NumberedFrame { number: first.wrapping_add(index), frame });
         self.board.stream(&mut Collector { frames: frames.collect::<Vec<_>>().into_iter(), played }).unwrap();
     }
 }

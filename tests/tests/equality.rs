@@ -6,8 +6,7 @@ use halfrow_tests::dice::Dice;
 
 #[test]
 fn model_and_mock_agree_on_every_sample_and_every_latency() {
-    let cases =
-        std::env::var("HALFROW_EQUALITY_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(4000);
+    let cases = std::env::var("HALFROW_EQUALITY_CASES").map_or(4000, |text| text.parse().unwrap());
     let (mut samples, mut rows, mut grids) = (0, 0, 0);
     for seed in 0..cases {
         let mut dice = Dice::new(seed);

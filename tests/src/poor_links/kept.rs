@@ -73,13 +73,10 @@ impl Kept {
         self.known.get(&index).cloned()
     }
 
+    /// A run without an end is not kept: it is to be seen again, and may have had a busy computer.
     pub(super) fn keep(&self, index: usize, (came, headline): &(Came, String)) {
-        let Some(file) = &self.file else { return };
-        let came = match came {
-            Came::To(verdict) => verdict.to_string(),
-            Came::Nowhere => "hang".to_owned(),
-        };
-        let line = json!({ "index": index, "came": came, "headline": headline });
+        let (Some(file), Came::To(verdict)) = (&self.file, came) else { return };
+        let line = json!({ "index": index, "came": verdict.to_string(), "headline": headline });
         writeln!(file.lock().unwrap(), "{line}").unwrap();
     }
 }
@@ -90,7 +87,7 @@ fn read(line: &str) -> Option<(usize, (Came, String))> {
         "PASS" => Came::To(Verdict::Pass),
         "FAIL" => Came::To(Verdict::Fail),
         "ERROR" => Came::To(Verdict::Error),
-        _ => Came::Nowhere,
+        _ => return None,
     };
     let index = usize::try_from(value["index"].as_u64()?).ok()?;
     Some((index, (came, value["headline"].as_str()?.to_owned())))

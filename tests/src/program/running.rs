@@ -32,10 +32,11 @@ impl Said {
         let (say, lines) = channel();
         thread::spawn(move || {
             let mut stream = BufReader::new(stream);
-            let mut line = String::new();
-            while stream.read_line(&mut line).is_ok_and(|length| length > 0) {
+            let mut line = Vec::new();
+            while stream.read_until(b'\n', &mut line).is_ok_and(|length| length > 0) {
                 // Read on to the end even if nobody listens: a full pipe would hold the program up.
-                let _ = say.send(std::mem::take(&mut line));
+                let _ = say.send(String::from_utf8_lossy(&line).into_owned());
+                line.clear();
             }
         });
         Self { lines, text: String::new() }

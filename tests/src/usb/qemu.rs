@@ -13,6 +13,7 @@ use halfrow_ft2232h::FarEnd as _;
 use nix::fcntl::OFlag;
 
 use super::{MockAtChip, Said};
+use crate::parallel::end_beside;
 use crate::patience::wait_until;
 
 const SERIAL: &str = "QEMU0001";
@@ -52,10 +53,7 @@ impl QemuBoard {
 impl Drop for QemuBoard {
     fn drop(&mut self) {
         self.is_over.store(true, Ordering::Relaxed);
-        if let Some(thread) = self.thread.take() {
-            // A thread that panicked has said so.
-            let _ = thread.join();
-        }
+        end_beside(self.thread.take());
     }
 }
 
