@@ -164,8 +164,14 @@ fn advice(report: &Report) -> String {
     for suspect in &report.suspects {
         push_suspect(&mut text, suspect);
     }
-    if let Some(remedy) = wording::remedy(report) {
-        push(&mut text, "do", BOLD, &remedy);
+    let bench = wording::technician(report);
+    if let Some(technician) = &bench {
+        push(&mut text, "do", BOLD, &format!("At the bench: {technician}"));
+    }
+    match (wording::remedy(report), bench) {
+        (Some(remedy), None) => push(&mut text, "do", BOLD, &remedy),
+        (Some(remedy), Some(_)) => push(&mut text, "", BOLD, &format!("Next: {remedy}")),
+        (None, _) => {}
     }
     let codes = wording::codes(report);
     if !codes.is_empty() {

@@ -32,6 +32,26 @@ fn a_failure_is_reported_with_its_suspect() {
     assert!(folder.text("out/report.xml").contains("<failure"));
 }
 
+/// Without a suspect there is a line for the technician as well as one for the designer, in each view.
+#[test]
+fn a_failure_without_a_suspect_says_what_to_do_at_the_bench() {
+    let folder = Folder::new();
+    let call = small("verify", &["--report", "out", "--board", "mock,fault=wrong-latency-claim", "--json"]);
+    let ended = folder.halfrow(call);
+    assert_eq!(ended.code, Some(1), "{}", ended.stderr);
+    let report = ended.json();
+    assert_eq!(report["suspects"], serde_json::json!([]));
+    let (technician, remedy) = (report["technician"].as_str().unwrap(), report["remedy"].as_str().unwrap());
+    assert!(technician.starts_with("Make sure that the right bitstream is loaded"), "{technician}");
+    let text = folder.halfrow(small("verify", &["--board", "mock,fault=wrong-latency-claim"])).stdout;
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let page = folder.text("out/report.html").replace("<strong>", "").replace("</strong>", "");
+    for view in [text, page, folder.text("out/report.xml")] {
+        assert!(view.contains(&format!("At the bench: {technician}")), "{view}");
+        assert!(view.contains(&format!("Next: {remedy}")), "{view}");
+    }
+}
+
 #[test]
 fn an_error_is_reported_as_an_error() {
     let folder = Folder::new();

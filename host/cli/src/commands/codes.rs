@@ -225,18 +225,26 @@ pub(super) fn all() -> Vec<Value> {
 
 /// What to do about an example of a finding. What it asks for by its suspect, another suspect does not.
 pub(super) fn act(example: &Finding) -> Option<String> {
-    let is_by_suspect = matches!(
-        example,
-        Finding::TableReadsWrong { .. }
-            | Finding::SamplesDiffer { suspect: Some(_), .. }
-            | Finding::DiffersAtSpeed { suspect: Some(_), .. }
-    );
     let remedy = example.remedy()?;
-    Some(if is_by_suspect {
+    Some(if is_by_suspect(example) {
         format!("As its suspect's own code says. In this example: {remedy}")
     } else {
         remedy
     })
+}
+
+/// What a technician does about it, whatever its example is; none where it is as another code says.
+pub(super) fn bench(example: &Finding) -> Option<String> {
+    example.technician().filter(|_| !is_by_suspect(example))
+}
+
+fn is_by_suspect(example: &Finding) -> bool {
+    matches!(
+        example,
+        Finding::TableReadsWrong { .. }
+            | Finding::SamplesDiffer { suspect: Some(_), .. }
+            | Finding::DiffersAtSpeed { suspect: Some(_), .. }
+    )
 }
 
 /// The page of all codes, in Markdown.
@@ -247,7 +255,9 @@ fn page() -> String {
         let problem = finding.as_problem();
         text +=
             &format!("* `{}`{}: {}\n", problem.code, parameters(problem.parameters.keys()), problem.message);
-        text += &act(&finding).map_or_else(String::new, |remedy| format!("  *Do:* {remedy}\n"));
+        let act = act(&finding).map_or_else(String::new, |remedy| format!("  *Do:* {remedy}\n"));
+        let bench = bench(&finding).map_or_else(String::new, |bench| format!("  *Technician:* {bench}\n"));
+        text += &(act + &bench);
     }
     text += "\n## Defects that suspects have\n\n";
     for suspect in examples::suspects() {

@@ -102,6 +102,7 @@ fn unit(report: &Report) -> Markup {
 fn next(report: &Report) -> Markup {
     // The headline may say it, and stands apart here.
     let remedy = wording::remedy(report).or_else(|| report.remedy().filter(|_| report.suspects.is_empty()));
+    let bench = wording::technician(report);
     let codes = wording::codes(report);
     let has_maps = report.frames.iter().any(|frame| frame.comparison.differences > 0);
     if codes.is_empty() {
@@ -110,7 +111,10 @@ fn next(report: &Report) -> Markup {
     html! {
         section {
             h2 { "What to do" }
-            @if let Some(remedy) = remedy { p.remedy { (plain(asked(&remedy, has_maps))) } }
+            @if let Some(technician) = &bench { p.remedy { strong { "At the bench: " } (plain(technician)) } }
+            @if let Some(remedy) = remedy {
+                p.remedy { @if bench.is_some() { strong { "Next: " } } (plain(asked(&remedy, has_maps))) }
+            }
             (suspects(&report.suspects, has_maps))
             p.explain { "More of it: " code { "halfrow explain " (codes.join(" ")) } }
         }

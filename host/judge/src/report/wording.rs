@@ -75,6 +75,12 @@ pub fn remedy(report: &Report) -> Option<String> {
     report.remedy().filter(|remedy| !said(remedy) && !says(&headline, remedy))
 }
 
+/// What a technician does, where no suspect says it.
+#[must_use]
+pub fn technician(report: &Report) -> Option<String> {
+    report.technician().filter(|_| report.suspects.is_empty())
+}
+
 /// Whether a headline says already what to do.
 #[must_use]
 pub fn says(headline: &str, remedy: &str) -> bool {

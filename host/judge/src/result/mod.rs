@@ -138,6 +138,15 @@ impl Report {
         }
     }
 
+    /// What a technician does with a board that is wrong, in one sentence: by the likeliest suspect, or else by the finding. None under
+    /// PASS and ERROR.
+    #[must_use]
+    pub fn technician(&self) -> Option<String> {
+        let of_suspect = || self.suspects.first().map(Suspect::technician);
+        let is_wrong = self.verdict == Verdict::Fail;
+        is_wrong.then(|| of_suspect().or_else(|| self.finding.technician())).flatten()
+    }
+
     /// Why there is no judgement; none under PASS and FAIL.
     #[must_use]
     pub fn error(&self) -> Option<Problem> {
@@ -152,6 +161,7 @@ struct Rest<'a> {
     cause: Cause,
     headline: String,
     remedy: Option<String>,
+    technician: Option<String>,
     finding: &'a Finding,
     suspects: &'a [Suspect],
     checks: &'a [Check],
@@ -178,6 +188,7 @@ impl<'a> From<&'a Report> for Rest<'a> {
             cause: report.cause,
             headline: report.headline(),
             remedy: report.remedy(),
+            technician: report.technician(),
             finding: &report.finding,
             suspects: &report.suspects,
             checks: &report.checks,

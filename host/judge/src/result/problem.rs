@@ -133,6 +133,12 @@ impl Finding {
         wording::remedy(self)
     }
 
+    /// What a technician does with a board of which it was found, in one sentence; none where it is nothing against the board.
+    #[must_use]
+    pub fn technician(&self) -> Option<String> {
+        wording::at_the_bench(self)
+    }
+
     /// Its code.
     #[must_use]
     pub fn code(&self) -> String {

@@ -291,10 +291,9 @@ fn seen(kind: BoardKind, identity: &Identity) -> BoardSeen {
     }
 }
 
-/// What the operator does: what the likeliest suspect asks of a technician, or else what the finding asks for.
+/// What the operator does: with a board that is wrong what a technician does, else what the finding asks for.
 fn at_the_bench(report: &Report) -> Option<String> {
-    let suspect = report.suspects.first().filter(|_| report.verdict == Verdict::Fail);
-    suspect.map(Suspect::technician).or_else(|| report.remedy())
+    report.technician().or_else(|| report.remedy())
 }
 
 fn suspect(suspect: &Suspect) -> SuspectRecord {

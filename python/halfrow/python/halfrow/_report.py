@@ -237,6 +237,8 @@ class Report:
     """The result in one sentence."""
     remedy: Optional[str]
     """What to do next; None under PASS."""
+    technician: Optional[str]
+    """What a technician does with a board that is wrong; None under PASS and ERROR."""
     finding: Finding
     """The result as a code."""
     error: Optional[Problem]

@@ -52,7 +52,8 @@ pub(super) fn known() -> BTreeMap<String, Vec<Explanation>> {
     for (verdict, finding) in examples::findings_with_verdicts() {
         add(&finding.code(), &|it| {
             it.sentence = finding.sentence();
-            it.acts = codes::act(&finding).into_iter().collect();
+            let bench = codes::bench(&finding).map(|bench| format!("At the bench: {bench}"));
+            it.acts = bench.into_iter().chain(codes::act(&finding)).collect();
             (it.verdict, it.fault) = (verdict, fault(verdict));
         });
     }

@@ -1,6 +1,6 @@
 //! The report in lines, for views without a table.
 
-use super::{mark, not_exercised, plain, remedy, verdict_line};
+use super::{mark, not_exercised, plain, remedy, technician, verdict_line};
 use crate::result::{Report, Suspect};
 use crate::verdict::Verdict;
 
@@ -26,7 +26,10 @@ pub(in crate::report) fn advice(report: &Report) -> Vec<String> {
             format!("Next: {}", suspect.designer()),
         ]
     };
-    let lines = report.suspects.iter().flat_map(said).chain(remedy(report));
+    let bench = technician(report);
+    let next = remedy(report).map(|remedy| if bench.is_some() { format!("Next: {remedy}") } else { remedy });
+    let bench = bench.map(|technician| format!("At the bench: {technician}"));
+    let lines = report.suspects.iter().flat_map(said).chain(bench).chain(next);
     lines.map(|line| plain(&line).into_owned()).collect()
 }
 

@@ -1,6 +1,7 @@
 //! The sentences of all findings and defects, made here from their codes and parameters, and nowhere else.
 
 mod at_speed;
+mod bench;
 mod evidence;
 mod findings;
 mod lines;
@@ -13,6 +14,7 @@ mod tables;
 use super::{Defect, Memory};
 
 pub(crate) use at_speed::named_clock;
+pub use bench::at_the_bench;
 pub use evidence::evidence;
 pub(super) use findings::because;
 pub(crate) use findings::broken_off;

@@ -71,7 +71,7 @@ fn said() -> Keys {
     known.chain(findings()).chain(defects()).collect()
 }
 
-/// What findings ask for, and what a technician does about a defect.
+/// What a technician does about a finding or a defect, and what other findings ask for.
 fn remedies() -> Keys {
     let asks = |finding: &halfrow::result::Finding| finding.remedy().map(|_| finding.as_problem().code);
     let asking: BTreeSet<_> = examples::findings().iter().filter_map(asks).collect();

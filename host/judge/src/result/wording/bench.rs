@@ -1,0 +1,53 @@
+//! What a technician does about what was found, where no suspect says it.
+
+use super::{LOGIC, MEMORY, REPORT, TIMING, technician};
+use crate::result::{BurstCount, Finding};
+
+/// What a technician does with a board of which this was found, in one sentence; none where it is nothing against the board.
+#[must_use]
+pub fn at_the_bench(finding: &Finding) -> Option<String> {
+    let asked = match finding {
+        Finding::TableReadsWrong { defect, .. } => return Some(technician(defect)),
+        Finding::SamplesDiffer { suspect: Some(suspect), .. }
+        | Finding::DiffersAtSpeed { suspect: Some(suspect), .. } => return Some(technician(suspect)),
+        Finding::TablesChanged { found } | Finding::InCorner { found, .. } => return found.technician(),
+        Finding::SamplesDiffer { suspect: None, .. } => REPORT,
+        Finding::EchoWrong {} | Finding::TableCrcWrong {} | Finding::CommitCrcWrong {} => MEMORY,
+        Finding::DiffersAtSpeed { suspect: None, .. }
+        | Finding::GenerationWrong { .. }
+        | Finding::MiscountedAtSpeed { count: BurstCount::Generation, .. }
+        | Finding::ClockNotAsNamed { .. }
+        | Finding::RowSwallowed { .. }
+        | Finding::RowCopyDiffers { .. } => TIMING,
+        Finding::CapabilityImpossible { .. }
+        | Finding::RowsEnteredChanged { .. }
+        | Finding::EntryMiscounted { .. }
+        | Finding::MiscountedAtSpeed { .. }
+        | Finding::LatencyWrong { .. }
+        | Finding::CounterWrong { .. }
+        | Finding::GapsMiscounted { .. }
+        | Finding::LatencyMiscounted { .. }
+        | Finding::RowMisplaced { .. }
+        | Finding::RowNeverSent { .. }
+        | Finding::RowNumberedTwice(_)
+        | Finding::RowRepeatsStand(_)
+        | Finding::RowOutOfOrder { .. }
+        | Finding::RuleBroken { .. } => LOGIC,
+        _ => return None,
+    };
+    Some(asked.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::result::examples;
+    use crate::verdict::Verdict;
+
+    #[test]
+    fn every_finding_against_the_board_says_what_to_do_at_the_bench_and_no_other() {
+        for (verdict, finding) in examples::findings_with_verdicts() {
+            let is_against = verdict == Some(Verdict::Fail);
+            assert_eq!(finding.technician().is_some(), is_against, "{finding:?}");
+        }
+    }
+}
