@@ -324,8 +324,8 @@ fn a_row_that_changes_on_its_way_in_is_not_said_to_be_computed_wrongly() {
         packet
     });
     assert_eq!(failed_check(&report), Some(CheckName::Frames), "{}", report.headline());
-    assert_eq!(report.finding, Finding::RowsEnteredChanged { rows: 1, row: 3, frame: 2 });
-    let defect = Defect::RowsChangedOnEntry { rows: 1, first: 3, frame: 2 };
+    assert_eq!(report.finding, Finding::RowsEnteredChanged { rows: 1, row: 3, frame: 2, flipped: None });
+    let defect = Defect::RowsChangedOnEntry { rows: 1, first: 3, frame: 2, flipped: None };
     assert_eq!(report.suspects[0].defect, defect);
     assert!(report.headline().contains("not computed wrongly"), "{}", report.headline());
 }

@@ -52,6 +52,21 @@ fn a_failure_without_a_suspect_says_what_to_do_at_the_bench() {
     }
 }
 
+/// Rows far above the optical centre, which read neither end of what went in: by what came out all of it is right.
+#[test]
+fn a_sample_that_no_output_reads_is_not_the_crc_unit_s_fault_when_it_is_spoilt_on_its_way_in() {
+    let spoilt = "mock,fault=spoilt-row,row=0,column=0,bit=5";
+    let call = ["verify", "--width", "64", "--height", "4", "--radius", "36.9", "--centre-y", "24", "--json"];
+    let report = Folder::new()
+        .halfrow(call.into_iter().chain(["--frame", "builtin:noise", "--at-speed", "0", "--board", spoilt]))
+        .json();
+    assert_eq!(report["finding"]["code"], "rows-entered-changed", "{}", report["headline"]);
+    let flipped = serde_json::json!({ "column": 0, "bit": 5 });
+    assert_eq!(report["finding"]["parameters"]["flipped"], flipped);
+    assert_eq!(report["suspects"][0]["defect"]["parameters"]["flipped"], flipped);
+    assert!(report["headline"].as_str().unwrap().ends_with("in bit 5 of column 0"), "{}", report["headline"]);
+}
+
 #[test]
 fn an_error_is_reported_as_an_error() {
     let folder = Folder::new();

@@ -5,7 +5,9 @@ mod parameters;
 use serde::{Deserialize, Serialize};
 
 use super::Extent;
-pub use parameters::{ClampEnd, Counting, Instead, MadeWith, Memory, Reading, RowSource, StaleFrames};
+pub use parameters::{
+    ClampEnd, Counting, FlippedBit, Instead, MadeWith, Memory, Reading, RowSource, StaleFrames,
+};
 
 /// A single defect of a board.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -205,6 +207,8 @@ pub enum Defect {
         first: usize,
         /// Its frame.
         frame: u16,
+        /// The one bit that is flipped in the first of them, if the CRC tells one.
+        flipped: Option<FlippedBit>,
     },
     /// Frames begin with the tables of the frame in front of them.
     TablesChangeLate {

@@ -2,8 +2,9 @@
 
 use super::{
     Account, Answer, BoardKind, BrokenOff, BurstCount, ClampEnd, ClockSeen, Corner, Counter, Counting,
-    Defect, Doubt, EqualAtSpeed, Extent, Finding, Instead, MadeWith, Memory, NoBurst, NotExercised,
-    NumberedRow, Problem, Reading, RepeatedRow, Repetition, RowSource, Rule, StaleFrames, Streamed, Suspect,
+    Defect, Doubt, EqualAtSpeed, Extent, Finding, FlippedBit, Instead, MadeWith, Memory, NoBurst,
+    NotExercised, NumberedRow, Problem, Reading, RepeatedRow, Repetition, RowSource, Rule, StaleFrames,
+    Streamed, Suspect,
 };
 use crate::verdict::Verdict;
 
@@ -112,6 +113,8 @@ fn on_rules() -> [Finding; 1] {
     }]
 }
 
+/// A bit that was flipped on its way in.
+const FLIPPED: FlippedBit = FlippedBit { column: 5, bit: 11 };
 /// A quarter of 96 MHz.
 const SLOW_CLOCK: ClockSeen = ClockSeen { least_hz: Some(22_100_000), most_hz: Some(24_600_000) };
 
@@ -119,7 +122,7 @@ const SLOW_CLOCK: ClockSeen = ClockSeen { least_hz: Some(22_100_000), most_hz: S
 fn on_entry_and_at_speed() -> [Finding; 6] {
     [
         Finding::ClockNotAsNamed { clock_hz: 96_000_000, seen: SLOW_CLOCK },
-        Finding::RowsEnteredChanged { rows: 9, row: 3, frame: 2 },
+        Finding::RowsEnteredChanged { rows: 9, row: 3, frame: 2, flipped: Some(FLIPPED) },
         Finding::EntryMiscounted { rows: 9, row: 3, frame: 2 },
         Finding::DiffersAtSpeed {
             wrong: 2,
@@ -318,7 +321,7 @@ fn read_back() -> impl Iterator<Item = Defect> {
 
 fn without_share() -> impl Iterator<Item = Suspect> {
     [
-        Defect::RowsChangedOnEntry { rows: 9, first: 3, frame: 2 },
+        Defect::RowsChangedOnEntry { rows: 9, first: 3, frame: 2, flipped: Some(FLIPPED) },
         Defect::OnlyAtSpeed { row: Some(3), samples: 1, bits: vec![11] },
         Defect::SeenAtSpeed { row: Some(3), samples: 1, bits: vec![11] },
     ]

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Account, Answer, BoardKind, BrokenOff, BurstCount, ClockSeen, Corner, Counter, Defect, Doubt,
-    EqualAtSpeed, NoBurst, NumberedRow, Problem, RepeatedRow, Repetition, Rule,
+    EqualAtSpeed, FlippedBit, NoBurst, NumberedRow, Problem, RepeatedRow, Repetition, Rule,
 };
 
 /// What a check or a whole run came to. In JSON `{"code": …, "parameters": …}`; a [`Problem`] has its own code.
@@ -173,8 +173,10 @@ pub enum Finding {
         row: usize,
         /// Its frame.
         frame: u16,
+        /// The one bit that is flipped in the first of them, if the CRC tells one.
+        flipped: Option<FlippedBit>,
     },
-    /// Rows came out right, and the board's CRC of what entered is another one.
+    /// The board's CRC of what entered is another one, and so it is of rows of which every output is right.
     EntryMiscounted {
         /// How many.
         rows: usize,

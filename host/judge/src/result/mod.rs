@@ -45,7 +45,9 @@ pub use bursts::{BurstCount, ClockSeen, Corner, EqualAtSpeed, NoBurst, Repetitio
 pub use check::{Check, CheckName, Outcome};
 pub use counter::Counter;
 pub use coverage::CoverageReport;
-pub use defect::{ClampEnd, Counting, Defect, Instead, MadeWith, Memory, Reading, RowSource, StaleFrames};
+pub use defect::{
+    ClampEnd, Counting, Defect, FlippedBit, Instead, MadeWith, Memory, Reading, RowSource, StaleFrames,
+};
 pub use document::{Document, SCHEMA, Schema};
 pub use doubt::{BrokenOff, Doubt};
 pub use evidence::{Evidence, EvidenceReport};

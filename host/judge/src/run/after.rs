@@ -1,7 +1,8 @@
 //! What is judged when the last row has come back, but for the counters.
 
+use super::entry::WrongEntry;
 use super::findings::{During, End};
-use super::judge::{Seen, WrongEntry};
+use super::judge::Seen;
 use super::plan::{DECOY, Generation};
 use super::steps::Run;
 use crate::board::Bank;
@@ -82,8 +83,8 @@ impl Run<'_> {
         }
         let differing = seen.differing_frames();
         let (samples, frames) = (seen.samples(), seen.frames.len());
-        if let Some(WrongEntry { rows, row, frame }) = seen.wrong_entry {
-            return Err(changed_on_entry(rows, row, frame, differing > 0));
+        if let Some(wrong) = seen.wrong_entry {
+            return Err(changed_on_entry(wrong, differing > 0));
         }
         if differing == 0 {
             return Ok(Finding::FramesEqual { frames, samples });
@@ -129,15 +130,15 @@ impl Seen {
 }
 
 /// What came in otherwise than it was sent explains what came out, however that may look.
-fn changed_on_entry(rows: usize, row: usize, frame: u16, differs: bool) -> End {
-    if !differs {
+fn changed_on_entry(WrongEntry { rows, row, frame, flipped }: WrongEntry, differs: bool) -> End {
+    if !differs && flipped.is_none() {
         return End::failed(CheckName::Frames, Finding::EntryMiscounted { rows, row, frame });
     }
-    let defect = Defect::RowsChangedOnEntry { rows, first: row, frame };
+    let defect = Defect::RowsChangedOnEntry { rows, first: row, frame, flipped };
     let suspects = vec![Suspect { defect, account: Account::Nothing, explained: 1.0 }];
     End::Failed {
         check: CheckName::Frames,
-        finding: Finding::RowsEnteredChanged { rows, row, frame },
+        finding: Finding::RowsEnteredChanged { rows, row, frame, flipped },
         suspects,
     }
 }

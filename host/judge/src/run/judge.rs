@@ -9,6 +9,7 @@ use std::time::Instant;
 
 use halfrow_model::row_signature;
 
+use super::entry::{WrongEntry, flipped_bit};
 use super::exercised::SampleLevels;
 use super::findings::End;
 use super::kept::{KeptFrames, as_found};
@@ -35,17 +36,6 @@ pub(super) struct Seen {
     pub(super) wrong_pauses: Option<Finding>,
     /// That tables had changed when they were read back.
     pub(super) changed_tables: Option<End>,
-}
-
-/// Rows that entered the core otherwise than they were sent, by the board's own CRC.
-#[derive(Clone, Copy)]
-pub(super) struct WrongEntry {
-    /// How many.
-    pub(super) rows: usize,
-    /// The first of them.
-    pub(super) row: usize,
-    /// Its frame.
-    pub(super) frame: u16,
 }
 
 /// A row with another latency than the board claims, in pixel clocks.
@@ -210,8 +200,13 @@ impl<'a> Judge<'a> {
 
     fn check_entry(&mut self, row: &ReturnedRow<'_>, sent: &[u16]) {
         if self.manner.names_entered && row.entered != Some(row_signature(sent)) {
-            let (row, frame) = (row.row, row.frame);
-            self.seen.wrong_entry.get_or_insert(WrongEntry { rows: 0, row, frame }).rows += 1;
+            let first = || WrongEntry {
+                rows: 0,
+                row: row.row,
+                frame: row.frame,
+                flipped: row.entered.and_then(|entered| flipped_bit(sent, entered)),
+            };
+            self.seen.wrong_entry.get_or_insert_with(first).rows += 1;
         }
     }
 

@@ -6,6 +6,7 @@ mod after;
 mod at_speed;
 mod conclude;
 mod counters;
+mod entry;
 mod exercised;
 mod findings;
 mod finished;

@@ -103,3 +103,12 @@ pub enum RowSource {
         rows: isize,
     },
 }
+
+/// A bit of a sample that is another one than was sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FlippedBit {
+    /// The sample's column.
+    pub column: usize,
+    /// The bit, 0 the least.
+    pub bit: u32,
+}

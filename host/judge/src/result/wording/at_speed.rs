@@ -4,19 +4,31 @@ use super::places::list;
 use super::{LOGIC, TIMING, Words, suspicion};
 use crate::report::wording::{count, differ, grouped, hertz, span};
 use crate::result::{
-    BurstCount, ClockSeen, Corner, Defect, EqualAtSpeed, Finding, NoBurst, Repetition, Streamed,
+    BurstCount, ClockSeen, Corner, Defect, EqualAtSpeed, Finding, FlippedBit, NoBurst, Repetition, Streamed,
 };
 
-pub(super) fn changed_on_entry(rows: usize, first: usize, frame: u16) -> Words {
+pub(super) fn changed_on_entry(
+    (rows, first, frame): (usize, usize, u16),
+    flipped: Option<FlippedBit>,
+) -> Words {
+    let bit = flipped_bit(flipped);
     let others = if rows > 1 { format!(", the first of {rows}") } else { String::new() };
     Words {
         part: "row's way in",
-        place: format!("the way of a row from its packet to the core, row {first} of frame {frame}{others}"),
+        place: format!(
+            "the way of a row from its packet to the core, row {first} of frame {frame}{others}{bit}"
+        ),
         defect: "the board's own CRC of what entered the core is not that of what was sent".to_owned(),
         designer: "Check the banks that rows wait in, and the unpacking of samples in front of them."
             .to_owned(),
         technician: LOGIC,
     }
+}
+
+/// `, in bit 11 of column 5`
+pub(super) fn flipped_bit(flipped: Option<FlippedBit>) -> String {
+    flipped
+        .map_or_else(String::new, |FlippedBit { column, bit }| format!(", in bit {bit} of column {column}"))
 }
 
 pub(super) fn tables_late(rows: usize) -> Words {
@@ -131,7 +143,9 @@ pub(super) fn remedy(finding: &Finding) -> Option<String> {
         Finding::RowsEnteredChanged { .. } => {
             "Check the banks that rows wait in, and the unpacking of samples in front of them."
         }
-        Finding::EntryMiscounted { .. } => "Check the board's CRC unit: the samples themselves were right.",
+        Finding::EntryMiscounted { .. } => {
+            "Check the board's CRC unit, and the banks that rows wait in where they hold samples that no output reads."
+        }
         Finding::MiscountedAtSpeed { .. } => {
             "Check what the board counts of the frames that it makes: their samples were right."
         }

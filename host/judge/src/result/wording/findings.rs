@@ -146,14 +146,15 @@ fn of_rows(finding: &Finding) -> String {
             "row {row} of frame {frame} names the tables of generation {named}, and generation {committed} was committed \
              for it"
         ),
-        Finding::RowsEnteredChanged { rows, row, frame } => format!(
+        Finding::RowsEnteredChanged { rows, row, frame, flipped } => format!(
             "{} changed on the way into the core, not computed wrongly: the board's own CRC of what entered is not that \
-             of what was sent, first for row {row} of frame {frame}",
-            count(*rows, "row")
+             of what was sent, first for row {row} of frame {frame}{}",
+            count(*rows, "row"),
+            at_speed::flipped_bit(*flipped)
         ),
         Finding::EntryMiscounted { rows, row, frame } => format!(
             "{} came out right, and the board's CRC of what entered the core is not that of what was sent, first for row \
-             {row} of frame {frame}",
+             {row} of frame {frame}: the CRC unit is wrong, or samples that no output reads changed on their way in",
             count(*rows, "row")
         ),
         Finding::LatencyWrong { rows, row, frame, first, last, claimed } => format!(

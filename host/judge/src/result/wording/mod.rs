@@ -106,8 +106,8 @@ fn elsewhere(defect: &Defect) -> Words {
         Defect::CentreIgnored { instead } => logic::centre_ignored(*instead),
         Defect::DepthIgnored { instead } => logic::depth_ignored(*instead),
         Defect::ColumnPairsExchanged {} => logic::pairs_exchanged(),
-        Defect::RowsChangedOnEntry { rows, first, frame } => {
-            at_speed::changed_on_entry(*rows, *first, *frame)
+        Defect::RowsChangedOnEntry { rows, first, frame, flipped } => {
+            at_speed::changed_on_entry((*rows, *first, *frame), *flipped)
         }
         Defect::TablesChangeLate { rows } => at_speed::tables_late(*rows),
         Defect::OnlyAtSpeed { row, samples, bits } => at_speed::only_at_speed(*row, *samples, bits),

@@ -1,0 +1,54 @@
+//! What entered the core, by the board's own CRC of it.
+
+use std::iter;
+
+use halfrow_model::row_signature;
+
+use crate::result::FlippedBit;
+
+/// The polynomial of CRC-32, the least power first: what flipping the last bit of a row makes of the row's CRC.
+const LAST_BIT: u32 = 0xedb8_8320;
+
+/// Rows that entered the core otherwise than they were sent.
+#[derive(Clone, Copy)]
+pub(super) struct WrongEntry {
+    /// How many.
+    pub(super) rows: usize,
+    /// The first of them.
+    pub(super) row: usize,
+    /// Its frame.
+    pub(super) frame: u16,
+    /// The one bit of this row that gives the CRC when it is flipped, if there is one.
+    pub(super) flipped: Option<FlippedBit>,
+}
+
+/// The one bit of the row `sent` that gives the CRC `entered` when it is flipped.
+pub(super) fn flipped_bit(sent: &[u16], entered: u32) -> Option<FlippedBit> {
+    let word = u16::BITS as usize;
+    let wanted = row_signature(sent) ^ entered;
+    // A CRC is linear, so that a flipped bit changes it alike whatever the row is, by its distance from the end alone.
+    let one_earlier = |effect: &u32| Some(effect >> 1 ^ if effect & 1 == 1 { LAST_BIT } else { 0 });
+    let effects = iter::successors(Some(LAST_BIT), one_earlier);
+    let (_, place) = effects.zip((0..sent.len() * word).rev()).find(|(effect, _)| *effect == wanted)?;
+    Some(FlippedBit { column: place / word, bit: (place % word) as u32 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_flipped_bit_tells_its_place_and_nothing_else_has_one() {
+        let sent: Vec<u16> = (0..1920).map(|column| (column * 2053 % 4096) as u16).collect();
+        for (column, bit) in [(0, 0), (0, 11), (5, 7), (1919, 0), (1919, 15)] {
+            let mut entered = sent.clone();
+            entered[column] ^= 1 << bit;
+            assert_eq!(flipped_bit(&sent, row_signature(&entered)), Some(FlippedBit { column, bit }));
+            entered[column] ^= 2 << bit | 1 << (bit ^ 1);
+            assert_eq!(flipped_bit(&sent, row_signature(&entered)), None);
+        }
+        let right = row_signature(&sent);
+        let of_unit = (0..32).map(|line| flipped_bit(&sent, right ^ 1 << line));
+        assert!(of_unit.chain([flipped_bit(&sent, right)]).all(|found| found.is_none()));
+    }
+}
