@@ -14,6 +14,8 @@ pub(super) fn summary(witnesses: &Witnesses<'_>) -> Suspect {
         least: extremes().map(|extremes| extremes.0).min(),
         most: extremes().map(|extremes| extremes.1).max(),
         bright: brightness(&witnesses.differing),
+        bits: bits(&witnesses.differing),
+        unstreamed: false,
         frames: frames.len(),
         of_frames: witnesses.case.frames.len(),
     };
@@ -47,6 +49,13 @@ fn extent(places: &[usize], total: usize) -> Option<Extent> {
         count if parity(1) => Extent::Odd { count },
         count => Extent::Some { count, total, first, last },
     })
+}
+
+/// The bits in which any sample differs.
+fn bits(differing: &[Witness<'_>]) -> Vec<u32> {
+    let samples = differing.iter().flat_map(|row| row.found.iter().zip(row.expected));
+    let all = samples.fold(0, |all, (found, expected)| all | (found ^ expected));
+    (0..u16::BITS).filter(|bit| all >> bit & 1 == 1).collect()
 }
 
 /// Whether only the bright samples of the reference differ, or only the dark ones; none for both.

@@ -10,8 +10,8 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use png::EncodingError;
 
 use super::wording::{self, plain};
-use crate::result::wording::MAPS;
-use crate::result::{Check, Defect, Evidence, Report, Suspect};
+use crate::result::wording::{MAPS, NO_MAPS};
+use crate::result::{Check, Evidence, Report, Suspect};
 use crate::verdict::Verdict;
 
 const STYLE: &str = include_str!("style.css");
@@ -123,8 +123,8 @@ fn next(report: &Report) -> Markup {
 
 /// What is suspected, on a page that has maps of what differs or has none. That nothing known explains it is no news beside what does.
 pub(super) fn suspects(suspects: &[Suspect], has_maps: bool) -> Markup {
-    let is_known = |suspect: &&Suspect| !matches!(suspect.defect, Defect::NoneKnown { .. });
-    let shown = |suspect: &&Suspect| is_known(suspect) || !suspects.iter().any(|other| is_known(&other));
+    let has_known = suspects.iter().any(Suspect::is_known);
+    let shown = |suspect: &&Suspect| suspect.is_known() || !has_known;
     html! {
         @if !suspects.is_empty() {
             ol.suspects { @for it in suspects.iter().filter(shown) { (suspect(it, has_maps)) } }
@@ -137,9 +137,7 @@ fn asked(asked: &str, has_maps: bool) -> &str {
     match (asked == MAPS, has_maps) {
         (false, _) => asked,
         (true, true) => "Look at the difference maps below.",
-        (true, false) => {
-            "No map shows it: every frame that has one is right, and what differs does so at full speed or behind the frames alone."
-        }
+        (true, false) => NO_MAPS,
     }
 }
 

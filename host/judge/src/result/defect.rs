@@ -245,6 +245,12 @@ pub enum Defect {
         most: Option<i32>,
         /// Whether only samples of half the range and above differ, or only those below; none for both.
         bright: Option<bool>,
+        /// Bits in which any of them differs; empty where a report is of a version that did not tell.
+        #[serde(default)]
+        bits: Vec<u32>,
+        /// Whether they are in rows alone that are no part of the frames that were streamed, so that no map shows them.
+        #[serde(default)]
+        unstreamed: bool,
         /// In so many frames.
         frames: usize,
         /// Of so many.

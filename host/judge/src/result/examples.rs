@@ -336,6 +336,8 @@ fn none_known() -> Defect {
         least: Some(-1),
         most: Some(1),
         bright: None,
+        bits: vec![0, 1],
+        unstreamed: false,
         frames: 2,
         of_frames: 16,
     }

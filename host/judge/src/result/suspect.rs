@@ -54,6 +54,12 @@ pub enum Account {
 }
 
 impl Suspect {
+    /// Whether it is a defect that is known, and not only where the differences lie.
+    #[must_use]
+    pub fn is_known(&self) -> bool {
+        !matches!(self.defect, Defect::NoneKnown { .. })
+    }
+
     /// The kind of part, in lower case.
     #[must_use]
     pub fn part(&self) -> &'static str {

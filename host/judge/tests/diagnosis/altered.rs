@@ -52,6 +52,17 @@ fn a_stuck_line_behind_the_datapath_is_named() {
     assert_eq!(certain(&suspects), ("output bit", "corrected samples, bit 6, stuck at 1".to_owned()));
 }
 
+/// A line that is another one now and then, which no simulation gives: that all of it is one bit tells it.
+#[test]
+fn a_flaky_line_behind_the_datapath_tells_its_bit() {
+    let flaky = |place: usize, sample: &u16| sample ^ if place.is_multiple_of(97) { 32 } else { 0 };
+    let suspects = diagnose(&narrow(), |_, _, expected| {
+        expected.samples().iter().enumerate().map(|(place, sample)| flaky(place, sample)).collect()
+    });
+    assert_eq!((suspects.len(), suspects[0].place().as_str()), (1, "an unknown part"), "{suspects:#?}");
+    assert!(suspects[0].evidence().contains("bit 5 alone"), "{}", suspects[0].evidence());
+}
+
 #[test]
 fn rows_of_the_bank_before_are_named() {
     let suspects = diagnose(&wide(), |_, _, expected| {

@@ -45,6 +45,10 @@ const TIMING: &str = "Switch the board off and on, reload the bitstream and run 
                       aside with its reports.";
 /// What is asked for where no defect explains what differs.
 pub(crate) const MAPS: &str = "Look at the difference maps of a report.";
+/// The same where a report has no map of it.
+pub(crate) const NO_MAPS: &str = "No map shows it: every frame that has one is right, and what differs does so at full speed or behind the frames alone.";
+/// What is said of differences that no defect explains.
+const UNEXPLAINED: &str = "no single defect that is known explains them";
 /// Nothing is known.
 const REPORT: &str = "Reload the bitstream and run again with a report; if it returns, set the board aside, and hand the report \
                       to the designer.";
@@ -64,7 +68,11 @@ pub fn place(defect: &Defect) -> String {
 /// Which defect is behind samples that differ, as the end of a sentence.
 fn suspicion(suspect: Option<&Defect>) -> String {
     match suspect {
-        None | Some(Defect::NoneKnown { .. }) => "no single defect that is known explains them".to_owned(),
+        None => UNEXPLAINED.to_owned(),
+        Some(unknown @ Defect::NoneKnown { .. }) => {
+            let seen = places::where_and_how(unknown).join(", ");
+            if seen.is_empty() { UNEXPLAINED.to_owned() } else { format!("{UNEXPLAINED}: {seen}") }
+        }
         Some(suspect) => format!("the suspect is {}", place(suspect)),
     }
 }
@@ -142,6 +150,8 @@ mod tests {
             least: None,
             most: None,
             bright: None,
+            bits: vec![5],
+            unstreamed: false,
             frames: 3607,
             of_frames: 3607,
         };
@@ -154,7 +164,7 @@ mod tests {
         };
         assert_eq!(
             sentence(&differ),
-            "105 of 39,398,400 samples differ, in 3,607 of 3,607 frames; no single defect that is known explains them"
+            "105 of 39,398,400 samples differ, in 3,607 of 3,607 frames; no single defect that is known explains them: bit 5 alone"
         );
     }
 }

@@ -6,6 +6,9 @@ use super::{LOGIC, REPORT, TIMING, Words, tables};
 use crate::report::wording::{count, grouped};
 use crate::result::{Defect, Extent, MadeWith, RowSource, StaleFrames};
 
+/// Bits that are told when nothing differs in another.
+const FEW_BITS: usize = 2;
+
 pub(super) fn words(defect: &Defect) -> Words {
     match defect {
         Defect::StaleTables { rows, frames } => stale(rows, frames),
@@ -126,15 +129,27 @@ fn lost(rows: usize, first: usize) -> Words {
 fn unknown(defect: &Defect) -> Words {
     Words {
         part: "unknown",
-        place: "no single part".to_owned(),
+        place: "an unknown part".to_owned(),
         defect: format!("no known defect explains most of the differences: {}", clauses(defect).join(", ")),
-        designer: super::MAPS.to_owned(),
+        designer: if is_unstreamed(defect) { super::NO_MAPS } else { super::MAPS }.to_owned(),
         technician: REPORT,
     }
 }
 
+fn is_unstreamed(defect: &Defect) -> bool {
+    matches!(defect, Defect::NoneKnown { unstreamed: true, .. })
+}
+
 fn clauses(defect: &Defect) -> Vec<String> {
-    let Defect::NoneKnown { rows, columns, least, most, bright, frames, of_frames } = defect else {
+    let Defect::NoneKnown { frames, of_frames, .. } = defect else { return Vec::new() };
+    // Rows that were not streamed are of a single frame.
+    let within = format!("in {} of {}", grouped(*frames), count(*of_frames, "frame"));
+    where_and_how(defect).into_iter().chain((!is_unstreamed(defect)).then_some(within)).collect()
+}
+
+/// Where differences lie in their frames, and what they are.
+pub(super) fn where_and_how(defect: &Defect) -> Vec<String> {
+    let Defect::NoneKnown { rows, columns, least, most, bright, bits, .. } = defect else {
         return Vec::new();
     };
     let sizes = least.zip(*most).map(|(least, most)| match (least, most) {
@@ -151,11 +166,18 @@ fn clauses(defect: &Defect) -> Vec<String> {
         columns.map(|columns| extent("column", columns)),
         sizes,
         bright,
-        Some(format!("in {} of {}", grouped(*frames), count(*of_frames, "frame"))),
+        bits_alone(bits),
     ]
     .into_iter()
     .flatten()
     .collect()
+}
+
+/// Few bits, which single lines may be behind.
+fn bits_alone(bits: &[u32]) -> Option<String> {
+    let ending = if bits.len() == 1 { "" } else { "s" };
+    let numbers = list(&bits.iter().map(|&bit| bit as usize).collect::<Vec<_>>());
+    (1..=FEW_BITS).contains(&bits.len()).then(|| format!("bit{ending} {numbers} alone"))
 }
 
 fn extent(name: &str, extent: Extent) -> String {

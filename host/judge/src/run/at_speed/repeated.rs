@@ -200,6 +200,10 @@ impl Run<'_> {
             && suspects.first().is_some_and(|first| first.explained >= 1.0);
         let place = usize::from(is_told);
         suspects.splice(place..place, at_speed(streamed, Some(kept)));
+        // That nothing else explains it is no news behind what does.
+        if suspects.first().is_some_and(Suspect::is_known) {
+            suspects.retain(Suspect::is_known);
+        }
         suspects
     }
 
@@ -219,12 +223,18 @@ impl Run<'_> {
             comparison: Comparison::of_frames(&evidence.expected, &evidence.found),
             seconds: 0.0,
         };
-        diagnosis::diagnose(&Case {
+        let mut suspects = diagnosis::diagnose(&Case {
             uploaded: &[Uploaded { generation: *number, tables, kernel }],
             ring: self.board.capabilities.ring.into(),
             frames: slice::from_ref(&frame),
             evidence: slice::from_ref(evidence),
-        })
+        });
+        for suspect in &mut suspects {
+            if let Defect::NoneKnown { unstreamed, .. } = &mut suspect.defect {
+                *unstreamed = true;
+            }
+        }
+        suspects
     }
 }
 
