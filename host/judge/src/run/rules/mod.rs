@@ -36,7 +36,7 @@ use super::steps::Run;
 use crate::board::{BoardError, Capabilities, Given, RowTiming, Said, Status};
 use crate::compare::Comparison;
 use crate::progress::Step;
-use crate::result::{Answer, CheckName, Counter, Defect, Doubt, Finding, Outcome, Rule, Suspect};
+use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Outcome, Rule};
 use crate::verdict::Cause;
 use compared::{Compared, WrongRow};
 pub(super) use price::price;
@@ -249,10 +249,9 @@ impl<'a, 'run> Rules<'a, 'run> {
     /// rule is broken.
     fn judge_rows(&self, rule: Rule, compared: &Compared) -> Result<(), End> {
         let Some(WrongRow { row, frame, seen }) = &compared.wrong else { return Ok(()) };
-        let is_known = |suspect: &Suspect| !matches!(suspect.defect, Defect::NoneKnown { .. });
         if let Some(seen) = seen {
             let suspects = self.run.diagnose_seen(seen, "rules", *frame);
-            if let Some(first) = suspects.first().filter(|first| is_known(first)) {
+            if let Some(first) = suspects.first().filter(|first| first.is_known()) {
                 let compared = Comparison::of_frames(&seen.evidence.expected, &seen.evidence.found);
                 let finding = Finding::SamplesDiffer {
                     differences: compared.differences,
