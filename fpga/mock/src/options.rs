@@ -81,6 +81,12 @@ pub enum OptionError {
         /// The highest line that there is.
         last: u32,
     },
+    /// A fault of a tap that a build of five taps has not got.
+    #[error("a build of five taps has no tap={tap}; give one from 1 to 5, or leave taps=five out")]
+    NoTap {
+        /// The tap that the fault is of.
+        tap: u8,
+    },
     /// A fault of the choice between two banks of tables, where there is one.
     #[error("the fault takes the wrong one of two banks of tables; give table-banks=2, or another fault")]
     NoOtherBank,

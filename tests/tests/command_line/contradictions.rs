@@ -219,6 +219,10 @@ fn a_fault_without_effect_is_refused_with_one_that_has_some() {
         ("lost-row,row=16", "there is no row=16"),
         ("drifting-table,row=16", "there is no row=16"),
         ("tap-offset,columns=0", "columns=0 leaves the taps where they are; give -3 to -1 or 1 to 3"),
+        (
+            "dead-tap,tap=6,taps=five",
+            "a build of five taps has no tap=6; give one from 1 to 5, or leave taps=five out",
+        ),
         ("dead-tap,tap=4,reads=4", "tap=4,reads=4 lets the tap carry its own sample"),
         ("spoilt-row,column=128", "there is no column=128 in rows of 128 samples; give one from 0 to 127"),
         ("spoilt-row,row=16,column=128", "there is no row=16"),

@@ -1,7 +1,7 @@
 //! Faults that a run never comes upon or a build cannot have, so that who asks for one is told.
 
 use super::BoardFault;
-use crate::options::{BurstBuild, OptionError, Options};
+use crate::options::{BurstBuild, OptionError, Options, TapCount};
 
 /// What a board is given under one generation of tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +52,9 @@ impl BoardFault {
         match *self {
             Self::StuckAddress { bit, .. } if u32::from(bit) >= lines => {
                 Err(OptionError::NoAddressLine { bit, last: lines.saturating_sub(1) })
+            }
+            Self::DeadTap { tap: tap @ (0 | 6), .. } if build.taps == TapCount::Five => {
+                Err(OptionError::NoTap { tap })
             }
             Self::StaleTable { .. } | Self::LateSwap if build.table_banks == 1 => {
                 Err(OptionError::NoOtherBank)

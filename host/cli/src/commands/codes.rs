@@ -160,6 +160,7 @@ codes::codes! {
         OddWidth [max_width] => "board-width-odd",
         NoDepth => "board-without-depth",
         NoAddressLine [bit, last] => "fault-without-address-line",
+        NoTap [tap] => "fault-without-tap",
         NoOtherBank => "fault-without-other-bank",
         NoBursts => "fault-without-bursts",
         = Value,
