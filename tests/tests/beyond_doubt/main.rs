@@ -15,6 +15,7 @@ mod echoes;
 mod exercised;
 mod kept_rows;
 mod late_answers;
+mod late_rows;
 mod lost_rows;
 mod outages;
 mod recordings;

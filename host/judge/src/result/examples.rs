@@ -89,7 +89,7 @@ fn of_the_board() -> [Finding; 19] {
             frames: 16,
             suspect: Some(defect()),
         },
-        Finding::LatencyWrong { rows: 9, row: 3, frame: 2, first: 973, last: 973, claimed: 972 },
+        late_row(),
         Finding::CounterWrong { counter: Counter::RowsOut, counted: 17_279, right: 17_280 },
         Finding::GapsMiscounted { row: 3, frame: 2, counted: 11, expected: 12 },
         Finding::LatencyMiscounted { least: 972, most: 972, counted_least: 971, counted_most: 972 },
@@ -101,6 +101,19 @@ fn of_the_board() -> [Finding; 19] {
         Finding::RowRepeatsStand(RepeatedRow { row: 3, frame: 2, repeats: 0 }),
         Finding::RowOutOfOrder { row: 3, frame: 2 },
     ]
+}
+
+fn late_row() -> Finding {
+    Finding::LatencyWrong {
+        rows: 16,
+        of_rows: 17_280,
+        is_one_row: true,
+        row: 3,
+        frame: 0,
+        first: 973,
+        last: 973,
+        claimed: 972,
+    }
 }
 
 /// What is wrong about the wire's rules.

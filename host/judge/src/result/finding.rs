@@ -236,6 +236,12 @@ pub enum Finding {
     LatencyWrong {
         /// How many.
         rows: usize,
+        /// Of so many; 0 where a report is of a version that did not tell.
+        #[serde(default)]
+        of_rows: usize,
+        /// Whether they are the same row of each frame.
+        #[serde(default)]
+        is_one_row: bool,
         /// The first of them.
         row: usize,
         /// Its frame.

@@ -148,6 +148,6 @@ fn latency(seen: &Seen) -> Result<Finding, End> {
         let clocks = seen.latency.map_or(0, |latency| latency.claimed);
         return Ok(Finding::LatencyRight { clocks });
     };
-    let rows = seen.latency.map_or(0, |latency| latency.wrong_rows);
-    Err(End::failed(CheckName::Latency, first.finding(rows)))
+    let (rows, of_rows) = seen.latency.map_or((0, 0), |latency| (latency.wrong_rows, latency.rows));
+    Err(End::failed(CheckName::Latency, first.finding(rows, of_rows)))
 }

@@ -45,13 +45,15 @@ pub(super) struct WrongLatency {
     first: u32,
     last: u32,
     claimed: u32,
+    /// Whether each such row is this one of its frame.
+    is_one_row: bool,
 }
 
 impl WrongLatency {
-    /// It as the first of so many `rows`.
-    pub(super) fn finding(&self, rows: usize) -> Finding {
-        let &Self { row, frame, first, last, claimed } = self;
-        Finding::LatencyWrong { rows, row, frame, first, last, claimed }
+    /// It as the first of so many `rows` among `of_rows`.
+    pub(super) fn finding(&self, rows: usize, of_rows: usize) -> Finding {
+        let &Self { row, frame, first, last, claimed, is_one_row } = self;
+        Finding::LatencyWrong { rows, of_rows, is_one_row, row, frame, first, last, claimed }
     }
 }
 
@@ -194,7 +196,9 @@ impl<'a> Judge<'a> {
         if (first, last) != (claimed, claimed) || claimed > limit {
             seen.wrong_rows += 1;
             let (row, frame) = (row.row, row.frame);
-            self.seen.wrong_latency.get_or_insert(WrongLatency { row, frame, first, last, claimed });
+            let new = WrongLatency { row, frame, first, last, claimed, is_one_row: true };
+            let wrong = self.seen.wrong_latency.get_or_insert(new);
+            wrong.is_one_row &= wrong.row == row;
         }
     }
 

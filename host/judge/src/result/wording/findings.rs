@@ -157,10 +157,19 @@ fn of_rows(finding: &Finding) -> String {
              {row} of frame {frame}: the CRC unit is wrong, or samples that no output reads changed on their way in",
             count(*rows, "row")
         ),
-        Finding::LatencyWrong { rows, row, frame, first, last, claimed } => format!(
-            "{} with another latency than the board claims: row {row} of frame {frame} took {first} pixel clocks from first in \
+        Finding::LatencyWrong { rows, of_rows, is_one_row, row, frame, first, last, claimed } => format!(
+            "{} with another latency than the board claims{}: row {row} of frame {frame} took {first} pixel clocks from first in \
              to first out and {last} from last in to last out; the board claims {claimed}",
-            count(*rows, "row")
+            if rows < of_rows {
+                format!("{} of {}", grouped(*rows), count(*of_rows, "row"))
+            } else {
+                count(*rows, "row")
+            },
+            if *is_one_row && *rows > 1 && rows < of_rows {
+                format!(", all row {row}")
+            } else {
+                String::new()
+            }
         ),
         Finding::RowMisplaced { row, frame } => format!(
             "the board returned row {row} of frame {frame} under a place that was never sent; its bitstream and this halfrow \
@@ -302,9 +311,7 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         Finding::GenerationWrong { .. } => {
             "The board uses stale tables: check when its bank switch takes effect."
         }
-        Finding::LatencyWrong { .. } => {
-            "Check the depth of the pipeline behind the line memory, and the L that the capabilities advertise."
-        }
+        Finding::LatencyWrong { rows, of_rows, .. } => asked_of_latency(rows < of_rows),
         Finding::CounterWrong { .. } | Finding::GapsMiscounted { .. } | Finding::LatencyMiscounted { .. } => {
             "Check the board's counters and its row player; the samples themselves were right."
         }
@@ -318,6 +325,14 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         other => return at_speed::remedy(other).or_else(|| asked_of_conduct(other)),
     };
     Some(asked.to_owned())
+}
+
+fn asked_of_latency(is_of_some_rows: bool) -> &'static str {
+    if is_of_some_rows {
+        "Check the enable and the row player: the depth of the pipeline is right, as the other rows show."
+    } else {
+        "Check the depth of the pipeline behind the line memory, and the L that the capabilities advertise."
+    }
 }
 
 fn asked_of_conduct(finding: &Finding) -> Option<String> {

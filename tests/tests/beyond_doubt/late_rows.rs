@@ -1,0 +1,24 @@
+//! Rows that take another latency than the board claims.
+
+use halfrow::result::Finding;
+use halfrow_protocol::Reply;
+use halfrow_tests::altered::{Toward, judge_each};
+use halfrow_tests::system::System;
+
+/// A pipeline of another depth makes every row late.
+#[test]
+fn one_late_row_is_not_the_depth_of_the_pipeline() {
+    let report = judge_each(&System::TINY, |toward, packet| match packet.reply() {
+        Some(Reply::RowOut(mut row)) if toward == Toward::Host && row.place.row == 3 => {
+            (row.first_latency, row.last_latency) = (row.first_latency + 1, row.last_latency + 1);
+            packet.saying(&Reply::RowOut(row))
+        }
+        _ => packet,
+    });
+    let Finding::LatencyWrong { rows, of_rows, is_one_row, .. } = report.finding else {
+        panic!("{}", report.headline())
+    };
+    assert_eq!((rows * System::TINY.height, is_one_row), (of_rows, true));
+    assert!(report.headline().contains("board claims, all row 3: "), "{}", report.headline());
+    assert!(report.remedy().unwrap().starts_with("Check the enable and the row player"), "{report:?}");
+}
