@@ -188,6 +188,8 @@ pub(super) fn seen_of_clock(seen: ClockSeen) -> String {
             return "its clock was seen to be no steady one".to_owned();
         }
         (Some(least), Some(most)) => format!("{} to {}", hertz(least), hertz(most)),
+        // The end of the count, which no clock is.
+        (Some(u32::MAX), None) => "faster than any that can be measured".to_owned(),
         (Some(least), None) => format!("{} or more", hertz(least)),
         (None, Some(most)) => format!("{} or less", hertz(most)),
         (None, None) => return "nothing was seen of it".to_owned(),
@@ -243,5 +245,17 @@ fn words(count: BurstCount) -> &'static str {
         BurstCount::MostLatency => "pixel clocks of most latency",
         BurstCount::Generation => "as generation",
         BurstCount::Records => "records",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_end_of_a_count_is_told_as_no_measurement() {
+        let seen = |least| seen_of_clock(ClockSeen { least_hz: Some(least), most_hz: None });
+        assert_eq!(seen(103_400_000), "its clock was seen to be 103.4 MHz or more");
+        assert_eq!(seen(u32::MAX), "its clock was seen to be faster than any that can be measured");
     }
 }
