@@ -107,6 +107,7 @@ pub(crate) fn fail() -> (Report, Vec<Evidence>) {
         samples: 2_076_160,
         differing_frames: 1,
         frames: 2,
+        others: 0,
         suspect: Some(Box::new(defect.clone())),
     };
     let report = Report {

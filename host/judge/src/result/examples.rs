@@ -88,6 +88,7 @@ fn of_the_board() -> [Finding; 19] {
             differing_frames: 2,
             frames: 16,
             suspect: Some(defect()),
+            others: 0,
         },
         late_row(),
         Finding::CounterWrong { counter: Counter::RowsOut, counted: 17_279, right: 17_280 },

@@ -164,6 +164,9 @@ pub enum Finding {
         frames: usize,
         /// The likeliest cause.
         suspect: Option<Box<Defect>>,
+        /// Other causes that explain all of it as well.
+        #[serde(default)]
+        others: usize,
     },
     /// Rows entered the core otherwise than they were sent, by the board's own CRC.
     RowsEnteredChanged {

@@ -54,6 +54,15 @@ pub enum Account {
 }
 
 impl Suspect {
+    /// How many other defects explain everything as well, beside which it is no certain one.
+    #[must_use]
+    pub fn others(&self) -> usize {
+        match self.account {
+            Account::Samples { others, .. } | Account::Words { others, .. } => others,
+            Account::Signatures { .. } | Account::Nothing => 0,
+        }
+    }
+
     /// Whether it is a defect that is known, and not only where the differences lie.
     #[must_use]
     pub fn is_known(&self) -> bool {

@@ -101,6 +101,7 @@ impl Run<'_> {
             differing_frames: differing,
             frames,
             suspect: suspects.first().map(|suspect| Box::new(suspect.defect.clone())),
+            others: suspects.first().map_or(0, Suspect::others),
         };
         Err(End::Failed { check: CheckName::Frames, finding, suspects })
     }

@@ -96,9 +96,14 @@ fn of_board(finding: &Finding) -> String {
             "the tables read back right, and the board finds another CRC when it commits them".to_owned()
         }
         Finding::TablesChanged { found } => format!("the tables changed during the run: {}", sentence(found)),
-        Finding::SamplesDiffer { differences, samples, differing_frames, frames, suspect } => {
+        Finding::SamplesDiffer { differences, samples, differing_frames, frames, suspect, others } => {
             let differ = samples_differ((*differences, *samples), (*differing_frames, *frames));
-            format!("{differ}; {}", suspicion(suspect.as_deref()))
+            let unsure = match others {
+                0 => String::new(),
+                1 => ", or another defect that gives the same".to_owned(),
+                more => format!(", or one of {more} others that give the same"),
+            };
+            format!("{differ}; {}{unsure}", suspicion(suspect.as_deref()))
         }
         Finding::CounterWrong { counter, counted, right } => {
             format!("the board counts {counted} {}, and it is {}{right}", counter.words(), counter.bound())

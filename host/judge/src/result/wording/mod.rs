@@ -161,10 +161,30 @@ mod tests {
             differing_frames: 3607,
             frames: 3607,
             suspect: Some(Box::new(suspect)),
+            others: 0,
         };
         assert_eq!(
             sentence(&differ),
             "105 of 39,398,400 samples differ, in 3,607 of 3,607 frames; no single defect that is known explains them: bit 5 alone"
         );
+    }
+
+    #[test]
+    fn a_suspect_that_is_one_of_several_is_not_told_as_the_fact() {
+        let suspect = Some(Box::new(Defect::OutputDataStuck { bit: 9, value: 1 }));
+        let differ = |others| {
+            let suspect = suspect.clone();
+            sentence(&Finding::SamplesDiffer {
+                differences: 7,
+                samples: 99,
+                differing_frames: 1,
+                frames: 2,
+                suspect,
+                others,
+            })
+        };
+        assert!(differ(0).ends_with("bit 9, stuck at 1"), "{}", differ(0));
+        assert!(differ(1).ends_with("stuck at 1, or another defect that gives the same"), "{}", differ(1));
+        assert!(differ(3).ends_with("stuck at 1, or one of 3 others that give the same"), "{}", differ(3));
     }
 }

@@ -259,6 +259,7 @@ impl<'a, 'run> Rules<'a, 'run> {
                     differing_frames: 1,
                     frames: 1,
                     suspect: Some(Box::new(first.defect.clone())),
+                    others: first.others(),
                 };
                 return Err(End::Failed { check: CheckName::Rules, finding, suspects });
             }
