@@ -36,7 +36,7 @@ fn program() -> Exit {
 
 /// Says why there is no result: on stderr for people, and as JSON on stdout where that was asked for.
 fn explain(failure: &Failure, as_json_of: Option<&str>) -> Exit {
-    let Failure { exit, error } = failure;
+    let Failure { exit, error, .. } = failure;
     console::error(&flags::named(&format!("{error:#}")));
     console::refer(commands::code(failure).as_deref());
     if let Some(command) = as_json_of {

@@ -21,5 +21,6 @@ pub mod man_pages;
 pub mod number;
 pub mod reference;
 pub mod signals;
+mod variables;
 
 pub use halfrow::exit;

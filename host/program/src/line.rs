@@ -3,31 +3,49 @@
 use std::ffi::OsString;
 
 use clap::error::ErrorKind;
-use clap::{Command, Parser};
+use clap::{Arg, Command, Parser};
 use halfrow::result::Problem;
 
 use crate::built::{self, Built};
 use crate::console::{self, Unprinted};
 use crate::exit::Exit;
-use crate::{codes, json};
+use crate::{codes, json, variables};
 
 /// What `arguments` say, the program's name in front. Every option that takes a value takes `-1` for one: whoever gives it is told what the
-/// option takes, and not that `-1` is no option.
+/// option takes, and not that `-1` is no option. An environment variable that is empty is none.
 ///
 /// # Errors
 /// clap's own, which [`tell`] tells.
 pub fn read<Line: Parser>(arguments: impl IntoIterator<Item = OsString>) -> clap::error::Result<Line> {
-    let mut command = with_negative_numbers(Line::command());
-    let mut matches = command.try_get_matches_from_mut(arguments)?;
+    let arguments: Vec<_> = arguments.into_iter().collect();
+    let matched = |command: &mut Command| command.try_get_matches_from_mut(&arguments);
+    let mut command = with_each(Line::command(), &|it| with_negative_numbers(variables::unless_empty(it)));
+    let mut matches = match matched(&mut command) {
+        Ok(matches) => matches,
+        // The help names every variable, also those that are empty.
+        Err(told) if !told.use_stderr() => {
+            return Err(matched(&mut with_each(Line::command(), &with_negative_numbers))
+                .err()
+                .unwrap_or(told));
+        }
+        Err(told) => {
+            return Err(variables::blamed(told, &command, |is_meant| {
+                let left = |it| variables::unless_empty(variables::unless(is_meant(&it), it));
+                matched(&mut with_each(Line::command(), &|it| with_negative_numbers(left(it)))).err()
+            }));
+        }
+    };
     Line::from_arg_matches_mut(&mut matches).map_err(|error| error.format(&mut command))
 }
 
-fn with_negative_numbers(command: Command) -> Command {
-    let options = command.mut_args(|argument| {
-        let takes_one = argument.get_action().takes_values() && !argument.is_positional();
-        if takes_one { argument.allow_negative_numbers(true) } else { argument }
-    });
-    options.mut_subcommands(with_negative_numbers)
+fn with_negative_numbers(argument: Arg) -> Arg {
+    let takes_one = argument.get_action().takes_values() && !argument.is_positional();
+    if takes_one { argument.allow_negative_numbers(true) } else { argument }
+}
+
+/// `command` with each argument, its commands' too, as `changed` makes it.
+fn with_each(command: Command, changed: &dyn Fn(Arg) -> Arg) -> Command {
+    command.mut_args(changed).mut_subcommands(|command| with_each(command, changed))
 }
 
 /// Tells what the reader of the command line of `program` has to tell: help and version on stdout, what is wrong with a call on

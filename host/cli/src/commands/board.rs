@@ -66,9 +66,16 @@ pub(super) fn helped(argument: Arg, replays: Replays, without: &str) -> Arg {
 /// Refuses a recording where a board is needed that answers anew.
 pub(super) fn refuse_recording(target: &Target) -> Result<(), Failure> {
     match kinds::of(target) {
-        Some(kind) if kind.board == BoardKind::Replay => Err(Failure::call(CallError::RecordingCorrects)),
+        Some(kind) if kind.board == BoardKind::Replay => {
+            Err(wrong(Failure::call(CallError::RecordingCorrects)))
+        }
         _ => Ok(()),
     }
+}
+
+/// `failure`, as one of what names the board.
+pub(super) fn wrong(failure: impl Into<Failure>) -> Failure {
+    failure.into().in_value_of("--board")
 }
 
 /// Reads a target, and names its option when it is no text.
@@ -94,7 +101,7 @@ impl BoardArguments {
     pub(super) fn named(&self, settings: &Settings) -> Result<Target, Failure> {
         match (&self.board, &settings.board) {
             (Some(target), _) => Ok(target.clone()),
-            (None, Some(text)) => text.parse().map_err(Failure::call),
+            (None, Some(text)) => text.parse().map_err(Failure::call).map_err(wrong),
             (None, None) => Ok(Target::mock()),
         }
     }
@@ -102,7 +109,7 @@ impl BoardArguments {
     /// The board that is named, or that was got of the pool that is.
     pub(super) fn target(&self, settings: &Settings) -> Result<Target, Failure> {
         pool::resolved(self.named(settings)?).map_err(|error| match error {
-            PoolError::NoKind => Failure::call(error),
+            PoolError::NoKind => wrong(Failure::call(error)),
             error => Failure::error(error),
         })
     }
@@ -110,7 +117,7 @@ impl BoardArguments {
     /// Refuses a fault of the mock board that a run of `plan` never comes upon.
     pub(super) fn check_fault(&self, settings: &Settings, plan: &Plan) -> Result<(), Failure> {
         let target = self.target(settings)?;
-        let fault = link::fault(&target)?;
+        let fault = link::fault(&target).map_err(wrong)?;
         let judged = plan
             .schedule(&Build::full(plan.tables.geometry().width()))
             .into_iter()
@@ -123,10 +130,10 @@ impl BoardArguments {
         let streamed = Streamed { width, height, grid, frames, at_speed };
         match fault.and_then(|fault| fault.without_effect(&streamed)) {
             None => Ok(()),
-            Some(why) => Err(Failure::call(CallError::FaultWithoutEffect {
+            Some(why) => Err(wrong(Failure::call(CallError::FaultWithoutEffect {
                 target: target.to_string(),
                 reason: why.to_string(),
-            })),
+            }))),
         }
     }
 
@@ -134,7 +141,7 @@ impl BoardArguments {
     pub(super) fn candidate(&self, settings: &Settings) -> Result<Candidate, Failure> {
         let target = self.target(settings)?;
         refuse_recording(&target)?;
-        Ok(link::open(&target)?)
+        link::open(&target).map_err(wrong)
     }
 
     /// The link to the board that is named, which is the one in `recording` if there is one.
@@ -145,13 +152,13 @@ impl BoardArguments {
     ) -> Result<Candidate, Failure> {
         match recording {
             None => self.candidate(settings),
-            Some(recording) => Ok(link::replay(&self.target(settings)?, recording)?),
+            Some(recording) => link::replay(&self.target(settings)?, recording).map_err(wrong),
         }
     }
 
     /// The recording, if the target is one.
     pub(super) fn recording(&self, settings: &Settings) -> Result<Option<Recording>, Failure> {
-        Ok(link::recording(&self.target(settings)?)?)
+        link::recording(&self.target(settings)?).map_err(wrong)
     }
 
     pub(super) fn open_options(

@@ -42,7 +42,7 @@ pub(super) fn tell_result(
 /// The document of a command that failed.
 #[must_use]
 pub fn failure(command: &str, failure: &Failure) -> String {
-    let Failure { exit, error } = failure;
+    let Failure { exit, error, .. } = failure;
     json::without_result(command, *exit, exit.verdict(), &named(codes::problem(*exit, error)))
 }
 

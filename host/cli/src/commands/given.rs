@@ -3,12 +3,14 @@
 //! An option that does nothing beside another one is refused when it stands on the command line, since somebody wants
 //! what it says. From the environment or the settings, which are the same for every call, it is passed over.
 
+use std::path::Path;
+
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
 use halfrow::call::{self, VoidOption};
 
-/// The options of a call by their ids, which are those of clap, and where their values come from.
+/// The options of a call by their ids, which are those of clap, and where their values come from, those of its command among them.
 ///
 /// It has to be the first field of a command's arguments: what clap derives takes each field's values out of the
 /// matches, and with them where they come from.
@@ -119,6 +121,19 @@ impl Given {
         decider.voids().into_iter().find(|id| self.is_flag(id)).map(written)
     }
 
+    /// Which place says what the option `id` stands for, if it is not the command line: the environment, or else the file `settings`,
+    /// which has these `keys`.
+    pub(super) fn place(&self, id: &str, settings: Option<&Path>, keys: &[&str]) -> Option<String> {
+        if self.is_flag(id) {
+            return None;
+        }
+        if self.variables.iter().any(|variable| variable == id) {
+            return Some(format!("HALFROW_{} in the environment", id.to_ascii_uppercase()));
+        }
+        let settings = settings.filter(|_| keys.contains(&id))?;
+        Some(format!("`{id}` in the settings file {}", settings.display()))
+    }
+
     /// Refuses a flag that is void beside `decider`. Of what the environment or the settings, which have the keys
     /// `settings`, say in vain is only told in the log.
     pub(super) fn refuse_void(&self, decider: Decider, settings: &[&str]) -> Result<(), VoidOption> {
@@ -136,11 +151,11 @@ impl Given {
     }
 }
 
-/// What an option that the environment and the settings may give, too, says; empty as a variable is no.
+/// What an option that the environment and the settings may give, too, says.
 pub(super) fn yes_or_no(text: &str) -> Result<bool, String> {
     match text.to_ascii_lowercase().as_str() {
         "1" | "yes" | "y" | "true" | "t" | "on" => Ok(true),
-        "" | "0" | "no" | "n" | "false" | "f" | "off" => Ok(false),
+        "0" | "no" | "n" | "false" | "f" | "off" => Ok(false),
         _ => Err("say yes or no".to_owned()),
     }
 }
@@ -150,12 +165,25 @@ pub(super) fn written(id: &str) -> String {
     format!("--{}", id.replace('_', "-"))
 }
 
+/// The id of an option that the command line has as `written`.
+pub(super) fn id(written: &str) -> String {
+    written.trim_start_matches('-').replace('-', "_")
+}
+
 /// By hand, since what clap derives does not say where a value comes from.
 impl FromArgMatches for Given {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let levels: Vec<_> =
+            std::iter::successors(Some(matches), |matches| matches.subcommand().map(|(_, below)| below))
+                .collect();
         let from = |source| {
-            let ids = matches.ids().map(clap::Id::as_str);
-            ids.filter(|id| matches.value_source(id) == Some(source)).map(str::to_owned).collect()
+            let given = |matches: &&ArgMatches| {
+                let ids = matches.ids().map(clap::Id::as_str);
+                ids.filter(|id| matches.value_source(id) == Some(source))
+                    .map(str::to_owned)
+                    .collect::<Vec<_>>()
+            };
+            levels.iter().flat_map(given).collect()
         };
         Ok(Self { flags: from(ValueSource::CommandLine), variables: from(ValueSource::EnvVariable) })
     }
@@ -178,13 +206,26 @@ impl Args for Given {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{correct, paper, verify};
+    use super::super::{Cli, correct, paper, verify};
     use super::*;
 
     /// The ids of the options that a command has by itself.
     fn options<Arguments: Args>() -> Vec<String> {
         let command = Arguments::augment_args(Command::new("halfrow"));
         command.get_arguments().map(|argument| argument.get_id().to_string()).collect()
+    }
+
+    /// [`Given::place`] tells it.
+    #[test]
+    fn a_variable_is_called_as_its_option() {
+        fn check(command: &Command) {
+            let arguments = command.get_arguments();
+            for (id, variable) in arguments.filter_map(|it| Some((it.get_id().as_str(), it.get_env()?))) {
+                assert_eq!(variable, format!("HALFROW_{}", id.to_ascii_uppercase()).as_str());
+            }
+            command.get_subcommands().for_each(check);
+        }
+        check(&Cli::line());
     }
 
     /// A new option has to be put on one side or the other.

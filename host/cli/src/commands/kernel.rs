@@ -209,7 +209,7 @@ fn about(origins: &[Origin], trained: &Trained) -> anyhow::Result<Map<String, Va
 }
 
 fn failed(error: TrainingError) -> Failure {
-    Failure { exit: error.class().into(), error: error.into() }
+    Failure::of(error.class().into(), error)
 }
 
 fn rounded(figure: f64) -> f64 {

@@ -7,12 +7,16 @@ use clap::{ArgAction, Parser, Subcommand};
 use halfrow_model::ModelPath;
 use halfrow_program::line;
 
+use super::given::Given;
+
 /// Validates a board that straightens fisheye Bayer video, bit for bit.
 ///
 /// Without a board, `halfrow verify` judges the built-in mock board.
 #[derive(Debug, Parser)]
 #[command(name = "halfrow", version = halfrow::VERSION, propagate_version = true, max_term_width = 100)]
 pub(super) struct Line<Commands: Subcommand> {
+    #[command(flatten)]
+    pub(super) given: Given,
     /// Log what happens on the link to stderr; twice for every packet that is late or damaged. With --version: tell
     /// what the program was built from
     #[arg(short, long, global = true, action = ArgAction::Count)]

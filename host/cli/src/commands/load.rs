@@ -18,7 +18,7 @@ use serde_json::json;
 use self::loader::Call;
 use self::record::Record;
 use super::bitstreams::{BOARDS, BitstreamBoard};
-use super::board::refuse_recording;
+use super::board::{refuse_recording, wrong};
 use super::document::result_text;
 use super::{Context, Failure, conclude};
 use crate::exit::Exit;
@@ -65,10 +65,10 @@ struct Loaded<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
-    let record = record::read(&arguments.file).map_err(|error| Failure { exit: Exit::Usage, error })?;
+    let record = record::read(&arguments.file).map_err(Failure::call)?;
     let onto = onto(arguments, record.as_ref()).map_err(Failure::call)?;
     let board = match (&arguments.board, &context.settings.board) {
-        (None, Some(text)) => Some(text.parse().map_err(Failure::call)?),
+        (None, Some(text)) => Some(text.parse().map_err(Failure::call).map_err(wrong)?),
         (target, _) => target.clone(),
     };
     board.as_ref().map_or(Ok(()), check)?;
@@ -102,12 +102,12 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 /// Whether the board behind `target` can be greeted when it is loaded: then it is too late to refuse a call.
 fn check(target: &Target) -> Result<(), Failure> {
     if target.kind == pool::POOL {
-        return Err(Failure::call(LoadError::OfPool { target: target.to_string() }));
+        return Err(wrong(Failure::call(LoadError::OfPool { target: target.to_string() })));
     }
     refuse_recording(target)?;
-    link::check(target)?;
+    link::check(target).map_err(wrong)?;
     if kinds::of(target).is_some_and(|kind| kind.board != BoardKind::Hardware) {
-        return Err(Failure::call(LoadError::BuiltIn { target: target.to_string() }));
+        return Err(wrong(Failure::call(LoadError::BuiltIn { target: target.to_string() })));
     }
     Ok(())
 }

@@ -73,34 +73,46 @@ pub struct Failure {
     pub exit: Exit,
     /// Why, with its causes.
     pub error: anyhow::Error,
+    /// The option whose value it is that is wrong, as the command line has it, where that is known.
+    option: Option<&'static str>,
 }
 
 impl Failure {
     /// A failure of the call or of its input.
     pub(crate) fn call(error: impl Into<anyhow::Error>) -> Self {
-        Self { exit: Exit::Usage, error: error.into() }
+        Self::of(Exit::Usage, error)
     }
 
     /// A failure that is not the caller's.
     pub fn error(error: impl Into<anyhow::Error>) -> Self {
-        Self { exit: Exit::Error, error: error.into() }
+        Self::of(Exit::Error, error)
     }
 
     /// An input that is refused, as a board of another datapath is.
     pub(crate) fn refused(error: impl Into<anyhow::Error>) -> Self {
-        Self { exit: Exit::Refused, error: error.into() }
+        Self::of(Exit::Refused, error)
+    }
+
+    /// A failure with this exit code.
+    pub(crate) fn of(exit: Exit, error: impl Into<anyhow::Error>) -> Self {
+        Self { exit, error: error.into(), option: None }
+    }
+
+    /// It, as one of the value of `option`, whatever place that comes from.
+    pub(crate) fn in_value_of(self, option: &'static str) -> Self {
+        Self { option: Some(option), ..self }
     }
 }
 
 impl From<OpenError> for Failure {
     fn from(error: OpenError) -> Self {
-        Self { exit: error.class().into(), error: error.into() }
+        Self::of(error.class().into(), error)
     }
 }
 
 impl From<BoardError> for Failure {
     fn from(error: BoardError) -> Self {
-        Self { exit: error.cause().into(), error: error.into() }
+        Self::of(error.cause().into(), error)
     }
 }
 
@@ -163,32 +175,46 @@ impl Cli {
             let command = self.command_name();
             return Err(Failure::call(CallError::NoJson { command }));
         }
+        self.carried_out(&context).map_err(|failure| self.placed(failure, &context))
+    }
+
+    /// A failure that names the place which a wrong value comes from, if that is not the command line.
+    fn placed(&self, failure: Failure, context: &Context) -> Failure {
+        let id = failure.option.filter(|_| failure.exit == Exit::Usage).map(given::id);
+        let (file, keys) = (context.settings_file.as_deref(), context.settings.keys());
+        match id.and_then(|id| self.0.given.place(&id, file, &keys)) {
+            Some(place) => {
+                Failure { error: failure.error.context(format!("{place} cannot be used")), ..failure }
+            }
+            None => failure,
+        }
+    }
+
+    fn carried_out(&self, context: &Context) -> Result<Exit, Failure> {
         match &self.0.command {
-            Command::Verify(arguments) => verify::run(arguments, &context),
-            Command::Soak(arguments) => soak::run(arguments, &context),
-            Command::Correct(arguments) => correct::run(arguments, &context),
-            Command::Tables(arguments) => tables::run(arguments, &context),
-            Command::Lens(arguments) => lens::run(arguments, &context),
-            Command::Kernel(arguments) => kernel::run(arguments, &context),
-            Command::Paper(arguments) => paper::run(arguments, &context),
-            Command::Frames(arguments) => frames::run(arguments, &context),
-            Command::Boards(arguments) => boards::run(arguments, &context),
-            Command::Info(arguments) => info::run(arguments, &context),
-            Command::Link(arguments) => link::run(arguments, &context),
-            Command::Load(arguments) => load::run(arguments, &context),
+            Command::Verify(arguments) => verify::run(arguments, context),
+            Command::Soak(arguments) => soak::run(arguments, context),
+            Command::Correct(arguments) => correct::run(arguments, context),
+            Command::Tables(arguments) => tables::run(arguments, context),
+            Command::Lens(arguments) => lens::run(arguments, context),
+            Command::Kernel(arguments) => kernel::run(arguments, context),
+            Command::Paper(arguments) => paper::run(arguments, context),
+            Command::Frames(arguments) => frames::run(arguments, context),
+            Command::Boards(arguments) => boards::run(arguments, context),
+            Command::Info(arguments) => info::run(arguments, context),
+            Command::Link(arguments) => link::run(arguments, context),
+            Command::Load(arguments) => load::run(arguments, context),
             Command::Serve(arguments) => serve::run(arguments),
             Command::Station(arguments) => station::run(arguments).map(|never| match never {}),
-            Command::Faults(arguments) => faults::run(arguments, &context),
-            Command::Codes(arguments) => codes::run(arguments, &context),
+            Command::Faults(arguments) => faults::run(arguments, context),
+            Command::Codes(arguments) => codes::run(arguments, context),
             Command::Commands(arguments) => overview::run(arguments, Line::<Command>::command()),
-            Command::Explain(arguments) => explain::run(arguments, &context),
+            Command::Explain(arguments) => explain::run(arguments, context),
             Command::Schema(arguments) => schema::run(arguments),
             Command::Completions(arguments) => {
                 completions::complete(arguments, &mut Line::<Command>::command())
             }
-            Command::Manual(arguments) => {
-                completions::manual(arguments, Line::<Command>::command(), &context)
-            }
+            Command::Manual(arguments) => completions::manual(arguments, Line::<Command>::command(), context),
         }
     }
 }

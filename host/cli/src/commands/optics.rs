@@ -278,7 +278,11 @@ pub(super) fn choose(
 ) -> Result<Chosen, Failure> {
     let (input, file) = named.map(|NamedTables { input, file }| (input, file)).unzip();
     let path = input.as_ref().map(|input| input.path.as_path());
-    Ok(optics::choose(path.zip(file), lens.optics()?, kernel_name)?)
+    let optics = lens.optics()?;
+    optics::choose(path.zip(file), optics, kernel_name).map_err(|error| match error {
+        OpticsError::Kernel { .. } | OpticsError::File(_) => Failure::from(error).in_value_of("--kernel"),
+        error => error.into(),
+    })
 }
 
 /// A file of another datapath is refused like a board of another datapath.

@@ -60,7 +60,8 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let begun = Instant::now();
     let items = arguments.items();
     arguments.check(&items, context).map_err(Failure::call)?;
-    let photographs = arguments.photographs(&items).map_err(Failure::call)?;
+    let photographs = arguments.photographs(&items);
+    let photographs = photographs.map_err(|error| Failure::call(error).in_value_of("--images"))?;
     let marked = arguments.marked().map_err(Failure::call)?;
     let folder = Folder::prepare(&arguments.output, arguments.overwrite).map_err(Failure::call)?;
     let through_board = arguments.board.is_named(&context.settings);
@@ -104,7 +105,7 @@ fn make(items: &[Item], material: &mut Material<'_>, quiet: bool) -> Result<Vec<
 impl From<PaperError> for Failure {
     fn from(error: PaperError) -> Self {
         match &error {
-            PaperError::Board(of_board) => Self { exit: of_board.cause().into(), error: error.into() },
+            PaperError::Board(of_board) => Self::of(of_board.cause().into(), error),
             PaperError::Misfit(misfit) if misfit.is_other_datapath() => Self::refused(error),
             PaperError::Misfit(_) | PaperError::Synthesis { .. } => Self::call(error),
             _ => Self::error(error),

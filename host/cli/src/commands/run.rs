@@ -17,7 +17,8 @@ use crate::exit::Exit;
 use crate::pool::PoolError;
 use crate::settings::Settings;
 use crate::{console, flags, text};
-use halfrow::call::{self, Files, Input};
+use halfrow::call::{self, Files, FilesError, Input};
+use halfrow::frames::check_regular;
 use halfrow::link::RecordingFile;
 use halfrow::optics::Chosen;
 use halfrow::report::{self, ReportFolder};
@@ -102,6 +103,13 @@ impl RunArguments {
         tables.into_iter().chain(self.lens.file()).map(PathBuf::from).collect()
     }
 
+    /// Refuses tables and a lens that are files and cannot be read twice.
+    pub(super) fn check_inputs(&self, settings: &Settings) -> Result<(), Failure> {
+        self.lens.file().map_or(Ok(()), check_regular).map_err(Failure::call)?;
+        let tables = self.tables.path(settings).map(PathBuf::as_path);
+        tables.map_or(Ok(()), check_regular).map_err(|error| Failure::call(error).in_value_of("--tables"))
+    }
+
     pub(super) fn seed(&self, settings: &Settings) -> u64 {
         self.seed.or(settings.seed).unwrap_or(1)
     }
@@ -170,10 +178,15 @@ impl RunArguments {
                 .writes_claimed("--record", record)
                 .writes_report("--report", report),
         )
-        .map_err(Failure::call)?;
+        .map_err(|error| match (error.option(), &error) {
+            (Some(option), _) => Failure::call(error).in_value_of(option),
+            (None, FilesError::Report(_)) => Failure::call(error).in_value_of("--report"),
+            (None, _) => Failure::call(error),
+        })?;
         let report = report.map(|path| ReportFolder::prepare(path, overwrite)).transpose();
         let recording = record.map(|path| RecordingFile::prepare(path, overwrite)).transpose();
-        Ok(Outputs { report: report.map_err(Failure::call)?, recording: recording.map_err(Failure::call)? })
+        let report = report.map_err(|error| Failure::call(error).in_value_of("--report"))?;
+        Ok(Outputs { report, recording: recording.map_err(Failure::call)? })
     }
 
     /// Writes the report of a run that a pool gave no board for, whose plan, options and input files `free` tells; and hands
@@ -201,7 +214,7 @@ impl RunArguments {
 
 /// The time of an `option` in seconds.
 pub(super) fn seconds(option: &'static str, seconds: Option<f64>) -> Result<Option<Duration>, Failure> {
-    call::seconds(option, seconds).map_err(Failure::call)
+    call::seconds(option, seconds).map_err(|error| Failure::call(error).in_value_of(option))
 }
 
 /// Writes the report into its folder, if there is one, and prints it.

@@ -53,7 +53,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 fn failed(error: ServeError) -> Failure {
-    Failure { exit: error.exit(), error: error.into() }
+    Failure::of(error.exit(), error)
 }
 
 fn serve_pty(

@@ -12,7 +12,7 @@ use super::{Context, Failure};
 use crate::exit::Exit;
 use crate::progress;
 use crate::settings::Settings;
-use halfrow::frames::{Builtin, check_regular};
+use halfrow::frames::Builtin;
 use halfrow::result::SoakLength;
 use halfrow::run::{self, FrameSource, Plan, RunOptions};
 
@@ -54,7 +54,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let settings = &context.settings;
     let run = &arguments.run;
     let files = run.input_files(settings);
-    files.iter().try_for_each(|path| check_regular(path)).map_err(Failure::call)?;
+    run.check_inputs(settings)?;
     // Whoever waits for a board of a pool has no run yet that a signal could end in order.
     let target = match run.board.target(settings) {
         Ok(target) => target,

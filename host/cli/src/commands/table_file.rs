@@ -51,7 +51,8 @@ impl TableArgument {
             tracing::info!("the table file {} is passed over, since {option} makes tables", path.display());
             return Ok(None);
         }
-        let (file, input) = TableFile::read(path).map_err(OpticsError::from)?;
+        let (file, input) = TableFile::read(path)
+            .map_err(|error| Failure::from(OpticsError::from(error)).in_value_of("--tables"))?;
         let geometry = file.tables.geometry();
         let flags = IN_TABLE_FILES.into_iter().filter(|id| given.is_flag(id));
         let mut others = flags.filter(|id| !lens.agrees(id, geometry)).map(written);

@@ -78,11 +78,11 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     };
     let frames = arguments.frames(settings)?;
     let files = arguments.input_files(&frames, settings);
-    let (plan, options) = arguments.planned(recording.as_ref(), frames, &files, context)?;
+    let (plan, options) = arguments.planned(recording.as_ref(), frames, context)?;
     if arguments.list {
         let target = board.target(settings)?;
         // A device need not be there to know what a run over it costs.
-        link::check(&target)?;
+        link::check(&target).map_err(board::wrong)?;
         return listing::list(&plan, &target, context.json);
     }
     let outputs = arguments.run.outputs(files, arguments.record.as_deref(), context)?;
@@ -117,6 +117,10 @@ fn judge(
     Ok(finished)
 }
 
+fn wrong_frame(error: impl Into<anyhow::Error>) -> Failure {
+    Failure::call(error).in_value_of("--frame")
+}
+
 impl From<RestoreError> for Failure {
     fn from(error: RestoreError) -> Self {
         if error.is_other_datapath() { Self::refused(error) } else { Self::call(error) }
@@ -129,7 +133,6 @@ impl Arguments {
         &self,
         recording: Option<&Recording>,
         frames: Vec<FrameName>,
-        files: &[PathBuf],
         context: &Context,
     ) -> Result<(Plan, RunOptions), Failure> {
         let settings = &context.settings;
@@ -141,7 +144,7 @@ impl Arguments {
                 let require_hardware = self.run.requires_hardware(settings);
                 (plan, RunOptions { require_hardware, stop: self.run.board.stop(settings)?, ..options })
             }
-            None => self.plan(frames, files, context)?,
+            None => self.plan(frames, context)?,
         };
         plan.check_length().map_err(Failure::call)?;
         self.run.board.check_fault(settings, &plan)?;
@@ -152,17 +155,12 @@ impl Arguments {
     fn free(&self, context: &Context) -> Result<(Plan, RunOptions, Vec<PathBuf>), Failure> {
         let frames = self.frames(&context.settings)?;
         let files = self.input_files(&frames, &context.settings);
-        let (plan, options) = self.plan(frames, &files, context)?;
+        let (plan, options) = self.plan(frames, context)?;
         Ok((plan, options, files))
     }
 
     /// What the options say is to be streamed, and where it comes from.
-    fn plan(
-        &self,
-        frames: Vec<FrameName>,
-        files: &[PathBuf],
-        context: &Context,
-    ) -> Result<(Plan, RunOptions), Failure> {
+    fn plan(&self, frames: Vec<FrameName>, context: &Context) -> Result<(Plan, RunOptions), Failure> {
         let settings = &context.settings;
         if frames.iter().all(|frame| frame.file().is_none()) {
             self.given.refuse_void(Decider::NoFrameFile, &[]).map_err(Failure::call)?;
@@ -175,7 +173,8 @@ impl Arguments {
         }
         self.input.refuse_void(&self.given, settings)?;
         // The report names each by its hash.
-        files.iter().try_for_each(|path| check_regular(path)).map_err(Failure::call)?;
+        self.run.check_inputs(settings)?;
+        frames.iter().filter_map(FrameName::file).try_for_each(check_regular).map_err(wrong_frame)?;
         let tables = self.run.table_file(&self.given, settings)?;
         let is_free = tables.is_none() && frames.is_empty();
         let (chosen, mut inputs) = self.run.chosen(tables, settings)?;
@@ -208,7 +207,7 @@ impl Arguments {
             Builtin::ALL.into_iter().map(FrameSource::Builtin).collect()
         } else {
             let tell = |path: &Path, fitting| tell_fitting(path, fitting, context.quiet);
-            frame_sources(frames, &how, geometry, inputs, tell).map_err(Failure::call)?
+            frame_sources(frames, &how, geometry, inputs, tell).map_err(wrong_frame)?
         };
         Ok(Plan {
             frames,
@@ -228,7 +227,7 @@ impl Arguments {
             Some(names) if self.frame.is_empty() => FrameName::all(names),
             _ => FrameName::all(&self.frame),
         }
-        .map_err(Failure::call)
+        .map_err(wrong_frame)
     }
 
     /// Tables, lens and frames that are files.

@@ -82,6 +82,21 @@ pub enum FilesError {
     Report(#[from] ReportError),
 }
 
+impl FilesError {
+    /// The option that names the place, where it is one alone.
+    #[must_use]
+    pub fn option(&self) -> Option<&'static str> {
+        match self {
+            Self::InputOverwritten { option, .. }
+            | Self::Exists { option, .. }
+            | Self::NotAFile { option, .. }
+            | Self::FolderClosed { option, .. }
+            | Self::FolderUnusable { option, .. } => Some(option),
+            Self::OutputsShare { .. } | Self::File(_) | Self::Report(_) => None,
+        }
+    }
+}
+
 /// The files and folders of a call.
 #[derive(Debug, Default)]
 pub struct Files {

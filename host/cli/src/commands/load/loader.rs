@@ -16,7 +16,6 @@ use signal_hook::consts::SIGCHLD;
 
 use super::LoadError;
 use crate::commands::Failure;
-use crate::exit::Exit;
 use crate::progress::Told;
 use halfrow::board::BoardError;
 use halfrow::report::shell_word;
@@ -112,10 +111,7 @@ impl Loader {
         command.args(&call.options).arg(&call.file).process_group(0);
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().map_err(|source| match source.kind() {
-            io::ErrorKind::NotFound => Failure {
-                exit: Exit::Usage,
-                error: LoadError::LoaderMissing { other: call.other.clone() }.into(),
-            },
+            io::ErrorKind::NotFound => Failure::call(LoadError::LoaderMissing { other: call.other.clone() }),
             _ => not_run(source),
         })?;
         let (sender, lines) = sync_channel(QUEUE);

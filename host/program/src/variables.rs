@@ -1,0 +1,45 @@
+//! The environment variables of a command line: an empty one is none, and a wrong one is told by its own name.
+
+use std::ffi::OsStr;
+
+use clap::builder::Resettable;
+use clap::error::{ContextKind, ContextValue};
+use clap::{Arg, Command, Error};
+
+/// `argument` without its variable if that is empty, as CI files unset one.
+pub(crate) fn unless_empty(argument: Arg) -> Arg {
+    let value = argument.get_env().and_then(std::env::var_os);
+    unless(value.is_some_and(|value| value.is_empty()), argument)
+}
+
+/// `argument`, without its variable if it is `left_out`.
+pub(crate) fn unless(left_out: bool, argument: Arg) -> Arg {
+    if left_out { argument.env(Resettable::Reset) } else { argument }
+}
+
+/// `error`, told as the variable's where the value that it blames came from one: `read` without the variables of the arguments that it
+/// is asked about, `command`'s line gives another error or none.
+pub(crate) fn blamed(
+    mut error: Error,
+    command: &Command,
+    read: impl FnOnce(&dyn Fn(&Arg) -> bool) -> Option<Error>,
+) -> Error {
+    let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg).cloned() else {
+        return error;
+    };
+    let name = option.trim_start_matches('-').split([' ', '=', '[']).next().unwrap_or_default();
+    let Some(variable) = variable_of(command, name) else { return error };
+    let without = read(&|argument| argument.get_env() == Some(variable));
+    if without.is_none_or(|without| without.to_string() != error.to_string()) {
+        let named = format!("{} in the environment, which stands for {option}", variable.display());
+        error.insert(ContextKind::InvalidArg, ContextValue::String(named));
+    }
+    error
+}
+
+/// The variable of the option `--name`.
+fn variable_of<'a>(command: &'a Command, name: &str) -> Option<&'a OsStr> {
+    let own = command.get_arguments().find(|argument| argument.get_long() == Some(name));
+    let variable = own.and_then(Arg::get_env);
+    variable.or_else(|| command.get_subcommands().find_map(|command| variable_of(command, name)))
+}

@@ -1,0 +1,135 @@
+//! Where a wrong value comes from: what the environment or the settings file says is not told as the call's.
+
+use halfrow_tests::program::{Ended, Folder, finish};
+
+use crate::{refused, small};
+
+const FILE: &str = "settings.toml";
+
+/// Every variable that `verify` reads beside [`FILE`]'s.
+const VARIABLES: [&str; 14] = [
+    "HALFROW_MODEL_PATH",
+    "HALFROW_BOARD",
+    "HALFROW_TABLES",
+    "HALFROW_KERNEL",
+    "HALFROW_FRAME",
+    "HALFROW_FIT",
+    "HALFROW_REPORT",
+    "HALFROW_OPERATOR",
+    "HALFROW_OVERWRITE",
+    "HALFROW_TIMEOUT",
+    "HALFROW_RETRY_LIMIT",
+    "HALFROW_RECONNECT",
+    "HALFROW_AT_SPEED",
+    "HALFROW_REQUIRE_HARDWARE",
+];
+
+fn with_variable(folder: &Folder, (name, value): (&str, &str), more: &[&str]) -> Ended {
+    finish(folder.command(small("verify", more)).env(name, value))
+}
+
+/// As CI files unset a variable.
+#[test]
+fn an_empty_variable_is_none() {
+    let folder = Folder::new();
+    folder.write(FILE, "seed = 5\nkernel = 'keys'\nrequire_hardware = true\nreport = 'out'\n");
+    let call = small("verify", &["--json", "--settings", FILE, "--require-hardware=no"]);
+    let all = VARIABLES.into_iter().chain(["HALFROW_SEED", "HALFROW_SETTINGS"]);
+    let ended = finish(folder.command(call).envs(all.map(|name| (name, ""))));
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert_eq!(ended.json()["run"]["seed"], 5);
+    assert_eq!(ended.json()["tables"]["kernel_crc32"], "54f5e990");
+    assert!(folder.path().join("out/report.html").exists());
+    let call = small("verify", &["--settings", FILE]);
+    let variables = [("HALFROW_REQUIRE_HARDWARE", ""), ("HALFROW_OVERWRITE", "yes")];
+    let of_the_file = finish(folder.command(call).envs(variables));
+    assert_eq!(of_the_file.code, Some(5), "{}", of_the_file.stderr);
+    let help = finish(folder.command(["verify", "--help"]).env("HALFROW_TIMEOUT", ""));
+    assert!(help.stdout.contains("[env: HALFROW_TIMEOUT=]"), "{}", help.stdout);
+}
+
+#[test]
+fn a_wrong_value_of_the_environment_is_told_as_the_variable_s() {
+    let folder = Folder::new();
+    for (name, value, reason) in [
+        ("HALFROW_TIMEOUT", "abc", "give a number of seconds"),
+        ("HALFROW_TIMEOUT", "-1", "--timeout takes a number of seconds"),
+        ("HALFROW_AT_SPEED", "-1", "--at-speed takes a number of seconds"),
+        ("HALFROW_RECONNECT", "-1", "--reconnect takes a number of seconds"),
+        ("HALFROW_SEED", "-1", "give a whole number"),
+        ("HALFROW_BOARD", "moon", "`moon` is no kind of board"),
+        ("HALFROW_BOARD", "mock,foo=1", "foo is no option of this board"),
+        ("HALFROW_BOARD", "mock,fault=stuck-data,bit=99", "bit"),
+        ("HALFROW_BOARD", "replay:gone", "the recording gone cannot be read"),
+        ("HALFROW_KERNEL", "nope", "there is no file nope"),
+        ("HALFROW_FRAME", "nope.pgm", "cannot read nope.pgm"),
+        ("HALFROW_FRAME", "builtin:moon", "`moon` is no built-in frame"),
+        ("HALFROW_TABLES", "nope.json", "cannot read nope.json"),
+        ("HALFROW_REPORT", "no/way", "into the folder no;"),
+        ("HALFROW_OVERWRITE", "maybe", "say yes or no"),
+        ("HALFROW_MODEL_PATH", "maybe", "avx512"),
+    ] {
+        let ended = with_variable(&folder, (name, value), &[]);
+        assert_eq!(ended.code, Some(2), "{name}={value}: {}", ended.stderr);
+        for part in [name, reason] {
+            assert!(ended.stderr.contains(part), "{name}={value} says: {}", ended.stderr);
+        }
+    }
+    for (more, value) in [(["--timeout", "abc"], "abc"), (["--timeout", "abc"], "1")] {
+        let ended = with_variable(&folder, ("HALFROW_TIMEOUT", value), &more);
+        assert!(!ended.stderr.contains("HALFROW_TIMEOUT"), "{}", ended.stderr);
+    }
+    let ended = with_variable(&folder, ("HALFROW_KERNEL", "nope"), &["--kernel", "none"]);
+    assert!(!ended.stderr.contains("HALFROW_KERNEL"), "{}", ended.stderr);
+}
+
+#[test]
+fn a_wrong_value_of_the_settings_file_is_told_with_the_file_and_the_key() {
+    let folder = Folder::new();
+    for (key, value, reason) in [
+        ("board", "'moon'", "`moon` is no kind of board"),
+        ("board", "'mock,foo=1'", "foo is no option of this board"),
+        ("kernel", "'nope'", "there is no file nope"),
+        ("frame", "['nope.pgm']", "cannot read nope.pgm"),
+        ("frame", "['builtin:moon']", "`moon` is no built-in frame"),
+        ("tables", "'nope.json'", "cannot read nope.json"),
+        ("report", "'no/way'", "into the folder no;"),
+    ] {
+        folder.write(FILE, format!("{key} = {value}\n"));
+        let call = small("verify", &["--settings", FILE]);
+        refused(&folder, &call, &format!("`{key}` in the settings file {FILE} cannot be used: "));
+        refused(&folder, &call, reason);
+    }
+    let call = small("verify", &["--settings", FILE, "--report", "no/other"]);
+    let ended = folder.halfrow(call);
+    assert!(!ended.stderr.contains("settings file"), "{}", ended.stderr);
+}
+
+/// Programs find the same sentence, and the code of the reason.
+#[test]
+fn json_names_the_place_and_keeps_the_reason_s_code() {
+    let folder = Folder::new();
+    let ended = with_variable(&folder, ("HALFROW_KERNEL", "nope"), &["--json"]);
+    let error = &ended.json()["error"];
+    assert_eq!(error["message"], "HALFROW_KERNEL in the environment cannot be used");
+    assert_eq!(error["code"], "kernel-not-found");
+    let ended = with_variable(&folder, ("HALFROW_TIMEOUT", "abc"), &["--json"]);
+    let message = ended.json()["error"]["message"].as_str().unwrap().to_owned();
+    assert!(message.contains("HALFROW_TIMEOUT"), "{message}");
+}
+
+#[test]
+fn a_wrong_kernel_of_the_environment_is_so_told_by_every_command_that_takes_one() {
+    let folder = Folder::new();
+    let small = ["--width", "64", "--height", "16", "--radius", "40"];
+    let calls: [&[&str]; 3] = [
+        &["tables", "-o", "t.json"],
+        &["correct", "builtin:noise", "--model", "-o", "o.pgm"],
+        &["soak", "--frames", "1"],
+    ];
+    for call in calls {
+        let ended = finish(folder.command(call.iter().copied().chain(small)).env("HALFROW_KERNEL", "nope"));
+        assert_eq!(ended.code, Some(2), "{call:?}: {}", ended.stderr);
+        assert!(ended.stderr.contains("HALFROW_KERNEL in the environment"), "{call:?}: {}", ended.stderr);
+    }
+}
