@@ -48,6 +48,37 @@ fn too_few_seconds_end_with_2_and_the_least_that_this_link_needs() {
     assert!(error["parameters"]["least"].as_f64().unwrap() > 3.0, "{error}");
 }
 
+/// A row of 64 samples takes this board a minute by its own words, and no time on its wire.
+#[test]
+fn a_clock_that_the_board_names_is_not_told_as_the_link_s_or_the_call_s() {
+    let folder = Folder::new();
+    let judged = |seconds| {
+        let call = small(
+            "verify",
+            &["-q", "--json", "--board", "mock,fault=wrong-clock-claim", "--within", seconds],
+        );
+        folder.halfrow(call)
+    };
+    let few = judged("1");
+    assert_eq!(few.code, Some(2), "{}{}", few.stdout, few.stderr);
+    assert!(
+        few.stderr.contains("1 s are too few at the pixel clock of 1 Hz that the board names"),
+        "{}",
+        few.stderr
+    );
+    let error = &few.json()["error"];
+    assert_eq!(
+        (error["code"].as_str(), error["parameters"]["clock_hz"].as_u64()),
+        (Some("seconds-too-few-for-named-clock"), Some(1))
+    );
+    let least = error["parameters"]["least"].as_f64().unwrap();
+    let enough = judged(&least.to_string());
+    assert_eq!(enough.code, Some(0), "{}{}", enough.stdout, enough.stderr);
+    let untested = enough.json()["not_exercised"].clone();
+    let named = untested.as_array().unwrap().iter().find(|part| part["code"] == "unseen-clock");
+    assert_eq!(named.unwrap()["parameters"]["clock_hz"], 1, "{untested}");
+}
+
 #[test]
 fn frames_of_the_environment_are_passed_over() {
     let mut run = command(call(&["-q", "--json", "--within", "3"]));

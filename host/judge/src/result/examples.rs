@@ -202,6 +202,7 @@ pub fn not_exercised() -> Vec<NotExercised> {
         NotExercised::CentreBits { bits: vec![8, 9, 10, 11] },
         NotExercised::FullSpeed {},
         NotExercised::NamedClock { clock_hz: 96_000_000, seen: SLOW_CLOCK },
+        NotExercised::UnseenClock { clock_hz: 96_000_000 },
         NotExercised::TableChangeAtSpeed {},
         NotExercised::Rules {},
         NotExercised::Grids {},

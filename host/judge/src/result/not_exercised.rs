@@ -70,6 +70,11 @@ pub enum NotExercised {
         /// What was seen of it.
         seen: ClockSeen,
     },
+    /// The pixel clock that the board names, which only frames at speed tell, and none were made.
+    UnseenClock {
+        /// The one that it names, in hertz.
+        clock_hz: u32,
+    },
     /// What the board must refuse, keep and end.
     Rules {},
     /// Rows that a grid corrects, on a board that takes grids.

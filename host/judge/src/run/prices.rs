@@ -144,6 +144,17 @@ impl<'a> Prices<'a> {
         self.every_run() + self.streamed(selection) + self.at_speed(selection) + rules
     }
 
+    /// What it would take on a board whose pixel clock takes no time.
+    pub(super) fn at_no_time_of_clocks(&self, selection: &Selection) -> f64 {
+        let capabilities = Capabilities { clock_hz: u32::MAX, ..self.capabilities.clone() };
+        Prices::new(self.plan, &capabilities, self.rates).seconds(selection)
+    }
+
+    /// The pixel clock that the board names, or the usual one.
+    pub(super) fn clock_hz(&self) -> u32 {
+        at_speed::clock_hz(self.capabilities)
+    }
+
     /// What `part` adds to the least run, with what it is nothing without.
     #[must_use]
     pub fn of_part(&self, part: Part) -> f64 {

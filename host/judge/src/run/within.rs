@@ -9,6 +9,7 @@ use super::prices::{Prices, Rates};
 use super::{Misfit, misfit};
 use crate::board::Board;
 use crate::coverage::{self, Faults, FaultsError};
+use crate::report::wording::hertz;
 use crate::result::{CheckName, CoveragePoint, Problem, WithinPart, WithinReport};
 use crate::verdict::Cause;
 
@@ -30,6 +31,19 @@ pub enum WithinError {
         seconds: f64,
         /// The least that would do, rounded up.
         least: f64,
+    },
+    /// It is over before a row is judged by the pixel clock that the board names, which nothing has looked at, and would do over this link.
+    #[error(
+        "{seconds} s are too few at the pixel clock of {} that the board names, and would do over this link; look at that clock in \
+         a run without a time to judge within, or give at least {least} s", hertz(*clock_hz)
+    )]
+    TooFewOfClock {
+        /// The time.
+        seconds: f64,
+        /// The least that would do at that clock, rounded up.
+        least: f64,
+        /// The clock, in hertz.
+        clock_hz: u32,
     },
     /// The frames at speed that were asked for do not fit.
     #[error(
@@ -110,7 +124,12 @@ fn chosen(prices: &Prices<'_>, build: &str, time: Time) -> Result<(Selection, Wi
     };
     let mut from = Selection::least();
     if let Some(least) = least_for(&from) {
-        return Err(WithinError::TooFew { seconds, least });
+        let clock_hz = prices.clock_hz();
+        let is_of_clock = prices.at_no_time_of_clocks(&from) <= left;
+        return Err(match is_of_clock {
+            true => WithinError::TooFewOfClock { seconds, least, clock_hz },
+            false => WithinError::TooFew { seconds, least },
+        });
     }
     if prices.plan().at_speed.is_some() && prices.parts().contains(&Part::AtSpeed) {
         from = from.with(Part::AtSpeed, prices.most(Part::AtSpeed));

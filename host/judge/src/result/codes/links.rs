@@ -138,6 +138,7 @@ codes! {
     }
     WithinError {
         TooFew [seconds, least] => "seconds-too-few-for-verdict",
+        TooFewOfClock [seconds, least, clock_hz] => "seconds-too-few-for-named-clock",
         AtSpeed [seconds, least] => "seconds-too-few-at-speed",
         = Faults,
     }

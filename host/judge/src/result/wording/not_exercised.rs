@@ -16,10 +16,7 @@ pub fn not_exercised(part: &NotExercised) -> String {
         NotExercised::RowTableAddress { lines } => format!("{} of the row table", addresses(lines)),
         NotExercised::RowFactorBits { bits } => format!("{} of the row factors", some("bit", bits)),
         NotExercised::KernelNodes { nodes } => format!("kernel {}", some("node", nodes)),
-        NotExercised::Taps { taps } => {
-            let ending = if taps.len() == 1 { "" } else { "s" };
-            format!("tap{ending} {}", taps.join(", "))
-        }
+        NotExercised::Taps { taps } => named_taps(taps),
         NotExercised::OneCentre { centre2 } => {
             format!("any optical centre but column {:.1}", f64::from(*centre2) / 2.0)
         }
@@ -31,7 +28,10 @@ pub fn not_exercised(part: &NotExercised) -> String {
             "a change of tables between two frames at the full pixel clock".to_owned()
         }
         NotExercised::NamedClock { clock_hz, seen } => {
-            format!("the pixel clock of {} that the board names, since {}", hertz(*clock_hz), seen_of_clock(*seen))
+            format!("{}, since {}", clock(*clock_hz), seen_of_clock(*seen))
+        }
+        NotExercised::UnseenClock { clock_hz } => {
+            format!("{}, which only frames at speed tell", clock(*clock_hz))
         }
         NotExercised::Rules {} => "what the board must refuse, keep and end".to_owned(),
         NotExercised::Grids {} => "grids, which are datapath 2".to_owned(),
@@ -46,6 +46,17 @@ pub fn not_exercised(part: &NotExercised) -> String {
         }
         NotExercised::Depths { bits } => depths(bits),
     }
+}
+
+/// `tap G0`, `taps G0, G6`
+fn named_taps(taps: &[String]) -> String {
+    let ending = if taps.len() == 1 { "" } else { "s" };
+    format!("tap{ending} {}", taps.join(", "))
+}
+
+/// `the pixel clock of 96.0 MHz that the board names`
+fn clock(clock_hz: u32) -> String {
+    format!("the pixel clock of {} that the board names", hertz(clock_hz))
 }
 
 /// `samples of 8 or 10 bits`

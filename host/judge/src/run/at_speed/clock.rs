@@ -129,12 +129,8 @@ impl Run<'_> {
         tables: &[Generation],
         watched: &Watched,
     ) -> Result<ClockSeen, End> {
-        let capabilities = &self.board.capabilities;
-        let (clock_hz, source) = (capabilities.clock_hz, capabilities.clock_source);
-        let is_real = capabilities.nature != BoardNature::Simulation && [PIXCLK, PLL].contains(&source);
-        if !is_real || clock_hz == 0 {
-            return Ok(ClockSeen::default());
-        }
+        let Some(clock_hz) = self.named_clock() else { return Ok(ClockSeen::default()) };
+        let source = self.board.capabilities.clock_source;
         let first = watched.clock;
         if source != PLL || first.allows(clock_hz) {
             return Ok(first);
@@ -149,6 +145,19 @@ impl Run<'_> {
             }
             Weighed::Right(seen) | Weighed::Open(seen) => Ok(seen),
         }
+    }
+
+    /// The clock that the board names and that can be looked at, in hertz: its own, or one from outside.
+    fn named_clock(&self) -> Option<u32> {
+        let capabilities = &self.board.capabilities;
+        let is_real = capabilities.nature != BoardNature::Simulation
+            && [PIXCLK, PLL].contains(&capabilities.clock_source);
+        Some(capabilities.clock_hz).filter(|&clock_hz| is_real && clock_hz != 0)
+    }
+
+    /// That clock, where no frames were made that would tell of it.
+    pub(super) fn clock_unseen(&self) -> Option<NotExercised> {
+        self.named_clock().map(|clock_hz| NotExercised::UnseenClock { clock_hz })
     }
 
     /// That the board's clock was seen not to be the one that it names, where that is no fault of the board's, or not certain.

@@ -65,6 +65,7 @@ impl Run<'_> {
             Ok(bursts) => bursts,
             Err(reason) => {
                 self.findings.untested_at_speed = vec![NotExercised::FullSpeed {}];
+                self.findings.untested_at_speed.extend(self.clock_unseen());
                 let finding = Finding::NothingAtSpeed { reason };
                 self.findings.note(CheckName::AtSpeed, Outcome::Skipped, finding);
                 return Ok(());
