@@ -60,7 +60,8 @@ impl Tables {
         Self::with_kernel(chosen, &from, Some(kernel), files)
     }
 
-    /// The tables in a file that `write` or `halfrow tables` has written: NAME.json, or NAME.mem for two files of memory images.
+    /// The tables in a file that `write` or `halfrow tables` has written: NAME.json, or NAME.mem, or either of them, for two files of memory
+    /// images.
     ///
     /// `kernel` takes the place of the file's. Raises InputError, which names the file and the place in it.
     #[staticmethod]

@@ -37,6 +37,22 @@ fn the_legal_file_itself_is_taken() {
     assert_eq!(folder.halfrow(["verify", "--tables", "again.json"]).code, Some(0));
 }
 
+/// As `tables` names them when it has written them, and as it was asked to.
+#[test]
+fn memory_images_are_told_to_be_for_verilog() {
+    let folder = Folder::new();
+    let made = folder.halfrow(["tables", "--width", "64", "--height", "4", "-o", "line.mem"]);
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    for name in ["line.mem", "line.steps.mem"] {
+        let sentence =
+            format!("{name} is a name of memory images, which are for Verilog; name the table file (.json)");
+        refused(&folder, &["verify", "--tables", name], &sentence);
+    }
+    let sentence =
+        "line.kernel.mem is a name of memory images, which are for Verilog; name the table file (.json)";
+    refused(&folder, &["verify", "--kernel", "line.kernel.mem"], sentence);
+}
+
 #[test]
 fn entries_that_are_missing_or_too_many_are_refused() {
     bad_tables(|file| _ = file["step"].as_array_mut().unwrap().pop(), "has 3 entries instead of 4");

@@ -20,6 +20,12 @@ pub enum TableFileError {
         /// The system's reason.
         source: io::Error,
     },
+    /// What cannot be read as a table file or a kernel file is called as memory images are, or is one.
+    #[error("{} is a name of memory images, which are for Verilog; name the table file (.json)", path.display())]
+    MemoryImages {
+        /// The file.
+        path: PathBuf,
+    },
     /// The tables are for another datapath, which this program cannot judge.
     #[error("{} is refused", path.display())]
     Datapath {

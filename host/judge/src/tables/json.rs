@@ -11,7 +11,7 @@ use halfrow_protocol::message::Datapath;
 use serde_json::{Map, Value};
 
 use super::members::{Members, list, number};
-use super::{ContentError, Place, TableFileError, layout, text};
+use super::{ContentError, Place, TableFileError, layout, mem, text};
 use crate::call::Input;
 use halfrow_frames::written_aside::{WriteAsideError, write_aside};
 
@@ -166,6 +166,16 @@ impl KernelFile {
 }
 
 fn read<T>(path: &Path, parse: fn(&str) -> Result<T, ContentError>) -> Result<(T, Input), TableFileError> {
+    read_json(path, parse).map_err(|error| match mem::is_name(path) {
+        true => TableFileError::MemoryImages { path: path.to_owned() },
+        false => error,
+    })
+}
+
+fn read_json<T>(
+    path: &Path,
+    parse: fn(&str) -> Result<T, ContentError>,
+) -> Result<(T, Input), TableFileError> {
     let text = text::read(path, text::MAX_BYTES)
         .map_err(|source| TableFileError::Io { path: path.to_owned(), source })?;
     match parse(&text) {

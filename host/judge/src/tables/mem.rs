@@ -24,16 +24,30 @@ const WEIGHT_DIGITS: usize = 4;
 /// Hexadecimal digits of a node.
 const NODE_DIGITS: usize = WEIGHT_DIGITS * TAP_NAMES.len();
 
+/// What stands in the names of the two files.
+const PARTS: [&str; 2] = ["steps", "kernel"];
+
 /// The files that stand for `path`: NAME.steps.mem and NAME.kernel.mem for NAME.mem or NAME.
 #[must_use]
 pub fn paths(path: &Path) -> [PathBuf; 2] {
-    let is_mem = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mem"));
-    let name = if is_mem { path.with_extension("") } else { path.to_owned() };
-    ["steps", "kernel"].map(|part| {
+    let name = if is_name(path) { path.with_extension("") } else { path.to_owned() };
+    PARTS.map(|part| {
         let mut file = name.clone().into_os_string();
         file.push(format!(".{part}.mem"));
         file.into()
     })
+}
+
+/// Whether memory images are called so.
+pub(super) fn is_name(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mem"))
+}
+
+/// What `path` stands for if it is one of two files that are there, and both are read by it.
+fn name_of_both(path: &Path) -> PathBuf {
+    let name = path.with_extension("");
+    let is_one = is_name(path) && PARTS.iter().any(|part| name.extension().is_some_and(|it| it == *part));
+    if is_one && path.exists() { name.with_extension("") } else { path.to_owned() }
 }
 
 /// Writes both files for `path`, as [`paths`] names them, and returns their names. Neither is put in place before both
@@ -58,12 +72,12 @@ pub fn write(
     Ok(vec![rows, nodes])
 }
 
-/// Reads both files for `path`, as [`paths`] names them, and says what they were read from.
+/// Reads both files for `path`, as [`paths`] names them, or for the name of one of them, and says what they were read from.
 ///
 /// # Errors
 /// [`TableFileError`] when one of them cannot be read or is no memory image of tables.
 pub fn read(path: &Path) -> Result<(TableSet, Kernel, [Input; 2]), TableFileError> {
-    let [rows, nodes] = paths(path);
+    let [rows, nodes] = paths(&name_of_both(path));
     let (tables, rows) = read_one(rows, parse_row_factors)?;
     let (kernel, nodes) = read_one(nodes, parse_kernel)?;
     Ok((tables, kernel, [rows, nodes]))

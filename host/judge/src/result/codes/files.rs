@@ -94,6 +94,7 @@ codes! {
     }
     TableFileError {
         Io [path] => "table-file-unreadable",
+        MemoryImages [path] => "table-file-is-memory-image",
         Datapath [path] => "table-file-of-other-datapath",
         Content [path] => "table-file-wrong",
         Mem [path] => "mem-file-wrong",
