@@ -1,9 +1,9 @@
-//! A user who may have no more threads or files than it takes to begin. Root has no such limit, so that these run as another user.
+//! A user who may have no more threads or files than it takes to begin. Root has no limit of threads, so that those tests run as another user.
 
 use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt as _;
 
-use halfrow_tests::program::{Folder, finish};
+use halfrow_tests::program::{Ended, Folder, finish};
 
 use crate::small;
 
@@ -20,15 +20,24 @@ fn one_thread_does_what_all_would_share() {
 }
 
 #[test]
-fn a_program_that_cannot_begin_says_what_it_wants() {
-    for limit in ["--nproc=1", "--nofile=4"] {
-        let folder = Folder::new();
-        let Some(mut command) = folder.within(limit, &["faults", "--json"]) else { return };
-        let ended = finish(&mut command);
-        assert_eq!(ended.code, Some(3), "{limit}: {}{}", ended.stdout, ended.stderr);
-        let said =
-            "cannot wait for signals; end other programs, or allow this user more processes and open files";
-        assert!(ended.stderr.contains(said), "{limit}: {}", ended.stderr);
-        assert_eq!(ended.json()["error"]["code"], "signals-unheard", "{limit}");
-    }
+fn a_program_that_cannot_begin_for_want_of_processes_says_what_it_wants() {
+    let folder = Folder::new();
+    let Some(mut command) = folder.within("--nproc=1", &["faults", "--json"]) else { return };
+    wants_more(&finish(&mut command));
+}
+
+/// This limit is each process's own, and whoever runs the test has it.
+#[test]
+fn a_program_that_cannot_begin_for_want_of_files_says_what_it_wants() {
+    let folder = Folder::new();
+    wants_more(&finish(&mut folder.by_shell("ulimit -n 4; exec \"$@\"", ["faults", "--json"])));
+}
+
+#[track_caller]
+fn wants_more(ended: &Ended) {
+    assert_eq!(ended.code, Some(3), "{}{}", ended.stdout, ended.stderr);
+    let said =
+        "cannot wait for signals; end other programs, or allow this user more processes and open files";
+    assert!(ended.stderr.contains(said), "{}", ended.stderr);
+    assert_eq!(ended.json()["error"]["code"], "signals-unheard");
 }
