@@ -167,7 +167,7 @@ fn noisy(frame: &Frame, deviation: u8) -> Result<Frame, TrainingError> {
     let mut random = Pcg32::new(SEED, SEED);
     let max = f64::from(frame.depth().max());
     let samples = frame.samples().iter().map(|&sample| {
-        // Twelve even numbers have the variance 1, and their sum is as good as normal.
+        // Twelve evenly distributed numbers have the variance 1 together, and their sum is as good as normal.
         let normal = (0..12).map(|_| f64::from(random.next_u32()) / 4_294_967_296.0).sum::<f64>() - 6.0;
         (f64::from(sample) + normal * f64::from(deviation) + 0.5).floor().clamp(0.0, max) as u16
     });
