@@ -29,6 +29,9 @@ pub struct Comparison {
     pub largest: u16,
     /// The most negative and the most positive difference, found − expected; none without differences.
     pub extremes: Option<(i32, i32)>,
+    /// The bits in which any sample differs, each where it stands in a sample.
+    #[serde(default)]
+    pub bits: u16,
     /// Differences in each row.
     #[serde(with = "crate::result::comparison")]
     pub by_row: Vec<u32>,
@@ -47,6 +50,7 @@ impl Comparison {
             first: None,
             largest: 0,
             extremes: None,
+            bits: 0,
             by_row: vec![0; height],
             by_column: vec![0; width],
         }
@@ -81,6 +85,7 @@ impl Comparison {
         self.differences += 1;
         self.largest = self.largest.max(difference.found.abs_diff(difference.expected));
         self.extremes = Some((least.min(change), most.max(change)));
+        self.bits |= difference.found ^ difference.expected;
         if let Some(count) = self.by_row.get_mut(difference.row) {
             *count += 1;
         }
@@ -111,7 +116,7 @@ mod tests {
         comparison.row(0, &[5, 5, 5, 5], &[5, 5, 5, 5]);
         comparison.row(1, &[5, 5, 5, 5], &[5, 5, 5, 4]);
         assert_eq!((comparison.samples, comparison.differences, comparison.largest), (12, 3, 5));
-        assert_eq!(comparison.extremes, Some((-2, 5)));
+        assert_eq!((comparison.extremes, comparison.bits), (Some((-2, 5)), 2 | (4 ^ 9) | (5 ^ 4)));
         assert_eq!(comparison.first, Some(Difference { row: 1, column: 3, expected: 5, found: 4 }));
         assert_eq!((comparison.by_row, comparison.by_column), (vec![0, 1, 2], vec![0, 1, 0, 2]));
     }

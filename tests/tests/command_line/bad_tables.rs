@@ -44,12 +44,12 @@ fn memory_images_are_told_to_be_for_verilog() {
     let made = folder.halfrow(["tables", "--width", "64", "--height", "4", "-o", "line.mem"]);
     assert_eq!(made.code, Some(0), "{}", made.stderr);
     for name in ["line.mem", "line.steps.mem"] {
-        let sentence =
-            format!("{name} is a name of memory images, which are for Verilog; name the table file (.json)");
+        let sentence = format!(
+            "{name} is a name of memory images, which are for Verilog; give a table file (.json) to --tables"
+        );
         refused(&folder, &["verify", "--tables", name], &sentence);
     }
-    let sentence =
-        "line.kernel.mem is a name of memory images, which are for Verilog; name the table file (.json)";
+    let sentence = "line.kernel.mem is a name of memory images, which are for Verilog; give a table file (.json) to --tables, or a kernel file";
     refused(&folder, &["verify", "--kernel", "line.kernel.mem"], sentence);
 }
 

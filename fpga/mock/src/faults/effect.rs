@@ -53,7 +53,9 @@ impl BoardFault {
             Self::StuckAddress { bit, .. } if u32::from(bit) >= lines => {
                 Err(OptionError::NoAddressLine { bit, last: lines.saturating_sub(1) })
             }
-            Self::DeadTap { tap: tap @ (0 | 6), .. } if build.taps == TapCount::Five => {
+            Self::DeadTap { tap: tap @ (0 | 6), .. } | Self::DeadTap { reads: Some(tap @ (0 | 6)), .. }
+                if build.taps == TapCount::Five =>
+            {
                 Err(OptionError::NoTap { tap })
             }
             Self::StaleTable { .. } | Self::LateSwap if build.table_banks == 1 => {

@@ -14,7 +14,7 @@ pub(super) fn summary(witnesses: &Witnesses<'_>) -> Suspect {
         least: extremes().map(|extremes| extremes.0).min(),
         most: extremes().map(|extremes| extremes.1).max(),
         bright: brightness(&witnesses.differing),
-        bits: bits(&witnesses.differing),
+        bits: bits(&frames),
         unstreamed: false,
         frames: frames.len(),
         of_frames: witnesses.case.frames.len(),
@@ -52,9 +52,8 @@ fn extent(places: &[usize], total: usize) -> Option<Extent> {
 }
 
 /// The bits in which any sample differs.
-fn bits(differing: &[Witness<'_>]) -> Vec<u32> {
-    let samples = differing.iter().flat_map(|row| row.found.iter().zip(row.expected));
-    let all = samples.fold(0, |all, (found, expected)| all | (found ^ expected));
+fn bits(frames: &[&FrameReport]) -> Vec<u32> {
+    let all = frames.iter().fold(0, |all, frame| all | frame.comparison.bits);
     (0..u16::BITS).filter(|bit| all >> bit & 1 == 1).collect()
 }
 

@@ -84,7 +84,8 @@ impl Run<'_> {
         let differing = seen.differing_frames();
         let (samples, frames) = (seen.samples(), seen.frames.len());
         if let Some(wrong) = seen.wrong_entry {
-            return Err(changed_on_entry(wrong, differing > 0));
+            let is_every_row = seen.rows_with_entry == wrong.rows;
+            return Err(changed_on_entry(wrong, differing > 0, is_every_row));
         }
         if differing == 0 {
             return Ok(Finding::FramesEqual { frames, samples });
@@ -130,9 +131,11 @@ impl Seen {
     }
 }
 
-/// What came in otherwise than it was sent explains what came out, however that may look.
-fn changed_on_entry(WrongEntry { rows, row, frame, flipped }: WrongEntry, differs: bool) -> End {
-    if !differs && flipped.is_none() {
+/// What came in otherwise than it was sent explains what came out, however that may look. Where all that came out is right and the CRC of
+/// every row is wrong, no flipped bit is believed: a unit that begins with a wrong bit looks like one in the first two samples.
+fn changed_on_entry(wrong: WrongEntry, differs: bool, is_every_row: bool) -> End {
+    let WrongEntry { rows, row, frame, flipped } = wrong;
+    if !differs && (flipped.is_none() || is_every_row) {
         return End::failed(CheckName::Frames, Finding::EntryMiscounted { rows, row, frame });
     }
     let defect = Defect::RowsChangedOnEntry { rows, first: row, frame, flipped };

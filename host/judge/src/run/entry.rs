@@ -22,15 +22,16 @@ pub(super) struct WrongEntry {
     pub(super) flipped: Option<FlippedBit>,
 }
 
-/// The one bit of the row `sent` that gives the CRC `entered` when it is flipped.
-pub(super) fn flipped_bit(sent: &[u16], entered: u32) -> Option<FlippedBit> {
+/// The one bit of the row `sent`, of samples of `bits` bits, that gives the CRC `entered` when it is flipped.
+pub(super) fn flipped_bit(sent: &[u16], bits: u32, entered: u32) -> Option<FlippedBit> {
     let word = u16::BITS as usize;
     let wanted = row_signature(sent) ^ entered;
     // A CRC is linear, so that a flipped bit changes it alike whatever the row is, by its distance from the end alone.
     let one_earlier = |effect: &u32| Some(effect >> 1 ^ if effect & 1 == 1 { LAST_BIT } else { 0 });
     let effects = iter::successors(Some(LAST_BIT), one_earlier);
     let (_, place) = effects.zip((0..sent.len() * word).rev()).find(|(effect, _)| *effect == wanted)?;
-    Some(FlippedBit { column: place / word, bit: (place % word) as u32 })
+    let flipped = FlippedBit { column: place / word, bit: (place % word) as u32 };
+    (flipped.bit < bits).then_some(flipped)
 }
 
 #[cfg(test)]
@@ -40,15 +41,16 @@ mod tests {
     #[test]
     fn a_flipped_bit_tells_its_place_and_nothing_else_has_one() {
         let sent: Vec<u16> = (0..1920).map(|column| (column * 2053 % 4096) as u16).collect();
-        for (column, bit) in [(0, 0), (0, 11), (5, 7), (1919, 0), (1919, 15)] {
+        for (column, bit) in [(0, 0), (0, 11), (5, 7), (1919, 0), (1919, 11)] {
             let mut entered = sent.clone();
             entered[column] ^= 1 << bit;
-            assert_eq!(flipped_bit(&sent, row_signature(&entered)), Some(FlippedBit { column, bit }));
+            assert_eq!(flipped_bit(&sent, 12, row_signature(&entered)), Some(FlippedBit { column, bit }));
+            assert_eq!(flipped_bit(&sent, bit, row_signature(&entered)), None);
             entered[column] ^= 2 << bit | 1 << (bit ^ 1);
-            assert_eq!(flipped_bit(&sent, row_signature(&entered)), None);
+            assert_eq!(flipped_bit(&sent, 12, row_signature(&entered)), None);
         }
         let right = row_signature(&sent);
-        let of_unit = (0..32).map(|line| flipped_bit(&sent, right ^ 1 << line));
-        assert!(of_unit.chain([flipped_bit(&sent, right)]).all(|found| found.is_none()));
+        let of_unit = (0..32).map(|line| flipped_bit(&sent, 12, right ^ 1 << line));
+        assert!(of_unit.chain([flipped_bit(&sent, 12, right)]).all(|found| found.is_none()));
     }
 }

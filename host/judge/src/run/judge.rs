@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::mpsc;
 use std::time::Instant;
 
-use halfrow_model::row_signature;
+use halfrow_model::{Frame, row_signature};
 
 use super::entry::{WrongEntry, flipped_bit};
 use super::exercised::SampleLevels;
@@ -32,6 +32,8 @@ pub(super) struct Seen {
     pub(super) wrong_latency: Option<WrongLatency>,
     /// The first row that entered the core otherwise than it was sent.
     pub(super) wrong_entry: Option<WrongEntry>,
+    /// Rows whose CRC of what entered was looked at.
+    pub(super) rows_with_entry: usize,
     /// The first row whose gaps are not those of the seed.
     pub(super) wrong_pauses: Option<Finding>,
     /// That tables had changed when they were read back.
@@ -202,13 +204,18 @@ impl<'a> Judge<'a> {
         }
     }
 
-    fn check_entry(&mut self, row: &ReturnedRow<'_>, sent: &[u16]) {
-        if self.manner.names_entered && row.entered != Some(row_signature(sent)) {
+    fn check_entry(&mut self, row: &ReturnedRow<'_>, input: &Frame) {
+        if !self.manner.names_entered {
+            return;
+        }
+        self.seen.rows_with_entry += 1;
+        let (sent, bits) = (input.row(row.row), input.depth().bits());
+        if row.entered != Some(row_signature(sent)) {
             let first = || WrongEntry {
                 rows: 0,
                 row: row.row,
                 frame: row.frame,
-                flipped: row.entered.and_then(|entered| flipped_bit(sent, entered)),
+                flipped: row.entered.and_then(|entered| flipped_bit(sent, bits, entered)),
             };
             self.seen.wrong_entry.get_or_insert_with(first).rows += 1;
         }
@@ -288,7 +295,7 @@ impl RowTraffic for Judge<'_> {
         self.check_latency(row);
         self.check_pauses(row);
         let input = Arc::clone(&self.in_flight[place].prepared.input);
-        self.check_entry(row, input.row(row.row));
+        self.check_entry(row, &input);
         self.progress.row();
         let frame = &mut self.in_flight[place];
         frame.returned[row.row] = true;

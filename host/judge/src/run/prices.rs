@@ -144,15 +144,15 @@ impl<'a> Prices<'a> {
         self.every_run() + self.streamed(selection) + self.at_speed(selection) + rules
     }
 
-    /// What it would take on a board whose pixel clock takes no time.
-    pub(super) fn at_no_time_of_clocks(&self, selection: &Selection) -> f64 {
-        let capabilities = Capabilities { clock_hz: u32::MAX, ..self.capabilities.clone() };
+    /// What it would take at the usual pixel clock, whatever the board names.
+    pub(super) fn at_the_usual_clock(&self, selection: &Selection) -> f64 {
+        let capabilities = Capabilities { clock_hz: at_speed::USUAL_CLOCK, ..self.capabilities.clone() };
         Prices::new(self.plan, &capabilities, self.rates).seconds(selection)
     }
 
-    /// The pixel clock that the board names, or the usual one.
-    pub(super) fn clock_hz(&self) -> u32 {
-        at_speed::clock_hz(self.capabilities)
+    /// The pixel clock that the board names; 0 for none.
+    pub(super) fn named_clock_hz(&self) -> u32 {
+        self.capabilities.clock_hz
     }
 
     /// What `part` adds to the least run, with what it is nothing without.

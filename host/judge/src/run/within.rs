@@ -124,8 +124,8 @@ fn chosen(prices: &Prices<'_>, build: &str, time: Time) -> Result<(Selection, Wi
     };
     let mut from = Selection::least();
     if let Some(least) = least_for(&from) {
-        let clock_hz = prices.clock_hz();
-        let is_of_clock = prices.at_no_time_of_clocks(&from) <= left;
+        let clock_hz = prices.named_clock_hz();
+        let is_of_clock = clock_hz != 0 && prices.at_the_usual_clock(&from) <= left;
         return Err(match is_of_clock {
             true => WithinError::TooFewOfClock { seconds, least, clock_hz },
             false => WithinError::TooFew { seconds, least },

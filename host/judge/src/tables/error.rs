@@ -21,7 +21,7 @@ pub enum TableFileError {
         source: io::Error,
     },
     /// What cannot be read as a table file or a kernel file is called as memory images are, or is one.
-    #[error("{} is a name of memory images, which are for Verilog; name the table file (.json)", path.display())]
+    #[error("{} is a name of memory images, which are for Verilog; give a table file (.json) to --tables, or a kernel file or name to --kernel", path.display())]
     MemoryImages {
         /// The file.
         path: PathBuf,

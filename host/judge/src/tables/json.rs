@@ -166,10 +166,18 @@ impl KernelFile {
 }
 
 fn read<T>(path: &Path, parse: fn(&str) -> Result<T, ContentError>) -> Result<(T, Input), TableFileError> {
-    read_json(path, parse).map_err(|error| match mem::is_name(path) {
+    read_json(path, parse).map_err(|error| match mem::is_name(path) && !is_of_json(path) {
         true => TableFileError::MemoryImages { path: path.to_owned() },
         false => error,
     })
+}
+
+/// Whether there is a file that may not be read, or begins as JSON does, whatever its name.
+fn is_of_json(path: &Path) -> bool {
+    match text::read(path, text::MAX_BYTES) {
+        Ok(text) => text.trim_start().starts_with('{'),
+        Err(error) => error.kind() == io::ErrorKind::PermissionDenied,
+    }
 }
 
 fn read_json<T>(

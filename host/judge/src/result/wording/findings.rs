@@ -316,7 +316,9 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         Finding::GenerationWrong { .. } => {
             "The board uses stale tables: check when its bank switch takes effect."
         }
-        Finding::LatencyWrong { rows, of_rows, .. } => asked_of_latency(rows < of_rows),
+        Finding::LatencyWrong { is_one_row, rows, of_rows, .. } => {
+            asked_of_latency(*is_one_row && rows < of_rows)
+        }
         Finding::CounterWrong { .. } | Finding::GapsMiscounted { .. } | Finding::LatencyMiscounted { .. } => {
             "Check the board's counters and its row player; the samples themselves were right."
         }
@@ -332,8 +334,8 @@ pub fn remedy(finding: &Finding) -> Option<String> {
     Some(asked.to_owned())
 }
 
-fn asked_of_latency(is_of_some_rows: bool) -> &'static str {
-    if is_of_some_rows {
+fn asked_of_latency(is_of_one_row: bool) -> &'static str {
+    if is_of_one_row {
         "Check the enable and the row player: the depth of the pipeline is right, as the other rows show."
     } else {
         "Check the depth of the pipeline behind the line memory, and the L that the capabilities advertise."

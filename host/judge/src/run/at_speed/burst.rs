@@ -10,7 +10,7 @@ use super::price::clock_hz;
 use crate::board::{Bursts, Capabilities};
 
 /// The pixel clock, in hertz, that a board is taken to have which names none: that of the paper's sensor.
-pub(super) const USUAL_CLOCK: u32 = 96_000_000;
+pub(in crate::run) const USUAL_CLOCK: u32 = 96_000_000;
 /// 2^64 / golden ratio: spreads a run's seeds over all seeds of bursts.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 /// The longest between two looks at the records, so that whoever stops the run need not wait.

@@ -31,7 +31,7 @@ use crate::result::{
     BurstCount, CheckName, ClockSeen, Corner, EqualAtSpeed, Finding, NoBurst, NotExercised, Outcome, Streamed,
 };
 use burst::BurstPlan;
-pub(super) use burst::content;
+pub(super) use burst::{USUAL_CLOCK, content};
 pub(super) use price::{clock_hz, most_frames, price_of_corners, price_of_frames};
 pub(super) use repeated::Seen;
 use watched::{EndsEarly, Watched};
