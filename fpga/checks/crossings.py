@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 """The clock crossings of the boards' tops, by yosys' netlists in front of mapping. Every bit that a register takes from another clock, or
-from a pin, must go straight into two registers that nothing else reads between and that are marked ASYNC_REG; the bits of one register that
+from a pin, must go straight into two registers that nothing else reads between and that are marked ASYNC_REG; the bits of one word that
 cross must count in Gray code; a reset may begin at once when it ends in two registers; a memory takes nothing from another clock than its
 port's. What is none of these stands in crossings.ini with its reason, and what stands there must be found. crossings.txt has faults that
 this must refuse.
 """
-import collections
 import concurrent.futures
 import configparser
 import fnmatch
@@ -77,7 +76,7 @@ class Crossings:
         return None if length == len(chain) >= 2 else "is a reset that is read before two registers"
 
     def is_gray(self, bits):
-        """Whether each of these register bits is loaded with n[k] ^ n[k+1] where n counts up by one."""
+        """Whether these bits are one cell's, and each is loaded with n[k] ^ n[k+1] where n counts up by one."""
         data = sorted((self.by_bit[bit].place, self.netlist.inputs(self.by_bit[bit])[0][1]) for bit in bits)
         counts = {}
         for place, bit in data:
@@ -107,13 +106,13 @@ class Crossings:
 
 def judge(crossings, listed):
     """Faults, the entries of the list that were met, and how many bits were found sound."""
-    faults, met, sound, words = set(), set(), 0, collections.defaultdict(set)
+    faults, met, sound, crossed = set(), set(), 0, []
     for register, port, bit, others in crossings.all():
         why = crossings.fault(register, port, bit)
         if why is None:
             sound += port == "D"
             if port == "D" and bit in crossings.by_bit:
-                words[crossings.by_bit[bit].cell, register.clock].add(bit)
+                crossed.append((register, bit))
             continue
         for clock, source in others:
             entry = next((key for key in listed if matches(key, source, register.name)), None)
@@ -121,12 +120,27 @@ def judge(crossings, listed):
                 met.add(entry)
             else:
                 faults.add(f"{source} ({clock}) -> {register.name} ({register.clock}) {why}")
-    # Bits of one register that cross into one clock, each by synchronisers of its own or not, may be seen at different times.
-    for word in words.values():
+    # Bits of one word that cross into one clock, each by synchronisers of its own or not, may be seen at different times.
+    for word in words(crossings, crossed):
         if len(word) > 1 and not crossings.is_gray(word):
             name = min(crossings.by_bit[bit].name for bit in word)
             faults.add(f"{name} crosses as a bus of {len(word)} bits that do not count in Gray code")
     return faults, met, sound
+
+
+def words(crossings, crossed):
+    """The bits that cross, (first register, bit) each, by what they are in the source: those of one clock that share a vector where they are
+    written, or where their synchronisers are read. yosys' cells do not tell: one vector is several when its bits are written apart."""
+    found = []
+    for register, bit in crossed:
+        read = crossings.second(register)
+        keys = {(register.clock, name) for end in (bit, read.bit) for name in crossings.netlist.names[end]}
+        bits = {bit}
+        for word in [word for word in found if word[0] & keys]:
+            found.remove(word)
+            keys, bits = keys | word[0], bits | word[1]
+        found.append((keys, bits))
+    return [bits for _, bits in found]
 
 
 def matches(key, source, register):
@@ -173,4 +187,5 @@ def main():
     print(f"PASS {sum(len(mutants(top.kind)) for top in spoilable)} faults put into crossings are refused")
 
 
-main()
+if __name__ == "__main__":
+    main()
