@@ -13,8 +13,11 @@ import rtl
 
 HERE = pathlib.Path(__file__).resolve().parent
 MEMORY = re.compile(r"^ *(\(\*.*?\*\) *)?reg\b[^;=\n]*?\b(\w+) \[[^\]]*:[^\]]*\];", re.MULTILINE)
+# The names of a declaration, without its attributes and range.
+REGISTERS = re.compile(r"^ *(?:\(\*.*?\*\) *)?reg\b(?: signed)?(?: *\[[^\]]*\])* ([^;]*);", re.MULTILINE)
 # A replication whose count is no plain number.
 REPLICATION = re.compile(r"\{ *([^{},;\"]*[A-Za-z_][^{},;\"]*)\{")
+ACTIVE = "may be active from the configuration to its first clock; give its register an initial value"
 
 
 def bare(text):
@@ -51,20 +54,34 @@ def memory_of_many_writers(text):
 
 def initial_value_missing(text):
     """A register without one starts as 0, which is active at a pin whose name ends in _n."""
-    for found in re.finditer(r"^ *output +reg +(?:\[[^\]]+\] +)?(\w+_n)\b(?! = )", bare(text), re.MULTILINE):
-        yield line_of(text, found.start(1)), f"{found[1]} is active from the configuration to its first clock; give it an initial value"
+    code = bare(text)
+    for found in re.finditer(r"^ *output +reg +(?:\[[^\]]+\] +)?(\w+_n)\b(?! = )", code, re.MULTILINE):
+        yield line_of(text, found.start(1)), f"{found[1]} {ACTIVE}"
+    declared = [found[1].split(",") for found in REGISTERS.finditer(code)]
+    started_as_0 = {name.strip() for names in declared for name in names if "=" not in name}
+    for found in re.finditer(r"\bassign (\w+_n) = ([^;]*);", code):
+        if started_as_0 & set(re.findall(r"\w+", found[2])):
+            yield line_of(text, found.start(1)), f"{found[1]} {ACTIVE}"
+
+
+def probes(path, text):
+    """Looks at what only a build has: (rule, where it fails, what to say, its values). A pin's register may stand in another module."""
+    code = bare(text)
+    for found in REPLICATION.finditer(code):
+        yield "zero_replications", f"({found[1]}) < 1", f"{path}:{line_of(code, found.start())}: a replication of {found[1].strip()} = %0d", found[1]
+    for found in re.finditer(r"^ *output +(?:reg|wire) +(?:\[[^\]]+\] +)?(\w+_n)\b", code, re.MULTILINE):
+        yield "initial_value_missing", f"&{found[1]} !== 1'b1", f"{path}:{line_of(code, found.start(1))}: {found[1]} is %b and {ACTIVE}", found[1]
 
 
 def probed(path, text):
-    """The module with a look at every replication's count at its end."""
-    code = bare(text)
-    probes = [f'    initial if (({found[1]}) < 1) $display("{path}:{line_of(code, found.start())}: a replication of {found[1].strip()} = %0d", {found[1]});'
-              for found in REPLICATION.finditer(code)]
-    return re.sub(r"^endmodule", "\n".join([*probes, "endmodule"]), text, flags=re.MULTILINE)
+    """The module with its probes at its end."""
+    looks = [f'    initial #0 if ({fails}) $display("{rule} {what}", {values});' for rule, fails, what, values in probes(path, text)]
+    return re.sub(r"^endmodule", "\n".join([*looks, "endmodule"]), text, flags=re.MULTILINE)
 
 
-def zero_replications(sources, top, parameters=()):
-    """No replication of none, which is legal from Verilog-2005 on. Counts are those of the build, so it is elaborated."""
+def judged_build(sources, top, parameters=()):
+    """What a build breaks, as (rule, what), and the modules in it. It is elaborated, since counts and pins are the build's: no
+    replication of none, which is legal from Verilog-2005 on, and no pin that is active in front of the first clock."""
     with tempfile.TemporaryDirectory() as work:
         folder = pathlib.Path(work)
         for path in sources:
@@ -73,7 +90,9 @@ def zero_replications(sources, top, parameters=()):
                                 "-o", f"{work}/built", f"{work}/{top}.v"], capture_output=True, text=True)
         if built.returncode != 0:
             sys.exit(f"dialect: {top} with {' '.join(parameters)} does not elaborate:\n{built.stderr}")
-        return subprocess.run(["vvp", "-n", f"{work}/built"], capture_output=True, text=True, check=True).stdout.splitlines()
+        said = subprocess.run(["vvp", "-n", f"{work}/built"], capture_output=True, text=True, check=True).stdout.splitlines()
+        inside = set(re.findall(r'^S_\w+ \.scope module[^"]*"[^"]*" "([^"]*)"', (folder / "built").read_text(), re.MULTILINE))
+        return [tuple(line.split(" ", 1)) for line in said], inside
 
 
 RULES = [ram_style_missing, memory_of_many_writers, initial_value_missing]
@@ -89,21 +108,31 @@ def refuses_its_cases():
     if set(cases) != {"zero_replications", *(rule.__name__ for rule in RULES)}:
         sys.exit("dialect: fpga/checks/dialect has not one file a rule")
     for name, path in cases.items():
-        broken = {rule for rule, _ in offences(path)} | ({"zero_replications"} if zero_replications([path], path.stem) else set())
+        broken = {rule for rule, _ in offences(path) + judged_build([path], path.stem)[0]}
         if broken != {name}:
             sys.exit(f"dialect: {path} must break {name} alone, and breaks {', '.join(sorted(broken)) or 'nothing'}")
     return len(cases)
 
 
+def of_builds(modules):
+    """What the builds of both bridges break, and the modules that none of them has, which nothing here has looked at whole."""
+    wrong, missing = [], {path.stem for path in modules}
+    links, sizes = ("halfrow_fifo_bridge", "halfrow_uart_bridge"), {"TAPS": (5, 7), "TABLE_BANKS": (1, 2), "TRAP": (0, 1), "GRID": (0, 1)}
+    for top, *values in itertools.product(links, *sizes.values()):
+        broken, inside = judged_build(modules, top, [f"{name}={value}" for name, value in zip(sizes, values)])
+        wrong += [what for _, what in broken]
+        missing -= inside
+    return wrong + [f"{name} is in none of the builds" for name in missing]
+
+
 def main():
     modules = list(rtl.modules().values())
     boards = sorted((HERE.parent / "boards").glob("*/*.v"))
-    wrong = [what for path in modules + boards for _, what in offences(path)]
-    for top, taps, banks, trap in itertools.product(("halfrow_fifo_bridge", "halfrow_uart_bridge"), (5, 7), (1, 2), (0, 1)):
-        wrong += zero_replications(modules, top, (f"TAPS={taps}", f"TABLE_BANKS={banks}", f"TRAP={trap}"))
+    wrong = [what for path in modules + boards for _, what in offences(path)] + of_builds(modules)
     if wrong:
         sys.exit("dialect: " + "\ndialect: ".join(sorted(set(wrong))))
     print(f"PASS {len(modules) + len(boards)} files keep to XST's dialect, and each of {refuses_its_cases()} rules refuses its case")
 
 
-main()
+if __name__ == "__main__":
+    main()
