@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Holds the files of fpga/rtl to one form: a module a file of its name, in a folder; under 400 lines of at most 120 columns; no
-tabs, no spaces at ends of lines; `default_nettype none at the top and wire at the end; every port on a line of its own, in
-columns; no other alignment in code, so that a changed line leaves its neighbours alone.
+tabs, no spaces at ends of lines; `default_nettype none at the top and wire at the end; every parameter and
+every port on a line of its own, ports in columns; no other alignment in code, so that a changed line leaves its neighbours alone.
 """
 import re
 import sys
@@ -10,6 +10,18 @@ import rtl
 
 COLUMNS, LINES = 120, 400
 PORT = re.compile(r"    (input |output|inout ) (wire|reg ) (signed )?(\[[^]]+\])? *\w+( = [0-9]+'[bdh][0-9a-f]+)?,?$")
+
+
+def parameters(lines):
+    """A module's parameters stand in its head, one a line, so that rtl.py reads them all."""
+    in_head = False
+    for number, line in enumerate(lines, 1):
+        code = re.sub(r'"[^"]*"', '""', line.split("//")[0].rstrip())
+        in_head = in_head and not line.startswith(") (")
+        alone = len(re.findall(r"(?<![=!<>])=(?!=)", code)) == 1
+        if (code and not (rtl.PARAMETER.match(code) and alone)) if in_head else re.search(r"\bparameter\b", code):
+            yield number, "a parameter that is not `parameter [type] [range] NAME = value` on a line of the module's head"
+        in_head = in_head or line.startswith("module ") and line.endswith(" #(")
 
 
 def offences(path):
@@ -25,6 +37,7 @@ def offences(path):
         code = [line for line in lines if line and not line.startswith("//")]
         if code[0] != "`default_nettype none" or code[-1] != "`default_nettype wire":
             yield 1, "is not between `default_nettype none and `default_nettype wire"
+    yield from parameters(lines)
     in_ports, columns = False, set()
     for number, line in enumerate(lines, 1):
         if len(line) > COLUMNS:
@@ -57,4 +70,5 @@ def main():
         sys.exit(f"form: {found} lines are not of the one form")
 
 
-main()
+if __name__ == "__main__":
+    main()

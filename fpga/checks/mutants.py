@@ -77,7 +77,7 @@ def netlist(place, module, section, faults):
     own = re.sub(r"^  input \[15:0\] mutsel;\n", "", own, count=1, flags=re.MULTILINE)
     own = re.sub(r"^  wire \[15:0\] mutsel;", lambda _: "  " + CHOICE.format(clock=clock), own, count=1, flags=re.MULTILINE)
     own = re.sub(r"(, )?\bmutsel\b(, )?", lambda found: ", " if found[1] and found[2] else "", own, count=1)
-    names = re.findall(r"^ +parameter (?:\[[^\]]*\] )?(\w+)", head, re.MULTILINE)
+    names = rtl.parameters(written)
     if section.getboolean("beside", False):
         ports = ", ".join(f".{port}({port})" for port in json_ports(place, module))
         chosen = " && ".join(f"{name} == {value}" for name, value in (word.split("=") for word in section["parameters"].split()))

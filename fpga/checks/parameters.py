@@ -19,16 +19,11 @@ OTHERS = ("legal", "any")
 TOOLS = ("iverilog", "verilator", "yosys")
 
 
-def declared(path):
-    header = re.search(r"^module \w+ #\((.*?)^\) \(", path.read_text(), re.MULTILINE | re.DOTALL)
-    return re.findall(r"^    parameter (?:\[[^]]+\] )?(\w+) =", header[1], re.MULTILINE) if header else []
-
-
 def unlisted(cases):
     """Parameters that no section has, and sections' keys that are none."""
     inside = {f"halfrow_{name}" for name in cases["inside"]["modules"].split()}
     for module, path in rtl.modules().items():
-        names = set(declared(path))
+        names = set(rtl.parameters(path.read_text()))
         if module in cases:
             listed = {key for key in cases[module] if key not in OTHERS} | set(cases[module].get("any", "").split())
             yield from (f"{module}: {name}" for name in sorted(names ^ listed))
@@ -42,7 +37,7 @@ def undeclared():
     builds.read(HERE / "mutation.ini")
     for module in builds.sections():
         given = (word.split("=")[0] for word in builds[module].get("parameters", "").split())
-        yield from (f"mutation.ini: {module}: {name}" for name in sorted(set(given) - set(declared(rtl.modules()[module]))))
+        yield from (f"mutation.ini: {module}: {name}" for name in sorted(set(given) - set(rtl.parameters(rtl.modules()[module].read_text()))))
 
 
 def wrapper(module, values):
@@ -107,4 +102,5 @@ def main():
     print(f"PASS {len(illegal)} builds that cannot be are refused, {len(legal)} at the ends of what is legal are not, by {', '.join(tools)}")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -1,13 +1,22 @@
 """Where a module of fpga/rtl stands, and how yosys is told to read it."""
 
 import pathlib
+import re
 
 RTL = pathlib.Path(__file__).resolve().parent.parent / "rtl"
+# A parameter of a module's head, of whatever type. form.py refuses every other form, so none is missed.
+PARAMETER = re.compile(r"^    parameter (?:(?:signed|integer|real|realtime|time) )?(?:\[[^]]+\] )?(\w+) = ", re.MULTILINE)
 
 
 def modules(rtl=RTL):
     """All modules' files, by name."""
     return {path.stem: path for path in sorted(rtl.glob("*/*.v"))}
+
+
+def parameters(text):
+    """The parameters that a module's text declares, in order."""
+    head = re.search(r"^module \w+ #\((.*?)^\) \(", text, re.MULTILINE | re.DOTALL)
+    return PARAMETER.findall(head[1]) if head else []
 
 
 def includes(rtl=RTL):
