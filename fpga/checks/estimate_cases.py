@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""estimate.py and depth.py on netlists of a few cells, against sums made by hand; and what resources.py makes of counts at their limits."""
+"""estimate.py and depth.py on netlists of a few cells, against sums made by hand; what resources.py makes of counts at their limits; and
+limits that budget.py must refuse."""
 
 import sys
 
+import budget
 import depth
 import estimate
 import netlist
@@ -63,6 +65,11 @@ EXCESSES = [({"luts": "100"}, {"luts": 101}, {}, True), ({"luts": "100"}, {"luts
             ({"mean": "9%"}, {"mean": 9.0}, {}, True), ({"mean": "9%"}, {"mean": 8.9}, {}, False),
             ({"lut_levels": "4"}, {"lut_levels": 5}, {}, True), ({"carry_bits": "40"}, {"carry_bits": 41}, {}, True)]
 
+# A line of a build, and what must be said of it, if anything.
+BUDGETS = [("luts = 510", None), ("registers = 12.5%", None), ("mean = 9%", None), ("crossing_ns = 10", None), ("lut = 510", "lut is none of"),
+           ("mean = 9", "mean is '9', not a share"), ("luts = 510 LUTs", "luts is '510 LUTs', not a number, or a share"), ("dsps =", "dsps is ''"),
+           ("mhz = 115%", "mhz is '115%', not a number"), ("whole_rams = 40%", "whole_rams is '40%'"), ("luts = -1", "luts is '-1'")]
+
 
 def faults():
     for name, cells, wanted in DELAYS:
@@ -80,8 +87,18 @@ def faults():
     for limits, counts, shares, exceeded in EXCESSES:
         if bool(list(resources.excesses(limits, counts, shares))) != exceeded:
             yield f"{counts} {shares} are {'not ' if exceeded else ''}over {limits}"
+    for line, wanted in BUDGETS:
+        said = list(budget.faults(budget.read(f"[core]\ntop = halfrow_core\n{line}\n")))
+        if (wanted is None) != (not said) or wanted and wanted not in said[0]:
+            yield f"of the limit `{line}` is said: {said}"
 
 
-wrong = list(faults())
-if wrong:
-    sys.exit("estimate_cases: " + "\nestimate_cases: ".join(wrong))
+def main():
+    wrong = list(faults())
+    if wrong:
+        sys.exit("estimate_cases: " + "\nestimate_cases: ".join(wrong))
+    print(f"PASS {len(DELAYS) + len(DEPTHS)} netlists as by hand, and each of {len(LIMITS) + len(EXCESSES) + len(BUDGETS)} limits is kept")
+
+
+if __name__ == "__main__":
+    main()
