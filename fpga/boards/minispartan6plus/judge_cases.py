@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """judge_reports.py on the reports of reports/: as they are, which it must take, and with each fault of reports/bad.txt, which it must refuse
-by the name that stands there; and without one of them."""
+by the name that stands there; and without one of them. The constraints of all four tops are held to constraints.py."""
 
 import pathlib
 import re
@@ -8,6 +8,9 @@ import shutil
 import subprocess
 import sys
 import tempfile
+
+import constraints
+import judge_reports
 
 HERE = pathlib.Path(__file__).resolve().parent
 REPORTS = ("top.syr", "top.bld", "top_map.mrp", "top.par", "top.twr")
@@ -21,8 +24,19 @@ def laid(folder):
     """The good reports, and the constraints that they belong to."""
     for name in REPORTS:
         shutil.copy(HERE / "reports" / name, folder)
-    ucf = "".join((HERE / name).read_text() for name in ("common.ucf", "fifo.ucf", "sensor.ucf"))
-    (folder / "top.ucf").write_text(ucf)
+    (folder / "top.ucf").write_text(ucf_of("fifo", True))
+
+
+def ucf_of(kind, sensor):
+    """The constraints of a top, as `build` puts them together."""
+    return "".join((HERE / f"{name}.ucf").read_text() for name in ("common", kind, *["sensor"] * sensor))
+
+
+def too_slack():
+    """What a top's constraints ask too little of."""
+    for top, limits in judge_reports.budget.tops():
+        if top.board == judge_reports.BOARD:
+            yield from constraints.faults(ucf_of(top.kind, top.sensor), top.kind, top.sensor, float(limits["crossing_ns"]))
 
 
 def refused(folder, wanted):
@@ -31,7 +45,7 @@ def refused(folder, wanted):
 
 
 def main():
-    wrong, count = [], 0
+    wrong, count = list(too_slack()), 0
     lines = (HERE / "reports/bad.txt").read_text().splitlines()
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(scratch)

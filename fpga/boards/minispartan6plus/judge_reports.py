@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Reads the reports of an ISE build and refuses a bitstream that they do not show to be what was asked for: every report there; no error, no
-latch, no net with several drivers; every constraint of top.ucf met and covering a path or a net; no path that no constraint covers; all
-nets routed; block RAMs and DSP slices as fpga/checks/budget.ini expects.
+latch, no net with several drivers; every constraint of top.ucf as strict as constraints.py has it, met, and covering a path or a net; no
+path that no constraint covers; all nets routed; block RAMs and DSP slices as fpga/checks/budget.ini expects.
     judge_reports.py FOLDER KIND [sensor]     FOLDER holds top.ucf, top.syr (or top.edif by yosys), top.bld, top_map.mrp, top.par, top.twr
 The forms are those of ISE 14.7 (UG628, UG687, and reports that others have published); none of ours has been made by ISE."""
 
@@ -13,6 +13,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "checks"))
 
 import budget
+import constraints
 
 BOARD = pathlib.Path(__file__).resolve().parent.name
 # Registers of a path that need no constraint, and why.
@@ -141,6 +142,7 @@ def faults(folder, kind, sensor):
     if len(texts) < len(names):
         return
     expected = next(limits for top, limits in budget.tops() if (top.board, top.kind, top.sensor) == (BOARD, kind, sensor))
+    yield from constraints.faults(texts["top.ucf"], kind, sensor, float(expected["crossing_ns"]))
     if not by_yosys:
         yield from synthesis(texts["top.syr"])
     yield from translation(texts["top.bld"])
