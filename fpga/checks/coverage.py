@@ -237,4 +237,5 @@ def main():
         table.write(blocks, checked, sections, SEED, SIZES)
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -62,12 +62,14 @@ def main():
     found = 0
     if list(rtl.RTL.glob("*.v")) or not rtl.modules():
         sys.exit("form: modules stand in the folders of fpga/rtl")
-    for path in [*rtl.modules().values(), *sorted(rtl.RTL.glob("*.vh"))]:
+    files = [*rtl.modules().values(), *sorted(rtl.RTL.glob("*.vh"))]
+    for path in files:
         for number, what in offences(path):
             print(f"{path}:{number}: {what}", file=sys.stderr)
             found += 1
     if found:
         sys.exit(f"form: {found} lines are not of the one form")
+    print(f"PASS {len(files)} files are of the one form")
 
 
 if __name__ == "__main__":

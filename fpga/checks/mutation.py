@@ -111,4 +111,5 @@ def main():
         sys.exit(f"mutation: {seen} of {len(found)} found, less than {FLOOR} per cent")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -30,4 +30,5 @@ def main():
         print(f"PASS {judge} refuses {len(cases)} edits")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -107,4 +107,5 @@ def main():
     out.write_text(verilog(json.loads(routed.read_text())["modules"]["top"], Delays(sdf[0] if sdf else None)))
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -102,4 +102,5 @@ def main():
     print(f"PASS {INCLUDE.name}: {len(given)} numbers are those of {PAGE.name}")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -74,4 +74,5 @@ def main():
     print(f"PASS {count} faults in the reports of a build are refused")
 
 
-main()
+if __name__ == "__main__":
+    main()

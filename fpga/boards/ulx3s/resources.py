@@ -48,4 +48,5 @@ def main():
         sys.exit("resources: over the budget:\n  " + "\n  ".join(exceeded))
 
 
-main()
+if __name__ == "__main__":
+    main()
