@@ -12,23 +12,49 @@ const SCHEMA: &str = include_str!("../../schema/station-1.json");
 /// What is kept of a run.
 const RECORD: &str = include_str!("../../schema/record-1.json");
 
-/// Print the JSON Schema of what `run`, `check`, `prune` and `codes` print with `--json`, or of a record
+/// What the commands print that look at results; each is a definition of its own name.
+const RESULTS: &str = include_str!("../../schema/results-1.json");
+
+/// Print the JSON Schema of what `run`, `check`, `prune` and `codes` print with `--json`, or of a record, or of what was judged
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// `record`: of what is kept of a run, goes to sinks, and is written by `export`
+    /// `record`: of what is kept of a run, goes to sinks, and is written by `export`; else of what this command prints with `--json`
     of: Option<Of>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 enum Of {
     Record,
+    History,
+    Unit,
+    Yield,
+    Pareto,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    if let Some(Of::Record) = arguments.of {
-        return print(RECORD.trim_end());
-    }
-    let mut schema: Value = serde_json::from_str(SCHEMA).map_err(Failure::error)?;
+    let schema = match arguments.of {
+        None => of_documents(),
+        Some(Of::Record) => return print(RECORD.trim_end()),
+        Some(Of::History) => of_results("history"),
+        Some(Of::Unit) => of_results("unit"),
+        Some(Of::Yield) => of_results("yield"),
+        Some(Of::Pareto) => of_results("pareto"),
+    };
+    let text = schema.and_then(|schema| serde_json::to_string_pretty(&schema));
+    print(&text.map_err(Failure::error)?)
+}
+
+fn of_documents() -> Result<Value, serde_json::Error> {
+    let mut schema: Value = serde_json::from_str(SCHEMA)?;
     schema["$defs"]["code"]["enum"] = codes::all().into();
-    print(&serde_json::to_string_pretty(&schema).map_err(Failure::error)?)
+    Ok(schema)
+}
+
+/// That of one command, in place of any of them.
+fn of_results(command: &str) -> Result<Value, serde_json::Error> {
+    let Value::Object(mut schema) = serde_json::from_str(RESULTS)? else { return Ok(Value::Null) };
+    schema.retain(|key, _| key != "oneOf");
+    schema.insert("title".to_owned(), format!("halfrow-station {command} --json, schema 1").into());
+    schema.insert("$ref".to_owned(), format!("#/$defs/{command}").into());
+    Ok(schema.into())
 }

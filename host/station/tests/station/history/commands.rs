@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::process::Command;
 
-use halfrow_station::record::RunCause;
+use halfrow_station::record::{DeviceSeen, RunCause};
 use serde_json::Value;
+use tempfile::TempDir;
 
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use crate::common::program;
@@ -29,7 +30,16 @@ fn said(made: &impl AsRef<Path>, arguments: &[&str]) -> String {
 }
 
 fn json(made: &impl AsRef<Path>, arguments: &[&str]) -> Value {
-    serde_json::from_str(&said(made, &[arguments, &["--json"]].concat())).unwrap()
+    let said = serde_json::from_str(&said(made, &[arguments, &["--json"]].concat())).unwrap();
+    assert_eq!(misread(arguments[0], &said), Vec::<String>::new(), "{said:#}");
+    said
+}
+
+/// What the program's own schema of a command finds wrong about what the command said.
+pub(crate) fn misread(command: &str, said: &Value) -> Vec<String> {
+    let schema = Command::new(program()).args(["schema", command]).output().unwrap().stdout;
+    let schema = jsonschema::validator_for(&serde_json::from_slice(&schema).unwrap()).unwrap();
+    schema.iter_errors(said).map(|error| format!("{}: {error}", error.instance_path())).collect()
 }
 
 fn made() -> Made {
@@ -133,4 +143,51 @@ fn a_waiver_is_seen_by_everyone() {
     assert!(said(&folder, &["history"]).contains("FAIL, waived"));
     assert!(said(&folder, &["unit", "S1"]).contains("by weber: used as it is"));
     assert_eq!(did(&folder, &["check"]).0, 0);
+}
+
+/// Of what each command prints: the control is a key less, or more.
+fn is_held_to_its_schema(folder: &TempDir, arguments: &[&str], place: &str) {
+    let told = json(folder, arguments);
+    for key in told.pointer(place).unwrap().as_object().unwrap().keys() {
+        let mut less = told.clone();
+        less.pointer_mut(place).unwrap().as_object_mut().unwrap().remove(key);
+        assert_ne!(misread(arguments[0], &less), Vec::<String>::new(), "{arguments:?} without {key}");
+    }
+    let mut more = told;
+    more.pointer_mut(place).unwrap()["moon"] = 1.into();
+    assert_ne!(misread(arguments[0], &more), Vec::<String>::new(), "{arguments:?}");
+}
+
+#[test]
+fn what_each_command_prints_is_as_its_schema_says() {
+    let mut made = made();
+    let device = Some((DeviceSeen::New, "00000000000000d1"));
+    made.run(&Run {
+        evidence: vec!["log"],
+        device,
+        started_ms: BEGIN_MS,
+        ..Run::of("S5", End::TooLateAndWrong)
+    });
+    made.run(&Run { started_ms: BEGIN_MS + HOUR_MS, ..Run::of("S5", End::Open) });
+    let failed = json(&made, &["history", "--serial", "S5", "--verdict", "fail"])["runs"][0]["id"].clone();
+    let folder = made.closed();
+    said(&folder, &["waive", failed.as_str().unwrap(), "--reason", "used as it is"]);
+    for (arguments, place) in [
+        (&["history"][..], "/runs/0"),
+        (&["history", "--limit", "1"], ""),
+        (&["unit", "S5"], "/0"),
+        (&["unit", "S1"], "/0/runs/1/suspects/0"),
+        (&["yield"], "/flips/0"),
+        (&["yield", "--by", "day"], "/lines/0/limits"),
+        (&["yield", "--by", "week"], "/lines/0/first_pass"),
+        (&["yield", "--by", "lane"], ""),
+        (&["yield", "--by", "station"], "/lines/0/errors"),
+        (&["pareto"], "/bars/0"),
+        (&["pareto", "--by", "check"], "/bars/0/runs"),
+    ] {
+        is_held_to_its_schema(&folder, arguments, place);
+    }
+    for part in ["bindings/0", "runs/1/attachments/0", "runs/1/waivers/0"] {
+        is_held_to_its_schema(&folder, &["unit", "S5"], &format!("/0/{part}"));
+    }
 }

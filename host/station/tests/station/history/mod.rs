@@ -1,6 +1,6 @@
 //! What was judged, read back: pages, units, yields, what fails most; and what is kept.
 
-mod commands;
+pub(crate) mod commands;
 mod control;
 mod counted;
 mod exports;

@@ -12,6 +12,7 @@ use super::pages::{served, settings, text};
 use super::sent::send_as;
 use super::server::Server;
 use crate::common::{Did, program};
+use crate::history::commands::misread;
 use crate::history::made::{BEGIN_MS, DAY_MS, End, HOUR_MS, Made, Run, id};
 use crate::metrics::text::Figures;
 
@@ -148,6 +149,8 @@ fn it_is_on_the_pages_in_what_the_command_says_and_in_the_figures() {
     let said = unit(&at_plant, "B2");
     let expected = format!("mismatch  station 8 judges device {} as B2, last ", DEVICES[0]);
     assert!(said.code == Some(0) && said.said.contains(&expected), "{said:?}");
+    let told = serde_json::from_str(&unit(&[&at_plant[..], &["--json"]].concat(), "B2").said).unwrap();
+    assert_eq!(misread("unit", &told), Vec::<String>::new(), "{told:#}");
     assert!(said.said.contains(&format!("here B1 is device {} since ", DEVICES[0])), "{said:?}");
     assert!(!unit(&at_plant, "B4").said.contains("mismatch"));
     // A station itself has none, from its own engine.
