@@ -55,6 +55,7 @@ pub(crate) fn soaked() -> Report {
         first: 17,
         repetition: Repetition::Trapped { frames: 18, row: 3, streamed: Streamed::NotTried },
         suspect: Some(Box::new(defect.clone())),
+        others: 0,
     };
     let suspects = vec![Suspect { defect, account: Account::Nothing, explained: 0.0 }];
     let difference = |seconds| SoakDifference {

@@ -144,6 +144,7 @@ fn on_entry_and_at_speed() -> [Finding; 6] {
             first: 17,
             repetition: Repetition::Trapped { frames: 19, row: 3, streamed: Streamed::Right },
             suspect: Some(Box::new(Defect::OnlyAtSpeed { row: Some(3), samples: 1, bits: vec![11] })),
+            others: 0,
         },
         Finding::MiscountedAtSpeed { frame: 17, count: BurstCount::Rows, counted: 1079, right: 1080 },
         Finding::InCorner {

@@ -200,6 +200,9 @@ pub enum Finding {
         repetition: Repetition,
         /// The likeliest cause.
         suspect: Option<Box<Defect>>,
+        /// Other causes that explain all of it as well.
+        #[serde(default)]
+        others: usize,
     },
     /// A frame that the board made on its own has the right signature, and something else that it counts is wrong.
     MiscountedAtSpeed {

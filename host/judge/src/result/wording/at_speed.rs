@@ -4,7 +4,7 @@ use super::places::list;
 use super::{LOGIC, TIMING, Words, suspicion};
 use crate::report::wording::{count, differ, grouped, hertz, span};
 use crate::result::{
-    BurstCount, ClockSeen, Corner, Defect, EqualAtSpeed, Finding, FlippedBit, NoBurst, Repetition, Streamed,
+    BurstCount, ClockSeen, Corner, EqualAtSpeed, Finding, FlippedBit, NoBurst, Repetition, Streamed,
 };
 
 pub(super) fn changed_on_entry(
@@ -98,8 +98,9 @@ pub(super) fn sentence(finding: &Finding) -> Option<String> {
             count(*frames, "frame")
         ),
         Finding::NothingAtSpeed { reason } => format!("nothing was tested at speed: {}", because(*reason)),
-        Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect } => {
-            differs((*wrong, *frames), *first, *repetition, suspect.as_deref())
+        Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others } => {
+            let suspect = suspect.as_deref().map(|suspect| suspicion(Some(suspect), *others));
+            differs((*wrong, *frames), *first, *repetition, suspect)
         }
         Finding::MiscountedAtSpeed { count: BurstCount::Records, counted, right, .. } => {
             format!("the board gives {counted} records of {} at speed", count(*right, "frame"))
@@ -124,9 +125,9 @@ fn differs(
     (wrong, frames): (u32, u32),
     first: u32,
     repetition: Repetition,
-    suspect: Option<&Defect>,
+    suspicion: Option<String>,
 ) -> String {
-    let suspicion = suspect.map_or_else(String::new, |suspect| format!("; {}", suspicion(Some(suspect))));
+    let suspicion = suspicion.map_or_else(String::new, |suspicion| format!("; {suspicion}"));
     format!(
         "{} of {} {} at speed, the first is frame {}{}{suspicion}",
         grouped(wrong),

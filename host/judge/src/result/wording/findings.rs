@@ -98,12 +98,7 @@ fn of_board(finding: &Finding) -> String {
         Finding::TablesChanged { found } => format!("the tables changed during the run: {}", sentence(found)),
         Finding::SamplesDiffer { differences, samples, differing_frames, frames, suspect, others } => {
             let differ = samples_differ((*differences, *samples), (*differing_frames, *frames));
-            let unsure = match others {
-                0 => String::new(),
-                1 => ", or another defect that gives the same".to_owned(),
-                more => format!(", or one of {more} others that give the same"),
-            };
-            format!("{differ}; {}{unsure}", suspicion(suspect.as_deref()))
+            format!("{differ}; {}", suspicion(suspect.as_deref(), *others))
         }
         Finding::CounterWrong { counter, counted, right } => {
             format!("the board counts {counted} {}, and it is {}{right}", counter.words(), counter.bound())

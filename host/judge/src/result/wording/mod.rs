@@ -65,15 +65,20 @@ pub fn place(defect: &Defect) -> String {
     words(defect).place
 }
 
-/// Which defect is behind samples that differ, as the end of a sentence.
-fn suspicion(suspect: Option<&Defect>) -> String {
+/// Which defect is behind samples that differ, as the end of a sentence. `others` explain all of it as well.
+fn suspicion(suspect: Option<&Defect>, others: usize) -> String {
+    let unsure = match others {
+        0 => String::new(),
+        1 => ", or another defect that gives the same".to_owned(),
+        more => format!(", or one of {more} others that give the same"),
+    };
     match suspect {
         None => UNEXPLAINED.to_owned(),
         Some(unknown @ Defect::NoneKnown { .. }) => {
             let seen = places::where_and_how(unknown).join(", ");
             if seen.is_empty() { UNEXPLAINED.to_owned() } else { format!("{UNEXPLAINED}: {seen}") }
         }
-        Some(suspect) => format!("the suspect is {}", place(suspect)),
+        Some(suspect) => format!("the suspect is {}{unsure}", place(suspect)),
     }
 }
 
@@ -140,7 +145,7 @@ fn stuck(value: u8) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::result::Finding;
+    use crate::result::{Finding, Repetition};
 
     #[test]
     fn what_no_defect_explains_is_said_so_and_large_numbers_are_grouped() {
@@ -172,19 +177,30 @@ mod tests {
     #[test]
     fn a_suspect_that_is_one_of_several_is_not_told_as_the_fact() {
         let suspect = Some(Box::new(Defect::OutputDataStuck { bit: 9, value: 1 }));
+        let (wrong, differing_frames, first, repetition) = (1, 1, 0, Repetition::NotNeeded {});
         let differ = |others| {
-            let suspect = suspect.clone();
-            sentence(&Finding::SamplesDiffer {
-                differences: 7,
-                samples: 99,
-                differing_frames: 1,
-                frames: 2,
-                suspect,
+            let [streamed, at_speed] = [suspect.clone(), suspect.clone()];
+            let (differences, samples, frames) = (7, 99, 2);
+            let streamed = Finding::SamplesDiffer {
+                differences,
+                samples,
+                differing_frames,
+                frames,
+                suspect: streamed,
                 others,
-            })
+            };
+            let (frames, suspect) = (2, at_speed);
+            let at_speed = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others };
+            [streamed, at_speed].map(|finding| sentence(&finding))
         };
-        assert!(differ(0).ends_with("bit 9, stuck at 1"), "{}", differ(0));
-        assert!(differ(1).ends_with("stuck at 1, or another defect that gives the same"), "{}", differ(1));
-        assert!(differ(3).ends_with("stuck at 1, or one of 3 others that give the same"), "{}", differ(3));
+        for (others, end) in [
+            (0, "the suspect is corrected samples, bit 9, stuck at 1"),
+            (1, "stuck at 1, or another defect that gives the same"),
+            (3, "stuck at 1, or one of 3 others that give the same"),
+        ] {
+            for told in differ(others) {
+                assert!(told.ends_with(end), "{told}");
+            }
+        }
     }
 }

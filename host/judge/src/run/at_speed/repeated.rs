@@ -89,7 +89,8 @@ impl Run<'_> {
             suspects.extend(at_speed(repetition.streamed(), None));
         }
         let suspect = suspects.first().map(|suspect| Box::new(suspect.defect.clone()));
-        let finding = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect };
+        let others = suspects.first().map_or(0, Suspect::others);
+        let finding = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others };
         End::Failed { check: CheckName::AtSpeed, finding, suspects }
     }
 

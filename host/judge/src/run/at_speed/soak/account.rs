@@ -140,11 +140,11 @@ impl Account {
         match end {
             End::Failed {
                 check,
-                finding: Finding::DiffersAtSpeed { first, repetition, suspect, .. },
+                finding: Finding::DiffersAtSpeed { first, repetition, suspect, others, .. },
                 suspects,
             } => {
                 let (wrong, frames) = (counted(self.report.wrong), counted(self.report.frames));
-                let finding = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect };
+                let finding = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others };
                 End::Failed { check, finding, suspects }
             }
             other => other,
@@ -161,19 +161,20 @@ fn counted_behind(before: u64, mut end: End) -> End {
 }
 
 /// Takes over the suspects of another difference if they were seen in a row, and those of the first were not.
-fn tell_more(first: &mut End, others: &[Suspect]) {
+fn tell_more(first: &mut End, seen: &[Suspect]) {
     let names_row = |suspects: &[Suspect]| {
         let has_none = |defect: &Defect| {
             matches!(defect, Defect::OnlyAtSpeed { row: None, .. } | Defect::SeenAtSpeed { row: None, .. })
         };
         suspects.iter().any(|it| !has_none(&it.defect))
     };
-    if let End::Failed { finding: Finding::DiffersAtSpeed { suspect, .. }, suspects, .. } = first
+    if let End::Failed { finding: Finding::DiffersAtSpeed { suspect, others, .. }, suspects, .. } = first
         && !names_row(suspects)
-        && names_row(others)
+        && names_row(seen)
     {
-        *suspect = others.first().map(|first| Box::new(first.defect.clone()));
-        *suspects = others.to_vec();
+        *suspect = seen.first().map(|first| Box::new(first.defect.clone()));
+        *others = seen.first().map_or(0, Suspect::others);
+        *suspects = seen.to_vec();
     }
 }
 

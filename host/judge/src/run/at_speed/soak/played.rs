@@ -24,6 +24,7 @@ impl Played {
             first: first.n,
             repetition: Repetition::NotNeeded {},
             suspect: None,
+            others: 0,
         });
         differs.or_else(|| miscounted.clone())
     }
