@@ -15,10 +15,8 @@ fn one_late_row_is_not_the_depth_of_the_pipeline() {
         }
         _ => packet,
     });
-    let Finding::LatencyWrong { rows, of_rows, is_one_row, .. } = report.finding else {
-        panic!("{}", report.headline())
-    };
-    assert_eq!((rows * System::TINY.height, is_one_row), (of_rows, true));
+    let Finding::LatencyWrong(late) = &report.finding else { panic!("{}", report.headline()) };
+    assert_eq!((late.rows * System::TINY.height, late.are_one_row()), (late.of_rows, true));
     assert!(report.headline().contains("board claims, all row 3: "), "{}", report.headline());
     assert!(report.remedy().unwrap().starts_with("Check the enable and the row player"), "{report:?}");
 }

@@ -224,19 +224,25 @@ pub(super) fn all() -> Vec<Value> {
     findings.chain(defects).chain(untouched).chain(errors).chain(others).collect()
 }
 
+/// What is asked for depends on this.
+const BY_ROWS: &str = "By which rows are late. In this example: ";
+
 /// What to do about an example of a finding. What it asks for by its suspect, another suspect does not.
 pub(super) fn act(example: &Finding) -> Option<String> {
     let remedy = example.remedy()?;
-    Some(if is_by_suspect(example) {
-        format!("As its suspect's own code says. In this example: {remedy}")
-    } else {
-        remedy
+    Some(match example {
+        _ if is_by_suspect(example) => {
+            format!("As its suspect's own code says. In this example: {remedy}")
+        }
+        Finding::LatencyWrong(_) => format!("{BY_ROWS}{remedy}"),
+        _ => remedy,
     })
 }
 
-/// What a technician does about it, whatever its example is; none where it is as another code says.
+/// What a technician does about it; none where it is as another code says.
 pub(super) fn bench(example: &Finding) -> Option<String> {
-    example.technician().filter(|_| !is_by_suspect(example))
+    let asked = example.technician().filter(|_| !is_by_suspect(example))?;
+    Some(if matches!(example, Finding::LatencyWrong(_)) { format!("{BY_ROWS}{asked}") } else { asked })
 }
 
 fn is_by_suspect(example: &Finding) -> bool {

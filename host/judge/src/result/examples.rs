@@ -2,7 +2,7 @@
 
 use super::{
     Account, Answer, BoardKind, BrokenOff, BurstCount, ClampEnd, ClockSeen, Corner, Counter, Counting,
-    Defect, Doubt, EqualAtSpeed, Extent, Finding, FlippedBit, Instead, MadeWith, Memory, NoBurst,
+    Defect, Doubt, EqualAtSpeed, Extent, Finding, FlippedBit, Instead, LateRows, MadeWith, Memory, NoBurst,
     NotExercised, NumberedRow, Problem, Reading, RepeatedRow, Repetition, RowSource, Rule, StaleFrames,
     Streamed, Suspect,
 };
@@ -105,7 +105,7 @@ fn of_the_board() -> [Finding; 19] {
 }
 
 fn late_row() -> Finding {
-    Finding::LatencyWrong {
+    Finding::LatencyWrong(LateRows {
         rows: 16,
         of_rows: 17_280,
         is_one_row: true,
@@ -114,7 +114,7 @@ fn late_row() -> Finding {
         first: 973,
         last: 973,
         claimed: 972,
-    }
+    })
 }
 
 /// What is wrong about the wire's rules.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Account, Answer, BoardKind, BrokenOff, BurstCount, ClockSeen, Corner, Counter, Defect, Doubt,
-    EqualAtSpeed, FlippedBit, NoBurst, NumberedRow, Problem, RepeatedRow, Repetition, Rule,
+    EqualAtSpeed, FlippedBit, LateRows, NoBurst, NumberedRow, Problem, RepeatedRow, Repetition, Rule,
 };
 
 /// What a check or a whole run came to. In JSON `{"code": …, "parameters": …}`; a [`Problem`] has its own code.
@@ -239,26 +239,7 @@ pub enum Finding {
         frames: u32,
     },
     /// Rows take another latency than the board claims.
-    LatencyWrong {
-        /// How many.
-        rows: usize,
-        /// Of so many; 0 where a report is of a version that did not tell.
-        #[serde(default)]
-        of_rows: usize,
-        /// Whether they are the same row of each frame.
-        #[serde(default)]
-        is_one_row: bool,
-        /// The first of them.
-        row: usize,
-        /// Its frame.
-        frame: u16,
-        /// From first sample in to first sample out, in pixel clocks.
-        first: u32,
-        /// From last to last.
-        last: u32,
-        /// What the board claims.
-        claimed: u32,
-    },
+    LatencyWrong(LateRows),
     /// A counter of the board's is not what it should be.
     CounterWrong {
         /// Which.

@@ -17,7 +17,7 @@ use super::prepared::{PrepareError, Prepared};
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::compare::Comparison;
 use crate::progress::Progress;
-use crate::result::{Evidence, Finding, FrameReport, FrameTiming, LatencyReport, Variation};
+use crate::result::{Evidence, Finding, FrameReport, FrameTiming, LateRows, LatencyReport, Variation};
 
 /// What the judge has seen of all frames so far.
 #[derive(Default)]
@@ -55,7 +55,7 @@ impl WrongLatency {
     /// It as the first of so many `rows` among `of_rows`.
     pub(super) fn finding(&self, rows: usize, of_rows: usize) -> Finding {
         let &Self { row, frame, first, last, claimed, is_one_row } = self;
-        Finding::LatencyWrong { rows, of_rows, is_one_row, row, frame, first, last, claimed }
+        Finding::LatencyWrong(LateRows { rows, of_rows, is_one_row, row, frame, first, last, claimed })
     }
 }
 

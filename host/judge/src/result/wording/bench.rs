@@ -13,6 +13,7 @@ pub fn at_the_bench(finding: &Finding) -> Option<String> {
         Finding::TablesChanged { found } | Finding::InCorner { found, .. } => return found.technician(),
         Finding::SamplesDiffer { suspect: None, .. } => REPORT,
         Finding::EchoWrong {} | Finding::TableCrcWrong {} | Finding::CommitCrcWrong {} => MEMORY,
+        Finding::LatencyWrong(late) if late.come_and_go() => TIMING,
         Finding::DiffersAtSpeed { suspect: None, .. }
         | Finding::GenerationWrong { .. }
         | Finding::MiscountedAtSpeed { count: BurstCount::Generation, .. }
@@ -23,7 +24,7 @@ pub fn at_the_bench(finding: &Finding) -> Option<String> {
         | Finding::RowsEnteredChanged { .. }
         | Finding::EntryMiscounted { .. }
         | Finding::MiscountedAtSpeed { .. }
-        | Finding::LatencyWrong { .. }
+        | Finding::LatencyWrong(_)
         | Finding::CounterWrong { .. }
         | Finding::GapsMiscounted { .. }
         | Finding::LatencyMiscounted { .. }
@@ -40,7 +41,8 @@ pub fn at_the_bench(finding: &Finding) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use crate::result::examples;
+    use super::*;
+    use crate::result::{LateRows, examples};
     use crate::verdict::Verdict;
 
     #[test]
@@ -48,6 +50,23 @@ mod tests {
         for (verdict, finding) in examples::findings_with_verdicts() {
             let is_against = verdict == Some(Verdict::Fail);
             assert_eq!(finding.technician().is_some(), is_against, "{finding:?}");
+        }
+    }
+
+    /// What one board does now and then, another board of the same logic does not tell about.
+    #[test]
+    fn rows_that_are_late_now_and_then_send_nobody_to_another_board() {
+        let late = |rows, of_rows, is_one_row| {
+            let (row, frame, first, last, claimed) = (3, 0, 973, 973, 972);
+            let late = LateRows { rows, of_rows, is_one_row, row, frame, first, last, claimed };
+            at_the_bench(&Finding::LatencyWrong(late)).unwrap()
+        };
+        // All rows, as a report of an earlier program has them too, and one row of every frame.
+        for told in [late(96, 96, false), late(9, 0, false), late(16, 96, true)] {
+            assert_eq!(told, LOGIC);
+        }
+        for told in [late(1, 96, true), late(7, 96, false)] {
+            assert_eq!(told, TIMING);
         }
     }
 }

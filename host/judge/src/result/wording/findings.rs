@@ -2,7 +2,7 @@
 
 use super::{at_speed, designer, evidence, place, rules, suspicion};
 use crate::report::wording::{board_name, count, differ, grouped};
-use crate::result::{Account, BoardKind, Defect, Doubt, Finding, NumberedRow, RepeatedRow};
+use crate::result::{Account, BoardKind, Defect, Doubt, Finding, LateRows, NumberedRow, RepeatedRow};
 
 const CHECK_THE_LINK: &str = "Check the link, and run again.";
 
@@ -157,20 +157,7 @@ fn of_rows(finding: &Finding) -> String {
              {row} of frame {frame}: the CRC unit is wrong, or samples that no output reads changed on their way in",
             count(*rows, "row")
         ),
-        Finding::LatencyWrong { rows, of_rows, is_one_row, row, frame, first, last, claimed } => format!(
-            "{} with another latency than the board claims{}: row {row} of frame {frame} took {first} pixel clocks from first in \
-             to first out and {last} from last in to last out; the board claims {claimed}",
-            if rows < of_rows {
-                format!("{} of {}", grouped(*rows), count(*of_rows, "row"))
-            } else {
-                count(*rows, "row")
-            },
-            if *is_one_row && *rows > 1 && rows < of_rows {
-                format!(", all row {row}")
-            } else {
-                String::new()
-            }
-        ),
+        Finding::LatencyWrong(late) => late_rows(late),
         Finding::RowMisplaced { row, frame } => format!(
             "the board returned row {row} of frame {frame} under a place that was never sent; its bitstream and this halfrow \
              do not match"
@@ -286,6 +273,19 @@ fn unjudged(finding: &Finding) -> String {
     }
 }
 
+fn late_rows(late: &LateRows) -> String {
+    let LateRows { rows, of_rows, row, frame, first, last, claimed, .. } = late;
+    let how_many = match late.are_some() {
+        true => format!("{} of {}", grouped(*rows), count(*of_rows, "row")),
+        false => count(*rows, "row"),
+    };
+    let which = if late.are_one_row() { format!(", all row {row}") } else { String::new() };
+    format!(
+        "{how_many} with another latency than the board claims{which}: row {row} of frame {frame} took {first} pixel clocks \
+         from first in to first out and {last} from last in to last out; the board claims {claimed}"
+    )
+}
+
 /// What to do about a finding, if there is something to do.
 #[must_use]
 pub fn remedy(finding: &Finding) -> Option<String> {
@@ -311,9 +311,7 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         Finding::GenerationWrong { .. } => {
             "The board uses stale tables: check when its bank switch takes effect."
         }
-        Finding::LatencyWrong { is_one_row, rows, of_rows, .. } => {
-            asked_of_latency(*is_one_row && rows < of_rows)
-        }
+        Finding::LatencyWrong(late) => asked_of_latency(late.are_one_row()),
         Finding::CounterWrong { .. } | Finding::GapsMiscounted { .. } | Finding::LatencyMiscounted { .. } => {
             "Check the board's counters and its row player; the samples themselves were right."
         }
