@@ -8,6 +8,7 @@ use serde_json::Value;
 use toml::Spanned;
 
 use super::FILES;
+use super::told::{LATE, LATE_AT_TIMES};
 use crate::codes as station;
 use crate::input_error::{Fault, InputError};
 
@@ -75,7 +76,11 @@ fn said() -> Keys {
 fn remedies() -> Keys {
     let asks = |finding: &halfrow::result::Finding| finding.remedy().map(|_| finding.as_problem().code);
     let asking: BTreeSet<_> = examples::findings().iter().filter_map(asks).collect();
-    findings().filter(|(code, _)| asking.contains(code)).chain(defects()).collect()
+    let mut asked: Keys = findings().filter(|(code, _)| asking.contains(code)).chain(defects()).collect();
+    if let Some(names) = asked.get(LATE).cloned() {
+        asked.insert(LATE_AT_TIMES.to_owned(), names);
+    }
+    asked
 }
 
 fn findings() -> impl Iterator<Item = (String, BTreeSet<String>)> {

@@ -1,9 +1,12 @@
 //! What has a code, in the words of a language.
 
+mod parameters;
+
 use serde_json::Value;
 
 use super::{Words, filled};
 use crate::said::Said;
+use parameters::late;
 
 /// The language of what was told.
 const ENGLISH: &str = "en";
@@ -11,8 +14,9 @@ const ENGLISH: &str = "en";
 const ABOUT: [&str; 4] = ["suspect", "defect", "found", "reason"];
 /// The parameter of a finding that may come from the link.
 const DOUBT: &str = "doubt";
-/// Parameters that are seconds.
-const TIMES: [&str; 4] = ["at", "seconds", "deadline", "waited"];
+/// The code of rows that are late, and the key of what it asks for where they come and go.
+pub(super) const LATE: &str = "latency-wrong";
+pub(super) const LATE_AT_TIMES: &str = "latency-wrong-at-times";
 
 /// A sentence on a page.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,7 +87,7 @@ impl Words {
 
     fn sentence(&self, code: &str, parameters: &Value) -> Option<String> {
         let words = self.of_code("said", code)?;
-        Some(filled(words, &|name| Some(self.named(name, at(parameters, name)?))))
+        Some(filled(words, &|name| self.named(name, parameters)))
     }
 
     fn asked(&self, code: &str, parameters: &Value) -> Option<String> {
@@ -94,43 +98,9 @@ impl Words {
             self.asked(about.get("code")?.as_str()?, about.get("parameters").unwrap_or(&Value::Null))
         });
         inner.or_else(|| {
-            let words = self.of_code("remedy", code)?;
-            Some(filled(words, &|name| Some(self.named(name, at(parameters, name)?))))
+            let words = self.of_code("remedy", asked_by(code, parameters))?;
+            Some(filled(words, &|name| self.named(name, parameters)))
         })
-    }
-
-    /// The parameter of this name as people read it: of times no more than they can tell apart.
-    fn named(&self, name: &str, value: &Value) -> String {
-        match value.as_f64().filter(|_| value.is_f64() && TIMES.contains(&name)) {
-            Some(seconds) if seconds >= 1.0 => self.figures(&format!("{}", (seconds * 10.0).round() / 10.0)),
-            Some(seconds) => self.figures(&format!("{}", (seconds * 1e3).round() / 1e3)),
-            None => self.value(value),
-        }
-    }
-
-    /// A parameter as people read it.
-    fn value(&self, value: &Value) -> String {
-        match value {
-            Value::Null => "–".to_owned(),
-            Value::String(text) if text.is_empty() => "–".to_owned(),
-            Value::String(text) => text.clone(),
-            Value::Number(number) if number.is_f64() => {
-                let rounded = number.as_f64().map(|value| (value * 1e6).round() / 1e6);
-                rounded.map_or_else(|| number.to_string(), |value| self.figures(&value.to_string()))
-            }
-            Value::Array(values) => {
-                values.iter().map(|value| self.value(value)).collect::<Vec<_>>().join(", ")
-            }
-            Value::Object(fields) => {
-                let text = |key: &str| fields.get(key).and_then(Value::as_str);
-                let own = text("code")
-                    .filter(|_| self.code != ENGLISH)
-                    .and_then(|code| self.sentence(code, fields.get("parameters").unwrap_or(&Value::Null)));
-                let named = || ["message", "name", "code"].into_iter().find_map(text).map(str::to_owned);
-                own.or_else(named).unwrap_or_else(|| value.to_string())
-            }
-            value @ (Value::Bool(_) | Value::Number(_)) => value.to_string(),
-        }
     }
 }
 
@@ -150,9 +120,9 @@ fn written(asked: &str) -> String {
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// The parameter of this name; `place.row` is the row of the place.
-fn at<'a>(parameters: &'a Value, name: &str) -> Option<&'a Value> {
-    name.split('.').try_fold(parameters, |value, name| value.get(name))
+/// The key of what a code asks for.
+fn asked_by<'a>(code: &'a str, parameters: &Value) -> &'a str {
+    if code == LATE && late(parameters).is_some_and(|late| late.come_and_go()) { LATE_AT_TIMES } else { code }
 }
 
 #[cfg(test)]
@@ -271,5 +241,75 @@ mod tests {
         let missing = said("row-missing", json!({ "place": { "frame": 2, "row": 3 }, "attempts": 8 }));
         assert_eq!(german(&missing).0, "Zeile 3 von Bild 2 kam in 8 Versuchen nicht zurück");
         assert_eq!(of(Some("de"), None).remedy(None, "Look.").foreign, Some("en"));
+    }
+
+    fn judged(code: &str, parameters: &Value) -> Said {
+        let parameters = parameters.as_object().cloned().unwrap_or_default();
+        Said { code: code.to_owned(), parameters, message: "in English".to_owned(), causes: Vec::new() }
+    }
+
+    /// A bit that is one of several alike, and a suspect that is one of several; records of earlier programs say of neither.
+    #[test]
+    fn what_is_one_of_several_is_not_told_as_the_fact_in_any_language() {
+        let told = |language, said: &Said| of(Some(language), None).tell(said).text;
+        let bit = |reading: Value| {
+            judged("row-factor-bit-wrong", &json!({ "row": 3, "bit": 6, "reading": reading }))
+        };
+        let several = bit(json!({ "alike": [9, 5] }));
+        assert_eq!(told("de", &several), "Zeilenfaktor 3, Bit 5, 6 oder 9");
+        assert_eq!(told("zh", &several), "行系数 3，第 5, 6 或 9 位");
+        assert_eq!(told("de", &bit(json!({}))), "Zeilenfaktor 3, Bit 6");
+        let suspect = json!({ "code": "output-data-stuck", "parameters": { "bit": 9, "value": 1 } });
+        for code in ["samples-differ", "differs-at-speed"] {
+            for (others, german, chinese) in [
+                (
+                    json!(1),
+                    "auf 1, oder ein anderer Fehler, der dasselbe ergibt",
+                    "为 1，或另一个结果相同的缺陷",
+                ),
+                (
+                    json!(3),
+                    "auf 1, oder einer von 3 anderen, die dasselbe ergeben",
+                    "为 1，或另外 3 个结果相同的缺陷之一",
+                ),
+                (json!(0), "hängt auf 1", "固定为 1"),
+                (Value::Null, "hängt auf 1", "固定为 1"),
+            ] {
+                let mut said = judged(code, &json!({ "suspect": suspect, "others": others }));
+                said.parameters.retain(|_, value| !value.is_null());
+                for (language, end) in [("de", german), ("zh", chinese)] {
+                    assert!(told(language, &said).ends_with(end), "{}", told(language, &said));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn one_late_row_is_told_as_one_and_rows_that_are_late_now_and_then_ask_for_a_look_at_the_timing() {
+        let late = |rows: usize, of_rows: usize, is_one_row: bool| {
+            let mut late =
+                json!({ "rows": rows, "row": 3, "frame": 0, "first": 973, "last": 974, "claimed": 972 });
+            if of_rows > 0 {
+                (late["of_rows"], late["is_one_row"]) = (of_rows.into(), is_one_row.into());
+            }
+            judged("latency-wrong", &late)
+        };
+        let begins = |said: &Said| german(said).0.split_once(": ").unwrap().0.to_owned();
+        let claims = "Zeilen haben eine andere Verzögerung, als die Platine angibt";
+        assert_eq!(begins(&late(16, 96, true)), format!("16 von 96 {claims}, jedes Mal Zeile 3"));
+        assert_eq!(begins(&late(7, 96, false)), format!("7 von 96 {claims}"));
+        assert_eq!(begins(&late(7, 0, false)), format!("7 {claims}"));
+        let asked = |language, said: &Said| of(Some(language), None).remedy(Some(said), "in English").text;
+        for language in ["de", "zh"] {
+            let [always, at_times] = ["latency-miscounted", "generation-wrong"]
+                .map(|code| asked(language, &judged(code, &json!({}))));
+            assert!(always != at_times);
+            for said in [late(96, 96, false), late(9, 0, false), late(16, 96, true)] {
+                assert_eq!(asked(language, &said), always);
+            }
+            for said in [late(1, 96, true), late(7, 96, false)] {
+                assert_eq!(asked(language, &said), at_times);
+            }
+        }
     }
 }

@@ -1,0 +1,102 @@
+//! Parameters of what was told, as people read them.
+
+use halfrow::result::LateRows;
+use serde::Deserialize as _;
+use serde_json::Value;
+
+use super::super::Words;
+use super::ENGLISH;
+
+/// Parameters that are seconds.
+const TIMES: [&str; 4] = ["at", "seconds", "deadline", "waited"];
+
+impl Words {
+    /// The parameter of this name as people read it, with what others say of it; none if there is none.
+    pub(super) fn named(&self, name: &str, parameters: &Value) -> Option<String> {
+        let value = at(parameters, name);
+        let own = || Some(self.alone(name, value?));
+        match name {
+            "others" => Some(self.others(value.and_then(Value::as_u64).unwrap_or_default())),
+            "is_one_row" => Some(self.one_row(parameters)),
+            "rows" => self.some_rows(parameters).or_else(own),
+            "bit" => self.one_of_bits(parameters).or_else(own),
+            _ => own(),
+        }
+    }
+
+    /// That so many other defects explain all as well.
+    fn others(&self, others: u64) -> String {
+        match others {
+            0 => String::new(),
+            1 => self.say("told.another").to_owned(),
+            more => self.fill("told.others", &[("others", &more.to_string())]),
+        }
+    }
+
+    /// Late rows of all that there are.
+    fn some_rows(&self, parameters: &Value) -> Option<String> {
+        let LateRows { rows, of_rows, .. } = late(parameters).filter(LateRows::are_some)?;
+        Some(self.fill("told.some", &[("some", &rows.to_string()), ("all", &of_rows.to_string())]))
+    }
+
+    /// That every late row is the same one.
+    fn one_row(&self, parameters: &Value) -> String {
+        let late = late(parameters).filter(LateRows::are_one_row);
+        late.map_or_else(String::new, |late| self.fill("told.one-row", &[("row", &late.row.to_string())]))
+    }
+
+    /// The bit and those that come to the same, if there are some.
+    fn one_of_bits(&self, parameters: &Value) -> Option<String> {
+        let alike = at(parameters, "reading.alike")?.as_array()?.iter();
+        let mut bits: Vec<_> =
+            parameters.get("bit").into_iter().chain(alike).filter_map(Value::as_u64).collect();
+        bits.sort_unstable();
+        let (last, first) = bits.split_last().filter(|(_, first)| !first.is_empty())?;
+        let first = first.iter().map(u64::to_string).collect::<Vec<_>>().join(", ");
+        Some(self.fill("told.or", &[("first", &first), ("last", &last.to_string())]))
+    }
+
+    /// The parameter of this name by itself: of times no more than people can tell apart.
+    fn alone(&self, name: &str, value: &Value) -> String {
+        match value.as_f64().filter(|_| value.is_f64() && TIMES.contains(&name)) {
+            Some(seconds) if seconds >= 1.0 => self.figures(&format!("{}", (seconds * 10.0).round() / 10.0)),
+            Some(seconds) => self.figures(&format!("{}", (seconds * 1e3).round() / 1e3)),
+            None => self.value(value),
+        }
+    }
+
+    /// A parameter as people read it.
+    fn value(&self, value: &Value) -> String {
+        match value {
+            Value::Null => "–".to_owned(),
+            Value::String(text) if text.is_empty() => "–".to_owned(),
+            Value::String(text) => text.clone(),
+            Value::Number(number) if number.is_f64() => {
+                let rounded = number.as_f64().map(|value| (value * 1e6).round() / 1e6);
+                rounded.map_or_else(|| number.to_string(), |value| self.figures(&value.to_string()))
+            }
+            Value::Array(values) => {
+                values.iter().map(|value| self.value(value)).collect::<Vec<_>>().join(", ")
+            }
+            Value::Object(fields) => {
+                let text = |key: &str| fields.get(key).and_then(Value::as_str);
+                let own = text("code")
+                    .filter(|_| self.code != ENGLISH)
+                    .and_then(|code| self.sentence(code, fields.get("parameters").unwrap_or(&Value::Null)));
+                let named = || ["message", "name", "code"].into_iter().find_map(text).map(str::to_owned);
+                own.or_else(named).unwrap_or_else(|| value.to_string())
+            }
+            value @ (Value::Bool(_) | Value::Number(_)) => value.to_string(),
+        }
+    }
+}
+
+/// The late rows that these parameters are of, if they are of such.
+pub(super) fn late(parameters: &Value) -> Option<LateRows> {
+    LateRows::deserialize(parameters).ok()
+}
+
+/// The parameter of this name; `place.row` is the row of the place.
+fn at<'a>(parameters: &'a Value, name: &str) -> Option<&'a Value> {
+    name.split('.').try_fold(parameters, |value, name| value.get(name))
+}
