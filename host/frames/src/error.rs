@@ -312,17 +312,6 @@ pub enum EncodeError {
     /// The TIFF encoder gave up.
     #[error("the TIFF encoder refused the frame; write a PGM instead")]
     Tiff(#[from] tiff::TiffError),
-    /// The layout has fewer bits than the frame.
-    #[error("{layout} cannot hold samples of {bits} bits; use u16le", bits = depth.bits())]
-    LayoutTooNarrow {
-        /// The layout.
-        layout: RawLayout,
-        /// The frame's depth.
-        depth: BitDepth,
-    },
-    /// The rows do not fill whole packing groups.
-    #[error(transparent)]
-    Packing(#[from] PackingError),
     /// The samples are no frame.
     #[error(transparent)]
     Frame(#[from] FrameError),

@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 use halfrow_model::{BitDepth, Frame};
 
-use super::{EncodeError, FrameShape, Orientation, RawLayout, WriteError, dng, pgm, png, raw, tiff};
+use super::{EncodeError, FrameShape, Orientation, WriteError, dng, pgm, png, raw, tiff};
 
 /// A format that frames are written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,7 +72,7 @@ impl Format {
     pub(super) fn pack(self, row: &[u16], depth: BitDepth, line: &mut Vec<u8>) {
         match self {
             Self::Pgm => pgm::pack(row, depth, line),
-            _ => RawLayout::U16Le.pack(row, line),
+            _ => raw::pack(row, line),
         }
     }
 
@@ -83,7 +83,7 @@ impl Format {
             Self::Png => png::encode(frame, &mut bytes)?,
             Self::Tiff => tiff::encode(frame, orientation, &mut Cursor::new(&mut bytes))?,
             Self::Dng => dng::encode(frame, orientation, &mut Cursor::new(&mut bytes))?,
-            Self::Raw => raw::encode(frame, RawLayout::U16Le, &mut bytes)?,
+            Self::Raw => raw::encode(frame, &mut bytes)?,
         }
         Ok(bytes)
     }

@@ -5,14 +5,14 @@
 //! lower four, the first sample's in bits 3:0.
 
 use std::fmt;
-use std::io::Write;
+use std::io::{self, Write};
 use std::str::FromStr;
 
 use halfrow_model::Frame;
 
 use super::error::PackingError;
 use super::raster::{Lines, Raster};
-use super::{DecodeError, EncodeError, ReadOptions, size};
+use super::{DecodeError, ReadOptions, size};
 
 /// How headerless samples lie in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -94,27 +94,6 @@ impl RawLayout {
         }
     }
 
-    /// Appends the bytes of a row.
-    pub(super) fn pack(self, row: &[u16], line: &mut Vec<u8>) {
-        match self {
-            Self::U8 => line.extend(row.iter().map(|sample| sample.to_le_bytes()[0])),
-            Self::U16Le => line.extend(row.iter().flat_map(|sample| sample.to_le_bytes())),
-            Self::Mipi10 | Self::Mipi12 => {
-                row.chunks_exact(self.group().0).for_each(|group| self.pack_group(group, line));
-            }
-        }
-    }
-
-    fn pack_group(self, group: &[u16], bytes: &mut Vec<u8>) {
-        let low_bits = self.bits() - 8;
-        bytes.extend(group.iter().map(|sample| (sample >> low_bits).to_le_bytes()[0]));
-        let low = group
-            .iter()
-            .zip(0..)
-            .fold(0, |low, (sample, place)| low | (sample & ((1 << low_bits) - 1)) << (place * low_bits));
-        bytes.push(low.to_le_bytes()[0]);
-    }
-
     fn check_width(self, width: usize) -> Result<(), PackingError> {
         let (group, _) = self.group();
         if width.is_multiple_of(group) {
@@ -175,20 +154,20 @@ pub(super) fn raster(geometry: RawGeometry) -> Result<Raster, DecodeError> {
     Ok(Raster { width, height, start: 0, lines: Lines::Raw(layout) })
 }
 
-/// Writes the samples of `frame` without a header.
+/// Appends the bytes of a row in [`RawLayout::U16Le`].
+pub(super) fn pack(row: &[u16], line: &mut Vec<u8>) {
+    line.extend(row.iter().flat_map(|sample| sample.to_le_bytes()));
+}
+
+/// Writes the samples of `frame` in [`RawLayout::U16Le`], without a header.
 ///
 /// # Errors
-/// [`EncodeError`] when the layout has fewer bits than the frame, when a row is no whole number of packing groups, or
-/// when `out` fails.
-pub fn encode(frame: &Frame, layout: RawLayout, out: &mut impl Write) -> Result<(), EncodeError> {
-    if layout.bits() < frame.depth().bits() {
-        return Err(EncodeError::LayoutTooNarrow { layout, depth: frame.depth() });
-    }
-    layout.check_width(frame.width())?;
+/// Whatever `out` answers.
+pub fn encode(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
     let mut line = Vec::with_capacity(frame.width() * 2);
     for row in frame.rows() {
         line.clear();
-        layout.pack(row, &mut line);
+        pack(row, &mut line);
         out.write_all(&line)?;
     }
     Ok(())

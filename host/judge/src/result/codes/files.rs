@@ -58,8 +58,6 @@ codes! {
         Io => "frame-encoder-failed",
         Png => "png-not-encoded",
         Tiff => "tiff-not-encoded",
-        LayoutTooNarrow [layout, depth] => "raw-layout-too-narrow",
-        = Packing,
         = Frame,
     }
     WriteAsideError {
