@@ -1,6 +1,6 @@
 //! What frames at the full pixel clock have shown, and what enters the core.
 
-use super::places::list;
+use super::places;
 use super::{LOGIC, TIMING, Words, suspicion};
 use crate::report::wording::{count, differ, grouped, hertz, span};
 use crate::result::{
@@ -72,10 +72,8 @@ pub(super) fn seen_at_speed(row: Option<usize>, samples: usize, bits: &[u32]) ->
 /// The bits in which a path was seen to fail, and the row.
 fn seen(row: Option<usize>, samples: usize, bits: &[u32]) -> (String, String) {
     let Some(row) = row else { return (String::new(), String::new()) };
-    let ending = if bits.len() == 1 { "" } else { "s" };
-    let numbers = list(&bits.iter().map(|&bit| bit as usize).collect::<Vec<_>>());
     (
-        format!(", seen in bit{ending} {numbers} of the corrected samples"),
+        format!(", seen in {} of the corrected samples", places::bits(bits)),
         format!("; row {row} was kept, in which {} {}", count(samples, "sample"), differ(samples)),
     )
 }

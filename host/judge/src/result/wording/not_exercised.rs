@@ -1,7 +1,7 @@
 //! What no frame put to the test.
 
 use super::at_speed::seen_of_clock;
-use super::places::list;
+use super::places::{named, numbered};
 use crate::report::wording::hertz;
 use crate::result::NotExercised;
 
@@ -9,19 +9,19 @@ use crate::result::NotExercised;
 #[must_use]
 pub fn not_exercised(part: &NotExercised) -> String {
     match part {
-        NotExercised::InputBits { bits } => format!("{} of the samples going in", some("bit", bits)),
-        NotExercised::OutputBits { bits } => format!("{} of the corrected samples", some("bit", bits)),
+        NotExercised::InputBits { bits } => format!("{} of the samples going in", numbered("bit", bits)),
+        NotExercised::OutputBits { bits } => format!("{} of the corrected samples", numbered("bit", bits)),
         NotExercised::ColumnAddress { lines } => format!("{} of columns", addresses(lines)),
         NotExercised::LineMemoryAddress { lines } => format!("{} of the line memory", addresses(lines)),
         NotExercised::RowTableAddress { lines } => format!("{} of the row table", addresses(lines)),
-        NotExercised::RowFactorBits { bits } => format!("{} of the row factors", some("bit", bits)),
-        NotExercised::KernelNodes { nodes } => format!("kernel {}", some("node", nodes)),
-        NotExercised::Taps { taps } => named_taps(taps),
+        NotExercised::RowFactorBits { bits } => format!("{} of the row factors", numbered("bit", bits)),
+        NotExercised::KernelNodes { nodes } => format!("kernel {}", numbered("node", nodes)),
+        NotExercised::Taps { taps } => named("tap", taps.len(), &taps.join(", ")),
         NotExercised::OneCentre { centre2 } => {
             format!("any optical centre but column {:.1}", f64::from(*centre2) / 2.0)
         }
         NotExercised::CentreBits { bits } => {
-            format!("{} of the optical centre's setting", some("bit", bits))
+            format!("{} of the optical centre's setting", numbered("bit", bits))
         }
         NotExercised::FullSpeed {} => "frames at the full pixel clock without a pause".to_owned(),
         NotExercised::TableChangeAtSpeed {} => {
@@ -48,12 +48,6 @@ pub fn not_exercised(part: &NotExercised) -> String {
     }
 }
 
-/// `tap G0`, `taps G0, G6`
-fn named_taps(taps: &[String]) -> String {
-    let ending = if taps.len() == 1 { "" } else { "s" };
-    format!("tap{ending} {}", taps.join(", "))
-}
-
 /// `the pixel clock of 96.0 MHz that the board names`
 fn clock(clock_hz: u32) -> String {
     format!("the pixel clock of {} that the board names", hertz(clock_hz))
@@ -67,13 +61,7 @@ fn depths(bits: &[u32]) -> String {
 
 /// `address line 7`, `address lines 0 to 3, 7`
 fn addresses(lines: &[usize]) -> String {
-    some("address line", lines)
-}
-
-/// `bit 7`, `bits 0 to 3, 7`
-fn some(what: &str, numbers: &[usize]) -> String {
-    let ending = if numbers.len() == 1 { "" } else { "s" };
-    format!("{what}{ending} {}", list(numbers))
+    numbered("address line", lines)
 }
 
 #[cfg(test)]

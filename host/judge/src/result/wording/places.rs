@@ -76,6 +76,22 @@ pub(super) fn list(numbers: &[usize]) -> String {
     words.join(", ")
 }
 
+/// `bit 7`, `bits 0 to 3, 7`
+pub(super) fn bits(numbers: &[u32]) -> String {
+    numbered("bit", &numbers.iter().map(|&bit| bit as usize).collect::<Vec<_>>())
+}
+
+/// The same of other things that have numbers, which ascend.
+pub(super) fn numbered(what: &str, numbers: &[usize]) -> String {
+    named(what, numbers.len(), &list(numbers))
+}
+
+/// The same of things whose names are put together already.
+pub(super) fn named(what: &str, count: usize, names: &str) -> String {
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{what}{ending} {names}")
+}
+
 fn exchanged(source: RowSource, mostly: bool) -> Words {
     let name = |rows: isize| match rows {
         0 => "the same row".to_owned(),
@@ -174,10 +190,8 @@ pub(super) fn where_and_how(defect: &Defect) -> Vec<String> {
 }
 
 /// Few bits, which single lines may be behind.
-fn bits_alone(bits: &[u32]) -> Option<String> {
-    let ending = if bits.len() == 1 { "" } else { "s" };
-    let numbers = list(&bits.iter().map(|&bit| bit as usize).collect::<Vec<_>>());
-    (1..=FEW_BITS).contains(&bits.len()).then(|| format!("bit{ending} {numbers} alone"))
+fn bits_alone(numbers: &[u32]) -> Option<String> {
+    (1..=FEW_BITS).contains(&numbers.len()).then(|| format!("{} alone", bits(numbers)))
 }
 
 fn extent(name: &str, extent: Extent) -> String {

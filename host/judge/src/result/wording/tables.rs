@@ -1,6 +1,6 @@
 //! Words of tables that are wrong: as the samples show it, and as they read back.
 
-use super::places::list;
+use super::places;
 use super::{LOGIC, MEMORY, Words, memory};
 use crate::result::{Defect, Memory, Reading};
 
@@ -108,9 +108,10 @@ fn bits(bit: u32, reading: &Reading) -> String {
     if reading.alike.is_empty() {
         return format!("bit {bit}");
     }
-    let mut bits: Vec<_> = [bit].iter().chain(&reading.alike).map(|&bit| bit as usize).collect();
-    bits.sort_unstable();
-    format!("one of bits {}", list(&bits))
+    let mut alike = reading.alike.clone();
+    alike.push(bit);
+    alike.sort_unstable();
+    format!("one of {}", places::bits(&alike))
 }
 
 fn read_value((least, most): (i64, i64), uploaded: i64, only: Option<u8>) -> String {
@@ -135,7 +136,7 @@ pub(super) fn read_back(defect: &Defect) -> Option<Words> {
             (table, word(*entry, weight.as_deref(), bits), String::new())
         }
         Defect::GridEntryReadsWrong { column, row, bits, .. } => {
-            let place = format!("{}, {}", grid_entry((*column, *row)), labelled(bits));
+            let place = format!("{}, {}", grid_entry((*column, *row)), places::bits(bits));
             return Some(Words { part: "grid entry", ..of_table(Memory::Rows, place, String::new()) });
         }
         Defect::TableDataStuck { table, weight, bit, value } => {
@@ -181,12 +182,5 @@ fn word(entry: usize, weight: Option<&str>, bits: &[u32]) -> String {
         None => format!("row {entry}'s factor"),
         Some(weight) => format!("kernel node {entry}, weight {weight}"),
     };
-    format!("{name}, {}", labelled(bits))
-}
-
-/// "bits 3, 7"
-fn labelled(bits: &[u32]) -> String {
-    let label = if bits.len() == 1 { "bit" } else { "bits" };
-    let bits: Vec<_> = bits.iter().map(u32::to_string).collect();
-    format!("{label} {}", bits.join(", "))
+    format!("{name}, {}", places::bits(bits))
 }
