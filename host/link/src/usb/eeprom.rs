@@ -31,7 +31,7 @@ impl fmt::Display for ChannelMode {
 
 /// What an EEPROM says of a channel, and on what ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Found {
+pub(super) enum StoredMode {
     /// Its words say so.
     Stored(ChannelMode),
     /// The chip ignores it, since it is blank, missing or its checksum is wrong, and takes its channels for UARTs.
@@ -40,7 +40,7 @@ pub(super) enum Found {
     Unknown,
 }
 
-impl Found {
+impl StoredMode {
     /// What the pins are, if that is known.
     pub(super) fn mode(self) -> Option<ChannelMode> {
         match self {
@@ -51,7 +51,7 @@ impl Found {
     }
 }
 
-impl fmt::Display for Found {
+impl fmt::Display for StoredMode {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Stored(mode) => write!(f, "{mode} by its EEPROM"),
@@ -62,26 +62,26 @@ impl fmt::Display for Found {
 }
 
 /// What `words` say of `channel`; fewer than [`WORDS`] are an EEPROM that cannot be read.
-pub(super) fn channel_mode(chip: Chip, channel: Channel, words: &[u16]) -> Found {
+pub(super) fn channel_mode(chip: Chip, channel: Channel, words: &[u16]) -> StoredMode {
     // These are serial lines whatever their EEPROM says.
     if matches!(chip, Chip::Ft4232h | Chip::FullSpeed) {
-        return Found::Stored(ChannelMode::Uart);
+        return StoredMode::Stored(ChannelMode::Uart);
     }
     if words.len() < usize::from(WORDS) {
-        return Found::Unknown;
+        return StoredMode::Unknown;
     }
     if !is_valid(words) {
-        return Found::Ignored;
+        return StoredMode::Ignored;
     }
     let code = words[0].to_le_bytes()[usize::from(channel.0)];
     let code = if chip == Chip::Ft232h { code & 0x0f } else { code & 0x07 };
     match code {
-        0 => Found::Stored(ChannelMode::Uart),
-        1 => Found::Stored(ChannelMode::Fifo),
-        2 => Found::Stored(ChannelMode::Opto),
-        4 if chip == Chip::Ft232h => Found::Stored(ChannelMode::Ft1248),
-        3 | 4 => Found::Stored(ChannelMode::Cpu),
-        _ => Found::Unknown,
+        0 => StoredMode::Stored(ChannelMode::Uart),
+        1 => StoredMode::Stored(ChannelMode::Fifo),
+        2 => StoredMode::Stored(ChannelMode::Opto),
+        4 if chip == Chip::Ft232h => StoredMode::Stored(ChannelMode::Ft1248),
+        3 | 4 => StoredMode::Stored(ChannelMode::Cpu),
+        _ => StoredMode::Unknown,
     }
 }
 
@@ -113,30 +113,30 @@ mod tests {
         // setmode.c of the miniSpartan6+: 0x0101 is FIFO, 0x0801 is UART at B with the driver's bit.
         for length in [64, 128] {
             let stored = |first| channel_mode(Chip::Ft2232h, B, &words(first, length));
-            assert_eq!(stored(0x0101), Found::Stored(ChannelMode::Fifo));
-            assert_eq!(stored(0x0801), Found::Stored(ChannelMode::Uart));
-            assert_eq!(stored(0x0200), Found::Stored(ChannelMode::Opto));
-            assert_eq!(stored(0x0400), Found::Stored(ChannelMode::Cpu));
+            assert_eq!(stored(0x0101), StoredMode::Stored(ChannelMode::Fifo));
+            assert_eq!(stored(0x0801), StoredMode::Stored(ChannelMode::Uart));
+            assert_eq!(stored(0x0200), StoredMode::Stored(ChannelMode::Opto));
+            assert_eq!(stored(0x0400), StoredMode::Stored(ChannelMode::Cpu));
             assert_eq!(channel_mode(Chip::Ft2232h, Channel(0), &words(0x0801, length)), stored(0x0101));
         }
         assert_eq!(
             channel_mode(Chip::Ft232h, Channel(0), &words(4, 128)),
-            Found::Stored(ChannelMode::Ft1248)
+            StoredMode::Stored(ChannelMode::Ft1248)
         );
     }
 
     #[test]
     fn a_chip_ignores_an_eeprom_that_is_blank_or_spoilt() {
-        assert_eq!(channel_mode(Chip::Ft2232h, B, &[0xffff; 128]), Found::Ignored);
+        assert_eq!(channel_mode(Chip::Ft2232h, B, &[0xffff; 128]), StoredMode::Ignored);
         let mut spoilt = words(0x0101, 64);
         spoilt[1] ^= 1;
-        assert_eq!(channel_mode(Chip::Ft2232h, B, &spoilt), Found::Ignored);
-        assert_eq!(Found::Ignored.mode(), Some(ChannelMode::Uart));
+        assert_eq!(channel_mode(Chip::Ft2232h, B, &spoilt), StoredMode::Ignored);
+        assert_eq!(StoredMode::Ignored.mode(), Some(ChannelMode::Uart));
     }
 
     #[test]
     fn what_cannot_be_read_is_not_guessed() {
-        assert_eq!(channel_mode(Chip::Ft2232h, B, &[]), Found::Unknown);
-        assert_eq!(channel_mode(Chip::FullSpeed, Channel(0), &[]), Found::Stored(ChannelMode::Uart));
+        assert_eq!(channel_mode(Chip::Ft2232h, B, &[]), StoredMode::Unknown);
+        assert_eq!(channel_mode(Chip::FullSpeed, Channel(0), &[]), StoredMode::Stored(ChannelMode::Uart));
     }
 }

@@ -56,7 +56,7 @@ impl fmt::Display for UsbBoard {
 }
 
 /// A chip with what libusb knows it by.
-pub(super) struct Found {
+pub(super) struct FtdiDevice {
     pub(super) board: UsbBoard,
     pub(super) chip: Chip,
     pub(super) device: Device<Context>,
@@ -70,16 +70,16 @@ pub(crate) fn usb_boards() -> Result<Vec<UsbBoard>, UsbError> {
     Ok(all()?.into_iter().map(|found| found.board).collect())
 }
 
-fn all() -> Result<Vec<Found>, UsbError> {
+fn all() -> Result<Vec<FtdiDevice>, UsbError> {
     // The crate's global context would panic on a machine without USB.
     let context = Context::new().map_err(|_| UsbError::NoUsb)?;
     let devices = context.devices().map_err(|_| UsbError::NoUsb)?;
-    let mut found: Vec<Found> = devices.iter().filter_map(look_at).collect();
+    let mut found: Vec<FtdiDevice> = devices.iter().filter_map(look_at).collect();
     found.sort_by(|one, other| one.board.place.cmp(&other.board.place));
     Ok(found)
 }
 
-fn look_at(device: Device<Context>) -> Option<Found> {
+fn look_at(device: Device<Context>) -> Option<FtdiDevice> {
     let descriptor = device.device_descriptor().ok()?;
     let version = bcd(descriptor.device_version());
     let chip = (descriptor.vendor_id() == VENDOR).then(|| Chip::of(descriptor.product_id(), version))??;
@@ -108,7 +108,7 @@ fn look_at(device: Device<Context>) -> Option<Found> {
     let file = PathBuf::from(format!("/dev/bus/usb/{:03}/{:03}", device.bus_number(), device.address()));
     let (chip_name, is_permitted) = (chip.name(), handle.is_some());
     let board = UsbBoard { device: described, chip: chip_name, place, file, is_permitted };
-    Some(Found { board, chip, device })
+    Some(FtdiDevice { board, chip, device })
 }
 
 /// A version as it stands in the descriptor: four decimal digits, of which the first two are one number here.
@@ -129,15 +129,15 @@ fn place(device: &Device<Context>) -> String {
 }
 
 /// The one chip that `name` stands for: a serial number, a place, or nothing when there is one high-speed chip only.
-pub(super) fn choose(name: Option<&str>) -> Result<Found, UsbError> {
+pub(super) fn choose(name: Option<&str>) -> Result<FtdiDevice, UsbError> {
     let all = all()?;
-    let boards = |found: &[Found]| found.iter().map(|found| found.board.clone()).collect();
+    let boards = |found: &[FtdiDevice]| found.iter().map(|found| found.board.clone()).collect();
     let everything: Vec<UsbBoard> = boards(&all);
-    let is_meant = |found: &Found| match name {
+    let is_meant = |found: &FtdiDevice| match name {
         Some(name) => found.board.is_called(name),
         None => found.chip.is_high_speed(),
     };
-    let mut meant: Vec<Found> = all.into_iter().filter(is_meant).collect();
+    let mut meant: Vec<FtdiDevice> = all.into_iter().filter(is_meant).collect();
     match (meant.pop(), meant.is_empty(), name) {
         (Some(found), true, _) => Ok(found),
         (Some(found), false, _) => {

@@ -1,7 +1,7 @@
 //! Boards behind one of FTDI's USB chips, without the system's serial driver.
 //!
 //! ```text
-//! UsbLink ─ Pump ─ a reading and a writing thread ─► Transport: libusb ─► chip ─ FIFO or UART ─► board
+//! UsbLink ─ Threads: one reads, one writes ─► Transport: libusb ─► chip ─ FIFO or UART ─► board
 //! ```
 //!
 //! The driver makes serial ports of both channels, moves 512 bytes at a time, and knows no FIFO. Here one interface is claimed,
@@ -14,7 +14,7 @@ mod find;
 mod ftdi;
 mod options;
 mod packets;
-mod pump;
+mod threads;
 mod transport;
 
 use std::fs;
@@ -22,11 +22,11 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use chip::Channel;
-use find::{Found, choose, sysfs};
+use find::{FtdiDevice, choose, sysfs};
 use ftdi::{Ftdi, Ready};
 use options::UsbOptions;
 use packets::strip;
-use pump::Pump;
+use threads::Threads;
 use transport::Libusb;
 
 use super::serial::{Holder, keepers};
@@ -50,7 +50,7 @@ const HEED: Duration = Duration::from_millis(250);
 
 /// A pipe through a channel of a chip.
 pub(crate) struct UsbLink {
-    pump: Pump,
+    threads: Threads,
     name: String,
     bytes_per_second: f64,
     opened: Instant,
@@ -85,10 +85,10 @@ impl UsbLink {
         let unpack = Box::new(move |transfer: &[u8], data: &mut Vec<u8>, errors: &mut LineErrors| {
             strip(transfer, packet, data, is_line, errors);
         });
-        let pump = Pump::start(Box::new(transport), unpack);
-        let pump = pump.map_err(|source| UsbError::NoThread { name: name.clone(), source })?;
+        let threads = Threads::start(Box::new(transport), unpack);
+        let threads = threads.map_err(|source| UsbError::NoThread { name: name.clone(), source })?;
         Ok(Self {
-            pump,
+            threads,
             name: format!("{name} ({}, channel {}, {what})", chip.name(), channel.letter()),
             bytes_per_second,
             opened: Instant::now(),
@@ -97,7 +97,7 @@ impl UsbLink {
 }
 
 /// Claims the channel's interface, unless a program has it or its serial port open.
-fn claim(found: &Found, channel: Channel) -> Result<Libusb, UsbError> {
+fn claim(found: &FtdiDevice, channel: Channel) -> Result<Libusb, UsbError> {
     let (chip, name) = (found.chip, found.board.target());
     for port in serial_ports(&found.board.place, channel) {
         if let Some(holders) = held(&port) {
@@ -163,8 +163,8 @@ impl Link for UsbLink {
         incoming: &mut Vec<u8>,
         wait: Duration,
     ) -> Result<usize, LinkError> {
-        // A signal does not end a wait for the pump's threads.
-        self.pump.exchange(outgoing, incoming, wait.min(HEED)).map_err(|failure| match failure {
+        // A signal does not end a wait for the threads.
+        self.threads.exchange(outgoing, incoming, wait.min(HEED)).map_err(|failure| match failure {
             UsbFailure::Gone => LinkError::Unplugged { link: self.name(), at: self.now() },
             other => {
                 LinkError::Failed { link: self.name(), at: self.now(), source: std::io::Error::other(other) }
@@ -189,6 +189,6 @@ impl Link for UsbLink {
     }
 
     fn line_errors(&self) -> LineErrors {
-        self.pump.errors()
+        self.threads.errors()
     }
 }

@@ -131,21 +131,21 @@ impl Shared {
 }
 
 /// The two threads at work.
-pub(super) struct Pump {
+pub(super) struct Threads {
     shared: Arc<Shared>,
-    threads: Vec<JoinHandle<()>>,
+    handles: Vec<JoinHandle<()>>,
 }
 
-impl Pump {
+impl Threads {
     /// # Errors
     /// The system's, when it has no thread left.
     pub(super) fn start(transport: Box<dyn Transport>, unpack: Box<Unpack>) -> io::Result<Self> {
         let queues = Mutex::new(Queues::default());
         let shared = Arc::new(Shared { transport, unpack, queues, changed: Condvar::new() });
-        let mut pump = Self { shared, threads: Vec::new() };
-        pump.spawn(Shared::keep_reading)?;
-        pump.spawn(Shared::keep_writing)?;
-        Ok(pump)
+        let mut threads = Self { shared, handles: Vec::new() };
+        threads.spawn(Shared::keep_reading)?;
+        threads.spawn(Shared::keep_writing)?;
+        Ok(threads)
     }
 
     fn spawn(&mut self, work: fn(&Shared)) -> io::Result<()> {
@@ -156,7 +156,7 @@ impl Pump {
                 shared.fail(UsbFailure::Other(fault(panic.as_ref())));
             }
         };
-        self.threads.push(thread::Builder::new().name("usb".to_owned()).spawn(run)?);
+        self.handles.push(thread::Builder::new().name("usb".to_owned()).spawn(run)?);
         Ok(())
     }
 
@@ -196,7 +196,7 @@ impl Pump {
     }
 }
 
-impl Drop for Pump {
+impl Drop for Threads {
     /// Waits for what is still to be written, since the last words of a session free the board, but not for a device that
     /// takes nothing.
     fn drop(&mut self) {
@@ -207,7 +207,7 @@ impl Drop for Pump {
         queues.is_over = true;
         drop(queues);
         self.shared.changed.notify_all();
-        for thread in self.threads.drain(..) {
+        for thread in self.handles.drain(..) {
             // One that panicked has made the link fail.
             let _ = thread.join();
         }
@@ -275,17 +275,18 @@ mod tests {
         }
     }
 
-    fn pump(device: Device) -> Pump {
-        Pump::start(Box::new(device), Box::new(|transfer, data, _| data.extend_from_slice(transfer))).unwrap()
+    fn threads(device: Device) -> Threads {
+        Threads::start(Box::new(device), Box::new(|transfer, data, _| data.extend_from_slice(transfer)))
+            .unwrap()
     }
 
     #[test]
     fn what_came_before_a_failure_is_handed_over_before_it() {
         let says = [Ok(vec![1, 2]), Ok(vec![3]), Err(UsbFailure::Gone)].into();
-        let pump = pump(Device { says: Mutex::new(says), ..Device::default() });
+        let threads = threads(Device { says: Mutex::new(says), ..Device::default() });
         let mut incoming = Vec::new();
         let failure = loop {
-            match pump.exchange(&[], &mut incoming, LONG) {
+            match threads.exchange(&[], &mut incoming, LONG) {
                 Ok(_) => {}
                 Err(failure) => break failure,
             }
@@ -293,63 +294,63 @@ mod tests {
         assert!(matches!(failure, UsbFailure::Gone));
         assert_eq!(incoming, [1, 2, 3]);
         // It stays so, and takes nothing more.
-        assert!(pump.exchange(&[7], &mut incoming, LONG).is_err());
+        assert!(threads.exchange(&[7], &mut incoming, LONG).is_err());
     }
 
     #[test]
     fn a_thread_that_panics_is_no_silent_board() {
-        let pump = pump(Device { panics: true, ..Device::default() });
+        let threads = threads(Device { panics: true, ..Device::default() });
         let begun = Instant::now();
-        while !pump.threads[0].is_finished() {
+        while !threads.handles[0].is_finished() {
             assert!(begun.elapsed() < LONG);
             thread::sleep(BREATH / 100);
         }
-        let failure = pump.exchange(&[], &mut Vec::new(), Duration::ZERO).unwrap_err();
+        let failure = threads.exchange(&[], &mut Vec::new(), Duration::ZERO).unwrap_err();
         assert!(failure.to_string().contains("the sky fell"), "{failure}");
     }
 
     #[test]
     fn all_that_was_taken_is_written_in_order_before_the_end() {
         let heard = Arc::new(Mutex::new(Vec::new()));
-        let pump = pump(Device { heard: Arc::clone(&heard), ..Device::default() });
+        let threads = threads(Device { heard: Arc::clone(&heard), ..Device::default() });
         let sent: Vec<u8> = (0..100_000_u32).map(|n| (n % 251) as u8).collect();
         let mut left = sent.as_slice();
         while !left.is_empty() {
-            let taken = pump.exchange(left, &mut Vec::new(), LONG).unwrap();
+            let taken = threads.exchange(left, &mut Vec::new(), LONG).unwrap();
             left = &left[taken..];
         }
-        drop(pump);
+        drop(threads);
         assert!(*heard.lock().unwrap() == sent);
     }
 
     #[test]
     fn a_device_that_takes_nothing_holds_up_neither_deadline_nor_end() {
-        let pump = pump(Device { stuck: true, ..Device::default() });
+        let threads = threads(Device { stuck: true, ..Device::default() });
         let begun = Instant::now();
         let mut taken = 0;
         for _ in 0..6 {
-            taken += pump.exchange(&[0; 10_000], &mut Vec::new(), Duration::from_millis(50)).unwrap();
+            taken += threads.exchange(&[0; 10_000], &mut Vec::new(), Duration::from_millis(50)).unwrap();
         }
         // What waits to be written, and what the writing thread holds.
         assert!(taken <= OUTGOING + WRITE, "{taken}");
-        drop(pump);
+        drop(threads);
         assert!(begun.elapsed() < LONG, "{:?}", begun.elapsed());
     }
 
     #[test]
     fn noise_without_end_does_not_fill_the_memory() {
         let says = (0..200).map(|_| Ok(vec![0x55; READ])).collect();
-        let pump = pump(Device { says: Mutex::new(says), ..Device::default() });
+        let threads = threads(Device { says: Mutex::new(says), ..Device::default() });
         let begun = Instant::now();
-        while pump.shared.queues().incoming.len() <= INCOMING {
+        while threads.shared.queues().incoming.len() <= INCOMING {
             assert!(begun.elapsed() < LONG);
             thread::sleep(BREATH / 100);
         }
         let mut incoming = Vec::new();
-        pump.exchange(&[], &mut incoming, LONG).unwrap();
+        threads.exchange(&[], &mut incoming, LONG).unwrap();
         assert!(incoming.len() <= INCOMING + READ, "{}", incoming.len());
         while incoming.len() < 200 * READ {
-            pump.exchange(&[], &mut incoming, LONG).unwrap();
+            threads.exchange(&[], &mut incoming, LONG).unwrap();
         }
     }
 }
