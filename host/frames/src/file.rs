@@ -102,7 +102,7 @@ pub fn read_rgb(path: &Path) -> Result<RgbImage, ReadError> {
 /// [`ReadError`] when the file cannot be read or holds no such picture.
 pub fn read_shown(path: &Path) -> Result<RgbImage, ReadError> {
     let file = FrameFile::read(path)?;
-    match photograph::Format::of(&file.bytes) {
+    match photograph::PhotographFormat::of(&file.bytes) {
         Some(format) => match photograph::shown(format, &file.bytes, PictureSize::Any) {
             Ok((picture, _)) => Ok(picture),
             Err(source) => Err(file.wrong(source)),

@@ -16,7 +16,7 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 
 use super::DecodeError;
 use super::error::BROKEN_OFF;
-use super::photograph::Format;
+use super::photograph::PhotographFormat;
 
 /// The first bytes of a JPEG.
 pub(super) const MAGIC: &[u8] = b"\xff\xd8\xff";
@@ -54,7 +54,7 @@ impl<'a> Jpeg<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Result<Self, DecodeError> {
         let bytes = checked(bytes)?;
         let decoder = with_headers(&bytes, ColorSpace::RGB);
-        let decoder = decoder.map_err(|error| Format::Jpeg.refused(&found(error)))?;
+        let decoder = decoder.map_err(|error| PhotographFormat::Jpeg.refused(&found(error)))?;
         let size = decoder.info().map_or((0, 0), |info| (info.width.into(), info.height.into()));
         let is_grey = decoder.input_colorspace() == Some(ColorSpace::Luma);
         let exif = decoder.exif().cloned();
@@ -157,7 +157,7 @@ fn check_frame(marker: u8, header: &[u8]) -> Result<(), DecodeError> {
 }
 
 fn damaged(reason: &str) -> DecodeError {
-    Format::Jpeg.damaged(reason)
+    PhotographFormat::Jpeg.damaged(reason)
 }
 
 /// The segments of a JPEG, each a marker and what its length covers.

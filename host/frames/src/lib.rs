@@ -104,7 +104,7 @@ fn decode_fitted(bytes: &[u8], how: &ReadOptions) -> Result<Decoded, DecodeError
         tiff::picture(bytes, how)?.into_frame(how)
     } else if bytes.starts_with(pgm::MAGIC) {
         pgm::decode(bytes, how).map(Decoded::from)
-    } else if let Some(format) = photograph::Format::of(bytes) {
+    } else if let Some(format) = photograph::PhotographFormat::of(bytes) {
         photograph::decode(format, bytes, how)
     } else {
         Err(unknown(bytes))

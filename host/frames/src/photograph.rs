@@ -26,13 +26,13 @@ const HEAD: u64 = 16;
 
 /// A format of photographs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Format {
+pub(super) enum PhotographFormat {
     Jpeg,
     WebP,
     Bmp,
 }
 
-impl Format {
+impl PhotographFormat {
     /// The format that `bytes` begin with.
     pub(super) fn of(bytes: &[u8]) -> Option<Self> {
         match bytes {
@@ -109,14 +109,18 @@ pub fn is_photograph(path: &Path) -> bool {
     let mut head = Vec::new();
     let regular = fs::metadata(path).is_ok_and(|about| about.is_file());
     let mut read = || File::open(path)?.take(HEAD).read_to_end(&mut head);
-    regular && read().is_ok() && Format::of(&head).is_some()
+    regular && read().is_ok() && PhotographFormat::of(&head).is_some()
 }
 
 /// The frame of the photograph in `bytes`, as it is [`shown`], mosaicked to `how.phase`.
 ///
 /// # Errors
 /// Those of [`shown`].
-pub(super) fn decode(format: Format, bytes: &[u8], how: &ReadOptions) -> Result<Decoded, DecodeError> {
+pub(super) fn decode(
+    format: PhotographFormat,
+    bytes: &[u8],
+    how: &ReadOptions,
+) -> Result<Decoded, DecodeError> {
     let (picture, fitting) = shown(format, bytes, how.size)?;
     Ok(Decoded { fitting, ..mosaic::of_rgb(&picture, how)?.into() })
 }
@@ -126,7 +130,7 @@ pub(super) fn decode(format: Format, bytes: &[u8], how: &ReadOptions) -> Result<
 /// # Errors
 /// [`DecodeError`] when it is damaged, of a kind that is not taken, larger than [`MAX_PIXELS`], or not of the `size` asked for.
 pub(super) fn shown(
-    format: Format,
+    format: PhotographFormat,
     bytes: &[u8],
     size: PictureSize,
 ) -> Result<(RgbImage, Option<Fitting>), DecodeError> {

@@ -28,7 +28,7 @@ pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
 /// [`DecodeError`] when [`decode`] would refuse the PNG, when it is none, or when it is grey or has 16 bits.
 pub(super) fn decode_rgb(bytes: &[u8]) -> Result<RgbImage, DecodeError> {
     if !bytes.starts_with(MAGIC) {
-        let what = photograph::Format::of(bytes)
+        let what = photograph::PhotographFormat::of(bytes)
             .map_or("what is no PNG".to_owned(), |it| format!("a {}", it.name()));
         return Err(DecodeError::Unsupported { what, remedy: "give a PNG in colour, 8 bits a sample" });
     }
