@@ -5,4 +5,4 @@ pub mod paper;
 mod residuals;
 pub mod training;
 
-pub use residuals::{Part, Residuals, Spread};
+pub use residuals::{Amounts, Part, Residuals};

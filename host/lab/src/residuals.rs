@@ -5,14 +5,14 @@ use serde::Serialize;
 
 /// Mean and largest amount, in pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Spread {
+pub struct Amounts {
     /// The mean; 0 of nothing.
     pub mean: f64,
     /// The largest.
     pub max: f64,
 }
 
-impl From<GridResidual> for Spread {
+impl From<GridResidual> for Amounts {
     fn from(GridResidual { mean, max, .. }: GridResidual) -> Self {
         Self { mean, max }
     }
@@ -23,7 +23,7 @@ impl From<GridResidual> for Spread {
 pub struct Part {
     /// Mean and largest.
     #[serde(flatten)]
-    pub amounts: Spread,
+    pub amounts: Amounts,
     /// The share of its samples for which the amount is above 0.05 and can be seen, 0 to 1.
     #[serde(rename = "share_above_0.05")]
     pub visible: f64,
@@ -52,7 +52,7 @@ pub struct Residuals {
     pub rim: Part,
     /// The amounts in rows, which no table changes: how far each sample is from the row at which the lens images its
     /// latitude above or below the axis.
-    pub vertical: Spread,
+    pub vertical: Amounts,
     /// The amount in columns at every sample, row after row; 0 where none counts.
     pub map: Vec<Vec<f64>>,
 }

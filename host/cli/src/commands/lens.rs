@@ -15,7 +15,7 @@ use crate::exit::Exit;
 use halfrow::call::Files;
 use halfrow::frames::{self, HeatMap};
 use halfrow::optics::{Optics, OpticsError, TablesBy};
-use halfrow_lab::{Residuals, Spread};
+use halfrow_lab::{Amounts, Residuals};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -133,7 +133,7 @@ impl<'a> Figures<'a> {
     /// The error that each way leaves.
     fn errors(&self) -> Vec<String> {
         let Some(first) = self.all.first() else { return Vec::new() };
-        let amounts = |Spread { mean, max }: Spread| format!("{mean:9.4} {max:9.4}");
+        let amounts = |Amounts { mean, max }: Amounts| format!("{mean:9.4} {max:9.4}");
         let head = format!("error left at {} samples, in pixels", first.residuals.samples);
         let mut lines = vec![format!("{head:<50} mean       max   inner max  above 0.05    rim max")];
         for left in &self.all {

@@ -31,14 +31,14 @@ pub(crate) struct Warped {
     pub distorted: Frame,
 }
 
-/// Gains over Hermite in dB.
+/// Mean, least and most of several gains.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Spread {
-    /// The mean of all photographs.
+    /// The mean.
     pub mean: f64,
-    /// That of the photograph that gains least.
+    /// The least.
     pub least: f64,
-    /// That of the photograph that gains most.
+    /// The most.
     pub most: f64,
 }
 
@@ -49,7 +49,7 @@ pub struct Gains {
     pub condition: String,
     /// PSNR by Hermite in dB, the mean of the photographs that do not come back exactly; none without such.
     pub hermite: Option<f64>,
-    /// By how much the kernel is better on those.
+    /// By how many dB the kernel is better on those.
     pub gain: Option<Spread>,
     /// The photographs that come back exactly by one of the two, which no figure in dB tells.
     pub exact: usize,
