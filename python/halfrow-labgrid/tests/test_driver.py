@@ -162,6 +162,13 @@ def test_a_strategy_takes_a_board_from_off_to_judged(environment, tmp_path):
     assert (tmp_path / "power").read_text().split() == ["off", "on", "off", "on"]
 
 
+def test_a_status_that_is_forced_has_no_report_of_an_earlier_board(environment):
+    strategy = environment("cam-good").get_driver("HalfrowStrategy")
+    strategy.transition("judged")
+    strategy.force("judged")
+    assert (strategy.status, strategy.report) == (Status.judged, None)
+
+
 def test_a_strategy_whose_power_fails_believes_nothing_and_goes_the_whole_way_next(environment, tmp_path):
     power = tmp_path / "power"
     strategy = environment("cam-good").get_driver("HalfrowStrategy")

@@ -67,8 +67,8 @@ class HalfrowStrategy(Strategy):
         self.status = wanted
 
     def force(self, status: Union[Status, str]) -> None:
-        """Takes `status` for the board's, without touching it."""
-        forced = named(status)
+        """Takes `status` for the board's, without touching it; no report is known of it."""
+        forced, self.report = named(status), None
         if forced in (Status.on, Status.judged):
             self.target.activate(self.halfrow)
         self.status = forced
