@@ -7,39 +7,77 @@ import sys
 import pytest
 from conftest import LABGRID
 
-# The program, whose coordinator (a process) is stopped at a call of a method once it is connected.
+# The program, whose coordinator (a process) is stopped at a call of a method once it is connected, and goes on at a call of another one.
 PROGRAM = """
 import os, signal, sys
 from labgrid.remote.client import ClientSession
 from halfrow_labgrid import command, place
 
-process, method = int(sys.argv.pop(1)), sys.argv.pop(1)
-of = place.Coordinator if hasattr(place.Coordinator, method) else ClientSession
-whole, connect = getattr(of, method), place.Coordinator.__init__
+process, stops, goes_on = int(sys.argv.pop(1)), sys.argv.pop(1), sys.argv.pop(1)
+connect, patience = place.Coordinator.__init__, place.PATIENCE
 
-def stopped(*given):
-    os.kill(process, signal.SIGSTOP)
-    place.PATIENCE = 0.5
-    return whole(*given)
+def signals(method, number, patience):
+    of = place.Coordinator if hasattr(place.Coordinator, method) else ClientSession
+    whole = getattr(of, method)
+
+    def signalled(*given):
+        os.kill(process, number)
+        place.PATIENCE = patience
+        # Once alone.
+        setattr(of, method, whole)
+        return whole(*given)
+
+    setattr(of, method, signalled)
 
 def connected(*given):
     connect(*given)
-    setattr(of, method, stopped)
+    signals(stops, signal.SIGSTOP, 0.5)
+    if goes_on:
+        signals(goes_on, signal.SIGCONT, patience)
 
 place.Coordinator.__init__ = connected
 command.main()
 """
 
 
+class Hold:
+    """The program's hold of a place, and what frees the place behind it."""
+
+    def __init__(self, lab, place):
+        self.lab = lab
+        self.of = ["--place", place, "--coordinator", lab.coordinator, "--user", "u1"]
+
+    def told(self, stops, goes_on=""):
+        """What is said last while the coordinator stops and goes on at calls of these methods."""
+        hold = [sys.executable, "-c", PROGRAM, str(self.lab.process.pid), stops, goes_on, "hold", *self.of]
+        try:
+            done = subprocess.run(hold, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        finally:
+            self.lab.process.send_signal(signal.SIGCONT)
+        assert done.returncode == 1 and "Traceback" not in done.stderr, done.stderr
+        return json.loads(done.stdout.splitlines()[-1])
+
+    def free(self):
+        freed = subprocess.run([LABGRID / "halfrow-labgrid", "free", *self.of], capture_output=True, text=True)
+        assert (freed.returncode, freed.stdout) == (0, '"freed"\n'), freed.stderr
+
+
 @pytest.mark.parametrize("method", ["acquire", "sync_with_coordinator", "release"])
 def test_a_coordinator_that_stops_while_a_place_is_held_is_told(lab, method):
-    of = ["--place", "cam-empty", "--coordinator", lab.coordinator, "--user", "u1"]
-    hold = [sys.executable, "-c", PROGRAM, str(lab.process.pid), method, "hold", *of]
-    try:
-        done = subprocess.run(hold, stdin=subprocess.DEVNULL, capture_output=True, text=True)
-    finally:
-        lab.process.send_signal(signal.SIGCONT)
-    freed = subprocess.run([LABGRID / "halfrow-labgrid", "free", *of], capture_output=True, text=True)
-    assert (freed.returncode, freed.stdout) == (0, '"freed"\n'), freed.stderr
-    assert done.returncode == 1 and "Traceback" not in done.stderr, done.stderr
-    assert json.loads(done.stdout) == {"refused": {"why": "coordinator-away", "coordinator": lab.coordinator}}
+    hold = Hold(lab, "cam-good")
+    told = hold.told(method)
+    hold.free()
+    assert told == {"refused": {"why": "coordinator-away", "coordinator": lab.coordinator}}
+
+
+def test_of_two_errors_the_first_is_told(lab):
+    hold = Hold(lab, "cam-empty")
+    told = hold.told("release")
+    hold.free()
+    assert told == {"refused": {"why": "no-port"}}
+
+
+def test_a_place_is_released_where_what_fails_is_behind_its_acquiring(lab):
+    told = Hold(lab, "cam-empty").told("sync_with_coordinator", goes_on="release")
+    assert told == {"refused": {"why": "coordinator-away", "coordinator": lab.coordinator}}
+    assert lab.holder("cam-empty") is None

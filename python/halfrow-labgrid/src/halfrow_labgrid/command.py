@@ -18,7 +18,7 @@ import threading
 
 import attr
 
-from .place import Coordinator, Refused, held
+from .place import Coordinator, Refused, ended_by, held
 
 
 def arguments() -> argparse.Namespace:
@@ -55,7 +55,7 @@ def wait(loop: asyncio.AbstractEventLoop) -> None:
 
 def act(of: argparse.Namespace) -> None:
     coordinator = Coordinator(of.coordinator, of.user)
-    try:
+    with ended_by(coordinator.close):
         if of.act == "free":
             coordinator.free(of.place)
             print('"freed"', flush=True)
@@ -63,8 +63,6 @@ def act(of: argparse.Namespace) -> None:
         with held(coordinator, of.place) as port:
             tell(held=attr.asdict(port))
             wait(coordinator.loop)
-    finally:
-        coordinator.close()
 
 
 def main() -> None:

@@ -3,8 +3,9 @@ from __future__ import annotations
 
 import asyncio
 import os
-from contextlib import contextmanager
-from typing import Any, Iterator, Mapping, Optional, Tuple
+from contextlib import contextmanager, suppress
+from functools import partial
+from typing import Any, Callable, Iterator, Mapping, Optional, Tuple
 
 import attr
 import grpc
@@ -23,6 +24,9 @@ LOOK = 0.05
 PORT = "NetworkSerialPort"
 # Of several ports in a place, the one that is meant.
 NAMED = "halfrow"
+
+# What the coordinator answers where it acquires nothing. Behind any other error it may have.
+DENIED = {grpc.StatusCode.INVALID_ARGUMENT, grpc.StatusCode.FAILED_PRECONDITION, grpc.StatusCode.PERMISSION_DENIED}
 
 
 @attr.s(auto_attribs=True, frozen=True, auto_exc=True)
@@ -79,7 +83,10 @@ class Coordinator:
             raise Refused("unknown", {"known": ", ".join(sorted(self._session.places))}) from None
 
     def acquire(self, name: str) -> None:
-        """Acquires the place, anew if this very user has it from a time that ended without a release."""
+        """Acquires the place, anew if this very user has it from a time that ended without a release.
+
+        Where it fails, the place is not left acquired, as far as the coordinator answers.
+        """
         place = self._place(name)
         if place.acquired == self.name:
             self.release(name)
@@ -87,9 +94,19 @@ class Coordinator:
             raise Refused("held", {"holder": place.acquired})
         try:
             self._wait(self._session.stub.AcquirePlace(messages.AcquirePlaceRequest(placename=name)))
+            self._wait(self._session.sync_with_coordinator())
         except grpc.aio.AioRpcError as error:
+            if error.code() not in DENIED:
+                self._give_back(name)
             raise Refused("not-acquired", {"said": error.details() or error.code().name}) from error
-        self._wait(self._session.sync_with_coordinator())
+        except BaseException:
+            self._give_back(name)
+            raise
+
+    def _give_back(self, name: str) -> None:
+        """Releases the place behind an error, which is the one to be told."""
+        with suppress(Refused):
+            self.release(name)
 
     def release(self, name: str) -> None:
         """Releases the place if this very user has it."""
@@ -152,10 +169,20 @@ def reached(entry: ResourceEntry) -> Port:
 
 
 @contextmanager
+def ended_by(end: Callable[[], None]) -> Iterator[None]:
+    """Calls `end` behind what is within, whatever happens; of two errors the first is told."""
+    try:
+        yield
+    except BaseException:
+        with suppress(Refused):
+            end()
+        raise
+    end()
+
+
+@contextmanager
 def held(coordinator: Coordinator, name: str) -> Iterator[Port]:
     """The port of the place, which is acquired within and released behind, whatever happens."""
     coordinator.acquire(name)
-    try:
+    with ended_by(partial(coordinator.release, name)):
         yield coordinator.port(name)
-    finally:
-        coordinator.release(name)
