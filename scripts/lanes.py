@@ -18,26 +18,7 @@ def built(*how):
 
 
 # A plan whose runs take a moment.
-PLAN = """schema = 1
-[plan]
-name = "quick"
-version = "1"
-product = "CAM-T"
-[serial]
-pattern = "^CAT[0-9]{5}$"
-check = "none"
-[board]
-require_hardware = false
-builds = ["00000000"]
-device = "if-present"
-[tables]
-radius = 10.0
-width = 64
-height = 8
-[[step]]
-kind = "verify"
-frames = ["builtin:noise"]
-"""
+PLAN = (ROOT / "host/station/tests/station/quick.toml").read_text()
 
 
 class Station:

@@ -10,28 +10,8 @@ use std::time::{Duration, Instant, SystemTime};
 
 use tempfile::TempDir;
 
-/// A plan whose runs take a moment.
-pub(crate) const PLAN: &str = r#"schema = 1
-[plan]
-name = "quick"
-version = "1"
-product = "CAM-T"
-[serial]
-pattern = "^CAT[0-9]{5}$"
-check = "none"
-[board]
-require_hardware = false
-builds = ["00000000"]
-device = "if-present"
-[tables]
-radius = 10.0
-width = 64
-height = 8
-[[step]]
-kind = "verify"
-frames = ["builtin:noise"]
-timeout = 60
-"#;
+/// A plan whose runs take a moment; `scripts` and `packages` read it as well.
+pub(crate) const PLAN: &str = include_str!("quick.toml");
 
 /// [`PLAN`] for a product whose serial numbers are `letters` before a number that guards itself as an ISBN-10 does.
 pub(crate) fn guarded_plan(product: &str, letters: &str) -> String {
