@@ -71,22 +71,26 @@ fn rows_are_no_answers_whatever_their_number() {
     }));
 }
 
-#[test]
-fn a_second_copy_that_differs_is_the_board_s_fault() {
+/// What comes of a board that sends row 3 of every frame, and behind it a row that `change` makes of it, both numbered honestly.
+fn with_another(change: fn(&mut RowOut<'_>, &mut Vec<u8>)) -> Report {
     let mut extra = 0;
-    let report = judge(&System::TINY, move |_, mut packet| {
+    judge(&System::TINY, move |_, mut packet| {
         let Some(at) = place(&packet) else { return vec![packet] };
         packet.header.sequence = packet.header.sequence.wrapping_add(extra);
         if at.row != 3 {
             return vec![packet];
         }
         extra += 1;
-        let number = packet.header.sequence.wrapping_add(1);
-        let copy = changed(&packet, number, |row, packed| {
-            row.repeats = 1;
-            packed.iter_mut().for_each(|byte| *byte ^= 0xff);
-        });
-        vec![packet, copy]
+        let another = changed(&packet, packet.header.sequence.wrapping_add(1), change);
+        vec![packet, another]
+    })
+}
+
+#[test]
+fn a_second_copy_that_differs_is_the_board_s_fault() {
+    let report = with_another(|row, packed| {
+        row.repeats = 1;
+        packed.iter_mut().for_each(|byte| *byte ^= 0xff);
     });
     fails(&report, CheckName::Frames, "row 3 of frame 0 came twice, and not the same both times");
 }
@@ -101,18 +105,7 @@ fn a_second_copy_that_is_the_same_is_none() {
 
 #[test]
 fn rows_that_nobody_sent_are_the_board_s_fault() {
-    let mut extra = 0;
-    let report = judge(&System::TINY, move |_, mut packet| {
-        let Some(at) = place(&packet) else { return vec![packet] };
-        packet.header.sequence = packet.header.sequence.wrapping_add(extra);
-        if at.row != 3 {
-            return vec![packet];
-        }
-        extra += 1;
-        let number = packet.header.sequence.wrapping_add(1);
-        let invented = changed(&packet, number, |row, _| row.place.row_sequence += 1_000_000);
-        vec![packet, invented]
-    });
+    let report = with_another(|row, _| row.place.row_sequence += 1_000_000);
     fails(&report, CheckName::Frames, "which it was never given");
 }
 
