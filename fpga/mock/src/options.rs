@@ -256,27 +256,30 @@ impl BoardOptions for Options {
 
     /// Whether options fit each other is for [`Options::check`] to say, so that their order does not matter.
     fn set(&mut self, key: &str, value: &str) -> Result<bool, ValueError> {
+        let is = |limits: &Limits| limits.key() == key;
         match key {
-            "latency" => self.latency = LATENCY.parse(value)?,
-            "ring" => self.ring = Some(RING.parse(value)?),
-            "least-blanking" => self.least_blanking = LEAST_BLANKING.parse(value)?,
-            "row-banks-in" => self.row_banks_in = ROW_BANKS_IN.parse(value)?,
-            "row-banks-out" => self.row_banks_out = ROW_BANKS_OUT.parse(value)?,
-            "table-banks" => self.table_banks = TABLE_BANKS.parse(value)?,
-            "max-width" => self.max_width = MAX_WIDTH.parse(value)?,
-            "max-height" => self.max_height = MAX_HEIGHT.parse(value)?,
-            "pixel-clock" => self.pixel_clock = PIXEL_CLOCK.parse(value)?,
-            "serial" => self.serial = SERIAL.parse(value)?,
-            "records" => self.records = RECORDS.parse(value)?,
-            "least-frame-blanking" => self.least_frame_blanking = LEAST_FRAME_BLANKING.parse(value)?,
-            BURSTS => self.bursts = parse_word(BURSTS, value, BURST_BUILDS)?,
-            "entries" => self.entries = ENTRIES.parse(value)?,
-            ENTERED => self.entered = parse_word(ENTERED, value, TRUTHS)?,
-            DATAPATH2 => self.datapath2 = parse_word(DATAPATH2, value, TRUTHS)?,
             TAPS => {
                 self.taps = parse_word(TAPS, value, &[("five", TapCount::Five), ("seven", TapCount::Seven)])?;
             }
             DEPTHS => self.depths = parse_depths(value)?,
+            BURSTS => self.bursts = parse_word(BURSTS, value, BURST_BUILDS)?,
+            ENTERED => self.entered = parse_word(ENTERED, value, TRUTHS)?,
+            DATAPATH2 => self.datapath2 = parse_word(DATAPATH2, value, TRUTHS)?,
+            _ if is(&RING) => self.ring = Some(RING.parse(value)?),
+            _ if is(&LATENCY) => self.latency = LATENCY.parse(value)?,
+            _ if is(&LEAST_BLANKING) => self.least_blanking = LEAST_BLANKING.parse(value)?,
+            _ if is(&ROW_BANKS_IN) => self.row_banks_in = ROW_BANKS_IN.parse(value)?,
+            _ if is(&ROW_BANKS_OUT) => self.row_banks_out = ROW_BANKS_OUT.parse(value)?,
+            _ if is(&TABLE_BANKS) => self.table_banks = TABLE_BANKS.parse(value)?,
+            _ if is(&MAX_WIDTH) => self.max_width = MAX_WIDTH.parse(value)?,
+            _ if is(&MAX_HEIGHT) => self.max_height = MAX_HEIGHT.parse(value)?,
+            _ if is(&PIXEL_CLOCK) => self.pixel_clock = PIXEL_CLOCK.parse(value)?,
+            _ if is(&SERIAL) => self.serial = SERIAL.parse(value)?,
+            _ if is(&RECORDS) => self.records = RECORDS.parse(value)?,
+            _ if is(&LEAST_FRAME_BLANKING) => {
+                self.least_frame_blanking = LEAST_FRAME_BLANKING.parse(value)?;
+            }
+            _ if is(&ENTRIES) => self.entries = ENTRIES.parse(value)?,
             _ => return Ok(false),
         }
         Ok(true)
