@@ -73,10 +73,10 @@ fn one_wrong_factor_is_named_with_its_bit_and_values() {
 fn one_wrong_weight_is_named_with_its_bits() {
     let suspects = read_nodes(|node, weights| {
         if node == 12 {
-            weights[1] ^= 0b1001;
+            weights[1] ^= 0b10_1110;
         }
     });
-    assert_eq!(first(&suspects), ("kernel node 12, weight r1, bits 0, 3".to_owned(), 1.0));
+    assert_eq!(first(&suspects), ("kernel node 12, weight r1, bits 1 to 3, 5".to_owned(), 1.0));
 }
 
 #[test]
