@@ -58,12 +58,10 @@ pub(crate) fn soaked() -> Report {
         others: 0,
     };
     let suspects = vec![Suspect { defect, account: Account::Nothing, explained: 0.0 }];
-    let difference = |seconds| SoakDifference {
-        seconds,
-        seed: 0x08d1_2e6a,
-        generation: 2,
-        finding: finding.clone(),
-        suspects: suspects.clone(),
+    let (seed, generation) = (0x08d1_2e6a, 2);
+    let difference = |seconds| {
+        let (finding, suspects) = (finding.clone(), suspects.clone());
+        SoakDifference { seconds, seed, generation, finding, suspects }
     };
     let interval = |index| SoakInterval {
         frames: if index == 100 { 0 } else { 5924 },
