@@ -79,6 +79,16 @@ fn a_build_that_the_plan_does_not_name_is_refused_before_a_frame_is_sent() {
         "{did:?}"
     );
     assert!(did.said.contains("the board is a mock, and the plan takes hardware alone"), "{did:?}");
+    assert_eq!(
+        (station.saved(&did).1.production, did.said.contains("the board is no hardware")),
+        (false, true),
+        "{did:?}"
+    );
+}
+
+/// [`PLAN`] with a step that tests the link.
+pub(crate) fn with_link() -> String {
+    PLAN.replace("[[step]]", "[[step]]\nkind = \"link\"\nseconds = 0.01\n[[step]]")
 }
 
 /// Which of the three blames turns a PASS into what.

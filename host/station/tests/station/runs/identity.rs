@@ -1,8 +1,15 @@
 //! The serial number on the board against the FPGA's own number.
 
+use std::io::{Read as _, Write as _};
+use std::net::TcpListener;
 use std::process::Command;
+use std::thread;
+use std::time::Duration;
+
+use halfrow::link;
 
 use super::bench::{Did, PLAN, Station, program};
+use super::ends::with_link;
 
 /// The mock board whose FPGA has this number.
 fn device(number: u64) -> String {
@@ -65,6 +72,45 @@ fn a_board_and_its_label_stay_together_from_the_first_judgement_on() {
     assert_eq!(station.query("SELECT count(*) FROM binding"), ["2"]);
     assert_eq!(station.run("CAT00017", &device(0x11)).code, Some(0));
     assert_well(&station);
+}
+
+/// A port behind which whoever connects finds the next of these boards.
+fn one_after_the_other(boards: [String; 2]) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let target = format!("tcp:{}", listener.local_addr().unwrap());
+    thread::spawn(move || {
+        for board in boards {
+            let (mut host, _) = listener.accept().unwrap();
+            let mut board = link::open(&board.parse().unwrap()).unwrap().link;
+            let mut bytes = [0; 4096];
+            while let Ok(read @ 1..) = host.read(&mut bytes) {
+                let (mut left, mut said, mut has_moved) = (&bytes[..read], Vec::new(), true);
+                while has_moved {
+                    let before = said.len();
+                    let taken = board.exchange(left, &mut said, Duration::from_millis(1)).unwrap();
+                    left = &left[taken..];
+                    has_moved = taken > 0 || said.len() > before;
+                }
+                host.write_all(&said).unwrap();
+            }
+        }
+    });
+    target
+}
+
+#[test]
+fn a_board_that_is_swapped_behind_the_identity_step_is_not_judged() {
+    for (plan, outcomes) in
+        [(PLAN.to_owned(), &["passed", "error"][..]), (with_link(), &["passed", "error", "skipped"])]
+    {
+        let station = Station::with(&plan);
+        let did = station.run("CAT00017", &one_after_the_other([device(0x11), device(0x22)]));
+        assert_eq!(did.code, Some(6), "{did:?}");
+        assert!(did.said.contains("0000000000000011") && did.said.contains("0000000000000022"), "{did:?}");
+        assert_eq!(station.query("SELECT outcome FROM step ORDER BY seq"), outcomes, "{did:?}");
+        assert_eq!(station.query("SELECT count(*) FROM binding"), ["0"]);
+        assert_well(&station);
+    }
 }
 
 #[test]
