@@ -102,14 +102,25 @@ fn a_limit_that_is_missed_blames_whom_the_plan_says() {
         assert!(did.said.starts_with(verdict), "{did:?}");
         let measured = "SELECT outcome FROM measurement WHERE name = 'latency.clocks'";
         assert_eq!(station.query(measured), ["failed"]);
+        // Of a board that is wrong besides, the same limit says whether it was judged rightly.
+        let wrong = station.run("CAT00002", "mock,fault=stuck-data");
+        assert_eq!(wrong.code, Some(if blames == "station" { 3 } else { 1 }), "{blames}: {wrong:?}");
     }
 }
 
 #[test]
+fn a_board_that_answers_the_link_test_wrong_fails_and_is_judged_no_further() {
+    let station = Station::with(&with_link());
+    let did = station.run("CAT00001", "mock,fault=row-factor,row=100,bit=0");
+    assert_eq!(did.code, Some(1), "{did:?}");
+    assert!(did.said.contains("answers hold other bytes than were sent"), "{did:?}");
+    assert_eq!(station.query("SELECT outcome FROM step ORDER BY seq"), ["passed", "failed", "skipped"]);
+}
+
+#[test]
 fn a_limit_on_what_nobody_can_measure_is_no_pass() {
-    let plan = PLAN.replace("[[step]]", "[[step]]\nkind = \"link\"\nseconds = 0.01\n[[step]]");
     let limit = "[limits]\n\"link.to_board\" = { least = 1, blames = \"station\" }\n";
-    let station = Station::with(&format!("{plan}{limit}"));
+    let station = Station::with(&format!("{}{limit}", with_link()));
     let did = station.run("CAT00001", "mock");
     // The wire of a mock takes no time.
     assert_eq!(did.code, Some(6), "{did:?}");
