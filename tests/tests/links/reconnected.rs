@@ -31,11 +31,11 @@ fn rows(report: &Report) -> usize {
     report.frames.iter().map(|frame| frame.rows).sum()
 }
 
-/// Unplugs a board when it has sent `byte` bytes, and plugs it in again.
-fn interrupted(byte: u64, replug: Replug) -> Report {
+/// Unplugs `board` when it has sent `byte` bytes, and plugs it in again.
+fn interrupted(board: &str, byte: u64, replug: Replug) -> Report {
     let folder = Folder::new();
     let path = folder.path().join("board");
-    let served = Served::unplugged_once("mock", &path, byte, Some(replug));
+    let served = Served::unplugged_once(board, &path, byte, Some(replug));
     let target = served.target();
     come_to_an_end(move || System::TINY.judge_patiently(&target, Some(PATIENCE)))
 }
@@ -49,7 +49,8 @@ fn goes_on_after(count: usize) {
     let bytes = bytes as usize - 100;
     let draw = |part: usize| (part * bytes + dice.below(bytes)) / count;
     let cuts: Vec<_> = (0..count).map(draw).zip(HOW.into_iter().cycle()).collect();
-    let reports = parallel::map(&cuts, |&(byte, how)| interrupted(byte as u64, how("mock".to_owned())));
+    let reports =
+        parallel::map(&cuts, |&(byte, how)| interrupted("mock", byte as u64, how("mock".to_owned())));
     for (cut, report) in cuts.iter().zip(&reports) {
         let away: Vec<_> = report.link.reconnections.iter().map(|away| away.reason.sentence()).collect();
         assert_eq!(report.cause, Cause::Equal, "{cut:?}: {}; {away:?}", report.headline());
@@ -86,24 +87,22 @@ fn a_broken_board_is_found_although_it_was_away() {
 
 #[test]
 fn another_board_is_not_taken_for_the_one_that_went_away() {
-    let report = interrupted(3000, Replug::Switched("mock,taps=five".to_owned()));
-    assert_eq!(report.cause, Cause::Refused, "{}", report.headline());
-    assert!(
-        report.headline().contains("another board, or another bitstream, came back"),
-        "{}",
-        report.headline()
-    );
+    for (board, other) in [("mock", "mock,taps=five"), ("mock,serial=17", "mock,serial=18")] {
+        let report = interrupted(board, 3000, Replug::Switched(other.to_owned()));
+        assert_eq!(report.cause, Cause::Refused, "{other}: {}", report.headline());
+        assert!(
+            report.headline().contains("another board, or another bitstream, came back"),
+            "{other}: {}",
+            report.headline()
+        );
+    }
 }
 
 /// An ECP5 has no number: two of one build look alike.
 #[test]
 fn of_a_board_without_a_number_that_came_back_it_is_told_that_it_may_be_another() {
     for (board, is_known) in [("mock", false), ("mock,serial=17", true)] {
-        let folder = Folder::new();
-        let path = folder.path().join("board");
-        let served = Served::unplugged_once(board, &path, 3000, Some(Replug::Switched(board.to_owned())));
-        let target = served.target();
-        let report = come_to_an_end(move || System::TINY.judge_patiently(&target, Some(PATIENCE)));
+        let report = interrupted(board, 3000, Replug::Switched(board.to_owned()));
         assert_eq!(
             (report.cause, report.link.reconnections.len()),
             (Cause::Equal, 1),
