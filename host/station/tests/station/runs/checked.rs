@@ -76,6 +76,26 @@ fn a_changed_row_is_found_in_every_table() {
     }
 }
 
+/// The index and the hash of the record agree with it.
+#[test]
+fn a_record_with_another_plan_than_its_hash_is_of_is_found() {
+    let station = Station::with(PLAN);
+    let (stored, _, mut record) = station.saved(&station.run("CAT00001", "mock"));
+    let easier = PLAN.replace("width = 64", "width = 66");
+    record["plan"]["text"] = easier.as_str().into();
+    let hash = station.store().blobs().put(record.to_string().as_bytes()).unwrap();
+    fs::remove_file(station.store().blobs().path(&stored.record_sha256)).unwrap();
+    let database = rusqlite::Connection::open(station.store().database()).unwrap();
+    database.execute("UPDATE run SET record_sha256 = $1", [hash]).unwrap();
+    database.execute("UPDATE plan SET text = $1", [easier]).unwrap();
+    let did = station.check();
+    assert_eq!(did.code, Some(3), "{did:?}");
+    assert!(
+        did.said.contains("1 faults found") && did.said.contains("has another hash than it says"),
+        "{did:?}"
+    );
+}
+
 /// The schema itself holds what no program may write.
 #[test]
 fn the_tables_take_no_result_that_cannot_be() {
