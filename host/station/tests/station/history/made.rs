@@ -262,7 +262,8 @@ fn verify(run: &RunHead, end: End) -> StepRecord {
     }
 }
 
-fn step(run: &RunHead, seq: u32, name: &str, came: (StepOutcome, RunCause, u8)) -> StepRecord {
+/// A step of a run, on hardware.
+pub(crate) fn step(run: &RunHead, seq: u32, name: &str, came: (StepOutcome, RunCause, u8)) -> StepRecord {
     let (outcome, cause, exit_code) = came;
     let board = BoardSeen {
         kind: "hardware".to_owned(),

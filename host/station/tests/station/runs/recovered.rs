@@ -1,9 +1,11 @@
 //! What is recorded of runs that are found open.
 
+use halfrow_station::lane::Message;
+use halfrow_station::record::{BoardSeen, RunCause, StepOutcome};
 use halfrow_station::run::recover;
 
 use super::bench::PLAN;
-use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run, step};
 
 const SHIFT: &str = "[shift]\ngood = \"CAT90001\"\nbad = \"HR:MOCK\"\nhours = 8\n[tables]";
 
@@ -15,23 +17,50 @@ fn is_production(plan: &str, checked: &[(&str, End)], serial: &str) -> bool {
         made.run(&Run::of(serial, *end));
     }
     made.run(&Run { started_ms: BEGIN_MS + 8 * HOUR_MS, ..Run::of(serial, End::Open) });
+    let (recovered, is_production) = recovered(made, plan);
+    assert_eq!(recovered, serial);
+    is_production
+}
+
+/// The unit whose run was found open, by a plan of this text, and whether that counts as production.
+fn recovered(made: Made, plan: &str) -> (String, bool) {
     let database = rusqlite::Connection::open(made.folder().database()).unwrap();
     database.execute("UPDATE plan SET text = $1", [plan]).unwrap();
     drop(database);
     let (_folder, mut store) = made.parts();
     let recovered = recover(&mut store).unwrap();
-    assert_eq!(recovered[0].record.run.serial, serial);
-    recovered[0].record.production
+    let record = &recovered[0].record;
+    (record.run.serial.clone(), record.production)
+}
+
+/// [`PLAN`], whose runs may count.
+fn hardware() -> String {
+    PLAN.replace("require_hardware = false", "require_hardware = true")
+}
+
+/// The lane had written down by then what the board is.
+#[test]
+fn a_run_that_is_found_open_on_what_is_no_hardware_counts_as_no_production() {
+    for (kind, counts) in [("hardware", true), ("mock", false)] {
+        let mut made = Made::new();
+        let (head, _) = made.begin(&Run::of("CAT00001", End::Open));
+        let mut identity = step(&head, 1, "identity", (StepOutcome::Passed, RunCause::None, 0));
+        identity.board = identity.board.map(|board| BoardSeen { kind: kind.to_owned(), ..board });
+        let spool = made.folder().spool(&head.id);
+        std::fs::create_dir(&spool).unwrap();
+        let told = serde_json::to_string(&Message::Ended { step: Box::new(identity) }).unwrap();
+        std::fs::write(spool.join("events.jsonl"), told + "\n").unwrap();
+        assert_eq!(recovered(made, &hardware()), (head.serial, counts), "{kind}");
+    }
 }
 
 #[test]
 fn a_run_that_is_found_open_counts_as_production_only_if_it_would_have() {
-    let any = PLAN.to_owned();
-    let hardware = any.replace("require_hardware = false", "require_hardware = true");
+    let hardware = hardware();
     let shift = hardware.replace("[tables]", SHIFT);
     let (good, mock) = (("CAT90001", End::Pass), ("HR:MOCK:1", End::Fail(&["clock"])));
     assert!(is_production(&hardware, &[], "CAT00001"), "the control");
-    assert!(!is_production(&any, &[], "CAT00001"), "it takes any board");
+    assert!(!is_production(PLAN, &[], "CAT00001"), "it takes any board");
     assert!(!is_production("schema = 2", &[], "CAT00001"), "nobody can tell");
     assert!(!is_production(&shift, &[], "CAT00001"), "the lane was not checked");
     assert!(!is_production(&shift, &[good], "CAT00001"), "the mock was not judged");
