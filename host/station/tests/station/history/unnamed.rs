@@ -56,13 +56,17 @@ fn what_no_row_names_goes_when_it_is_a_day_old() {
     }
     let old = evidence(&folder, "nobody's", 25 * HOUR);
     let young = evidence(&folder, "whose?", 23 * HOUR);
+    // The clock was ahead, and is set right.
+    let ahead = folder.blobs().put(b"tomorrow's").unwrap();
+    let tomorrow = SystemTime::now() + 25 * HOUR;
+    File::open(folder.blobs().path(&ahead)).unwrap().set_modified(tomorrow).unwrap();
     let mine = folder.blobs().path(&old).with_file_name("notes.txt");
     fs::write(&mine, "of a technician").unwrap();
     aged(&mine, 1000 * HOUR);
     let removed = prune_unnamed(&mut made.store, "engel").unwrap();
     assert_eq!(removed, Unnamed { pieces: 1, spools: 0, bytes: 8 });
     assert!(folder.blobs().get(&old).unwrap_err().is_gone());
-    assert!(folder.blobs().get(&young).is_ok() && mine.is_file());
+    assert!(folder.blobs().get(&young).is_ok() && folder.blobs().get(&ahead).is_ok() && mine.is_file());
     let noted = "SELECT act || ' ' || subject || ' ' || operator_id FROM audit";
     assert_eq!(query(made.as_ref(), noted), [format!("prune unnamed {old} engel")]);
     is_sound(&folder);
