@@ -315,8 +315,10 @@ fn counting(alter: impl Fn(&mut Status) + Send + 'static) -> Report {
 }
 
 #[test]
-fn a_board_that_counts_fewer_refusals_than_came_fails() {
+fn a_board_that_counts_less_than_came_fails() {
     let reports = [
+        (Counter::RowsRepeated, counting(|status| status.rows_repeated = 0)),
+        (Counter::RowsUnneeded, counting(|status| status.rows_unneeded = status.rows_unneeded.min(2))),
         (Counter::Refusals, counting(|status| status.refusals = status.refusals.min(255))),
         (Counter::ForeignPackets, counting(|status| status.foreign_packets = 0)),
     ];
@@ -356,6 +358,20 @@ fn an_echo_of_nothing_is_nothing() {
         packet
     });
     assert_eq!(broken(&report).0, Rule::Skipped);
+}
+
+#[test]
+fn an_answer_that_ends_too_early_is_wrong() {
+    // Of a request with a byte behind its fields, as the rules alone send it.
+    let report = answering(
+        Kind::TableCrc,
+        |payload| payload.len() == 7 + 1,
+        |mut packet| {
+            packet.payload.pop();
+            packet
+        },
+    );
+    assert_eq!(broken(&report).0, Rule::Skipped, "{}", report.headline());
 }
 
 /// The report on a board that has trapped nothing where it must say `is_lost`, of the row, and of whether signatures were told since the
