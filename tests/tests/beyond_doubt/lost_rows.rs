@@ -67,6 +67,25 @@ fn a_row_that_waits_for_its_successor_is_not_swallowed() {
     assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
 }
 
+/// The link changes what the board says of its window, so that row 4 is never sent, and all counts agree.
+#[test]
+fn a_row_whose_successor_was_not_let_in_is_not_swallowed() {
+    let mut window = u32::MAX;
+    let report = judge(&System::TINY, move |toward, mut packet| {
+        match toward {
+            Toward::Board if packet.is(Kind::Reset) => window = u32::MAX,
+            Toward::Board if row_of_request(&packet) == Some(3) => {
+                window = u32::from_le_bytes(packet.payload[..4].try_into().unwrap()) + 1;
+            }
+            Toward::Board => {}
+            Toward::Host => packet.header.window = packet.header.window.min(window),
+        }
+        vec![packet]
+    });
+    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert!(report.headline().contains("row 3 of frame 0"), "{}", report.headline());
+}
+
 /// What a sound board's row 3 comes to that never leaves its front end, when `change` is made to its counters: as a
 /// swallowed row looks from here.
 fn withheld(change: fn(&mut Status)) -> Report {
