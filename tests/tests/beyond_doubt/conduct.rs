@@ -192,6 +192,21 @@ fn rows_that_say_that_they_were_sent_before_are_compared_with_the_board_s_count(
     fails(&report, CheckName::Counters, "0 rows sent again, and it is 7");
 }
 
+/// Under its own number, and another place.
+#[test]
+fn a_row_that_comes_under_another_place_is_the_board_s_fault() {
+    let changes: [fn(&mut RowOut<'_>); 4] = [
+        |row| row.place.frame += 1,
+        |row| row.place.row += 1,
+        |row| row.place.width += 2,
+        |row| row.place.last = true,
+    ];
+    for change in changes {
+        let report = with_rows(|at| at.frame == 2 && at.row == 5, change);
+        fails(&report, CheckName::Frames, "under a place that was never sent");
+    }
+}
+
 #[test]
 fn what_entered_is_looked_at_wherever_a_board_is_to_tell_it() {
     let report = with_rows(|_| true, |row| row.entered = None);

@@ -263,6 +263,40 @@ mod tests {
     }
 
     #[test]
+    fn a_copy_that_differs_in_its_place_or_its_measures_is_misconduct() {
+        let place = RowPlace { row_sequence: 0, frame: 0, row: 0, width: 2, last: false };
+        let first = RowOut {
+            place,
+            generation: 1,
+            first_latency: 44,
+            last_latency: 44,
+            pauses: 0,
+            repeats: 0,
+            packed: &[1, 0, 0],
+            entered: None,
+        };
+        let changes: [fn(&mut RowOut<'_>); 8] = [
+            |row| row.place.frame += 1,
+            |row| row.place.row += 1,
+            |row| row.place.width += 2,
+            |row| row.place.last = true,
+            |row| row.generation += 1,
+            |row| row.first_latency += 1,
+            |row| row.last_latency += 1,
+            |row| row.pauses += 1,
+        ];
+        for (which, change) in changes.into_iter().enumerate() {
+            let mut copy = RowOut { repeats: 1, ..first };
+            change(&mut copy);
+            let mut conduct = Conduct::default();
+            conduct.row(0, &first, 9);
+            conduct.row(1, &copy, 9);
+            let differs = Misconduct::CopyDiffers { place: copy.place };
+            assert_eq!(conduct.misconduct(), Some(differs), "change {which}");
+        }
+    }
+
+    #[test]
     fn what_links_do_is_no_misconduct() {
         // Lost, twice, overtaken, asked for again, and past the end of the numbers.
         assert_eq!(found(&[(0, 0, 0, 1), (2, 2, 0, 3), (2, 2, 0, 3), (1, 1, 0, 2), (3, 0, 1, 1)]), None);
