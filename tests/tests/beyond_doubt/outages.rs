@@ -101,6 +101,40 @@ fn what_was_found_is_told_although_the_link_broke_in_front_of_the_second_look() 
     assert_eq!(failed.map(|check| check.name).collect::<Vec<CheckName>>(), []);
 }
 
+/// The report on a board whose rows are spoilt, over a link that breaks once the fifth row of the first frame has left the board. It comes
+/// back if the run waits for it so long.
+fn unplugged_in_the_middle_of_a_frame(wrong: Wrong, reconnect: Option<Duration>) -> Report {
+    let is_cut = Arc::new(AtomicBool::new(false));
+    let cut = Arc::clone(&is_cut);
+    let alter = move |_, packet: Passing| {
+        let is_fifth = matches!(packet.reply(), Some(Reply::RowOut(row)) if row.place.row == 4);
+        cut.fetch_or(is_fifth, Ordering::Relaxed);
+        vec![spoilt(&packet)]
+    };
+    let back = move || Ok(board(wrong == Wrong::Always));
+    let candidate = Candidate { reopen: Some(Box::new(back)), ..breakable(alter, is_cut) };
+    let options = RunOptions { reconnect, ..RunOptions::default() };
+    verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report
+}
+
+/// They are not judged again when their frame is sent once more.
+#[test]
+fn rows_of_a_frame_that_the_link_broke_in_count_in_a_session_that_is_whole_alone() {
+    let report = unplugged_in_the_middle_of_a_frame(Wrong::Once, Some(LIMIT));
+    assert!(matches!(report.finding, Finding::RightInAnotherSession { .. }), "{}", report.headline());
+    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    let report = unplugged_in_the_middle_of_a_frame(Wrong::Always, Some(LIMIT));
+    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+}
+
+#[test]
+fn what_differed_in_a_frame_that_the_link_broke_in_is_in_the_report() {
+    let report = unplugged_in_the_middle_of_a_frame(Wrong::Always, None);
+    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    let [frame] = &report.frames[..] else { panic!("{:?}", report.frames) };
+    assert!((1..8).contains(&frame.rows) && frame.comparison.differences > 0, "{frame:?}");
+}
+
 /// BURST comes twice, a frame has another signature, and the link breaks at the greeting of the session in which it is made again.
 #[test]
 fn a_soak_that_breaks_off_in_front_of_a_second_look_tells_what_differed() {
