@@ -271,6 +271,22 @@ mod tests {
         assert!(found_linear.contains(&taps(&["G0", "R1", "R3", "R5", "G6"])));
     }
 
+    /// At 0.99 of the distances the source of column 127 is 126.365, so a sample is needed while 1 + 63 = 64 more are stored: the last
+    /// of those has its place if line 6 is stuck.
+    #[test]
+    fn a_line_tells_samples_apart_that_are_as_far_apart_as_it_counts() {
+        let found = found(7, &[&generation(127, Interpolant::Linear, |_| 16_609_444)]);
+        assert!(found.contains(&NotExercised::LineMemoryAddress { lines: (7..11).collect() }), "{found:?}");
+    }
+
+    /// Beside node 0.
+    #[test]
+    fn tables_that_differ_in_factors_alone_use_nodes_of_their_own() {
+        let [none, half] = [24, 23].map(|bit| generation(127, Interpolant::Hermite, |_| 1 << bit));
+        let unused = (1..65).filter(|node| ![8, 24, 40, 56].contains(node)).collect();
+        assert!(found(7, &[&none, &half]).contains(&NotExercised::KernelNodes { nodes: unused }));
+    }
+
     /// The kernel decides, and what the board has.
     #[test]
     fn five_taps_leave_the_outer_ones_of_seven_unused() {
