@@ -3,11 +3,11 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use halfrow::result::{CheckName, Report};
+use halfrow::result::{CheckName, Finding, FlippedBit, Report};
 use halfrow::run::{Plan, Vary};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
-use halfrow_model::{BitDepth, Geometry};
+use halfrow_model::{BitDepth, Geometry, row_signature};
 use halfrow_protocol::message::{RowOut, RowPlace};
 use halfrow_protocol::{Kind, Reply, samples};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge, judge_each};
@@ -218,6 +218,26 @@ fn what_entered_is_looked_at_wherever_a_board_is_to_tell_it() {
     // Beyond the frames of the plan, where rules are tried.
     let report = with_rows(|at| at.frame > 1000, |row| row.entered = row.entered.map(|crc| crc ^ 1));
     assert_eq!((report.verdict, failed_check(&report)), (Verdict::Fail, Some(CheckName::Rules)));
+}
+
+/// It looks like a bit that is flipped in the first column of every row, and every output that is made of that column is right.
+#[test]
+fn a_crc_unit_that_begins_with_a_wrong_bit_is_no_flipped_bit() {
+    fn change(row: &mut RowOut<'_>) {
+        let mut sent = vec![0; usize::from(row.place.width)];
+        let right = row_signature(&sent);
+        sent[0] = 1 << 3;
+        row.entered = row.entered.map(|crc| crc ^ right ^ row_signature(&sent));
+    }
+    let every = with_rows(|_| true, change);
+    assert!(matches!(every.finding, Finding::EntryMiscounted { row: 0, .. }), "{:?}", every.finding);
+    let one = with_rows(|at| at.row == 2, change);
+    let bit = Some(FlippedBit { column: 0, bit: 3 });
+    assert!(
+        matches!(one.finding, Finding::RowsEnteredChanged { row: 2, flipped, .. } if flipped == bit),
+        "{:?}",
+        one.finding
+    );
 }
 
 /// The comparisons hold for the Verilog as for the mock, over sound links and poor ones.
