@@ -48,6 +48,22 @@ fn an_empty_variable_is_none() {
     assert!(help.stdout.contains("[env: HALFROW_TIMEOUT=]"), "{}", help.stdout);
 }
 
+/// Each is right by itself, and beside what else was given it is not.
+#[test]
+fn a_value_of_the_environment_that_does_not_fit_is_told_as_the_variable_s() {
+    let folder = Folder::new();
+    for (variable, more, reason) in [
+        (("HALFROW_KERNEL", "sharp7"), ["--board", "mock,taps=five"], "the board has five"),
+        (("HALFROW_AT_SPEED", "5"), ["--within", "2"], "do not fit into 2 s"),
+    ] {
+        let ended = with_variable(&folder, variable, &more);
+        assert_eq!(ended.code, Some(2), "{variable:?}: {}", ended.stderr);
+        for part in [variable.0, reason] {
+            assert!(ended.stderr.contains(part), "{variable:?} says: {}", ended.stderr);
+        }
+    }
+}
+
 #[test]
 fn a_wrong_value_of_the_environment_is_told_as_the_variable_s() {
     let folder = Folder::new();
@@ -68,6 +84,7 @@ fn a_wrong_value_of_the_environment_is_told_as_the_variable_s() {
         ("HALFROW_REPORT", "no/way", "into the folder no;"),
         ("HALFROW_OVERWRITE", "maybe", "say yes or no"),
         ("HALFROW_MODEL_PATH", "maybe", "avx512"),
+        ("HALFROW_SETTINGS", "nope.toml", "cannot read the settings file nope.toml"),
     ] {
         let ended = with_variable(&folder, (name, value), &[]);
         assert_eq!(ended.code, Some(2), "{name}={value}: {}", ended.stderr);

@@ -33,7 +33,7 @@ mod table_file;
 mod tables;
 mod verify;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::CommandFactory as _;
 
@@ -44,7 +44,7 @@ use crate::settings::Settings;
 use halfrow::board::{BoardError, OpenFailed};
 use halfrow::link::OpenError;
 use halfrow::reference;
-use halfrow::run::Misfit;
+use halfrow::run::{Misfit, WithinError};
 
 use line::{Command, Line};
 
@@ -124,7 +124,13 @@ impl From<OpenFailed> for Failure {
 
 impl From<Misfit> for Failure {
     fn from(error: Misfit) -> Self {
-        if error.is_other_datapath() { Self::refused(error) } else { Self::call(error) }
+        let option = match &error {
+            Misfit::Taps => Some("--kernel"),
+            Misfit::Within(WithinError::AtSpeed { .. }) => Some("--at-speed"),
+            _ => None,
+        };
+        let failure = if error.is_other_datapath() { Self::refused(error) } else { Self::call(error) };
+        Self { option, ..failure }
     }
 }
 
@@ -166,7 +172,8 @@ impl Cli {
     /// # Errors
     /// [`Failure`] with its exit code, when there is no result to print.
     pub fn run(&self) -> Result<Exit, Failure> {
-        let settings = Settings::load(self.0.settings.as_deref()).map_err(Failure::call)?;
+        let settings = Settings::load(self.0.settings.as_deref())
+            .map_err(|error| self.placed(Failure::call(error).in_value_of("--settings"), None, &[]))?;
         let path = reference::choose(self.0.model_path).map_err(Failure::call)?;
         tracing::info!("the model takes the path {path}");
         let settings_file = Settings::file(self.0.settings.as_deref());
@@ -175,14 +182,15 @@ impl Cli {
             let command = self.command_name();
             return Err(Failure::call(CallError::NoJson { command }));
         }
-        self.carried_out(&context).map_err(|failure| self.placed(failure, &context))
+        self.carried_out(&context).map_err(|failure| {
+            self.placed(failure, context.settings_file.as_deref(), &context.settings.keys())
+        })
     }
 
     /// A failure that names the place which a wrong value comes from, if that is not the command line.
-    fn placed(&self, failure: Failure, context: &Context) -> Failure {
+    fn placed(&self, failure: Failure, file: Option<&Path>, keys: &[&str]) -> Failure {
         let id = failure.option.filter(|_| failure.exit == Exit::Usage).map(given::id);
-        let (file, keys) = (context.settings_file.as_deref(), context.settings.keys());
-        match id.and_then(|id| self.0.given.place(&id, file, &keys)) {
+        match id.and_then(|id| self.0.given.place(&id, file, keys)) {
             Some(place) => {
                 Failure { error: failure.error.context(format!("{place} cannot be used")), ..failure }
             }
