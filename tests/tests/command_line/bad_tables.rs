@@ -45,11 +45,11 @@ fn memory_images_are_told_to_be_for_verilog() {
     assert_eq!(made.code, Some(0), "{}", made.stderr);
     for name in ["line.mem", "line.steps.mem"] {
         let sentence = format!(
-            "{name} is a name of memory images, which are for Verilog; give a table file (.json) to --tables"
+            "{name} is a name of memory images, which are for Verilog; for tables give the table file (.json)"
         );
         refused(&folder, &["verify", "--tables", name], &sentence);
     }
-    let sentence = "line.kernel.mem is a name of memory images, which are for Verilog; give a table file (.json) to --tables, or a kernel file";
+    let sentence = "line.kernel.mem is a name of memory images, which are for Verilog; for tables give the table file (.json), for a kernel its file";
     refused(&folder, &["verify", "--kernel", "line.kernel.mem"], sentence);
 }
 

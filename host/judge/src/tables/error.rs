@@ -21,7 +21,7 @@ pub enum TableFileError {
         source: io::Error,
     },
     /// What cannot be read as a table file or a kernel file is called as memory images are, or is one.
-    #[error("{} is a name of memory images, which are for Verilog; give a table file (.json) to --tables, or a kernel file or name to --kernel", path.display())]
+    #[error("{} is a name of memory images, which are for Verilog; for tables give the table file (.json), for a kernel its file or name", path.display())]
     MemoryImages {
         /// The file.
         path: PathBuf,
