@@ -19,7 +19,8 @@ import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+from workspace import ROOT, TARGET
+
 DOCS = ROOT / "docs"
 PROGRAM = re.compile(r"(?:halfrow|halfrow-station|cargo|sudo|apt-get|createdb|systemctl|install|curl|python3|pip|git|scripts/\S+) ")
 BESIDE = ["docs", "fpga", "host", "protocol", "python", "scripts", "README.md", "Cargo.toml"]
@@ -190,14 +191,13 @@ def check(page, programs):
 
 
 def main():
-    target = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
     build = ["cargo", "build", "--quiet", "--workspace", "--features", "halfrow-tests/sim", "--locked", "--bin", "halfrow", "--bin",
              "halfrow-station", "--test", "command_line"]
     if subprocess.run(build, cwd=ROOT, check=False).returncode:
         sys.exit("scripts/handbook: the programs could not be built")
     known, wrong, ran, left = options(), [], 0, 0
     for page in dict.fromkeys(pages()):
-        counts, found = check(page, (target / "debug").resolve())
+        counts, found = check(page, (TARGET / "debug").resolve())
         ran, left = ran + counts[0], left + counts[1]
         wrong += [*found, *unknown(page, known), *changed(page)]
     print(f"{ran} blocks of commands run, {left} named as not to be run here")

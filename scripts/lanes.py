@@ -1,21 +1,9 @@
 """A station at work, for scripts: boards in, verdicts out."""
 import contextlib
 import json
-import os
-import pathlib
 import subprocess
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-# Where everything is built and kept.
-TARGET = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
-
-
-def built(*how):
-    """The folder of the programs as the sources have them now, built with these options of cargo's."""
-    build = ["cargo", "build", *how, "--quiet", "--locked", "--package", "halfrow-cli", "--package", "halfrow-station"]
-    subprocess.run(build, cwd=ROOT, check=True)
-    return TARGET / ("release" if "--release" in how else "debug")
-
+from workspace import ROOT
 
 # A plan whose runs take a moment.
 PLAN = (ROOT / "host/station/tests/station/quick.toml").read_text()

@@ -147,14 +147,20 @@ impl Folder {
         let command = self.command(arguments);
         let mut shell = Command::new("sh");
         shell.args(["-c", line, "sh"]).arg(command.get_program()).args(command.get_args());
+        self.as_started_by(shell, &command)
+    }
+
+    /// `other`, which starts `command`, in this folder and in the environment of that.
+    #[cfg(unix)]
+    fn as_started_by(&self, mut other: Command, command: &Command) -> Command {
         for (name, value) in command.get_envs() {
             match value {
-                Some(value) => shell.env(name, value),
-                None => shell.env_remove(name),
+                Some(value) => other.env(name, value),
+                None => other.env_remove(name),
             };
         }
-        shell.current_dir(self.path()).stdin(Stdio::null());
-        shell
+        other.current_dir(self.path()).stdin(Stdio::null());
+        other
     }
 
     /// Writes a file.

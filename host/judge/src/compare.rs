@@ -105,6 +105,11 @@ impl Comparison {
     }
 }
 
+/// The bits that are set in `changed`, the lowest first.
+pub(crate) fn bits_in(changed: u32) -> Vec<u32> {
+    (0..u32::BITS).filter(|bit| changed >> bit & 1 == 1).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

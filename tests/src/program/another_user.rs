@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use nix::unistd::geteuid;
@@ -51,23 +51,18 @@ impl Folder {
     fn as_user(&self, user: u32, by: &[&str], arguments: &[&str]) -> Command {
         let command = self.command(arguments.iter().copied());
         let program = self.path().join("halfrow-of-another-user");
-        // By another program: while this one has the file open for writing, what other tests start inherits that, and nobody can run it.
-        let copied = Command::new("cp").arg(command.get_program()).arg(&program).status().unwrap();
-        assert!(copied.success(), "the program cannot be copied to {}", program.display());
+        if !program.exists() {
+            // By another program: while this one has the file open for writing, what other tests start inherits that, and nobody can run it.
+            let copied = Command::new("cp").arg(command.get_program()).arg(&program).status().unwrap();
+            assert!(copied.success(), "the program cannot be copied to {}", program.display());
+        }
         for path in [self.path(), &program] {
             fs::set_permissions(path, fs::Permissions::from_mode(0o755)).unwrap();
         }
         let mut other = Command::new("setpriv");
         other.args([format!("--reuid={user}"), format!("--regid={NOBODY}"), "--clear-groups".to_owned()]);
         other.args(by).arg(program).args(arguments);
-        for (name, value) in command.get_envs() {
-            match value {
-                Some(value) => other.env(name, value),
-                None => other.env_remove(name),
-            };
-        }
-        other.current_dir(self.path()).stdin(Stdio::null());
-        other
+        self.as_started_by(other, &command)
     }
 }
 

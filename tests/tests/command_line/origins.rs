@@ -28,6 +28,16 @@ fn with_variable(folder: &Folder, (name, value): (&str, &str), more: &[&str]) ->
     finish(folder.command(small("verify", more)).env(name, value))
 }
 
+/// The call is refused by the name of the variable, for this `reason`.
+#[track_caller]
+fn blames_it(folder: &Folder, variable: (&str, &str), more: &[&str], reason: &str) {
+    let ended = with_variable(folder, variable, more);
+    assert_eq!(ended.code, Some(2), "{variable:?}: {}", ended.stderr);
+    for part in [variable.0, reason] {
+        assert!(ended.stderr.contains(part), "{variable:?} says: {}", ended.stderr);
+    }
+}
+
 /// As CI files unset a variable.
 #[test]
 fn an_empty_variable_is_none() {
@@ -56,11 +66,7 @@ fn a_value_of_the_environment_that_does_not_fit_is_told_as_the_variable_s() {
         (("HALFROW_KERNEL", "sharp7"), ["--board", "mock,taps=five"], "the board has five"),
         (("HALFROW_AT_SPEED", "5"), ["--within", "2"], "do not fit into 2 s"),
     ] {
-        let ended = with_variable(&folder, variable, &more);
-        assert_eq!(ended.code, Some(2), "{variable:?}: {}", ended.stderr);
-        for part in [variable.0, reason] {
-            assert!(ended.stderr.contains(part), "{variable:?} says: {}", ended.stderr);
-        }
+        blames_it(&folder, variable, &more, reason);
     }
 }
 
@@ -86,11 +92,7 @@ fn a_wrong_value_of_the_environment_is_told_as_the_variable_s() {
         ("HALFROW_MODEL_PATH", "maybe", "avx512"),
         ("HALFROW_SETTINGS", "nope.toml", "cannot read the settings file nope.toml"),
     ] {
-        let ended = with_variable(&folder, (name, value), &[]);
-        assert_eq!(ended.code, Some(2), "{name}={value}: {}", ended.stderr);
-        for part in [name, reason] {
-            assert!(ended.stderr.contains(part), "{name}={value} says: {}", ended.stderr);
-        }
+        blames_it(&folder, (name, value), &[], reason);
     }
     for (more, value) in [(["--timeout", "abc"], "abc"), (["--timeout", "abc"], "1")] {
         let ended = with_variable(&folder, ("HALFROW_TIMEOUT", value), &more);

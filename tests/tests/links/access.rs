@@ -11,36 +11,38 @@ use halfrow_tests::served::Served;
 
 use crate::ends;
 
-fn info_as_nobody(target: &str) -> Ended {
-    finish(&mut Folder::new().as_nobody(&["info", "--json", "--board", target]))
+fn info_as_nobody(folder: &Folder, target: &str) -> Ended {
+    finish(&mut folder.as_nobody(&["info", "--json", "--board", target]))
 }
 
 #[test]
 fn a_port_that_one_may_not_open_is_told_from_one_that_is_not_there() {
+    let folder = Folder::new();
     let pty = Pty::open().unwrap();
     fs::set_permissions(pty.path(), Permissions::from_mode(0o000)).unwrap();
     let target = format!("serial:{}", pty.path().display());
-    ends(&info_as_nobody(&target), 3, "you may not open /dev/pts/");
-    ends(&info_as_nobody(&target), 3, "install scripts/70-halfrow.rules");
-    let looked = finish(&mut Folder::new().as_nobody(&["boards", "--json", "--ask", &target])).json();
+    ends(&info_as_nobody(&folder, &target), 3, "you may not open /dev/pts/");
+    ends(&info_as_nobody(&folder, &target), 3, "install scripts/70-halfrow.rules");
+    let looked = finish(&mut folder.as_nobody(&["boards", "--json", "--ask", &target])).json();
     assert_eq!(looked["boards"][0]["access"]["state"], "denied", "{looked}");
     fs::set_permissions(pty.path(), Permissions::from_mode(0o660)).unwrap();
     if is_root() {
         chown(pty.path(), None, Some(20)).unwrap();
-        ends(&info_as_nobody(&target), 3, "join its group with `sudo usermod -aG dialout $USER`");
+        ends(&info_as_nobody(&folder, &target), 3, "join its group with `sudo usermod -aG dialout $USER`");
     }
 }
 
 #[test]
 fn a_port_in_use_is_busy_for_a_user_without_rights_too() {
+    let folder = Folder::new();
     let served = Served::on_a_serial_port("mock");
     if is_root() {
         chown(served.address(), Some(NOBODY), None).unwrap();
     }
     let held = link::open(&served.target().parse().unwrap()).unwrap();
-    ends(&info_as_nobody(&served.target()), 4, "is in use");
+    ends(&info_as_nobody(&folder, &served.target()), 4, "is in use");
     drop(held);
-    let ended = info_as_nobody(&served.target());
+    let ended = info_as_nobody(&folder, &served.target());
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
 }
 

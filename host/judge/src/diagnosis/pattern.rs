@@ -1,6 +1,7 @@
 //! Where differences lie, for when no defect explains them.
 
 use super::witnesses::{Witness, Witnesses};
+use crate::compare::bits_in;
 use crate::result::{Account, Defect, Extent, FrameReport, Suspect};
 
 /// Where the differences lie.
@@ -53,8 +54,7 @@ fn extent(places: &[usize], total: usize) -> Option<Extent> {
 
 /// The bits in which any sample differs.
 fn bits(frames: &[&FrameReport]) -> Vec<u32> {
-    let all = frames.iter().fold(0, |all, frame| all | frame.comparison.bits);
-    (0..u16::BITS).filter(|bit| all >> bit & 1 == 1).collect()
+    bits_in(frames.iter().fold(0, |all, frame| all | frame.comparison.bits).into())
 }
 
 /// Whether only the bright samples of the reference differ, or only the dark ones; none for both.

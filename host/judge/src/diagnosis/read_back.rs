@@ -6,6 +6,7 @@ use halfrow_model::{RowFactor, TAP_NAMES};
 
 use super::Uploaded;
 use crate::board::Table;
+use crate::compare::bits_in;
 use crate::result::{Account, Defect, Memory, Suspect};
 
 /// A table as words: row factors, the entries of a grid, or the weights of nodes one after the other.
@@ -123,8 +124,7 @@ fn wrong_length(expected: Words<'_>, found: Words<'_>) -> Suspect {
 
 /// The word `word`, the first of `count` that are wrong.
 fn one_word(words: Words<'_>, word: WrongWord, count: usize) -> Suspect {
-    let differing = word.expected ^ word.found;
-    let bits = (0..u32::BITS).filter(|bit| differing >> bit & 1 == 1).collect();
+    let bits = bits_in(word.expected ^ word.found);
     let [uploaded, read] = [word.expected, word.found].map(|word| words.value(word));
     let entry = word.index / words.per_entry();
     let defect = match (words.table, words.grid_rows) {

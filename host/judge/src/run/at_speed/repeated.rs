@@ -12,7 +12,7 @@ use super::tables_late::tables_late;
 use super::watched::{EndsEarly, Watched};
 use super::{FEW, USUAL};
 use crate::board::{NumberedFrame, Trapped, Unjudged};
-use crate::compare::Comparison;
+use crate::compare::{Comparison, bits_in};
 use crate::diagnosis::{self, Case, Uploaded};
 use crate::frames::{Builtin, Scene};
 use crate::reference::correct;
@@ -264,8 +264,7 @@ pub(super) fn at_speed(streamed: Streamed, kept: Option<TrappedRow<'_>>) -> Opti
 
 /// How many samples differ, and in which bits.
 fn changed((_, expected, found): TrappedRow<'_>) -> (usize, Vec<u32>) {
-    let changed = expected.iter().zip(found).map(|(expected, found)| expected ^ found);
-    let samples = changed.clone().filter(|&bits| bits != 0).count();
-    let all = changed.fold(0, |all, bits| all | bits);
-    (samples, (0..u16::BITS).filter(|bit| all >> bit & 1 == 1).collect())
+    let mut row = Comparison::new(expected.len(), 1);
+    row.row(0, expected, found);
+    (row.differences, bits_in(row.bits.into()))
 }
