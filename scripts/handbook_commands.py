@@ -158,14 +158,15 @@ def unknown(page, known):
     text = page.read_text()
     for call in re.finditer(r"(?:`|^|^ +|sudo -u halfrow )(halfrow(?:-station)?)((?: [^`\n|#;]*)?)", text, re.M):
         program, words = call[1], call[2].split(" -- ")[0].split()
-        name, given = program, [word.split("=")[0] for word in words if re.match(r"--[a-z]", word)]
+        name, following, given = program, words, [word.split("=")[0] for word in words if re.match(r"--[a-z]", word)]
         where = f"{page.relative_to(ROOT)}:{text[:call.start()].count(chr(10)) + 1}"
-        for word in words:
+        for place, word in enumerate(words):
             if f"{name} {word}" in known:
-                name = f"{name} {word}"
+                name, following = f"{name} {word}", words[place + 1:]
         is_prose = call.start() == call.start(1) and text.count("```", 0, call.start()) % 2 == 0
-        if name == program and not is_prose and words and re.fullmatch("(?!help$)[a-z][a-z-]*", words[0]):
-            yield f"{where}: {program} has no command {words[0]}"
+        has_commands = any(other.startswith(f"{name} ") for other in known)
+        if has_commands and not is_prose and following and re.fullmatch("(?!help$)[a-z][a-z-]*", following[0]):
+            yield f"{where}: {name} has no command {following[0]}"
         for option in given:
             if option not in known[name]:
                 yield f"{where}: {name} has no {option}"

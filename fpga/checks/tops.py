@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The boards' tops as yosys reads them: once for every check that looks at them. What it made is kept below
-target/hardware/tops for as long as the sources are the same.
+"""The boards' tops as yosys reads them: once for every check that looks at them. What it made is kept
+where everything is built, in hardware/tops, for as long as the sources are the same.
     tops.py words|cells BOARD fifo|uart [sensor]     prints the file of the netlist
     tops.py header BUILD SERIAL [sensor]             prints halfrow_build.vh; BUILD: eight hexadecimal digits
 words: flat, in front of mapping, read without a warning. cells: flat, of the vendor's cells. Those of the miniSpartan6+ have their
@@ -9,6 +9,7 @@ pads, as `build --yosys` takes them; those of the ULX3S are made of the words, w
 import collections
 import hashlib
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -18,7 +19,8 @@ import tempfile
 import rtl
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-KEPT = ROOT / "target/hardware/tops"
+TARGET = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
+KEPT = TARGET / "hardware/tops"
 # The vendor's cells, by board.
 CELLS = {"minispartan6plus": "-specify +/xilinx/cells_sim.v +/xilinx/cells_xtra.v", "ulx3s": "+/ecp5/cells_bb.v"}
 WORDS = "hierarchy -check {libraries} -top {top}; proc; check -assert; flatten; opt_expr; opt_dff; opt_clean; memory_collect"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """From the ULX3S's Verilog to a routed design: the pinned tools, yosys, nextpnr-ecp5, and what its report says of the clocks.
 
-A design is a top of this folder, or the core alone. All runs in a work folder of its own under target/ulx3s. The tools, which are
+A design is a top of this folder, or the core alone. All runs in a work folder of its own where everything is built, in ulx3s. The tools, which are
 WebAssembly, find files by paths relative to it.
     flow.py TAPS FOLDER           makes the netlist of the UART's top with so many taps, and prints the folder of yosys' models of its cells
     flow.py TAPS FOLDER routed    places and routes it for an LFE5U-25F, too: FOLDER/routed/routed.json
@@ -17,12 +17,13 @@ import venv
 
 BOARD = pathlib.Path(__file__).resolve().parent
 ROOT = BOARD.parents[2]
-TARGET = ROOT / "target" / "ulx3s"
-TOOLS = TARGET / "tools"
 sys.path[:0] = [str(ROOT / "fpga" / "checks"), str(BOARD.parent)]
 import commit  # noqa: E402
 import rtl  # noqa: E402
 import tops  # noqa: E402
+
+TARGET = tops.TARGET / "ulx3s"
+TOOLS = TARGET / "tools"
 
 DEVICES = {"12": "--12k", "25": "--25k", "45": "--45k", "85": "--85k"}
 # What every clock of a bitstream must reach, and the core where nothing but its own paths holds it back.
