@@ -184,7 +184,9 @@ pub enum DecodeError {
     },
     /// The file tells another depth than was asked for.
     #[error(
-        "it says that its samples have {found} bits, not {}; give that depth, or scale it to 8, 10 or 12 bits",
+        "it says that its samples have {found} bits, not {}; {}scale it to {} bits",
+        asked.bits(),
+        if BitDepth::from_bits(*found).is_some() { "give that depth, or " } else { "" },
         asked.bits()
     )]
     OtherDepth {

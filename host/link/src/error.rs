@@ -9,7 +9,7 @@ use crate::{Class, RecordingError, SerialError, Target, TcpError, UsbError};
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
     /// The kind is not known.
-    #[error("`{0}` is no kind of board that this program knows; it knows {known}", known = kinds::forms().join(", "))]
+    #[error("`{0}` is no kind of board that this program knows; {remedy}", remedy = instead_of(.0))]
     UnknownKind(String),
     /// A kind that has no address.
     #[error("`{kind}` takes no address, and got `{address}`; write `{kind}` alone, options behind a comma")]
@@ -137,4 +137,12 @@ impl OpenError {
             _ => Class::Call,
         }
     }
+}
+
+/// What to write in place of a kind that there is not: a device's path is taken for a kind where nothing stands in front of it.
+fn instead_of(kind: &str) -> String {
+    if kind.starts_with("/dev/") {
+        return format!("for a serial port write serial:{kind}");
+    }
+    format!("it knows {}", kinds::forms().join(", "))
 }

@@ -31,6 +31,10 @@ fn a_list_for_a_board_that_cannot_be_named_is_refused() {
 #[test]
 fn an_unknown_kind_is_refused() {
     no_such_board("moon", "`moon` is no kind of board that this program knows");
+    no_such_board(
+        "/dev/ttyUSB0",
+        "`/dev/ttyUSB0` is no kind of board that this program knows; for a serial port write serial:/dev/ttyUSB0",
+    );
     no_such_board("", "names no board");
     no_such_board("mock:7", "`mock` takes no address");
     no_such_board("mock,latency", "write KEY=VALUE");

@@ -40,6 +40,8 @@ fn a_port_that_is_not_there_is_an_error_of_the_station() {
         3,
         "there is no serial port /dev/ttyUSB99; check that the board is plugged in",
     );
+    // As other programs take a port.
+    ends(&verify("serial:null", &[]), 3, "there is no serial port null; write serial:/dev/null, or check");
     ends(&verify("serial:/dev/null", &[]), 2, "/dev/null is no serial port");
     ends(&verify("serial:/etc/passwd", &[]), 2, "/etc/passwd is no serial port");
     ends(&verify("serial", &[]), 2, "write serial:PATH");

@@ -74,6 +74,8 @@ fn white_tells_the_depth() {
     for (white, bits) in [(16383_u32, 14), (1023, 10), (255, 8), (4096, 13), (0, 0)] {
         let error = decode(&altered(WHITE + 8, &white.to_le_bytes()), &AS_WRITTEN).unwrap_err();
         assert!(matches!(error, DecodeError::OtherDepth { found, .. } if found == bits), "{error}");
+        let can_be_given = [8, 10, 12].contains(&bits);
+        assert_eq!(error.to_string().contains("give that depth"), can_be_given, "{error}");
     }
 }
 

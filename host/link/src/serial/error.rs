@@ -1,6 +1,6 @@
 //! Serial ports that cannot be opened, each with what to do.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::Holder;
 use super::holder::by;
@@ -12,8 +12,10 @@ use crate::ftdi::list;
 pub enum SerialError {
     /// There is no such file.
     #[error(
-        "there is no serial port {0}; check that the board is plugged in and powered, and see `halfrow boards` for \
-         those that are there"
+        "there is no serial port {}; {}check that the board is plugged in and powered, and see `halfrow boards` for \
+         those that are there",
+        .0.display(),
+        below_dev(.0)
     )]
     Missing(PathBuf),
     /// The file is something else.
@@ -84,4 +86,11 @@ impl SerialError {
             _ => Class::Station,
         }
     }
+}
+
+/// The remedy for a port that was named as other programs let one, without its folder.
+fn below_dev(port: &Path) -> String {
+    let device = Path::new("/dev").join(port);
+    let is_meant = port.is_relative() && device.exists();
+    if is_meant { format!("write serial:{}, or ", device.display()) } else { String::new() }
 }

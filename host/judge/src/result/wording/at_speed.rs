@@ -181,7 +181,7 @@ pub(crate) fn named_clock(clock_hz: u32, seen: ClockSeen) -> String {
 }
 
 /// `its clock was seen to be 91.2 MHz to 103.4 MHz`
-pub(super) fn seen_of_clock(seen: ClockSeen) -> String {
+pub(crate) fn seen_of_clock(seen: ClockSeen) -> String {
     let between = match (seen.least_hz, seen.most_hz) {
         (Some(least), Some(most)) if least > most => {
             return "its clock was seen to be no steady one".to_owned();

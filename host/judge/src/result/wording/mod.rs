@@ -13,7 +13,7 @@ mod tables;
 
 use super::{Defect, Memory};
 
-pub(crate) use at_speed::named_clock;
+pub(crate) use at_speed::{named_clock, seen_of_clock};
 pub use bench::at_the_bench;
 pub use evidence::evidence;
 pub(super) use findings::because;

@@ -8,6 +8,7 @@ use super::USUAL;
 use super::burst::BurstPlan;
 use super::watched::Watched;
 use crate::board::{BoardNature, Fetched};
+use crate::result::wording::seen_of_clock;
 use crate::result::{CheckName, ClockSeen, Finding, NotExercised};
 use crate::run::findings::End;
 use crate::run::plan::Generation;
@@ -136,7 +137,8 @@ impl Run<'_> {
             return Ok(first);
         }
         tracing::warn!(
-            "the board names a pixel clock of {clock_hz} Hz, and {first:?} was seen; looking again"
+            "the board names a pixel clock of {clock_hz} Hz, and {}; looking again",
+            seen_of_clock(first)
         );
         let plan = to_look_again(plan);
         match weigh(clock_hz, first, || Ok(self.judge_frames(&plan, tables)?.clock))? {
