@@ -1,7 +1,7 @@
 //! The flags that the settings have that the libraries name in words: the one place where a remedy gets its flag.
 
 /// What sentences of the libraries say, and the flag for it, or what to call. None of them is part of another.
-pub const FLAGS: [(&str, &str); 22] = [
+pub const FLAGS: [(&str, &str); 23] = [
     ("allow it to be overwritten", "--overwrite"),
     ("another place for the recording", "--record"),
     ("another place for the report", "--report"),
@@ -20,6 +20,7 @@ pub const FLAGS: [(&str, &str); 22] = [
     ("name the layout", "--raw"),
     ("crop and scale it", "--fit"),
     ("name the phase", "--phase"),
+    ("name the bits", "--bits"),
     ("the lens pitch and the optical centre", "--lens-pitch, --centre-x, --centre-y"),
     ("leave out the exact projection", "--projection"),
     ("the most entries of a grid", "--entries"),

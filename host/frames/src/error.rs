@@ -186,7 +186,7 @@ pub enum DecodeError {
     #[error(
         "it says that its samples have {found} bits, not {}; {}scale it to {} bits",
         asked.bits(),
-        if BitDepth::from_bits(*found).is_some() { "give that depth, or " } else { "" },
+        if BitDepth::from_bits(*found).is_some() { "name the bits, or " } else { "" },
         asked.bits()
     )]
     OtherDepth {

@@ -275,7 +275,10 @@ impl Optics {
     /// What the lens is, in a sentence.
     #[must_use]
     pub fn source(&self) -> String {
-        format!("{}, R = {:.3} pixels", self.name, self.camera.radius())
+        let degrees = self.camera.field_of_view().to_degrees() / 2.0;
+        // 90 is what R is of in Eq. 9, and on every page.
+        let of_angle = if degrees == 90.0 { String::new() } else { format!(" at {degrees} degrees") };
+        format!("{}, R = {:.3} pixels{of_angle}", self.name, self.camera.radius())
     }
 }
 

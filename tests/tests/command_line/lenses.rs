@@ -254,6 +254,21 @@ fn a_calibration_without_a_picture_size_needs_one() {
     refused(&folder, &["lens", "--lens", "lens.json"], sentence);
 }
 
+/// f is 1000 pixels: 90 degrees are at 1000 · π/2, and 100 at 1000 · 10π/18.
+#[test]
+fn a_radius_of_another_angle_than_90_degrees_says_so() {
+    let folder = Folder::new();
+    let said = |angle: &str| {
+        folder.halfrow(["lens", "--focal-length", "3", "--pixel-pitch", "3", "--field-of-view", angle]).stdout
+    };
+    assert!(said("180").contains("equidistant lens, R = 1570.796 pixels\n"), "{}", said("180"));
+    assert!(
+        said("200").contains("equidistant lens, R = 1745.329 pixels at 100 degrees\n"),
+        "{}",
+        said("200")
+    );
+}
+
 /// R = f · π/2, so f = 1 reaches one row above and below the axis at row 8.
 #[test]
 fn a_lens_that_misses_the_frame_is_refused_or_told() {

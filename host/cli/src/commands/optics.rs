@@ -73,7 +73,8 @@ pub(super) struct LensArguments {
     #[arg(long, value_name = "UM")]
     #[arg(value_parser = any::<f64>("a number of micrometres"))]
     pixel_pitch: Option<f64>,
-    /// Field of view of the whole image circle, in degrees [default: 180]
+    /// Angle across the circle to whose width Eq. 9 stretches rows, in degrees. With any other than 180 it bends verticals more,
+    /// whatever the lens sees; fitted rows are fitted to what is inside [default: 180]
     #[arg(long, value_name = "DEGREES")]
     #[arg(value_parser = any::<f64>("a number of degrees"))]
     field_of_view: Option<f64>,

@@ -75,7 +75,7 @@ fn white_tells_the_depth() {
         let error = decode(&altered(WHITE + 8, &white.to_le_bytes()), &AS_WRITTEN).unwrap_err();
         assert!(matches!(error, DecodeError::OtherDepth { found, .. } if found == bits), "{error}");
         let can_be_given = [8, 10, 12].contains(&bits);
-        assert_eq!(error.to_string().contains("give that depth"), can_be_given, "{error}");
+        assert_eq!(error.to_string().contains("name the bits"), can_be_given, "{error}");
     }
 }
 

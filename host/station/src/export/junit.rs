@@ -13,7 +13,9 @@ pub(super) fn render(record: &Record) -> Result<String, SerializeError> {
     let mut suite = TestSuite::new(plain(&format!("{} {}", record.plan.name, record.plan.version)));
     let started = Timestamp::from_millisecond(record.run.started_ms).ok();
     suite.timestamp = started.and_then(|started| started.to_string().parse().ok());
-    suite.time = Some(took(record.run.started_ms, record.ended_ms));
+    // A run that a crash ended has no time but the one by the clock that somebody may have set meanwhile.
+    let seconds = record.seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    suite.time = Some(seconds.unwrap_or_else(|| took(record.run.started_ms, record.ended_ms)));
     for (name, value) in properties(record) {
         suite.add_property(Property::new(name, plain(&value)));
     }
@@ -110,4 +112,18 @@ fn status(kind: Option<NonSuccessKind>, message: &str, description: &str) -> Sta
 
 fn took(from_ms: i64, to_ms: i64) -> Duration {
     Duration::from_millis(to_ms.saturating_sub(from_ms).max(0).unsigned_abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::tests::pass;
+
+    #[test]
+    fn a_run_is_as_long_as_it_was_although_its_computer_was_set_back() {
+        let set_back = |seconds| Record { seconds, ended_ms: 0, ..pass() };
+        let suite = |seconds| render(&set_back(seconds)).unwrap();
+        assert!(suite(Some(61.5)).contains(" time=\"61.500\""), "{}", suite(Some(61.5)));
+        assert!(suite(None).contains(" time=\"0.000\""), "{}", suite(None));
+    }
 }

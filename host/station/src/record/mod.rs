@@ -203,11 +203,11 @@ impl Record {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::plan::limits::Maker;
 
-    fn pass() -> Record {
+    pub(crate) fn pass() -> Record {
         let run = RunHead {
             id: "017f22e2-79b0-7cc3-98c4-dc0c0c07398f".to_owned(),
             station: "12".to_owned(),
