@@ -13,9 +13,7 @@ pub(super) fn render(record: &Record) -> Result<String, SerializeError> {
     let mut suite = TestSuite::new(plain(&format!("{} {}", record.plan.name, record.plan.version)));
     let started = Timestamp::from_millisecond(record.run.started_ms).ok();
     suite.timestamp = started.and_then(|started| started.to_string().parse().ok());
-    // A run that a crash ended has no time but the one by the clock that somebody may have set meanwhile.
-    let seconds = record.seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
-    suite.time = Some(seconds.unwrap_or_else(|| took(record.run.started_ms, record.ended_ms)));
+    suite.time = record.took();
     for (name, value) in properties(record) {
         suite.add_property(Property::new(name, plain(&value)));
     }
@@ -24,7 +22,7 @@ pub(super) fn render(record: &Record) -> Result<String, SerializeError> {
         !record.steps.iter().any(|other| other.seq == step.seq && other.attempt > step.attempt)
     };
     let last: Vec<_> = record.steps.iter().filter(is_last).collect();
-    suite.add_test_cases(last.iter().map(|step| step_case(step)));
+    suite.add_test_cases(last.iter().map(|step| step_case(step, record.took_for(step))));
     for step in last {
         suite.add_test_cases(limits(&step.name, &step.measurements));
     }
@@ -63,10 +61,10 @@ fn verdict(record: &Record) -> TestCase {
         Verdict::Error => Some(NonSuccessKind::Error),
     };
     let remedy = ended.remedy.as_deref().unwrap_or_default();
-    case("run", "verdict", Duration::ZERO, status(kind, &ended.headline, remedy))
+    case("run", "verdict", Some(Duration::ZERO), status(kind, &ended.headline, remedy))
 }
 
-fn step_case(step: &StepRecord) -> TestCase {
+fn step_case(step: &StepRecord, took: Option<Duration>) -> TestCase {
     let status = match step.outcome {
         StepOutcome::Passed => Status::success(),
         StepOutcome::Skipped => Status::skipped(),
@@ -75,7 +73,7 @@ fn step_case(step: &StepRecord) -> TestCase {
     };
     // The number keeps apart two steps of one name.
     let name = format!("{} (step {}, try {})", step.name, step.seq, step.attempt);
-    case("step", &name, took(step.started_ms, step.ended_ms), status)
+    case("step", &name, took, status)
 }
 
 /// A case for each measurement that has a limit; one that blames nobody fails nothing.
@@ -87,14 +85,14 @@ fn limits(step: &str, measured: &[Measured]) -> Vec<TestCase> {
             _ => NonSuccessKind::Error,
         });
         let name = format!("{} ({step})", one.name);
-        case("limit", &name, Duration::ZERO, status(kind, &one.sentence(), ""))
+        case("limit", &name, Some(Duration::ZERO), status(kind, &one.sentence(), ""))
     };
     limited.map(one).collect()
 }
 
-fn case(class: &str, name: &str, took: Duration, status: Status) -> TestCase {
+fn case(class: &str, name: &str, took: Option<Duration>, status: Status) -> TestCase {
     let mut case = TestCase::new(plain(name), status);
-    case.time = Some(took);
+    case.time = took;
     case.set_classname(format!("halfrow-station.{class}"));
     case
 }
@@ -110,20 +108,30 @@ fn status(kind: Option<NonSuccessKind>, message: &str, description: &str) -> Sta
     status
 }
 
-fn took(from_ms: i64, to_ms: i64) -> Duration {
-    Duration::from_millis(to_ms.saturating_sub(from_ms).max(0).unsigned_abs())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::tests::pass;
+    use crate::record::tests::{pass, step};
 
     #[test]
-    fn a_run_is_as_long_as_it_was_although_its_computer_was_set_back() {
-        let set_back = |seconds| Record { seconds, ended_ms: 0, ..pass() };
-        let suite = |seconds| render(&set_back(seconds)).unwrap();
-        assert!(suite(Some(61.5)).contains(" time=\"61.500\""), "{}", suite(Some(61.5)));
-        assert!(suite(None).contains(" time=\"0.000\""), "{}", suite(None));
+    fn a_run_is_as_long_as_it_was_although_its_computer_was_set() {
+        let began = pass().run.started_ms;
+        let step = step(1, 1, StepOutcome::Passed, RunCause::None);
+        let set = |seconds, ended_ms, step_ended_ms| {
+            let step = StepRecord { started_ms: began, ended_ms: step_ended_ms, ..step.clone() };
+            let document = render(&Record { seconds, ended_ms, steps: vec![step], ..pass() }).unwrap();
+            let times = |tag: &str| {
+                let from = document.find(tag).unwrap();
+                let head = &document[from..from + document[from..].find('>').unwrap()];
+                head.split_once(" time=\"").map(|(_, time)| time.split('"').next().unwrap().to_owned())
+            };
+            ["<testsuite ", "<testcase name=\"step 1 ("].map(times)
+        };
+        let some = |time: &str| Some(time.to_owned());
+        assert_eq!(set(Some(0.5), began + 500, began + 250), [some("0.500"), some("0.250")]);
+        assert_eq!(set(Some(0.5), began - 7000, began - 7250), [some("0.500"), None]);
+        assert_eq!(set(Some(0.5), began + 90_000, began + 89_000), [some("0.500"), None]);
+        assert_eq!(set(None, began + 500, began + 250), [some("0.500"), some("0.250")]);
+        assert_eq!(set(None, began - 500, began - 250), [None, None]);
     }
 }

@@ -1,6 +1,8 @@
 //! A run as the JSON that OpenHTF 1.6 writes of its own test records (`openhtf.output.callbacks.json_factory`): a try of
 //! a step is a phase.
 
+use std::time::Duration;
+
 use serde_json::{Map, Value, json};
 
 use crate::record::{Measured, MeasuredOutcome, Record, RunCause, StepOutcome, StepRecord};
@@ -13,14 +15,14 @@ pub(super) fn of(record: &Record) -> Value {
         _ => ended.verdict.to_string(),
     };
     let whole = (!record.measurements.is_empty()).then(|| {
-        let times = (run.started_ms, record.ended_ms);
+        let times = (run.started_ms, ended_ms(run.started_ms, record.took()));
         phase(0, "run", times, worst(&record.measurements), record.marginal, &record.measurements)
     });
-    let phases: Vec<_> = record.steps.iter().map(of_step).chain(whole).collect();
+    let phases: Vec<_> = record.steps.iter().map(|step| of_step(record, step)).chain(whole).collect();
     json!({
         "dut_id": run.serial,
         "start_time_millis": run.started_ms,
-        "end_time_millis": record.ended_ms,
+        "end_time_millis": ended_ms(run.started_ms, record.took()),
         "outcome": outcome,
         "outcome_details": [{ "code": ended.cause.name(), "description": ended.headline }],
         "marginal": record.marginal,
@@ -45,6 +47,11 @@ pub(super) fn of(record: &Record) -> Value {
     })
 }
 
+/// The end of what began then, which stands behind it although the clock was set back: what reads this takes times of the two.
+fn ended_ms(started_ms: i64, took: Option<Duration>) -> i64 {
+    started_ms.saturating_add_unsigned(took.map_or(0, |took| took.as_millis() as u64))
+}
+
 /// What the limits of the run as a whole make of it; those of a step are in its outcome.
 fn worst(measured: &[Measured]) -> &'static str {
     let faults: Vec<_> = measured.iter().filter_map(Measured::fault).collect();
@@ -55,14 +62,14 @@ fn worst(measured: &[Measured]) -> &'static str {
     }
 }
 
-fn of_step(step: &StepRecord) -> Value {
+fn of_step(record: &Record, step: &StepRecord) -> Value {
     let outcome = match step.outcome {
         StepOutcome::Passed => "PASS",
         StepOutcome::Failed => "FAIL",
         StepOutcome::Error => "ERROR",
         StepOutcome::Skipped => "SKIP",
     };
-    let times = (step.started_ms, step.ended_ms);
+    let times = (step.started_ms, ended_ms(step.started_ms, record.took_for(step)));
     phase(step.seq, &step.name, times, outcome, step.attempt > 1, &step.measurements)
 }
 

@@ -128,10 +128,10 @@ impl Conclusion {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    fn step(seq: u32, attempt: u32, outcome: StepOutcome, cause: RunCause) -> StepRecord {
+    pub(crate) fn step(seq: u32, attempt: u32, outcome: StepOutcome, cause: RunCause) -> StepRecord {
         StepRecord {
             seq,
             attempt,

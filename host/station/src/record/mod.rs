@@ -5,6 +5,8 @@ mod conclude;
 mod step;
 mod unnamed;
 
+use std::time::Duration;
+
 use halfrow::Verdict;
 use halfrow::result::FileHash;
 use serde::{Deserialize, Serialize};
@@ -186,6 +188,22 @@ impl Record {
         Ok(bytes)
     }
 
+    /// How long it took; behind a crash by the computer's clock, and none if that was set back meanwhile.
+    #[must_use]
+    pub fn took(&self) -> Option<Duration> {
+        self.seconds.map_or_else(
+            || between(self.run.started_ms, self.ended_ms),
+            |seconds| Duration::try_from_secs_f64(seconds).ok(),
+        )
+    }
+
+    /// How long one of its steps took by the computer's clock; none if that was set meanwhile: then it took no time, or more than the run.
+    #[must_use]
+    pub fn took_for(&self, step: &StepRecord) -> Option<Duration> {
+        let whole = self.seconds.unwrap_or(f64::INFINITY) + SLACK;
+        between(step.started_ms, step.ended_ms).filter(|took| took.as_secs_f64() <= whole)
+    }
+
     /// The device that this run binds to its serial number: one that neither knew, once it is judged.
     #[must_use]
     pub fn binds(&self) -> Option<&str> {
@@ -202,8 +220,16 @@ impl Record {
     }
 }
 
+/// By how many seconds the clocks of a run and of its steps may differ where nobody sets one.
+const SLACK: f64 = 1.0;
+
+fn between(from_ms: i64, to_ms: i64) -> Option<Duration> {
+    u64::try_from(to_ms.checked_sub(from_ms)?).ok().map(Duration::from_millis)
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
+    pub(crate) use super::conclude::tests::step;
     use super::*;
     use crate::plan::limits::Maker;
 

@@ -1,5 +1,7 @@
 //! One run: its verdict and all that it stands on.
 
+use std::time::Duration;
+
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::response::Response;
@@ -209,12 +211,11 @@ fn facts(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
 fn steps(visit: &Visit, record: &Record) -> Markup {
     html! {
         h2 { (visit.say("run.steps")) }
-        div.wide tabindex="0" { table.steps { tbody { @for step in &record.steps { (step_row(visit, step)) } } } }
+        div.wide tabindex="0" { table.steps { tbody { @for step in &record.steps { (step_row(visit, step, record.took_for(step))) } } } }
     }
 }
 
-fn step_row(visit: &Visit, step: &StepRecord) -> Markup {
-    let seconds = (step.ended_ms - step.started_ms) as f64 / 1000.0;
+fn step_row(visit: &Visit, step: &StepRecord, took: Option<Duration>) -> Markup {
     html! {
         tr {
             td.number { (step.seq) }
@@ -223,7 +224,7 @@ fn step_row(visit: &Visit, step: &StepRecord) -> Markup {
                 @if step.attempt > 1 { " " (visit.words.fill("run.attempt", &[("number", &step.attempt.to_string())])) }
             }
             td { (outcome(visit, step.outcome.name())) }
-            td.number { (show::number(visit, seconds)) " s" }
+            td.number { @if let Some(took) = took { (show::number(visit, took.as_secs_f64())) " s" } }
             td {
                 @match &step.finding {
                     Some(finding) => (show::told(&visit.words.tell(finding))),
