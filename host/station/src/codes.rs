@@ -33,6 +33,7 @@ use crate::work::{Lost, WorkError};
 codes::codes! {
     InputError {
         Unreadable [path] => "station-input-unreadable",
+        NotText [path] => "station-input-no-text",
         Wrong [path, line, what] => "station-input-wrong",
         Input [path, line, what] => "station-input-names-unusable",
     }

@@ -4,6 +4,8 @@ use std::error::Error;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use halfrow::tables::text;
+
 /// A file of TOML that cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum InputError {
@@ -13,6 +15,14 @@ pub enum InputError {
         /// The file.
         path: PathBuf,
         /// The system's reason.
+        source: io::Error,
+    },
+    /// It is there, and is not what it should be: not UTF-8, or too long.
+    #[error("{} is no file of settings, of a plan or of words; save it as text in UTF-8", path.display())]
+    NotText {
+        /// The file.
+        path: PathBuf,
+        /// Where it is none.
         source: io::Error,
     },
     /// It says what it cannot say; the message names the line, and ends in what to do.
@@ -39,6 +49,20 @@ pub enum InputError {
         /// Why.
         source: Box<dyn Error + Send + Sync>,
     },
+}
+
+/// Characters that are told of what TOML says, which quotes keys whole.
+const TOLD: usize = 200;
+
+/// The text of a file of settings, of a plan or of words.
+pub(crate) fn text_of(path: &Path) -> Result<String, InputError> {
+    text::read(path, text::MAX_BYTES).map_err(|source| {
+        let path = path.to_owned();
+        match source.kind() {
+            io::ErrorKind::InvalidData => InputError::NotText { path, source },
+            _ => InputError::Unreadable { path, source },
+        }
+    })
 }
 
 /// What is wrong at a place of the file's text, before the place has become a line.
@@ -73,7 +97,10 @@ impl Fault {
     /// What TOML or the types of the values refuse; `keys` says where all keys are listed.
     pub(crate) fn of_toml(error: &toml::de::Error, keys: &str) -> Self {
         let at = error.span().map_or(0, |span| span.start);
-        let what = error.message().lines().collect::<Vec<_>>().join("; ");
+        let mut what = error.message().lines().collect::<Vec<_>>().join("; ");
+        if let Some((end, _)) = what.char_indices().nth(TOLD) {
+            what.replace_range(end.., "...");
+        }
         Self::wrong(at, what, format!("correct the line; {keys}"))
     }
 

@@ -6,6 +6,7 @@ use std::os::unix::fs::{MetadataExt as _, OpenOptionsExt as _, PermissionsExt as
 use std::path::{Path, PathBuf};
 
 use halfrow::frames::written_aside::{folder_of, sync_folder};
+use halfrow::tables::text::{MAX_BYTES, read as read_text};
 use nix::unistd::{getegid, geteuid};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -81,7 +82,7 @@ pub(crate) fn text(path: &Path) -> Result<String, SecretError> {
     if !about.is_closed(geteuid().as_raw(), getegid().as_raw()) {
         return Err(SecretError::GivenOpen { path: path.to_owned() });
     }
-    let text = fs::read_to_string(path).map_err(refused)?;
+    let text = read_text(path, MAX_BYTES).map_err(refused)?;
     if text.trim().is_empty() { Err(SecretError::Empty { path: path.to_owned() }) } else { Ok(text) }
 }
 

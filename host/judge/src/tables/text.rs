@@ -23,7 +23,9 @@ pub fn read(path: &Path, most: u64) -> io::Result<String> {
         return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
     }
     String::from_utf8(bytes).map_err(|error| {
-        let reason = format!("it is no text from byte {} on", error.utf8_error().valid_up_to());
+        let place = error.utf8_error().valid_up_to();
+        let line = 1 + error.as_bytes().iter().take(place).filter(|&&byte| byte == b'\n').count();
+        let reason = format!("it is no text from byte {place} on, in line {line}");
         io::Error::new(io::ErrorKind::InvalidData, reason)
     })
 }

@@ -48,6 +48,16 @@ pub(super) struct EvidenceLost {
     pub(super) run: String,
 }
 
+/// Evidence that a run has had, and that was removed since it was old.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "{names} of the run {run}: removed since older evidence is not kept here; a copy of the station's folder from before may have it"
+)]
+pub(super) struct EvidenceRemoved {
+    pub(super) names: String,
+    pub(super) run: String,
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let Arguments { run, data, to } = arguments;
     let snapshot = Snapshot::take(&data.folder())?;
@@ -58,16 +68,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         return print("no evidence was kept of this run; of one that passes none is");
     }
     fs::create_dir_all(to).map_err(|source| Failure::call(NoFolder { path: to.clone(), source }))?;
-    let mut lost = Vec::new();
+    let removed = snapshot.pruned()?;
+    let ended_ms = found.line.ended_ms.unwrap_or(i64::MAX);
+    let (mut lost, mut old) = (Vec::new(), Vec::new());
     for one in &found.attachments {
         match snapshot.evidence(&one.sha256) {
             Ok(bytes) => copied(&to.join(file_name(one)), &bytes.unwrap_or_default())?,
+            Err(StoreError::Blob(_)) if removed.explains(&one.sha256, ended_ms) => {
+                old.push(one.name.as_str());
+            }
             Err(StoreError::Blob(_)) => lost.push(one.name.as_str()),
             Err(error) => return Err(error.into()),
         }
     }
     if !lost.is_empty() {
         return Err(Failure::error(EvidenceLost { names: lost.join(", "), run: run.clone() }));
+    }
+    if !old.is_empty() {
+        return Err(Failure::error(EvidenceRemoved { names: old.join(", "), run: run.clone() }));
     }
     let files = count(found.attachments.len(), "file");
     print(&format!("{files} of evidence in {}", to.display()))

@@ -1,6 +1,5 @@
 //! `halfrow-station lang-check`
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -8,7 +7,7 @@ use clap::Args;
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
-use crate::input_error::InputError;
+use crate::input_error::text_of;
 use crate::web::language;
 
 /// Check a language of the pages: whether its words are all there, and none too many
@@ -24,10 +23,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let faults = match &arguments.file {
         Some(path) => {
-            let text = fs::read_to_string(path).map_err(|source| {
-                let path = path.clone();
-                Failure::call(InputError::Unreadable { path, source })
-            })?;
+            let text = text_of(path).map_err(Failure::call)?;
             faults(path, &text)?
         }
         None => language::built_in()

@@ -3,7 +3,7 @@
 use halfrow::result::codes;
 
 use super::board::{NoBoard, NoBoardKind, NoKind, SharedAlready};
-use super::evidence::{EvidenceLost, NoSuchRun};
+use super::evidence::{EvidenceLost, EvidenceRemoved, NoSuchRun};
 use super::export::{NoFolder, Taken};
 use super::job::{NoJob, NoWord};
 use super::lanes::EngineEnded;
@@ -53,6 +53,8 @@ codes::codes! {
     NoSuchRun [run] => "run-unknown"
     ;
     EvidenceLost [names, run] => "evidence-lost"
+    ;
+    EvidenceRemoved [names, run] => "evidence-removed"
     ;
     NoFolder [path] => "output-folder-unusable"
     ;

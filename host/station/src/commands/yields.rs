@@ -1,11 +1,18 @@
 //! `halfrow-station yield`
 
+use std::cmp::Reverse;
+use std::fmt::Write as _;
+
 use clap::{Args, ValueEnum};
+use halfrow::report::wording::count;
 
 use super::Failure;
 use super::looking::{Counted, Results, either, table, time};
 use crate::exit::Exit;
 use crate::history::yields::{By, Flip, Yield, Yields, yields};
+
+/// Units that failed first which are listed.
+const MOST_FLIPS: usize = 20;
 
 /// Count how many units are judged good, at first and in the end
 ///
@@ -62,11 +69,26 @@ fn text(Yields { lines, flips }: &Yields) -> String {
     let header = ["units of", "judged", "first pass", "in the end", "waived", "runs", "errors", "crashes"];
     let mut text = table(&header, &[1, 4, 5, 7], lines.iter().map(row));
     if !flips.is_empty() {
+        let newest = newest(flips);
         text.push_str("\n\nfirst FAIL, in the end PASS\n");
         let header = ["serial", "plan", "judgements", "failed", "passed", "run that failed"];
-        text.push_str(&table(&header, &[2], flips.iter().map(flip)));
+        text.push_str(&table(&header, &[2], newest.iter().copied().map(flip)));
+        let left = flips.len() - newest.len();
+        if left > 0 {
+            let units = count(left, "unit");
+            write!(text, "\n{units} more, which passed before these; all are in what --json prints")
+                .unwrap_or_default();
+        }
     }
     text
+}
+
+/// Those that passed last, the last of them first, as many as one reads.
+fn newest(flips: &[Flip]) -> Vec<&Flip> {
+    let mut newest: Vec<_> = flips.iter().collect();
+    newest.sort_by_key(|flip| Reverse(flip.passed_ms));
+    newest.truncate(MOST_FLIPS);
+    newest
 }
 
 fn row(line: &Yield) -> Vec<String> {

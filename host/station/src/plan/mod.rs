@@ -18,7 +18,6 @@ pub mod serial;
 mod tables;
 mod text;
 
-use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
@@ -28,7 +27,7 @@ use halfrow::FrameSource;
 use halfrow::optics::Chosen;
 use halfrow::result::FileHash;
 
-use crate::input_error::InputError;
+use crate::input_error::{InputError, text_of};
 pub(crate) use files::plan_hash;
 use limits::Limit;
 pub use production::{Bad, Production, Shift};
@@ -177,9 +176,7 @@ impl Plan {
     /// # Errors
     /// [`InputError`], with the line.
     pub fn load(path: &Path) -> Result<Self, InputError> {
-        let text = fs::read_to_string(path)
-            .map_err(|source| InputError::Unreadable { path: path.to_owned(), source })?;
-        Self::parse(path, text)
+        Self::parse(path, text_of(path)?)
     }
 
     /// The plan `text`, which stands or stood in the file `path`.

@@ -8,7 +8,6 @@ mod sink;
 mod stable;
 mod text;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -20,7 +19,7 @@ pub use sink::{Destination, Login, SinkAddress, SinkSettings};
 
 use crate::floor::{Floor, Place, Rule, Starts};
 use crate::history::PlanName;
-use crate::input_error::{Fault, InputError};
+use crate::input_error::{Fault, InputError, text_of};
 use crate::labgrid::LaneBoard;
 use crate::plan::Plan;
 use crate::published::PublicKey;
@@ -227,7 +226,6 @@ impl Settings {
 
 /// What `read` makes of the text of the file `path`.
 fn understood<T>(path: &Path, read: impl FnOnce(&str) -> Result<T, Fault>) -> Result<T, InputError> {
-    let text = fs::read_to_string(path)
-        .map_err(|source| InputError::Unreadable { path: path.to_owned(), source })?;
+    let text = text_of(path)?;
     read(&text).map_err(|fault| fault.in_file(path, &text))
 }

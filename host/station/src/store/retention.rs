@@ -78,12 +78,12 @@ impl Removed {
 }
 
 impl Store {
-    /// The hashes of the attachments of which every run ended before `before_ms`.
+    /// The hashes of the attachments of which every run ended before `before_ms`, and began before it by its id.
     pub(crate) fn old_evidence(&self, before_ms: i64) -> Result<Vec<String>, StoreError> {
         Snapshot::take(&self.folder)?.rows(
             "to tell old evidence",
             sql::OLD_EVIDENCE,
-            values![before_ms],
+            values![before_ms, &ids::first_of(before_ms)],
             |row| row.get(0),
         )
     }

@@ -130,14 +130,19 @@ impl Snapshot {
         matches!(&self.of, Of::Station(folder) if folder.blobs().path(hash).is_file())
     }
 
-    /// What SQLite itself finds wrong with its file; nothing when all is well.
+    /// What SQLite itself finds wrong with its file, and the columns that it does not miss, since it goes by the names that it reads
+    /// there; nothing when all is well.
     ///
     /// # Errors
     /// [`StoreError`] when it cannot even look.
     pub fn damage(&self) -> Result<Vec<String>, StoreError> {
         let said: Vec<String> =
             self.read("to be checked", |reader| reader.all("PRAGMA integrity_check", &[], |row| row.get(0)))?;
-        Ok(said.into_iter().filter(|line| line != "ok").collect())
+        let wrong = said.into_iter().filter(|line| line != "ok");
+        let here = self.read("to tell its columns", columns)?;
+        let mut right = columns(&mut *Rebuilt::new()?.database).map_err(refused)?;
+        right.retain(|column| !here.contains(column));
+        Ok(wrong.chain(right.into_iter().map(|column| format!("there is no {column}"))).collect())
     }
 
     /// The ids of all runs that are over, with the hashes of their records, the earliest first.
@@ -195,6 +200,13 @@ impl Snapshot {
         read(&mut **self.reader.borrow_mut())
             .map_err(|source| StoreError::refused(engine, &place, doing, source))
     }
+}
+
+/// Every column of every table, as `retest.unit_id`.
+fn columns(database: &mut dyn Database) -> Result<Vec<String>, DatabaseError> {
+    const COLUMNS: &str = "SELECT tables.name || '.' || columns.name \
+        FROM sqlite_schema AS tables, pragma_table_info(tables.name) AS columns WHERE tables.type = 'table' ORDER BY 1";
+    database.all(COLUMNS, &[], |row| row.get(0))
 }
 
 /// Tables that are made anew, in memory, and beyond 64 MiB in a file where the system keeps those that are nobody's.

@@ -265,6 +265,25 @@ fn a_plan_that_is_not_there_is_named() {
     assert_eq!(said, "no/plan.toml cannot be read; check its name, and who may read it");
 }
 
+/// As editors of Windows save umlauts, and a device that has no end.
+#[test]
+fn a_plan_that_is_no_text_is_told_as_that() {
+    let folder = tempfile::tempdir().unwrap();
+    let latin = folder.path().join("plan.toml");
+    fs::write(&latin, b"schema = 1\n[plan]\nname = \"Pr\xfcfung\"\n").unwrap();
+    let refused = Plan::load(&latin).unwrap_err();
+    assert!(refused.to_string().ends_with("save it as text in UTF-8"), "{refused}");
+    assert_eq!(
+        std::error::Error::source(&refused).unwrap().to_string(),
+        "it is no text from byte 28 on, in line 3"
+    );
+    let refused = Plan::load(Path::new("/dev/zero")).unwrap_err();
+    assert_eq!(std::error::Error::source(&refused).unwrap().to_string(), "it is longer than 1048576 bytes");
+    let key = format!("{} = 1\n", "k".repeat(5000));
+    let said = load(&format!("{key}{WHOLE}")).map(|plan| plan.name).unwrap_err();
+    assert!(said.len() < 400 && said.starts_with("plan.toml:1: unknown field"), "{said}");
+}
+
 fn as_json(text: &str) -> Option<Value> {
     serde_json::to_value(toml::from_str::<toml::Value>(text).ok()?).ok()
 }

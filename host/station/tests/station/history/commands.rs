@@ -69,6 +69,24 @@ fn history_goes_on_where_a_page_ends() {
 }
 
 #[test]
+fn of_units_that_were_tested_again_the_newest_are_listed_and_the_rest_counted() {
+    let mut made = Made::new();
+    for hour in 0..22 {
+        for (end, minute) in [(End::Fail(&["memory"]), 0), (End::Pass, 1)] {
+            let started_ms = BEGIN_MS + hour * HOUR_MS + minute * 60_000;
+            made.run(&Run { started_ms, ..Run::of(&format!("S{hour:02}"), end) });
+        }
+    }
+    let folder = made.closed();
+    let text = said(&folder, &["yield"]);
+    let listed: Vec<_> =
+        text.lines().filter_map(|line| line.get(1..4)).filter(|word| word.starts_with('S')).collect();
+    let newest: Vec<_> = (2..22).rev().map(|hour| format!("S{hour:02}")).collect();
+    assert_eq!(listed, newest, "{text}");
+    assert!(text.contains("\n2 units more, which passed before these"), "{text}");
+}
+
+#[test]
 fn history_takes_each_filter() {
     let made = made();
     let runs = |arguments: &[&str]| {

@@ -11,7 +11,7 @@ use halfrow_station::store::{Folder, Snapshot, Store, StoreError};
 use tempfile::TempDir;
 
 use super::commands::did;
-use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run, id};
 
 /// A PASS, two FAILs with evidence, of which the later one shares one piece with the first, and an open run.
 fn made() -> Made {
@@ -164,6 +164,26 @@ fn old_evidence_is_removed_and_no_record_or_row() {
     assert_eq!(sound(&Folder::new(&to)), [3, 1, 3, 4]);
 }
 
+/// A computer without a battery begins in 1970, until it is told the time.
+#[test]
+fn evidence_of_a_run_that_ended_by_a_clock_from_long_ago_is_no_older_for_it() {
+    let mut made = made();
+    let (began_ms, evidence) = (BEGIN_MS + 240 * HOUR_MS, vec!["new by its id"]);
+    let id = id(began_ms, 99);
+    let lane = "2".to_owned();
+    let run = Run { started_ms: 1000, lane, evidence, ..Run::of("S7", End::Fail(&["memory"])) };
+    made.run_as(id.clone(), &run);
+    let place = tempfile::tempdir().unwrap();
+    let to = place.path().join("kept");
+    let copied = |made: &Made| did(made, &["evidence", &id, "--to", to.to_str().unwrap()]);
+    assert_eq!(prune(&mut made.store, began_ms - HOUR_MS, "engel").unwrap().pieces, 3);
+    assert_eq!(copied(&made).0, 0);
+    assert_eq!(prune(&mut made.store, began_ms + HOUR_MS, "engel").unwrap().pieces, 1);
+    fs::remove_dir_all(&to).unwrap();
+    let (code, _, complained) = copied(&made);
+    assert!(code == 3 && complained.contains("removed since older evidence is not kept"), "{complained}");
+}
+
 /// The control: without the line in the audit it is lost.
 #[test]
 fn evidence_that_was_not_removed_by_age_is_missed() {
@@ -252,6 +272,21 @@ fn a_file_that_is_no_database_is_told_from_a_disk_that_is_full_or_locked() {
     for error in refused() {
         assert!(matches!(error, StoreError::Database { .. }), "{error}");
     }
+}
+
+/// As a bit that flipped in the name leaves it: SQLite finds nothing wrong, and whatever asks for the column fails.
+#[test]
+fn a_column_that_has_lost_its_name_is_a_fault_of_the_database() {
+    let (_kept, folder) = kept_without(&["station.db-wal", "station.db-shm"]);
+    let database = rusqlite::Connection::open(folder.database()).unwrap();
+    database.execute_batch("ALTER TABLE retest RENAME COLUMN last_ms TO lsst_ms").unwrap();
+    drop(database);
+    let faults = check(&folder).unwrap().faults;
+    let [fault] = &faults[..] else { panic!("{faults:?}") };
+    assert!(fault.to_string().starts_with("the database is damaged (there is no retest.last_ms)"), "{fault}");
+    let place = tempfile::tempdir().unwrap();
+    let refused = restore(&folder, &place.path().join("restored")).unwrap_err();
+    assert!(matches!(refused, CopyError::Faulty { .. }), "{refused:?}");
 }
 
 /// The records and what was decided by them would be gone without a word.
