@@ -12,6 +12,7 @@ use crate::exit::Exit;
 use crate::text::{BOLD, push};
 use known::{Explanation, MEANINGS, known};
 
+mod acts;
 mod known;
 
 /// How like a code must be to what was asked for, 0 to 1, to be named in its place.

@@ -7,6 +7,7 @@ use halfrow::verdict::Verdict;
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use super::acts;
 use crate::commands::codes;
 
 /// Each code with its meaning and its error's message, from the comments of the sources.
@@ -192,18 +193,15 @@ fn as_sentence(words: &str) -> String {
 }
 
 impl Explanation {
-    /// Takes what the sources say. Where there is no comment the message is one, and tells of no act.
+    /// Takes what the sources say. Where there is no comment the message is one.
     fn say(&mut self, meaning: &str, message: &str) {
-        let sentence = named_places(message);
+        self.sentence = named_places(message);
+        self.acts = acts::of(&self.code, &self.sentence).into_iter().collect();
         if meaning.is_empty() {
-            self.meaning = as_sentence(&sentence);
-            return;
+            self.meaning = as_sentence(&std::mem::take(&mut self.sentence));
+        } else {
+            self.meaning = meaning.to_owned();
         }
-        self.meaning = meaning.to_owned();
-        // An act that is filled in when it happens cannot be told before.
-        let act = sentence.rsplit_once("; ").map(|(_, act)| act.to_owned());
-        self.acts = act.filter(|act| act.contains(char::is_lowercase)).into_iter().collect();
-        self.sentence = sentence;
     }
 }
 

@@ -1,0 +1,322 @@
+//! What to do about errors whose message does not end in it: the act is filled in when the error happens, is another's, or is none yet.
+
+/// Each code with its act, in the order of the codes.
+pub(super) const ACTS: &[(&str, &str)] = &[
+    (
+        "board-of-other-datapath",
+        "load a bitstream of a datapath that this halfrow knows, or install a halfrow that knows the board's",
+    ),
+    (
+        "builtin-frame-unknown",
+        "use one of the names in the message, which are those of the files that `halfrow frames` writes",
+    ),
+    ("call-refused", "change the call as its sentence says"),
+    ("camera-impossible", "correct the figure that its sentence names, or calibrate the lens again"),
+    (
+        "code-unknown",
+        "choose a code that `halfrow codes` or `halfrow-station codes` lists, or a word at the left of a result",
+    ),
+    ("command-failed", "do what the end of its sentence says, then run again"),
+    (
+        "fault-without-effect",
+        "give the run what its sentence misses, or choose another fault of `halfrow faults`",
+    ),
+    (
+        "file-not-finished",
+        "keep or remove the file beside the place, which the message names, mend what its cause says, and write it again",
+    ),
+    ("foreign-cause", "do what the error in front of it says: it has a code of its own"),
+    (
+        "frame-does-not-fit-tables",
+        "use a frame of the tables' size and depth, or make tables for the frame's",
+    ),
+    ("frame-file-not-understood", "do what its cause says, which has a code of its own"),
+    ("frame-format-not-supported", "convert the file to PGM, PNG, TIFF or DNG as the message says"),
+    ("frame-impossible", "correct the size that its sentence names, or crop or pad the frame"),
+    ("frame-not-encoded", "do what its cause says, or write another format"),
+    ("frame-of-other-depth", "give the depth that the file has, or scale its samples to 8, 10 or 12 bits"),
+    (
+        "frame-of-other-size",
+        "use a frame of COLUMNS x ROWS, or make tables for WIDTH x HEIGHT with `halfrow tables`",
+    ),
+    (
+        "frames-too-large-for-board",
+        "use frames and tables that the board takes, or load a bitstream for larger ones",
+    ),
+    ("geometry-impossible", "correct the width, height or radius that its sentence names"),
+    ("golden-error-unseen", "rebuild halfrow, and if that does not help, test the computer's memory"),
+    ("golden-frame-wrong", "rebuild halfrow, and if that does not help, test the computer's memory"),
+    ("golden-row-wrong", "rebuild halfrow, and if that does not help, test the computer's memory"),
+    ("golden-values-not-made", "rebuild halfrow, and if that does not help, report it with its cause"),
+    ("grid-shape-impossible", "give a spacing of entries within the ranges that the message names"),
+    ("input-would-be-overwritten", "name another place with OPTION: an input is never overwritten"),
+    ("io-already-there", "name another place, or take away what is there"),
+    ("io-ends-early", "copy or make the file again: its end is missing"),
+    ("io-failed", "look up `os_error` on this system, mend what it says, then run again"),
+    ("io-no-space", "free some space on that disk, or name another place"),
+    ("io-not-found", "check the name, and that the device is plugged in or the disk mounted"),
+    ("io-not-permitted", "ask for the right to it, or run as a user who has it"),
+    ("io-pipe-closed", "look why the program at the other end ended, then run again"),
+    ("io-too-late", "check the cable and what is at the other end, then run again"),
+    ("io-wrong-data", "copy or make the file again: its bytes are not what they must be"),
+    (
+        "kernel-impossible",
+        "correct the weights that its sentence names, or use a named kernel such as hermite",
+    ),
+    ("kernel-not-found", "correct the path, or use a named kernel such as hermite"),
+    (
+        "lens-file-of-other-shape",
+        "do what its cause says: calibrate with frames of this shape, or give the lens pitch and the optical centre",
+    ),
+    ("lens-file-unfit", "do what its cause says, or make the frames smaller"),
+    ("lens-file-wrong", "mend the file as its cause says, or calibrate the lens again"),
+    (
+        "lens-impossible",
+        "correct the figure that its sentence names, from the data sheet of the lens or the sensor",
+    ),
+    ("lines-file-malformed", "write the circle and the lines as its sentence shows"),
+    (
+        "link-broke",
+        "do what its cause says, which has a code of its own: most often check the cable and the board's power, then run again",
+    ),
+    (
+        "link-too-poor",
+        "check cable, connectors and rate; if `halfrow link` finds the link good, look why the board answers late or not at all",
+    ),
+    ("link-without-board", "plug the board in at the far end, and check the device that its ser2net names"),
+    ("mem-depth-unknown", "make the file again with `halfrow tables` and --bits 8, 10 or 12"),
+    ("mem-file-wrong", "do what its cause says, or make the file again with `halfrow tables`"),
+    ("message-malformed", "load a bitstream that this halfrow is made for"),
+    (
+        "no-answer",
+        "check that the board is powered and loaded, that the target's rate is the board's, and, at a serial port that is used with \
+         RTS/CTS, that the board drives CTS: if it has no such line, as the ULX3S, say flow=none",
+    ),
+    (
+        "ocam-inverse-contradicts",
+        "export the file again: its polynomials are of two calibrations or in another order",
+    ),
+    ("ocam-sign-wrong", "turn the signs of all coefficients if z counts forwards in your program"),
+    ("option-without-effect", "leave the option out, or the one that decides in its place"),
+    ("paper-board-failed", "do what its cause says about the board, then run again"),
+    ("pgm-header-wrong", "write the header as `P5 WIDTH HEIGHT MAXVAL`, or export the file again"),
+    ("pgm-maxval-wrong", "write the file again with a maxval of 1 to 65535"),
+    (
+        "photograph-unreadable",
+        "give --images the folder with all of Kodak's lossless pictures (https://r0k.us/graphics/kodak)",
+    ),
+    (
+        "photographs-missing",
+        "put photographs as .png files into one of the folders, or name another with --images",
+    ),
+    ("picture-is-no-png", "end its name in .png"),
+    (
+        "pool-without-board",
+        "see what `halfrow-station` says in the lines above, and run again when a board of this kind is free",
+    ),
+    (
+        "pool-without-station",
+        "build `halfrow-station` too (`cargo build --release --package halfrow-station`), and keep it beside this program",
+    ),
+    ("recording-lost", "free some space or choose another place for the recording, then run again"),
+    ("report-lost", "free some space or choose another place for the report, then run again"),
+    (
+        "request-refused",
+        "run again; if it refuses each time, correct what the board says of itself (`halfrow info`), or load another bitstream",
+    ),
+    ("row-factors-impossible", "give one row factor for each row, within the range that its cause names"),
+    (
+        "run-too-long",
+        "give it more with --timeout, or use a faster link; if nothing came at the end, check the board's power and the cable",
+    ),
+    (
+        "serial-port-in-use",
+        "end the program that holds it, which the message names if this user may know, or wait until it is done",
+    ),
+    (
+        "serial-port-missing",
+        "check that the board is plugged in and powered, and see `halfrow boards` for the ports that are there",
+    ),
+    (
+        "serial-port-not-permitted",
+        "join the group that the message names, or install scripts/70-halfrow.rules as docs/boards.md says",
+    ),
+    (
+        "serial-rate-not-made",
+        "give baud= a rate that the chip makes, as those that the message names, and build the board for it",
+    ),
+    (
+        "simulation-not-built",
+        "install Verilator (`apt-get install verilator g++`), and build with Cargo's feature `sim`",
+    ),
+    ("stopped-by-signal", "run again: the board is not judged"),
+    ("table-depth-unknown", "make the tables again with `halfrow tables` and --bits 8, 10 or 12"),
+    (
+        "table-file-is-memory-image",
+        "give the table file (.json) where tables are meant, and a kernel's file or name where a kernel is",
+    ),
+    (
+        "table-file-of-other-datapath",
+        "make the tables again with `halfrow tables`, or use a halfrow that knows that datapath",
+    ),
+    ("table-file-wrong", "mend the file as its cause says, or make it again with `halfrow tables`"),
+    ("table-key-missing", "add the key, or make the file again with `halfrow tables`"),
+    ("table-list-of-wrong-length", "give WANTED entries, or make the file again with `halfrow tables`"),
+    (
+        "table-value-of-wrong-kind",
+        "correct the value to WANTED, or make the file again with `halfrow tables`",
+    ),
+    (
+        "table-value-out-of-range",
+        "correct the value to ALLOWED, or make the file again with `halfrow tables`",
+    ),
+    (
+        "target-kind-unknown",
+        "write one of the kinds that `halfrow help verify` names behind --board; a serial port is serial:/dev/ttyUSB0",
+    ),
+    ("target-option-unknown", "choose from KNOWN"),
+    ("target-options-wrong", "do what its cause says, which has a code of its own"),
+    ("tcp-silent", "switch that host on, or have its firewall let this port through"),
+    ("usage-argument-missing", "give what the message names; `halfrow help COMMAND` shows the form"),
+    ("usage-argument-unknown", "correct or leave out the argument; `halfrow help COMMAND` lists all"),
+    ("usage-arguments-conflict", "keep one of the two"),
+    ("usage-command-unknown", "choose a command that `halfrow help` lists"),
+    ("usage-value-wrong", "give a value as the message says"),
+    ("usage-wrong", "correct the call; `halfrow help COMMAND` shows its form"),
+    ("usb-board-missing", "plug the board in, or name one that `halfrow boards` lists"),
+    (
+        "usb-channel-in-other-mode",
+        "load a bitstream for the channel as it is and say its mode, or set the channel with FT_PROG or ftdi_eeprom",
+    ),
+    ("usb-device-failed", "unplug the board, plug it in, and run again"),
+    (
+        "usb-in-use",
+        "end the program that holds it, which the message names if this user may know, or wait until it is done",
+    ),
+    (
+        "usb-other-devices-only",
+        "choose the board's chip by one of the targets that the message names, if it is one of them",
+    ),
+    (
+        "usb-rate-not-made",
+        "give baud= a rate that the chip makes, as those that the message names, and build the board for it",
+    ),
+    ("usb-several-boards", "choose one of the targets that the message names"),
+    ("waveform-not-written", "check that the folder of the waveform exists, is writable and has space"),
+];
+
+/// The act of the error `code`, whose message is `sentence`: the message's own, if it ends in one that is whole.
+pub(super) fn of(code: &str, sentence: &str) -> Option<String> {
+    let given = ACTS.iter().find(|(known, _)| *known == code).map(|&(_, act)| act.to_owned());
+    given.or_else(|| of_message(sentence))
+}
+
+/// What a message ends in, unless a part of it is filled in when the error happens.
+fn of_message(sentence: &str) -> Option<String> {
+    let (_, act) = sentence.rsplit_once("; ")?;
+    (act.contains(char::is_lowercase) && !act.contains('…')).then(|| act.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::commands::explain::known::known;
+
+    /// How an act begins that says first whose fault it is, since the reader of these can do no more than report it.
+    const REPORTED: &str = "this is a fault of halfrow, so report it";
+
+    /// What acts begin with.
+    const VERBS: [&str; 62] = [
+        "add",
+        "allow",
+        "ask",
+        "build",
+        "calibrate",
+        "change",
+        "check",
+        "choose",
+        "convert",
+        "copy",
+        "correct",
+        "crop",
+        "do",
+        "end",
+        "export",
+        "free",
+        "give",
+        "have",
+        "install",
+        "join",
+        "keep",
+        "leave",
+        "let",
+        "load",
+        "look",
+        "make",
+        "mark",
+        "mend",
+        "mount",
+        "name",
+        "part",
+        "plug",
+        "put",
+        "rebuild",
+        "remove",
+        "replay",
+        "record",
+        "report",
+        "run",
+        "say",
+        "scale",
+        "see",
+        "share",
+        "start",
+        "switch",
+        "take",
+        "test",
+        "turn",
+        "unplug",
+        "use",
+        "wait",
+        "write",
+        "raise",
+        "move",
+        "set",
+        "restart",
+        "release",
+        "restore",
+        "lay",
+        "publish",
+        "scan",
+        "stop",
+    ];
+
+    /// Whether an act tells its reader what to do.
+    fn is_act(act: &str) -> bool {
+        let first = act.split([' ', ',']).next().unwrap_or_default();
+        act == REPORTED || VERBS.contains(&first)
+    }
+
+    #[test]
+    fn every_error_has_an_act_that_begins_with_a_verb() {
+        let errors: Vec<_> = known().into_values().flatten().filter(|it| it.of == "error").collect();
+        assert!(errors.len() > 300, "{}", errors.len());
+        let without: Vec<_> = errors
+            .iter()
+            .filter(|it| it.acts.is_empty() || !it.acts.iter().all(|act| is_act(act) && !act.contains('…')))
+            .map(|it| (&it.code, &it.acts))
+            .collect();
+        assert!(without.is_empty(), "give these an act in ACTS: {without:#?}");
+    }
+
+    #[test]
+    fn acts_stand_in_the_order_of_their_codes_and_no_message_has_its_own_beside_them() {
+        assert!(ACTS.is_sorted_by(|one, other| one.0 < other.0));
+        let errors: Vec<_> = known().into_values().flatten().filter(|it| it.of == "error").collect();
+        for (code, act) in ACTS {
+            let it = errors.iter().find(|it| it.code == *code);
+            let own = it.map_or_else(|| panic!("no error {code}"), |it| of_message(&it.sentence));
+            assert!(!own.as_deref().is_some_and(is_act), "{code}: {own:?} and {act}");
+        }
+    }
+}
