@@ -173,7 +173,10 @@ fn advice(report: &Report) -> String {
         (Some(remedy), Some(_)) => push(&mut text, "", BOLD, &format!("Next: {remedy}")),
         (None, _) => {}
     }
-    let codes = wording::codes(report);
+    let mut codes = wording::codes(report);
+    if codes.is_empty() {
+        codes.extend(report.not_exercised.iter().map(|part| part.tagged().0));
+    }
     if !codes.is_empty() {
         push(&mut text, "explain", DIM, &format!("halfrow explain {}", codes.join(" ")));
     }

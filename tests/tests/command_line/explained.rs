@@ -1,5 +1,7 @@
 //! `halfrow explain`, and where people meet the codes that it explains.
 
+use std::collections::BTreeSet;
+
 use halfrow_tests::program::{Folder, halfrow};
 
 use crate::small;
@@ -21,7 +23,7 @@ fn every_code_is_explained() {
     let codes: Vec<_> = own.chain(of_station).collect();
     assert!(codes.len() > 600, "{}", codes.len());
     let is_code =
-        |it: &serde_json::Value| !["verdict", "check", "fault"].contains(&it["of"].as_str().unwrap());
+        |it: &serde_json::Value| !["verdict", "check", "line", "fault"].contains(&it["of"].as_str().unwrap());
     let told: Vec<_> = explained(&codes).into_iter().filter(is_code).collect();
     assert_eq!(told.len(), codes.len());
     for (code, it) in codes.iter().zip(told) {
@@ -73,6 +75,49 @@ fn verdicts_checks_and_faults_are_explained_too() {
     for it in explained(&["PASS", "FAIL", "ERROR", "link", "frames"]) {
         assert!(it["do"][0].as_str().is_some_and(|act| act.ends_with('.')), "{it}");
     }
+}
+
+/// What stands at the left of a PASS with limits, of a FAIL, of a soak and of a simulated board.
+#[test]
+fn every_word_at_the_left_of_a_result_is_explained() {
+    let runs = [
+        small("verify", &["--at-speed", "0", "--operator", "Ann"]),
+        vec!["verify", "--frame", "builtin:street", "--width", "640", "--height", "480", "--radius", "400"],
+        small("verify", &["--within", "3"]),
+        small("verify", &["--board", "mock,fault=stuck-data,bit=5,value=1"]),
+        small("verify", &["--board", "mock,fault=wrong-latency-claim"]),
+        small("verify", &["--board", "sim"]),
+        small("soak", &["--frames", "200", "--board", "mock,fault=slow-path,one-in=20000"]),
+    ];
+    let words: BTreeSet<_> =
+        runs.into_iter().flat_map(|run| words_at_the_left(&halfrow(run).stdout)).collect();
+    for word in ["limits", "within", "coverage", "street", "skipped", "soak", "differs", "do", "explain"] {
+        assert!(words.contains(word), "{word}: {words:?}");
+    }
+    let words: Vec<_> = words.iter().map(String::as_str).collect();
+    let told = explained(&words);
+    for word in words {
+        let at_the_left =
+            |it: &serde_json::Value| it["code"] == word && (it["of"] == "line" || it["of"] == "verdict");
+        assert!(told.iter().any(at_the_left), "{word}");
+    }
+}
+
+/// The first words of a result's lines, but of its head, of its table of frames and of what goes on below another.
+fn words_at_the_left(text: &str) -> Vec<String> {
+    let labelled = text.lines().skip(1).filter(|line| !line.starts_with(' '));
+    labelled
+        .filter_map(|line| Some(line.split([' ', ':']).next()?.to_owned()))
+        .filter(|it| !it.is_empty())
+        .collect()
+}
+
+#[test]
+fn a_pass_names_the_codes_of_what_it_leaves_open() {
+    let passed = halfrow(small("verify", &["--at-speed", "0"]));
+    let line = passed.stdout.lines().find_map(|line| line.strip_prefix("explain  halfrow explain "));
+    let codes: Vec<_> = line.unwrap_or_else(|| panic!("{}", passed.stdout)).split(' ').collect();
+    assert!(explained(&codes).iter().any(|it| it["of"] == "not-exercised"), "{codes:?}");
 }
 
 /// A finding with another suspect asks for something else.

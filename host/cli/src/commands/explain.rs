@@ -14,6 +14,7 @@ use known::{Explanation, MEANINGS, known};
 
 mod acts;
 mod known;
+mod lines;
 
 /// How like a code must be to what was asked for, 0 to 1, to be named in its place.
 const LIKENESS: f64 = 0.8;
@@ -22,7 +23,7 @@ const MOST_LIKE: usize = 5;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The codes, as `halfrow codes` and `halfrow-station codes` list them; or a verdict, a check of a report, a fault of the mock board
+    /// The codes, as `halfrow codes` and `halfrow-station codes` list them; or a verdict, a check or another word at the left of a result, a fault of the mock board
     #[arg(required = true, value_name = "CODE", value_parser = Code, hide_possible_values = true)]
     codes: Vec<String>,
 }

@@ -7,7 +7,7 @@ use halfrow::verdict::Verdict;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::acts;
+use super::{acts, lines};
 use crate::commands::codes;
 
 /// Each code with its meaning and its error's message, from the comments of the sources.
@@ -20,7 +20,7 @@ const CODES_OF_STATION: &[(&str, &[&str])] = include!(concat!(env!("OUT_DIR"), "
 #[derive(Clone, Debug, Default, Serialize)]
 pub(super) struct Explanation {
     pub(super) code: String,
-    /// finding, defect, not-exercised, error, station-error, verdict, check or fault.
+    /// finding, defect, not-exercised, error, station-error, verdict, check, line or fault.
     pub(super) of: String,
     pub(super) meaning: String,
     /// A sentence with it, or with what stands for its parameters in capitals.
@@ -78,7 +78,7 @@ pub(super) fn known() -> BTreeMap<String, Vec<Explanation>> {
     all
 }
 
-/// The words of a report that are no codes: verdicts, checks, and the faults that a mock board can have.
+/// The words of a report that are no codes: verdicts, checks, the words at the left of its lines, and the faults that a mock board can have.
 fn words() -> impl Iterator<Item = Explanation> {
     let meaning = |name: &str| MEANINGS.iter().find(|(known, ..)| *known == name).map_or("", |(_, it, _)| it);
     let verdicts = [Verdict::Pass, Verdict::Fail, Verdict::Error].map(|verdict| Explanation {
@@ -109,7 +109,7 @@ fn words() -> impl Iterator<Item = Explanation> {
         place: "what `halfrow faults --json` lists",
         ..Explanation::default()
     });
-    faults.chain(checks).chain(verdicts)
+    faults.chain(checks).chain(lines::all()).chain(verdicts)
 }
 
 /// What a verdict asks for, whatever led to it.

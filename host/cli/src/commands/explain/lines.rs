@@ -1,0 +1,148 @@
+//! The words at the left of a result's lines that are neither codes nor checks nor verdicts.
+
+use super::known::Explanation;
+
+/// A word, what stands behind it, whose matter that is, what to do about it (nothing, if empty), and where it stands in JSON.
+struct Line {
+    word: &'static str,
+    meaning: &'static str,
+    fault: &'static str,
+    act: &'static str,
+    place: &'static str,
+}
+
+/// Whose matter a line is that only tells.
+const NOBODYS: &str = "nobody's: it tells what was done";
+
+const LINES: [Line; 16] = [
+    Line {
+        word: "board",
+        meaning: "The board that was judged: its kind, the target that it was reached by, and what it says of itself.",
+        fault: NOBODYS,
+        act: "",
+        place: "`board` of a result",
+    },
+    Line {
+        word: "tables",
+        meaning: "The tables that the board was given: what they were made from, and the size and depth of their frames.",
+        fault: NOBODYS,
+        act: "",
+        place: "`tables` of a result",
+    },
+    Line {
+        word: "operator",
+        meaning: "Who ran it, as `--operator` says.",
+        fault: NOBODYS,
+        act: "",
+        place: "`operator` of a result's `run`",
+    },
+    Line {
+        word: "ok",
+        meaning: "The check beside it passed.",
+        fault: "nobody's: it is as it must be",
+        act: "",
+        place: "`outcome` of each of a result's `checks`, `passed`",
+    },
+    Line {
+        word: "skipped",
+        meaning: "The check beside it was not made, and nothing is known of what it looks at.",
+        fault: "as the check says that ended the run, or the option that left this one out",
+        act: "Look at the check that is no `ok`, and run again when it is put right.",
+        place: "`outcome` of each of a result's `checks`, `skipped`",
+    },
+    Line {
+        word: "soak",
+        meaning: "How long the board was judged by frames of its own making, and how many frames that were.",
+        fault: NOBODYS,
+        act: "",
+        place: "`soak` of a result",
+    },
+    Line {
+        word: "differs",
+        meaning: "A frame of a soak that came out otherwise than it must, and when.",
+        fault: "the board's",
+        act: "Do what stands behind `do`: a fault that comes with time is most often one of heat, supply or timing.",
+        place: "`differences` of a result's `soak`",
+    },
+    Line {
+        word: "latency",
+        meaning: "Pixel clocks from a row's first sample into the core to its first corrected sample: half a row and what the board says that \
+                  its build takes, and the most that is allowed.",
+        fault: "nobody's: the check `latency` judges it",
+        act: "",
+        place: "`latency` of a result",
+    },
+    Line {
+        word: "street",
+        meaning: "How many pixels the façade edges of the frame `builtin:street` are off straight lines before and after correction, on the \
+                  average, and at most in brackets. It shows what the tables do to a picture of the default lens, and decides no verdict.",
+        fault: "nobody's: it is a property of lens and tables, and the same with every right board",
+        act: "",
+        place: "`street` of a result",
+    },
+    Line {
+        word: "link",
+        meaning: "What went over the link, and how much of it came damaged or had to be sent again.",
+        fault: "the link's: none of it leads to FAIL",
+        act: "Try the cable alone with `halfrow link`, if any was damaged.",
+        place: "`link` of a result",
+    },
+    Line {
+        word: "within",
+        meaning: "What `--within` took of the run and what it left out, how long that was expected to take, and which share of the \
+                  single faults of the Verilog it finds.",
+        fault: NOBODYS,
+        act: "Run without `--within`, or give it more seconds, to have judged what it left out.",
+        place: "`within` of a result",
+    },
+    Line {
+        word: "limits",
+        meaning: "What no frame of the run put to the test, so that a fault there would have gone unseen: what a PASS says nothing about.",
+        fault: "nobody's: the frames of the run leave it open",
+        act: "Stream all built-in frames, at the size and speed of use, and have nothing left out; ask `halfrow explain` for the code of each, which \
+              the line `explain` names.",
+        place: "`not_exercised` of a result",
+    },
+    Line {
+        word: "coverage",
+        meaning: "Which share of the single faults that were put into the project's Verilog one by one a run with these frames finds at this geometry. A \
+                  mock board is not made of it and has no such line.",
+        fault: NOBODYS,
+        act: "",
+        place: "`coverage` of a result",
+    },
+    Line {
+        word: "suspect",
+        meaning: "The part of the board that explains the differences that were seen, the likeliest first, with the evidence below it.",
+        fault: "the board's",
+        act: "Do what stands behind \"At the bench\"; \"Next\" is for whoever designed the board.",
+        place: "`suspects` of a result",
+    },
+    Line {
+        word: "do",
+        meaning: "What to do first: \"At the bench\" is a technician's part, \"Next\" that of whoever designed the board.",
+        fault: "as the verdict says",
+        act: "Do it, then run again.",
+        place: "`technician` and `remedy` of a result",
+    },
+    Line {
+        word: "explain",
+        meaning: "The codes of this result, in a call that tells more of each.",
+        fault: "as each code says",
+        act: "Call it.",
+        place: "`finding`, `suspects` and `not_exercised` of a result",
+    },
+];
+
+/// Each of them with what is said of it.
+pub(super) fn all() -> impl Iterator<Item = Explanation> {
+    LINES.iter().map(|it| Explanation {
+        code: it.word.to_owned(),
+        of: "line".to_owned(),
+        meaning: it.meaning.to_owned(),
+        fault: it.fault,
+        acts: [it.act].into_iter().filter(|act| !act.is_empty()).map(str::to_owned).collect(),
+        place: it.place,
+        ..Explanation::default()
+    })
+}
