@@ -2,7 +2,9 @@
 
 use std::error::Error;
 
-use crate::kinds::{self, Kind};
+use halfrow_pipe::meant;
+
+use crate::kinds::{self, KINDS, Kind};
 use crate::{Class, RecordingError, SerialError, Target, TcpError, UsbError};
 
 /// A target that leads nowhere.
@@ -144,5 +146,9 @@ fn instead_of(kind: &str) -> String {
     if kind.starts_with("/dev/") {
         return format!("for a serial port write serial:{kind}");
     }
-    format!("it knows {}", kinds::forms().join(", "))
+    if kind.starts_with("tty") {
+        return format!("for a serial port write serial:/dev/{kind}");
+    }
+    let names: Vec<_> = KINDS.iter().map(|kind| kind.name).collect();
+    format!("choose {}from {}", meant(kind, &names.join(", ")), kinds::forms().join(", "))
 }

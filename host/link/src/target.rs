@@ -1,4 +1,5 @@
-//! Target strings: `KIND[:ADDRESS][,KEY=VALUE]…` names a board, with nothing in it that a shell would touch.
+//! Target strings: `KIND[:ADDRESS][,KEY=VALUE]…` names a board, with nothing in it that a shell would touch. Blanks behind a comma
+//! count for nothing.
 
 use std::fmt;
 use std::str::FromStr;
@@ -92,6 +93,7 @@ impl FromStr for Target {
             return Err(TargetError::Empty);
         }
         let options = pieces
+            .map(str::trim_start)
             .map(|option| match option.split_once('=') {
                 Some((key, value)) if !key.is_empty() => Ok((key.to_owned(), value.to_owned())),
                 _ => Err(TargetError::Option { option: option.to_owned(), target: text.to_owned() }),
@@ -123,6 +125,7 @@ mod tests {
         assert_eq!(target.options[0], ("baud".to_owned(), "12000000".to_owned()));
         assert_eq!(target.to_string(), text);
         assert_eq!("mock".parse::<Target>().unwrap().to_string(), "mock");
+        assert_eq!("mock, latency=12".parse::<Target>(), "mock,latency=12".parse());
         assert_eq!("tcp:host:3001".parse::<Target>().unwrap().address.as_deref(), Some("host:3001"));
     }
 

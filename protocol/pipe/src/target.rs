@@ -6,7 +6,7 @@ use crate::catalogue::{Fault, FaultError, FaultInfo, Parameters, Place};
 use crate::fault::{FAULTS, PipeFault};
 use crate::options::PipeOptions;
 use crate::value::ValueError;
-use crate::{Endpoint, Pipe};
+use crate::{Endpoint, Pipe, meant};
 
 /// The key that names a fault.
 const FAULT: &str = "fault";
@@ -30,7 +30,7 @@ pub enum TargetError {
         source: FaultError,
     },
     /// No fault of this board or of the pipe to it has this name.
-    #[error("no fault of this board is called {name}; choose from {known}")]
+    #[error("no fault of this board is called `{name}`; choose {}from {known}", meant(.name, .known))]
     UnknownFault {
         /// The name that was given.
         name: String,
@@ -48,7 +48,7 @@ pub enum TargetError {
         second: String,
     },
     /// A key that nothing takes.
-    #[error("{key} is no option of this board; choose from {known}")]
+    #[error("`{key}` is no option of this board; choose {}from {known}", meant(.key, .known))]
     UnknownKey {
         /// The key that was given.
         key: String,

@@ -35,6 +35,9 @@ fn an_unknown_kind_is_refused() {
         "/dev/ttyUSB0",
         "`/dev/ttyUSB0` is no kind of board that this program knows; for a serial port write serial:/dev/ttyUSB0",
     );
+    no_such_board("ttyUSB0", "for a serial port write serial:/dev/ttyUSB0");
+    no_such_board("mokc", "choose mock, if that was meant, or from mock, sim");
+    no_such_board("Mock", "choose mock, if that was meant, or from mock, sim");
     no_such_board("", "names no board");
     no_such_board("mock:7", "`mock` takes no address");
     no_such_board("mock,latency", "write KEY=VALUE");
@@ -43,7 +46,8 @@ fn an_unknown_kind_is_refused() {
 
 #[test]
 fn an_unknown_option_of_the_mock_is_refused_with_those_that_there_are() {
-    no_such_board("mock,colour=red", "colour is no option of this board; choose from latency, ring");
+    no_such_board("mock,colour=red", "`colour` is no option of this board; choose from latency, ring");
+    no_such_board("mock,latenc=12", "choose latency, if that was meant, or from latency, ring");
     no_such_board("mock,bit=3", "a fault's parameters need fault=NAME");
     no_such_board("mock,latency=12,latency=13", "latency is given twice");
     no_such_board("mock,pace=fast", "pace=virtual or pace=real");
@@ -64,12 +68,16 @@ fn a_build_that_cannot_exist_is_refused() {
 
 #[test]
 fn a_fault_that_does_not_exist_is_refused() {
-    no_such_board("mock,fault=moon", "no fault of this board is called moon; choose from flip, drop");
+    no_such_board("mock,fault=moon", "no fault of this board is called `moon`; choose from flip, drop");
+    no_such_board(
+        "mock, fault=stuk-data",
+        "called `stuk-data`; choose stuck-data, if that was meant, or from flip",
+    );
     no_such_board(
         "mock,fault=late,fault=no-rounding",
         "fault=late and fault=no-rounding cannot be had together",
     );
-    no_such_board("mock,fault=late,bit=1", "bit is no option");
+    no_such_board("mock,fault=late,bit=1", "`bit` is no option");
     no_such_board("mock,fault=stuck-data,bit=12", "bit=12 is out of range; give a number from 0 to 11");
     no_such_board(
         "mock,fault=kernel-word,weight=g2",
@@ -77,5 +85,5 @@ fn a_fault_that_does_not_exist_is_refused() {
     );
     no_such_board("mock,fault=flip,rate=2", "rate=2 is not a number from 0 to 1");
     no_such_board("mock,fault=flip,rate=1e-3,byte=1", "both say where the fault strikes");
-    no_such_board("mock,fault=reorder,byte=3", "byte is no option");
+    no_such_board("mock,fault=reorder,byte=3", "`byte` is no option");
 }

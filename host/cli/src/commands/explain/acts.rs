@@ -6,6 +6,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "board-of-other-datapath",
         "load a bitstream of a datapath that this halfrow knows, or install a halfrow that knows the board's",
     ),
+    ("board-option-unknown", "choose from KNOWN"),
     (
         "builtin-frame-unknown",
         "use one of the names in the message, which are those of the files that `halfrow frames` writes",
@@ -17,6 +18,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "choose a code that `halfrow codes` or `halfrow-station codes` lists, or a word at the left of a result",
     ),
     ("command-failed", "do what the end of its sentence says, then run again"),
+    ("fault-unknown", "choose from KNOWN"),
     (
         "fault-without-effect",
         "give the run what its sentence misses, or choose another fault of `halfrow faults`",

@@ -1,0 +1,30 @@
+//! Which word of a list was meant by one that is not of it.
+
+/// How like a word must be to one of a list, 0 to 1, to be taken for a slip in it.
+const LIKENESS: f64 = 0.8;
+
+/// To stand in front of "from" and a list: the word of `known`, words between commas up to a semicolon, that `given` was most likely
+/// meant to be, as in `late, if that was meant, or `; nothing where none is like it.
+#[must_use]
+pub fn meant(given: &str, known: &str) -> String {
+    let given = given.to_lowercase();
+    let words = known.split(';').next().unwrap_or_default().split(", ");
+    let likeness = words.map(|word| (strsim::jaro_winkler(&given, word), word));
+    let nearest = likeness.max_by(|one, other| one.0.total_cmp(&other.0));
+    nearest
+        .filter(|(likeness, _)| *likeness >= LIKENESS)
+        .map_or_else(String::new, |(_, word)| format!("{word}, if that was meant, or "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slip_is_told_from_what_is_like_nothing() {
+        let known = "stuck-data, stuck-address, late; a fault's parameters need fault=NAME";
+        assert_eq!(meant("stuk-data", known), "stuck-data, if that was meant, or ");
+        assert_eq!(meant("Late", known), "late, if that was meant, or ");
+        assert_eq!(meant("moon", known), "");
+    }
+}
