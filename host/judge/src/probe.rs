@@ -8,8 +8,8 @@ use crate::run::Draws;
 use crate::target::Target;
 use crate::verdict::Cause;
 
-/// Opens `target` and greets what is there, as often as a run does. Takes some two seconds if nothing answers, beside the
-/// time to connect.
+/// Opens `target` and greets what is there, as often as a run does. Takes some two seconds if nothing answers, a minute
+/// over a line of 9600 baud, beside the time to connect.
 #[must_use]
 pub fn probe(target: &Target) -> Answer {
     let candidate = match link::open(target) {

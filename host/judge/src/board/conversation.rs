@@ -322,7 +322,7 @@ impl Conversation {
             if attempt == 0 || self.queued() == 0 {
                 self.queue_packet(kind, sequence, |payload| asking.write(payload));
             }
-            // The reply may be as long as the longest packet.
+            // The reply may be as long as the longest packet, or stand behind one of a session before.
             let bytes = self.outgoing.len() + halfrow_protocol::MAX_PACKET;
             let mut deadline = self.waited + self.wait_for(step, attempt, bytes);
             while let Some(wait) = deadline.checked_sub(self.waited).filter(|wait| !wait.is_zero()) {
