@@ -53,7 +53,7 @@ fn head(report: &Report) -> String {
     let board = match &report.board.identity {
         None => "it never said what it is".to_owned(),
         Some(it) => format!(
-            "{}, serial {}, build {}, datapath {}, protocol {}",
+            "{}, serial {}, build {}, datapath {}, wire {}",
             wording::board_name(&it.name),
             it.serial,
             it.build,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use halfrow_tests::program::Folder;
+use halfrow_tests::program::{Folder, halfrow};
 use serde_json::Value;
 
 use crate::refused;
@@ -200,5 +200,16 @@ fn the_parts_of_what_is_left_are_parts_of_it() {
             let largest = left["horizontal"][by]["max"].as_f64().unwrap();
             assert!((max("inner").max(max("rim")) - largest).abs() < 1e-12, "{more:?}, {by}: {left}");
         }
+    }
+}
+
+/// A board has several datapaths, and a run judges by one.
+#[test]
+fn the_board_s_identity_names_the_datapath_that_it_is_judged_by() {
+    for (call, datapath) in [(exact(&["verify", "-q"]), 2), ([&["verify", "-q"], &SMALL[..]].concat(), 1)] {
+        let told = halfrow(call.iter().copied()).stdout;
+        let identity = told.lines().find(|line| line.contains(" identity ")).unwrap_or_default();
+        assert!(identity.ends_with(&format!(", wire 1, judged by datapath {datapath}")), "{told}");
+        assert!(told.contains(", datapath 1 and 2, wire 1\n"), "{told}");
     }
 }

@@ -24,7 +24,7 @@ pub enum Finding {
         name: String,
         /// The wire's version.
         wire: u8,
-        /// Its datapath.
+        /// The one of its datapaths by which it is judged.
         datapath: u16,
     },
     /// What was echoed came back as it went.

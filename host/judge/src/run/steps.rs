@@ -18,7 +18,7 @@ use crate::board::{Board, BoardError, UnknownDatapath, grids, possible};
 use crate::progress::{Progress, Step};
 use crate::reference;
 use crate::result::{CheckName, Finding, NotExercised, Problem};
-use crate::tables::DATAPATH;
+use crate::tables::{DATAPATH, datapath_of};
 use crate::target::BoardKind;
 use crate::verdict::Cause;
 
@@ -158,13 +158,10 @@ impl Run<'_> {
 
     fn identity(&mut self) -> Result<(), End> {
         let error = |cause, finding: Finding| Err(End::error(CheckName::Identity, cause, finding));
-        let datapath = match self.board.capabilities.known_datapath() {
-            Ok(datapath) => datapath,
-            Err(UnknownDatapath { id: datapath }) => {
-                let known = DATAPATH.id();
-                return error(Cause::Refused, Finding::DatapathUnknown { datapath, known });
-            }
-        };
+        if let Err(UnknownDatapath { id: datapath }) = self.board.capabilities.known_datapath() {
+            let known = DATAPATH.id();
+            return error(Cause::Refused, Finding::DatapathUnknown { datapath, known });
+        }
         if let Err(BoardError::Impossible { capability, value, legal }) = possible(&self.board.capabilities) {
             return error(Cause::Refused, Finding::CapabilityImpossible { capability, value, legal });
         }
@@ -180,8 +177,8 @@ impl Run<'_> {
             return end;
         }
         let (name, wire) = (self.board.capabilities.name.clone(), self.board.welcome.version);
-        self.findings
-            .passed(CheckName::Identity, Finding::BoardIdentified { name, wire, datapath: datapath.id() });
+        let datapath = datapath_of(&self.plan.tables).id();
+        self.findings.passed(CheckName::Identity, Finding::BoardIdentified { name, wire, datapath });
         Ok(())
     }
 

@@ -14,7 +14,7 @@ pub fn sentence(finding: &Finding) -> String {
             format!("this computer finds all {} golden samples ({path})", grouped(*samples))
         }
         Finding::BoardIdentified { name, wire, datapath } => {
-            format!("{}, wire {wire}, datapath {datapath}", board_name(name))
+            format!("{}, wire {wire}, judged by datapath {datapath}", board_name(name))
         }
         Finding::EchoesReturned { bytes, echoes } => {
             format!("{} in {} echoes came back as they went", count(*bytes, "byte"), grouped(*echoes))
