@@ -142,8 +142,8 @@ fn figures(report: &Report) -> String {
     if let Some(latency) = &report.latency {
         push(&mut text, "latency", no_style, &wording::latency(latency));
     }
-    if let Some(street) = &report.street {
-        push(&mut text, "street", no_style, &wording::street(street));
+    if let Some(street) = wording::street(report) {
+        push(&mut text, "street", no_style, &street);
     }
     push(&mut text, "link", no_style, &wording::link(&report.link));
     for told in report.within.iter().flat_map(wording::within) {

@@ -351,3 +351,19 @@ fn a_virtual_clock_measures_nothing_of_a_link() {
     let moving = link("mock,speed=1000000").stdout;
     assert!(!moving.contains("not measured") && moving.contains("MB/s"), "{moving}");
 }
+
+/// A table file does not say which lens it is for, and the street's figures are those of a lens.
+#[test]
+fn the_street_behind_a_table_file_is_said_to_be_seen_through_a_lens_of_its_own() {
+    let folder = Folder::new();
+    let size = ["--width", "640", "--height", "480", "--radius", "400"];
+    let made = folder.halfrow(["tables", "-o", "my.json"].into_iter().chain(size));
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    let street = ["verify", "-q", "--frame", "builtin:street"];
+    let words = |told: &str| told.split_whitespace().collect::<Vec<_>>().join(" ");
+    let said = "; it is seen through a lens that the tables may not be for link ";
+    let by_lens = words(&folder.halfrow(street.into_iter().chain(size)).stdout);
+    let by_file = words(&folder.halfrow(street.into_iter().chain(["--tables", "my.json"])).stdout);
+    assert!(by_lens.contains(" street ") && !by_lens.contains(said), "{by_lens}");
+    assert!(by_file.contains(said), "{by_file}");
+}

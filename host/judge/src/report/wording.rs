@@ -170,18 +170,23 @@ fn measured(latency: &LatencyReport) -> String {
     }
 }
 
-/// How straight the street's façade edges are, without a full stop.
+/// How straight the street's façade edges are, without a full stop; none where it was not judged.
 #[must_use]
-pub fn street(street: &StreetReport) -> String {
-    let (before, after) = (&street.before, &street.after);
-    format!(
-        "{} {:.2} px off straight before, {:.2} px after (at most {:.2}, {:.2})",
+pub fn street(report: &Report) -> Option<String> {
+    let StreetReport { before, after } = report.street.as_ref()?;
+    // Tables that a lens made tell of its circle.
+    let lens = match report.tables.rows_outside_circle {
+        Some(_) => "",
+        None => "; it is seen through a lens that the tables may not be for",
+    };
+    Some(format!(
+        "{} {:.2} px off straight before, {:.2} px after (at most {:.2}, {:.2}){lens}",
         count(before.edges, "façade edge"),
         before.mean_px,
         after.mean_px,
         before.max_px,
         after.max_px
-    )
+    ))
 }
 
 /// What the link did in one sentence, without a full stop. Trouble is named only when there was some.

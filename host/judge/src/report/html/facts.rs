@@ -67,7 +67,7 @@ pub(super) fn figures(report: &Report) -> Markup {
             h2 { "Figures" }
             dl {
                 @if let Some(latency) = &report.latency { (pair("Latency", wording::latency(latency))) }
-                @if let Some(street) = &report.street { (pair("Street", wording::street(street))) }
+                @if let Some(street) = wording::street(report) { (pair("Street", street)) }
                 @if let Some(share) = wording::coverage(report) { (pair("Coverage", share)) }
             }
         }
