@@ -81,6 +81,11 @@ pub trait Link: Send {
         false
     }
 
+    /// Whether nothing leaves it unless the board's end drives CTS.
+    fn waits_for_cts(&self) -> bool {
+        false
+    }
+
     /// What it is, for people.
     fn name(&self) -> String;
 

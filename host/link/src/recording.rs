@@ -193,6 +193,10 @@ impl Link for Recorder {
         self.link.is_exclusive()
     }
 
+    fn waits_for_cts(&self) -> bool {
+        self.link.waits_for_cts()
+    }
+
     fn name(&self) -> String {
         self.link.name()
     }

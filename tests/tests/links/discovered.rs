@@ -44,6 +44,14 @@ fn what_is_no_board_is_told_from_what_is_not_there() {
     let target = format!("serial:{}", silent.path().display());
     assert_eq!(look_at(&target, &[])["access"], json!({ "state": "free" }));
     assert_eq!(look_at(&target, &["--ask"])["answer"], json!({ "state": "silent" }));
+    let judged = halfrow(["info", "--board", &target]);
+    assert!(judged.stderr.contains("needs flow=none"), "{}", judged.stderr);
+    let judged = halfrow(["info", "--board", &format!("{target},flow=none")]);
+    assert!(
+        judged.stderr.contains("powered and loaded") && !judged.stderr.contains("flow=none"),
+        "{}",
+        judged.stderr
+    );
     let missing = look_at("serial:/dev/ttyUSB99", &["--ask"]);
     assert_eq!((&missing["access"], &missing["answer"]), (&json!({ "state": "missing" }), &Value::Null));
     let refused = look_at("tcp:127.0.0.1:1", &["--ask"]);

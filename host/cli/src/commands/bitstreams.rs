@@ -15,6 +15,8 @@ pub(super) struct BitstreamBoard {
     pub(super) build: &'static str,
     /// What that leaves to be loaded, in the project's folder.
     pub(super) bitstream: &'static str,
+    /// The target that the board is judged by with it, `PATH` for a serial port's.
+    pub(super) target: &'static str,
     /// What openFPGALoader calls the board.
     pub(super) loader_name: &'static str,
     /// Another program that loads it, without the file, for who has no openFPGALoader.
@@ -29,6 +31,7 @@ pub(super) const BOARDS: [BitstreamBoard; 2] = [
         links: &["usb", "serial"],
         build: "fpga/boards/minispartan6plus/build fifo|uart [sensor]",
         bitstream: "target/minispartan6plus/fifo/top.bit",
+        target: "usb",
         loader_name: "minispartan6",
         other_loader: "xc3sprog -c ftdi",
     },
@@ -38,6 +41,7 @@ pub(super) const BOARDS: [BitstreamBoard; 2] = [
         links: &["serial", "usb"],
         build: "fpga/boards/ulx3s/build uart|fifo [sensor] [--device 12|25|45|85]",
         bitstream: "target/ulx3s/uart-25/top.bit",
+        target: "serial:PATH,baud=3000000,flow=none",
         loader_name: "ulx3s",
         other_loader: "fujprog",
     },

@@ -8,7 +8,7 @@ use super::document::print_result;
 use super::{Context, Failure, print};
 use crate::exit::Exit;
 use halfrow::report::wording::{count, plain};
-use halfrow::target::{BoardKind, Target};
+use halfrow::target::{BoardKind, Target, TargetError};
 use halfrow_link::discovery::{self, Access, Answer, Found};
 use halfrow_link::kinds::{Form, KINDS};
 
@@ -59,7 +59,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     };
     if arguments.ask {
         for device in devices.iter_mut().filter(|device| device.is_open_to_us()) {
-            device.answer = Some(halfrow::probe(&device.target.parse().map_err(Failure::call)?));
+            ask(device, halfrow::probe).map_err(Failure::call)?;
         }
     }
     let mut entries: Vec<_> = devices.iter().map(Entry::Device).collect();
@@ -75,6 +75,21 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         print(&lines.join("\n"))?;
     }
     Ok(Exit::Pass)
+}
+
+/// Has `device` say whether it is a board. One that answers by another target than the port's own is called by that.
+fn ask(device: &mut Found, probe: impl Fn(&Target) -> Answer) -> Result<(), TargetError> {
+    let mut answer = probe(&device.target.parse()?);
+    if matches!(answer, Answer::Failed { .. })
+        && let Some(further) = device.further_target()
+    {
+        answer = probe(&further.parse()?);
+        if matches!(answer, Answer::Board { .. } | Answer::Held | Answer::Foreign { .. }) {
+            device.target = further;
+        }
+    }
+    device.answer = Some(answer);
+    Ok(())
 }
 
 fn text(entry: &Entry<'_>) -> String {
@@ -95,11 +110,11 @@ fn text(entry: &Entry<'_>) -> String {
 }
 
 fn bitstream_text(board: &BitstreamBoard) -> String {
-    let BitstreamBoard { name, device, links, build, bitstream, .. } = board;
+    let BitstreamBoard { name, device, links, build, bitstream, target, .. } = board;
     let links = links.join(", ");
     format!(
         "\n{name}\n    a board with a bitstream of this project: {device}, behind {links}\n    build: {build}\n    \
-         load:  halfrow load {bitstream}"
+         load:  halfrow load {bitstream}\n    judge: halfrow verify --board {target}"
     )
 }
 
@@ -134,5 +149,47 @@ fn state(device: &Found) -> String {
         Access::Denied { remedy } => format!("you may not open it; {remedy}"),
         Access::Missing => "is not there; check that the board is plugged in and powered".to_owned(),
         Access::Unknown => "unknown; --ask tells whether a board answers".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use halfrow_link::UsbDevice;
+
+    use super::*;
+
+    /// As a port behind an FT231X looks, where a board answers to `by` alone.
+    fn asked(by: &str) -> Found {
+        let usb = UsbDevice {
+            vendor_id: 0x0403,
+            product_id: 0x6015,
+            device_version: 0x1000,
+            manufacturer: None,
+            product: None,
+            serial: None,
+            interface: None,
+        };
+        let port = "serial:/dev/ttyUSB99".parse().unwrap();
+        let mut device = Found { usb: Some(usb), ..Found::named(&port) };
+        let board = || Answer::Board { name: "ULX3S".to_owned(), datapath: 1 };
+        let probe = |target: &Target| match target.to_string() {
+            target if target == by => board(),
+            target if target == "serial:/dev/ttyUSB99" => {
+                Answer::Failed { reason: "no such rate".to_owned() }
+            }
+            _ => Answer::Silent,
+        };
+        ask(&mut device, probe).unwrap();
+        device
+    }
+
+    #[test]
+    fn a_board_is_called_by_the_target_that_it_answered_to() {
+        let by = "serial:/dev/ttyUSB99,baud=3000000,flow=none";
+        let found = asked(by);
+        assert_eq!(text(&Entry::Device(&found)).lines().next(), Some(by));
+        assert!(matches!(found.answer, Some(Answer::Board { .. })), "{found:?}");
+        let silent = asked("nothing");
+        assert_eq!((silent.target.as_str(), silent.answer), ("serial:/dev/ttyUSB99", Some(Answer::Silent)));
     }
 }

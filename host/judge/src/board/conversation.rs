@@ -131,6 +131,12 @@ impl Conversation {
         self.link.name()
     }
 
+    /// What came by now, and what may have kept more from coming.
+    fn heard(&self) -> Heard {
+        let Tally { bytes_in: bytes, packets_in: packets, damaged_in: damaged, .. } = self.tally;
+        Heard { bytes, packets, damaged, waits_for_cts: self.link.waits_for_cts() }
+    }
+
     pub(super) fn is_exclusive(&self) -> bool {
         self.link.is_exclusive()
     }
@@ -339,7 +345,7 @@ impl Conversation {
             }
             attempt += 1;
         }
-        Err(BoardError::NoAnswer { kind, attempts, waited: self.since(begun), heard: Heard::of(&self.tally) })
+        Err(BoardError::NoAnswer { kind, attempts, waited: self.since(begun), heard: self.heard() })
     }
 
     /// Moves bytes once, and returns the answer if it is among them.

@@ -224,21 +224,22 @@ pub struct Heard {
     pub packets: u64,
     /// Packets that came damaged, since the board was greeted.
     pub damaged: u64,
-}
-
-impl Heard {
-    pub(super) fn of(tally: &Tally) -> Self {
-        Self { bytes: tally.bytes_in, packets: tally.packets_in, damaged: tally.damaged_in }
-    }
+    /// Whether nothing is sent unless the board's end drives CTS.
+    pub waits_for_cts: bool,
 }
 
 /// Who is to blame for silence: the board if nothing was ever heard of it, and the way to it otherwise.
 fn suspect(heard: Heard) -> String {
     match heard {
+        Heard { bytes: 0, waits_for_cts: true, .. } => {
+            "; check that the board is powered and loaded, that the target's rate is the board's, and that the board drives CTS \
+             (a ULX3S does not, and needs flow=none)"
+                .into()
+        }
         Heard { bytes: 0, .. } => {
             "; check that the board is powered and loaded, and that the target's rate is the board's".into()
         }
-        Heard { packets: 0, damaged: 0, bytes } => format!(
+        Heard { packets: 0, damaged: 0, bytes, .. } => format!(
             ", though {} came, no packet among them; check that the target's rate is the board's, and that a halfrow \
              board is what is at this port",
             count(bytes, "byte")

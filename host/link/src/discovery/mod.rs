@@ -8,6 +8,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use crate::ftdi::{self, Speed};
 use crate::kinds::{self, KINDS};
 use crate::{BoardKind, Holder, Target, UsbDevice};
 
@@ -83,9 +84,51 @@ impl Found {
         }
     }
 
+    /// The target to ask it by, if no board answers [`Self::target`]: behind a chip that cannot make a serial port's usual rate, the
+    /// fastest that it makes, without RTS and CTS, as a ULX3S wants it.
+    #[must_use]
+    pub fn further_target(&self) -> Option<String> {
+        let chip = self.usb.as_ref().filter(|usb| usb.vendor_id == ftdi::VENDOR)?;
+        let speed = Speed::of(chip.device_version);
+        let is_plain = self.target.starts_with("serial:") && !self.target.contains(',');
+        (is_plain && speed == Speed::Full)
+            .then(|| format!("{},baud={},flow=none", self.target, speed.fastest()))
+    }
+
     /// Whether it makes sense to ask it.
     #[must_use]
     pub fn is_open_to_us(&self) -> bool {
         matches!(self.access, Access::Free | Access::Unknown)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A serial port behind a chip of FTDI's.
+    fn behind(device_version: u16, target: &str) -> Found {
+        let usb = UsbDevice {
+            vendor_id: ftdi::VENDOR,
+            product_id: 0x6015,
+            device_version,
+            manufacturer: None,
+            product: None,
+            serial: None,
+            interface: None,
+        };
+        Found { usb: Some(usb), ..Found::named(&target.parse().unwrap()) }
+    }
+
+    #[test]
+    fn a_port_whose_chip_makes_3_mbaud_at_most_is_also_asked_as_a_ulx3s_is() {
+        let (ft231x, ft2232h) = (0x1000, 0x0700);
+        let asked = |version, target| behind(version, target).further_target();
+        let port = "serial:/dev/ttyUSB99";
+        assert_eq!(asked(ft231x, port).unwrap(), "serial:/dev/ttyUSB99,baud=3000000,flow=none");
+        assert_eq!(asked(ft2232h, port), None);
+        // Whoever says how it is to be asked is obeyed.
+        assert_eq!(asked(ft231x, "serial:/dev/ttyUSB99,baud=115200"), None);
+        assert_eq!(Found::named(&port.parse().unwrap()).further_target(), None);
     }
 }

@@ -34,7 +34,7 @@ pub(crate) struct SerialLink {
     port: TTYPort,
     pump: Pump,
     path: PathBuf,
-    baud: u32,
+    options: SerialOptions,
     opened: Instant,
 }
 
@@ -63,7 +63,7 @@ impl SerialLink {
         set_lines(&mut port, options);
         check_taken_rate(&port, &path, options.baud)?;
         never_block(port.as_raw_fd()).map_err(|error| failed(&path, error))?;
-        let mut link = Self { port, pump: Pump::default(), path, baud: options.baud, opened: Instant::now() };
+        let mut link = Self { port, pump: Pump::default(), path, options, opened: Instant::now() };
         link.drain();
         Ok(link)
     }
@@ -114,15 +114,19 @@ impl Link for SerialLink {
 
     fn bytes_per_second(&self) -> Option<f64> {
         // A start bit, eight data bits, a stop bit.
-        Some(f64::from(self.baud) / 10.0)
+        Some(f64::from(self.options.baud) / 10.0)
     }
 
     fn is_exclusive(&self) -> bool {
         true
     }
 
+    fn waits_for_cts(&self) -> bool {
+        self.options.rts_cts
+    }
+
     fn name(&self) -> String {
-        format!("the serial port {} ({} baud)", self.path.display(), self.baud)
+        format!("the serial port {} ({} baud)", self.path.display(), self.options.baud)
     }
 }
 
