@@ -312,6 +312,7 @@ codes::codes! {
         StepsUnknown [passed, planned] => "steps-unknown",
         StepNotReached => "step-not-reached",
         LaneBabbles [line] => "lane-told-nonsense",
+        LaneOfOtherProgram [program] => "lane-of-other-program",
         LaneDied [status] => "lane-died",
         LaneNotStarted [error] => "lane-not-started",
         LaneSilent [seconds] => "lane-silent",

@@ -187,6 +187,8 @@ pub enum Saying {
     StepNotReached,
     #[error("the lane told what is no message: {line}")]
     LaneBabbles { line: String },
+    #[error("the lane is not of this station's program, which is {program}; start the station again")]
+    LaneOfOtherProgram { program: String },
     #[error("the lane ended before it was done ({status})")]
     LaneDied { status: String },
     #[error("the lane could not be started: {error}")]

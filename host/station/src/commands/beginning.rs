@@ -14,6 +14,7 @@ use crate::console;
 use crate::disk;
 use crate::engine::Engine;
 use crate::exit::Exit;
+use crate::lane::supervisor::OWN_PROGRAM;
 use crate::outbox::{self, Outbox, PlantSink, Sink};
 use crate::run::{self as runs, Saved};
 use crate::settings::Settings;
@@ -130,9 +131,8 @@ impl<'a> Ready<'a> {
 
     /// At work, with nothing left open.
     pub(super) fn start(mut self) -> Result<Engine, Failure> {
-        let program = std::env::current_exe().map_err(Failure::error)?;
         recovered(&mut self.store)?;
-        Engine::start(self.settings.clone(), self.store, program).map_err(Failure::error)
+        Engine::start(self.settings.clone(), self.store, OWN_PROGRAM.into()).map_err(Failure::error)
     }
 }
 

@@ -1,5 +1,6 @@
 //! `halfrow-station lane`: what the station starts for every run.
 
+use std::fs;
 use std::io::{self, BufRead as _};
 use std::process;
 use std::thread;
@@ -13,12 +14,16 @@ use crate::exit::Exit;
 use crate::lane::child::{Orders, carry_out, orders};
 use crate::lane::{Control, Job, Message};
 
+/// The program's name, which has the 15 letters that the system keeps.
+const PROGRAM: &str = "halfrow-station";
+
 /// Carry out one run; the station starts it
 #[derive(Debug, Args)]
 #[command(hide = true)]
 pub(super) struct Arguments {}
 
 pub(super) fn run(_: &Arguments) -> Result<Exit, Failure> {
+    name();
     let mut line = String::new();
     io::stdin().lock().read_line(&mut line).map_err(Failure::error)?;
     let job: Job = serde_json::from_str(&line).map_err(|error| {
@@ -35,6 +40,13 @@ pub(super) fn run(_: &Arguments) -> Result<Exit, Failure> {
         }
     });
     Ok(Exit::Pass)
+}
+
+/// Calls the process as the station's: the system has its name from the path that it was started by.
+fn name() {
+    if let Err(error) = fs::write("/proc/self/comm", PROGRAM) {
+        tracing::debug!("the process has no name: {error}");
+    }
 }
 
 /// Lets the process have no more than so many MiB of addresses, or what it was allowed before if that is less. What needs more

@@ -1,7 +1,7 @@
 //! `halfrow-station run`
 
 use std::fs;
-use std::path::{self, PathBuf};
+use std::path::{self, Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
@@ -19,6 +19,7 @@ use crate::clock;
 use crate::console;
 use crate::exit::Exit;
 use crate::labgrid::LaneBoard;
+use crate::lane::supervisor::OWN_PROGRAM;
 use crate::lane::{MEMORIES_MIB, MEMORY_MIB, Message};
 use crate::plan::{Bad, Plan, mock};
 use crate::record::{Record, StepOutcome};
@@ -87,7 +88,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let plan = Plan::load(&plan_file).map_err(Failure::call)?;
     let (serial, board) = arguments.subject(&plan)?;
     let board = LaneBoard::Own(board);
-    let program = std::env::current_exe().map_err(Failure::error)?;
     let signal = Signal::heed()?;
     let mut store = arguments.disk.opens(&arguments.data)?;
     let recovered = recovered(&mut store)?;
@@ -103,7 +103,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         station: &station,
         lane: &arguments.lane,
         operator: &arguments.operator,
-        program: &program,
+        program: Path::new(OWN_PROGRAM),
         counts,
         job: None,
         silence: arguments.silence,
@@ -191,7 +191,7 @@ fn log(message: &Message) {
         Message::Doing { what } => tracing::info!("{what}"),
         Message::Ended { step } => tracing::info!("{} {}: {}", step.name, step.outcome.name(), step.detail),
         Message::Identified { board } => tracing::info!("the board says it is {}", board.name),
-        Message::Rows { .. } | Message::Done | Message::Refused { .. } => {}
+        Message::Begun { .. } | Message::Rows { .. } | Message::Done | Message::Refused { .. } => {}
     }
 }
 

@@ -16,6 +16,7 @@ use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
 use crate::guard::guarded;
+use crate::lane::supervisor::OWN_PROGRAM;
 use crate::outbox::Outbox;
 use crate::said::Said;
 use crate::settings::Settings;
@@ -57,9 +58,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let sinks = sinks(&settings, &mut store)?;
     let store = SharedStore::new(store);
     let outbox = Outbox::start(&store, sinks)?;
-    let program = std::env::current_exe().map_err(Failure::error)?;
     let plant = PlantLink::new(address);
-    let work = Work { settings: &settings, plant, store, program, worker };
+    let work = Work { settings: &settings, plant, store, program: OWN_PROGRAM.into(), worker };
     let stop = || signal.by();
     let at_once = settings.work.as_ref().map_or(1, |work| work.at_once);
     let ended = match work.introduce(&presence, !arguments.once, &stop) {

@@ -236,6 +236,6 @@ fn doing(message: &Message) -> Option<(String, Option<(u64, u64)>)> {
         Message::Rows { done, expected } => Some(("rows".to_owned(), Some((*done, *expected)))),
         Message::Ended { step } => Some((format!("{} {}", step.name, step.outcome.name()), None)),
         Message::Identified { board } => Some((format!("the board is {}", board.name), None)),
-        Message::Done | Message::Refused { .. } => None,
+        Message::Begun { .. } | Message::Done | Message::Refused { .. } => None,
     }
 }

@@ -75,6 +75,7 @@ impl Heeded {
 
 /// Carries the job out, step by step, and tells of it. A step that does not pass is the last one.
 pub fn carry_out(job: &Job, heeded: &Heeded, tell: &(dyn Fn(&Message) + Sync)) {
+    tell(&Message::Begun { program: halfrow::VERSION.to_owned() });
     match prepared(job) {
         Ok((plan, target)) => {
             steps(job, &plan, &target, heeded, tell);

@@ -107,6 +107,11 @@ impl From<Stopper> for StoppedBy {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "told", rename_all = "kebab-case")]
 pub enum Message {
+    /// The lane has its job: the first message.
+    Begun {
+        /// The program that it is of, as records have it.
+        program: String,
+    },
     /// A try of a step begins.
     Step {
         /// The step's place, from 1.

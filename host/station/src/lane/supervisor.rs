@@ -32,6 +32,9 @@ const PROCESS: &str = "lane.pid";
 /// How many threads a lane judges with, for those who want another number than one.
 const THREADS: &str = "RAYON_NUM_THREADS";
 
+/// This very program, though its file may be another one by now, or gone.
+pub const OWN_PROGRAM: &str = "/proc/self/exe";
+
 /// How long a lane is waited for.
 #[derive(Clone, Copy, Debug)]
 pub struct Patience {
@@ -101,6 +104,8 @@ struct Lane {
     stdin: Option<ChildStdin>,
     lines: Receiver<String>,
     events: File,
+    /// Whether it has said that it is of this program.
+    is_own: bool,
 }
 
 impl Lane {
@@ -110,6 +115,7 @@ impl Lane {
         // Lanes are many, and the board is what they wait for.
         let threads = std::env::var_os(THREADS).unwrap_or_else(|| "1".into());
         let mut child = Command::new(program)
+            .arg0(std::env::args_os().next().unwrap_or_else(|| program.into()))
             .arg("lane")
             .env(THREADS, threads)
             .process_group(0)
@@ -119,7 +125,7 @@ impl Lane {
             .spawn()?;
         let (sender, lines) = mpsc::channel();
         let stdout = child.stdout.take();
-        let mut lane = Self { stdin: child.stdin.take(), child, lines, events };
+        let mut lane = Self { stdin: child.stdin.take(), child, lines, events, is_own: false };
         match hear(stdout, sender).and_then(|()| lane.brief(job, spool)) {
             Ok(()) => Ok(lane),
             Err(error) => {
@@ -149,13 +155,8 @@ impl Lane {
         loop {
             match self.lines.recv_timeout(LOOK) {
                 Ok(line) => {
-                    // What is lost here is lost as evidence alone; the record has all that counts.
-                    let _ = writeln!(self.events, "{line}");
-                    match serde_json::from_str(&line) {
-                        Ok(Message::Done) => return End::Done,
-                        Ok(Message::Refused { why }) => return End::Refused(why),
-                        Ok(message) => self.answer(&message, attendant, steps),
-                        Err(_) => return End::Killed(Saying::LaneBabbles { line }.into()),
+                    if let Some(end) = self.take(line, attendant, steps) {
+                        return end;
                     }
                     // The answer may have waited for the store, which is no silence of the lane's.
                     last = Instant::now();
@@ -175,6 +176,30 @@ impl Lane {
                 return End::Killed(why);
             }
         }
+    }
+
+    /// Takes what the lane told; how it ends, if that was the last.
+    fn take(
+        &mut self,
+        line: String,
+        attendant: &mut dyn Attendant,
+        steps: &mut Vec<StepRecord>,
+    ) -> Option<End> {
+        // What is lost here is lost as evidence alone; the record has all that counts.
+        let _ = writeln!(self.events, "{line}");
+        match serde_json::from_str(&line) {
+            Err(_) => return Some(End::Killed(Saying::LaneBabbles { line }.into())),
+            Ok(Message::Begun { program }) if program == halfrow::VERSION => self.is_own = true,
+            // The record names this program, and another one may have judged otherwise.
+            Ok(message) if !self.is_own || matches!(message, Message::Begun { .. }) => {
+                let program = halfrow::VERSION.to_owned();
+                return Some(End::Refused(Saying::LaneOfOtherProgram { program }.into()));
+            }
+            Ok(Message::Done) => return Some(End::Done),
+            Ok(Message::Refused { why }) => return Some(End::Refused(why)),
+            Ok(message) => self.answer(&message, attendant, steps),
+        }
+        None
     }
 
     /// Takes a message that is not the last, and answers the one that asks something.

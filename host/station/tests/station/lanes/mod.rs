@@ -8,6 +8,7 @@ mod hooks;
 mod labgrid;
 mod operators;
 mod refused;
+mod replaced;
 mod shift;
 pub(crate) mod stuck;
 mod supervised;

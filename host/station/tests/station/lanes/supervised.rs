@@ -29,14 +29,17 @@ impl Attendant for Slow {
 }
 
 /// Both messages are there before the first one is taken.
-const TWO: &str = r#"read -r job
-printf '{"told":"doing","what":"frames"}\n{"told":"done"}\n'
-"#;
+const TWO: &str = r#"{"told":"doing","what":"frames"}\n{"told":"done"}\n"#;
 
-#[test]
-fn a_lane_is_not_silent_while_the_station_takes_what_it_told() {
+/// What the program's own lane tells first.
+fn begun() -> String {
+    format!(r#"{{"told":"begun","program":"{}"}}\n"#, halfrow::VERSION)
+}
+
+/// How a lane ends that tells this as soon as it has its job, and then waits for what it is told.
+fn end_of(told: &str, silence: Duration, attendant: &mut dyn Attendant) -> End {
     let folder = folder();
-    let lane = script(folder.path(), "lane", TWO);
+    let lane = script(folder.path(), "lane", &format!("read -r job\nprintf '{told}'\nread -r more\n"));
     let [text, sha256, variant] = [""; 3].map(str::to_owned);
     let job = Job {
         run: "run".to_owned(),
@@ -50,13 +53,25 @@ fn a_lane_is_not_silent_while_the_station_takes_what_it_told() {
         spool: folder.path().to_owned(),
         memory_mib: 64,
     };
+    supervise(&lane, &job, folder.path(), Patience { silence, whole: HANG }, attendant).end
+}
+
+#[test]
+fn a_lane_is_not_silent_while_the_station_takes_what_it_told() {
     let silence = Duration::from_secs(2);
-    let heard = supervise(
-        &lane,
-        &job,
-        folder.path(),
-        Patience { silence, whole: HANG },
-        &mut Slow(silence + Duration::from_millis(100)),
-    );
-    assert_eq!(heard.end, End::Done);
+    let told = format!("{}{TWO}", begun());
+    let slow = &mut Slow(silence + Duration::from_millis(100));
+    assert_eq!(end_of(&told, silence, slow), End::Done);
+}
+
+#[test]
+fn a_lane_of_another_program_is_refused_with_what_to_do() {
+    let other = begun().replace(halfrow::VERSION, "0.0.9");
+    let late = format!("{TWO}{}", begun());
+    for told in [&other, TWO, &late] {
+        let end = end_of(told, HANG, &mut Slow(Duration::ZERO));
+        let End::Refused(why) = end else { panic!("{told}: {end:?}") };
+        assert_eq!(why.code, "lane-of-other-program", "{told}");
+        assert!(why.message.ends_with("; start the station again"), "{why}");
+    }
 }

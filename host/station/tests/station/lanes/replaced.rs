@@ -1,0 +1,47 @@
+//! A station at work whose program's file becomes another one, as an upgrade has it.
+
+use std::fs;
+use std::process::Command;
+
+use super::ends::{connected, lane_of, silent_board};
+use super::floor::{Running, SERIALS, Station};
+use crate::common::{program, script};
+
+/// The station at work by a file of its own, and that file.
+fn started(station: &Station) -> (Running, std::path::PathBuf) {
+    let own = station.path("halfrow-station");
+    // A copy might still be open for writing in what another test starts.
+    fs::hard_link(program(), &own).unwrap();
+    (station.started(Command::new(&own)), own)
+}
+
+#[test]
+fn a_station_judges_by_the_program_that_it_is_though_its_file_is_another_one_or_gone() {
+    let station = Station::with(&["mock"], "");
+    let (mut running, own) = started(&station);
+    let mut verdict_of = |serial| {
+        running.test("1", serial);
+        running.wait("a verdict", |news| news["shown"]["serial"] == serial)["shown"]["verdict"].clone()
+    };
+    fs::rename(script(&station.path(""), "newer", "exit 2\n"), &own).unwrap();
+    assert_eq!(verdict_of(SERIALS[0]), "PASS", "replaced");
+    fs::remove_file(&own).unwrap();
+    assert_eq!(verdict_of(SERIALS[1]), "PASS", "removed");
+    assert_eq!(running.end().0, Some(0));
+    station.assert_well();
+}
+
+/// `ps` and `top` tell whose it is.
+#[test]
+fn a_lane_s_process_has_the_program_s_name() {
+    let (listener, silent) = silent_board();
+    let station = Station::with(&[&silent], "");
+    let (mut running, own) = started(&station);
+    running.test("1", SERIALS[0]);
+    let begun = running.wait("a step", |news| news["news"] == "doing");
+    connected(&listener);
+    let lane = lane_of(&station, &begun["run"]);
+    let read = |name: &str| fs::read_to_string(format!("/proc/{lane}/{name}")).unwrap();
+    assert_eq!(read("comm"), "halfrow-station\n");
+    assert_eq!(read("cmdline"), format!("{}\0lane\0", own.display()));
+}
