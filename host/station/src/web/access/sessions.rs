@@ -93,7 +93,12 @@ impl Sessions {
         now_ms: i64,
     ) -> Option<Identified> {
         let idle_ms = i64::try_from(idle.as_millis()).unwrap_or(i64::MAX);
-        self.known.retain(|_, (_, used)| now_ms.saturating_sub(*used) < idle_ms);
+        // Nobody did anything later than now: the clock was ahead when it was noted.
+        self.saved_ms = self.saved_ms.min(now_ms);
+        self.known.retain(|_, (_, used)| {
+            *used = (*used).min(now_ms);
+            now_ms.saturating_sub(*used) < idle_ms
+        });
         let (who, used) = self.known.get_mut(mark)?;
         let who = who.clone();
         if is_act {
@@ -193,6 +198,27 @@ mod tests {
         assert_eq!(sessions.user("s", idle, true, 91_000), Some(weber.clone()));
         assert_eq!(sessions.user("s", idle, false, 181_000), Some(weber));
         assert_eq!(sessions.user("s", idle, false, 191_000), None);
+    }
+
+    /// The clock stood an hour ahead until NTP set it.
+    #[test]
+    fn a_clock_that_was_ahead_keeps_nobody_logged_in_for_longer() {
+        const AHEAD: i64 = 3_600_000;
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("station.sessions");
+        let (mut sessions, idle) = (Sessions::load(&path).unwrap(), Duration::from_secs(100));
+        let weber = identified("Weber", Who::Operator);
+        sessions.add("s".to_owned(), weber.clone(), AHEAD);
+        assert_eq!(sessions.user("s", idle, false, 1_000), Some(weber.clone()));
+        assert_eq!(sessions.user("s", idle, false, 100_999), Some(weber.clone()));
+        assert_eq!(sessions.user("s", idle, false, 101_000), None);
+        // What the file says of acts goes by the clock that is right, too.
+        sessions.add("s".to_owned(), weber.clone(), AHEAD);
+        sessions.user("s", idle, true, 101_000);
+        sessions.user("s", idle, true, 101_000 + SAVED_MS);
+        let mut again = Sessions::load(&path).unwrap();
+        assert_eq!(again.user("s", idle, false, 100_999 + SAVED_MS + 100_000), Some(weber));
+        assert_eq!(again.user("s", idle, false, 101_000 + SAVED_MS + 100_000), None);
     }
 
     #[test]
