@@ -3,10 +3,11 @@
 use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use jiff::tz::TimeZone;
 use jiff::{Timestamp, Zoned};
+use nix::time::{ClockId, clock_gettime};
 
 /// Where the system keeps its time zone, and all others.
 const HERE: &str = "/etc/localtime";
@@ -23,20 +24,38 @@ pub(crate) fn now_ms() -> i64 {
 #[derive(Clone, Copy, Debug)]
 pub struct HeardClock {
     ms: i64,
-    heard: Instant,
+    heard_ms: i64,
 }
+
+/// For how long another computer's clock tells anything once it was heard, in milliseconds. Every clock of a virtual computer
+/// stands still while that is paused, and then the wall's alone is set right.
+const TELLS_MS: i64 = 5 * 60_000;
 
 impl HeardClock {
     /// It shows `ms`, milliseconds since 1970, UTC, at this moment.
     #[must_use]
     pub fn shows(ms: i64) -> Self {
-        Self { ms, heard: Instant::now() }
+        Self { ms, heard_ms: since_start_ms() }
     }
 
-    /// What it shows by now, however the own clock was set since.
-    pub(crate) fn now_ms(&self) -> i64 {
-        self.ms.saturating_add(i64::try_from(self.heard.elapsed().as_millis()).unwrap_or(i64::MAX))
+    /// What it shows by now, however the own clock was set since; nothing if it was heard long ago.
+    pub(crate) fn now_ms(&self) -> Option<i64> {
+        self.at(since_start_ms())
     }
+
+    /// What it shows at this moment since the computer was started.
+    fn at(&self, since_start_ms: i64) -> Option<i64> {
+        let passed_ms = since_start_ms.saturating_sub(self.heard_ms);
+        (passed_ms < TELLS_MS).then(|| self.ms.saturating_add(passed_ms))
+    }
+}
+
+/// Milliseconds since the computer was started, by the clock that nobody sets and that goes on while the computer sleeps
+/// (`CLOCK_BOOTTIME` of clock_gettime(2)).
+fn since_start_ms() -> i64 {
+    let now = clock_gettime(ClockId::CLOCK_BOOTTIME).map(|now| (now.tv_sec(), now.tv_nsec()));
+    let (seconds, nanoseconds) = now.unwrap_or_default();
+    seconds.saturating_mul(1000).saturating_add(nanoseconds / 1_000_000)
 }
 
 /// This moment as a clock on the station's wall shows it.
@@ -80,6 +99,14 @@ mod tests {
     /// 22 November 2026, midnight UTC.
     const DAY: i64 = 1_795_305_600_000;
     const HOUR: i64 = 3_600_000;
+
+    #[test]
+    fn a_clock_that_was_heard_long_ago_tells_nothing() {
+        let clock = HeardClock { ms: DAY, heard_ms: 7_000 };
+        assert_eq!(clock.at(8_000), Some(DAY + 1_000));
+        assert_eq!(clock.at(7_000 + TELLS_MS - 1), Some(DAY + TELLS_MS - 1));
+        assert_eq!(clock.at(7_000 + TELLS_MS), None);
+    }
 
     #[test]
     fn a_clock_on_the_wall_is_that_of_the_systems_zone() {

@@ -23,7 +23,8 @@ impl Store {
             return Ok(());
         }
         let minutes = |ms: i64| ms.unsigned_abs().div_ceil(MINUTE_MS);
-        let apart_ms = self.plant_clock.map_or(0, |plant| run.started_ms.saturating_sub(plant.now_ms()));
+        let plant_ms = self.plant_clock.and_then(|plant| plant.now_ms());
+        let apart_ms = plant_ms.map_or(0, |plant_ms| run.started_ms.saturating_sub(plant_ms));
         if apart_ms.abs() > TOLERATED_MS {
             return Err(StoreError::ClockApart { minutes: minutes(apart_ms) });
         }

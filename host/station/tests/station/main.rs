@@ -3,6 +3,7 @@
 // A helper that cannot go on fails the test.
 #![allow(clippy::panic, clippy::unwrap_used)]
 
+mod clocks;
 mod common;
 mod compiled_once;
 mod documents;

@@ -1,14 +1,16 @@
 //! Runs that a plant would take for earlier or later than they are.
 
 use std::fs;
+use std::process::Command;
 
 use halfrow_station::outbox::{PlantSink, Sink as _};
 use halfrow_station::store::{SINK_OF_PLANT, StoreError};
 
 use super::sent::presence;
 use super::server::Server;
-use super::waiting::station;
-use crate::common::now_ms;
+use super::waiting::{await_sent, station};
+use crate::clocks::Clocks;
+use crate::common::{now_ms, program};
 use crate::history::made::{End, HOUR_MS, Made, Run};
 use crate::lanes::floor::SERIALS;
 
@@ -59,5 +61,33 @@ fn no_run_begins_behind_one_that_is_dated_ahead() {
     let lane = running.state("1", "READY");
     assert!(lane["note"].to_string().contains("dated 60 min ahead of the station's clock"), "{lane}");
     assert_eq!(of_plant.query("SELECT count(*) FROM run"), ["1"]);
+    assert_eq!(running.end().0, Some(0));
+}
+
+/// A computer that slept has both clocks ahead; one whose clock was set has the wall's alone.
+#[test]
+fn a_station_goes_on_without_its_plant_when_its_computer_slept_and_not_when_its_clock_was_set() {
+    let mut server = Server::prepared();
+    let of_plant = station(&server, "12", "");
+    let clocks = Clocks::in_folder(&of_plant.path(""));
+    let mut program = Command::new(program());
+    clocks.of(&mut program);
+    let mut running = of_plant.started(program);
+    running.scan(SERIALS[0]);
+    running.state("1", "PASS");
+    // The plant's clock was heard before it was sent anything.
+    await_sent(&of_plant);
+    server.kill();
+    let mut came_to = |serial: &str| {
+        running.scan(serial);
+        running.state("1", "RUNNING");
+        running.wait("an end", |news| news["state"] == "READY" || news["shown"]["serial"] == serial)
+    };
+    clocks.ahead(3600, 0);
+    let refused = came_to(SERIALS[1]);
+    assert!(refused["note"].to_string().contains("are 60 min apart"), "{refused}");
+    clocks.ahead(3600, 3600);
+    let slept = came_to(SERIALS[1]);
+    assert_eq!(slept["shown"]["verdict"], "PASS", "{slept}");
     assert_eq!(running.end().0, Some(0));
 }

@@ -21,7 +21,7 @@ pub(crate) fn station(server: &Server, name: &str, more: &str) -> Station {
 }
 
 /// Waits until the station has nothing more to send.
-fn await_sent(station: &Station) {
+pub(super) fn await_sent(station: &Station) {
     while station.query("SELECT count(*) FROM outbox WHERE done_ms IS NULL") != ["0"] {
         std::thread::sleep(Duration::from_millis(50));
     }

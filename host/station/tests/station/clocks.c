@@ -1,0 +1,26 @@
+/* Loaded before the C library: the wall's clock and the one since the computer started show more by the seconds in the file
+   SET_CLOCKS, two numbers of 64 bits. The clock that stands still while a computer sleeps shows what it shows. */
+#define _GNU_SOURCE
+#include <fcntl.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <sys/mman.h>
+#include <sys/syscall.h>
+#include <time.h>
+#include <unistd.h>
+
+static volatile int64_t *ahead;
+
+__attribute__((constructor)) static void load(void) {
+    const char *path = getenv("SET_CLOCKS");
+    int file = path ? open(path, O_RDONLY | O_CLOEXEC) : -1;
+    void *found = file < 0 ? MAP_FAILED : mmap(NULL, 2 * sizeof *ahead, PROT_READ, MAP_SHARED, file, 0);
+    ahead = found == MAP_FAILED ? NULL : found;
+}
+
+int clock_gettime(clockid_t clock, struct timespec *time) {
+    int failed = syscall(SYS_clock_gettime, clock, time);
+    if (!failed && ahead && (clock == CLOCK_REALTIME || clock == CLOCK_BOOTTIME))
+        time->tv_sec += ahead[clock == CLOCK_BOOTTIME];
+    return failed;
+}
