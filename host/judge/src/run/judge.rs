@@ -239,7 +239,7 @@ impl<'a> Judge<'a> {
         if is_wanted && let Some(found) = as_found(&expected, found) {
             let index = self.seen.frames.len();
             let (input, expected) = ((*input).clone(), (*expected).clone());
-            self.seen.evidence.offer(Evidence { index, input, found, expected }, is_street, budget);
+            self.seen.evidence.offer(Evidence { index, input, found, expected }, &name, is_street, budget);
         }
         let now = Instant::now();
         let comparison = self.seen.evidence.shorten(comparison, rows >= height, budget);

@@ -22,6 +22,8 @@ const SHARE_OF_COUNTS: usize = 16;
 #[derive(Default)]
 pub(super) struct KeptFrames {
     evidence: Vec<Evidence>,
+    /// Their pictures' names.
+    names: Vec<String>,
     bytes: usize,
     bytes_of_counts: usize,
     left_out: usize,
@@ -30,15 +32,17 @@ pub(super) struct KeptFrames {
 }
 
 impl KeptFrames {
-    /// Keeps a frame if it fits into `budget` bytes beside the others. One that differs takes the place of equal ones, the
-    /// latest first, but not of one that is pinned; one that is equal is kept only where there is room.
-    pub(super) fn offer(&mut self, evidence: Evidence, is_pinned: bool, budget: usize) {
+    /// Keeps a frame of the picture `name` if it fits into `budget` bytes beside the others. One that differs takes the place of equal
+    /// ones, the latest first, and then, if its picture is not there yet, of pictures that are there again, but not of a frame that is
+    /// pinned; one that is equal is kept only where there is room.
+    pub(super) fn offer(&mut self, evidence: Evidence, name: &str, is_pinned: bool, budget: usize) {
         let (bytes, budget) = (bytes(&evidence), budget - budget / SHARE_OF_COUNTS);
         if differs(&evidence) {
             while self.bytes + bytes > budget
-                && let Some(equal) = self.evidence.iter().rposition(|kept| self.makes_way(kept))
+                && let Some(place) = self.place_of_another(name)
             {
-                let removed = self.evidence.remove(equal);
+                let removed = self.evidence.remove(place);
+                self.names.remove(place);
                 self.bytes -= self::bytes(&removed);
                 self.left_out += 1;
             }
@@ -52,10 +56,20 @@ impl KeptFrames {
         }
         self.bytes += bytes;
         self.evidence.push(evidence);
+        self.names.push(name.to_owned());
     }
 
-    fn makes_way(&self, kept: &Evidence) -> bool {
-        !differs(kept) && self.pinned != Some(kept.index)
+    /// Where the frame is that makes way for one that differs, of the picture `name`.
+    fn place_of_another(&self, name: &str) -> Option<usize> {
+        let is_free = |place: usize| self.pinned != Some(self.evidence[place].index);
+        let shows = |place: usize, name: &str| self.names[place] == name && differs(&self.evidence[place]);
+        let is_there = |name: &str, before: usize| (0..before).any(|place| shows(place, name));
+        let places = 0..self.evidence.len();
+        let equal = places.clone().rfind(|&place| is_free(place) && !differs(&self.evidence[place]));
+        equal.or_else(|| {
+            let is_again = |&place: &usize| is_free(place) && is_there(&self.names[place], place);
+            if is_there(name, places.end) { None } else { places.clone().rfind(is_again) }
+        })
     }
 
     /// The comparison of a frame; of one that came back whole without its counts by row and column where these say nothing, since all
@@ -111,10 +125,17 @@ mod tests {
 
     /// What is kept of frames that differ or not, where there is room for `room` of them; the one at `pinned` is pinned.
     fn kept(room: usize, pinned: usize, differing: &[bool]) -> (Vec<usize>, usize) {
+        let names: Vec<_> = (0..differing.len()).map(|index| index.to_string()).collect();
+        let named: Vec<_> = names.iter().map(String::as_str).zip(differing.iter().copied()).collect();
+        kept_of(room, pinned, &named)
+    }
+
+    /// The same of frames of these names.
+    fn kept_of(room: usize, pinned: usize, named: &[(&str, bool)]) -> (Vec<usize>, usize) {
         let budget = room * ONE * SHARE_OF_COUNTS / (SHARE_OF_COUNTS - 1);
         let mut kept = KeptFrames::default();
-        for (index, &differs) in differing.iter().enumerate() {
-            kept.offer(evidence(index, differs), index == pinned, budget);
+        for (index, &(name, differs)) in named.iter().enumerate() {
+            kept.offer(evidence(index, differs), name, index == pinned, budget);
         }
         let (evidence, report) = kept.finish();
         assert_eq!((report.kept, report.bytes as usize), (evidence.len(), evidence.len() * ONE));
@@ -129,6 +150,17 @@ mod tests {
         assert_eq!(kept(2, none, &[false, true, true, true, false]), (vec![1, 2], 3));
         assert_eq!(kept(2, 0, &[false, true, true, true, false]), (vec![0, 1], 3));
         assert_eq!(kept(0, none, &[true]), (vec![], 1));
+    }
+
+    #[test]
+    fn a_picture_that_is_not_there_takes_the_place_of_one_that_is_there_twice() {
+        let none = usize::MAX;
+        let twice = |names: &[&'static str]| names.iter().map(|&name| (name, true)).collect::<Vec<_>>();
+        assert_eq!(kept_of(2, none, &twice(&["a", "a", "a", "b", "b", "c"])), (vec![0, 3], 4));
+        assert_eq!(kept_of(3, none, &twice(&["a", "a", "b", "c", "a", "d"])), (vec![0, 2, 3], 3));
+        assert_eq!(kept_of(2, 1, &twice(&["a", "a", "b"])), (vec![0, 1], 1));
+        // What is equal shows nothing that a repetition does not.
+        assert_eq!(kept_of(2, none, &[("a", true), ("a", true), ("b", false)]), (vec![0, 1], 1));
     }
 
     #[test]

@@ -219,9 +219,9 @@ impl Common<'_> {
                 // The plan does not fit the board, which was not judged.
                 Err(misfit) => return Try::error(Cause::Refused, &misfit),
             };
-        let name = |index: usize| report.frames.get(index).map_or("", |frame| frame.name.as_str());
-        let named: Vec<_> = evidence.iter().map(|one| (name(one.index), one)).collect();
-        keep(self.spool, place, &named);
+        let frames =
+            report.frames.iter().map(|frame| (frame.name.as_str(), frame.comparison.differences > 0));
+        keep(self.spool, place, &frames.collect::<Vec<_>>(), &evidence);
         let seen = report.board.identity.as_ref().map(|identity| seen(report.board.kind, identity));
         if let Some(exchanged) = seen.as_ref().and_then(|seen| self.exchanged(seen)) {
             return exchanged;

@@ -25,6 +25,8 @@ enum NotKept {
     Encode(#[source] io::Error),
     #[error("the frames of the run take more than {MOST_BYTES} bytes; let its steps have smaller frames")]
     NoRoom,
+    #[error("the judge had no room for it; let its step have smaller frames")]
+    LeftOut,
     #[error(transparent)]
     Write(#[from] WriteAsideError),
 }
@@ -89,24 +91,31 @@ impl KeptFrame {
     }
 }
 
-/// Keeps in `folder` the first frames of `evidence` that differ, each of another name, as a try of a step left them. What cannot be kept is
-/// told in the lane's log and named in [`NOT_KEPT`]: no verdict hangs on it.
-pub(super) fn keep(folder: &Path, place: (u32, u32), evidence: &[(&str, &Evidence)]) {
-    keep_as(folder, place, evidence, &encoded);
+/// Keeps in `folder` the first frames that differ, each of another name, as a try of a step left them: `frames` are all of the try by
+/// name and whether they differ, and `evidence` those that the judge has kept. What cannot be kept is told in the lane's log and named
+/// in [`NOT_KEPT`]: no verdict hangs on it.
+pub(super) fn keep(folder: &Path, place: (u32, u32), frames: &[(&str, bool)], evidence: &[Evidence]) {
+    keep_as(folder, place, frames, evidence, &encoded);
 }
 
 /// How a frame becomes a file.
 type Encode<'a> = &'a dyn Fn(&Frame) -> io::Result<Vec<u8>>;
 
-fn keep_as(folder: &Path, (seq, attempt): (u32, u32), evidence: &[(&str, &Evidence)], encode: Encode<'_>) {
-    let mut names = Vec::new();
-    // The same picture again shows little more.
-    let mut is_other = |(name, one): &&(&str, &Evidence)| {
-        let is_other = one.found != one.expected && !names.contains(&(*name).to_owned());
-        names.extend(is_other.then(|| (*name).to_owned()));
-        is_other
-    };
-    for (_, one) in evidence.iter().filter(|one| is_other(one)).take(MOST_FRAMES) {
+fn keep_as(
+    folder: &Path,
+    (seq, attempt): (u32, u32),
+    frames: &[(&str, bool)],
+    evidence: &[Evidence],
+    encode: Encode<'_>,
+) {
+    for (index, name) in first_that_differ(frames) {
+        let is_of_it = |one: &&Evidence| {
+            one.found != one.expected && frames.get(one.index).is_some_and(|(of, _)| *of == name)
+        };
+        let Some(one) = evidence.iter().find(is_of_it) else {
+            tell(folder, &format!("step-{seq}-try-{attempt}-frame-{index}"), NotKept::LeftOut);
+            continue;
+        };
         let (depth, phase) = (one.expected.depth(), one.expected.phase());
         let frame = KeptFrame { seq, attempt, index: one.index, depth, phase };
         let pictures = [&one.input, &one.found, &one.expected].map(encode);
@@ -121,6 +130,17 @@ fn keep_as(folder: &Path, (seq, attempt): (u32, u32), evidence: &[(&str, &Eviden
             }
         }
     }
+}
+
+/// The first frames that differ, by place and name. The same picture again shows little more.
+fn first_that_differ<'a>(frames: &[(&'a str, bool)]) -> Vec<(usize, &'a str)> {
+    let mut first: Vec<(usize, &str)> = Vec::new();
+    for (index, (name, differs)) in frames.iter().enumerate() {
+        if *differs && first.len() < MOST_FRAMES && first.iter().all(|(_, known)| known != name) {
+            first.push((index, name));
+        }
+    }
+    first
 }
 
 fn written(path: &Path, png: &[u8]) -> Result<(), NotKept> {
@@ -188,11 +208,9 @@ mod tests {
     fn what_differs_is_kept_and_reads_back_and_nothing_else_is() {
         let folder = tempfile::tempdir().unwrap();
         let equal = Evidence { found: wrong(0).expected, ..wrong(0) };
-        keep(
-            folder.path(),
-            (2, 1),
-            &[("a", &equal), ("a", &wrong(1)), ("a", &wrong(2)), ("b", &wrong(3)), ("c", &wrong(4))],
-        );
+        let frames = [("a", false), ("a", true), ("a", true), ("b", true), ("c", true)];
+        let evidence = [equal, wrong(1), wrong(2), wrong(3), wrong(4)];
+        keep(folder.path(), (2, 1), &frames, &evidence);
         let kept: Vec<_> =
             names(folder.path()).unwrap().iter().map(|name| KeptFrame::of(name).unwrap()).collect();
         let indices: Vec<_> = kept.iter().map(|(frame, _)| frame.index).collect();
@@ -217,7 +235,8 @@ mod tests {
                 .map_err(io::Error::other),
             false => encoded(frame),
         };
-        keep_as(folder.path(), (2, 1), &[("a", &wrong(1)), ("b", &wrong(3))], &encode);
+        let frames = [("a", false), ("a", true), ("a", true), ("b", true)];
+        keep_as(folder.path(), (2, 1), &frames, &[wrong(1), wrong(3)], &encode);
         let kept: Vec<_> =
             names(folder.path()).unwrap().iter().map(|name| KeptFrame::of(name).unwrap()).collect();
         let views: Vec<_> = kept.iter().map(|(frame, view)| (frame.index, *view)).collect();
@@ -230,5 +249,16 @@ mod tests {
             assert!(line.starts_with(&said), "{line}");
         }
         assert_eq!(told.lines().count(), 2);
+    }
+
+    #[test]
+    fn a_picture_for_which_the_judge_had_no_room_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let frames = [("a", true), ("a", true), ("b", false), ("b", true), ("c", true)];
+        keep(folder.path(), (2, 1), &frames, &[wrong(0), wrong(1)]);
+        assert_eq!(names(folder.path()).unwrap().len(), 3);
+        let told = fs::read_to_string(folder.path().join(NOT_KEPT)).unwrap();
+        let expected = "step-2-try-1-frame-3 is not kept: the judge had no room for it; let its step have smaller frames\n";
+        assert_eq!(told, expected, "c is the third picture");
     }
 }
