@@ -27,7 +27,7 @@ use crate::said::Saying;
 use crate::secret::SecretError;
 use crate::settings::PlantSettingsError;
 use crate::store::{AgainError, NoWaiver, PlantAddressError, PlantError, RebindError, StoreError};
-use crate::trust::TrustError;
+use crate::trust::{CertificateError, TrustError};
 use crate::work::{Lost, WorkError};
 
 codes::codes! {
@@ -92,6 +92,7 @@ codes::codes! {
         BeingJudged [serial, lane] => "unit-being-judged",
         NotOpen [run] => "run-not-open",
         ReadsOtherwise [run] => "run-reads-otherwise",
+        = Certificate,
         = Blob,
         = Record,
         = NoRandomness,
@@ -115,6 +116,13 @@ codes::codes! {
         NoCertificates => "certificates-missing",
         Tls => "tls-unusable",
     }
+    CertificateError {
+        Expired [host, until, now] => "certificate-expired",
+        NotYet [host, from, now] => "certificate-not-valid-yet",
+        OtherName [host, names] => "certificate-of-other-name",
+        Stranger [host] => "certificate-of-stranger",
+        Unfit [host] => "certificate-unfit",
+    }
     OutboxError {
         Thread => "outbox-without-thread",
         = Store,
@@ -136,6 +144,7 @@ codes::codes! {
         Rejected [host, status, answer] => "sink-rejects",
         Unconfirmed [host, seconds] => "sink-unconfirmed",
         Unwritten => "sink-file-not-written",
+        = Certificate,
         = Export,
     }
     WorkError {

@@ -1,5 +1,7 @@
 //! Whom this computer trusts when it sends results over a network, and what stays in it.
 
+mod certificate;
+
 use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -8,6 +10,8 @@ use rustls::crypto::CryptoProvider;
 use rustls::pki_types::CertificateDer;
 use rustls::pki_types::pem::{self, PemObject as _};
 use rustls::{ClientConfig, RootCertStore};
+
+pub use certificate::CertificateError;
 
 /// Nobody can be trusted.
 #[derive(Debug, thiserror::Error)]

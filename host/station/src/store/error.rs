@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::database::{DatabaseError, Engine};
 use crate::ids::NoRandomness;
 use crate::record::{BlobError, RecordError};
+use crate::trust::CertificateError;
 
 /// Something that the store cannot do.
 #[derive(Debug, thiserror::Error)]
@@ -74,6 +75,9 @@ pub enum StoreError {
         /// Why.
         source: DatabaseError,
     },
+    /// It is not known to be the plant.
+    #[error(transparent)]
+    Certificate(#[from] CertificateError),
     /// The plant does not have a record, or another text under its hash.
     #[error(
         "the plant {plant} does not have the record {sha256}, or not as it was sent; the station that sent it has it"
@@ -201,7 +205,11 @@ impl StoreError {
     /// Whether the plant is not there for now, rather than that it does not do this one thing.
     #[must_use]
     pub fn is_away(&self) -> bool {
-        matches!(self, Self::Plant { source, .. } if source.is_away())
+        match self {
+            Self::Plant { source, .. } => source.is_away(),
+            Self::Certificate(_) => true,
+            _ => false,
+        }
     }
 
     /// Whether the plant can never hold what it was given.

@@ -168,12 +168,11 @@ impl EventSink {
 /// A connection that did not come about, or ended.
 fn refused(host: &str, error: ConnectionError) -> SinkError {
     use ConnectReturnCode::{BadUserNamePassword, NotAuthorized};
-    let host = host.to_owned();
     match error {
         ConnectionError::ConnectionRefused(code @ (BadUserNamePassword | NotAuthorized)) => {
-            SinkError::Unknown { host, said: format!("{code:?}") }
+            SinkError::Unknown { host: host.to_owned(), said: format!("{code:?}") }
         }
-        error => SinkError::Unreached { host, source: error.into() },
+        error => SinkError::unconnected(host, error.into()),
     }
 }
 

@@ -15,7 +15,7 @@ use crate::export::ExportError;
 use crate::said::Said;
 use crate::secret::SecretError;
 use crate::settings::{Destination, SinkSettings};
-use crate::trust::TrustError;
+use crate::trust::{CertificateError, TrustError};
 
 /// A sink that cannot be used as the settings say.
 #[derive(Debug, thiserror::Error)]
@@ -85,6 +85,9 @@ pub enum SinkError {
         /// Why.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
+    /// It is not known to be the other side.
+    #[error(transparent)]
+    Certificate(#[from] CertificateError),
     /// It answers that it cannot, for now.
     #[error("{host} answers {status}; it is asked again later")]
     Busy {
@@ -129,6 +132,16 @@ pub enum SinkError {
     },
 }
 
+impl SinkError {
+    /// No connection to `host` came about.
+    fn unconnected(host: &str, source: Box<dyn std::error::Error + Send + Sync>) -> Self {
+        match CertificateError::of(host, &*source) {
+            Some(error) => error.into(),
+            None => Self::Unreached { host: host.to_owned(), source },
+        }
+    }
+}
+
 impl From<SinkError> for Undelivered {
     fn from(error: SinkError) -> Self {
         let said = Said::of(&error);
@@ -136,6 +149,7 @@ impl From<SinkError> for Undelivered {
             SinkError::NoFolder { .. }
             | SinkError::ReadOnly { .. }
             | SinkError::Unreached { .. }
+            | SinkError::Certificate(_)
             | SinkError::Closed { .. }
             | SinkError::Unknown { .. }
             | SinkError::Unconfirmed { .. } => Self::Away(said),

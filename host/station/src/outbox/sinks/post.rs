@@ -77,8 +77,8 @@ impl PostSink {
             request = request.header(header::AUTHORIZATION, format!("Bearer {token}"));
         }
         let answer = request.send(bytes.as_slice());
-        let unreached = |source| SinkError::Unreached { host: self.host.clone(), source: Box::new(source) };
-        let (parts, body) = answer.map_err(unreached)?.into_parts();
+        let unconnected = |error: ureq::Error| SinkError::unconnected(&self.host, error.into());
+        let (parts, body) = answer.map_err(unconnected)?.into_parts();
         self.judged(parts.status, body)
     }
 

@@ -26,6 +26,7 @@ use std::path::PathBuf;
 use super::database::{Database, DatabaseError, values};
 use super::{Parcel, StoreError, migrations, statements as sql};
 use crate::clock::{self, HeardClock};
+use crate::trust::CertificateError;
 
 /// A delivery that did not come about.
 #[derive(Debug, thiserror::Error)]
@@ -212,11 +213,12 @@ impl Plant {
 
     fn reach(address: &PlantAddress) -> Result<Self, StoreError> {
         let shown = PathBuf::from(address.to_string());
-        let connected = address.connect();
-        let database = connected.map_err(|source| StoreError::Plant {
-            plant: address.to_string(),
-            doing: "a connection",
-            source,
+        let database = address.connect().map_err(|source| {
+            let plant = address.to_string();
+            match CertificateError::of(&plant, &source) {
+                Some(error) => error.into(),
+                None => StoreError::Plant { plant, doing: "a connection", source },
+            }
         })?;
         Ok(Self { shown, database: Box::new(database) })
     }

@@ -17,12 +17,13 @@ const SAID: &str = "said";
 const REMEDY: &str = "remedy";
 
 /// The types of the station's errors that operators, or engineers at a page, come to see.
-const OF_STATION: [&str; 15] = [
+const OF_STATION: [&str; 16] = [
     "SerialError",
     "ScanError",
     "Refusal",
     "RunError",
     "StoreError",
+    "CertificateError",
     "BlobError",
     "AgainError",
     "DiskError",

@@ -60,8 +60,8 @@ fn what_leaves_the_computer_goes_through_tls_and_to_the_plant_alone() {
     certificates(other.path());
     let stranger = PlantAddress::new(&url, None, Some(&other.path().join("ca.pem"))).unwrap();
     let refused = Plant::connect(&stranger).unwrap_err();
-    let why = format!("{refused:?}");
-    assert!(why.contains("UnknownIssuer") || why.contains("BadSignature"), "{why}");
+    assert!(refused.to_string().contains("is signed by nobody who is trusted"), "{refused:?}");
+    assert!(refused.is_away());
     // A server that speaks no TLS is not spoken to over a network, whatever the address allows.
     let mut plain = Server::start();
     let far = format!("postgres://postgres@{}:{}/plant?sslmode=disable", this_computer(), plain.port());

@@ -1,5 +1,6 @@
 //! Whoever is sent results besides the plant: a folder, a web server, a broker of events. Each is another program.
 
+mod certificates;
 mod events;
 mod folder;
 mod post;

@@ -21,15 +21,15 @@ use crate::history::released::history;
 use crate::lanes::floor::{HANG, SERIALS, Station};
 use crate::plant::link::certificates;
 
-struct Server {
+pub(super) struct Server {
     folder: TempDir,
-    port: u16,
+    pub(super) port: u16,
     process: Child,
 }
 
 impl Server {
     /// At work, with the certificate in `certified` if there is one.
-    fn start(certified: Option<&Path>) -> Self {
+    pub(super) fn start(certified: Option<&Path>) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/station/sinks/server.py");
         let mut command = Command::new("python3");
@@ -51,7 +51,7 @@ impl Server {
     }
 
     /// What was posted since the last look.
-    fn requests(&self) -> Vec<Value> {
+    pub(super) fn requests(&self) -> Vec<Value> {
         let path = self.folder.path().join("requests.jsonl");
         let text = fs::read_to_string(&path).unwrap_or_default();
         let _ = fs::remove_file(path);
@@ -74,7 +74,7 @@ fn token(folder: &Path) -> PathBuf {
     path
 }
 
-fn sink(url: &str, more: &str) -> String {
+pub(super) fn sink(url: &str, more: &str) -> String {
     format!("[[sink]]\nname = \"mes\"\npost = \"{url}\"\n{more}\n")
 }
 

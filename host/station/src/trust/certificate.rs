@@ -1,0 +1,122 @@
+//! What is wrong with a certificate by which the other side was not trusted.
+
+use std::error::Error;
+use std::io;
+
+use rustls::CertificateError as Invalid;
+use rustls::pki_types::UnixTime;
+
+use crate::clock;
+
+/// The other side's certificate is not good. Moments are as a clock on the station's wall shows them.
+#[derive(Debug, thiserror::Error)]
+pub enum CertificateError {
+    /// It was good once.
+    #[error(
+        "the certificate of {host} was valid until {until}, and this computer's clock says {now}; renew it there, or set the clock if it \
+         is wrong"
+    )]
+    Expired {
+        /// The other side.
+        host: String,
+        /// The last moment at which it was good.
+        until: String,
+        /// This moment.
+        now: String,
+    },
+    /// It will be good.
+    #[error(
+        "the certificate of {host} is valid from {from} on, and this computer's clock says {now}; set the clock, or wait until then if it \
+         is right"
+    )]
+    NotYet {
+        /// The other side.
+        host: String,
+        /// The first moment at which it is good.
+        from: String,
+        /// This moment.
+        now: String,
+    },
+    /// It is of somebody else.
+    #[error(
+        "the certificate of {host} is of another name ({names}); give the address by a name that it has, or have it made for this one"
+    )]
+    OtherName {
+        /// The other side.
+        host: String,
+        /// The names that it has.
+        names: String,
+    },
+    /// Nobody who is trusted says whose it is.
+    #[error(
+        "the certificate of {host} is signed by nobody who is trusted; give a file of those that sign it as `ca`"
+    )]
+    Stranger {
+        /// The other side.
+        host: String,
+    },
+    /// It is not good for another reason.
+    #[error("the certificate of {host} is not good for this; have another one made there")]
+    Unfit {
+        /// The other side.
+        host: String,
+        /// Why.
+        source: rustls::Error,
+    },
+}
+
+impl CertificateError {
+    /// What is wrong with the certificate of `host`, if `error` is about that.
+    pub(crate) fn of(host: &str, error: &(dyn Error + 'static)) -> Option<Self> {
+        let mut next = Some(error);
+        while let Some(error) = next {
+            if let Some(rustls::Error::InvalidCertificate(invalid)) = error.downcast_ref() {
+                return Some(Self::by(host, invalid));
+            }
+            next = within(error);
+        }
+        None
+    }
+
+    fn by(host: &str, invalid: &Invalid) -> Self {
+        let host = host.to_owned();
+        match invalid {
+            Invalid::ExpiredContext { time, not_after } => {
+                Self::Expired { host, until: moment(*not_after), now: moment(*time) }
+            }
+            Invalid::NotValidYetContext { time, not_before } => {
+                Self::NotYet { host, from: moment(*not_before), now: moment(*time) }
+            }
+            Invalid::NotValidForNameContext { presented, .. } => Self::OtherName {
+                host,
+                names: presented.iter().map(|name| bare(name)).collect::<Vec<_>>().join(", "),
+            },
+            // A signer of the same name has another key.
+            Invalid::UnknownIssuer | Invalid::BadSignature => Self::Stranger { host },
+            invalid => Self::Unfit { host, source: rustls::Error::InvalidCertificate(invalid.clone()) },
+        }
+    }
+}
+
+/// What led to an error; some have it elsewhere than as their source.
+fn within<'a>(error: &'a (dyn Error + 'static)) -> Option<&'a (dyn Error + 'static)> {
+    if let Some(error) = error.downcast_ref::<io::Error>() {
+        return error.get_ref().map(|error| error as _);
+    }
+    match error.downcast_ref() {
+        Some(ureq::Error::Io(error)) => Some(error),
+        Some(ureq::Error::Rustls(error)) => Some(error),
+        _ => error.source(),
+    }
+}
+
+fn moment(time: UnixTime) -> String {
+    let ms = i64::try_from(time.as_secs()).unwrap_or(i64::MAX).saturating_mul(1000);
+    clock::local(ms).strftime("%Y-%m-%d %H:%M").to_string()
+}
+
+/// A name of a certificate without its kind: `DnsName("mes.example")`.
+fn bare(name: &str) -> String {
+    let bare = name.split_once('(').and_then(|(_, rest)| rest.strip_suffix(')'));
+    bare.unwrap_or(name).trim_matches('"').to_owned()
+}
