@@ -1,3 +1,5 @@
+-- What a sink has refused first, and waits for a person.
 SELECT sink, kind, subject, attempts, dead_ms, said FROM outbox
-WHERE done_ms IS NULL AND dead_ms IS NOT NULL
-ORDER BY sink, subject;
+WHERE sink = $1 AND done_ms IS NULL AND dead_ms IS NOT NULL
+ORDER BY subject
+LIMIT $2;

@@ -10,7 +10,7 @@ use super::{Failure, print};
 use crate::exit::Exit;
 use crate::outbox::{OutboxError, all};
 use crate::settings::Settings;
-use crate::store::{Dead, Folder, SharedStore, Snapshot, Store, Unsent};
+use crate::store::{DEAD_SHOWN, Dead, Folder, SharedStore, Snapshot, Store, Unsent};
 
 /// See what is still to be sent on, send it, or have it tried again
 #[derive(Debug, Args)]
@@ -24,6 +24,8 @@ pub(super) struct Arguments {
 #[derive(Debug, Subcommand)]
 enum What {
     /// Print what is still to be sent, and what waits for a person
+    ///
+    /// Of what waits at a sink the first hundred are printed; how many do stands under `dead`.
     List {
         /// Print JSON
         #[arg(long)]
@@ -70,7 +72,8 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     match what {
         What::List { json } => {
             let now = Snapshot::take(&folder)?;
-            either(&Left { unsent: now.unsent()?, dead: now.dead()? }, *json, text)
+            let unsent = now.unsent()?;
+            either(&Left { dead: now.dead(&unsent)?, unsent }, *json, text)
         }
         What::Send { disk } => send(&settings, disk.opens(&settings.data)?),
         What::Release { id, sink, why } => release(&folder, id.as_deref(), sink.as_deref(), why),
@@ -129,7 +132,12 @@ fn text(Left { unsent, dead }: &Left) -> String {
         vec![sink.clone(), entry.subject.clone(), time(*dead_ms), said.clone()]
     });
     let dead = table(&["sink", "waits for a person", "since", "said"], &[], dead);
-    format!("{}\n\n{dead}", table_of(unsent))
+    let more = unsent.iter().filter(|unsent| unsent.dead > DEAD_SHOWN).map(|Unsent { sink, dead, .. }| {
+        format!(
+            "\n{sink}: these are the first {DEAD_SHOWN} of {dead}; `halfrow-station outbox release --sink {sink}` has all tried again"
+        )
+    });
+    format!("{}\n\n{dead}{}", table_of(unsent), more.collect::<String>())
 }
 
 fn table_of(unsent: &[Unsent]) -> String {

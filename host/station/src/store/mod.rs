@@ -43,7 +43,7 @@ use database::Sqlite;
 pub(crate) use database::{Database, DatabaseError, Row as Found, Value, values};
 pub use error::StoreError;
 pub use folder::Folder;
-pub use outbox::{AuditLine, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Standing, Tried, Unsent};
+pub use outbox::{AuditLine, DEAD_SHOWN, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Standing, Tried, Unsent};
 pub use plant::{
     Claim, Job, Kept, LEASE_MS, Lease, NewJob, PlanOfJob, Plant, PlantAddress, PlantAddressError, PlantError,
     PlantLink, PlantPool, Presence, STATES, SharedBoard, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,

@@ -11,6 +11,9 @@ use crate::{clock, ids};
 /// The plant's name among the sinks. A plant that moves to another address keeps it.
 pub const SINK_OF_PLANT: &str = "plant";
 
+/// How many entries of a sink are told at once that wait for a person: a sink may have refused all that was kept for years.
+pub const DEAD_SHOWN: u32 = 100;
+
 /// What an entry is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -270,15 +273,20 @@ impl Snapshot {
         })
     }
 
-    /// Every entry that waits for a person.
+    /// The first [`DEAD_SHOWN`] entries of each of these sinks that wait for a person; [`Unsent::dead`] is how many do.
     ///
     /// # Errors
     /// As [`Self::unsent`].
-    pub fn dead(&self) -> Result<Vec<Dead>, StoreError> {
-        self.rows("to tell what waits for a person", sql::OUTBOX_DEAD, &[], |row| {
-            let said = row.get::<Option<String>>(5)?.unwrap_or_default();
-            Ok(Dead { sink: row.get(0)?, entry: entry(row, 1)?, dead_ms: row.get(4)?, said })
-        })
+    pub fn dead(&self, unsent: &[Unsent]) -> Result<Vec<Dead>, StoreError> {
+        let mut dead = Vec::new();
+        for Unsent { sink, .. } in unsent.iter().filter(|unsent| unsent.dead > 0) {
+            let of = values![sink, DEAD_SHOWN];
+            dead.extend(self.rows("to tell what waits for a person", sql::OUTBOX_DEAD, of, |row| {
+                let said = row.get::<Option<String>>(5)?.unwrap_or_default();
+                Ok(Dead { sink: row.get(0)?, entry: entry(row, 1)?, dead_ms: row.get(4)?, said })
+            })?);
+        }
+        Ok(dead)
     }
 }
 
@@ -368,32 +376,4 @@ fn audit_line(id: &str, row: &Row<'_>) -> Result<AuditLine, DatabaseError> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Tries in vain at moments of this test, with the waits of the outbox itself.
-    #[test]
-    fn what_was_said_last_is_that_of_the_last_try() {
-        let folder = tempfile::tempdir().unwrap();
-        let mut store = Store::open(&Folder::new(folder.path())).unwrap();
-        store.sends_to(vec!["mes".to_owned()]).unwrap();
-        ["1", "2", "3"].into_iter().for_each(|number| store.note("weber", "scan", "1", number).unwrap());
-        let now_ms = clock::now_ms();
-        let entries = store.folder().due("mes", now_ms, i64::MAX).unwrap();
-        let mut said = |place: usize, tries: u32, at_ms: i64, said: &str| {
-            for vain in 0..tries {
-                // The earlier tries lie as far back as their waits are long.
-                let next_ms = at_ms + if vain + 1 < tries { 0 } else { 875 << vain };
-                let again = Tried::Again { next_ms, said: said.to_owned() };
-                store.tried("mes", &[(entries[place].clone(), again)], at_ms).unwrap();
-            }
-        };
-        said(0, 1, now_ms, "zone unknown");
-        said(1, 8, now_ms - 60_000, "yesterday's answer");
-        said(2, 2, now_ms + 10_000, "asked again later");
-        let [unsent] = &Snapshot::take(&Folder::new(folder.path())).unwrap().unsent().unwrap()[..] else {
-            panic!("there is one sink")
-        };
-        assert_eq!(unsent.said.as_deref(), Some("asked again later"));
-    }
-}
+mod tests;

@@ -3,6 +3,7 @@
 use axum::Form;
 use axum::extract::{Path, State};
 use axum::response::{IntoResponse as _, Redirect, Response};
+use halfrow::report::wording::plain;
 use maud::{Markup, html};
 use serde::Deserialize;
 
@@ -12,20 +13,26 @@ use super::routes::{Route, Who, act, look};
 use super::state::App;
 use super::trouble::Trouble;
 use super::visit::Visit;
-use crate::store::{Dead, Entry, Kind, Unsent};
+use crate::store::{DEAD_SHOWN, Dead, Entry, Kind, Unsent};
 
 pub(super) fn routes() -> Vec<Route> {
     vec![look("/outbox", Who::Reader, page), act("/outbox/{id}/release", Who::Engineer, release)]
 }
 
 async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
-    let (unsent, dead) = app.look(&visit, |now| Ok((now.unsent()?, now.dead()?))).await?;
+    let found = app.look(&visit, |now| {
+        let unsent = now.unsent()?;
+        let dead = now.dead(&unsent)?;
+        Ok((unsent, dead))
+    });
+    let (unsent, dead) = found.await?;
     let content = html! {
         h1 { (visit.say("outbox.title")) }
         @if unsent.is_empty() { p.nothing { (visit.say("outbox.none")) } } @else { (sinks(&visit, &unsent)) }
         @if !dead.is_empty() {
             h2 { (visit.say("outbox.dead")) }
             p.soft { (visit.say("outbox.about")) }
+            @for of in &unsent { (more(&visit, of)) }
             @for one in &dead { (letter(&visit, one)) }
         }
     };
@@ -50,6 +57,13 @@ fn sinks(visit: &Visit, unsent: &[Unsent]) -> Markup {
             } }
         } }
     }
+}
+
+/// How many wait for a person at a sink, where not all of them are shown.
+fn more(visit: &Visit, Unsent { sink, dead, .. }: &Unsent) -> Markup {
+    let (shown, dead) = (DEAD_SHOWN, *dead);
+    let names = [("shown", &*shown.to_string()), ("dead", &dead.to_string()), ("sink", &plain(sink))];
+    html! { @if dead > shown { p { (visit.words.fill("outbox.more", &names)) } } }
 }
 
 /// Something that waits for a person, with the form by which an engineer has it tried again.

@@ -12,7 +12,7 @@ pub(crate) mod made;
 mod pages;
 mod pareto;
 pub(crate) mod released;
-mod served;
+pub(crate) mod served;
 mod units;
 mod unnamed;
 mod waivers;

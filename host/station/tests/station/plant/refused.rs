@@ -39,7 +39,8 @@ fn a_run_that_the_plant_has_with_another_record_is_an_alarm_and_waits_for_a_pers
     let (made, all) = send(made, server.address());
     // All others are sent.
     assert_eq!((all.sent, all.failed, all.is_away), (9, 1, false));
-    let [dead] = &made.now().dead().unwrap()[..] else { panic!("nothing waits") };
+    let unsent = made.now().unsent().unwrap();
+    let [dead] = &made.now().dead(&unsent).unwrap()[..] else { panic!("nothing waits") };
     assert_eq!(dead.entry.subject, run);
     assert!(dead.said.contains("nothing was changed: keep both"), "{dead:?}");
     let at_plant = format!("SELECT record_sha256 FROM run WHERE id = '{run}'");

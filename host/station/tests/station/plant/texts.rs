@@ -39,6 +39,7 @@ fn what_a_plant_can_never_hold_waits_for_a_person() {
     server.client("plant").batch_execute(never).unwrap();
     let (made, all) = send(history(), server.address());
     assert_eq!((all.sent, all.failed, all.is_away), (9, 1, false));
-    let [dead] = &made.now().dead().unwrap()[..] else { panic!("nothing waits") };
+    let unsent = made.now().unsent().unwrap();
+    let [dead] = &made.now().dead(&unsent).unwrap()[..] else { panic!("nothing waits") };
     assert!(dead.said.contains("no such character"), "{dead:?}");
 }

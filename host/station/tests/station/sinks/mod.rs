@@ -3,6 +3,7 @@
 mod certificates;
 mod events;
 mod folder;
+mod many;
 mod post;
 
 use std::fs;

@@ -1,0 +1,27 @@
+use super::*;
+
+/// Tries in vain at moments of this test, with the waits of the outbox itself.
+#[test]
+fn what_was_said_last_is_that_of_the_last_try() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut store = Store::open(&Folder::new(folder.path())).unwrap();
+    store.sends_to(vec!["mes".to_owned()]).unwrap();
+    ["1", "2", "3"].into_iter().for_each(|number| store.note("weber", "scan", "1", number).unwrap());
+    let now_ms = clock::now_ms();
+    let entries = store.folder().due("mes", now_ms, i64::MAX).unwrap();
+    let mut said = |place: usize, tries: u32, at_ms: i64, said: &str| {
+        for vain in 0..tries {
+            // The earlier tries lie as far back as their waits are long.
+            let next_ms = at_ms + if vain + 1 < tries { 0 } else { 875 << vain };
+            let again = Tried::Again { next_ms, said: said.to_owned() };
+            store.tried("mes", &[(entries[place].clone(), again)], at_ms).unwrap();
+        }
+    };
+    said(0, 1, now_ms, "zone unknown");
+    said(1, 8, now_ms - 60_000, "yesterday's answer");
+    said(2, 2, now_ms + 10_000, "asked again later");
+    let [unsent] = &Snapshot::take(&Folder::new(folder.path())).unwrap().unsent().unwrap()[..] else {
+        panic!("there is one sink")
+    };
+    assert_eq!(unsent.said.as_deref(), Some("asked again later"));
+}
