@@ -2,13 +2,14 @@
 
 /// The schemas, in order: numbered files that are never edited. The column `retest_of` of a run is nobody's: what was judged again is
 /// told by `nth` and the table `retest`.
-pub(super) const SCHEMAS: [&str; 6] = [
+pub(super) const SCHEMAS: [&str; 7] = [
     include_str!("../../sql/schema-1.sql"),
     include_str!("../../sql/schema-2.sql"),
     include_str!("../../sql/schema-3.sql"),
     include_str!("../../sql/schema-4.sql"),
     include_str!("../../sql/schema-5.sql"),
     include_str!("../../sql/schema-6.sql"),
+    include_str!("../../sql/schema-7.sql"),
 ];
 
 /// What a plant's statements say of boards: whether nobody has one, whether somebody waits who reaches it, of which station whoever

@@ -25,3 +25,16 @@ fn what_was_said_last_is_that_of_the_last_try() {
     };
     assert_eq!(unsent.said.as_deref(), Some("asked again later"));
 }
+
+/// What a sink has refused stands in front of what it is sent, and may be all that was kept for years.
+#[test]
+fn what_is_due_is_found_without_a_look_at_what_waits_for_a_person() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = Folder::new(folder.path());
+    drop(Store::open(&folder).unwrap());
+    let plan = folder.read("a plan", |from| {
+        let text = format!("EXPLAIN QUERY PLAN {}", sql::OUTBOX_DUE);
+        from.all(&text, values!["mes", 0_i64, 0_i64], |row| row.get::<String>(3))
+    });
+    assert_eq!(plan.unwrap(), ["SEARCH outbox USING INDEX outbox_due (sink=?)"]);
+}

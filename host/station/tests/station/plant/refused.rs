@@ -124,7 +124,7 @@ fn tables_that_are_not_there_or_of_another_version_are_no_plant() {
     let (folder, store) = history().parts();
     drop(store);
     let prepared = did(folder.path(), &server, &["plant", "prepare"]);
-    assert_eq!(prepared.said, format!("the plant {} has version 6\n", server.url()));
+    assert_eq!(prepared.said, format!("the plant {} has version 7\n", server.url()));
     let (_, all) = send(Made::at(folder), server.address());
     assert_eq!((all.sent, all.failed), (10, 0));
     server.client("plant").batch_execute("INSERT INTO schema_version VALUES (99, 'x', 1)").unwrap();
@@ -151,11 +151,11 @@ fn an_older_plant_is_copied_and_brought_up_to_date() {
     }
     client.batch_execute("INSERT INTO unit VALUES (repeat('u', 36), 'CAM-T', 'S1', 7)").unwrap();
     let older = Plant::connect(&server.address()).unwrap_err();
-    assert!(matches!(older, StoreError::Older { found: 2, known: 6, .. }), "{older:?}");
-    assert_eq!(Plant::prepare(&server.address()).unwrap(), 6);
+    assert!(matches!(older, StoreError::Older { found: 2, known: 7, .. }), "{older:?}");
+    assert_eq!(Plant::prepare(&server.address()).unwrap(), 7);
     assert_eq!(server.rows("SELECT serial FROM before_3.unit"), [["S1"]]);
     assert_eq!(server.rows("SELECT serial FROM unit"), [["S1"]]);
-    assert_eq!(server.rows("SELECT max(n) FROM schema_version"), [["6"]]);
+    assert_eq!(server.rows("SELECT max(n) FROM schema_version"), [["7"]]);
     Plant::connect(&server.address()).unwrap();
 }
 
