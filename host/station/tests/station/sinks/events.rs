@@ -175,3 +175,17 @@ fn a_broker_that_is_away_or_does_not_let_in_is_tried_again() {
     let away = send(folder.path(), &broker.sink(folder.path(), "mqtt", PASSWORD, ""));
     assert!(away.said.starts_with("0 sent, 3 not") && away.said.contains("refused"), "{away:?}");
 }
+
+#[test]
+fn a_broker_whose_certificate_nobody_signed_who_is_trusted_is_told_as_that() {
+    let (ours, theirs) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    for place in [&ours, &theirs] {
+        certificates(place.path());
+    }
+    let broker = Broker::start(Some(ours.path()));
+    let folder = station();
+    let ca = format!("ca = \"{}\"", theirs.path().join("ca.pem").display());
+    let refused = send(folder.path(), &broker.sink(folder.path(), "mqtts", PASSWORD, &ca));
+    let told = "the certificate of localhost is signed by nobody who is trusted";
+    assert!(refused.said.starts_with("1 sent, 3 not") && refused.said.contains(told), "{refused:?}");
+}
