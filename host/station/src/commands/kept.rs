@@ -8,11 +8,14 @@ use serde_json::json;
 use super::looking::Data;
 use super::{Failure, document, print};
 use crate::clock;
+use crate::console;
 use crate::exit::Exit;
 use crate::kept::{self, Copied, CopyError, Pruned, Unnamed};
 use crate::store::{Folder, Store};
 
 /// Copy all that the station has kept to a new folder, while runs go on
+///
+/// The copy is looked at as `restore` does. Exit codes: 0 it can be restored, 3 it was not made, or is kept and has faults.
 #[derive(Debug, Args)]
 pub(super) struct Backup {
     /// The folder, which must be new or empty
@@ -23,9 +26,23 @@ pub(super) struct Backup {
 
 pub(super) fn backup(arguments: &Backup) -> Result<Exit, Failure> {
     let copied = kept::backup(&arguments.data.folder(), &arguments.to)?;
+    let faults: Vec<_> = match kept::faults(&Folder::new(&arguments.to)) {
+        Ok(faults) => faults.iter().map(ToString::to_string).collect(),
+        Err(error) => vec![error.to_string()],
+    };
     let Copied { runs, evidence, .. } = copied;
     let to = arguments.to.display();
-    print(&format!("{runs} runs and {evidence} pieces of evidence are in {to}{}", with_unknown(copied)))
+    let are_in = format!("{runs} runs and {evidence} pieces of evidence are in {to}{}", with_unknown(copied));
+    if faults.is_empty() {
+        return print(&are_in);
+    }
+    let mut lines: Vec<_> = faults.iter().map(|fault| format!("fault: {fault}")).collect();
+    lines.push(format!(
+        "{are_in}; `restore` refuses it for {} faults, and `halfrow-station check` says whether the station has them, too",
+        faults.len()
+    ));
+    console::tell(&lines.join("\n"));
+    Ok(Exit::Error)
 }
 
 /// Make a station's folder from a backup, when all of it is as it was written

@@ -68,7 +68,7 @@ pub enum CopyError {
 }
 
 /// Copies the station in `from` to the new folder `to`. Runs may go on meanwhile; the copy is of the moment at which it
-/// began.
+/// began. It has whatever faults the station has, which [`faults`] tells.
 ///
 /// # Errors
 /// [`CopyError`]
@@ -157,11 +157,19 @@ fn moved_into(aside: &Path, to: &Path) -> io::Result<()> {
     fs::remove_dir(aside)
 }
 
-/// Refuses a folder in which anything is not as it was written, as a fault of the one that is `named`. What has lost runs is as it
-/// was written otherwise, and may be all that is left.
-fn sound(folder: &Folder, named: &Folder) -> Result<(), CopyError> {
+/// What [`restore`] refuses the copy in `folder` for. What has lost runs is as it was written otherwise, and may be all that is left.
+///
+/// # Errors
+/// [`StoreError`] when its database cannot be read at all, for which it is refused as well.
+pub fn faults(folder: &Folder) -> Result<Vec<Fault>, StoreError> {
     let mut faults = check(folder)?.faults;
     faults.retain(|fault| !matches!(fault, Fault::Unnamed { .. }));
+    Ok(faults)
+}
+
+/// Refuses a folder in which anything is not as it was written, as a fault of the one that is `named`.
+fn sound(folder: &Folder, named: &Folder) -> Result<(), CopyError> {
+    let faults = faults(folder)?;
     match faults.first() {
         None => Ok(()),
         Some(first) => Err(CopyError::Faulty {

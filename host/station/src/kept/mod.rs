@@ -4,7 +4,7 @@ mod copy;
 mod prune;
 mod unnamed;
 
-pub use copy::{Copied, CopyError, backup, restore};
+pub use copy::{Copied, CopyError, backup, faults, restore};
 pub use prune::{Pruned, prune};
 pub(crate) use unnamed::{Spool, spools};
 pub use unnamed::{Unnamed, prune_unnamed};

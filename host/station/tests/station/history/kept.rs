@@ -243,6 +243,29 @@ fn the_commands_say_what_they_did() {
     assert_eq!(did(&made, &["prune", "--older-than", "1"]).0, 4, "this test writes");
 }
 
+/// Whoever copies each night learns of it at once, and not on the day on which the copy is needed.
+#[test]
+fn a_copy_that_would_not_be_restored_is_kept_and_told() {
+    let made = made();
+    let place = tempfile::tempdir().unwrap();
+    let [whole, copy, again] = ["whole", "copy", "again"].map(|name| place.path().join(name));
+    assert_eq!(did(&made, &["backup", whole.to_str().unwrap()]).0, 0);
+    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
+    assert_eq!(
+        database.execute("UPDATE run SET headline = 'all is well' WHERE verdict = 'FAIL'", []).unwrap(),
+        2
+    );
+    let (code, said, complained) = did(&made, &["backup", copy.to_str().unwrap()]);
+    assert_eq!((code, complained.as_str()), (3, ""), "{said}");
+    let lines: Vec<_> = said.lines().collect();
+    let [first, second, told] = &lines[..] else { panic!("{said}") };
+    assert!([first, second].iter().all(|line| line.starts_with("fault: table run, row ")), "{said}");
+    assert!(told.contains(" are in ") && told.contains("; `restore` refuses it for 2 faults"), "{said}");
+    let refused = restore(&Folder::new(&copy), &again).unwrap_err();
+    assert!(matches!(refused, CopyError::Faulty { faults: 2, .. }), "{refused:?}");
+    restore(&Folder::new(&whole), &again).unwrap();
+}
+
 /// What is left of a station that judged one unit when these of its files are gone.
 fn kept_without(files: &[&str]) -> (TempDir, Folder) {
     let mut made = Made::new();
