@@ -81,6 +81,8 @@ codes::codes! {
         DatabaseGone [folder] => "store-without-database",
         Database [path, doing] => "database-refuses",
         Damaged [path] => "database-unreadable",
+        Replaced [path] => "database-replaced",
+        OtherLog [path] => "database-beside-other-log",
         Plant [plant, doing] => "plant-refuses",
         NoRecord [plant, sha256] => "plant-without-record",
         NoLog [path, mode] => "database-without-log",

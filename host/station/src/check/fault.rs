@@ -50,8 +50,9 @@ pub enum Fault {
     },
     /// A record is among the evidence, and its run has no row.
     #[error(
-        "the record {sha256} is of run {run}, which has no row: station.db has lost the run, or is from before it; put a later copy of \
-         station.db back, or move the record out of `blobs` when its run is written down elsewhere"
+        "the record {sha256} is of run {run}, which has no row: station.db has lost the run, or is from before it; stop the station, move \
+         station.db, station.db-wal and station.db-shm out of the folder, and put a later copy of station.db there, or move the record \
+         out of `blobs` when its run is written down elsewhere"
     )]
     Unnamed {
         /// The run.

@@ -63,6 +63,27 @@ pub enum StoreError {
         /// What SQLite found.
         source: DatabaseError,
     },
+    /// Another file has the name of the database that was opened, or none has.
+    #[error(
+        "the database {} was replaced or removed while this program works with it, and nothing is kept that would be in no file of this \
+         name; end the program, see by `halfrow-station check` what the database lacks that is there now, and start it again",
+        path.display()
+    )]
+    Replaced {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The log is of another database than the one beside it.
+    #[error(
+        "the database {} was put there while station.db-wal beside it is the log of another database, which would spoil this one; bring \
+         back the database that was there, or else move station.db-wal and station.db-shm out of the folder, and see by \
+         `halfrow-station check` what this one lacks",
+        path.display()
+    )]
+    OtherLog {
+        /// The file.
+        path: PathBuf,
+    },
     /// The plant's database refuses.
     #[error(
         "the plant {plant} refuses {doing}; look whether it is there and whom it lets in, and ask whoever keeps it"

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use rusqlite::{Connection, OpenFlags};
 
 use super::database::Sqlite;
-use super::{Database, DatabaseError, PATIENCE, StoreError};
+use super::{Database, DatabaseError, PATIENCE, StoreError, generation};
 use crate::record::Blobs;
 
 /// How long a program may take to leave the folder that has just ended, and how often it is looked.
@@ -71,8 +71,13 @@ impl Folder {
         StoreError::Folder { folder: self.0.clone(), source }
     }
 
+    /// What whoever writes holds.
+    pub(super) fn lock_file(&self) -> PathBuf {
+        self.0.join("station.lock")
+    }
+
     pub(super) fn lock(&self) -> Result<File, StoreError> {
-        let file = File::options().create(true).truncate(false).write(true).open(self.0.join("station.lock"));
+        let file = File::options().create(true).truncate(false).write(true).open(self.lock_file());
         let file = file.map_err(|source| self.refused(source))?;
         let until = Instant::now() + LEAVES;
         loop {
@@ -83,6 +88,35 @@ impl Folder {
                 Err(TryLockError::Error(source)) => return Err(self.refused(source)),
             }
         }
+    }
+
+    /// Refuses a log that another database has left, where nobody is at work who has looked at it.
+    pub(super) fn has_own_log(&self) -> Result<(), StoreError> {
+        let Ok(lock) = File::open(self.lock_file()) else { return Ok(()) };
+        if lock.try_lock_shared().is_err() {
+            return Ok(());
+        }
+        generation::of_left_log(self).map(drop)
+    }
+
+    /// The connection that writes.
+    pub(super) fn writer(&self) -> Result<Box<dyn Database>, StoreError> {
+        let path = self.database();
+        let place = &path;
+        let refused = |doing| move |source: rusqlite::Error| StoreError::of_file(place, doing, source);
+        let writer = Connection::open(&path).map_err(refused("to be opened"))?;
+        writer.busy_timeout(PATIENCE).map_err(refused("to wait"))?;
+        let mode: String = writer
+            .query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0))
+            .map_err(refused("a write-ahead log"))?;
+        if mode != "wal" {
+            return Err(StoreError::NoLog { path, mode });
+        }
+        // A commit that returns is on the disk. With less, a power cut takes back what was shown.
+        writer
+            .execute_batch("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON")
+            .map_err(refused("to be safe"))?;
+        Ok(Box::new(Sqlite::new(writer)))
     }
 
     /// A connection that cannot write.

@@ -4,7 +4,7 @@
 //!  station.db          SQLite, the index; write-ahead log, every commit on the disk before it returns
 //!  blobs/ab/abcd…      evidence by its hash; records among it
 //!  spool/RUN/          what a run writes down while it is under way
-//!  station.lock        held by the one program that writes
+//!  station.lock        held by the one program that writes; says of which database a log is
 //! ```
 //!
 //! A run is in the store, open, before its board is touched, and its verdict is shown when a second connection has read
@@ -16,6 +16,7 @@ mod clock_agreement;
 mod database;
 mod error;
 mod folder;
+mod generation;
 mod migrations;
 mod outbox;
 mod plant;
@@ -35,14 +36,13 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use halfrow::Verdict;
-use rusqlite::Connection;
 use uuid::Uuid;
 
 pub use bindings::{Admission, Change, RebindError, Rebinding, is_device};
-use database::Sqlite;
 pub(crate) use database::{Database, DatabaseError, Row as Found, Value, values};
 pub use error::StoreError;
 pub use folder::Folder;
+use generation::{Log, Opened};
 pub use outbox::{AuditLine, DEAD_SHOWN, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Standing, Tried, Unsent};
 pub use plant::{
     Claim, Job, Kept, LEASE_MS, Lease, NewJob, PlanOfJob, Plant, PlantAddress, PlantAddressError, PlantError,
@@ -100,6 +100,8 @@ pub struct Store {
     sinks: Arc<[String]>,
     /// The plant's, if it was heard since the start.
     plant_clock: Option<HeardClock>,
+    /// What the writer writes to, which the file of its name need not be.
+    opened: Opened,
     _lock: File,
 }
 
@@ -114,24 +116,14 @@ impl Store {
         }
         let lock = folder.lock()?;
         folder.has_kept_database()?;
-        let path = folder.database();
-        let place = &path;
-        let refused = |doing| move |source: rusqlite::Error| StoreError::of_file(place, doing, source);
-        let writer = Connection::open(&path).map_err(refused("to be opened"))?;
-        writer.busy_timeout(PATIENCE).map_err(refused("to wait"))?;
-        let mode: String = writer
-            .query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0))
-            .map_err(refused("a write-ahead log"))?;
-        if mode != "wal" {
-            return Err(StoreError::NoLog { path, mode });
+        let (log, generations) = generation::of_left_log(folder)?;
+        let mut writer = folder.writer()?;
+        if log == Log::Unknown {
+            generation::is_whole(folder, &mut *writer)?;
         }
-        // A commit that returns is on the disk. With less, a power cut takes back what was shown.
-        writer
-            .execute_batch("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON")
-            .map_err(refused("to be safe"))?;
-        let mut writer: Box<dyn Database> = Box::new(Sqlite::new(writer));
         folder.has_kept_tables(&mut *writer)?;
-        migrations::apply(&mut *writer, &path, clock::now_ms())?;
+        migrations::apply(&mut *writer, &folder.database(), clock::now_ms())?;
+        let opened = generation::begin(folder, &lock, &mut *writer, generations)?;
         crate::record::synced(&folder.0)?;
         Ok(Self {
             folder: folder.clone(),
@@ -139,6 +131,7 @@ impl Store {
             admitted: BTreeMap::new(),
             sinks: Arc::default(),
             plant_clock: None,
+            opened,
             _lock: lock,
         })
     }
@@ -154,6 +147,9 @@ impl Store {
 
     /// Brings what stands in the write-ahead log into the database, so that the one file has everything. Nothing is lost without it.
     pub fn fold_log(&mut self) {
+        if !self.opened.is_unspoilt() {
+            return tracing::warn!("the write-ahead log stays beside the database, which is another one");
+        }
         let folded = self.writer.one("PRAGMA wal_checkpoint(TRUNCATE)", &[], |row| row.get::<i64>(0));
         match folded {
             Ok(0) => {}
@@ -241,11 +237,13 @@ impl Store {
     /// A run that is over, as a second connection reads it back.
     ///
     /// # Errors
-    /// [`StoreError`] when it is not there, or its row and its record differ.
+    /// [`StoreError`] when it is not there, or its row and its record differ, or it is in another file than the one of its name.
     pub fn saved(&self, run: &str) -> Result<(Stored, Record), StoreError> {
         let otherwise = || StoreError::ReadsOtherwise { run: run.to_owned() };
         let stored = self.folder.verdict_of(run)?.ok_or_else(otherwise)?;
         let record = Record::parse(&self.folder.blobs().get(&stored.record_sha256)?)?;
+        // Beside another file SQLite reads what is in the log of this one.
+        self.has_its_name()?;
         let is_same = stored.verdict == record.conclusion.verdict && record.run.id == run;
         if is_same { Ok((stored, record)) } else { Err(otherwise()) }
     }
@@ -268,13 +266,30 @@ impl Store {
         read(&mut *self.writer).map_err(|source| StoreError::of_file(&path, doing, source))
     }
 
-    /// What `change` returns once all that it did is on the disk.
+    /// What `change` returns once all that it did is on the disk, in the file of this name.
     fn change<T>(
         &mut self,
         doing: &'static str,
         change: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,
     ) -> Result<T, StoreError> {
-        self.read(doing, |writer| writer.transaction(change))
+        self.has_its_name()?;
+        let changed = self.read(doing, |writer| writer.transaction(change))?;
+        self.has_its_name()?;
+        Ok(changed)
+    }
+
+    /// Refuses to go on when another file has the name of the one that was opened, or other bytes are in it: what is written goes with it.
+    fn has_its_name(&self) -> Result<(), StoreError> {
+        let path = self.folder.database();
+        if self.opened.is_there(&self.folder) { Ok(()) } else { Err(StoreError::Replaced { path }) }
+    }
+}
+
+impl Drop for Store {
+    fn drop(&mut self) {
+        if !self.opened.is_unspoilt() {
+            self.writer.leave_log();
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::audit::Line;
 use super::database::values;
-use super::{Folder, Snapshot, Store, StoreError, statements as sql};
+use super::{Folder, Snapshot, Store, StoreError, generation, statements as sql};
 use crate::clock;
 use crate::ids;
 use crate::ids::NoRandomness;
@@ -22,8 +22,8 @@ impl Folder {
     /// Copies the database as it is at this moment to the new file `to`.
     pub(crate) fn copy_database(&self, to: &Path) -> Result<(), StoreError> {
         let copied = self.reader()?.execute("VACUUM INTO $1", values![&*to.to_string_lossy()]);
-        let path = self.database();
-        copied.map(drop).map_err(|source| StoreError::Database { path, doing: "to be copied", source })
+        copied.map_err(|source| StoreError::of_file(&self.database(), "to be copied", source))?;
+        generation::remove(to)
     }
 }
 

@@ -54,6 +54,7 @@ impl Snapshot {
         if folder.database().try_exists().is_ok_and(|is_there| !is_there) {
             return Err(StoreError::NoResults { folder: folder.0.clone() });
         }
+        folder.has_own_log()?;
         let mut reader = folder.reader()?;
         folder.has_kept_tables(&mut *reader)?;
         let reader = RefCell::new(reader);

@@ -8,7 +8,7 @@ use halfrow_station::record::{
     Attachment, BoardSeen, Conclusion, DeviceSeen, JobClaim, PlanRecord, Record, RunCause, RunHead, SCHEMA,
     StepOutcome, StepRecord, SuspectRecord, judged,
 };
-use halfrow_station::store::{Folder, Snapshot, Store, StoreError};
+use halfrow_station::store::{Folder, Snapshot, Store, StoreError, Stored};
 use tempfile::TempDir;
 
 /// 1 November 2026, midnight UTC.
@@ -149,8 +149,18 @@ impl Made {
 
     /// Ends it.
     pub(crate) fn finish(&mut self, run: &Run, head: RunHead, plan: PlanRecord) {
+        self.try_finish(run, head, plan).unwrap();
+    }
+
+    /// As [`Self::finish`], if the store takes it.
+    pub(crate) fn try_finish(
+        &mut self,
+        run: &Run,
+        head: RunHead,
+        plan: PlanRecord,
+    ) -> Result<Stored, StoreError> {
         let attachments = self.attached(run);
-        self.store.finish(&Record { attachments, ..record(head, plan, run) }, 2).unwrap();
+        self.store.finish(&Record { attachments, ..record(head, plan, run) }, 2)
     }
 
     fn attached(&self, run: &Run) -> Vec<Attachment> {

@@ -11,6 +11,7 @@ mod looked_at;
 pub(crate) mod made;
 mod pages;
 mod pareto;
+mod put_back;
 pub(crate) mod released;
 pub(crate) mod served;
 mod units;

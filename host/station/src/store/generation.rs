@@ -1,0 +1,160 @@
+//! Which `station.db` a write-ahead log is of.
+//!
+//! SQLite does not know: it plays the pages of any log into whatever database lies beside it. So each start gives the database a
+//! number of its own, in the header that every SQLite file has (`user_version`), and keeps it in `station.lock`. A copy has none,
+//! or that of an earlier start.
+
+use std::fs::{self, File, Metadata};
+use std::io;
+use std::os::unix::fs::{FileExt as _, MetadataExt as _};
+use std::path::Path;
+
+use rusqlite::{Connection, ffi};
+
+use super::{Database, Folder, StoreError};
+use crate::ids;
+
+/// Where the number stands, its highest byte first (SQLite, "Database File Format", section 1.3).
+const PLACE: u64 = 60;
+/// The bytes of a log that has a header alone, and no pages (there, section 4.1).
+const EMPTY_LOG: u64 = 32;
+
+/// The numbers that a database may have of which the log is.
+#[derive(Debug, Default)]
+pub(super) struct Generations(Vec<u32>);
+
+/// The database that a start opened. It stays open for as long as a connection writes to it: whoever closes a file gives up the locks
+/// that SQLite has there, too (fcntl(2)).
+#[derive(Debug)]
+pub(super) struct Opened {
+    file: File,
+    known: Generations,
+}
+
+impl Opened {
+    /// Whether it is the file of its name still, and what was written to it.
+    pub(super) fn is_there(&self, folder: &Folder) -> bool {
+        let id = |file: Metadata| (file.dev(), file.ino());
+        let [own, named] =
+            [self.file.metadata(), fs::metadata(folder.database())].map(|file| file.map(id).ok());
+        own.is_some() && own == named && self.is_unspoilt()
+    }
+
+    /// Whether nobody has written another database over it, which its log would spoil.
+    pub(super) fn is_unspoilt(&self) -> bool {
+        matches!(number(&self.file), Ok(Some(found)) if self.known.0.contains(&found))
+    }
+}
+
+/// What is known of a log beside a database.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Log {
+    /// There is none, or it is this database's.
+    Own,
+    /// It was left by a program that wrote down nothing of it.
+    Unknown,
+}
+
+/// Looks at the log that was left in `folder`, which nobody works in: before a connection plays it into the database.
+pub(super) fn of_left_log(folder: &Folder) -> Result<(Log, Generations), StoreError> {
+    let refused = |source| folder.refused(source);
+    let path = folder.database();
+    let found = header(&path).map_err(refused)?;
+    let log = fs::metadata(path.with_extension("db-wal"));
+    let is_left = log.is_ok_and(|log| log.len() > EMPTY_LOG);
+    let (Some(found), true) = (found, is_left) else {
+        return Ok((Log::Own, Generations(found.into_iter().collect())));
+    };
+    let mut noted = noted(folder);
+    if noted.0.is_empty() {
+        return Ok((Log::Unknown, Generations(vec![found])));
+    }
+    if !noted.0.contains(&found) {
+        return Err(StoreError::OtherLog { path });
+    }
+    noted.0.retain(|one| *one != found);
+    noted.0.push(found);
+    Ok((Log::Own, noted))
+}
+
+/// The number in the database of this name itself, whatever its log says; none where there is no database.
+fn header(database: &Path) -> io::Result<Option<u32>> {
+    match File::open(database) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        file => number(&file?),
+    }
+}
+
+/// The number in this file; none of one that is too short for it.
+fn number(file: &File) -> io::Result<Option<u32>> {
+    let mut bytes = [0; 4];
+    match file.read_exact_at(&mut bytes, PLACE) {
+        Ok(()) => Ok(Some(u32::from_be_bytes(bytes))),
+        Err(error) if matches!(error.kind(), io::ErrorKind::UnexpectedEof | io::ErrorKind::IsADirectory) => {
+            Ok(None)
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// What the last start kept: the first line, for a line that was longer may have left its end behind.
+fn noted(folder: &Folder) -> Generations {
+    let text = fs::read_to_string(folder.lock_file()).unwrap_or_default();
+    let words = text.lines().next().unwrap_or_default().split(' ').filter(|word| word.len() == 8);
+    Generations(words.filter_map(|word| u32::from_str_radix(word, 16).ok()).collect())
+}
+
+/// Keeps them in the file that is locked.
+fn note(folder: &Folder, lock: &File, Generations(all): &Generations) -> Result<(), StoreError> {
+    let words: Vec<_> = all.iter().map(|one| format!("{one:08x}")).collect();
+    let line = words.join(" ") + "\n";
+    let written = lock.write_all_at(line.as_bytes(), 0).and_then(|()| lock.set_len(line.len() as u64));
+    written.and_then(|()| lock.sync_all()).map_err(|source| folder.refused(source))
+}
+
+/// Gives the database a number that none of its copies has. Until it stands in the file itself, those that it had count as well,
+/// so that a start that is killed on the way is in no other's way.
+pub(super) fn begin(
+    folder: &Folder,
+    lock: &File,
+    writer: &mut dyn Database,
+    mut known: Generations,
+) -> Result<Opened, StoreError> {
+    let refused = |source| StoreError::of_file(&folder.database(), "to be told from its copies", source);
+    // Its end is random; `user_version` is signed, and 0 is that of a copy.
+    let new = (ids::new(0)?.as_u128() as u32 >> 1) | 1;
+    known.0.push(new);
+    note(folder, lock, &known)?;
+    writer.batch(&format!("PRAGMA user_version = {new}")).map_err(refused)?;
+    let is_in_file = writer.one("PRAGMA wal_checkpoint(PASSIVE)", &[], |row| {
+        let [busy, pages, folded] = [row.get::<i64>(0)?, row.get(1)?, row.get(2)?];
+        Ok(busy == 0 && pages == folded)
+    });
+    // Who reads an earlier state keeps the pages since in the log.
+    if is_in_file.map_err(refused)? {
+        known = Generations(vec![new]);
+        note(folder, lock, &known)?;
+    }
+    let file = File::open(folder.database()).map_err(|source| folder.refused(source))?;
+    let opened = Opened { file, known };
+    if opened.is_there(folder) { Ok(opened) } else { Err(StoreError::Replaced { path: folder.database() }) }
+}
+
+/// Refuses a database in which SQLite finds anything wrong, and leaves it and its log as they are.
+pub(super) fn is_whole(folder: &Folder, database: &mut dyn Database) -> Result<(), StoreError> {
+    let found = database.one("PRAGMA integrity_check(1)", &[], |row| row.get::<String>(0));
+    let damage = match found {
+        Ok(said) if said == "ok" => return Ok(()),
+        Ok(said) => rusqlite::Error::SqliteFailure(ffi::Error::new(ffi::SQLITE_CORRUPT), Some(said)).into(),
+        Err(error) => error,
+    };
+    database.leave_log();
+    Err(StoreError::of_file(&folder.database(), "to be checked", damage))
+}
+
+/// Takes the number from the copy of a database in the file `path`.
+pub(super) fn remove(path: &Path) -> Result<(), StoreError> {
+    let refused = |source: rusqlite::Error| StoreError::of_file(path, "to be told from its original", source);
+    let copy = Connection::open(path).map_err(refused)?;
+    copy.execute_batch("PRAGMA user_version = 0").map_err(refused)
+}

@@ -1,0 +1,180 @@
+//! A database that is put back: under a station at work, and beside the log of one that was killed.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use halfrow_station::kept::backup;
+use halfrow_station::store::{Folder, Snapshot, Store};
+use tempfile::TempDir;
+
+use super::made::{End, Made, Run};
+use crate::common::{folder, query};
+
+/// As `mv`, `rsync` and most programs put a file back: another one has the name.
+fn renamed_to(from: &Path, to: &Folder) {
+    let aside = to.path().join("aside");
+    fs::copy(from, &aside).unwrap();
+    fs::rename(&aside, to.database()).unwrap();
+}
+
+/// The folder of a station as it is if it is killed at this moment.
+fn killed(made: &Made) -> TempDir {
+    let left = folder();
+    let from = made.folder().path().join(".");
+    assert!(Command::new("cp").arg("-r").args([&from, left.path()]).status().unwrap().success());
+    left
+}
+
+/// A station that judged S1 and ended, the database as it was then, the station in its next session, and the run by which it judged
+/// S2 in that.
+fn in_its_second_session() -> (Made, TempDir, String) {
+    let mut made = Made::new();
+    made.run(&Run::of("S1", End::Pass));
+    let kept = made.closed();
+    let earlier = folder();
+    fs::copy(kept.path().join("station.db"), earlier.path().join("station.db")).unwrap();
+    let mut made = Made::at(kept);
+    made.count_from(2);
+    let run = made.run(&Run::of("S2", End::Fail(&["memory"])));
+    (made, earlier, run)
+}
+
+/// The units that were judged, by a look at `data` as the station has it.
+fn units(data: &Path) -> Vec<String> {
+    query(data, "SELECT serial FROM run JOIN unit ON unit.id = unit_id ORDER BY 1")
+}
+
+#[test]
+fn no_verdict_counts_that_is_in_another_file_than_the_one_of_this_name() {
+    let (mut made, earlier, saved) = in_its_second_session();
+    let [database, kept] = ["station.db", "kept.db"].map(|name| made.folder().path().join(name));
+    let run = Run { lane: "2".to_owned(), ..Run::of("S3", End::Pass) };
+    let (head, plan) = made.begin(&run);
+    fs::hard_link(&database, &kept).unwrap();
+    for is_there in [true, false] {
+        if is_there {
+            renamed_to(&earlier.path().join("station.db"), &made.folder());
+        } else {
+            fs::remove_file(&database).unwrap();
+        }
+        let refused = [
+            made.try_finish(&run, head.clone(), plan.clone()).unwrap_err(),
+            made.try_begin(&Run { lane: "3".to_owned(), ..Run::of("S4", End::Open) }).unwrap_err(),
+        ];
+        for refused in refused {
+            assert!(refused.to_string().contains("was replaced or removed while this program"), "{refused}");
+        }
+        assert!(made.store.saved(&saved).is_err(), "though it is read back");
+    }
+    fs::rename(&kept, &database).unwrap();
+    made.store.saved(&saved).unwrap();
+    made.try_finish(&run, head, plan).unwrap();
+    assert_eq!(units(made.closed().path()), ["S1", "S2", "S3"]);
+}
+
+/// As `cp` puts a file back: it is the same one, with other bytes.
+#[test]
+fn a_database_that_is_written_over_is_not_gone_on_with_nor_spoilt() {
+    let (mut made, earlier, saved) = in_its_second_session();
+    let data = made.folder();
+    fs::copy(earlier.path().join("station.db"), data.database()).unwrap();
+    let refused = made.try_begin(&Run { lane: "3".to_owned(), ..Run::of("S4", End::Open) }).unwrap_err();
+    assert!(refused.to_string().contains("was replaced or removed while this program"), "{refused}");
+    assert!(made.store.saved(&saved).is_err());
+    // As the station does at its end.
+    made.store.fold_log();
+    let kept = made.closed();
+    let refused = Store::open(&data).unwrap_err().to_string();
+    assert!(refused.contains("is the log of another database"), "{refused}");
+    for log in ["station.db-wal", "station.db-shm"] {
+        fs::remove_file(kept.path().join(log)).unwrap();
+    }
+    drop(Store::open(&data).unwrap());
+    assert_eq!(units(kept.path()), ["S1"]);
+}
+
+/// The control: a second connection alone reads the verdict back, and it is lost.
+#[test]
+fn a_verdict_is_read_back_out_of_the_log_of_a_file_without_a_name() {
+    let (mut made, earlier, saved) = in_its_second_session();
+    renamed_to(&earlier.path().join("station.db"), &made.folder());
+    let folder = made.folder();
+    assert!(folder.verdict_of(&saved).unwrap().is_some());
+    // As the station does at its end.
+    made.store.fold_log();
+    let kept = made.closed();
+    assert!(folder.verdict_of(&saved).unwrap().is_none());
+    assert_eq!(units(kept.path()), ["S1"]);
+}
+
+/// How a database comes to lie beside the log of another one, and whether a station may start on it.
+#[test]
+fn a_database_is_not_opened_with_the_log_of_another_one() {
+    let (made, earlier, _) = in_its_second_session();
+    let copy = folder();
+    backup(&made.folder(), &copy.path().join("copy")).unwrap();
+    let [of_before, of_now] = [earlier.path(), &copy.path().join("copy")].map(|data| data.join("station.db"));
+    let open = |left: &TempDir| Store::open(&Folder::new(left.path())).map(drop);
+    // What a kill leaves is whole, once and again.
+    let left = killed(&made);
+    for _ in 0..2 {
+        open(&left).unwrap();
+        assert_eq!(units(left.path()), ["S1", "S2"]);
+    }
+    for (from, units_of_it) in [(&of_before, &["S1"][..]), (&of_now, &["S1", "S2"])] {
+        for is_renamed in [false, true] {
+            let left = killed(&made);
+            let data = Folder::new(left.path());
+            if is_renamed {
+                renamed_to(from, &data);
+            } else {
+                fs::copy(from, data.database()).unwrap();
+            }
+            let refused = open(&left).unwrap_err().to_string();
+            assert!(refused.contains("station.db-wal beside it is the log of another database"), "{refused}");
+            assert!(open(&left).is_err(), "it was changed by nobody");
+            let refused = Snapshot::take(&data).unwrap_err().to_string();
+            assert!(refused.contains("is the log of another database"), "{refused}");
+            for log in ["station.db-wal", "station.db-shm"] {
+                fs::remove_file(left.path().join(log)).unwrap();
+            }
+            open(&left).unwrap();
+            assert_eq!(units(left.path()), units_of_it);
+            Snapshot::take(&data).unwrap();
+        }
+    }
+}
+
+/// The control: without what the start wrote down nothing tells that the log is another one's.
+#[test]
+fn sqlite_plays_any_log_into_any_database() {
+    let (made, earlier, _) = in_its_second_session();
+    let left = killed(&made);
+    fs::copy(earlier.path().join("station.db"), left.path().join("station.db")).unwrap();
+    assert_eq!(units(left.path()), ["S1", "S2"]);
+}
+
+/// A program that wrote nothing of the log down may have left it.
+#[test]
+fn a_database_that_was_left_by_an_earlier_program_is_looked_at_before_its_log_counts() {
+    let (made, ..) = in_its_second_session();
+    let open = |left: &TempDir| Store::open(&Folder::new(left.path())).map(drop);
+    let left = killed(&made);
+    fs::write(left.path().join("station.lock"), "").unwrap();
+    open(&left).unwrap();
+    assert_eq!(units(left.path()), ["S1", "S2"]);
+    let left = killed(&made);
+    fs::write(left.path().join("station.lock"), "").unwrap();
+    let mut database = fs::read(left.path().join("station.db")).unwrap();
+    // A page of an index, as an older copy has it.
+    let page = query(left.path(), "SELECT rootpage FROM sqlite_schema WHERE name = 'binding_device'");
+    let place = 4096 * (page[0].parse::<usize>().unwrap() - 1);
+    database[place..place + 4096].fill(0);
+    let left = killed(&made);
+    fs::write(left.path().join("station.lock"), "").unwrap();
+    fs::write(left.path().join("station.db"), &database).unwrap();
+    let refused = open(&left).unwrap_err().to_string();
+    assert!(refused.contains("is damaged, or no database at all"), "{refused}");
+    assert!(fs::read(left.path().join("station.db")).unwrap() == database, "the log was not played into it");
+}
