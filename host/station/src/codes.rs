@@ -83,6 +83,7 @@ codes::codes! {
         Damaged [path] => "database-unreadable",
         Replaced [path] => "database-replaced",
         OtherLog [path] => "database-beside-other-log",
+        NoRoom [path, megabytes] => "database-without-room",
         Plant [plant, doing] => "plant-refuses",
         NoRecord [plant, sha256] => "plant-without-record",
         NoLog [path, mode] => "database-without-log",

@@ -84,6 +84,18 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
+    /// The disk has no room to bring it up to date.
+    #[error(
+        "the database {} is not brought up to date, for its disk has {megabytes} MB too few for that: twice its size, for a copy of it \
+         as it is and for what changes; make room there, or go on with the earlier program",
+        path.display()
+    )]
+    NoRoom {
+        /// The file.
+        path: PathBuf,
+        /// How many are missing.
+        megabytes: u64,
+    },
     /// The plant's database refuses.
     #[error(
         "the plant {plant} refuses {doing}; look whether it is there and whom it lets in, and ask whoever keeps it"

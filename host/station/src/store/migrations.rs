@@ -5,18 +5,21 @@ use std::io;
 use std::path::Path;
 
 use halfrow::result::sha256;
+use nix::sys::statvfs::statvfs;
 
-use super::StoreError;
 use super::database::{Database, DatabaseError, Engine, values};
 use super::statements::{SCHEMA_VERSION, SCHEMAS};
+use super::{StoreError, generation};
+use crate::record::synced;
 
 /// The newest version that a database has.
 pub(super) const NEWEST: &str = "SELECT max(n) FROM schema_version";
 /// Notes that it has another one.
 const NOTE: &str = "INSERT INTO schema_version (n, sha256, applied_ms) VALUES ($1, $2, $3)";
 
-/// Applies each schema that `database`, which is at `path`, does not have yet, in a transaction of its own. Before a
-/// database that holds results is changed, a copy of it is laid beside it: as a file, or as a schema `before_N`.
+/// Applies all schemas that `database`, which is at `path`, does not have yet, in one transaction: whatever comes between, it has the
+/// version that was found, or the newest. Before a database that holds results is changed, a copy of it is laid beside it: as a file,
+/// or as a schema `before_N`.
 pub(super) fn apply(database: &mut dyn Database, path: &Path, now_ms: i64) -> Result<(), StoreError> {
     let engine = database.engine();
     let refused = |source| StoreError::refused(engine, path, "a new version", source);
@@ -24,25 +27,25 @@ pub(super) fn apply(database: &mut dyn Database, path: &Path, now_ms: i64) -> Re
     let newest: Option<i64> = database.one(NEWEST, &[], |row| row.get(0)).map_err(refused)?;
     let found = newest.unwrap_or(0);
     not_newer(path, found)?;
-    for (version, schema) in (1_i64..).zip(SCHEMAS) {
-        let hash = sha256([schema]);
-        if version <= found {
-            check(database, path, version, &hash)?;
-            continue;
-        }
-        if found > 0 && engine == Engine::Sqlite {
-            copy(database, path, version)?;
-        }
-        let change = |to: &mut dyn Database| {
-            if found > 0 && engine == Engine::Postgres {
-                copy_tables(to, version)?;
-            }
-            to.batch(&engine.words(schema))?;
-            to.execute(NOTE, values![version, &hash, now_ms])
-        };
-        database.transaction(change).map_err(refused)?;
+    let (had, new): (Vec<_>, Vec<_>) = (1_i64..).zip(SCHEMAS).partition(|(version, _)| *version <= found);
+    for (version, schema) in had {
+        check(database, path, version, &sha256([schema]))?;
     }
-    Ok(())
+    let Some((next, _)) = new.first() else { return Ok(()) };
+    if found > 0 && engine == Engine::Sqlite {
+        has_room(path)?;
+        copy(database, path, *next)?;
+    }
+    let change = |to: &mut dyn Database| {
+        if found > 0 && engine == Engine::Postgres {
+            copy_tables(to, *next)?;
+        }
+        new.iter().try_for_each(|(version, schema)| {
+            to.batch(&engine.words(schema))?;
+            to.execute(NOTE, values![*version, &sha256([schema]), now_ms]).map(drop)
+        })
+    };
+    database.transaction(change).map_err(refused)
 }
 
 /// Refuses a database that is not of this program's version: `found`, and the file is `path`.
@@ -63,20 +66,57 @@ fn not_newer(path: &Path, found: i64) -> Result<(), StoreError> {
     Ok(())
 }
 
+/// Refuses when the disk has no room for a copy of the database in the file `path`, and for as much again that is changed in it.
+fn has_room(path: &Path) -> Result<(), StoreError> {
+    let folder = path.parent().unwrap_or(path);
+    let refused = |source| StoreError::Folder { folder: folder.to_owned(), source };
+    let disk = statvfs(folder).map_err(|error| refused(error.into()))?;
+    let free = disk.blocks_available() * disk.fragment_size();
+    // Without a log there is nothing in it.
+    let log = fs::metadata(path.with_extension("db-wal")).map_or(0, |log| log.len());
+    let bytes = fs::metadata(path).map_err(refused)?.len() + log;
+    match missing(bytes, free) {
+        0 => Ok(()),
+        megabytes => Err(StoreError::NoRoom { path: path.to_owned(), megabytes }),
+    }
+}
+
+/// How many megabytes there are too few, with so many bytes `free`, for a database of so many `bytes`.
+fn missing(bytes: u64, free: u64) -> u64 {
+    bytes.saturating_mul(2).saturating_sub(free).div_ceil(1_000_000)
+}
+
 /// Lays a copy of `database`, the file `path`, beside it, whole or not at all.
 fn copy(database: &mut dyn Database, path: &Path, version: i64) -> Result<(), StoreError> {
     let whole = path.with_extension(format!("before-{version}.db"));
     let aside = path.with_extension(format!("before-{version}.partial"));
-    let refused = |source| StoreError::Folder { folder: path.parent().unwrap_or(path).to_owned(), source };
-    match fs::remove_file(&aside) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(refused(error)),
-        _ => {}
-    }
-    database
+    let folder = path.parent().unwrap_or(path);
+    let refused = |source| StoreError::Folder { folder: folder.to_owned(), source };
+    remove(&aside).map_err(refused)?;
+    let copied = database
         .execute("VACUUM INTO $1", values![&*aside.to_string_lossy()])
-        .map_err(|source| StoreError::of_file(path, "a copy before a new version", source))?;
-    File::open(&aside).and_then(|file| file.sync_all()).map_err(refused)?;
-    fs::rename(&aside, &whole).map_err(refused)
+        .map_err(|source| StoreError::of_file(path, "a copy before a new version", source));
+    let named = copied.and_then(|_| {
+        generation::remove(&aside)?;
+        File::open(&aside).and_then(|file| file.sync_all()).map_err(refused)?;
+        fs::rename(&aside, &whole).map_err(refused)
+    });
+    if named.is_err() {
+        // The next attempt begins with it, and has no need of what is left here.
+        for left in [path.with_extension(format!("before-{version}.partial-journal")), aside] {
+            let _ = remove(&left);
+        }
+    }
+    named?;
+    Ok(synced(folder)?)
+}
+
+/// Removes the file `path`, if it is there.
+fn remove(path: &Path) -> io::Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
 }
 
 /// Copies every table of a plant into a schema of its own, in the transaction that changes them.
@@ -116,6 +156,11 @@ mod tests {
         apply(&mut *database, path, 2).unwrap();
         database.batch(change).unwrap();
         apply(&mut *database, path, 3)
+    }
+
+    #[test]
+    fn a_copy_and_as_much_again_is_to_have_room() {
+        assert_eq!([missing(10, 20), missing(10, 19), missing(3_000_000, 3_999_999)], [0, 1, 3]);
     }
 
     #[test]

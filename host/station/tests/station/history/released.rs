@@ -15,7 +15,7 @@ use tempfile::TempDir;
 
 use super::commands::did;
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
-use crate::common::query;
+use crate::common::{program, query};
 
 /// Each format, and what its files are exported to.
 const FORMATS: [(&str, &str); 4] =
@@ -110,9 +110,48 @@ fn a_database_of_every_released_schema_opens_and_exports_the_same_bytes() {
         is_true_of(data.path());
         let expected = fs::read_to_string(released(number).join("SHA256SUMS")).unwrap();
         assert_eq!(exported(data.path()), expected, "schema {number}");
-        let before = (number + 1..=newest()).map(|next| format!("station.before-{next}.db"));
-        assert!(before.into_iter().all(|copy| data.path().join(copy).is_file()), "schema {number}");
+        assert_eq!(copies(data.path()), before(number), "schema {number}");
     });
+}
+
+/// The copy that lies beside a database which had this schema.
+fn before(number: usize) -> Vec<String> {
+    (number < newest()).then(|| format!("station.before-{}.db", number + 1)).into_iter().collect()
+}
+
+/// What lies in this folder of earlier databases, finished or not.
+fn copies(data: &Path) -> Vec<String> {
+    let names = fs::read_dir(data).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    names.filter(|name| name.contains("before")).collect()
+}
+
+#[test]
+fn a_database_that_cannot_be_brought_up_to_date_is_the_earlier_programs_still() {
+    let data = left(1);
+    let other = Connection::open(data.path().join("station.db")).unwrap();
+    // The newest schema has another table of this name.
+    other.execute_batch("CREATE TABLE mismatch (n)").unwrap();
+    drop(other);
+    let refused = Store::open(&Folder::new(data.path())).unwrap_err();
+    assert!(format!("{refused:?}").contains("mismatch already exists"), "{refused:?}");
+    assert_eq!(query(data.path(), "SELECT max(n) FROM schema_version"), ["1"]);
+    assert_eq!(copies(data.path()), before(1));
+}
+
+/// A disk that takes nothing more of the copy.
+#[test]
+fn of_a_copy_that_was_not_made_nothing_is_left() {
+    let data = left(1);
+    let call = "trap '' XFSZ; ulimit -f 64; exec \"$0\" prune --data \"$1\"";
+    let did = Command::new("sh").args(["-c", call]).arg(program()).arg(data.path()).output().unwrap();
+    let said = String::from_utf8(did.stderr).unwrap();
+    assert_eq!(did.status.code(), Some(3), "{said}");
+    assert!(said.contains("a copy before a new version"), "{said}");
+    assert_eq!(copies(data.path()), Vec::<String>::new());
+    assert_eq!(query(data.path(), "SELECT max(n) FROM schema_version"), ["1"]);
+    // The control: with room it is brought up to date.
+    drop(Store::open(&Folder::new(data.path())).unwrap());
+    assert_eq!(copies(data.path()), before(1));
 }
 
 #[test]
