@@ -107,6 +107,11 @@ pub fn read_shown(path: &Path) -> Result<RgbImage, ReadError> {
             Ok((picture, _)) => Ok(picture),
             Err(source) => Err(file.wrong(source)),
         },
+        None if file.bytes.is_empty() => Err(file.wrong(DecodeError::Empty)),
+        None if !file.bytes.starts_with(png::MAGIC) => Err(file.wrong(DecodeError::Unsupported {
+            what: "what begins like no PNG, JPEG, WebP or BMP".to_owned(),
+            remedy: "give one of these, or export it again",
+        })),
         None => file.decode_rgb(),
     }
 }

@@ -134,7 +134,7 @@ fn a_photograph_is_shown_by_lines_that_are_marked_in_it() {
         (json!({ "circle": { "centre": [1, 1], "radius": 0 }, "lines": [] }).to_string(), "has the radius 0"),
         (
             file(&[lines[0].clone(), json!({ "from": [9, 9], "to": [9, 9], "is": "level" })]).to_string(),
-            "line 2 in lines.json",
+            "entry 2 of `lines` in lines.json",
         ),
     ] {
         folder.write("lines.json", content);

@@ -69,7 +69,7 @@ pub enum MarkedError {
     },
     /// A line that the lens does not show.
     #[error(
-        "line {number} in {} is too short, or lies beyond what a projection shows; mark it inside of the image circle",
+        "entry {number} of `lines` in {} is too short, or lies beyond what a projection shows; mark it inside of the image circle",
         path.display()
     )]
     Line {
