@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-use halfrow_model::Frame;
+use halfrow_model::{Frame, FrameError};
 
 use super::format::Format;
 use super::preview::{RgbImage, encode_png_rgb};
@@ -159,7 +159,8 @@ pub fn write_oriented(
 /// where the format has its rows one after the other.
 ///
 /// # Errors
-/// [`WriteError`], as `E`, where [`write()`] has it; and whatever `next_row` answers, with nothing written then.
+/// [`WriteError`], as `E`, where [`write()`] has it, or where the rows are no frame: `shape` has none, or an odd width, or a sample is
+/// beyond its depth; and whatever `next_row` answers. Nothing is written then.
 pub fn write_rows<E: From<WriteError>>(
     path: &Path,
     shape: &FrameShape,
@@ -167,15 +168,19 @@ pub fn write_rows<E: From<WriteError>>(
     next_row: impl FnMut(&mut [u16]) -> Result<(), E>,
 ) -> Result<(), E> {
     let format = Format::of(path)?;
+    shape.check().map_err(|refused| no_frame(path, refused))?;
     if format.has_plain_rows() {
         return write_plain_rows(path, format, shape, overwrite, next_row);
     }
     let mut samples = vec![0; shape.width * shape.height];
     samples.chunks_exact_mut(shape.width).try_for_each(next_row)?;
     let frame = Frame::new(shape.width, shape.depth, shape.phase, samples);
-    let frame =
-        frame.map_err(|source| WriteError::Encode { path: path.to_owned(), source: source.into() })?;
+    let frame = frame.map_err(|refused| no_frame(path, refused))?;
     Ok(write_oriented(path, &frame, shape.orientation, overwrite)?)
+}
+
+fn no_frame(path: &Path, source: FrameError) -> WriteError {
+    WriteError::Encode { path: path.to_owned(), source: source.into() }
 }
 
 fn write_plain_rows<E: From<WriteError>>(
@@ -189,8 +194,11 @@ fn write_plain_rows<E: From<WriteError>>(
     let written = write_aside(path, overwrite, |out| {
         let (mut row, mut blocks) = (vec![0; shape.width], Blocks::new(out));
         format.write_header(shape, &mut blocks.bytes)?;
-        for _ in 0..shape.height {
-            if let Err(error) = next_row(&mut row) {
+        for index in 0..shape.height {
+            let checked = next_row(&mut row).and_then(|()| {
+                Ok(shape.check_row(index, &row).map_err(|refused| no_frame(path, refused))?)
+            });
+            if let Err(error) = checked {
                 refused = Some(error);
                 return Err(io::ErrorKind::Other.into());
             }

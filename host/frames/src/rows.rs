@@ -5,7 +5,7 @@ use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use halfrow_model::{BitDepth, Frame, Phase};
+use halfrow_model::{BitDepth, Frame, FrameError, Phase};
 
 use super::raster::Raster;
 use super::{Decoded, Fitting, Orientation, ReadError, ReadOptions, file, narrow, pgm, raw};
@@ -28,6 +28,28 @@ pub struct FrameShape {
     pub phase: Phase,
     /// How it is turned by who shows it, which a DNG and a TIFF tell.
     pub orientation: Orientation,
+}
+
+impl FrameShape {
+    /// Refuses a shape that no [`halfrow_model::Frame`] has.
+    pub(super) fn check(&self) -> Result<(), FrameError> {
+        match (self.width, self.height) {
+            (0, _) | (_, 0) => Err(FrameError::Empty),
+            (width, _) if width % 2 == 1 => Err(FrameError::OddWidth(width)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses the first sample of row `row` that the depth cannot hold.
+    pub(super) fn check_row(&self, row: usize, samples: &[u16]) -> Result<(), FrameError> {
+        let (max, bits) = (self.depth.max(), self.depth.bits());
+        // Vectors of samples: only a row that is refused is looked through one by one.
+        if samples.iter().fold(0, |set, sample| set | sample) <= max {
+            return Ok(());
+        }
+        let bright = samples.iter().enumerate().find(|&(_, &sample)| sample > max);
+        bright.map_or(Ok(()), |(column, &value)| Err(FrameError::TooBright { row, column, value, max, bits }))
+    }
 }
 
 /// The rows of a frame, from the top.

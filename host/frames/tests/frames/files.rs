@@ -4,8 +4,11 @@ use std::error::Error;
 use std::fs;
 
 use halfrow_frames::written_aside::WriteAsideError;
-use halfrow_frames::{RawGeometry, RawLayout, ReadError, ReadOptions, WriteError, read, write};
-use halfrow_model::{BitDepth, Frame, Phase};
+use halfrow_frames::{
+    DecodeError, EncodeError, FrameShape, Orientation, RawGeometry, RawLayout, ReadError, ReadOptions,
+    WriteError, read, read_shown, write, write_rows,
+};
+use halfrow_model::{BitDepth, Frame, FrameError, Phase};
 
 fn frame() -> Frame {
     let samples = (0..64 * 3).map(|place| place * 21).collect();
@@ -71,4 +74,55 @@ fn an_error_names_the_file_and_carries_its_cause() {
     );
     let nowhere = write(&folder.path().join("no/such/a.pgm"), &frame(), false).unwrap_err();
     assert!(matches!(nowhere, WriteError::File(WriteAsideError::Io { .. })));
+}
+
+#[test]
+fn rows_that_are_no_frame_are_written_in_no_format() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |name: &str, width, height| {
+        let path = folder.path().join(name);
+        let shape = FrameShape {
+            width,
+            height,
+            depth: BitDepth::Eight,
+            phase: Phase::Grbg,
+            orientation: Orientation::default(),
+        };
+        let mut row = 0;
+        let written = write_rows(&path, &shape, true, |samples| {
+            samples[width - 1] = 255 + row;
+            row += 1;
+            Ok::<(), WriteError>(())
+        });
+        match written {
+            Err(WriteError::Encode { source: EncodeError::Frame(error), .. }) if !path.exists() => error,
+            other => panic!("{name}: {other:?}"),
+        }
+    };
+    for name in ["a.pgm", "a.raw", "a.png", "a.tif", "a.dng"] {
+        let too_bright = FrameError::TooBright { row: 1, column: 1, value: 256, max: 255, bits: 8 };
+        assert_eq!(refused(name, 2, 2), too_bright);
+        assert_eq!(refused(name, 3, 3), FrameError::OddWidth(3));
+        assert_eq!(refused(name, 0, 2), FrameError::Empty);
+        assert_eq!(refused(name, 2, 0), FrameError::Empty);
+    }
+}
+
+#[test]
+fn what_is_no_picture_is_told_all_kinds_that_are_taken() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.jpg");
+    let shown = |bytes: &[u8]| {
+        fs::write(&path, bytes).unwrap();
+        match read_shown(&path) {
+            Err(ReadError::Decode { source, .. }) => source,
+            other => panic!("{other:?}"),
+        }
+    };
+    assert!(matches!(shown(b""), DecodeError::Empty));
+    let broken = shown(b"\x00\xd8\xff\xe0").to_string();
+    assert_eq!(
+        broken,
+        "what begins like no PNG, JPEG, WebP or BMP cannot be used; give one of these, or export it again"
+    );
 }
