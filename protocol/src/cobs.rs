@@ -8,7 +8,7 @@ const RUN: usize = 254;
 
 /// The most bytes that stuffing makes of `length` bytes.
 pub(crate) const fn stuffed_length(length: usize) -> usize {
-    length + length / RUN + 1
+    length.saturating_add(length / RUN + 1)
 }
 
 /// Appends `bytes`, stuffed, to `wire`.

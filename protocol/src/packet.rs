@@ -15,7 +15,7 @@ pub(crate) const OVERHEAD: usize = HEADER + CRC;
 /// The most bytes on the wire of a packet with a payload of so many, the zero behind it included.
 #[must_use]
 pub const fn wire_length(payload: usize) -> usize {
-    cobs::stuffed_length(OVERHEAD + payload) + 1
+    cobs::stuffed_length(OVERHEAD.saturating_add(payload)).saturating_add(1)
 }
 
 /// What a packet is about.

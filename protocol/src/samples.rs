@@ -22,7 +22,7 @@ use alloc::vec::Vec;
 /// Bytes that `samples` samples take; `samples` is even.
 #[must_use]
 pub const fn packed_length(samples: usize) -> usize {
-    samples / 2 * 3
+    (samples / 2).saturating_mul(3)
 }
 
 /// Appends `samples`, an even number of them, to `packed`. Bits above the twelfth are left out.

@@ -187,7 +187,7 @@ impl Options {
     /// Samples M in the ring.
     #[must_use]
     pub fn ring_size(&self) -> u16 {
-        self.ring.unwrap_or_else(|| self.max_width.next_power_of_two())
+        self.ring.unwrap_or_else(|| self.max_width.checked_next_power_of_two().unwrap_or(u16::MAX))
     }
 
     /// Entries of a bank, in which the highest frame finds its row factors.

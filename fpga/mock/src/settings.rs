@@ -100,7 +100,7 @@ impl Settings {
         if !(1..=options.max_height).contains(&height) {
             return Err(SettingsError::Height { height, most: options.max_height });
         }
-        let most = 2 * width - 2;
+        let most = (width - 1).saturating_mul(2);
         if centre2 > most {
             return Err(SettingsError::Centre { centre2, most });
         }

@@ -48,13 +48,19 @@ pub enum CorrectError {
 }
 
 /// Where the output of `column`, 0 to W − 1, comes from in a row of the row factor `row_factor`.
+///
+/// # Panics
+/// It may when the row has no such column.
 #[must_use]
 pub fn source(geometry: &Geometry, row_factor: RowFactor, column: usize) -> Source {
     source_by_entry(geometry, row_factor.get(), column)
 }
 
 /// The arithmetic of [`source`] for any word in place of Q: what a board makes of an entry that it reads wrong. Above
-/// 2^24 the column may lie outside the row.
+/// 2^24 the source may lie outside the row.
+///
+/// # Panics
+/// It may when the row has no column `column`.
 #[must_use]
 pub fn source_by_entry(geometry: &Geometry, entry: u32, column: usize) -> Source {
     locate(rounded(row_start(geometry, entry) + 2 * column as i64 * i64::from(entry)), column)
@@ -104,7 +110,8 @@ fn blend(weights: [i32; 5], taps: [u16; 7], max: u16) -> u16 {
 /// Corrects one row of the row factor `row_factor` into `output`.
 ///
 /// # Panics
-/// When `row` or `output` holds fewer samples than the geometry's width.
+/// When `row` or `output` holds fewer samples than the geometry's width. It may when samples of `row` are not within the
+/// geometry's depth, as those of a [`Frame`] are.
 pub fn correct_row(
     geometry: &Geometry,
     row_factor: RowFactor,
@@ -124,7 +131,8 @@ pub fn correct_row(
 /// Corrects one row of the values `values` into `output`, which are of a table for this geometry.
 ///
 /// # Panics
-/// When `row` or `output` holds fewer samples than the geometry's width, or `values` are of a narrower one.
+/// When `row` or `output` holds fewer samples than the geometry's width, or `values` are of a narrower one. It may when samples
+/// of `row` are not within the geometry's depth, as those of a [`Frame`] are.
 pub fn correct_row_of_values(
     geometry: &Geometry,
     values: &RowValues,

@@ -177,7 +177,10 @@ impl Frame {
         self.samples
     }
 
-    /// The samples of row `index`, which must be below [`Self::height`].
+    /// The samples of row `index`.
+    ///
+    /// # Panics
+    /// When `index` is not below [`Self::height`].
     #[must_use]
     pub fn row(&self, index: usize) -> &[u16] {
         &self.samples[index * self.width..][..self.width]

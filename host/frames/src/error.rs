@@ -95,6 +95,16 @@ pub enum DecodeError {
         /// Rows asked for.
         rows: usize,
     },
+    /// A picture is to be scaled to a size beyond any sensor.
+    #[error(
+        "it is to be scaled to {columns} x {rows}, above {MAX_SIDE} x {MAX_SIDE}; ask for a smaller size"
+    )]
+    FittedTooLarge {
+        /// Columns asked for.
+        columns: usize,
+        /// Rows asked for.
+        rows: usize,
+    },
     /// Fewer bytes than the size calls for.
     #[error(
         "it has {found} bytes of samples where its size calls for {expected}; \

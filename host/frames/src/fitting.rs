@@ -6,6 +6,7 @@ use image::imageops::{self, FilterType};
 use image::{ImageBuffer, Pixel, Rgb};
 
 use super::DecodeError;
+use super::size::MAX_SIDE;
 
 /// What becomes of a picture in colour, by its size. Raw samples are never scaled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,7 +16,7 @@ pub enum PictureSize {
     Any,
     /// It must have so many columns and rows.
     Exactly(usize, usize),
-    /// It is cropped and scaled to so many columns and rows.
+    /// It is cropped and scaled to so many columns and rows, at most [`MAX_SIDE`] each.
     Fitted(usize, usize),
 }
 
@@ -23,11 +24,14 @@ impl PictureSize {
     /// How a picture of `(width, height)` is fitted; none when it is taken as it is.
     ///
     /// # Errors
-    /// [`DecodeError::OtherSize`].
+    /// [`DecodeError::OtherSize`] or [`DecodeError::FittedTooLarge`].
     pub(super) fn fitting(self, (width, height): (usize, usize)) -> Result<Option<Fitting>, DecodeError> {
         match self {
             Self::Exactly(columns, rows) if (columns, rows) != (width, height) => {
                 Err(DecodeError::OtherSize { width, height, columns, rows })
+            }
+            Self::Fitted(columns, rows) if columns.max(rows) > MAX_SIDE => {
+                Err(DecodeError::FittedTooLarge { columns, rows })
             }
             Self::Fitted(columns, rows) if (columns, rows) != (width, height) => {
                 Ok(Fitting::new((width, height), (columns, rows)))

@@ -1,6 +1,7 @@
 //! PNG, 8 and 16 bits a sample. Gamma and colour profiles are not applied: the numbers in the file are the samples.
 
 use std::io::{Cursor, Write};
+use std::ops::RangeInclusive;
 
 use halfrow_model::{BitDepth, Frame};
 use png::{ColorType, Decoder, DecodingError, Encoder, EncodingError, Info, Transformations};
@@ -11,6 +12,9 @@ use super::{DecodeError, Orientation, PictureSize, ReadOptions, photograph, size
 
 /// The first bytes of a PNG.
 pub(super) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
+
+/// The sides that a PNG can have, by its specification.
+const SIDES: RangeInclusive<u32> = 1..=(1 << 31) - 1;
 
 /// The frame in the bytes of a PNG: grey is a raw Bayer frame as it is; colour, palettes among it, is turned as its EXIF
 /// says, and mosaicked; alpha is ignored.
@@ -64,15 +68,18 @@ pub fn encode(frame: &Frame, out: &mut impl Write) -> Result<(), EncodingError> 
 /// Writes a PNG of `(width, height)` from rows of bytes in the given colour type and depth.
 ///
 /// # Errors
-/// The encoder's, or whatever `out` answers.
+/// The encoder's, when `bytes` have another length or the sides are above [`SIDES`] among them, or whatever `out` answers.
 pub(super) fn write(
     out: &mut impl Write,
     (width, height): (usize, usize),
     (colour, depth): (ColorType, png::BitDepth),
     bytes: &[u8],
 ) -> Result<(), EncodingError> {
-    let side = |length| u32::try_from(length).unwrap_or(u32::MAX);
-    let mut encoder = Encoder::new(out, side(width), side(height));
+    let side = |length| u32::try_from(length).ok().filter(|side| SIDES.contains(side));
+    let (Some(width), Some(height)) = (side(width), side(height)) else {
+        return Err(EncodingError::LimitsExceeded);
+    };
+    let mut encoder = Encoder::new(out, width, height);
     encoder.set_color(colour);
     encoder.set_depth(depth);
     let mut writer = encoder.write_header()?;

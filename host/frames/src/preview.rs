@@ -6,10 +6,10 @@ use halfrow_model::{Frame, Phase};
 use image::{DynamicImage, ImageBuffer};
 use png::{BitDepth, ColorType, EncodingError};
 
-use crate::Orientation;
 use crate::mosaic::{GREEN, channel};
+use crate::{DecodeError, Orientation, size};
 
-/// A picture of 8 bits in red, green and blue, coded for the screen.
+/// A picture of 8 bits in red, green and blue, coded for the screen. [`Self::new`] makes sure that its data fill it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RgbImage {
     /// Pixels in a row.
@@ -21,6 +21,20 @@ pub struct RgbImage {
 }
 
 impl RgbImage {
+    /// The picture of `data`, which is all that it needs and no more.
+    ///
+    /// # Errors
+    /// [`DecodeError::Empty`] without a pixel, [`DecodeError::TooLarge`] when a side is above [`crate::MAX_SIDE`], or
+    /// [`DecodeError::Truncated`] or [`DecodeError::Trailing`] when there are not 3 · width · height bytes.
+    pub fn new(width: usize, height: usize, data: Vec<u8>) -> Result<Self, DecodeError> {
+        if width == 0 || height == 0 {
+            return Err(DecodeError::Empty);
+        }
+        size::checked(width as u64, height as u64)?;
+        size::exact(data.len(), 3 * width * height)?;
+        Ok(Self { width, height, data })
+    }
+
     /// The picture of raw samples as it is seen, by their orientation.
     #[must_use]
     pub fn turned(self, orientation: Orientation) -> Self {
@@ -84,7 +98,7 @@ pub fn thumbnail(frame: &Frame, max_width: usize) -> RgbImage {
 /// Writes `image` as a PNG.
 ///
 /// # Errors
-/// The encoder's, or whatever `out` answers.
+/// The encoder's, when its data has another length among them, or whatever `out` answers.
 pub fn encode_png_rgb(image: &RgbImage, out: &mut impl Write) -> Result<(), EncodingError> {
     super::png::write(out, (image.width, image.height), (ColorType::Rgb, BitDepth::Eight), &image.data)
 }

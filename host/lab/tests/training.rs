@@ -44,6 +44,8 @@ fn a_photograph_without_detail_determines_no_kernel() {
     assert!(matches!(refused, TrainingError::Singular), "{refused}");
     let small = RgbImage { width: 32, height: 32, data: vec![90; 3 * 32 * 32] };
     assert!(matches!(train(&[small], Taps::Five, &Silent), Err(TrainingError::Geometry(_))));
+    let none = RgbImage { width: 0, height: 0, data: Vec::new() };
+    assert!(matches!(train(&[none], Taps::Five, &Silent), Err(TrainingError::Geometry(_))));
 }
 
 /// Samples between nodes 20 and 23 that no kernel makes exactly.

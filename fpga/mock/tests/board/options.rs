@@ -1,6 +1,6 @@
 //! The constants of a build, given as text.
 
-use halfrow_mock::{BurstBuild, Core, Depth, OptionError, Options, TapCount};
+use halfrow_mock::{BurstBuild, Core, Depth, OptionError, Options, Settings, TapCount};
 use halfrow_pipe::{BoardOptions, ValueError};
 
 fn options(given: &[(&str, &str)]) -> Result<Options, OptionError> {
@@ -120,4 +120,13 @@ fn no_core_is_made_for_a_build_that_cannot_exist() {
     assert!(matches!(Core::new(&impossible, None), Err(OptionError::Value(ValueError::OutOfRange { .. }))));
     let impossible = Options { depths: Vec::new(), ..Options::default() };
     assert!(matches!(Core::new(&impossible, None), Err(OptionError::NoDepth)));
+}
+
+#[test]
+fn a_width_that_no_build_has_is_told_and_not_computed_with() {
+    let wide = Options { max_width: u16::MAX, ..Options::default() };
+    assert!(wide.check().is_err());
+    assert_eq!(wide.ring_size(), u16::MAX);
+    let own = Settings { width: u16::MAX - 1, centre2: u16::MAX, ..Settings::at_power_up(&wide) };
+    assert_eq!(own.check(&wide), Ok(()));
 }

@@ -327,3 +327,17 @@ fn a_picture_of_another_size_is_refused_before_it_is_unpacked() {
     spoilt.truncate(spoilt.len() - 3);
     other(&spoilt, (2, 4));
 }
+
+#[test]
+fn nothing_is_scaled_to_more_than_may_be_read() {
+    let file = oriented_png(1, 3, 8, false);
+    for (columns, rows) in [(usize::MAX, 1), (1 << 33, 2), (2, 8193)] {
+        let how = ReadOptions { size: PictureSize::Fitted(columns, rows), ..ReadOptions::default() };
+        match decode(&file, &how) {
+            Err(DecodeError::FittedTooLarge { columns: wide, rows: high }) => {
+                assert_eq!((wide, high), (columns, rows));
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+}

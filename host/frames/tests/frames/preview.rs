@@ -1,7 +1,9 @@
 //! Previews: development into pictures for the screen.
 
-use halfrow_frames::preview::{demosaic, demosaic_coded, encode_png_grey, encode_png_rgb, thumbnail};
-use halfrow_frames::{Builtin, Scene};
+use halfrow_frames::preview::{
+    RgbImage, demosaic, demosaic_coded, encode_png_grey, encode_png_rgb, thumbnail,
+};
+use halfrow_frames::{Builtin, DecodeError, Scene};
 use halfrow_model::{BitDepth, Colour, Frame, Geometry, Phase};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -138,6 +140,24 @@ fn pictures_survive_as_png() {
     encode_png_grey(4, 3, &grey, &mut file).unwrap();
     assert_eq!(pixels(&file), (4, 3, grey));
     assert!(encode_png_grey(4, 3, &[0; 11], &mut Vec::new()).is_err());
+}
+
+#[test]
+fn a_picture_larger_than_any_png_is_refused() {
+    for (width, height) in [(1 << 40, 1 << 40), (1 << 32, 1), (usize::MAX, 2)] {
+        let image = RgbImage { width, height, data: vec![0; 3] };
+        assert!(encode_png_rgb(&image, &mut Vec::new()).is_err(), "{width} x {height}");
+    }
+}
+
+#[test]
+fn a_picture_has_three_bytes_a_pixel() {
+    let new = |width, height, bytes| RgbImage::new(width, height, vec![7; bytes]);
+    assert_eq!(new(2, 3, 18).unwrap(), RgbImage { width: 2, height: 3, data: vec![7; 18] });
+    assert!(matches!(new(0, 3, 0), Err(DecodeError::Empty)));
+    assert!(matches!(new(2, 3, 17), Err(DecodeError::Truncated { expected: 18, found: 17 })));
+    assert!(matches!(new(2, 3, 20), Err(DecodeError::Trailing { extra: 2 })));
+    assert!(matches!(new(1 << 40, 1 << 40, 3), Err(DecodeError::TooLarge { .. })));
 }
 
 fn pixels(file: &[u8]) -> (u32, u32, Vec<u8>) {

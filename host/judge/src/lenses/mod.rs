@@ -103,7 +103,7 @@ impl LensFile {
     /// file does not say it, and scaled if they have the same shape.
     ///
     /// # Errors
-    /// [`WrongShape`] when they have another.
+    /// [`WrongShape`] when they have another, and what [`CalibratedLens::scaled`] refuses.
     pub fn for_frame(
         &self,
         width: usize,
@@ -112,7 +112,8 @@ impl LensFile {
         let Some((columns, rows)) = self.size.filter(|&size| size != (width, height)) else {
             return Ok((self.lens.clone(), self.centre));
         };
-        if columns * height != rows * width {
+        let has_pixels = width > 0 && height > 0;
+        if !has_pixels || columns as u128 * height as u128 != rows as u128 * width as u128 {
             return Err(WrongShape { columns, rows, width, height }.into());
         }
         let factor = width as f64 / columns as f64;

@@ -43,7 +43,8 @@ impl Build {
     /// One with everything that a build can have, and the shortest line memory for rows of `width` samples.
     #[must_use]
     pub fn full(width: usize) -> Self {
-        let (table_banks, taps, ring) = (2, 7, width.next_power_of_two());
+        let ring = width.checked_next_power_of_two().unwrap_or(usize::MAX);
+        let (table_banks, taps) = (2, 7);
         Self { table_banks, taps, ring, depths: BitDepth::ALL.to_vec() }
     }
 }

@@ -21,3 +21,12 @@ fn frames_of_another_shape_are_refused_with_both_sizes() {
     assert_eq!(refused, LensContentError::Shape(shape));
     assert!(refused.to_string().contains("1280 x 720, and frames of 1920 x 1200"), "{refused}");
 }
+
+#[test]
+fn frames_that_cannot_be_have_another_shape() {
+    let file = LensFile::parse(OPENCV_YAML).unwrap();
+    for (width, height) in [(usize::MAX, usize::MAX), (0, 0), (0, 720)] {
+        let shape = WrongShape { columns: 1280, rows: 720, width, height };
+        assert_eq!(file.for_frame(width, height), Err(LensContentError::Shape(shape)));
+    }
+}

@@ -59,6 +59,9 @@ impl Equations {
     }
 
     /// Adds a sample that ought to be `wanted`, the share `toward` of the way from `node` to the next.
+    ///
+    /// # Panics
+    /// When `node` is none that has a next one, which are those from 0 to [`NODES`] − 2.
     pub fn sample(&mut self, node: usize, toward: f64, taps: [f64; 7], wanted: f64) {
         let [g0, r1, g2, r3, g4, r5, g6] = taps;
         let differences = [g0 - g2, r1 - r3, g4 - g2, r5 - r3, g6 - g2];

@@ -77,10 +77,12 @@ impl Model {
     /// # Errors
     /// [`TrainingError`] when it has a size that no frame has.
     pub(crate) fn warped(self, image: &RgbImage) -> Result<Warped, TrainingError> {
+        // No picture without a pixel comes behind them.
+        let tables = self.tables(image.width & !1, image.height)?;
         let image = &even(image);
         let lens = self.lens(image.height)?;
         Ok(Warped {
-            tables: self.tables(image.width, image.height)?,
+            tables,
             reference: mosaic(image, Phase::Grbg)?,
             distorted: mosaic(&self.warp.distorted(image, &lens), Phase::Grbg)?,
         })

@@ -32,6 +32,7 @@ codes! {
         TooLarge [width, height] => "frame-too-large",
         TooManyPixels [width, height] => "picture-has-too-many-pixels",
         OtherSize [width, height, columns, rows] => "picture-of-other-size",
+        FittedTooLarge [columns, rows] => "picture-wanted-too-large",
         Truncated [expected, found] => "frame-file-truncated",
         Trailing [extra] => "frame-file-has-more",
         PgmHeader [wanted, offset] => "pgm-header-wrong",
