@@ -15,7 +15,7 @@ const MOST_INTERVALS: usize = 240;
 pub enum SoakLength {
     /// A time on the link's clock.
     Time {
-        /// It, in seconds.
+        /// It, in seconds. None above 0, as what is no number, is over before there is anything to judge, and infinity never.
         seconds: f64,
     },
     /// Frames.

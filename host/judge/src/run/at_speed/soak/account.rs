@@ -40,7 +40,8 @@ impl Account {
     /// The time that is left behind `now`, on the run's clock; none if frames are counted.
     fn time_left(&self, now: Duration) -> Option<Duration> {
         let SoakLength::Time { seconds } = self.report.asked else { return None };
-        let length = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+        let beyond = if seconds > 0.0 { Duration::MAX } else { Duration::ZERO };
+        let length = Duration::try_from_secs_f64(seconds).unwrap_or(beyond);
         Some(self.begun.saturating_add(length).saturating_sub(now))
     }
 
@@ -181,4 +182,24 @@ fn tell_more(first: &mut End, seen: &[Suspect]) {
 /// A count that stays at the greatest number of a finding.
 pub(super) fn counted(count: u64) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn is_over(seconds: f64, now: Duration) -> bool {
+        Account::new(SoakLength::Time { seconds }, Duration::ZERO).is_over(now)
+    }
+
+    /// As a deadline that has passed less the time, or 0 divided by 0.
+    #[test]
+    fn what_is_no_time_is_over_at_once_and_what_no_clock_counts_to_never() {
+        for seconds in [0.0, -1.0, f64::NEG_INFINITY, f64::NAN] {
+            assert!(is_over(seconds, Duration::ZERO), "{seconds}");
+        }
+        assert!(!is_over(1.0, Duration::ZERO) && is_over(1.0, Duration::from_secs(1)));
+        let a_year = Duration::from_secs(365 * 86_400);
+        assert!([1e300, f64::INFINITY].iter().all(|&seconds| !is_over(seconds, a_year)));
+    }
 }
