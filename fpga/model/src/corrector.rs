@@ -181,6 +181,16 @@ pub fn correct(tables: &TableSet, kernel: &Kernel, frame: &Frame) -> Result<Fram
     Ok(frame.with_samples(samples))
 }
 
+impl TableSet {
+    /// Whether `frame` has the size and the depth that the tables are for.
+    ///
+    /// # Errors
+    /// [`CorrectError`] when it has another.
+    pub fn check_frame(&self, frame: &Frame) -> Result<(), CorrectError> {
+        check_frame(self.geometry(), frame)
+    }
+}
+
 /// Whether `frame` has the size and the depth of `geometry`.
 pub(crate) fn check_frame(geometry: &Geometry, frame: &Frame) -> Result<(), CorrectError> {
     let (width, height) = (geometry.width(), geometry.height());

@@ -1,7 +1,10 @@
 //! What a run keeps of its frames.
 
+use std::error::Error;
+
 use halfrow::frames::Builtin;
 use halfrow::link;
+use halfrow::model::{BitDepth, Frame, Phase};
 use halfrow::progress::Silent;
 use halfrow::run::{Finished, FrameSource, Plan, RunOptions, verify};
 use halfrow_tests::system::System;
@@ -16,6 +19,27 @@ fn run(evidence_bytes: usize) -> Finished {
     let board = link::open(&"mock,fault=stuck-data".parse().unwrap()).unwrap();
     let options = RunOptions { evidence_bytes, ..RunOptions::default() };
     verify(&plan, board, &options, &Silent).unwrap()
+}
+
+/// The tables are for 64 x 8 of 12 bits.
+#[test]
+fn a_frame_that_the_tables_are_not_for_is_refused_before_the_board_is_asked() {
+    let _alone = crate::RUNS.lock();
+    let frames = [
+        (66, 8, BitDepth::Twelve, "the frame is 66 x 8 and the tables are for 64 x 8"),
+        (128, 16, BitDepth::Twelve, "the frame is 128 x 16 and the tables are for 64 x 8"),
+        (64, 8, BitDepth::Eight, "the frame has 8 bits a sample and the tables are for 12"),
+    ];
+    for (width, height, depth, why) in frames {
+        let frame = Frame::new(width, depth, Phase::Grbg, vec![7; width * height]).unwrap();
+        let file = FrameSource::File { path: "own.pgm".into(), frame: frame.into() };
+        let plan = System::TINY.plan().frames([FrameSource::Builtin(Builtin::Noise), file]);
+        let board = link::open(&"mock,fault=stuck-data".parse().unwrap()).unwrap();
+        let refused = verify(&plan, board, &RunOptions::default(), &Silent).map(|ended| ended.report.verdict);
+        let refused = refused.unwrap_err();
+        assert!(refused.to_string().contains("own.pgm"), "{refused}");
+        assert!(refused.source().is_some_and(|source| source.to_string().starts_with(why)), "{refused:?}");
+    }
 }
 
 /// Bytes of the frames that were kept, and of the counts by row and column.

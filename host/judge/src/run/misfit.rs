@@ -1,9 +1,9 @@
 //! Whether a board can have what a plan uploads.
 
-use halfrow_model::{Kernel, TableError, TableSet, Taps};
+use halfrow_model::{CorrectError, Kernel, TableError, TableSet, Taps};
 use halfrow_protocol::message::{BoardNature, UnknownDatapath};
 
-use super::plan::TooManyFrames;
+use super::plan::{FrameSource, Plan, TooManyFrames};
 use super::within::WithinError;
 use crate::board::{Capabilities, grids};
 
@@ -66,6 +66,14 @@ pub enum Misfit {
     /// A row reads ahead of what the board's line memory holds.
     #[error(transparent)]
     Ring(#[from] TableError),
+    /// A frame of the caller's has another size or depth than the tables.
+    #[error("the frame {name} does not fit the tables")]
+    Frame {
+        /// Its name in reports.
+        name: String,
+        /// In what.
+        source: CorrectError,
+    },
     /// More frames than any run can have.
     #[error(transparent)]
     TooManyFrames(#[from] TooManyFrames),
@@ -80,6 +88,19 @@ impl Misfit {
     pub fn is_other_datapath(&self) -> bool {
         matches!(self, Self::Datapath(_))
     }
+}
+
+/// Whether the tables of `plan` are for all frames that it was given.
+///
+/// # Errors
+/// [`Misfit::Frame`] for the first that they are not for.
+pub(super) fn check_frames(plan: &Plan) -> Result<(), Misfit> {
+    plan.frames.iter().try_for_each(|own| match own {
+        FrameSource::Builtin(_) => Ok(()),
+        FrameSource::File { frame, .. } => {
+            plan.tables.check_frame(frame).map_err(|source| Misfit::Frame { name: own.name(), source })
+        }
+    })
 }
 
 /// Why a board with these capabilities cannot have the tables and the kernel, if it cannot.

@@ -111,7 +111,7 @@ impl Draws {
 /// target, so that the lines of two runs on two threads can be told apart.
 ///
 /// # Errors
-/// [`Misfit`] when the board cannot have what `plan` uploads: there is no verdict then, and nothing to report on. Whatever else
+/// [`Misfit`] when the board cannot have what `plan` uploads, or a frame is not for its tables: there is no verdict then, and nothing to report on. Whatever else
 /// goes wrong stands in the report.
 pub fn verify(
     plan: &Plan,
@@ -147,6 +147,7 @@ fn judge(
     progress: &dyn Progress,
 ) -> Result<Finished, Misfit> {
     plan.check_length()?;
+    misfit::check_frames(plan)?;
     let begun = Begun::now();
     let mut findings = Findings::new(options, &candidate.target, candidate.kind, candidate.link.name());
     let way_back =

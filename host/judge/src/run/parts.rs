@@ -55,7 +55,8 @@ impl fmt::Display for Part {
 }
 
 /// The parts that are judged, and how much of each: rows of what is streamed, frames at speed, 1 for the corners and for the rules. A streamed
-/// frame of fewer rows than the tables have is its first ones; behind a grid it is whole.
+/// frame of fewer rows than the tables have is its first ones; behind a grid it is whole. A part that the run does not have, as a
+/// frame behind the plan's last, adds nothing to what is judged.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "Vec<(Part, usize)>", into = "Vec<(Part, usize)>")]
 pub struct Selection(BTreeMap<Part, usize>);

@@ -56,7 +56,7 @@ pub enum FrameSource {
     File {
         /// The file, or what a frame without one is called in reports.
         path: PathBuf,
-        /// Its frame.
+        /// Its frame, of the size and the depth that the plan's tables are for.
         frame: Arc<Frame>,
     },
 }

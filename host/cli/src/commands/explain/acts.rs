@@ -41,6 +41,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "frame-of-other-size",
         "use a frame of COLUMNS x ROWS, or make tables for WIDTH x HEIGHT with `halfrow tables`",
     ),
+    ("frame-unfit", "use a frame of the tables' size and depth, or make tables for the frame's"),
     (
         "frames-too-large-for-board",
         "use frames and tables that the board takes, or load a bitstream for larger ones",

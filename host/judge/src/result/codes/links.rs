@@ -132,6 +132,7 @@ codes! {
         GridEntries [entries, most] => "grid-too-large-for-board",
         GridPitch [pitch] => "grid-of-other-pitch",
         Taps => "kernel-has-too-many-taps",
+        Frame [name] => "frame-unfit",
         = Ring,
         = TooManyFrames,
         = Within,
