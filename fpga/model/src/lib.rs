@@ -9,11 +9,13 @@
 //! ```
 //!
 //! [`correct`] is the oracle: it implements `fpga/DATAPATH.md` and a board must equal it. [`Corrector`] gives the same bits
-//! many times faster, by vectors where the processor has them. A [`Signer`] predicts what a board signs that makes frames on
+//! many times faster, by vectors where the processor has them, behind all tables that [`TableSet::check_ring`] takes. A [`Signer`] predicts what a board signs that makes frames on
 //! its own, whose [`Content`] is that of `fpga/AT-SPEED.md`. [`correct_real`] computes the
 //! same correction in double precision, to show what the integers cost. Equation and section numbers in this crate are
 //! those of Lai et al., *Real-time distortion correction of fish-eye lens based on Bayer image signal*, Optical Review
 //! 2014. The crate knows no board, no protocol and no file.
+
+#![warn(missing_debug_implementations)]
 
 mod bayer;
 mod calibrated;

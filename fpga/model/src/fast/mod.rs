@@ -38,6 +38,10 @@ const BLOCK: usize = 32;
 
 /// Corrects rows and frames with one kernel by one [`ModelPath`].
 ///
+/// Every path gives the same bits behind row factors, and behind a grid whose sources lie in their rows: one that
+/// [`TableSet::check_ring`] takes with some ring, which a program makes sure of once, before it corrects by a grid that it did
+/// not get from a [`Camera`](crate::Camera). No board can serve another grid, and each path makes something else of it.
+///
 /// It may be used for any number of rows, frames and geometries, and allocates nothing for them but when a row is wider
 /// than all before. Several threads take one each: a clone shares what was made of the kernel.
 pub struct Corrector {
@@ -100,7 +104,8 @@ impl Corrector {
     /// Corrects `row`, which is row `index` of a frame behind `tables`, into `output`. A row that the frame does not have
     /// leaves `output` as it is.
     ///
-    /// The samples of `row` must be within the geometry's depth, as those of a [`Frame`] are.
+    /// The samples of `row` must be within the geometry's depth, as those of a [`Frame`] are, and those that a grid's row
+    /// takes must lie in the row, as [`TableSet::check_ring`] makes sure.
     ///
     /// # Panics
     /// When `row` or `output` holds fewer samples than the geometry's width.
@@ -119,6 +124,7 @@ impl Corrector {
     }
 
     /// Corrects `frame` into `samples`, row after row. Rows of one row factor that mirror each other are corrected together.
+    /// A grid's sources must lie in their rows, as [`TableSet::check_ring`] makes sure.
     ///
     /// # Errors
     /// [`CorrectError`] when the frame has another size or depth than the tables are for.
@@ -138,7 +144,8 @@ impl Corrector {
     }
 
     /// Corrects the samples of a frame for which there is no [`Frame`], as those that another program holds, into `output`:
-    /// both W·H samples, row after row. Each row is looked at beside its correction, while it is at hand.
+    /// both W·H samples, row after row. Each row is looked at beside its correction, while it is at hand. A grid's sources must
+    /// lie in their rows, as [`TableSet::check_ring`] makes sure.
     ///
     /// # Errors
     /// [`FrameError::TooBright`] for the first sample that the depth cannot hold. What `output` holds is then of no use.
@@ -210,7 +217,8 @@ impl Corrector {
         }
     }
 
-    /// The corrected frame, as [`crate::correct`] gives it.
+    /// The corrected frame, as [`crate::correct`] gives it where a grid's sources lie in their rows, as [`TableSet::check_ring`]
+    /// makes sure.
     ///
     /// # Errors
     /// [`CorrectError`] when the frame has another size or depth than the tables are for.
