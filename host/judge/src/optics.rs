@@ -350,10 +350,21 @@ pub fn choose(
     optics: Optics,
     kernel_name: Option<&OsStr>,
 ) -> Result<Chosen, OpticsError> {
+    let path = file.as_ref().map(|(path, _)| *path);
     let chosen = unchecked(file, optics, kernel_name)?;
     // The model, too: its paths agree on what a board takes, and on nothing else.
-    chosen.tables.check_ring(chosen.tables.geometry().width().next_power_of_two())?;
+    let served = chosen.tables.check_ring(chosen.tables.geometry().width().next_power_of_two());
+    served.map_err(|source| whose(source, path, &chosen.optics))?;
     Ok(chosen)
+}
+
+/// `source` as an error of the file of tables or of the lens, if there is one.
+fn whose(source: TableError, tables: Option<&Path>, optics: &Optics) -> OpticsError {
+    match (tables, &optics.file) {
+        (Some(path), _) => TableFileError::Content { path: path.to_owned(), source: source.into() }.into(),
+        (None, Some(lens)) => OpticsError::Unfit { path: lens.path.clone(), source: source.into() },
+        (None, None) => source.into(),
+    }
 }
 
 fn unchecked(

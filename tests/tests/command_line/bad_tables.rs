@@ -111,7 +111,11 @@ fn nothing_is_corrected_by_tables_that_no_board_takes() {
     let mut file: Value = serde_json::from_slice(&folder.read("grid.json")).unwrap();
     file["grid"][0] = (file["grid"][0].as_u64().unwrap() - 7_000_000).into();
     folder.write("grid.json", file.to_string());
-    refused(&folder, &[&model[..], &["--tables", "grid.json"]].concat(), "row 0 begins left of the frame");
+    refused(
+        &folder,
+        &[&model[..], &["--tables", "grid.json"]].concat(),
+        "grid.json cannot be used: row 0 begins left of the frame",
+    );
 }
 
 /// Windows' editors write one, and show it nowhere.

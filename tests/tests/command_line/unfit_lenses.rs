@@ -65,3 +65,22 @@ fn the_file_is_named_unless_the_call_is_wrong() {
         );
     }
 }
+
+#[test]
+fn a_lens_that_no_tables_can_follow_is_the_lens_file_s() {
+    let folder = Folder::new();
+    let unfit = "the lens file lens.txt cannot be used for these frames: ";
+    let lens = include_str!("../../../host/judge/tests/lenses/files/dsl215.txt");
+    folder.write("lens.txt", lens.replacen("1.000314 -0.000012", "1.000314 1e308", 1));
+    let exact = ["tables", "-o", "x.json", "--projection", "exact", "--lens", "lens.txt"];
+    refused(&folder, &exact, &format!("{unfit}row 0 would not lie in the frame; "));
+    // A skew that is a number until it is scaled.
+    calibration(&folder, ["40", "40", "0"], [64, 17]);
+    folder.write("lens.json", folder.text("lens.json").replacen("[40,0,", "[40,1e308,", 1));
+    let scaled = ["tables", "-o", "x.json", "--lens", "lens.json", "--lens-pitch", "6", "--pixel-pitch", "3"];
+    refused(
+        &folder,
+        &scaled,
+        "the lens file lens.json cannot be used for these frames: a coefficient of inf",
+    );
+}

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-use halfrow_model::{CameraError, GeometryError, LensError, MAX_RADIUS, MIN_RADIUS, Short};
+use halfrow_model::{CameraError, GeometryError, LensError, MAX_RADIUS, MIN_RADIUS, Short, TableError};
 
 /// A file that holds no lens that can be used. The source says where and what to do.
 #[derive(Debug, thiserror::Error)]
@@ -217,6 +217,27 @@ pub enum LensContentError {
     /// Its pictures have a size that no board takes.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
+    /// It would take a row from beyond the frame.
+    #[error("row {row} would not lie in the frame; calibrate the lens again")]
+    RowOutside {
+        /// The first such row.
+        row: usize,
+    },
+    /// Its tables are none that a board can have.
+    #[error(transparent)]
+    Tables(TableError),
+}
+
+/// A lens has no offsets that its reader could lower.
+impl From<TableError> for LensContentError {
+    fn from(error: TableError) -> Self {
+        match error {
+            TableError::BeforeFirst { row, .. } | TableError::BehindLast { row, .. } => {
+                Self::RowOutside { row }
+            }
+            other => Self::Tables(other),
+        }
+    }
 }
 
 /// A radius that a file leads to is not for its reader to give.

@@ -106,7 +106,7 @@ impl Optics {
             other => other,
         })?;
         let (lens, centre) = match scale {
-            Some(scale) => (file.lens.scaled(scale)?, geometry.middle()),
+            Some(scale) => (file.lens.scaled(scale).map_err(|error| unfit(error.into()))?, geometry.middle()),
             None => file
                 .for_frame(geometry.width(), geometry.height())
                 .map_err(|source| OpticsError::Shape { path: input.path.clone(), source })?,

@@ -164,10 +164,12 @@ codes! {
         Number [line, found] => "ocam-number-malformed",
         Sign (coefficient) => "ocam-sign-wrong",
         Inverse [distance, degrees] => "ocam-inverse-contradicts",
+        RowOutside [row] => "lens-row-outside",
         = Shape,
         = Lens,
         = Camera,
         = Geometry,
+        = Tables,
     }
     ;
     VoidOption [option] => "option-without-effect"
