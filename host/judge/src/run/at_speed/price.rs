@@ -12,6 +12,10 @@ use crate::run::{Generation, Plan};
 /// Payload of a request for records, and of the reply beside these.
 const LOOK: (usize, usize) = (4, 10);
 
+/// Looks that are priced one by one. Behind so many each brings as much as those before it.
+const MOST_LOOKS: u32 = 1 << 14;
+const HALF_OF_THEM: u32 = MOST_LOOKS / 2;
+
 /// The burst of a usual run, with as many frames as `plan` has on a board of these `capabilities`.
 pub(super) fn usual_burst(
     plan: &Plan,
@@ -67,14 +71,24 @@ fn watching(prices: &Prices<'_>, geometry: &Geometry, frames: u32) -> f64 {
         prices.rates.request(LOOK.0, LOOK.1 + records as usize * FrameRecord::BYTES)
     });
     let (mut seconds, mut had) = (prices.short_request(), 0);
+    let (mut looks, mut half) = (0, (seconds, had));
     loop {
         let made = (seconds / frame) as u32;
         // Half of the board's memory is made while the other half is fetched.
         let come = made.saturating_sub(had).min(u32::from(bursts.records / 2).max(1)).min(frames - had);
         seconds += look(come);
         had += come;
+        looks += 1;
         if had >= frames {
             return seconds;
+        }
+        match looks {
+            MOST_LOOKS => {
+                let a_frame = (seconds - half.0) / f64::from((had - half.1).max(1));
+                return seconds + f64::from(frames - had) * a_frame;
+            }
+            HALF_OF_THEM => half = (seconds, had),
+            _ => {}
         }
         let wait = burst.look_again_in(frames - had).as_secs_f64();
         seconds += wait;
@@ -113,5 +127,8 @@ mod tests {
         assert_eq!([seconds(100, 1), seconds(100, 2)], [5250.0, 10_500.0]);
         // 52 us a frame: half of 64 records a look.
         assert_eq!([seconds(10_000_000, 32), seconds(10_000_000, 33)], [10.0, 20.0]);
+        // A day and more of such looks, which take the board less than the 10 ms between them.
+        assert_eq!(seconds(10_000_000, 32 << 24), f64::from(10 << 24));
+        assert_eq!(seconds(10_000_000, u32::MAX), f64::from(10 << 27));
     }
 }
