@@ -69,8 +69,9 @@ impl Lattice {
     pub(super) fn residuals(&self, tables: &TableSet) -> GridResiduals {
         let (mut inner, mut rim, mut beyond) = (ResidualSum::default(), ResidualSum::default(), 0);
         for (&row, wanted) in self.rows.iter().zip(self.wanted.chunks_exact(self.columns.len())) {
-            let values = tables.values(row).unwrap_or_default();
-            for (&column, &(wanted, part)) in self.columns.iter().zip(wanted) {
+            let Some(values) = tables.values(row) else { continue };
+            let columns = self.columns.iter().take_while(|&&column| column < tables.geometry().width());
+            for (&column, &(wanted, part)) in columns.zip(wanted) {
                 let amount = (found(&values, column) - wanted).abs();
                 match part {
                     Part::Inner => inner.add(amount),
@@ -122,7 +123,8 @@ pub(crate) fn is_inner(ahead: f64, height: f64) -> bool {
 
 impl Camera {
     /// What `tables` leave of the exact projection at every `step`th column and row of the frame: columns by which outputs are
-    /// taken from a wrong place of their row.
+    /// taken from a wrong place of their row. The tables are of the camera's geometry; a row or column that they do not have counts
+    /// for nothing.
     #[must_use]
     pub fn grid_residuals(&self, tables: &TableSet, step: usize) -> GridResiduals {
         Lattice::new(self, step, step).residuals(tables)

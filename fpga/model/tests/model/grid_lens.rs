@@ -162,3 +162,21 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn rows_that_tables_do_not_have_leave_nothing() {
+    let of_height = |height| {
+        let geometry = Geometry::centred(64, height, BitDepth::Twelve).unwrap();
+        let lens = Equidistant::from_radius(60.0).unwrap();
+        Camera::new(geometry, lens.into(), geometry.middle(), 180.0).unwrap()
+    };
+    let (high, low) = (of_height(48), of_height(4));
+    let of_low_rows = high.grid_residuals(&low.equation_9(), 7);
+    assert!(of_low_rows.circle.max.is_finite());
+    let narrow = Geometry::centred(64, 48, BitDepth::Twelve).unwrap();
+    let wide = Geometry::centred(200, 48, BitDepth::Twelve).unwrap();
+    let camera =
+        Camera::new(wide, Equidistant::from_radius(60.0).unwrap().into(), wide.middle(), 180.0).unwrap();
+    let tables = TableSet::from_units(narrow, &[1 << 23; 48]).unwrap();
+    assert!(camera.grid_residuals(&tables, 7).circle.max.is_finite());
+}
