@@ -20,7 +20,8 @@ use serde::de::{Error, IgnoredAny};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
-use halfrow::tables::text::{self, quoted};
+use halfrow::model::Short;
+use halfrow::tables::text::{self, quoted, told};
 
 /// A settings file's values. Text is as it would be on the command line, and none of it is looked at here: a relative path
 /// starts where the program was started.
@@ -172,7 +173,7 @@ impl Settings {
         let refused = |error: toml::de::Error| SettingsError::Value {
             path: path.to_owned(),
             line: line(text, &error.span().unwrap_or_default()),
-            reason: error.message().to_owned(),
+            reason: told(error.message()),
         };
         let keys: BTreeMap<Spanned<String>, IgnoredAny> = toml::from_str(text).map_err(refused)?;
         let unknown = keys.into_keys().filter(|key| !known_keys().contains(&key.get_ref().as_str()));
@@ -205,7 +206,9 @@ fn seconds<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D:
     let seconds = f64::deserialize(deserializer)?;
     match Duration::try_from_secs_f64(seconds) {
         Ok(_) => Ok(Some(seconds)),
-        Err(_) => Err(D::Error::custom(format!("{seconds} is no time in seconds, which is 0 or more"))),
+        Err(_) => {
+            Err(D::Error::custom(format!("{} is no time in seconds, which is 0 or more", Short(seconds))))
+        }
     }
 }
 
@@ -214,7 +217,7 @@ fn percent<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D:
     if (0.0..=100.0).contains(&percent) {
         Ok(Some(percent))
     } else {
-        Err(D::Error::custom(format!("{percent} is no share in percent, which is 0 to 100")))
+        Err(D::Error::custom(format!("{} is no share in percent, which is 0 to 100", Short(percent))))
     }
 }
 

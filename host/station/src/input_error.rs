@@ -51,9 +51,6 @@ pub enum InputError {
     },
 }
 
-/// Characters that are told of what TOML says, which quotes keys whole.
-const TOLD: usize = 200;
-
 /// The text of a file of settings, of a plan or of words.
 pub(crate) fn text_of(path: &Path) -> Result<String, InputError> {
     text::read(path, text::MAX_BYTES).map_err(|source| {
@@ -97,10 +94,7 @@ impl Fault {
     /// What TOML or the types of the values refuse; `keys` says where all keys are listed.
     pub(crate) fn of_toml(error: &toml::de::Error, keys: &str) -> Self {
         let at = error.span().map_or(0, |span| span.start);
-        let mut what = error.message().lines().collect::<Vec<_>>().join("; ");
-        if let Some((end, _)) = what.char_indices().nth(TOLD) {
-            what.replace_range(end.., "...");
-        }
+        let what = text::told(&error.message().lines().collect::<Vec<_>>().join("; "));
         Self::wrong(at, what, format!("correct the line; {keys}"))
     }
 

@@ -4,7 +4,7 @@ use halfrow_lab::paper::Item;
 use halfrow_tests::program::Folder;
 use serde_json::{Value, json};
 
-use crate::refused;
+use crate::{refused, refused_with};
 
 /// The report of a run with these arguments, which must end with `code`.
 #[track_caller]
@@ -138,8 +138,12 @@ fn a_photograph_is_shown_by_lines_that_are_marked_in_it() {
         ),
     ] {
         folder.write("lines.json", content);
-        refused(&folder, &["paper", "-o", "out", call[0], call[1], call[2], call[3], call[4], call[5]], said);
+        refused(&folder, &[&["paper", "-o", "out"], &call[..]].concat(), said);
     }
+    folder.write("lines.json", format!("{{\n\"{}\": 1}}", "9".repeat(70_000)));
+    let ended =
+        refused_with(2, &folder, &[&["paper", "-o", "out"], &call[..]].concat(), " at line 2 column ");
+    assert!(ended.stderr.len() < 1000, "{}", ended.stderr);
     refused(&folder, &["paper", "-o", "out", "fig4", "--lines", "lines.json"], "--photograph");
 }
 

@@ -221,3 +221,17 @@ fn a_settings_file_that_is_wrong_is_never_passed_over() {
     folder.write(FILE, "frame = ['builtin:moon']\n");
     refused(&folder, &call, "`moon` is no built-in frame");
 }
+
+#[test]
+fn an_error_quotes_no_more_of_a_value_than_can_be_read() {
+    let folder = Folder::new();
+    let said = |settings: &str| {
+        let ended = run(&folder, settings, None, &[]);
+        assert!(ended.code == Some(2) && ended.stderr.len() < 1000, "{}", ended.stderr);
+        ended.stderr
+    };
+    assert!(said("retry_limit = 1e308").contains("line 1: 1e308 is no share in percent"));
+    assert!(said("timeout = 1e308").contains("line 1: 1e308 is no time in seconds"));
+    let long = said(&format!("seed = '{}'", "9".repeat(70_000)));
+    assert!(long.contains("line 1: invalid type: string \"999") && long.contains("..."), "{long}");
+}

@@ -10,6 +10,9 @@ pub const MAX_BYTES: u64 = 1 << 20;
 /// Characters of a foreign value that an error quotes.
 const QUOTED: usize = 40;
 
+/// Characters of what a reader of TOML or JSON says.
+const TOLD: usize = 200;
+
 /// The whole text of the file `path`.
 ///
 /// # Errors
@@ -37,7 +40,16 @@ pub(crate) fn without_mark(text: &str) -> &str {
 
 /// The beginning of `text`, short enough to stand in a sentence.
 pub fn quoted(text: &str) -> String {
-    match text.char_indices().nth(QUOTED) {
+    beginning(text, QUOTED)
+}
+
+/// The beginning of what a reader of TOML or JSON says, which quotes keys and values whole.
+pub fn told(text: &str) -> String {
+    beginning(text, TOLD)
+}
+
+fn beginning(text: &str, most: usize) -> String {
+    match text.char_indices().nth(most) {
         None => text.to_owned(),
         Some((end, _)) => format!("{}...", text.get(..end).unwrap_or_default()),
     }

@@ -8,6 +8,7 @@
 //! Points are columns and rows of the photograph from 0. The circle is where the lens, which is taken for an equidistant one,
 //! images 90° from its axis.
 
+use std::error::Error;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -57,7 +58,7 @@ pub enum MarkedError {
         /// The file.
         path: PathBuf,
         /// What is wrong, and where.
-        source: serde_json::Error,
+        source: Box<dyn Error + Send + Sync>,
     },
     /// A circle without a size.
     #[error("the circle in {} has the radius {radius}; give the pixels from its middle to where the lens images 90°", path.display())]
@@ -102,6 +103,13 @@ struct Marked {
     is: Held,
 }
 
+/// `error` with its place behind no more of it than can be read.
+fn short(error: &serde_json::Error) -> Box<dyn Error + Send + Sync> {
+    let (whole, place) = (error.to_string(), format!(" at line {} column {}", error.line(), error.column()));
+    let said = whole.strip_suffix(&place).unwrap_or(&whole);
+    format!("{}{place}", text::told(said)).into()
+}
+
 impl MarkedPhotograph {
     /// The photograph in the file `photograph`, with the lines in the file `lines`.
     ///
@@ -111,8 +119,8 @@ impl MarkedPhotograph {
         let path = || lines.to_owned();
         let text =
             text::read(lines, text::MAX_BYTES).map_err(|source| MarkedError::Io { path: path(), source })?;
-        let content: Content =
-            serde_json::from_str(&text).map_err(|source| MarkedError::Content { path: path(), source })?;
+        let content: Content = serde_json::from_str(&text)
+            .map_err(|error| MarkedError::Content { path: path(), source: short(&error) })?;
         let Circle { centre: [column, row], radius } = content.circle;
         let lens = Equidistant::from_radius(RADIUS).ok().filter(|_| radius >= 1.0);
         let lens = lens.ok_or_else(|| MarkedError::Radius { path: path(), radius })?;
