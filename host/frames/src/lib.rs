@@ -3,6 +3,8 @@
 //! A file's samples are taken as they are, never rescaled; only a picture in colour is brought to the size and depth asked for, as
 //! it is mosaicked. The files mostly say neither the Bayer phase nor the depth, so [`ReadOptions`] gives both.
 
+#![warn(missing_debug_implementations)]
+
 #[cfg(not(target_os = "linux"))]
 compile_error!("halfrow-frames is for Linux alone; docs/portable.md says what works elsewhere");
 

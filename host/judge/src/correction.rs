@@ -10,7 +10,7 @@ use crate::board::{Board, BoardError, NumberedFrame, ReturnedRow, RowTiming, Row
 use crate::progress::Progress;
 
 /// What a board is to correct with.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Correction<'a> {
     /// The row factors.
     pub tables: &'a TableSet,

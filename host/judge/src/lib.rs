@@ -30,6 +30,8 @@
 //! a call names before anything is done.
 //! [`compare`], [`diagnosis`], [`result`] and [`report`] see samples and counts, never a link.
 
+#![warn(missing_debug_implementations)]
+
 pub mod board;
 pub mod call;
 pub mod compare;

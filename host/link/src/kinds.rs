@@ -15,6 +15,7 @@ pub struct Form {
 }
 
 /// A kind of board.
+#[derive(Debug)]
 pub struct Kind {
     /// What a target begins with.
     pub name: &'static str,

@@ -1,6 +1,8 @@
 //! A link: a pipe that carries bytes to a board and back, with deadlines. [`open`] opens the one that a [`Target`] names, and
 //! [`discovery`] finds what could be a board.
 
+#![warn(missing_debug_implementations)]
+
 #[cfg(not(target_os = "linux"))]
 compile_error!("halfrow-link is for Linux alone; docs/portable.md says what works elsewhere");
 

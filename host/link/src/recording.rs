@@ -7,6 +7,7 @@
 //! ```
 //! Integers are little endian. A recording that ends early is one of an interrupted run.
 
+use std::fmt;
 use std::fs::File;
 use std::io::{self, Read as _, Write};
 use std::path::{Path, PathBuf};
@@ -117,6 +118,12 @@ pub struct Recorder {
 
 /// Why a recording could not be written or finished, once its recorder is gone; empty when it is whole.
 pub type Lost = Arc<OnceLock<Unfinished>>;
+
+impl fmt::Debug for Recorder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Recorder").field("link", &self.link.name()).finish_non_exhaustive()
+    }
+}
 
 impl Recorder {
     /// Records what `link` carries to `file`, with `run` in front.

@@ -18,6 +18,7 @@ mod walk;
 mod x86;
 
 use std::convert::Infallible;
+use std::fmt;
 use std::sync::Arc;
 
 pub use path::{ModelPath, UnavailablePath, UnknownPath};
@@ -51,6 +52,12 @@ pub struct Corrector {
     ends: [Ends; 2],
     /// Of the grid's row that is corrected.
     values: RowValues,
+}
+
+impl fmt::Debug for Corrector {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Corrector").field("path", &self.path).finish_non_exhaustive()
+    }
 }
 
 impl Clone for Corrector {

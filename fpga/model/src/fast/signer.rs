@@ -1,5 +1,6 @@
 //! Frames of a burst made, corrected and signed, as a board does it.
 
+use std::fmt;
 use std::ops::Range;
 
 use super::{Corrector, content};
@@ -19,6 +20,12 @@ pub struct Signer {
     inputs: Vec<u16>,
     /// The same rows as they leave it.
     outputs: Vec<u16>,
+}
+
+impl fmt::Debug for Signer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Signer").field("corrector", &self.corrector).finish_non_exhaustive()
+    }
 }
 
 impl Signer {

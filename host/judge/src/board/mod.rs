@@ -18,6 +18,7 @@ mod stop;
 mod tables;
 mod tally;
 
+use std::fmt;
 use std::time::Duration;
 
 use halfrow_model::{Geometry, GridShape};
@@ -91,6 +92,16 @@ pub struct Board {
     options: OpenOptions,
     /// The shapes of the tables of the last commit, and of the other bank.
     shapes: [Option<GridShape>; 2],
+}
+
+impl fmt::Debug for Board {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { welcome, capabilities, .. } = self;
+        f.debug_struct("Board")
+            .field("welcome", welcome)
+            .field("capabilities", capabilities)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Board {

@@ -17,7 +17,7 @@ use crate::link::{Recording, RecordingError};
 use crate::tables::{ContentError, TableFile};
 
 /// The plan of a recorded run.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct RecordedRun {
     version: String,
     arguments: Vec<String>,

@@ -54,6 +54,7 @@ use halfrow::frames::preview::RgbImage;
 use halfrow::progress::Progress;
 
 /// What items are made from.
+#[derive(Debug)]
 pub struct Material<'a> {
     /// The 24 photographs; empty when no item needs them.
     pub photographs: &'a [RgbImage],

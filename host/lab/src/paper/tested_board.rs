@@ -13,6 +13,7 @@ use halfrow::run::misfit;
 use halfrow::target::BoardKind;
 
 /// An open session, and what it has streamed so far.
+#[derive(Debug)]
 pub struct TestedBoard {
     board: Board,
     kind: BoardKind,
