@@ -11,7 +11,7 @@ use crate::clock;
 /// The other side's certificate is not good. Moments are as a clock on the station's wall shows them.
 #[derive(Debug, thiserror::Error)]
 pub enum CertificateError {
-    /// It was good once.
+    /// The other side's certificate was valid until a moment that has passed, by this computer's clock.
     #[error(
         "the certificate of {host} was valid until {until}, and this computer's clock says {now}; renew it there, or set the clock if it \
          is wrong"
@@ -24,7 +24,7 @@ pub enum CertificateError {
         /// This moment.
         now: String,
     },
-    /// It will be good.
+    /// The other side's certificate is valid from a later moment on, by this computer's clock.
     #[error(
         "the certificate of {host} is valid from {from} on, and this computer's clock says {now}; set the clock, or wait until then if it \
          is right"
@@ -37,7 +37,7 @@ pub enum CertificateError {
         /// This moment.
         now: String,
     },
-    /// It is of somebody else.
+    /// The other side's certificate is of other names than the address has.
     #[error(
         "the certificate of {host} is of another name ({names}); give the address by a name that it has, or have it made for this one"
     )]
@@ -47,7 +47,7 @@ pub enum CertificateError {
         /// The names that it has.
         names: String,
     },
-    /// Nobody who is trusted says whose it is.
+    /// The other side's certificate is signed by none of those in `ca`, or of the system's own where the settings name no file.
     #[error(
         "the certificate of {host} is signed by nobody who is trusted; give a file of those that sign it as `ca`"
     )]
@@ -55,7 +55,7 @@ pub enum CertificateError {
         /// The other side.
         host: String,
     },
-    /// It is not good for another reason.
+    /// The other side's certificate is not good for a reason that its cause tells.
     #[error("the certificate of {host} is not good for this; have another one made there")]
     Unfit {
         /// The other side.
