@@ -63,7 +63,8 @@ pub(super) fn of_left_log(folder: &Folder) -> Result<(Log, Generations), StoreEr
     let log = fs::metadata(path.with_extension("db-wal"));
     let is_left = log.is_ok_and(|log| log.len() > EMPTY_LOG);
     let (Some(found), true) = (found, is_left) else {
-        return Ok((Log::Own, Generations(found.into_iter().collect())));
+        // A file that is not made yet will have 0.
+        return Ok((Log::Own, Generations(vec![found.unwrap_or_default()])));
     };
     let mut noted = noted(folder);
     if noted.0.is_empty() {

@@ -80,6 +80,19 @@ fn no_green_is_lost_wherever_the_program_is_killed() {
     assert!(judged_only > 0, "the control");
 }
 
+/// In a folder in which nothing was kept before.
+#[test]
+fn a_first_start_is_in_no_other_s_way_wherever_it_is_killed() {
+    let all = calls(&Station::with(PLAN), "CAT00000", "fsync,fdatasync");
+    assert!(all.len() >= 10, "{all:?}");
+    for (name, number) in all {
+        let station = Station::with(PLAN);
+        injected(&station, "CAT00001", &format!("{name}:signal=KILL:when={number}"));
+        let next = station.run("CAT00000", "mock");
+        assert_eq!(next.code, Some(0), "{name} {number}: {next:?}");
+    }
+}
+
 /// At every one of them.
 #[test]
 #[ignore = "for scripts/soak"]
