@@ -4,6 +4,7 @@
 //! write, and clears it ([`clear`]).
 
 mod claim;
+mod error;
 mod folder;
 mod lock;
 mod place;
@@ -18,6 +19,7 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
 pub use claim::Claim;
+pub use error::{Unfinished, WriteAsideError};
 pub use folder::{AsideFolder, Misplaced};
 pub use place::{Place, check, check_folder, clear};
 use rights::Rights;
@@ -28,58 +30,6 @@ pub(crate) const BUFFER: usize = 1 << 17;
 
 /// The same for streams.
 const STREAM_BUFFER: usize = 1 << 13;
-
-/// A file that could not be written.
-#[derive(Debug, thiserror::Error)]
-pub enum WriteAsideError {
-    /// The file is there and may not be replaced.
-    #[error("{} exists; allow it to be overwritten, or name another file", path.display())]
-    Exists {
-        /// The file.
-        path: PathBuf,
-    },
-    /// What is there is a folder, a device or the like, which a file must not replace.
-    #[error("{} is no regular file; name a file, not a folder or a device", path.display())]
-    NotAFile {
-        /// What is there.
-        path: PathBuf,
-    },
-    /// What is there is a symbolic link.
-    #[error("{} is a link to {}, and links are not written through; name the file itself", path.display(), to.display())]
-    Link {
-        /// The link.
-        path: PathBuf,
-        /// Where it leads.
-        to: PathBuf,
-    },
-    /// Another run is making a file or folder of this name.
-    #[error("another run is writing {}; wait until it is done, or choose another name", path.display())]
-    Claimed {
-        /// The name.
-        path: PathBuf,
-    },
-    /// The system did not take the file.
-    #[error("cannot write {}; check that its folder exists, is writable and has space", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// The system's reason.
-        source: io::Error,
-    },
-}
-
-/// A stream whose file could not be put in its place.
-#[derive(Debug, thiserror::Error)]
-#[error("{source}{}", match kept {
-    Some(kept) => format!(" (what there is of it is kept in {})", kept.display()),
-    None => String::new(),
-})]
-pub struct Unfinished {
-    /// Where it is kept as far as it goes; none if it is not.
-    pub kept: Option<PathBuf>,
-    /// Why.
-    pub source: WriteAsideError,
-}
 
 /// A file that is written but not in its place: it goes by another name in the same folder until [`Self::put_in_place`],
 /// and is removed if that is never called.
@@ -143,13 +93,22 @@ impl Aside {
     ///
     /// # Errors
     /// [`WriteAsideError`] when the place has been taken meanwhile and may not be, or the system refuses.
-    pub fn put_in_place(mut self) -> Result<(), WriteAsideError> {
+    pub fn put_in_place(self) -> Result<(), WriteAsideError> {
+        let path = self.path.clone();
+        self.rename_into_place()?;
+        settle(&path);
+        Ok(())
+    }
+
+    /// [`Self::put_in_place`] for a caller who brings the new name to the disk, and to whom it matters when that fails.
+    ///
+    /// # Errors
+    /// As [`Self::put_in_place`].
+    pub fn rename_into_place(mut self) -> Result<(), WriteAsideError> {
         let written = self.whole();
         let Self { out, path, overwrite, .. } = self;
         let file = out.into_parts().0;
-        written.and_then(|()| place(file, &path, overwrite).map_err(|(error, _)| error))?;
-        settle(&path);
-        Ok(())
+        written.and_then(|()| place(file, &path, overwrite).map_err(|(error, _)| error))
     }
 
     /// [`Self::put_in_place`], or else keeps what there is under a name that nothing else has.

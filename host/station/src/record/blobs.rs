@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use halfrow::frames::written_aside::{self, WriteAsideError, write_aside};
+use halfrow::frames::written_aside::{self, Aside, WriteAsideError};
 use halfrow::result::sha256;
 
 /// Evidence that cannot be written or read.
@@ -92,7 +92,8 @@ impl Blobs {
                 .map_err(|source| BlobError::Folder { path: folder.to_owned(), source })?;
             synced(&self.folder)?;
         }
-        match write_aside(&path, false, |file| file.write_all(bytes)) {
+        let written = Aside::written(&path, false, |file| file.write_all(bytes));
+        match written.and_then(Aside::rename_into_place) {
             // A run that ended early may have left it, and its name not yet on the disk.
             Err(WriteAsideError::Exists { .. }) => {
                 self.get(&hash)?;
@@ -101,10 +102,10 @@ impl Blobs {
                 dated
                     .and_then(|file| file.set_modified(SystemTime::now()))
                     .map_err(|source| BlobError::Folder { path: folder.to_owned(), source })?;
-                synced(folder)?;
             }
             written => written?,
         }
+        synced(folder)?;
         Ok(hash)
     }
 

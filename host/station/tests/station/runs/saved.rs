@@ -18,15 +18,16 @@ fn only_one_program_writes() {
     assert_eq!(station.run("CAT00001", "mock").code, Some(0));
 }
 
-/// The system calls of a run in their order: the log of the database is on the disk before the verdict is said. In the
-/// control, where nothing is brought to the disk, the same look finds that it is not.
+/// The system calls of a run in their order: the record is on the disk, and its name, before the log of the database tells
+/// of it, and the log before the verdict is said. In the controls, where one of these is not brought to the disk, the same
+/// look finds that it is not.
 #[test]
-fn the_verdict_is_said_after_the_log_is_on_the_disk() {
+fn the_verdict_is_said_after_record_and_log_are_on_the_disk() {
     let station = Station::with(PLAN);
     station.run("CAT00001", "mock");
     let trace = station.path("trace");
     let traced = Command::new("strace")
-        .args(["-y", "-e", "trace=pwrite64,fdatasync,fsync,write", "-o"])
+        .args(["-y", "-e", "trace=pwrite64,fdatasync,fsync,renameat2,write", "-o"])
         .arg(&trace)
         .arg(program())
         .args(station.run_arguments("CAT00002", "mock"))
@@ -36,8 +37,25 @@ fn the_verdict_is_said_after_the_log_is_on_the_disk() {
     let lines = std::fs::read_to_string(trace).unwrap();
     let lines: Vec<_> = lines.lines().collect();
     assert!(is_safe(&lines), "{}", lines.join("\n"));
-    let unsynced: Vec<_> = lines.iter().copied().filter(|line| !line.contains("sync(")).collect();
-    assert!(!is_safe(&unsynced), "the control");
+    let without = |path: &str| {
+        let kept = |line: &&str| !(line.contains("sync(") && line.contains(path));
+        lines.iter().copied().filter(kept).collect::<Vec<_>>()
+    };
+    assert!(!is_safe(&without("station.db-wal")), "the control");
+    assert!(is_kept(&lines), "{}", lines.join("\n"));
+    assert!(!is_kept(&without(".aside>")), "the control");
+    assert!(!is_kept(&without("/data/blobs/")), "the control");
+}
+
+/// Whether the record is brought to the disk before it has its name, and its name before anything more is written to the log.
+fn is_kept(lines: &[&str]) -> bool {
+    let is_renamed = |line: &&str| line.starts_with("renameat2(") && line.contains("/data/blobs/");
+    let named = lines.iter().position(is_renamed).unwrap();
+    let is_synced = |line: &&str| line.starts_with("fsync(") && line.contains("/data/blobs/");
+    let behind = &lines[named..];
+    let told = behind.iter().position(|line| line.contains("station.db-wal")).unwrap();
+    lines[..named].iter().any(|line| is_synced(line) && line.contains(".aside>"))
+        && behind[..told].iter().any(|line| is_synced(line) && !line.contains(".aside>"))
 }
 
 /// Whether the last write to the log before the verdict is followed by bringing it to the disk.

@@ -83,6 +83,46 @@ fn no_verdict_is_shown_that_the_disk_did_not_take() {
     });
 }
 
+/// A disk tells of a lost write once, and takes what comes after: each of the three calls that bring evidence to the disk,
+/// the file and the names of it and of its folder, is heeded when it alone fails.
+#[test]
+fn evidence_that_the_disk_did_not_take_at_once_is_none() {
+    let station = Station::with(PLAN);
+    station.run("CAT00001", "mock");
+    let mut seen = 0;
+    for number in 1.. {
+        // Evidence makes its folder anew.
+        std::fs::remove_dir_all(station.data().join("blobs")).unwrap();
+        let trace = station.path("failed");
+        let did: Did = Command::new("strace")
+            .args([
+                "-qq",
+                "-y",
+                "-e",
+                "trace=fsync",
+                "-e",
+                &format!("inject=fsync:error=EIO:when={number}"),
+                "-o",
+            ])
+            .arg(&trace)
+            .arg(program())
+            .args(station.run_arguments("CAT00002", "mock"))
+            .output()
+            .unwrap()
+            .into();
+        let trace = std::fs::read_to_string(trace).unwrap();
+        let Some(failed) = trace.lines().find(|line| line.contains("(INJECTED)")) else { break };
+        if failed.contains("/data/blobs") {
+            assert_eq!(did.code, Some(3), "{failed}: {did:?}");
+            assert!(did.said.contains("UNSAVED CAT00002: keep this board apart"), "{failed}: {did:?}");
+            seen += 1;
+        }
+        let after = station.run("CAT00003", "mock");
+        assert_eq!(after.code, Some(0), "{failed}: {after:?}");
+    }
+    assert_eq!(seen, 3);
+}
+
 /// From every call on.
 #[test]
 #[ignore = "for scripts/soak"]

@@ -1,0 +1,56 @@
+//! Why a file is not in its place.
+
+use std::io;
+use std::path::PathBuf;
+
+/// A file that could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteAsideError {
+    /// The file is there and may not be replaced.
+    #[error("{} exists; allow it to be overwritten, or name another file", path.display())]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
+    /// What is there is a folder, a device or the like, which a file must not replace.
+    #[error("{} is no regular file; name a file, not a folder or a device", path.display())]
+    NotAFile {
+        /// What is there.
+        path: PathBuf,
+    },
+    /// What is there is a symbolic link.
+    #[error("{} is a link to {}, and links are not written through; name the file itself", path.display(), to.display())]
+    Link {
+        /// The link.
+        path: PathBuf,
+        /// Where it leads.
+        to: PathBuf,
+    },
+    /// Another run is making a file or folder of this name.
+    #[error("another run is writing {}; wait until it is done, or choose another name", path.display())]
+    Claimed {
+        /// The name.
+        path: PathBuf,
+    },
+    /// The system did not take the file.
+    #[error("cannot write {}; check that its folder exists, is writable and has space", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+}
+
+/// A stream whose file could not be put in its place.
+#[derive(Debug, thiserror::Error)]
+#[error("{source}{}", match kept {
+    Some(kept) => format!(" (what there is of it is kept in {})", kept.display()),
+    None => String::new(),
+})]
+pub struct Unfinished {
+    /// Where it is kept as far as it goes; none if it is not.
+    pub kept: Option<PathBuf>,
+    /// Why.
+    pub source: WriteAsideError,
+}
