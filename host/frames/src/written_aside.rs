@@ -279,6 +279,16 @@ mod tests {
     }
 
     #[test]
+    fn a_link_that_came_meanwhile_is_not_replaced_either() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        let aside = Aside::written(&path, true, |out| out.write_all(b"late")).unwrap();
+        std::os::unix::fs::symlink("elsewhere", &path).unwrap();
+        assert!(matches!(aside.put_in_place(), Err(WriteAsideError::Link { .. })));
+        assert_eq!(fs::read_link(&path).unwrap(), Path::new("elsewhere"));
+    }
+
+    #[test]
     fn a_folder_that_is_not_there_is_an_error_of_the_system() {
         let folder = tempfile::tempdir().unwrap();
         let refused = write(&folder.path().join("none/a"), true, "text").unwrap_err();

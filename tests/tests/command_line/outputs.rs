@@ -212,6 +212,34 @@ fn a_file_system_without_renames_to_new_names_and_without_links_takes_files() {
     assert_eq!(folder.names("."), ["a.pgm"]);
 }
 
+/// What rename(2) and fsync(2) leave to the caller: what has its name before its bytes are on the disk may be empty after a
+/// power cut, and a name that is not on the disk may be gone.
+#[test]
+fn outputs_are_on_the_disk_before_their_names_are_and_their_names_at_the_end() {
+    let folder = Folder::new();
+    for (call, name) in [
+        (small("tables", &["-o", "t.json"]), "t.json"),
+        (small("verify", &["--report", "out"]), "out"),
+        (small("verify", &["--report", "out", "--overwrite"]), "out"),
+    ] {
+        let line = "exec strace -f -qq -y -e trace=fsync,rename,renameat2 -o calls \"$@\"";
+        let ended = finish(&mut folder.by_shell(line, call.iter().copied()));
+        assert_eq!(ended.code, Some(0), "{call:?}: {}{}", ended.stdout, ended.stderr);
+        let calls = folder.text("calls");
+        let calls: Vec<_> = calls.lines().collect();
+        let is_named = |line: &&str| line.contains("rename") && line.contains(&format!("{name}\""));
+        let named = calls.iter().position(is_named).unwrap();
+        let aside = calls[named].split('"').nth(1).unwrap();
+        let is_synced = |calls: &[&str], path: &str| {
+            calls.iter().any(|line| line.contains("fsync(") && line.contains(&format!("{path}>)")))
+        };
+        let aside = Path::new(aside).file_name().unwrap().to_str().unwrap();
+        assert!(is_synced(&calls[..named], &format!("/{aside}")), "{call:?}: {calls:#?}");
+        let around = folder.path().file_name().unwrap().to_str().unwrap();
+        assert!(is_synced(&calls[named..], &format!("/{around}")), "{call:?}: {calls:#?}");
+    }
+}
+
 #[test]
 fn two_outputs_are_two() {
     let folder = Folder::new();

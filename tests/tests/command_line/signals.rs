@@ -151,6 +151,22 @@ fn a_second_signal_ends_at_once_what_the_first_could_not() {
     assert_eq!(folder.names("out"), [""; 0]);
 }
 
+/// It hears both together, unless it has looked for the first one before the second came: then it is begun again.
+#[test]
+fn what_was_recorded_stays_when_a_second_signal_ends_the_run() {
+    let folder = Folder::new();
+    wait_until("a run to end at a second signal", || {
+        let running = streaming(&folder, ["--record", "run.rec", "--overwrite"]);
+        running.stop();
+        for signal in ["INT", "TERM", "CONT"] {
+            running.send(signal);
+        }
+        running.end().stderr.contains("stopped by a signal")
+    });
+    assert_eq!(folder.halfrow(small("tables", &["-o", "t.json"])).code, Some(0));
+    assert!(folder.read("run.rec.partial").starts_with(b"halfrow recording 1\n"));
+}
+
 /// Its log waits for somebody to read it.
 #[test]
 fn a_second_signal_ends_what_waits_to_say_something() {

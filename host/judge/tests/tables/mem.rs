@@ -93,14 +93,21 @@ fn both_files_are_written_and_read_back() {
 #[test]
 fn when_one_file_may_not_be_replaced_neither_is_written() {
     let folder = tempfile::tempdir().unwrap();
-    let [rows, kernel] = mem::paths(&folder.path().join("line"));
-    fs::write(&kernel, "mine").unwrap();
+    let both = mem::paths(&folder.path().join("line"));
     let write = |overwrite| {
         mem::write(&folder.path().join("line"), &tables(), &Interpolant::Linear.into(), overwrite)
     };
-    assert!(matches!(write(false), Err(WriteAsideError::Exists { path }) if path == kernel));
-    assert!(!rows.exists());
-    assert_eq!(write(true).unwrap(), [rows, kernel]);
+    for (mine, other) in [(&both[0], &both[1]), (&both[1], &both[0])] {
+        fs::write(mine, "mine").unwrap();
+        assert!(matches!(write(false), Err(WriteAsideError::Exists { path }) if path == *mine));
+        assert_eq!(fs::read_to_string(mine).unwrap(), "mine");
+        assert!(!other.exists());
+        fs::remove_file(mine).unwrap();
+    }
+    for path in &both {
+        fs::write(path, "mine").unwrap();
+    }
+    assert_eq!(write(true).unwrap(), both);
 }
 
 #[test]
