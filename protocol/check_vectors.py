@@ -46,8 +46,9 @@ SHAPE = "v:B k:B"
 TABLES = {0: "I", 1: "hhhhh", 3: "I"}  # the words of an entry
 RECORD = "signature:I samples:I rows:H least_latency:H most_latency:H pauses:H generation:B flags:B"
 TRAPPED = "frame:I row:H width:H signature:I samples"
-MEANINGS = {"take_over": range(2), "level": range(3), "table": TABLES, "bank": range(2), "mode": range(4),
+MEANINGS = {"level": range(3), "table": TABLES, "bank": range(2), "mode": range(4),
             "state": range(3), "kept": range(2)}  # the values that have a meaning
+LOOKED_AT = {"flags": lambda value: value & 1, "take_over": bool, "clear": bool}  # what alone of a value means anything
 
 
 def unstuff(piece):
@@ -86,8 +87,9 @@ def capabilities(data, fields):
     """Every known tag becomes a field of its own."""
     while data:
         tag, value, data = data[0], data[2 : 2 + data[1]], data[2 + data[1] :]
+        if tag == 0x11:
+            value = value[:1].strip(b"\0")
         if tag in CAPABILITIES and (value or tag != 0x11):
-            value = value[:1] if tag == 0x11 else value
             fields[CAPABILITIES[tag]] = value.decode() if tag == 0x21 else int.from_bytes(value, "little")
         elif tag == 0x10 and value:
             fields |= read_fields(BURSTS, value)
@@ -102,11 +104,10 @@ def entered(data, fields):
 
 
 def records(data, fields):
-    """The numbers of one record after the other; bit 0 alone of the flags means anything."""
+    """The numbers of one record after the other."""
     size = struct.calcsize("<" + "".join(word[-1] for word in RECORD.split()))
     found = [read_fields(RECORD, data[at : at + size]) for at in range(0, size * fields["count"], size)]
-    values = [value for record in found for value in (record | {"flags": record["flags"] & 1}).values()]
-    return " ".join(map(str, values))
+    return " ".join(str(value) for record in found for value in record.values())
 
 
 def signatures(data, fields):
@@ -133,7 +134,7 @@ def read_fields(layout, data):
             data = data[struct.calcsize("<" + letter) :]
             if value not in MEANINGS.get(name, (value,)):
                 raise ValueError(f"{name} {value} has no meaning")
-            fields[name] = value.hex(" ") if letter == "4s" else value
+            fields[name] = value.hex(" ") if letter == "4s" else int(LOOKED_AT.get(name, int)(value))
         elif (value := TAILS[name](data, fields)) is not None:
             fields[name] = value
     return fields
@@ -153,7 +154,7 @@ def receive(piece, layouts):
         return {"damage": "version"}
     if header["length"] != len(packet) - 16:
         return {"damage": "length"}
-    header["reply"] = header.pop("flags") & 1
+    header["reply"] = header.pop("flags")
     if header["kind"] not in layouts:
         return header | {"refused": "kind"}
     try:

@@ -187,6 +187,16 @@ proptest! {
 }
 
 #[test]
+fn the_longest_packet_may_end_in_a_piece_of_its_own() {
+    let window = 0x0101_0101;
+    let header = Header { kind: Kind::Echo.code(), sequence: 0x0101, reply: true, session: 1, window };
+    let wire = encode(&header, |payload| payload.extend([7; MAX_PAYLOAD]));
+    // 4096 bytes without a zero are sixteen runs of 254 and one of 32, each behind its length.
+    assert_eq!(wire.len(), 1 + 4096 + 17 + 1);
+    assert_eq!(receive(&wire, &[wire.len() - 1, 1]), [Ok((header, vec![7; MAX_PAYLOAD]))]);
+}
+
+#[test]
 fn no_flipped_bit_of_a_packet_goes_unnoticed() {
     let header = Header { sequence: 0x1234, session: 7, window: 0x89ab_cdef, ..Header::default() };
     let wire = encode(&header, |payload| payload.extend(0..40));

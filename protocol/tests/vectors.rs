@@ -306,6 +306,17 @@ fn every_refusal_code_has_a_vector() {
 }
 
 #[test]
+fn a_trap_either_has_a_row_or_none() {
+    let vector = all().into_iter().find(|vector| vector.name == "trap-reply.hex").expect("its vector");
+    let (mut decoder, mut input) = (Decoder::new(), vector.bytes.as_slice());
+    let packet = decoder.next(&mut input).expect("an event").expect("a packet");
+    let mut payload = packet.payload.to_vec();
+    payload[0] = 2;
+    let packet = Packet { header: packet.header, payload: &payload };
+    assert_eq!(Reply::read(&packet), Err(Malformed::Value { field: "kept", value: 2 }));
+}
+
+#[test]
 fn a_reply_to_hello_with_another_magic_is_no_halfrow_boards() {
     let vector = all().into_iter().find(|vector| vector.name == "hello-reply.hex").expect("its vector");
     let (mut decoder, mut input) = (Decoder::new(), vector.bytes.as_slice());

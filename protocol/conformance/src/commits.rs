@@ -43,6 +43,18 @@ pub(crate) fn a_commit_takes_effect_with_row_0_of_its_frame_and_not_before(on: &
     assert_eq!(bench.status().generation, 2);
 }
 
+pub(crate) fn a_commit_waits_through_frames_of_higher_numbers(on: &dyn Boards) {
+    let mut bench = in_use(on);
+    golden_tables().upload(&mut bench);
+    bench.done(&golden_tables().commit(2, 3));
+    let generations = [(1, 5), (2, 6), (3, 3)].map(|(number, frame)| {
+        let mut row = row(1, number);
+        row.place.frame = frame;
+        made(&bench.send(&row))[0].0
+    });
+    assert_eq!(generations, [1, 1, 2]);
+}
+
 pub(crate) fn two_frames_back_to_back_have_their_own_tables(on: &dyn Boards) {
     let mut bench = in_use(on);
     golden_tables().upload(&mut bench);

@@ -136,6 +136,7 @@ suite! { $
     commits:
         the_reply_names_the_generation,
         a_commit_takes_effect_with_row_0_of_its_frame_and_not_before,
+        a_commit_waits_through_frames_of_higher_numbers,
         two_frames_back_to_back_have_their_own_tables,
         every_row_of_the_frame_is_made_with_the_new_tables,
         a_crc_that_is_not_the_tables_is_refused_with_the_table,
@@ -329,6 +330,7 @@ suite! { $
         samples_beyond_the_depth_are_counted_in_accepted_rows_alone,
         latencies_are_the_smallest_and_the_largest_of_any_row_since_the_clear,
         clearing_answers_with_the_counters_before_it_and_leaves_what_is_no_counter,
+        any_clear_but_0_clears,
         a_status_that_does_not_clear_changes_nothing_but_packets,
         counters_begin_at_0_in_a_session;
     table_reads:

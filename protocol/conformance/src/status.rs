@@ -1,5 +1,6 @@
 //! STATUS: every counter, and what clearing does to it.
 
+use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Configuration, Request, RowPlace, Status};
 
 use crate::bench::{Bench, HELLO};
@@ -107,6 +108,13 @@ pub(crate) fn clearing_answers_with_the_counters_before_it_and_leaves_what_is_no
     assert_eq!(bench.status_and(true), Status { packets: before.packets + 1, ..before });
     let kept = Status { next_row_in: 2, next_row_out: 1, core_busy: 1, generation: 1, ..Status::default() };
     assert_eq!(bench.status(), Status { packets: 1, ..kept });
+}
+
+pub(crate) fn any_clear_but_0_clears(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
+    let header = bench.header(Kind::Status.code());
+    assert_eq!(bench.answer(&header, &[0x80]).refusal(), None);
+    assert_eq!(bench.status().packets, 1, "this STATUS alone");
 }
 
 pub(crate) fn a_status_that_does_not_clear_changes_nothing_but_packets(on: &dyn Boards) {
