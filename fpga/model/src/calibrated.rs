@@ -150,3 +150,19 @@ impl From<Equidistant> for CalibratedLens {
 fn transformed([[xx, xy], [yx, yy]]: [[f64; 2]; 2], x: f64, y: f64) -> (f64, f64) {
     (xx * x + xy * y, yx * x + yy * y)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand: half a radian lies on the circle of radius 5 in tenths, on which (0, 5) and its mirror image (4.8, 1.4) in the
+    /// direction (0.6, 0.8) come to the same row, and (3, 4) to the lowest one.
+    #[test]
+    fn a_row_of_slanted_pixels_crosses_a_circle_where_it_does_by_hand() {
+        let pixels = [[10.0, 2.0], [7.5, 10.0]];
+        let lens = CalibratedLens::new(Profile::KannalaBrandt([0.0; 4]), pixels).unwrap();
+        assert!((lens.lowest_row(0.5) - 6.25).abs() < 1e-12);
+        let [left, right] = lens.columns_at(0.5, 5.0);
+        assert!((left - 1.0).abs() < 1e-12 && (right - 5.08).abs() < 1e-12, "{left} {right}");
+    }
+}

@@ -152,6 +152,23 @@ fn a_profile_that_turns_back_inside_the_frame_is_refused_and_outside_of_it_taken
     assert!(far.fitted().row_factors().unwrap().iter().all(|&factor| factor < RowFactor::ONE));
 }
 
+/// The profile rises to 0.963353 f, by its values in steps of 1e-5. From an axis 100.5 columns and 80.5 rows inside one corner of
+/// the frame the others are 411, 544 and 670 pixels away.
+#[test]
+fn a_profile_that_turns_back_before_one_corner_alone_is_refused() {
+    let geometry = Geometry::centred(640, 480, BitDepth::Eight).unwrap();
+    for centre in [(100.5, 80.5), (538.5, 80.5), (100.5, 398.5), (538.5, 398.5)] {
+        let new = |farthest: f64| {
+            let f = farthest / 0.963_353;
+            let profile = Profile::KannalaBrandt([0.1, -0.2, 0.05, -0.02]);
+            let lens = CalibratedLens::new(profile, [[f, 0.0], [0.0, f]]).unwrap();
+            Camera::new(geometry, lens, centre, 180.0)
+        };
+        assert!(matches!(new(669.0), Err(CameraError::Lens(LensError::TurnsBack { .. }))), "{centre:?}");
+        assert!(new(671.0).is_ok(), "{centre:?}");
+    }
+}
+
 #[test]
 fn a_lens_that_is_not_before_the_frame_is_refused() {
     let geometry = Geometry::centred(752, 480, BitDepth::Eight).unwrap();

@@ -2,12 +2,12 @@
 
 use halfrow_model::{
     BitDepth, CalibratedLens, Camera, Equidistant, Geometry, GridResidual, GridResiduals, GridShape,
-    TableSet, exact_inverse,
+    RowFactor, TableSet, exact_inverse,
 };
 use proptest::prelude::*;
 
 use crate::calibrated::{DSL215_CENTRE, dsl215, kannala_brandt};
-use crate::grid::shape;
+use crate::grid::{identity, shape};
 use crate::lens::assert_close;
 
 fn camera(size: (usize, usize), lens: impl Into<CalibratedLens>, centre: (f64, f64)) -> Camera {
@@ -123,15 +123,81 @@ fn too_few_entries_are_refused_with_what_fits() {
     );
 }
 
-/// Poles and rim inside the frame: rows beyond a pole are as the one there, and outputs beyond 90 degrees a column a column.
+/// A frame with poles and rim of the circle of 180 degrees inside.
+fn around_the_circle() -> (Equidistant, Camera) {
+    let lens = Equidistant::from_radius(80.0).unwrap();
+    (lens, camera((256, 200), lens, (127.5, 99.5)))
+}
+
+/// Places of [`around_the_circle`]'s frame from its axis.
+fn places() -> impl Iterator<Item = (f64, f64)> {
+    (0..200).flat_map(|row| (0..256).map(move |column| (f64::from(column) - 127.5, f64::from(row) - 99.5)))
+}
+
+/// Whether a place is inner: 85 degrees off the axis are 80 · 85/90 pixels, and 0.9 of the circle's height are 72.
+fn is_inner(x: f64, y: f64) -> bool {
+    x.hypot(y) <= 80.0 * 85.0 / 90.0 && y.abs() <= 72.0
+}
+
+/// What a table leaves that moves nothing, at every output of 90 degrees at most: there x of Eq. 6 is 80 columns from the axis.
+#[test]
+fn what_no_table_leaves_is_the_projection_itself() {
+    let (lens, camera) = around_the_circle();
+    let found = camera.grid_residuals(&identity(*camera.geometry(), shape(6, 6)), 1);
+    let shown = places().filter(|&(x, y)| x.abs() <= 80.0 && y.abs() < 0.998 * 80.0);
+    let wrong: Vec<_> = shown.map(|(x, y)| (exact_inverse(&lens, x, y).unwrap().0, x, y)).collect();
+    let amounts = |is_wanted: fn(f64, f64) -> bool| {
+        let wanted = wrong.iter().filter(move |&&(source, _, y)| is_wanted(source, y));
+        wanted.map(|(source, x, _)| (source - x).abs()).collect::<Vec<_>>()
+    };
+    for (residual, amounts) in [
+        (found.inner, amounts(is_inner)),
+        (found.rim, amounts(|x, y| !is_inner(x, y))),
+        (found.circle, amounts(|_, _| true)),
+    ] {
+        let (sum, max) = (amounts.iter().sum::<f64>(), amounts.iter().copied().fold(0.0, f64::max));
+        assert_close(residual.max, max);
+        assert_close(residual.mean, sum / amounts.len() as f64);
+    }
+    assert_close(found.beyond, 1.0 - wrong.len() as f64 / (256.0 * 200.0));
+}
+
+#[test]
+fn targets_are_inner_where_the_page_says() {
+    let (_, camera) = around_the_circle();
+    let found = (0..200).flat_map(|row| camera.targets(row)).filter(|target| target.is_inner).count();
+    assert_eq!(found, places().filter(|&(x, y)| is_inner(x, y)).count());
+}
+
+/// A row that does not move shows one column, and where it is. By hand: sample (165, 137) is 53.0330 pixels off the axis, on the
+/// diagonal, so θ = 59.6621 degrees, latitude asin(sin θ/√2) = 37.6095 degrees, and its right row 33.4307 below the axis.
+#[test]
+fn a_grid_that_moves_nothing_leaves_residuals_that_are_numbers() {
+    let (_, camera) = around_the_circle();
+    let still = vec![0; shape(6, 6).entries(camera.geometry())];
+    let still = TableSet::from_grid(*camera.geometry(), shape(6, 6), &still).unwrap();
+    let found: Vec<_> = camera.residuals(&still, 137).collect();
+    assert!(!found.is_empty() && found.iter().all(|(_, residual)| residual.columns.is_finite()));
+    let &(target, diagonal) = found.iter().find(|(target, _)| target.column == 165).unwrap();
+    for residual in [diagonal, camera.residual(137, RowFactor::ONE, target)] {
+        assert!((residual.rows - (37.5 - 33.4307)).abs() < 1e-3, "{residual:?}");
+    }
+}
+
+/// Rows beyond a pole are as the one there, and outputs beyond 90 degrees a column a column, or as many as 1.5 next to a pole.
 #[test]
 fn a_frame_that_shows_more_than_the_circle_has_a_grid() {
-    let camera = camera((256, 200), Equidistant::from_radius(80.0).unwrap(), (127.5, 99.5));
-    for row in [0.0, 19.5, 20.0, 99.5, 199.0] {
-        assert!((0..256).all(|column| camera.source_column(f64::from(column), row).is_finite()));
+    let (lens, camera) = around_the_circle();
+    let pole: f64 = 0.998 * 80.0;
+    for (column, row) in [(100.0, 0.0), (127.5, 19.5), (180.0, 199.0)] {
+        let (x_d, _) = exact_inverse(&lens, column - 127.5, pole.copysign(row - 99.5)).unwrap();
+        assert_close(camera.source_column(column, row), 127.5 + x_d);
     }
     let beyond = [250.0, 251.0].map(|column| camera.source_column(column, 99.5));
     assert!((beyond[1] - beyond[0] - 1.0).abs() < 0.05, "{beyond:?}");
+    // In row 20 the circle ends √(80² − 79.5²) = 8.9303 columns from the axis, which belong 80 columns from it.
+    let (last, far) = (127.5 + 8.9303, camera.source_column(255.0, 20.0));
+    assert!((last..=last + 1.5 * 47.5).contains(&far), "{far}");
     let best = camera.best_grid(2048).unwrap();
     check_ring(&best);
     let residuals = camera.grid_residuals(&best, 1);

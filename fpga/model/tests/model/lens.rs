@@ -84,6 +84,7 @@ fn figures_of_no_lens_are_refused_by_name() {
     assert_eq!(new(0.0, 2.2, 180.0), Err(LensError::FocalLength(0.0)));
     assert_eq!(new(1.55, -2.2, 180.0), Err(LensError::PixelPitch(-2.2)));
     assert_eq!(new(1.55, 2.2, 360.5), Err(LensError::FieldOfView(360.5)));
+    assert!(new(1.55, 2.2, 360.0).is_ok());
     assert_eq!(new(1.55, 2.2, 0.0), Err(LensError::FieldOfView(0.0)));
     assert!(matches!(new(1e12, 1.0, 180.0), Err(LensError::Radius(_))));
 }
