@@ -13,10 +13,31 @@ use halfrow_tests::photographs;
 use halfrow_tests::program::{Ended, Folder, error_sentence};
 use serde_json::Value;
 
-/// Gains in dB under Table 1's warp and under a band-limited one, each mean, least and most, found with NumPy 2.
-const GAINS: [(&str, [[f64; 3]; 2]); 2] = [
-    ("sharp5", [[1.6487, 1.0920, 2.1215], [1.1789, 0.3687, 1.6116]]),
-    ("sharp7", [[2.6114, 1.2598, 3.4496], [2.5751, 0.9472, 3.3969]]),
+/// Gains in dB, each mean, least and most, found with NumPy 2: under Table 1's warp, under a band-limited one, under that with noise
+/// of 2, 5 and 10 levels, which NumPy draws otherwise, and under it demosaicked.
+const GAINS: [(&str, [[f64; 3]; 6]); 2] = [
+    (
+        "sharp5",
+        [
+            [1.6487, 1.0920, 2.1215],
+            [1.1789, 0.3687, 1.6116],
+            [0.7902, -0.1645, 1.5320],
+            [0.0690, -0.6869, 1.1956],
+            [-0.4740, -0.8595, 0.5125],
+            [0.2098, 0.0063, 0.3616],
+        ],
+    ),
+    (
+        "sharp7",
+        [
+            [2.6114, 1.2598, 3.4496],
+            [2.5751, 0.9472, 3.3969],
+            [1.8697, 0.2126, 2.9837],
+            [0.6762, -0.4871, 2.3193],
+            [-0.1567, -0.7085, 1.2112],
+            [0.2065, 0.0162, 0.4384],
+        ],
+    ),
 ];
 
 #[test]
@@ -28,10 +49,14 @@ fn fitted_kernels_gain_on_the_photographs_of_table_1() {
         let ended = Folder::new().halfrow(call);
         assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
         let report: Value = serde_json::from_str(&ended.stdout).unwrap();
-        for (gains, expected) in report["gains_db"].as_array().unwrap().iter().zip(expected) {
+        let found = report["gains_db"].as_array().unwrap();
+        assert_eq!(found.len(), expected.len(), "{name}");
+        for (gains, expected) in found.iter().zip(expected) {
             for (key, expected) in ["mean", "least", "most"].into_iter().zip(expected) {
                 let found = gains["gain"][key].as_f64().unwrap();
-                assert!((found - expected).abs() < 1e-3, "{name}: {gains}");
+                let is_drawn = gains["condition"].as_str().unwrap().contains("noise");
+                let tolerance = if is_drawn { 0.02 } else { 1e-3 };
+                assert!((found - expected).abs() < tolerance, "{name}: {gains}");
             }
         }
     }
