@@ -51,7 +51,7 @@ impl Opened {
 pub(super) enum Log {
     /// There is none, or it is this database's.
     Own,
-    /// It was left by a program that wrote down nothing of it.
+    /// It was left by a program that wrote down nothing of it, or not yet of which database it is.
     Unknown,
 }
 
@@ -73,9 +73,11 @@ pub(super) fn of_left_log(folder: &Folder) -> Result<(Log, Generations), StoreEr
     if !noted.0.contains(&found) {
         return Err(StoreError::OtherLog { path });
     }
+    // With several of them a start was not sure yet, and a copy may have one.
+    let log = if noted.0.len() > 1 { Log::Unknown } else { Log::Own };
     noted.0.retain(|one| *one != found);
     noted.0.push(found);
-    Ok((Log::Own, noted))
+    Ok((log, noted))
 }
 
 /// The number in the database of this name itself, whatever its log says; none where there is no database.

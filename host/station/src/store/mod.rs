@@ -119,6 +119,9 @@ impl Store {
         let (log, generations) = generation::of_left_log(folder)?;
         let mut writer = folder.writer()?;
         if log == Log::Unknown {
+            tracing::info!(
+                "a log was left by a program that was killed; all of station.db is looked at first"
+            );
             generation::is_whole(folder, &mut *writer)?;
         }
         folder.has_kept_tables(&mut *writer)?;
