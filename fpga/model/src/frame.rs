@@ -96,12 +96,19 @@ pub enum FrameError {
 impl FrameError {
     /// Refuses the first of `samples`, in rows of `width`, that `depth` cannot hold.
     pub(crate) fn check(width: usize, depth: BitDepth, samples: &[u16]) -> Result<(), Self> {
-        let rows = samples.chunks(width).enumerate();
-        let Some((row, samples)) = rows.into_iter().find(|(_, samples)| bits_of(samples) > depth.max())
-        else {
-            return Ok(());
-        };
+        samples.chunks(width).enumerate().try_for_each(|(row, samples)| Self::check_row(row, depth, samples))
+    }
+
+    /// Refuses the first of `samples`, those of row `row`, that `depth` cannot hold.
+    ///
+    /// # Errors
+    /// [`FrameError::TooBright`] for it.
+    pub fn check_row(row: usize, depth: BitDepth, samples: &[u16]) -> Result<(), Self> {
         let max = depth.max();
+        // Vectors of samples: only a row that is refused is looked through one by one.
+        if bits_of(samples) <= max {
+            return Ok(());
+        }
         let bright = samples.iter().enumerate().find(|&(_, &sample)| sample > max);
         bright.map_or(Ok(()), |(column, &value)| {
             Err(Self::TooBright { row, column, value, max, bits: depth.bits() })

@@ -196,7 +196,8 @@ fn write_plain_rows<E: From<WriteError>>(
         format.write_header(shape, &mut blocks.bytes)?;
         for index in 0..shape.height {
             let checked = next_row(&mut row).and_then(|()| {
-                Ok(shape.check_row(index, &row).map_err(|refused| no_frame(path, refused))?)
+                Ok(FrameError::check_row(index, shape.depth, &row)
+                    .map_err(|refused| no_frame(path, refused))?)
             });
             if let Err(error) = checked {
                 refused = Some(error);

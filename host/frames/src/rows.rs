@@ -39,17 +39,6 @@ impl FrameShape {
             _ => Ok(()),
         }
     }
-
-    /// Refuses the first sample of row `row` that the depth cannot hold.
-    pub(super) fn check_row(&self, row: usize, samples: &[u16]) -> Result<(), FrameError> {
-        let (max, bits) = (self.depth.max(), self.depth.bits());
-        // Vectors of samples: only a row that is refused is looked through one by one.
-        if samples.iter().fold(0, |set, sample| set | sample) <= max {
-            return Ok(());
-        }
-        let bright = samples.iter().enumerate().find(|&(_, &sample)| sample > max);
-        bright.map_or(Ok(()), |(column, &value)| Err(FrameError::TooBright { row, column, value, max, bits }))
-    }
 }
 
 /// The rows of a frame, from the top.
