@@ -86,8 +86,8 @@ pub enum StoreError {
     },
     /// The disk has no room to bring it up to date.
     #[error(
-        "the database {} is not brought up to date, for its disk has {megabytes} MB too few for that: twice its size, for a copy of it \
-         as it is and for what changes; make room there, or go on with the earlier program",
+        "the database {} is not brought up to date, for its disk has {megabytes} MB too few for a copy of it as it is; make room \
+         there, or go on with the earlier program",
         path.display()
     )]
     NoRoom {

@@ -66,12 +66,13 @@ fn not_newer(path: &Path, found: i64) -> Result<(), StoreError> {
     Ok(())
 }
 
-/// Refuses when the disk has no room for a copy of the database in the file `path`, and for as much again that is changed in it.
+/// Refuses when the disk has no room for a copy of the database in the file `path`. A change that finds none is taken back.
 fn has_room(path: &Path) -> Result<(), StoreError> {
     let folder = path.parent().unwrap_or(path);
     let refused = |source| StoreError::Folder { folder: folder.to_owned(), source };
     let disk = statvfs(folder).map_err(|error| refused(error.into()))?;
-    let free = disk.blocks_available() * disk.fragment_size();
+    // Some file systems do not tell.
+    let free = (disk.blocks() > 0).then(|| disk.blocks_available() * disk.fragment_size());
     // Without a log there is nothing in it.
     let log = fs::metadata(path.with_extension("db-wal")).map_or(0, |log| log.len());
     let bytes = fs::metadata(path).map_err(refused)?.len() + log;
@@ -81,9 +82,9 @@ fn has_room(path: &Path) -> Result<(), StoreError> {
     }
 }
 
-/// How many megabytes there are too few, with so many bytes `free`, for a database of so many `bytes`.
-fn missing(bytes: u64, free: u64) -> u64 {
-    bytes.saturating_mul(2).saturating_sub(free).div_ceil(1_000_000)
+/// How many megabytes there are too few, with so many bytes `free`, if that is known, for a copy of so many `bytes`.
+fn missing(bytes: u64, free: Option<u64>) -> u64 {
+    free.map_or(0, |free| bytes.saturating_sub(free).div_ceil(1_000_000))
 }
 
 /// Lays a copy of `database`, the file `path`, beside it, whole or not at all.
@@ -92,7 +93,8 @@ fn copy(database: &mut dyn Database, path: &Path, version: i64) -> Result<(), St
     let aside = path.with_extension(format!("before-{version}.partial"));
     let folder = path.parent().unwrap_or(path);
     let refused = |source| StoreError::Folder { folder: folder.to_owned(), source };
-    remove(&aside).map_err(refused)?;
+    let unfinished = [path.with_extension(format!("before-{version}.partial-journal")), aside.clone()];
+    unfinished.iter().try_for_each(|left| remove(left)).map_err(refused)?;
     let copied = database
         .execute("VACUUM INTO $1", values![&*aside.to_string_lossy()])
         .map_err(|source| StoreError::of_file(path, "a copy before a new version", source));
@@ -103,8 +105,8 @@ fn copy(database: &mut dyn Database, path: &Path, version: i64) -> Result<(), St
     });
     if named.is_err() {
         // The next attempt begins with it, and has no need of what is left here.
-        for left in [path.with_extension(format!("before-{version}.partial-journal")), aside] {
-            let _ = remove(&left);
+        for left in &unfinished {
+            let _ = remove(left);
         }
     }
     named?;
@@ -159,8 +161,10 @@ mod tests {
     }
 
     #[test]
-    fn a_copy_and_as_much_again_is_to_have_room() {
-        assert_eq!([missing(10, 20), missing(10, 19), missing(3_000_000, 3_999_999)], [0, 1, 3]);
+    fn a_copy_is_to_have_room_where_the_disk_tells_how_much_it_has() {
+        let found = [missing(10, Some(10)), missing(10, Some(9)), missing(3_000_000, Some(999_999))];
+        assert_eq!(found, [0, 1, 3]);
+        assert_eq!([missing(10, Some(0)), missing(10, None)], [1, 0]);
     }
 
     #[test]

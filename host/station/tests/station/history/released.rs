@@ -154,6 +154,17 @@ fn of_a_copy_that_was_not_made_nothing_is_left() {
     assert_eq!(copies(data.path()), before(1));
 }
 
+/// A kill on the way leaves no name behind it at once.
+#[test]
+fn of_a_copy_that_was_not_finished_nothing_is_left() {
+    let data = left(1);
+    for name in ["station.before-2.partial", "station.before-2.partial-journal"] {
+        fs::write(data.path().join(name), "as far as it came").unwrap();
+    }
+    drop(Store::open(&Folder::new(data.path())).unwrap());
+    assert_eq!(copies(data.path()), before(1));
+}
+
 #[test]
 fn a_backup_of_every_released_schema_is_restored_and_stays_as_it_is() {
     every_schema(|number| {
