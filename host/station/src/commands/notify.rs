@@ -2,6 +2,13 @@
 
 use std::os::linux::net::SocketAddrExt as _;
 use std::os::unix::net::{SocketAddr, UnixDatagram};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
+
+/// As much time as the unit gives a start by `TimeoutStartSec`, and how often it is asked for.
+const MORE_TIME: &str = "EXTEND_TIMEOUT_USEC=300000000";
+const ASK: Duration = Duration::from_secs(10);
 
 /// Where systemd listens, if it does.
 #[derive(Debug, Default)]
@@ -17,6 +24,25 @@ impl Notify {
             };
             Some((UnixDatagram::unbound().ok()?, address.ok()?))
         }))
+    }
+
+    /// What `open` returns, which may have to read or to copy a database of any size: systemd gives the start time from its end on.
+    pub(super) fn while_opening<T>(&self, open: impl FnOnce() -> T) -> T {
+        if self.0.is_none() {
+            return open();
+        }
+        thread::scope(|scope| {
+            let (under_way, ended) = mpsc::channel::<()>();
+            scope.spawn(move || {
+                self.tell(MORE_TIME);
+                while ended.recv_timeout(ASK) == Err(RecvTimeoutError::Timeout) {
+                    self.tell(MORE_TIME);
+                }
+            });
+            let opened = open();
+            drop(under_way);
+            opened
+        })
     }
 
     /// The station takes scans.

@@ -61,7 +61,8 @@ pub(super) fn serve(
     begin: impl FnOnce(&Arc<Engine>) -> io::Result<()>,
 ) -> Result<Exit, Failure> {
     let Served { settings, disk, everybody, hints } = served;
-    let ready = Ready::of(settings, disk)?;
+    let notify = Notify::of_environment();
+    let ready = notify.while_opening(|| Ready::of(settings, disk))?;
     let signal = ready.signal.clone();
     let access = Access::of(settings, everybody).map_err(Failure::call)?;
     let listener = Server::listen(access.listen()).map_err(Failure::call)?;
@@ -72,7 +73,6 @@ pub(super) fn serve(
     let server = Server::start(&app.map_err(Failure::error)?, listener).map_err(Failure::error)?;
     begin(&engine).map_err(Failure::error)?;
     console::tell(&format!("The pages are at http://{at}/"));
-    let notify = Notify::of_environment();
     notify.ready();
     let mut told = Instant::now();
     let by = signal.wait(|| {

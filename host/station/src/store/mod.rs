@@ -119,8 +119,8 @@ impl Store {
         let (log, generations) = generation::of_left_log(folder)?;
         let mut writer = folder.writer()?;
         if log == Log::Unknown {
-            tracing::info!(
-                "a log was left by a program that was killed; all of station.db is looked at first"
+            tracing::warn!(
+                "station.db-wal was left by a program that was killed; all of station.db is looked at first, which takes a while"
             );
             generation::is_whole(folder, &mut *writer)?;
         }

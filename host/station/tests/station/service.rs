@@ -1,6 +1,7 @@
 //! What starts the program: the unit for systemd, which docs/station-setup.md installs, and `nohup`.
 
 use std::fs;
+use std::os::unix::net::UnixDatagram;
 use std::process::Command;
 
 use nix::sys::signal::Signal;
@@ -72,4 +73,35 @@ fn a_station_that_is_stopped_leaves_one_whole_file() {
     let log = fs::metadata(station.path("data").join("station.db-wal"));
     assert!(log.map_or(0, |log| log.len()) == 0);
     assert!(!station.query("SELECT n FROM schema_version").is_empty());
+}
+
+/// What is looked at first may take longer than systemd waits for a start.
+#[test]
+fn a_start_that_looks_at_all_of_the_database_says_so_and_asks_systemd_for_time() {
+    let station = Station::private(1);
+    drop(station.serve());
+    let data = station.path("data");
+    let log = fs::metadata(data.join("station.db-wal")).unwrap();
+    assert!(log.len() > 32, "what is killed leaves its log");
+    // As an earlier program leaves it.
+    fs::write(data.join("station.lock"), "").unwrap();
+    let place = station.path("notify");
+    let systemd = UnixDatagram::bind(&place).unwrap();
+    let serving = Serving::of(station.command().env("NOTIFY_SOCKET", &place));
+    assert!(
+        serving.complained().contains("all of station.db is looked at first"),
+        "{}",
+        serving.complained()
+    );
+    let mut heard = vec![];
+    while heard.last().is_none_or(|heard| heard != "READY=1") {
+        let mut buffer = [0; 64];
+        let read = systemd.recv(&mut buffer).unwrap();
+        heard.push(String::from_utf8(buffer[..read].to_vec()).unwrap());
+    }
+    let seconds = UNIT.lines().find_map(|line| line.strip_prefix("TimeoutStartSec=")).unwrap();
+    assert_eq!(heard[0], format!("EXTEND_TIMEOUT_USEC={seconds}000000"));
+    // A start that looks at nothing says nothing.
+    drop(serving);
+    assert_eq!(station.serve().complained(), "");
 }

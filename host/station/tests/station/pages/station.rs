@@ -2,6 +2,7 @@
 
 use std::fs::{self, File};
 use std::io::{BufRead as _, BufReader, Read as _, Seek as _, Write as _};
+use std::os::fd::AsRawFd as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::thread;
@@ -169,6 +170,11 @@ impl Serving {
         let status = fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap();
         let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).unwrap();
         u64::from_str_radix(ignored.trim(), 16).unwrap() >> (signal as i32 - 1) & 1 == 1
+    }
+
+    /// What it has said on stderr so far.
+    pub(crate) fn complained(&self) -> String {
+        whole(File::open(format!("/proc/self/fd/{}", self.complained.as_raw_fd())).unwrap())
     }
 
     /// Whether the program goes on.
