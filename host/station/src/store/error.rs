@@ -75,8 +75,9 @@ pub enum StoreError {
     },
     /// The log is of another database than the one beside it.
     #[error(
-        "the database {} was put there while station.db-wal beside it is the log of another database, which would spoil this one; bring \
-         back the database that was there, or else move station.db-wal and station.db-shm out of the folder, and see by \
+        "the database {} was put there while station.db-wal beside it is the log of another database, which would spoil this one; if both files \
+         were put there together, or an earlier program has worked there since, move station.lock out of the folder, or else bring back \
+         the database that was there, or move station.db-wal and station.db-shm out of the folder, keep them, and see by \
          `halfrow-station check` what this one lacks",
         path.display()
     )]

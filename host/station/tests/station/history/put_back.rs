@@ -146,6 +146,23 @@ fn a_database_is_not_opened_with_the_log_of_another_one() {
     }
 }
 
+/// As a folder is put back from a copy of its files, and the lock that was there is left.
+#[test]
+fn a_database_and_its_log_that_were_put_there_together_count_without_the_lock_of_the_others() {
+    let (made, ..) = in_its_second_session();
+    let copied = killed(&made);
+    let kept = Made::at(made.closed()).closed();
+    for name in ["station.db", "station.db-wal"] {
+        fs::copy(copied.path().join(name), kept.path().join(name)).unwrap();
+    }
+    let refused = Store::open(&Folder::new(kept.path())).unwrap_err().to_string();
+    assert!(refused.contains("; if both files were put there together, or"), "{refused}");
+    assert!(refused.contains("move station.lock out of the folder, or else"), "{refused}");
+    fs::rename(kept.path().join("station.lock"), copied.path().join("moved")).unwrap();
+    drop(Store::open(&Folder::new(kept.path())).unwrap());
+    assert_eq!(units(kept.path()), ["S1", "S2"]);
+}
+
 /// The control: without what the start wrote down nothing tells that the log is another one's.
 #[test]
 fn sqlite_plays_any_log_into_any_database() {
