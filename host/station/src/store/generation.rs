@@ -11,7 +11,7 @@ use std::path::Path;
 
 use rusqlite::{Connection, ffi};
 
-use super::{Database, Folder, StoreError};
+use super::{Database, DatabaseError, Folder, StoreError};
 use crate::ids;
 
 /// Where the number stands, its highest byte first (SQLite, "Database File Format", section 1.3).
@@ -19,7 +19,7 @@ const PLACE: u64 = 60;
 /// The bytes of a log that has a header alone, and no pages (there, section 4.1).
 const EMPTY_LOG: u64 = 32;
 
-/// The numbers that a database may have of which the log is.
+/// The numbers that a database may have of which the log is, that of the last start at the end.
 #[derive(Debug, Default)]
 pub(super) struct Generations(Vec<u32>);
 
@@ -44,6 +44,31 @@ impl Opened {
     pub(super) fn is_unspoilt(&self) -> bool {
         matches!(number(&self.file), Ok(Some(found)) if self.known.0.contains(&found))
     }
+
+    /// Takes the last number alone, as soon as it stands in the file itself: an earlier one may be that of a copy.
+    pub(super) fn settle(
+        &mut self,
+        folder: &Folder,
+        lock: &File,
+        writer: &mut dyn Database,
+    ) -> Result<(), StoreError> {
+        let [_, .., last] = self.known.0[..] else { return Ok(()) };
+        let folded = writer.one("PRAGMA wal_checkpoint(PASSIVE)", &[], |row| {
+            let [busy, pages, folded] = [row.get::<i64>(0)?, row.get(1)?, row.get(2)?];
+            Ok(busy == 0 && pages == folded)
+        });
+        // Who reads an earlier state keeps the pages since in the log.
+        if folded.map_err(|source| refused(folder, source))? {
+            let last = Generations(vec![last]);
+            note(folder, lock, &last)?;
+            self.known = last;
+        }
+        Ok(())
+    }
+}
+
+fn refused(folder: &Folder, source: DatabaseError) -> StoreError {
+    StoreError::of_file(&folder.database(), "to be told from its copies", source)
 }
 
 /// What is known of a log beside a database.
@@ -115,31 +140,22 @@ fn note(folder: &Folder, lock: &File, Generations(all): &Generations) -> Result<
     written.and_then(|()| lock.sync_all()).map_err(|source| folder.refused(source))
 }
 
-/// Gives the database a number that none of its copies has. Until it stands in the file itself, those that it had count as well,
-/// so that a start that is killed on the way is in no other's way.
+/// Gives the database a number that none of its copies has. Until it stands in the file itself, those that it had
+/// count as well, so that a start that is killed on the way is in no other's way.
 pub(super) fn begin(
     folder: &Folder,
     lock: &File,
     writer: &mut dyn Database,
     mut known: Generations,
 ) -> Result<Opened, StoreError> {
-    let refused = |source| StoreError::of_file(&folder.database(), "to be told from its copies", source);
     // Its end is random; `user_version` is signed, and 0 is that of a copy.
     let new = (ids::new(0)?.as_u128() as u32 >> 1) | 1;
     known.0.push(new);
     note(folder, lock, &known)?;
-    writer.batch(&format!("PRAGMA user_version = {new}")).map_err(refused)?;
-    let is_in_file = writer.one("PRAGMA wal_checkpoint(PASSIVE)", &[], |row| {
-        let [busy, pages, folded] = [row.get::<i64>(0)?, row.get(1)?, row.get(2)?];
-        Ok(busy == 0 && pages == folded)
-    });
-    // Who reads an earlier state keeps the pages since in the log.
-    if is_in_file.map_err(refused)? {
-        known = Generations(vec![new]);
-        note(folder, lock, &known)?;
-    }
+    writer.batch(&format!("PRAGMA user_version = {new}")).map_err(|source| refused(folder, source))?;
     let file = File::open(folder.database()).map_err(|source| folder.refused(source))?;
-    let opened = Opened { file, known };
+    let mut opened = Opened { file, known };
+    opened.settle(folder, lock, writer)?;
     if opened.is_there(folder) { Ok(opened) } else { Err(StoreError::Replaced { path: folder.database() }) }
 }
 

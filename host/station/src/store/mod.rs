@@ -102,7 +102,7 @@ pub struct Store {
     plant_clock: Option<HeardClock>,
     /// What the writer writes to, which the file of its name need not be.
     opened: Opened,
-    _lock: File,
+    lock: File,
 }
 
 impl Store {
@@ -135,7 +135,7 @@ impl Store {
             sinks: Arc::default(),
             plant_clock: None,
             opened,
-            _lock: lock,
+            lock,
         })
     }
 
@@ -278,6 +278,9 @@ impl Store {
         self.has_its_name()?;
         let changed = self.read(doing, |writer| writer.transaction(change))?;
         self.has_its_name()?;
+        if let Err(error) = self.opened.settle(&self.folder, &self.lock, &mut *self.writer) {
+            tracing::warn!("station.db may still be taken for an earlier copy of it: {error}");
+        }
         Ok(changed)
     }
 

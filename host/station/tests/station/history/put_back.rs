@@ -146,6 +146,32 @@ fn a_database_is_not_opened_with_the_log_of_another_one() {
     }
 }
 
+/// A reader of what was before the start keeps the start's number out of the file itself.
+#[test]
+fn an_earlier_copy_is_told_apart_as_soon_as_nobody_reads_what_was_before_the_start() {
+    let mut made = Made::new();
+    made.run(&Run::of("S1", End::Pass));
+    let kept = made.closed();
+    let earlier = fs::read(kept.path().join("station.db")).unwrap();
+    let reader = Snapshot::take(&Folder::new(kept.path())).unwrap();
+    let mut made = Made::at(kept);
+    let open = |left: &TempDir| Store::open(&Folder::new(left.path())).map(drop);
+    // The control: neither number is in a start's way yet.
+    let left = killed(&made);
+    fs::write(left.path().join("station.db"), &earlier).unwrap();
+    open(&left).unwrap();
+    drop(reader);
+    made.count_from(2);
+    made.run(&Run::of("S2", End::Pass));
+    let left = killed(&made);
+    open(&left).unwrap();
+    assert_eq!(units(left.path()), ["S1", "S2"]);
+    let left = killed(&made);
+    fs::write(left.path().join("station.db"), &earlier).unwrap();
+    let refused = open(&left).unwrap_err().to_string();
+    assert!(refused.contains("is the log of another database"), "{refused}");
+}
+
 /// As a folder is put back from a copy of its files, and the lock that was there is left.
 #[test]
 fn a_database_and_its_log_that_were_put_there_together_count_without_the_lock_of_the_others() {
