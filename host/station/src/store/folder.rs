@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use rusqlite::{Connection, OpenFlags};
 
 use super::database::Sqlite;
-use super::{Database, DatabaseError, PATIENCE, StoreError, generation};
+use super::{Database, DatabaseError, PATIENCE, StoreError};
 use crate::record::Blobs;
 
 /// How long a program may take to leave the folder that has just ended, and how often it is looked.
@@ -88,15 +88,6 @@ impl Folder {
                 Err(TryLockError::Error(source)) => return Err(self.refused(source)),
             }
         }
-    }
-
-    /// Refuses a log that another database has left, where nobody is at work who has looked at it.
-    pub(super) fn has_own_log(&self) -> Result<(), StoreError> {
-        let Ok(lock) = File::open(self.lock_file()) else { return Ok(()) };
-        if lock.try_lock_shared().is_err() {
-            return Ok(());
-        }
-        generation::of_left_log(self).map(drop)
     }
 
     /// The connection that writes.

@@ -8,6 +8,7 @@ use std::fs::{self, File, Metadata};
 use std::io;
 use std::os::unix::fs::{FileExt as _, MetadataExt as _};
 use std::path::Path;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use rusqlite::{Connection, ffi};
 
@@ -20,8 +21,28 @@ const PLACE: u64 = 60;
 const EMPTY_LOG: u64 = 32;
 
 /// The numbers that a database may have of which the log is, that of the last start at the end.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct Generations(Vec<u32>);
+
+/// A file, by its device and its inode.
+type FileId = (u64, u64);
+
+/// The databases that this process writes to.
+static WRITTEN: Mutex<Vec<FileId>> = Mutex::new(Vec::new());
+
+fn written() -> MutexGuard<'static, Vec<FileId>> {
+    WRITTEN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn id(file: io::Result<Metadata>) -> Option<FileId> {
+    file.map(|file| (file.dev(), file.ino())).ok()
+}
+
+/// Whether `file` is the one that has the name `path`.
+pub(super) fn is_named(file: &File, path: &Path) -> bool {
+    let own = id(file.metadata());
+    own.is_some() && own == id(fs::metadata(path))
+}
 
 /// The database that a start opened. It stays open for as long as a connection writes to it: whoever closes a file gives up the locks
 /// that SQLite has there, too (fcntl(2)).
@@ -32,12 +53,14 @@ pub(super) struct Opened {
 }
 
 impl Opened {
+    fn new(file: File, known: Generations) -> Self {
+        written().extend(id(file.metadata()));
+        Self { file, known }
+    }
+
     /// Whether it is the file of its name still, and what was written to it.
     pub(super) fn is_there(&self, folder: &Folder) -> bool {
-        let id = |file: Metadata| (file.dev(), file.ino());
-        let [own, named] =
-            [self.file.metadata(), fs::metadata(folder.database())].map(|file| file.map(id).ok());
-        own.is_some() && own == named && self.is_unspoilt()
+        is_named(&self.file, &folder.database()) && self.is_unspoilt()
     }
 
     /// Whether nobody has written another database over it, which its log would spoil.
@@ -64,6 +87,16 @@ impl Opened {
             self.known = last;
         }
         Ok(())
+    }
+}
+
+impl Drop for Opened {
+    fn drop(&mut self) {
+        let own = id(self.file.metadata());
+        let mut written = written();
+        if let Some(place) = written.iter().position(|one| Some(*one) == own) {
+            written.swap_remove(place);
+        }
     }
 }
 
@@ -105,6 +138,22 @@ pub(super) fn of_left_log(folder: &Folder) -> Result<(Log, Generations), StoreEr
     Ok((log, noted))
 }
 
+/// Refuses a log that another database has left, also to whoever looks beside a start. Of a database that this process writes to that is
+/// known, and to close it once more would give up the locks that SQLite has there.
+pub(super) fn has_own_log(folder: &Folder) -> Result<(), StoreError> {
+    if id(fs::metadata(folder.database())).is_some_and(|id| written().contains(&id)) {
+        return Ok(());
+    }
+    loop {
+        let before = noted(folder);
+        match of_left_log(folder) {
+            // A start has given it another number meanwhile, which it notes first.
+            Err(StoreError::OtherLog { .. }) if noted(folder) != before => {}
+            looked => return looked.map(drop),
+        }
+    }
+}
+
 /// The number in the database of this name itself, whatever its log says; none where there is no database.
 fn header(database: &Path) -> io::Result<Option<u32>> {
     match File::open(database) {
@@ -140,21 +189,36 @@ fn note(folder: &Folder, lock: &File, Generations(all): &Generations) -> Result<
     written.and_then(|()| lock.sync_all()).map_err(|source| folder.refused(source))
 }
 
-/// Gives the database a number that none of its copies has. Until it stands in the file itself, those that it had
+/// Chooses the number that this start gives the database, as the last of `known`. Beside a database that was put back it is noted before
+/// a log comes about.
+pub(super) fn choose(
+    folder: &Folder,
+    lock: &File,
+    log: Log,
+    mut known: Generations,
+) -> Result<Generations, StoreError> {
+    let is_noted = log == Log::Unknown || noted(folder) == known;
+    // Its end is random; `user_version` is signed, and 0 is that of a copy.
+    known.0.push((ids::new(0)?.as_u128() as u32 >> 1) | 1);
+    if !is_noted {
+        note(folder, lock, &known)?;
+    }
+    Ok(known)
+}
+
+/// Gives the database the last number of `known`, which none of its copies has. Until it stands in the file itself, those that it had
 /// count as well, so that a start that is killed on the way is in no other's way.
 pub(super) fn begin(
     folder: &Folder,
     lock: &File,
     writer: &mut dyn Database,
-    mut known: Generations,
+    known: Generations,
 ) -> Result<Opened, StoreError> {
-    // Its end is random; `user_version` is signed, and 0 is that of a copy.
-    let new = (ids::new(0)?.as_u128() as u32 >> 1) | 1;
-    known.0.push(new);
+    let new = known.0.last().copied().unwrap_or_default();
     note(folder, lock, &known)?;
     writer.batch(&format!("PRAGMA user_version = {new}")).map_err(|source| refused(folder, source))?;
     let file = File::open(folder.database()).map_err(|source| folder.refused(source))?;
-    let mut opened = Opened { file, known };
+    let mut opened = Opened::new(file, known);
     opened.settle(folder, lock, writer)?;
     if opened.is_there(folder) { Ok(opened) } else { Err(StoreError::Replaced { path: folder.database() }) }
 }

@@ -116,7 +116,8 @@ impl Store {
         }
         let lock = folder.lock()?;
         folder.has_kept_database()?;
-        let (log, generations) = generation::of_left_log(folder)?;
+        let (log, known) = generation::of_left_log(folder)?;
+        let known = generation::choose(folder, &lock, log, known)?;
         let mut writer = folder.writer()?;
         if log == Log::Unknown {
             tracing::warn!(
@@ -126,7 +127,7 @@ impl Store {
         }
         folder.has_kept_tables(&mut *writer)?;
         migrations::apply(&mut *writer, &folder.database(), clock::now_ms())?;
-        let opened = generation::begin(folder, &lock, &mut *writer, generations)?;
+        let opened = generation::begin(folder, &lock, &mut *writer, known)?;
         crate::record::synced(&folder.0)?;
         Ok(Self {
             folder: folder.clone(),

@@ -10,7 +10,8 @@ use rusqlite::Connection;
 use super::database::{Database, DatabaseError, Engine, Row as Found, Sqlite, Value, values};
 use super::table::{Rows, page};
 use super::{
-    Folder, OpenRun, Plant, Rebinding, StoreError, bindings, migrations, open_run, rows, statements,
+    Folder, OpenRun, Plant, Rebinding, StoreError, bindings, generation, migrations, open_run, rows,
+    statements,
 };
 use crate::record::{PlanRecord, Record};
 
@@ -54,7 +55,7 @@ impl Snapshot {
         if folder.database().try_exists().is_ok_and(|is_there| !is_there) {
             return Err(StoreError::NoResults { folder: folder.0.clone() });
         }
-        folder.has_own_log()?;
+        generation::has_own_log(folder)?;
         let mut reader = folder.reader()?;
         folder.has_kept_tables(&mut *reader)?;
         let reader = RefCell::new(reader);

@@ -1,6 +1,6 @@
 //! A database that is put back: under a station at work, and beside the log of one that was killed.
 
-use std::fs;
+use std::fs::{self, File};
 use std::path::Path;
 use std::process::Command;
 
@@ -169,6 +169,19 @@ fn an_earlier_copy_is_told_apart_as_soon_as_nobody_reads_what_was_before_the_sta
     let left = killed(&made);
     fs::write(left.path().join("station.db"), &earlier).unwrap();
     let refused = open(&left).unwrap_err().to_string();
+    assert!(refused.contains("is the log of another database"), "{refused}");
+}
+
+#[test]
+fn a_log_of_another_database_is_not_shown_while_a_start_has_the_folder() {
+    let (made, earlier, _) = in_its_second_session();
+    let left = killed(&made);
+    let data = Folder::new(left.path());
+    let lock = File::options().write(true).open(left.path().join("station.lock")).unwrap();
+    lock.lock().unwrap();
+    Snapshot::take(&data).unwrap();
+    fs::copy(earlier.path().join("station.db"), data.database()).unwrap();
+    let refused = Snapshot::take(&data).unwrap_err().to_string();
     assert!(refused.contains("is the log of another database"), "{refused}");
 }
 

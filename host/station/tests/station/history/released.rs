@@ -165,6 +165,28 @@ fn of_a_copy_that_was_not_finished_nothing_is_left() {
     assert_eq!(copies(data.path()), before(1));
 }
 
+/// Of an earlier day, in a folder whose station has a number for its log.
+#[test]
+fn a_database_that_is_put_back_is_in_no_start_s_way_wherever_the_one_is_killed_that_brings_it_up_to_date() {
+    let mut kills = 0;
+    for number in 1.. {
+        let data = left(1);
+        fs::write(data.path().join("station.lock"), "12345678\n").unwrap();
+        let inject = format!("inject=fsync,fdatasync:signal=KILL:when={number}");
+        let mut strace = Command::new("strace");
+        strace.args(["-f", "-qq", "-o", "/dev/null", "-e", &inject]).arg(program());
+        let did = strace.args(["prune", "--data"]).arg(data.path()).output().unwrap();
+        if did.status.code().is_some() {
+            assert!(did.status.success(), "{did:?}");
+            break;
+        }
+        kills += 1;
+        Store::open(&Folder::new(data.path())).unwrap_or_else(|error| panic!("{number}: {error}"));
+        is_true_of(data.path());
+    }
+    assert!(kills > 5, "{kills}");
+}
+
 #[test]
 fn a_backup_of_every_released_schema_is_restored_and_stays_as_it_is() {
     every_schema(|number| {
