@@ -82,6 +82,7 @@ codes::codes! {
         Database [path, doing] => "database-refuses",
         Damaged [path] => "database-unreadable",
         Replaced [path] => "database-replaced",
+        LockReplaced [path] => "store-lock-replaced",
         OtherLog [path] => "database-beside-other-log",
         NoRoom [path, megabytes] => "database-without-room",
         Plant [plant, doing] => "plant-refuses",

@@ -73,6 +73,16 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
+    /// Another file has the name of the lock, or none has.
+    #[error(
+        "{} was replaced or removed while this program works in its folder, and nothing more is kept, since another program could start \
+         there as well; end this one, see that no other works in the folder, and start it again",
+        path.display()
+    )]
+    LockReplaced {
+        /// The file.
+        path: PathBuf,
+    },
     /// The log is of another database than the one beside it.
     #[error(
         "the database {} was put there while station.db-wal beside it is the log of another database, which would spoil this one; if both files \

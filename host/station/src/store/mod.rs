@@ -286,9 +286,16 @@ impl Store {
     }
 
     /// Refuses to go on when another file has the name of the one that was opened, or other bytes are in it: what is written goes with it.
+    /// The same of the lock, which keeps others from the folder by its name alone.
     fn has_its_name(&self) -> Result<(), StoreError> {
-        let path = self.folder.database();
-        if self.opened.is_there(&self.folder) { Ok(()) } else { Err(StoreError::Replaced { path }) }
+        let lock = self.folder.lock_file();
+        if !self.opened.is_there(&self.folder) {
+            Err(StoreError::Replaced { path: self.folder.database() })
+        } else if !generation::is_named(&self.lock, &lock) {
+            Err(StoreError::LockReplaced { path: lock })
+        } else {
+            Ok(())
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! A database that is put back: under a station at work, and beside the log of one that was killed.
 
 use std::fs::{self, File};
+use std::os::unix::fs::MetadataExt as _;
 use std::path::Path;
 use std::process::Command;
 
@@ -200,6 +201,37 @@ fn a_database_and_its_log_that_were_put_there_together_count_without_the_lock_of
     fs::rename(kept.path().join("station.lock"), copied.path().join("moved")).unwrap();
     drop(Store::open(&Folder::new(kept.path())).unwrap());
     assert_eq!(units(kept.path()), ["S1", "S2"]);
+}
+
+/// As `rsync` and `tar` put a whole folder back: another lock is held by nobody, and another station could start.
+#[test]
+fn a_station_whose_lock_is_another_file_goes_on_with_nothing_and_lets_no_lock_go() {
+    let (mut made, _, saved) = in_its_second_session();
+    let [lock, aside, kept] = ["station.lock", "aside", "kept"].map(|name| made.folder().path().join(name));
+    let locks = |database: &Path| {
+        let inode = format!(":{} ", fs::metadata(database).unwrap().ino());
+        let locks = fs::read_to_string("/proc/locks").unwrap();
+        locks.lines().filter(|line| line.contains("POSIX") && line.contains(&inode)).count()
+    };
+    let database = made.folder().database();
+    let held = locks(&database);
+    assert!(held > 0, "SQLite holds none");
+    fs::hard_link(&lock, &kept).unwrap();
+    fs::copy(&lock, &aside).unwrap();
+    fs::rename(&aside, &lock).unwrap();
+    // As its pages look.
+    drop(made.now());
+    assert_eq!(locks(&database), held);
+    let next = Run { lane: "3".to_owned(), ..Run::of("S4", End::Open) };
+    let refused = made.try_begin(&next).unwrap_err().to_string();
+    assert!(refused.contains("station.lock was replaced or removed while this program"), "{refused}");
+    assert!(made.store.saved(&saved).is_err());
+    fs::rename(&kept, &lock).unwrap();
+    made.store.saved(&saved).unwrap();
+    made.try_begin(&next).unwrap();
+    // The control: whoever closes the file gives them up.
+    drop(File::open(&database).unwrap());
+    assert_eq!(locks(&database), 0);
 }
 
 /// The control: without what the start wrote down nothing tells that the log is another one's.
