@@ -36,7 +36,7 @@ pub enum CopyError {
         path: PathBuf,
     },
     /// Another copy is being made there, or was when its program was killed.
-    #[error("{} is there: remove it, if nobody is making a copy just now", path.display())]
+    #[error("{} is there; remove it, if nobody is making a copy just now", path.display())]
     UnderWay {
         /// What is there.
         path: PathBuf,

@@ -3,6 +3,10 @@
 /// Each code with its act, in the order of the codes.
 pub(super) const ACTS: &[(&str, &str)] = &[
     (
+        "audit-contradicts",
+        "mend first what `check` says of records, then put a copy of station.db back if this is still told",
+    ),
+    (
         "board-of-other-datapath",
         "load a bitstream of a datapath that this halfrow knows, or install a halfrow that knows the board's",
     ),
@@ -18,6 +22,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "choose a code that `halfrow codes` or `halfrow-station codes` lists, or a word at the left of a result",
     ),
     ("command-failed", "do what the end of its sentence says, then run again"),
+    ("evidence-not-written", "make room on the station's disk, then test the board again"),
     ("fault-unknown", "choose from KNOWN"),
     (
         "fault-without-effect",
@@ -47,6 +52,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "use frames and tables that the board takes, or load a bitstream for larger ones",
     ),
     ("geometry-impossible", "correct the width, height or radius that its sentence names"),
+    ("given-secret-open", "run the `chmod` that the message names, as the user that it names"),
     ("golden-error-unseen", "rebuild halfrow, and if that does not help, test the computer's memory"),
     ("golden-frame-wrong", "rebuild halfrow, and if that does not help, test the computer's memory"),
     ("golden-row-wrong", "rebuild halfrow, and if that does not help, test the computer's memory"),
@@ -67,6 +73,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "correct the weights that its sentence names, or use a named kernel such as hermite",
     ),
     ("kernel-not-found", "correct the path, or use a named kernel such as hermite"),
+    ("lane-not-checked", "do what the end of its sentence says"),
     (
         "lens-file-of-other-shape",
         "do what its cause says: calibrate with frames of this shape, or give the lens pitch and the optical centre",
@@ -113,6 +120,8 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "put photographs as .png files into one of the folders, or name another with --images",
     ),
     ("picture-is-no-png", "end its name in .png"),
+    ("plan-not-kept", "do what its cause says, which has a code of its own"),
+    ("plan-without-mock", "write `bad` into the plan's [shift], or give --serial and --board"),
     (
         "pool-without-board",
         "see what `halfrow-station` says in the lines above, and run again when a board of this kind is free",
@@ -128,10 +137,14 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "run again; if it refuses each time, correct what the board says of itself (`halfrow info`), or load another bitstream",
     ),
     ("row-factors-impossible", "give one row factor for each row, within the range that its cause names"),
+    ("run-evidence-wrong", "do what its cause says, which has a code of its own"),
+    ("run-not-begun", "do what its cause says, which has a code of its own"),
+    ("run-record-wrong", "do what its cause says, which has a code of its own"),
     (
         "run-too-long",
         "give it more with --timeout, or use a faster link; if nothing came at the end, check the board's power and the cable",
     ),
+    ("secret-file-open", "run the `chmod` that the message names"),
     (
         "serial-port-in-use",
         "end the program that holds it, which the message names if this user may know, or wait until it is done",
@@ -152,6 +165,13 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "simulation-not-built",
         "install Verilator (`apt-get install verilator g++`), and build with Cargo's feature `sim`",
     ),
+    ("sink-file-not-written", "do what its cause says, which has a code of its own"),
+    (
+        "sink-folder-read-only",
+        "mount it writable, or let the service write to it by `systemctl edit halfrow-station`",
+    ),
+    ("station-input-names-unusable", "do what its cause says, which has a code of its own"),
+    ("station-input-wrong", "do what the end of its sentence says"),
     ("stopped-by-signal", "run again: the board is not judged"),
     ("table-depth-unknown", "make the tables again with `halfrow tables` and --bits 8, 10 or 12"),
     (
@@ -165,6 +185,18 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     ("table-file-wrong", "mend the file as its cause says, or make it again with `halfrow tables`"),
     ("table-key-missing", "add the key, or make the file again with `halfrow tables`"),
     ("table-list-of-wrong-length", "give WANTED entries, or make the file again with `halfrow tables`"),
+    (
+        "table-row-differs",
+        "mend first what `check` says of records, then put a copy of station.db back if this is still told",
+    ),
+    (
+        "table-row-missing",
+        "mend first what `check` says of records, then put a copy of station.db back if this is still told",
+    ),
+    (
+        "table-row-surplus",
+        "mend first what `check` says of records, then put a copy of station.db back if this is still told",
+    ),
     (
         "table-value-of-wrong-kind",
         "correct the value to WANTED, or make the file again with `halfrow tables`",
@@ -294,6 +326,14 @@ mod tests {
         "stop",
     ];
 
+    /// What tells how a run went, whose record has a `remedy`, or asks for nothing.
+    const TOLD: &str = "board-swapped build-not-of-plan device-asked-for device-in-other-lane device-known device-new device-unsaid \
+        identity-not-checked lane-armed lane-deaf lane-died lane-endless lane-idle lane-in-service lane-late lane-not-started \
+        lane-put-back lane-silent lane-starts lane-stuck lane-taken-out lane-told-nonsense lane-told-to-end link-answers-wrong \
+        link-tested measurement-beyond-limit measurement-missing mock-judged out-by-person plan-takes-hardware \
+        result-saved-too-late run-stopped-before serial-tested serial-waits serial-waits-for-board serial-waits-instead \
+        settings-without-lane-or-plan shared-board-taken shared-board-unreached station-ended step-not-reached steps-unknown";
+
     /// Whether an act tells its reader what to do.
     fn is_act(act: &str) -> bool {
         let first = act.split([' ', ',']).next().unwrap_or_default();
@@ -313,9 +353,18 @@ mod tests {
     }
 
     #[test]
+    fn every_error_of_the_station_has_an_act_but_what_tells_how_a_run_went() {
+        let all = known().into_values().flatten().filter(|it| it.of == "station-error");
+        let without = all.filter(|it| it.acts.iter().all(|act| act.contains('…'))).map(|it| it.code);
+        let without: Vec<_> = without.collect();
+        assert_eq!(without.join(" "), TOLD, "give those that TOLD does not name an act in ACTS");
+    }
+
+    #[test]
     fn acts_stand_in_the_order_of_their_codes_and_no_message_has_its_own_beside_them() {
         assert!(ACTS.is_sorted_by(|one, other| one.0 < other.0));
-        let errors: Vec<_> = known().into_values().flatten().filter(|it| it.of == "error").collect();
+        let is_error = |of: &str| ["error", "station-error"].contains(&of);
+        let errors: Vec<_> = known().into_values().flatten().filter(|it| is_error(&it.of)).collect();
         for (code, act) in ACTS {
             let it = errors.iter().find(|it| it.code == *code);
             let own = it.map_or_else(|| panic!("no error {code}"), |it| of_message(&it.sentence));

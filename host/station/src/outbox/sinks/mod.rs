@@ -56,7 +56,7 @@ pub enum SinkError {
     },
     /// It has a file of this name with other bytes.
     #[error(
-        "{} is there already with other bytes, and nothing was changed: keep both, and find out which is right",
+        "{} is there already with other bytes; nothing was changed: keep both, and find out which is right",
         path.display()
     )]
     OtherFile {
