@@ -1,7 +1,8 @@
 use halfrow::compare::Comparison;
 use halfrow::report;
 use halfrow::result::{
-    Account, BoardKind, BoardReport, CoverageReport, Defect, Evidence, Problem, Reconnection, Report, Suspect,
+    Account, BoardKind, BoardReport, CoverageReport, Defect, Evidence, LinkReport, Problem, Reconnection,
+    Report, Suspect,
 };
 
 use crate::made;
@@ -39,6 +40,16 @@ fn nothing_from_outside_becomes_markup() {
     let page = page(&report, &evidence);
     assert!(!tags(&page).contains(&"script"));
     assert!(page.contains("frames/&lt;script&gt;alert(1)&lt;/script&gt;&amp;.pgm"));
+}
+
+/// As many retries as are allowed are not too many.
+#[test]
+fn a_link_s_retries_are_told_with_the_most_that_are_allowed() {
+    let report = made::pass();
+    let link = LinkReport { retries: 30, retry_limit: 30, ..report.link.clone() };
+    assert!(report::wording::link(&link).contains("0 damaged, 30 sent again (too poor beyond 30)"));
+    let page = page(&Report { link, ..report }, &[]);
+    assert!(page.contains("30; too poor beyond 30"), "{page}");
 }
 
 #[test]

@@ -199,7 +199,7 @@ pub fn link(link: &LinkReport) -> String {
     match (link.damaged_in.saturating_add(link.damaged_out), link.retries) {
         (0, 0) => parts.push("none damaged".to_owned()),
         (damaged, retries) => parts.push(format!(
-            "{} damaged, {} sent again (too poor from {} on)",
+            "{} damaged, {} sent again (too poor beyond {})",
             grouped(damaged),
             grouped(retries),
             grouped(link.retry_limit)

@@ -30,7 +30,7 @@ pub struct LinkReport {
     pub strays: u64,
     /// What the chip at the link's near end has seen go wrong on the line.
     pub line_errors: LineErrors,
-    /// Retries from which on the link is too poor to judge over.
+    /// The most retries, late ones left out, over which the link is not too poor to judge a board.
     pub retry_limit: u64,
     /// The round trip of an empty request, in microseconds of the link's clock.
     pub round_trip_us: Option<u64>,

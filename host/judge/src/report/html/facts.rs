@@ -96,7 +96,7 @@ pub(super) fn link(link: &LinkReport) -> Markup {
             (pair("Bytes", format!("{} out, {} in", grouped(link.bytes_out), grouped(link.bytes_in))))
             (pair("Packets", format!("{} out, {} in", grouped(link.packets_out), grouped(link.packets_in))))
             (pair("Damaged", format!("{} out, {} in", grouped(link.damaged_out), grouped(link.damaged_in))))
-            (pair("Sent again", format!("{}; too poor from {} on", grouped(link.retries), grouped(link.retry_limit))))
+            (pair("Sent again", format!("{}; too poor beyond {}", grouped(link.retries), grouped(link.retry_limit))))
             @if link.late.saturating_add(link.strays) > 0 {
                 (pair("Late", format!("{} answered late, {} that nobody waited for",
                     count(link.late, "request"), count(link.strays, "packet"))))
