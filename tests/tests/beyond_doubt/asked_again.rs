@@ -1,0 +1,212 @@
+//! What is sent again, how often, and when that is too much: before links that lose, hold up or hold back single packets, and bring
+//! what is of another session.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::time::Duration;
+
+use halfrow::board::deadlines::RetryLimit;
+use halfrow::board::{Board, BoardError, OpenOptions, RowTiming};
+use halfrow::link::{Link, LinkError};
+use halfrow::verdict::Verdict;
+use halfrow_mock::Options;
+use halfrow_protocol::message::Status;
+use halfrow_protocol::{Kind, Reply};
+use halfrow_tests::altered::{Altered, Passing, Toward, judge};
+use halfrow_tests::system::System;
+
+/// The link of a mock board whose packets `alter` rewrites.
+fn altered(alter: impl FnMut(Toward, Passing) -> Vec<Passing> + Send + 'static) -> Box<dyn Link> {
+    Altered::new(&Options::default(), alter).candidate().link
+}
+
+fn opened(link: Box<dyn Link>, retry_limit: RetryLimit) -> Board {
+    Board::open(link, &OpenOptions { retry_limit, ..OpenOptions::default() }).unwrap()
+}
+
+fn configure(board: &mut Board) -> Result<(), BoardError> {
+    board.configure(System::TINY.plan().tables.geometry(), RowTiming::default())
+}
+
+#[test]
+fn as_many_retries_as_are_allowed_make_no_link_too_poor() {
+    let mut answers = 0;
+    let link = altered(move |toward, packet| {
+        let is_answer = toward == Toward::Host && packet.is(Kind::Configure);
+        answers += usize::from(is_answer);
+        if is_answer && answers % 2 == 1 { Vec::new() } else { vec![packet] }
+    });
+    let mut board = opened(link, RetryLimit { fixed: 2, share: 0.0 });
+    configure(&mut board).unwrap();
+    configure(&mut board).unwrap();
+    let refused = configure(&mut board).unwrap_err();
+    assert!(matches!(refused, BoardError::TooPoor { retries: 3, limit: 2, .. }), "{refused}");
+}
+
+/// "8 tries" is what is told when there is no answer.
+#[test]
+fn a_request_is_tried_as_often_as_is_told() {
+    let losing = |most: usize| {
+        let tries = Arc::new(AtomicUsize::new(0));
+        let seen = Arc::clone(&tries);
+        let link = altered(move |toward, packet| {
+            let is_try = toward == Toward::Board && packet.is(Kind::Configure);
+            let before = seen.fetch_add(usize::from(is_try), Ordering::Relaxed);
+            if is_try && before < most { Vec::new() } else { vec![packet] }
+        });
+        (opened(link, RetryLimit::NONE), tries)
+    };
+    let (mut board, _) = losing(7);
+    configure(&mut board).unwrap();
+    let (mut board, tries) = losing(usize::MAX);
+    let lost = configure(&mut board).unwrap_err();
+    assert!(matches!(lost, BoardError::NoAnswer { attempts: 8, .. }), "{lost}");
+    assert_eq!(tries.load(Ordering::Relaxed), 8);
+}
+
+/// A link that takes nothing for as many exchanges as are left.
+struct Full {
+    link: Box<dyn Link>,
+    left: Arc<AtomicUsize>,
+}
+
+impl Link for Full {
+    fn exchange(&mut self, out: &[u8], back: &mut Vec<u8>, wait: Duration) -> Result<usize, LinkError> {
+        let is_full = self.left.load(Ordering::Relaxed) > 0;
+        self.left.fetch_sub(is_full.into(), Ordering::Relaxed);
+        self.link.exchange(if is_full { &[] } else { out }, back, wait)
+    }
+
+    fn now(&self) -> Duration {
+        self.link.now()
+    }
+
+    fn bytes_per_second(&self) -> Option<f64> {
+        self.link.bytes_per_second()
+    }
+
+    fn name(&self) -> String {
+        self.link.name()
+    }
+}
+
+#[test]
+fn what_still_waits_to_be_written_is_not_written_twice() {
+    let [left, came] = [(); 2].map(|()| Arc::new(AtomicUsize::new(0)));
+    let seen = Arc::clone(&came);
+    let link = altered(move |toward, packet| {
+        let is_request = toward == Toward::Board && packet.is(Kind::Configure);
+        seen.fetch_add(usize::from(is_request), Ordering::Relaxed);
+        vec![packet]
+    });
+    let mut board = opened(Box::new(Full { link, left: Arc::clone(&left) }), RetryLimit::NONE);
+    left.store(3, Ordering::Relaxed);
+    configure(&mut board).unwrap();
+    assert_eq!((left.load(Ordering::Relaxed), came.load(Ordering::Relaxed)), (0, 1));
+}
+
+/// It has the number of the request that was sent last.
+#[test]
+fn what_is_of_another_session_is_no_answer() {
+    let report = judge(&System::TINY, |_, packet: Passing| match packet.reply() {
+        Some(Reply::Status(status)) => {
+            let mut other = packet.saying(&Reply::Status(Status { samples_over: 1, ..status }));
+            other.header.session ^= 0x40;
+            vec![other, packet]
+        }
+        _ => vec![packet],
+    });
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert!(report.link.strays > 0);
+}
+
+/// A link brings a copy of an old packet behind newer ones, whose window the rows have left behind.
+#[test]
+fn a_window_that_comes_late_takes_no_credit_away() {
+    let mut old = None;
+    let report = judge(&System::TINY, move |toward, packet: Passing| {
+        if toward == Toward::Host && packet.is(Kind::Capabilities) {
+            old = Some(packet.clone());
+        }
+        let is_behind = toward == Toward::Host && packet.is(Kind::Configure);
+        [Some(packet), old.clone().filter(|_| is_behind)].into_iter().flatten().collect()
+    });
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert!(report.link.strays > 0);
+}
+
+/// A link that brings one packet every so many milliseconds, in the order in which they came.
+struct OneByOne {
+    link: Box<dyn Link>,
+    every: Arc<AtomicU64>,
+    held: VecDeque<Vec<u8>>,
+    next: Duration,
+}
+
+impl Link for OneByOne {
+    fn exchange(&mut self, out: &[u8], back: &mut Vec<u8>, wait: Duration) -> Result<usize, LinkError> {
+        let every = Duration::from_millis(self.every.load(Ordering::Relaxed));
+        if every.is_zero() {
+            return self.link.exchange(out, back, wait);
+        }
+        let until = self.next.saturating_sub(self.link.now());
+        let (mut came, is_idle) = (Vec::new(), self.held.is_empty());
+        let taken = self.link.exchange(out, &mut came, if is_idle { wait } else { wait.min(until) })?;
+        // A zero ends each packet, and begins it as well.
+        self.held
+            .extend(came.split_inclusive(|&byte| byte == 0).filter(|packet| packet.len() > 1).map(Vec::from));
+        if is_idle {
+            self.next = self.link.now() + every;
+        } else if self.link.now() >= self.next {
+            self.next += every;
+            back.extend(self.held.pop_front().into_iter().flatten());
+        }
+        Ok(taken)
+    }
+
+    fn now(&self) -> Duration {
+        self.link.now()
+    }
+
+    fn bytes_per_second(&self) -> Option<f64> {
+        self.link.bytes_per_second()
+    }
+
+    fn name(&self) -> String {
+        self.link.name()
+    }
+}
+
+/// Each of the copies that were sent meanwhile brings an answer, and that to the next request stands behind them all.
+#[test]
+fn a_request_is_waited_for_while_answers_to_the_one_before_still_come() {
+    let every = Arc::new(AtomicU64::new(0));
+    let link = altered(|_, packet| vec![packet]);
+    let link = OneByOne { link, every: Arc::clone(&every), held: VecDeque::new(), next: Duration::ZERO };
+    let mut board = opened(Box::new(link), RetryLimit::NONE);
+    // All eight tries of the first are under way by then.
+    every.store(9800, Ordering::Relaxed);
+    configure(&mut board).unwrap();
+    configure(&mut board).unwrap();
+    assert!(board.tally().late > 0);
+}
+
+/// 200, 400 and 800 ms, and half as long again as the 1.4 s that these are together.
+#[test]
+fn an_answer_to_the_fourth_try_says_how_late_others_may_be() {
+    let mut answers = 0;
+    let link = altered(move |toward, packet| {
+        let is_answer = toward == Toward::Host && packet.is(Kind::Configure);
+        answers += usize::from(is_answer);
+        if is_answer && [1, 2, 3, 5].contains(&answers) { Vec::new() } else { vec![packet] }
+    });
+    let mut board = opened(link, RetryLimit::NONE);
+    let mut takes = || {
+        let begun = board.now();
+        configure(&mut board).unwrap();
+        (board.now() - begun).as_millis()
+    };
+    let (first, second) = (takes(), takes());
+    assert!(2 * second >= 3 * first, "{first} ms, {second} ms");
+}
