@@ -8,8 +8,9 @@ use halfrow::progress::Silent;
 use halfrow::run::{RecordedRun, RunOptions, verify};
 use halfrow::target::Target;
 use halfrow::verdict::Verdict;
-use halfrow_protocol::message::Commit;
-use halfrow_protocol::{Encoder, Header, Request};
+use halfrow_protocol::message::{Commit, Refusal, RefusalCode};
+use halfrow_protocol::{Encoder, Header, Kind, Reply, Request};
+use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::dice::Dice;
 use halfrow_tests::program::Folder;
 use halfrow_tests::system::{System, open};
@@ -85,6 +86,59 @@ fn a_recording_of_a_run_that_asked_for_no_counts_is_judged_as_it_was() {
         assert_eq!(again["verdict"], report.verdict.to_string(), "{board}: {}", again["headline"]);
         assert_eq!(again["link"]["packets_out"], report.link.packets_out, "{board}");
     }
+}
+
+/// A link that is this program's alone.
+struct Exclusive(Box<dyn Link>);
+
+impl Link for Exclusive {
+    fn exchange(&mut self, out: &[u8], back: &mut Vec<u8>, wait: Duration) -> Result<usize, LinkError> {
+        self.0.exchange(out, back, wait)
+    }
+
+    fn now(&self) -> Duration {
+        self.0.now()
+    }
+
+    fn bytes_per_second(&self) -> Option<f64> {
+        self.0.bytes_per_second()
+    }
+
+    fn is_exclusive(&self) -> bool {
+        true
+    }
+
+    fn name(&self) -> String {
+        self.0.name()
+    }
+}
+
+/// Over such a link a board is taken from a run that was killed.
+#[test]
+fn a_recording_of_a_board_that_was_taken_over_is_judged_as_it_was() {
+    let folder = Folder::new();
+    let mut greetings = 0;
+    let alter = move |toward, packet: Passing| {
+        let is_greeted = toward == Toward::Host && packet.is(Kind::Hello);
+        greetings += usize::from(is_greeted);
+        if !is_greeted || greetings > 1 {
+            return vec![packet];
+        }
+        let held = Refusal { code: RefusalCode::Held, kind: Kind::Hello.code(), detail: 5 };
+        let mut refused = packet.saying(&Reply::Refusal(held));
+        refused.header.kind = Kind::Refusal.code();
+        vec![refused]
+    };
+    let (plan, options) = (System::TINY.plan(), RunOptions::default());
+    let candidate = Altered::new(&halfrow_mock::Options::default(), alter).candidate();
+    let file = RecordingFile::prepare(&folder.path().join("run.rec"), false).unwrap();
+    let link = Box::new(Exclusive(candidate.link));
+    let recorder = Recorder::begin(link, file, &RecordedRun::of(&plan, &options)).unwrap();
+    let candidate = Candidate { link: Box::new(recorder), ..candidate };
+    let report = verify(&plan, candidate, &options, &Silent).unwrap().report;
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    let again = folder.halfrow(["verify", "--json", "--board", "replay:run.rec"]).json();
+    assert_eq!(again["verdict"], "PASS", "{}", again["headline"]);
 }
 
 /// An exchange in which a host commits generation 2, by which frames are judged, for the last frame that has a number.
