@@ -19,6 +19,17 @@ fn a_board_behind_a_tcp_port_passes_again_and_again() {
     assert_eq!(with_rate.code, Some(0), "{}", with_rate.stdout);
 }
 
+/// Ten bits a byte: one to start, eight, one to stop.
+#[test]
+fn the_rate_of_the_line_at_the_far_end_is_that_of_the_link() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    for (option, rate) in [("", None), (",baud=9600", Some(960.0))] {
+        let target = format!("tcp:{}{option}", listener.local_addr().unwrap());
+        let candidate = halfrow::link::open(&target.parse().unwrap()).unwrap();
+        assert_eq!(candidate.link.bytes_per_second(), rate, "{target}");
+    }
+}
+
 #[test]
 fn a_board_behind_an_ipv6_port_passes() {
     if TcpListener::bind("[::1]:0").is_err() {

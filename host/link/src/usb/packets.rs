@@ -69,6 +69,21 @@ mod tests {
         );
     }
 
+    /// Bits 1 to 4 of the line status of a 16550 (Texas Instruments' TL16C550C, "Line status register"), which FTDI's chips pass on.
+    #[test]
+    fn each_bit_of_the_line_status_is_an_error_of_its_own() {
+        let none = LineErrors::default();
+        for (bit, expected) in [
+            (1, LineErrors { overrun: 1, ..none }),
+            (2, LineErrors { parity: 1, ..none }),
+            (3, LineErrors { framing: 1, ..none }),
+            (4, LineErrors { breaks: 1, ..none }),
+        ] {
+            assert_eq!(stripped(&[0x01, 0x60 | 1 << bit], 64).1, expected);
+            assert_eq!(expected.sum(), 1);
+        }
+    }
+
     #[test]
     fn a_fifo_has_no_line_to_have_errors() {
         let mut errors = LineErrors::default();
