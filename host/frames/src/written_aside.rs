@@ -338,6 +338,14 @@ mod tests {
     }
 
     #[test]
+    fn a_stream_of_nothing_is_not_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let aside = Aside::stream(&folder.path().join("a"), true).unwrap();
+        let unfinished = aside.keep_unfinished(io::ErrorKind::StorageFull.into());
+        assert_eq!((unfinished.kept, names(folder.path()).len()), (None, 0));
+    }
+
+    #[test]
     fn what_went_with_its_folder_is_not_said_to_be_kept() {
         let folder = tempfile::tempdir().unwrap();
         for is_gone in [false, true] {

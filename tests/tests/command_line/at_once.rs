@@ -1,11 +1,12 @@
 //! Several runs at once, and what killed ones leave behind.
 
 use std::fs;
+use std::io::Write as _;
 
 use halfrow_tests::parallel;
 use halfrow_tests::program::{Ended, Folder};
 
-use crate::running::{stopped_amid, streaming};
+use crate::running::{started, stopped_amid, streaming};
 use crate::signals::LARGE;
 use crate::small;
 
@@ -163,4 +164,46 @@ fn a_frame_that_a_killed_program_left_is_cleared() {
     let call = small("correct", &["builtin:black", "--model", "-o", "out"]);
     assert_eq!(folder.halfrow(call).code, Some(0));
     assert_eq!(folder.names("out").iter().filter(half).count(), 0);
+}
+
+/// The frame comes through a pipe, so that the call waits for it.
+#[test]
+fn files_that_come_while_a_frame_is_corrected_are_left_alone() {
+    let frame = [b"P5\n128 16\n4095\n".as_slice(), &[0; 2 * 128 * 16]].concat();
+    for board in [&["--model"][..], &["--board", "mock"]] {
+        for taken in ["out.pgm", "out.png"] {
+            let folder = Folder::new();
+            let pipe = folder.path().join("in.pgm");
+            nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::from_bits_truncate(0o600)).unwrap();
+            let more = [board, &["-o", "out.pgm", "--preview", "out.png"]].concat();
+            let running = started(&folder, small("correct", &[&["in.pgm"], &more[..]].concat()));
+            // It opens when somebody reads it, who may leave before the end.
+            let mut pipe = fs::OpenOptions::new().write(true).open(pipe).unwrap();
+            folder.write(taken, "precious");
+            let _ = pipe.write_all(&frame);
+            drop(pipe);
+            let ended = running.end();
+            let said = format!("{taken} exists; allow it to be overwritten");
+            assert!(ended.stderr.contains(&said), "{board:?}: {}", ended.stderr);
+            assert_ne!(ended.code, Some(0));
+            assert_eq!(folder.text(taken), "precious", "{board:?}");
+        }
+    }
+}
+
+#[test]
+fn files_that_come_while_others_are_written_are_left_alone() {
+    let folder = Folder::new();
+    let names = ["noise.pgm", "bars.pgm"];
+    let call =
+        ["frames", "--only", "noise", "--only", "bars", "--width", "2592", "--height", "2048", "-o", "out"];
+    let running = stopped_amid(&folder, &call);
+    let came: Vec<_> =
+        names.into_iter().filter(|name| !folder.names("out").contains(&(*name).to_owned())).collect();
+    came.iter().for_each(|name| folder.write(&format!("out/{name}"), "precious"));
+    running.send("CONT");
+    let ended = running.end();
+    assert!(ended.stderr.contains("exists; allow it to be overwritten"), "{}", ended.stderr);
+    assert_ne!(ended.code, Some(0));
+    assert!(!came.is_empty() && came.iter().all(|name| folder.text(&format!("out/{name}")) == "precious"));
 }

@@ -1,10 +1,12 @@
 //! What is in an output's way is found before a board is opened or anything is computed, and stays as it was.
 
 use std::fs;
-use std::os::unix::fs::symlink;
+use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _, chown, symlink};
 use std::os::unix::net::UnixListener;
 use std::path::Path;
 
+use halfrow_tests::not_tested::not_tested;
+use halfrow_tests::program::another_user::{NOBODY, is_root};
 use halfrow_tests::program::{Folder, finish};
 
 use crate::{refused, small};
@@ -161,6 +163,8 @@ fn inputs() -> Folder {
     folder.write("lens.png", folder.read("lens.json"));
     let table: serde_json::Value = serde_json::from_slice(&folder.read("t.json")).unwrap();
     folder.write("kernel.json", serde_json::json!({ "kernel": table["kernel"] }).to_string());
+    folder.write("kernel.pgm", folder.read("kernel.json"));
+    folder.write("t.pgm", folder.read("t.json"));
     fs::hard_link(folder.path().join("noise.pgm"), folder.path().join("again.rec")).unwrap();
     folder
 }
@@ -179,6 +183,11 @@ fn an_input_is_never_overwritten() {
         (vec!["verify", "--board", "replay:run.rec", "--record", "run.rec"], "run.rec"),
         (small("correct", &["noise.pgm", "--model", "-o", "noise.pgm"]), "noise.pgm"),
         (small("correct", &["noise.pgm", "--model", "-o", "."]), "noise.pgm"),
+        (small("correct", &["noise.pgm", "--model", "--tables", "t.pgm", "-o", "t.pgm"]), "t.pgm"),
+        (
+            small("correct", &["noise.pgm", "--model", "--kernel", "./kernel.pgm", "-o", "kernel.pgm"]),
+            "kernel.pgm",
+        ),
         (small("correct", &["noise.png", "--model", "-o", "x.pgm", "--preview", "noise.png"]), "noise.png"),
         (small("tables", &["--lens", "lens.json", "-o", "lens.json"]), "lens.json"),
         (small("tables", &["--kernel", "kernel.json", "-o", "kernel.json"]), "kernel.json"),
@@ -234,9 +243,35 @@ fn outputs_are_on_the_disk_before_their_names_are_and_their_names_at_the_end() {
             calls.iter().any(|line| line.contains("fsync(") && line.contains(&format!("{path}>)")))
         };
         let aside = Path::new(aside).file_name().unwrap().to_str().unwrap();
-        assert!(is_synced(&calls[..named], &format!("/{aside}")), "{call:?}: {calls:#?}");
+        let inside = if name == "out" { folder.names(name) } else { Vec::new() };
+        for path in inside.iter().map(|file| format!("/{aside}/{file}")).chain([format!("/{aside}")]) {
+            assert!(is_synced(&calls[..named], &path), "{call:?}, {path}: {calls:#?}");
+        }
         let around = folder.path().file_name().unwrap().to_str().unwrap();
         assert!(is_synced(&calls[named..], &format!("/{around}")), "{call:?}: {calls:#?}");
+    }
+}
+
+/// Of what nobody can give to the group that it was of, the other group may read what everybody may.
+#[test]
+fn a_file_that_comes_to_another_group_is_open_to_nobody_more() {
+    if !is_root() {
+        not_tested("files of another group", "only root may give a file to a group that it is not in");
+        return;
+    }
+    for (mode, expected) in [(0o660, 0o600), (0o664, 0o644), (0o2664, 0o644)] {
+        let folder = Folder::new();
+        let (theirs, file) = (folder.path().join("theirs"), folder.path().join("theirs/t.json"));
+        fs::create_dir(&theirs).unwrap();
+        fs::write(&file, "somebody's").unwrap();
+        chown(&theirs, Some(NOBODY), Some(NOBODY)).unwrap();
+        chown(&file, None, Some(54_321)).unwrap();
+        fs::set_permissions(&file, fs::Permissions::from_mode(mode)).unwrap();
+        let call = small("tables", &["-o", "theirs/t.json", "--overwrite"]);
+        let ended = finish(&mut folder.as_nobody(&call));
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let there = fs::metadata(&file).unwrap();
+        assert_eq!((there.mode() & 0o7777, there.uid(), there.gid()), (expected, NOBODY, NOBODY), "{mode:o}");
     }
 }
 
