@@ -81,6 +81,42 @@ fn written_frames_are_what_they_are_called() {
     }
 }
 
+/// The samples of a PGM of 128 columns and 16 bits, from `row` on.
+fn samples_from(folder: &Folder, name: &str, row: usize) -> Vec<i32> {
+    let bytes = folder.read(name);
+    let head = bytes.split(|&byte| byte == b'\n').take(3).map(|line| line.len() + 1).sum::<usize>();
+    let samples = bytes[head + 2 * 128 * row..].as_chunks().0.iter();
+    samples.map(|&sample| u16::from_be_bytes(sample).into()).collect()
+}
+
+/// Of a frame of 32 rows, whose axis is in row 15.5, the rows from 12 on are a frame whose axis is in row 3.5, but for the noise.
+#[test]
+fn the_street_is_seen_about_the_axis_wherever_that_is() {
+    let lens = |centre: f64, rows: u32| {
+        format!(
+            r#"{{"K":[[90,0,63.5],[0,90,{centre}],[0,0,1]],"D":[0,0,0,0],"image_width":128,"image_height":{rows}}}"#
+        )
+    };
+    for [high, low] in [
+        [&["--radius", "80"][..], &["--radius", "80", "--centre-y", "3.5"]],
+        [&["--lens", "high.json"], &["--lens", "low.json"]],
+    ] {
+        let folder = Folder::new();
+        folder.write("high.json", lens(15.5, 32));
+        folder.write("low.json", lens(3.5, 16));
+        for (rows, more) in [("32", high), ("16", low)] {
+            let call = ["frames", "--width", "128", "--only", "street", "--height", rows, "-o", rows];
+            let ended = folder.halfrow(call.iter().chain(more).copied());
+            assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        }
+        let (high, low) =
+            (samples_from(&folder, "32/street.pgm", 12), samples_from(&folder, "16/street.pgm", 0));
+        assert_eq!(low.len(), 16 * 128);
+        let apart: i32 = low.iter().zip(&high).map(|(low, high)| (low - high).abs()).sum();
+        assert!(apart < 60 * 16 * 128, "{apart}");
+    }
+}
+
 #[test]
 fn a_seed_gives_the_same_noise_again_and_another_seed_other_noise() {
     let folder = Folder::new();

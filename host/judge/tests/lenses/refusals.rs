@@ -103,6 +103,29 @@ fn an_axis_outside_the_pictures_is_refused() {
     );
 }
 
+/// Places count from the middle of the first pixel to that of the last.
+#[test]
+fn an_axis_in_the_middle_of_an_outer_pixel_is_inside_the_pictures() {
+    let centred = |row: &str, column: &str| {
+        LensFile::parse(&with(DSL215, "229.581672 364.430465", &format!("{row} {column}")))
+    };
+    assert_eq!(centred("0", "751").unwrap().centre, (751.0, 0.0));
+    assert_eq!(centred("479", "0").unwrap().centre, (0.0, 479.0));
+    for (row, column) in [("-0.5", "0"), ("0", "-0.5"), ("479.5", "0"), ("0", "751.5")] {
+        let refused = centred(row, column).unwrap_err();
+        assert!(matches!(refused, LensContentError::Centre { .. }), "{row} {column}: {refused}");
+    }
+}
+
+/// What is added is 20 (x + pi / 3) (x + pi / 6): nothing at 30 and 60 degrees from the axis, where x is minus those, and 11 pixels at
+/// 90 degrees, where x is 0. The pictures of 480 rows show up to 240 pixels, and 30 degrees alone are inside them.
+#[test]
+fn ocamcalib_s_inverse_polynomial_is_looked_at_inside_the_pictures_alone() {
+    let poor = with(DSL215, "388.557547 220.910537 -10.127377", "399.523774 252.326464 9.872623");
+    says(&poor, "480 752", "2000 2000", "off the direct one at 90 degrees");
+    assert!(LensFile::parse(&poor).is_ok());
+}
+
 #[test]
 fn image_sizes_that_cannot_be_are_refused() {
     for size in ["[1280]", "[1280.5, 720]", "[0, 720]", "[1e9, 720]", "[-1280, 720]"] {
