@@ -156,8 +156,10 @@ fn every_path_follows_the_steepest_kernels() {
     // Differences of 17 bits, though r3 fits 16.
     let fitting = (0..NODES).map(|node| [0, if node % 2 == 0 { -16_400 } else { 16_400 }, 0, 0, 0]);
     let five = all.clone().map(|[_, r1, g4, r5, _]| [0, r1, g4, r5, 0]);
-    for kernel in
-        [all.collect(), five.collect(), fitting.collect()].map(|nodes| Kernel::from_nodes(nodes).unwrap())
+    // The other way round: r3 is 3.
+    let level = (0..NODES).map(|_| [0, -24_576, 0, -24_576, 0]);
+    for kernel in [all.collect(), five.collect(), fitting.collect(), level.collect()]
+        .map(|nodes| Kernel::from_nodes(nodes).unwrap())
     {
         // Q = 2^24 − 2^12 moves x by one a column pair.
         for factor in [ONE - (1 << 12), ONE / 3] {
