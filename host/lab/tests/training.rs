@@ -3,8 +3,8 @@
 use halfrow::frames::preview::RgbImage;
 use halfrow::kernels::NamedKernel;
 use halfrow::progress::Silent;
-use halfrow_lab::training::{Equations, TrainingError, train};
-use halfrow_model::{Interpolant, Kernel, Taps};
+use halfrow_lab::training::{Equations, TrainingError, measure, train};
+use halfrow_model::{Interpolant, Kernel, NODES, Taps};
 
 /// Outputs that a known kernel makes of made-up taps: the equations give that kernel back, but for the ridge.
 #[test]
@@ -100,4 +100,69 @@ fn the_fit_is_numpy_s() {
         assert!(pairs.map(|(found, held)| (found - held).abs()).max() <= Some(1));
         assert!((equations.error(&kernel) - left).abs() < 1e-3, "{}", equations.error(&kernel));
     }
+}
+
+/// A picture of this size whose brightness at each place is `value`.
+fn grey(width: usize, height: usize, value: impl Fn(usize, usize) -> u32) -> RgbImage {
+    let value = &value;
+    let places = (0..height).flat_map(|row| (0..width).flat_map(move |column| [value(row, column); 3]));
+    RgbImage { width, height, data: places.map(|value| (value % 256) as u8).collect() }
+}
+
+/// Saw teeth, which rise slowly to the right and fall at once.
+fn saw_teeth(row: usize, column: usize) -> u32 {
+    (20 + 19 * ((column + row / 3) % 11) + 3 * (row % 5)) as u32
+}
+
+/// Light has no preferred direction. Seen from the other side, s0 changes places with s6, s1 with s5, and s2, which weighs
+/// 1 - g0 - g4 - g6, with s4, at the node as far from the end as this one is from the beginning.
+#[test]
+fn a_fitted_kernel_is_the_same_from_both_sides_although_the_picture_is_not() {
+    let kernel = train(&[grey(96, 64, saw_teeth)], Taps::Seven, &Silent).unwrap().kernel;
+    let nodes: Vec<[i32; 5]> = kernel.nodes().iter().map(|node| node.map(i32::from)).collect();
+    let apart = (0..NODES).map(|node| {
+        let ([g0, r1, g4, r5, g6], seen) = (nodes[node], nodes[NODES - 1 - node]);
+        let mirrored = [g6, r5, 16384 - g0 - g4 - g6, r1, g0];
+        mirrored.iter().zip(seen).map(|(mirrored, seen)| (mirrored - seen).abs()).max().unwrap()
+    });
+    let farthest = apart.max().unwrap();
+    assert!(farthest < 300, "{farthest}");
+}
+
+/// Noise: whatever the size of a picture of it, its samples tell the same of a kernel.
+fn noise(width: usize, height: usize) -> RgbImage {
+    grey(width, height, |row, column| {
+        90 + (((row * 4096 + column) as u32).wrapping_mul(2_654_435_761) >> 8) % 20
+    })
+}
+
+/// A picture of four times the pixels moves the kernel by far less than four that tell what it tells do.
+#[test]
+fn a_photograph_weighs_the_same_whatever_its_size() {
+    let nodes = |photographs: &[RgbImage]| -> Vec<i32> {
+        let kernel = train(photographs, Taps::Five, &Silent).unwrap().kernel;
+        kernel.nodes().iter().flatten().map(|&weight| weight.into()).collect()
+    };
+    let (small, large, other) = (noise(96, 64), noise(192, 128), grey(96, 64, saw_teeth));
+    let alike = nodes(&[small.clone(), other.clone()]);
+    let apart = |nodes: Vec<i32>| -> i32 { nodes.iter().zip(&alike).map(|(a, b)| (a - b).abs()).sum() };
+    let by_size = apart(nodes(&[large, other.clone()]));
+    let by_number = apart(nodes(&[small.clone(), small.clone(), small.clone(), small, other]));
+    assert!(4 * by_size < by_number, "{by_size}, {by_number}");
+}
+
+/// A step of one level in the middle, which no lens moves and Hermite's nodes keep, and which two outer taps of a whole picture's
+/// weight smear.
+#[test]
+fn what_comes_back_exactly_by_hermite_alone_has_no_figure() {
+    let step = grey(96, 64, |_, column| 90 + u32::from(column >= 48));
+    let hermite = halfrow::kernels::stored;
+    let weights: Vec<[f64; 5]> = (0..NODES)
+        .map(|node| {
+            let [_, r1, g4, r5, _] = hermite(Interpolant::Hermite.weights(node as f64 / 32.0));
+            [0.9, r1, g4, r5, -0.9]
+        })
+        .collect();
+    let gains = measure(&[step], &Kernel::from_weights(&weights).unwrap(), &Silent).unwrap();
+    assert_eq!((gains[0].exact, gains[0].gain, gains[0].hermite), (1, None, None));
 }
