@@ -140,7 +140,11 @@ impl Lane {
         let id = self.child.id();
         fs::write(spool.join(PROCESS), format!("{id} {}\n", started(id).unwrap_or_default()))?;
         let job = serde_json::to_string(job)?;
-        self.stdin.as_mut().map_or(Ok(()), |stdin| writeln!(stdin, "{job}"))
+        match self.stdin.as_mut().map_or(Ok(()), |stdin| writeln!(stdin, "{job}")) {
+            // It did start, and how it ended tells more.
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+            briefed => briefed,
+        }
     }
 
     /// Hears the lane until its last message, its end, or the end of patience.

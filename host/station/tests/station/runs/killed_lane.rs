@@ -150,6 +150,16 @@ fn sweep(choose: impl Fn(Vec<Call>) -> Vec<Call>) -> (usize, usize) {
     (killed, done)
 }
 
+/// A pipe takes 64 KiB: a longer job is not handed over before who should read it is gone.
+#[test]
+fn a_lane_that_ends_before_it_has_its_job_is_told_by_how_it_ended() {
+    let station = Station::with(&format!("{PLAN}# {}\n", "-".repeat(1 << 18)));
+    let store = SharedStore::new(Store::open(&station.store()).unwrap());
+    let ended = run_in(&store, &station, "1", "CAT00001", Path::new("/bin/false")).record.conclusion;
+    assert_eq!((ended.verdict, ended.cause), (Verdict::Error, RunCause::Crash), "{ended:?}");
+    assert!(ended.headline.contains("exit status: 1"), "{ended:?}");
+}
+
 #[test]
 fn a_lane_that_is_killed_anywhere_is_an_error_and_the_lane_beside_goes_on() {
     let (killed, _) = sweep(|all| {
