@@ -230,6 +230,7 @@ codes::codes! {
     RecordError {
         NotANumber [name, value] => "record-without-number",
         Incomplete [seq, steps] => "record-incomplete",
+        OtherSchema [schema] => "record-of-other-schema",
         Json => "record-unreadable",
     }
     Fault {

@@ -26,9 +26,9 @@ pub const IDENTITY_NOT_CHECKED: &str = "identity not checked";
 /// The version of the record's format.
 pub const SCHEMA: u32 = 1;
 
-/// A run that is over, however it ended.
+/// A run that is over, however it ended. Keys that a later program adds are skipped, in all that a record consists of: its bytes
+/// are held to their hash, and nothing is written of what was read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Record {
     /// [`SCHEMA`]
     pub schema: u32,
@@ -65,7 +65,6 @@ pub struct Record {
 
 /// What is known of a run before the board is touched.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct RunHead {
     /// The run, a UUID of version 7.
     pub id: String,
@@ -96,7 +95,6 @@ pub struct RunHead {
 
 /// A job of a plant's, as a station had it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct JobClaim {
     /// The job, a UUID of version 7.
     pub id: String,
@@ -106,7 +104,6 @@ pub struct JobClaim {
 
 /// The plan of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct PlanRecord {
     /// Hash of its text and files.
     pub sha256: String,
@@ -122,7 +119,6 @@ pub struct PlanRecord {
 
 /// Evidence beside the record.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Attachment {
     /// Its name within the run.
     pub name: String,
@@ -156,6 +152,14 @@ pub enum RecordError {
         seq: u32,
         /// The plan's steps.
         steps: u32,
+    },
+    /// It is of a schema that this program does not read.
+    #[error(
+        "the record is of schema {schema}, and this program reads schema {SCHEMA}; use the halfrow-station that made it"
+    )]
+    OtherSchema {
+        /// Its schema.
+        schema: u32,
     },
     /// It cannot be written as JSON, or read.
     #[error("the record is no JSON of schema {SCHEMA}; report this with the record")]
@@ -214,10 +218,25 @@ impl Record {
     /// The record that these bytes are.
     ///
     /// # Errors
-    /// [`RecordError::Json`]
+    /// [`RecordError::OtherSchema`], [`RecordError::Json`]
     pub fn parse(bytes: &[u8]) -> Result<Self, RecordError> {
-        serde_json::from_slice(bytes).map_err(RecordError::Json)
+        let record = serde_json::from_slice::<Self>(bytes);
+        let schema = match &record {
+            Ok(record) => record.schema,
+            Err(_) => serde_json::from_slice(bytes).map_or(SCHEMA, |Numbered { schema }| schema),
+        };
+        if schema == SCHEMA {
+            record.map_err(RecordError::Json)
+        } else {
+            Err(RecordError::OtherSchema { schema })
+        }
     }
+}
+
+/// What a record of every schema has.
+#[derive(Deserialize)]
+struct Numbered {
+    schema: u32,
 }
 
 /// By how many seconds the clocks of a run and of its steps may differ where nobody sets one.

@@ -13,7 +13,6 @@ use crate::said::{Said, Saying};
 
 /// One try of one step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct StepRecord {
     /// Its place in the plan, from 1.
     pub seq: u32,
@@ -167,7 +166,6 @@ fn is_of_link(code: &str) -> bool {
 
 /// A board that said who it is.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct BoardSeen {
     /// `mock`, `sim`, `replay` or `hardware`.
     pub kind: String,
@@ -201,7 +199,6 @@ pub enum DeviceSeen {
 
 /// A part that is suspected.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct SuspectRecord {
     /// The kind of part.
     pub part: String,
@@ -215,7 +212,6 @@ pub struct SuspectRecord {
 
 /// A measurement, beside its limit if it has one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Measured {
     /// Its name.
     pub name: String,

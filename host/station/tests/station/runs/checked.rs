@@ -2,8 +2,11 @@
 
 use std::fs;
 use std::path::PathBuf;
+use std::process::Command;
 
-use super::bench::{PLAN, Station};
+use serde_json::Value;
+
+use super::bench::{PLAN, Station, program};
 
 /// A station with a PASS, a FAIL and an ERROR.
 fn station() -> Station {
@@ -94,6 +97,69 @@ fn a_record_with_another_plan_than_its_hash_is_of_is_found() {
         did.said.contains("1 faults found") && did.said.contains("has another hash than it says"),
         "{did:?}"
     );
+}
+
+/// Adds a key to every object of a record, but to those whose keys are anybody's.
+fn add_key(to: &mut Value) {
+    match to {
+        Value::Object(members) => {
+            let ours =
+                members.iter_mut().filter(|(key, _)| !["evidence", "parameters"].contains(&key.as_str()));
+            ours.for_each(|(_, value)| add_key(value));
+            members.insert("moon".to_owned(), 1.into());
+        }
+        Value::Array(all) => all.iter_mut().for_each(add_key),
+        _ => {}
+    }
+}
+
+/// Gives the only run of a station this record.
+fn records(station: &Station, record: &Value) -> PathBuf {
+    let hash = station.store().blobs().put(format!("{record:#}\n").as_bytes()).unwrap();
+    let database = rusqlite::Connection::open(station.store().database()).unwrap();
+    assert_eq!(database.execute("UPDATE run SET record_sha256 = $1", [&hash]).unwrap(), 1);
+    station.store().blobs().path(&hash)
+}
+
+/// Whoever goes back to an earlier program has records of a later one.
+#[test]
+fn a_record_with_keys_that_a_newer_program_added_is_read_and_held_to_its_hash() {
+    let station = Station::with(PLAN);
+    let did = station.run("CAT00001", "mock,fault=stuck-data");
+    let (stored, before, mut record) = station.saved(&did);
+    let unnamed = station.store().blobs().path(&stored.record_sha256);
+    add_key(&mut record);
+    let path = records(&station, &record);
+    fs::remove_file(unnamed).unwrap();
+    assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+    assert_eq!(station.saved(&did).1, before);
+    let run = before.run.id.as_str();
+    let data = station.data().display().to_string();
+    for format in ["record", "junit", "csv", "openhtf"] {
+        let export = ["export", run, "--format", format, "--data", &data];
+        let output = Command::new(program()).args(export).output().unwrap();
+        assert!(output.status.success(), "{format}: {output:?}");
+        assert!(format != "record" || output.stdout == fs::read(&path).unwrap(), "the record's very bytes");
+    }
+    fs::write(&path, fs::read_to_string(&path).unwrap().replacen("\"moon\": 1", "\"moon\": 2", 1)).unwrap();
+    let did = station.check();
+    assert_eq!(did.code, Some(3), "{did:?}");
+    assert!(did.said.contains("holds other bytes than its name says"), "{did:?}");
+}
+
+#[test]
+fn a_record_of_another_schema_is_refused_by_its_number() {
+    let station = Station::with(PLAN);
+    let (.., mut record) = station.saved(&station.run("CAT00001", "mock"));
+    record["schema"] = 2.into();
+    for _ in 0..2 {
+        records(&station, &record);
+        let did = station.check();
+        assert_eq!(did.code, Some(3), "{did:?}");
+        assert!(did.said.contains("is of schema 2, and this program reads schema 1"), "{did:?}");
+        // It may as well have lost a key that schema 1 has.
+        record.as_object_mut().unwrap().remove("device");
+    }
 }
 
 /// The schema itself holds what no program may write.
