@@ -4,6 +4,7 @@
 pub mod another_user;
 mod built;
 pub mod documents;
+pub mod held;
 mod running;
 
 use std::fs;

@@ -7,6 +7,8 @@ use halfrow::result::Report;
 use jsonschema::Validator;
 use serde_json::Value;
 
+use super::held;
+
 /// The schema in the repository.
 pub const SCHEMA: &str = include_str!("../../../host/schema/halfrow-1.json");
 
@@ -20,10 +22,7 @@ pub fn assert_valid(document: &Value) {
         let schema = serde_json::from_str(SCHEMA).unwrap();
         jsonschema::validator_for(&schema).unwrap()
     });
-    let wrong: Vec<_> = validator
-        .iter_errors(document)
-        .map(|error| format!("{error} at {}", error.instance_path()))
-        .collect();
+    let wrong = held::errors(validator, document);
     assert!(wrong.is_empty(), "not as the schema says: {wrong:#?}");
     if !document["run"].is_null() {
         let report: Report = serde_json::from_value(document.clone()).unwrap();

@@ -8,6 +8,7 @@ use std::time::{Duration, SystemTime};
 use serde_json::Value;
 
 use crate::common::{Did, PLAN, program};
+use crate::held;
 use crate::runs::bench::Station;
 
 const SCHEMA: &str = include_str!("../../schema/station-1.json");
@@ -22,8 +23,8 @@ fn did(arguments: &[&str]) -> Did {
 fn document(did: &Did) -> Value {
     let said: Value = serde_json::from_str(&did.said).unwrap_or_else(|error| panic!("{error}: {did:?}"));
     let schema = jsonschema::validator_for(&serde_json::from_str(SCHEMA).unwrap()).unwrap();
-    let wrong: Vec<_> = schema.iter_errors(&said).map(|error| error.to_string()).collect();
-    assert!(wrong.is_empty(), "not as the schema says: {wrong:?}\n{said:#}");
+    let wrong = held::errors(&schema, &said);
+    assert!(wrong.is_empty(), "not as the schema says: {wrong:#?}");
     assert_eq!(said["exit_code"].as_i64(), did.code.map(i64::from), "{did:?}");
     said
 }
@@ -151,8 +152,8 @@ fn misread(record: &Value) -> Vec<String> {
         .map(|schema| jsonschema::validator_for(&serde_json::from_str(schema).unwrap()).unwrap());
     let steps = record["steps"].as_array().into_iter().flatten();
     let reports = steps.filter(|step| step["kind"] == "verify" && step["evidence"].is_object());
-    let wrong = reports.flat_map(|step| report.iter_errors(&step["evidence"]));
-    schema.iter_errors(record).chain(wrong).map(|error| error.to_string()).collect()
+    let wrong = reports.flat_map(|step| held::errors(&report, &step["evidence"]));
+    held::errors(&schema, record).into_iter().chain(wrong).collect()
 }
 
 /// Of a PASS with every kind of step, a FAIL, an ERROR and a run that was found open.
@@ -174,7 +175,7 @@ fn every_record_is_as_its_schema_says() {
     let mut causes = BTreeSet::new();
     for run in station.query("SELECT id FROM run") {
         let record: Value = serde_json::from_str(&did(&["export", &run, "--data", &data]).said).unwrap();
-        assert_eq!(misread(&record), Vec::<String>::new(), "{record:#}");
+        assert_eq!(misread(&record), Vec::<String>::new(), "schema/record-1.json");
         causes.insert(record["conclusion"]["cause"].as_str().unwrap().to_owned());
         // The control: a key less, or more.
         for key in record.as_object().unwrap().keys() {
@@ -200,7 +201,7 @@ fn the_records_of_earlier_programs_are_as_the_schema_says() {
             let bytes = fs::read(file.unwrap().path()).unwrap();
             let Ok(record) = serde_json::from_slice::<Value>(&bytes) else { continue };
             if record.get("conclusion").is_some() {
-                assert_eq!(misread(&record), Vec::<String>::new(), "{record:#}");
+                assert_eq!(misread(&record), Vec::<String>::new(), "schema/record-1.json");
                 records += 1;
             }
         }
@@ -210,10 +211,15 @@ fn the_records_of_earlier_programs_are_as_the_schema_says() {
 
 #[test]
 fn schema_and_pages_are_those_in_the_repository_and_no_code_stands_twice() {
-    assert_eq!(did(&["schema"]).said, SCHEMA);
-    assert_eq!(did(&["schema", "record"]).said, RECORD);
-    assert_eq!(did(&["codes"]).said, include_str!("../../../../docs/STATION-CODES.md"));
-    assert_eq!(did(&["commands"]).said, include_str!("../../../../docs/STATION-COMMANDS.md"));
+    for (arguments, file, kept) in [
+        ("schema", "host/station/schema/station-1.json", SCHEMA),
+        ("schema record", "host/station/schema/record-1.json", RECORD),
+        ("codes", "docs/STATION-CODES.md", include_str!("../../../../docs/STATION-CODES.md")),
+        ("commands", "docs/STATION-COMMANDS.md", include_str!("../../../../docs/STATION-COMMANDS.md")),
+    ] {
+        let printed = did(&arguments.split(' ').collect::<Vec<_>>()).said;
+        held::assert_printed_by(&format!("halfrow-station {arguments}"), &printed, file, kept);
+    }
     let codes = document(&did(&["codes", "--json"]));
     let codes: Vec<_> =
         codes["codes"].as_array().unwrap().iter().map(|entry| entry["code"].as_str().unwrap()).collect();

@@ -8,6 +8,10 @@ mod common;
 mod compiled_once;
 mod documents;
 mod floor;
+#[path = "../../../../tests/src/program/held.rs"]
+// It is public where the tests of `halfrow` have it.
+#[allow(unreachable_pub)]
+mod held;
 mod history;
 mod jobs;
 mod lanes;

@@ -9,6 +9,7 @@ use tempfile::TempDir;
 
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use crate::common::program;
+use crate::held;
 
 /// What a command says, and its exit code.
 pub(crate) fn did(made: &impl AsRef<Path>, arguments: &[&str]) -> (i32, String, String) {
@@ -31,7 +32,7 @@ fn said(made: &impl AsRef<Path>, arguments: &[&str]) -> String {
 
 fn json(made: &impl AsRef<Path>, arguments: &[&str]) -> Value {
     let said = serde_json::from_str(&said(made, &[arguments, &["--json"]].concat())).unwrap();
-    assert_eq!(misread(arguments[0], &said), Vec::<String>::new(), "{said:#}");
+    assert_eq!(misread(arguments[0], &said), Vec::<String>::new(), "schema/results-1.json");
     said
 }
 
@@ -39,7 +40,7 @@ fn json(made: &impl AsRef<Path>, arguments: &[&str]) -> Value {
 pub(crate) fn misread(command: &str, said: &Value) -> Vec<String> {
     let schema = Command::new(program()).args(["schema", command]).output().unwrap().stdout;
     let schema = jsonschema::validator_for(&serde_json::from_slice(&schema).unwrap()).unwrap();
-    schema.iter_errors(said).map(|error| format!("{}: {error}", error.instance_path())).collect()
+    held::errors(&schema, said)
 }
 
 fn made() -> Made {
