@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::{CallError, Failure, codes, print_json};
 use crate::exit::Exit;
 
-/// What the program prints as JSON; the codes come from the program.
+/// What the program prints as JSON, which is written by hand; the codes alone come from the program.
 const SCHEMA: &str = include_str!("../../../schema/halfrow-1.json");
 
 #[derive(Debug, Args)]

@@ -7,7 +7,7 @@ use super::{Failure, print};
 use crate::codes;
 use crate::exit::Exit;
 
-/// What the program prints as JSON; the codes come from the program.
+/// What the program prints as JSON, which is written by hand; the codes alone come from the program.
 const SCHEMA: &str = include_str!("../../schema/station-1.json");
 /// What is kept of a run.
 const RECORD: &str = include_str!("../../schema/record-1.json");
