@@ -1,5 +1,7 @@
 //! What `info` says of a board.
 
+use halfrow_mock::Options;
+use halfrow_pipe::BoardOptions as _;
 use halfrow_tests::program::halfrow;
 use serde_json::json;
 
@@ -12,6 +14,24 @@ fn a_board_is_told_of_whatever_reply_is_lost() {
         assert_eq!(told.code, Some(0), "packet {packet}: {told:?}");
         assert!(told.stdout.contains("pixel clock"), "packet {packet}: {told:?}");
     }
+}
+
+/// The page has a line for each line in front of the counters, in order.
+#[test]
+fn the_page_of_capabilities_has_every_line() {
+    let page = include_str!("../../../docs/capabilities.md");
+    let rows = page.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next());
+    let said = halfrow(["info"]).stdout;
+    let lines = said.lines().take_while(|line| !line.is_empty()).map(|line| line.split("  ").next().unwrap());
+    assert_eq!(rows.collect::<Vec<_>>(), lines.collect::<Vec<_>>());
+}
+
+#[test]
+fn the_page_of_boards_has_every_option_of_the_mock() {
+    let page = include_str!("../../../docs/boards.md");
+    let is_there = |key: &str| page.contains(&format!("`{key}`")) || page.contains(&format!("{key}="));
+    let missing: Vec<_> = Options::KEYS.iter().filter(|key| !is_there(key)).collect();
+    assert_eq!(missing, Vec::<&&str>::new());
 }
 
 #[test]
