@@ -34,7 +34,10 @@ def expected(page):
         numbers[f"REFUSAL_{constant(name)}"] = int(code)
     tags = section(page, "01 CAPABILITIES", "02")
     for tag, value in re.findall(r"^\| ([0-9a-f]{2}) \| ([^|]+) \|", tags, re.MULTILINE):
-        numbers["TAG_" + (constant(value.split()[1].strip(",")) if value.startswith("`") else "NAME")] = int(tag, 16)
+        name = "TAG_" + (constant(value.split()[1].strip(",")) if value.startswith("`") else "NAME")
+        if name in numbers:
+            sys.exit(f"wire: the tags {numbers[name]:02x} and {tag} of {PAGE.name} are both {name}; a value without a type is the board's name alone")
+        numbers[name] = int(tag, 16)
     for group, row, names in [("CLOCK", "clock_source", {"the host's own": "HOST", "the sensor's PIXCLK": "PIXCLK", "a PLL": "PLL"}),
                               ("NATURE", "nature", {name: name.upper() for name in ("hardware", "simulation", "mock")})]:
         text = re.search(rf"`u8` {row} \| (.*?) \|$", tags, re.MULTILINE)[1]
