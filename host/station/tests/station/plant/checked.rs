@@ -70,6 +70,20 @@ fn whatever_came_in_whatever_order_is_found_to_be_as_it_was_sent() {
     assert_eq!(faults(&server, "plant"), [""; 0]);
 }
 
+/// As of stations that have a newer program.
+#[test]
+fn records_with_a_key_more_are_no_fault() {
+    let change = r#"WITH newer AS (
+        SELECT sha256, replace(text, '"schema": 1,', '"schema": 1, "moon": 1,') AS text FROM record
+    ), hashed AS (
+        SELECT sha256 AS old, encode(sha256(convert_to(text, 'UTF8')), 'hex') AS new, text FROM newer
+    ), named AS (
+        UPDATE run SET record_sha256 = new FROM hashed WHERE record_sha256 = old
+    )
+    UPDATE record SET sha256 = new, text = hashed.text FROM hashed WHERE sha256 = old"#;
+    assert_eq!(spoilt(&plant(), change), [""; 0]);
+}
+
 #[test]
 fn a_record_that_is_gone_or_changed_is_found_with_its_run() {
     let server = plant();
