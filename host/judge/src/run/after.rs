@@ -2,8 +2,8 @@
 
 use super::entry::WrongEntry;
 use super::findings::{During, End};
-use super::judge::Seen;
 use super::plan::{DECOY, Generation};
+use super::seen::Seen;
 use super::steps::Run;
 use crate::board::Bank;
 use crate::diagnosis::{self, Case, Uploaded};
@@ -119,15 +119,6 @@ impl Run<'_> {
             frames: &self.findings.seen.frames,
             evidence: &self.findings.seen.evidence,
         })
-    }
-}
-
-impl Seen {
-    /// Whether nothing of it is wrong, be it judged yet or not.
-    pub(super) fn is_right(&self) -> bool {
-        let rows =
-            self.wrong_generation.is_none() && self.wrong_latency.is_none() && self.wrong_entry.is_none();
-        rows && self.wrong_pauses.is_none() && self.changed_tables.is_none() && self.differences() == 0
     }
 }
 

@@ -5,7 +5,8 @@ use std::time::Instant;
 use jiff::Timestamp;
 
 use super::findings::{End, Findings};
-use super::judge::{STREET, Seen};
+use super::judge::STREET;
+use super::seen::Seen;
 use super::{Circumstances, Finished, Plan, RunOptions};
 use crate::board::Tally;
 use crate::coverage::Faults;

@@ -1,7 +1,7 @@
 //! What the board counts, beside what the host saw.
 
 use super::findings::End;
-use super::judge::Seen;
+use super::seen::Seen;
 use super::steps::Run;
 use crate::board::Status;
 use crate::result::{CheckName, Counter, Finding, LatencyReport};

@@ -10,68 +10,13 @@ use std::time::Instant;
 use halfrow_model::{Frame, row_signature};
 
 use super::entry::{WrongEntry, flipped_bit};
-use super::exercised::SampleLevels;
-use super::findings::End;
-use super::kept::{KeptFrames, as_found};
+use super::kept::as_found;
 use super::prepared::{PrepareError, Prepared};
+use super::seen::Seen;
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::compare::Comparison;
 use crate::progress::Progress;
-use crate::result::{Evidence, Finding, FrameReport, FrameTiming, LateRows, LatencyReport, Variation};
-
-/// What the judge has seen of all frames so far.
-#[derive(Default)]
-pub(super) struct Seen {
-    pub(super) frames: Vec<FrameReport>,
-    pub(super) evidence: KeptFrames,
-    pub(super) levels: SampleLevels,
-    pub(super) latency: Option<LatencyReport>,
-    /// The first row that names other tables than it should.
-    pub(super) wrong_generation: Option<Finding>,
-    /// The first row with a wrong latency.
-    pub(super) wrong_latency: Option<WrongLatency>,
-    /// The first row that entered the core otherwise than it was sent.
-    pub(super) wrong_entry: Option<WrongEntry>,
-    /// Rows whose CRC of what entered was looked at.
-    pub(super) rows_with_entry: usize,
-    /// The first row whose gaps are not those of the seed.
-    pub(super) wrong_pauses: Option<Finding>,
-    /// That tables had changed when they were read back.
-    pub(super) changed_tables: Option<End>,
-}
-
-/// A row with another latency than the board claims, in pixel clocks.
-pub(super) struct WrongLatency {
-    row: usize,
-    frame: u16,
-    first: u32,
-    last: u32,
-    claimed: u32,
-    /// Whether each such row is this one of its frame.
-    is_one_row: bool,
-}
-
-impl WrongLatency {
-    /// It as the first of so many `rows` among `of_rows`.
-    pub(super) fn finding(&self, rows: usize, of_rows: usize) -> Finding {
-        let &Self { row, frame, first, last, claimed, is_one_row } = self;
-        Finding::LatencyWrong(LateRows { rows, of_rows, is_one_row, row, frame, first, last, claimed })
-    }
-}
-
-impl Seen {
-    pub(super) fn differences(&self) -> usize {
-        self.frames.iter().map(|frame| frame.comparison.differences).sum()
-    }
-
-    pub(super) fn differing_frames(&self) -> usize {
-        self.frames.iter().filter(|frame| frame.comparison.differences > 0).count()
-    }
-
-    pub(super) fn samples(&self) -> usize {
-        self.frames.iter().map(|frame| frame.comparison.samples).sum()
-    }
-}
+use crate::result::{Evidence, Finding, FrameReport, FrameTiming, Variation};
 
 /// Kept even if it is equal: the report measures its façades.
 pub(super) const STREET: &str = "builtin:street";
@@ -181,29 +126,6 @@ impl<'a> Judge<'a> {
         self.unprepared.map_or(Ok(()), Err)
     }
 
-    fn check_latency(&mut self, row: &ReturnedRow<'_>) {
-        let Manner { claimed_latency: claimed, latency_limit: limit, .. } = self.manner;
-        let (first, last) = (u32::from(row.first_latency), u32::from(row.last_latency));
-        let seen = self.seen.latency.get_or_insert(LatencyReport {
-            claimed,
-            limit,
-            least: first,
-            most: first,
-            rows: 0,
-            wrong_rows: 0,
-        });
-        seen.least = seen.least.min(first).min(last);
-        seen.most = seen.most.max(first).max(last);
-        seen.rows += 1;
-        if (first, last) != (claimed, claimed) || claimed > limit {
-            seen.wrong_rows += 1;
-            let (row, frame) = (row.row, row.frame);
-            let new = WrongLatency { row, frame, first, last, claimed, is_one_row: true };
-            let wrong = self.seen.wrong_latency.get_or_insert(new);
-            wrong.is_one_row &= wrong.row == row;
-        }
-    }
-
     fn check_entry(&mut self, row: &ReturnedRow<'_>, input: &Frame) {
         if !self.manner.names_entered {
             return;
@@ -292,7 +214,8 @@ impl RowTraffic for Judge<'_> {
         let Some(place) = self.in_flight.iter().position(is_new) else {
             return ControlFlow::Continue(());
         };
-        self.check_latency(row);
+        let Manner { claimed_latency, latency_limit, .. } = self.manner;
+        self.seen.note_latency(row, claimed_latency, latency_limit);
         self.check_pauses(row);
         let input = Arc::clone(&self.in_flight[place].prepared.input);
         self.check_entry(row, &input);

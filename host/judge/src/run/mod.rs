@@ -27,6 +27,7 @@ mod recorded;
 mod rules;
 mod schedule;
 mod second_look;
+mod seen;
 mod steps;
 mod streaming;
 mod threads;

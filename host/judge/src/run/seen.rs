@@ -1,0 +1,92 @@
+//! What the judge has seen of all frames so far.
+
+use super::entry::WrongEntry;
+use super::exercised::SampleLevels;
+use super::findings::End;
+use super::kept::KeptFrames;
+use crate::board::ReturnedRow;
+use crate::result::{Finding, FrameReport, LateRows, LatencyReport};
+
+/// What the judge has seen of all frames so far.
+#[derive(Default)]
+pub(super) struct Seen {
+    pub(super) frames: Vec<FrameReport>,
+    pub(super) evidence: KeptFrames,
+    pub(super) levels: SampleLevels,
+    pub(super) latency: Option<LatencyReport>,
+    /// The first row that names other tables than it should.
+    pub(super) wrong_generation: Option<Finding>,
+    /// The first row with a wrong latency.
+    pub(super) wrong_latency: Option<WrongLatency>,
+    /// The first row that entered the core otherwise than it was sent.
+    pub(super) wrong_entry: Option<WrongEntry>,
+    /// Rows whose CRC of what entered was looked at.
+    pub(super) rows_with_entry: usize,
+    /// The first row whose gaps are not those of the seed.
+    pub(super) wrong_pauses: Option<Finding>,
+    /// That tables had changed when they were read back.
+    pub(super) changed_tables: Option<End>,
+}
+
+/// A row with another latency than the board claims, in pixel clocks.
+pub(super) struct WrongLatency {
+    row: usize,
+    frame: u16,
+    first: u32,
+    last: u32,
+    claimed: u32,
+    /// Whether each such row is this one of its frame.
+    is_one_row: bool,
+}
+
+impl WrongLatency {
+    /// It as the first of so many `rows` among `of_rows`.
+    pub(super) fn finding(&self, rows: usize, of_rows: usize) -> Finding {
+        let &Self { row, frame, first, last, claimed, is_one_row } = self;
+        Finding::LatencyWrong(LateRows { rows, of_rows, is_one_row, row, frame, first, last, claimed })
+    }
+}
+
+impl Seen {
+    /// Whether nothing of it is wrong, be it judged yet or not.
+    pub(super) fn is_right(&self) -> bool {
+        let rows =
+            self.wrong_generation.is_none() && self.wrong_latency.is_none() && self.wrong_entry.is_none();
+        rows && self.wrong_pauses.is_none() && self.changed_tables.is_none() && self.differences() == 0
+    }
+
+    pub(super) fn differences(&self) -> usize {
+        self.frames.iter().map(|frame| frame.comparison.differences).sum()
+    }
+
+    pub(super) fn differing_frames(&self) -> usize {
+        self.frames.iter().filter(|frame| frame.comparison.differences > 0).count()
+    }
+
+    pub(super) fn samples(&self) -> usize {
+        self.frames.iter().map(|frame| frame.comparison.samples).sum()
+    }
+
+    /// Takes the latency of a row that came back, of which the board claims `claimed` and may have `limit` pixel clocks.
+    pub(super) fn note_latency(&mut self, row: &ReturnedRow<'_>, claimed: u32, limit: u32) {
+        let (first, last) = (u32::from(row.first_latency), u32::from(row.last_latency));
+        let seen = self.latency.get_or_insert(LatencyReport {
+            claimed,
+            limit,
+            least: first,
+            most: first,
+            rows: 0,
+            wrong_rows: 0,
+        });
+        seen.least = seen.least.min(first).min(last);
+        seen.most = seen.most.max(first).max(last);
+        seen.rows += 1;
+        if (first, last) != (claimed, claimed) || claimed > limit {
+            seen.wrong_rows += 1;
+            let (row, frame) = (row.row, row.frame);
+            let new = WrongLatency { row, frame, first, last, claimed, is_one_row: true };
+            let wrong = self.wrong_latency.get_or_insert(new);
+            wrong.is_one_row &= wrong.row == row;
+        }
+    }
+}
