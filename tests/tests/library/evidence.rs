@@ -12,6 +12,9 @@ use halfrow_tests::system::System;
 /// Frames that all differ, beside the run's own.
 const FRAMES: u32 = 200;
 
+/// As large as it must be for faults whose suspects frames that came back right tell apart.
+const DIAGNOSED: System = System { height: 16, radius: 40.0, ..System::TINY };
+
 /// What is left of a run over many frames of a broken board.
 fn run(evidence_bytes: usize) -> Finished {
     let plan = System::TINY.plan().frames([FrameSource::Builtin(Builtin::Noise)]);
@@ -74,4 +77,32 @@ fn a_run_of_many_frames_that_differ_keeps_within_its_budget_and_says_what_it_lef
     let found = |finished: &Finished| finished.report.suspects.first().map(halfrow::result::Suspect::place);
     assert!(found(&kept).is_some_and(|place| place.contains("bit 5")), "{:?}", kept.report.headline());
     assert_eq!(found(&kept), found(&whole));
+}
+
+/// What the diagnosis says of the board `target`: each suspect's place, share and evidence.
+fn suspects(target: &str, keep_equal: bool) -> Vec<(String, f64, String)> {
+    let board = link::open(&target.parse().unwrap()).unwrap();
+    let options = RunOptions { keep_equal, ..RunOptions::default() };
+    let plan = Plan { fail_fast: true, ..DIAGNOSED.plan() };
+    let report = verify(&plan, board, &options, &Silent).unwrap().report;
+    report.suspects.iter().map(|suspect| (suspect.place(), suspect.explained, suspect.evidence())).collect()
+}
+
+/// Some of these faults leave frames as they should be that a suspect may or may not change.
+#[test]
+fn suspects_are_the_same_whether_pictures_are_wanted_or_not() {
+    let _alone = crate::RUNS.lock();
+    for fault in [
+        "drifting-table",
+        "kernel-word,hidden=true,bit=1",
+        "kernel-word,hidden=true",
+        "row-factor,hidden=true",
+        "stuck-data",
+        "no-rounding",
+    ] {
+        let target = format!("mock,fault={fault}");
+        let without = suspects(&target, false);
+        assert!(!without.is_empty(), "{fault}");
+        assert_eq!(without, suspects(&target, true), "{fault}");
+    }
 }

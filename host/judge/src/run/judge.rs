@@ -10,7 +10,7 @@ use std::time::Instant;
 use halfrow_model::{Frame, row_signature};
 
 use super::entry::{WrongEntry, flipped_bit};
-use super::kept::as_found;
+use super::kept::{Offered, as_found};
 use super::prepared::{PrepareError, Prepared};
 use super::seen::Seen;
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
@@ -26,7 +26,7 @@ pub(super) struct Manner {
     pub(super) claimed_latency: u32,
     pub(super) latency_limit: u32,
     pub(super) fail_fast: bool,
-    /// Keep frames for pictures although they are equal.
+    /// Keep equal frames for pictures, too, and not for the diagnosis alone.
     pub(super) keep_equal: bool,
     /// Bytes of frames that are kept, at most.
     pub(super) evidence_bytes: usize,
@@ -151,20 +151,34 @@ impl<'a> Judge<'a> {
         }
     }
 
+    /// A frame of which samples are wrong, or none, as one that may be kept.
+    fn offered<'n>(&self, name: &'n str, expected: &Frame, is_whole: bool, is_wrong: bool) -> Offered<'n> {
+        let is_street = name == STREET;
+        Offered {
+            name,
+            // Rows that did not come back are black.
+            differs: is_wrong || !is_whole,
+            is_wanted: is_wrong || self.manner.keep_equal || is_street,
+            is_pinned: is_street && self.manner.first_rows.is_none(),
+            bytes: 3 * size_of_val(expected.samples()),
+        }
+    }
+
     fn conclude(&mut self, frame: InFlight) {
         let InFlight { prepared, found, rows, comparison, .. } = frame;
         let Prepared { name, number, generation, sha256, input, expected } = prepared;
         self.seen.levels.note(&input, &expected);
-        let (differs, height) = (comparison.differences > 0, expected.height());
-        let (is_street, budget) = (name == STREET, self.manner.evidence_bytes);
-        let is_wanted = differs || self.manner.keep_equal || is_street;
-        if is_wanted && let Some(found) = as_found(&expected, found) {
+        let (is_whole, budget) = (rows >= expected.height(), self.manner.evidence_bytes);
+        let offered = self.offered(&name, &expected, is_whole, comparison.differences > 0);
+        if is_whole || offered.is_wanted {
             let index = self.seen.frames.len();
-            let (input, expected) = ((*input).clone(), (*expected).clone());
-            self.seen.evidence.offer(Evidence { index, input, found, expected }, &name, is_street, budget);
+            self.seen.evidence.offer(&offered, budget, || {
+                let found = as_found(&expected, found)?;
+                Some(Evidence { index, input: (*input).clone(), found, expected: (*expected).clone() })
+            });
         }
         let now = Instant::now();
-        let comparison = self.seen.evidence.shorten(comparison, rows >= height, budget);
+        let comparison = self.seen.evidence.shorten(comparison, is_whole, budget);
         self.seen.frames.push(FrameReport {
             name,
             number,

@@ -18,12 +18,30 @@ pub(super) fn as_found(expected: &Frame, samples: Vec<u16>) -> Option<Frame> {
 /// The share of the budget that counts by row and column have; frames have the rest.
 const SHARE_OF_COUNTS: usize = 16;
 
-/// What was kept of the frames that were streamed, in their order.
+/// A frame that may be kept.
+pub(super) struct Offered<'a> {
+    /// Its picture's name.
+    pub(super) name: &'a str,
+    pub(super) differs: bool,
+    /// Whether it is kept for more than the diagnosis.
+    pub(super) is_wanted: bool,
+    pub(super) is_pinned: bool,
+    /// What it, what came back and what should have take.
+    pub(super) bytes: usize,
+}
+
+/// What is known of a frame that was kept.
+struct Label {
+    name: String,
+    is_wanted: bool,
+}
+
+/// What was kept of the frames that were streamed, in their order. Frames that came back right are among them whether they are wanted
+/// or not: what the diagnosis says must not depend on it.
 #[derive(Default)]
 pub(super) struct KeptFrames {
     evidence: Vec<Evidence>,
-    /// Their pictures' names.
-    names: Vec<String>,
+    labels: Vec<Label>,
     bytes: usize,
     bytes_of_counts: usize,
     left_out: usize,
@@ -32,43 +50,56 @@ pub(super) struct KeptFrames {
 }
 
 impl KeptFrames {
-    /// Keeps a frame of the picture `name` if it fits into `budget` bytes beside the others. One that differs takes the place of equal
-    /// ones, the latest first, and then, if its picture is not there yet, of pictures that are there again, but not of a frame that is
-    /// pinned; one that is equal is kept only where there is room.
-    pub(super) fn offer(&mut self, evidence: Evidence, name: &str, is_pinned: bool, budget: usize) {
-        let (bytes, budget) = (bytes(&evidence), budget - budget / SHARE_OF_COUNTS);
-        if differs(&evidence) {
-            while self.bytes + bytes > budget
-                && let Some(place) = self.place_of_another(name)
-            {
-                let removed = self.evidence.remove(place);
-                self.names.remove(place);
-                self.bytes -= self::bytes(&removed);
-                self.left_out += 1;
+    /// Keeps a frame if it fits into `budget` bytes beside the others; only then `evidence` is asked for it. One that differs takes the
+    /// place of equal ones, the latest first, and then, if its picture is not there yet, of pictures that are there again, but not of a
+    /// frame that is pinned. The first that is pinned takes the place of equal ones, too; any other that is equal is kept only where
+    /// there is room.
+    pub(super) fn offer(
+        &mut self,
+        offered: &Offered<'_>,
+        budget: usize,
+        evidence: impl FnOnce() -> Option<Evidence>,
+    ) {
+        if !self.has_place(offered, budget - budget / SHARE_OF_COUNTS) {
+            self.left_out += usize::from(offered.is_wanted);
+        } else if let Some(evidence) = evidence() {
+            if offered.is_pinned {
+                self.pinned = Some(evidence.index);
             }
+            self.bytes += bytes(&evidence);
+            self.evidence.push(evidence);
+            self.labels.push(Label { name: offered.name.to_owned(), is_wanted: offered.is_wanted });
         }
-        if self.bytes + bytes > budget {
-            self.left_out += 1;
-            return;
-        }
-        if is_pinned {
-            self.pinned = Some(evidence.index);
-        }
-        self.bytes += bytes;
-        self.evidence.push(evidence);
-        self.names.push(name.to_owned());
     }
 
-    /// Where the frame is that makes way for one that differs, of the picture `name`.
-    fn place_of_another(&self, name: &str) -> Option<usize> {
+    /// Whether there is room for a frame, which others may have to make.
+    fn has_place(&mut self, offered: &Offered<'_>, budget: usize) -> bool {
+        while self.bytes + offered.bytes > budget {
+            let Some(place) = self.place_of_another(offered) else { return false };
+            let removed = self.evidence.remove(place);
+            self.bytes -= bytes(&removed);
+            self.left_out += usize::from(self.labels.remove(place).is_wanted);
+        }
+        true
+    }
+
+    /// Where the frame is that makes way for another.
+    fn place_of_another(
+        &self,
+        &Offered { name, differs: is_wrong, is_pinned, .. }: &Offered<'_>,
+    ) -> Option<usize> {
+        if !(is_wrong || is_pinned && self.pinned.is_none()) {
+            return None;
+        }
         let is_free = |place: usize| self.pinned != Some(self.evidence[place].index);
-        let shows = |place: usize, name: &str| self.names[place] == name && differs(&self.evidence[place]);
+        let shows =
+            |place: usize, name: &str| self.labels[place].name == name && differs(&self.evidence[place]);
         let is_there = |name: &str, before: usize| (0..before).any(|place| shows(place, name));
         let places = 0..self.evidence.len();
         let equal = places.clone().rfind(|&place| is_free(place) && !differs(&self.evidence[place]));
         equal.or_else(|| {
-            let is_again = |&place: &usize| is_free(place) && is_there(&self.names[place], place);
-            if is_there(name, places.end) { None } else { places.clone().rfind(is_again) }
+            let is_again = |&place: &usize| is_free(place) && is_there(&self.labels[place].name, place);
+            if !is_wrong || is_there(name, places.end) { None } else { places.clone().rfind(is_again) }
         })
     }
 
@@ -85,10 +116,12 @@ impl KeptFrames {
         comparison
     }
 
-    /// Takes the frames themselves, and what is to be said of them.
+    /// Takes the frames themselves that are wanted, and what is to be said of them.
     pub(super) fn finish(self) -> (Vec<Evidence>, EvidenceReport) {
-        let (kept, bytes, left_out) = (self.evidence.len(), self.bytes as u64, self.left_out);
-        (self.evidence, EvidenceReport { kept, bytes, left_out })
+        let wanted = self.evidence.into_iter().zip(self.labels).filter(|(_, label)| label.is_wanted);
+        let evidence: Vec<_> = wanted.map(|(evidence, _)| evidence).collect();
+        let (kept, bytes) = (evidence.len(), evidence.iter().map(bytes).sum::<usize>() as u64);
+        (evidence, EvidenceReport { kept, bytes, left_out: self.left_out })
     }
 }
 
@@ -104,6 +137,7 @@ fn differs(evidence: &Evidence) -> bool {
     evidence.found != evidence.expected
 }
 
+/// What the samples of a frame that is kept take.
 fn bytes(evidence: &Evidence) -> usize {
     let frames = [&evidence.input, &evidence.found, &evidence.expected];
     frames.into_iter().map(|frame| size_of_val(frame.samples())).sum()
@@ -135,7 +169,8 @@ mod tests {
         let budget = room * ONE * SHARE_OF_COUNTS / (SHARE_OF_COUNTS - 1);
         let mut kept = KeptFrames::default();
         for (index, &(name, differs)) in named.iter().enumerate() {
-            kept.offer(evidence(index, differs), name, index == pinned, budget);
+            let offered = Offered { name, differs, is_wanted: true, is_pinned: index == pinned, bytes: ONE };
+            kept.offer(&offered, budget, || Some(evidence(index, differs)));
         }
         let (evidence, report) = kept.finish();
         assert_eq!((report.kept, report.bytes as usize), (evidence.len(), evidence.len() * ONE));
@@ -161,6 +196,33 @@ mod tests {
         assert_eq!(kept_of(2, 1, &twice(&["a", "a", "b"])), (vec![0, 1], 1));
         // What is equal shows nothing that a repetition does not.
         assert_eq!(kept_of(2, none, &[("a", true), ("a", true), ("b", false)]), (vec![0, 1], 1));
+    }
+
+    #[test]
+    fn a_pinned_frame_that_is_equal_takes_the_place_of_an_equal_one() {
+        assert_eq!(kept(2, 2, &[false, false, false, false]), (vec![0, 2], 2));
+        assert_eq!(kept(2, 2, &[true, true, false]), (vec![0, 1], 1));
+    }
+
+    #[test]
+    fn equal_frames_that_are_not_wanted_are_there_within_the_budget_until_the_end_and_nobody_is_told() {
+        let budget = 2 * ONE * SHARE_OF_COUNTS / (SHARE_OF_COUNTS - 1);
+        let mut kept = KeptFrames::default();
+        let (mut made, indices) =
+            (Vec::new(), |kept: &KeptFrames| kept.iter().map(|it| it.index).collect::<Vec<_>>());
+        for index in 0..100 {
+            let differs = index == 50;
+            let offered =
+                Offered { name: "noise", differs, is_wanted: differs, is_pinned: false, bytes: ONE };
+            kept.offer(&offered, budget, || {
+                made.push(index);
+                Some(evidence(index, differs))
+            });
+            assert!(kept.bytes <= budget);
+        }
+        assert_eq!((indices(&kept), made), (vec![0, 50], vec![0, 1, 50]));
+        let (evidence, report) = kept.finish();
+        assert_eq!((evidence.len(), report.kept, report.bytes as usize, report.left_out), (1, 1, ONE, 0));
     }
 
     #[test]

@@ -31,7 +31,7 @@ pub struct RunOptions {
     /// The most bytes of frames that are kept for diagnosis and pictures. Those that differ come first; how many found no
     /// place, the report says.
     pub evidence_bytes: usize,
-    /// Keep frames that are equal, too, for pictures of them.
+    /// Give frames that are equal out, too, for pictures of them. The diagnosis has them in any case.
     pub keep_equal: bool,
     /// What the report says of the run beside its findings.
     pub circumstances: Circumstances,
