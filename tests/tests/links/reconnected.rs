@@ -85,6 +85,35 @@ fn a_broken_board_is_found_although_it_was_away() {
     assert_eq!(report.link.reconnections.len(), 1);
 }
 
+/// What the board that `target` leads to is suspected of, and how often it was away.
+fn suspected(target: String) -> (Vec<(String, String)>, usize) {
+    let system = System { height: 16, radius: 40.0, ..System::TINY };
+    let report = come_to_an_end(move || system.judge_patiently(&target, Some(PATIENCE)));
+    let suspects = report.suspects.iter().map(|suspect| (suspect.place(), suspect.evidence()));
+    (suspects.collect(), report.link.reconnections.len())
+}
+
+/// The board is away between frames that came back right, which rule suspects out, and the first that does not. Where it is wrong
+/// before, all is judged anew in another session.
+#[test]
+fn a_board_that_was_away_in_the_middle_is_suspected_of_the_same() {
+    let faults = [
+        ("kernel-word,hidden=true,bit=1", [28_000, 32_000]),
+        ("row-factor,hidden=true,bit=5", [20_000, 24_000]),
+    ];
+    parallel::map(&faults, |(fault, cuts)| {
+        let board = format!("mock,fault={fault}");
+        let (undisturbed, _) = suspected(board.clone());
+        assert!(!undisturbed.is_empty(), "{fault}");
+        for &byte in cuts {
+            let folder = Folder::new();
+            let path = folder.path().join("board");
+            let served = Served::unplugged_once(&board, &path, byte, Some(Replug::Powered));
+            assert_eq!(suspected(served.target()), (undisturbed.clone(), 1), "{fault}, cut at {byte}");
+        }
+    });
+}
+
 #[test]
 fn another_board_is_not_taken_for_the_one_that_went_away() {
     for (board, other) in [("mock", "mock,taps=five"), ("mock,serial=17", "mock,serial=18")] {

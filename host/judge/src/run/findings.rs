@@ -99,6 +99,8 @@ pub(super) struct Findings {
     /// What every check has taken so far, and since when the next one counts.
     spent: BTreeMap<CheckName, Duration>,
     since: Instant,
+    /// Empty while a segment streams: its judge has what was seen until then ([`Run::stream`](super::steps::Run::stream)), so neither
+    /// a place among all frames nor a verdict follows from it there.
     pub(super) seen: Seen,
     pub(super) tally: Tally,
     pub(super) link: LinkReport,
