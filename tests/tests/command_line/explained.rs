@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use halfrow_tests::program::{Folder, halfrow};
+use halfrow_tests::program::{Folder, error_sentence, halfrow};
 
 use crate::small;
 
@@ -12,6 +12,7 @@ const STATION: &str = include_str!("../../../docs/STATION-CODES.md");
 /// The explanation of each of `codes` as JSON.
 fn explained(codes: &[&str]) -> Vec<serde_json::Value> {
     let said = halfrow(["explain", "--json"].into_iter().chain(codes.iter().copied())).json();
+    assert!(said["error"].is_null(), "{}", error_sentence(&said));
     said["codes"].as_array().cloned().unwrap_or_default()
 }
 
