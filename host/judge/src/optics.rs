@@ -6,22 +6,24 @@
 //!  kernel's name or file ────────────────┘
 //! ```
 
+mod error;
 mod view;
 
 use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use halfrow_model::{
-    Camera, CameraError, Equidistant, GeometryError, GridRoomError, GridShape, Interpolant, Kernel,
-    LensError, Phase, RowFactor, TableError, TableSet,
+    Camera, Equidistant, GridShape, Interpolant, Kernel, LensError, Phase, RowFactor, TableError, TableSet,
 };
 
+pub use error::OpticsError;
+use error::circle;
 pub use view::View;
 
 use crate::call::Input;
 use crate::frames::Scene;
-use crate::kernels::{DamagedKernel, NamedKernel, UnknownKernel};
-use crate::lenses::{LensContentError, LensFileError, LensModel};
+use crate::kernels::NamedKernel;
+use crate::lenses::LensModel;
 use crate::run::Plan;
 use crate::tables::{KernelFile, TableFile, TableFileError};
 
@@ -71,90 +73,6 @@ impl TablesBy {
         };
         shape.map_or_else(|| how.to_owned(), |shape| format!("{how}, {shape}"))
     }
-}
-
-/// A lens, tables or a kernel that cannot be had.
-#[derive(Debug, thiserror::Error)]
-pub enum OpticsError {
-    /// There is neither a kernel of this name nor a file.
-    #[error("there is no file {name}, and {unknown}, or a kernel file")]
-    Kernel {
-        /// The name.
-        name: String,
-        /// Which names there are.
-        unknown: UnknownKernel,
-    },
-    /// A named kernel is damaged.
-    #[error(transparent)]
-    Damaged(#[from] DamagedKernel),
-    /// A file of tables or of a kernel cannot be used.
-    #[error(transparent)]
-    File(#[from] TableFileError),
-    /// A lens file cannot be used.
-    #[error(transparent)]
-    LensFile(#[from] LensFileError),
-    /// The lens file was made with frames of another shape.
-    #[error("the lens file {} does not fit", path.display())]
-    Shape {
-        /// The file.
-        path: PathBuf,
-        /// Which shapes.
-        #[source]
-        source: LensContentError,
-    },
-    /// Frames of the lens file's size, or behind its lens, cannot be.
-    #[error("the lens file {} cannot be used for these frames", path.display())]
-    Unfit {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        #[source]
-        source: LensContentError,
-    },
-    /// The frames have a size that no board takes.
-    #[error(transparent)]
-    Geometry(#[from] GeometryError),
-    /// The lens is none.
-    #[error(transparent)]
-    Lens(#[from] LensError),
-    /// The lens does not fit the frames.
-    #[error(transparent)]
-    Camera(#[from] CameraError),
-    /// The row factors are none that a board can have.
-    #[error(transparent)]
-    Tables(#[from] TableError),
-    /// No grid has so few entries.
-    #[error(transparent)]
-    Room(#[from] GridRoomError),
-    /// The image circle misses the frame's rows.
-    #[error(
-        "{}, so nothing would be corrected; check the lens, its centre and the size of the frames",
-        circle(*.outside, *.rows, *.radius, *.centre)
-    )]
-    OutsideCircle {
-        /// Rows outside of the circle.
-        outside: usize,
-        /// All rows.
-        rows: usize,
-        /// The circle's radius, in pixels.
-        radius: f64,
-        /// The row of its middle.
-        centre: f64,
-    },
-}
-
-impl OpticsError {
-    /// Whether it is a file of another datapath, which is refused like a board of one.
-    #[must_use]
-    pub fn is_other_datapath(&self) -> bool {
-        matches!(self, Self::File(TableFileError::Datapath { .. }))
-    }
-}
-
-fn circle(outside: usize, rows: usize, radius: f64, centre: f64) -> String {
-    format!(
-        "{outside} of {rows} rows lie outside the image circle, whose radius is {radius:.3} pixels around row {centre:.1}"
-    )
 }
 
 /// What `tables` of a lens do with rows outside of its image circle, behind the subject of a sentence. A grid goes on beyond

@@ -1,13 +1,13 @@
 //! Packets over a link: numbered, answered, asked again, counted.
 
+mod answered;
 mod damaged;
 
 use std::time::Duration;
 
-use halfrow_protocol::message::{Reply, Request, RowIn, RowPlace};
+use halfrow_protocol::message::{Request, RowIn, RowPlace};
 use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet};
 
-use super::answer::{OwnedPacket, take_reply};
 use super::asked::{Asking, LastAsked, Stray};
 use super::conduct::Conduct;
 use super::counted::Counted;
@@ -290,109 +290,5 @@ impl Conversation {
         let changes = if is_second { &mut self.doubled_changes } else { &mut self.repeated_changes };
         *changes += u64::from(changed);
         needless.into_iter().for_each(|took| self.was_late(took));
-    }
-
-    /// Asks until a reply that `accept` takes has come.
-    pub(super) fn ask(
-        &mut self,
-        asking: &Asking<'_>,
-        step: Step,
-        accept: impl Fn(&Packet<'_>) -> bool,
-    ) -> Result<OwnedPacket, BoardError> {
-        let retries = self.tally.retries;
-        let answer = self.ask_until_answered(asking, step, accept)?;
-        self.counted.came(1);
-        if step == Step::Request && asking.kind() != Kind::Status {
-            self.count_behind(retries);
-            self.count_doubled();
-        }
-        Ok(answer)
-    }
-
-    fn ask_until_answered(
-        &mut self,
-        asking: &Asking<'_>,
-        step: Step,
-        accept: impl Fn(&Packet<'_>) -> bool,
-    ) -> Result<OwnedPacket, BoardError> {
-        let (kind, sequence, begun) = (asking.kind(), self.next_sequence(), self.now());
-        let attempts = step.deadline().attempts;
-        self.asked.asked(asking, sequence, begun);
-        let mut attempt = 0;
-        while attempt < attempts {
-            if attempt > 0 {
-                tracing::info!("{kind} was not answered; asking again");
-                self.repeated_changes += u64::from(self.asked.asked_again());
-                self.count_retry()?;
-            }
-            if attempt == 0 || self.queued() == 0 {
-                self.queue_packet(kind, sequence, |payload| asking.write(payload));
-            }
-            // The reply may be as long as the longest packet, or stand behind one of a session before.
-            let bytes = self.outgoing.len() + halfrow_protocol::MAX_PACKET;
-            let mut deadline = self.waited + self.wait_for(step, attempt, bytes);
-            while let Some(wait) = deadline.checked_sub(self.waited).filter(|wait| !wait.is_zero()) {
-                let late = self.tally.late;
-                if let Some(answer) = self.answer_within(wait, asking, sequence, &accept)? {
-                    self.took(attempt, self.since(begun));
-                    self.tally.answered += u64::from(answer.header.kind == kind.code());
-                    return Ok(answer);
-                }
-                if self.tally.late > late {
-                    // What was asked before still arrives, and this stands in the queue behind it.
-                    (attempt, deadline) = (0, self.waited + self.wait_for(step, 0, bytes));
-                }
-            }
-            attempt += 1;
-        }
-        Err(BoardError::NoAnswer { kind, attempts, waited: self.since(begun), heard: self.heard() })
-    }
-
-    /// Moves bytes once, and returns the answer if it is among them.
-    fn answer_within(
-        &mut self,
-        wait: Duration,
-        asking: &Asking<'_>,
-        sequence: u16,
-        accept: impl Fn(&Packet<'_>) -> bool,
-    ) -> Result<Option<OwnedPacket>, BoardError> {
-        let (mut answer, mut rows) = (None, 0);
-        let doing = || format!("waiting for the answer to {}", asking.kind());
-        self.exchange(wait, doing, |packet| {
-            let header = packet.header;
-            // Rows are numbered by the board.
-            let is_row = header.kind == Kind::RowOut.code();
-            rows += u64::from(is_row);
-            if !is_row && header.sequence == sequence && accept(packet) {
-                answer.get_or_insert_with(|| OwnedPacket { header, payload: packet.payload.to_vec() });
-            }
-        })?;
-        let unwanted = rows.min(self.unwanted.into());
-        self.unwanted -= unwanted as u32;
-        self.tally.strays += rows - unwanted;
-        let sent = self.header(asking.kind(), sequence);
-        match answer {
-            Some(answer) if answer.is_echo_of(&sent, asking) => Err(self.echoed()?),
-            answer => Ok(answer),
-        }
-    }
-
-    /// Takes note of how long it took until something came that was asked for `again` times more.
-    pub(super) fn took(&mut self, again: u32, time: Duration) {
-        // Three in a row are seldom lost, and often late.
-        if again >= 3 {
-            self.slowest = self.slowest.max(time);
-        }
-    }
-
-    /// Asks, and takes the expected part of the reply.
-    pub(super) fn request<T>(
-        &mut self,
-        request: &Request<'_>,
-        step: Step,
-        take: impl FnOnce(Reply<'_>) -> Option<T>,
-    ) -> Result<T, BoardError> {
-        let answer = self.ask(&Asking::Request(request), step, |_| true)?;
-        take_reply(request.kind(), &answer, take)
     }
 }
