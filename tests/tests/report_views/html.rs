@@ -75,6 +75,17 @@ fn a_pass_says_what_share_of_faults_it_stands_for_where_it_may() {
 }
 
 #[test]
+fn each_figure_stands_there_whatever_others_the_run_has() {
+    let pass = made::pass();
+    let coverage = Some(CoverageReport { found: 1999, faults: 2000, equivalent: 100 });
+    let board = BoardReport { kind: BoardKind::Sim, ..pass.board.clone() };
+    let alone = Report { latency: None, street: None, board, coverage, ..pass };
+    assert!(page(&alone, &[]).contains("<dt>Coverage</dt>"));
+    let of_mock = Report { latency: None, street: None, ..made::pass() };
+    assert!(!page(&of_mock, &[]).contains("Figures"));
+}
+
+#[test]
 fn nothing_is_loaded_from_anywhere() {
     let (report, evidence) = made::fail();
     let page = page(&report, &evidence);

@@ -14,7 +14,7 @@ struct Line {
 /// Whose matter a line is that only tells.
 const NOBODYS: &str = "nobody's: it tells what was done";
 
-const LINES: [Line; 16] = [
+const LINES: &[Line] = &[
     Line {
         word: "board",
         meaning: "The board that was judged: its kind, the target that it was reached by, and what it says of itself.",

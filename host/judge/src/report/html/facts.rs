@@ -57,21 +57,18 @@ fn frame_row(report: &Report, frame: &FrameReport) -> Markup {
     }
 }
 
-/// Latency and street.
+/// What a run measured, and what that is worth.
 pub(super) fn figures(report: &Report) -> Markup {
-    if report.latency.is_none() && report.street.is_none() {
+    let figures = [
+        ("Latency", report.latency.as_ref().map(wording::latency)),
+        ("Street", wording::street(report)),
+        ("Coverage", wording::coverage(report)),
+    ];
+    let pairs: Vec<_> = figures.into_iter().filter_map(|(name, figure)| Some(pair(name, figure?))).collect();
+    if pairs.is_empty() {
         return Markup::default();
     }
-    html! {
-        section {
-            h2 { "Figures" }
-            dl {
-                @if let Some(latency) = &report.latency { (pair("Latency", wording::latency(latency))) }
-                @if let Some(street) = wording::street(report) { (pair("Street", street)) }
-                @if let Some(share) = wording::coverage(report) { (pair("Coverage", share)) }
-            }
-        }
-    }
+    html! { section { h2 { "Figures" } dl { @for pair in pairs { (pair) } } } }
 }
 
 /// What a PASS says nothing about.
