@@ -12,7 +12,7 @@ pub struct Streamed {
     pub height: usize,
     /// Entries of the grid that its rows are made with; none for row factors.
     pub grid: Option<usize>,
-    /// Frames, one behind the other.
+    /// Frames, some of them behind a CONFIGURE of their own.
     pub frames: usize,
     /// Whether the board makes frames of its own behind them.
     pub at_speed: bool,
