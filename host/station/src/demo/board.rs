@@ -15,7 +15,8 @@ const WAIT: Duration = Duration::from_millis(2);
 /// The most bytes that are read at once.
 const MOST: usize = 64 * 1024;
 
-/// What is broken in the boards that are not right.
+/// What is broken in the boards that are not right: one part of each kind that a technician may see, each told by the suspect or, of a row
+/// that never comes and of a cable, by the finding. A new fault of the mock belongs here only if it shows a page that none of these does.
 const FAULTS: [&str; 8] = [
     "fault=stuck-data,bit=7",
     "fault=dead-tap,tap=4",

@@ -8,7 +8,7 @@ use super::{Act, Selected};
 /// What stands for it in a plan, and on the barcode that has a lane judge it.
 pub const BARCODE: &str = "HR:MOCK";
 
-/// Faults of the datapath, each with its parameters. A board that sees a flipped bit itself refuses its tables, and one that loses a
+/// Faults of the datapath that the least frames of a plan show whatever is drawn, each with its parameters; not all that the mock has. A board that sees a flipped bit itself refuses its tables, and one that loses a
 /// row stops a link test, which both is ERROR: bits are flipped hidden, and no row is lost. The low bits of a factor may change no sample.
 const FAULTS: [(&str, &[(&str, Values)]); 6] = [
     ("stuck-data", &[("bit", Values::From(0, 7)), ("value", Values::From(0, 1))]),
