@@ -6,7 +6,7 @@ use std::io::Write as _;
 use halfrow_tests::parallel;
 use halfrow_tests::program::{Ended, Folder};
 
-use crate::running::{started, stopped_amid, streaming};
+use crate::running::{opened_to_write, started, stopped_amid, streaming};
 use crate::signals::LARGE;
 use crate::small;
 
@@ -177,9 +177,9 @@ fn files_that_come_while_a_frame_is_corrected_are_left_alone() {
             nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::from_bits_truncate(0o600)).unwrap();
             let more = [board, &["-o", "out.pgm", "--preview", "out.png"]].concat();
             let running = started(&folder, small("correct", &[&["in.pgm"], &more[..]].concat()));
-            // It opens when somebody reads it, who may leave before the end.
-            let mut pipe = fs::OpenOptions::new().write(true).open(pipe).unwrap();
+            let mut pipe = opened_to_write(&pipe);
             folder.write(taken, "precious");
+            // Who reads it may leave before the end.
             let _ = pipe.write_all(&frame);
             drop(pipe);
             let ended = running.end();

@@ -1,8 +1,9 @@
 //! Runs that are sent signals.
 
+use std::fs::File;
 use std::path::Path;
 
-use halfrow_tests::patience::wait_until;
+use halfrow_tests::patience::{come_to_an_end, wait_until};
 use halfrow_tests::program::{Folder, Running};
 
 /// At 20,000 bytes a second the built-in frames would take an hour.
@@ -43,6 +44,12 @@ pub(crate) fn stopped_amid(folder: &Folder, arguments: &[&str]) -> Running {
         is_amid
     });
     running
+}
+
+/// The pipe at `path`, which opens when a program reads it.
+pub(crate) fn opened_to_write(path: &Path) -> File {
+    let path = path.to_owned();
+    come_to_an_end(move || File::options().write(true).open(path).unwrap())
 }
 
 /// Waits until something in `folder` has a name that `is_wanted`.

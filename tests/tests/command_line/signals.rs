@@ -11,7 +11,7 @@ use nix::fcntl::{FcntlArg, OFlag, fcntl};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
-use crate::running::{SLOW, started, stopped_amid, streaming, until_there_is};
+use crate::running::{SLOW, opened_to_write, started, stopped_amid, streaming, until_there_is};
 use crate::small;
 
 /// Starts a slow run, sends it `signal` while it streams, and waits for its end.
@@ -127,8 +127,7 @@ fn who_writes_nothing_is_not_told_of_what_is_gone() {
     let pipe = folder.path().join("in.pgm");
     nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::from_bits_truncate(0o600)).unwrap();
     let running = started(&folder, small("correct", &["in.pgm", "--model", "-o", "out.pgm"]));
-    // It opens when somebody reads it.
-    let _pipe = OpenOptions::new().write(true).open(pipe).unwrap();
+    let _pipe = opened_to_write(&pipe);
     running.send("TERM");
     let ended = running.end();
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(143), "error: stopped by a signal\n"));

@@ -7,6 +7,7 @@ use std::process::Command;
 use nix::sys::signal::Signal;
 
 use crate::common::{Did, folder, program};
+use crate::lanes::floor::HANG;
 use crate::pages::station::{Serving, Station};
 
 const UNIT: &str = include_str!("../../systemd/halfrow-station.service");
@@ -87,6 +88,7 @@ fn a_start_that_looks_at_all_of_the_database_says_so_and_asks_systemd_for_time()
     fs::write(data.join("station.lock"), "").unwrap();
     let place = station.path("notify");
     let systemd = UnixDatagram::bind(&place).unwrap();
+    systemd.set_read_timeout(Some(HANG)).unwrap();
     let serving = Serving::of(station.command().env("NOTIFY_SOCKET", &place));
     assert!(
         serving.complained().contains("all of station.db is looked at first"),
