@@ -77,7 +77,7 @@ pub enum BundleError {
         /// The system's reason.
         source: io::Error,
     },
-    /// One of its files cannot.
+    /// A file of a plan that was fetched cannot be written.
     #[error(transparent)]
     Unwritten(#[from] WriteAsideError),
 }

@@ -153,7 +153,7 @@ pub enum RecordError {
         /// The plan's steps.
         steps: u32,
     },
-    /// It is of a schema that this program does not read.
+    /// The record is of a schema that this program does not read.
     #[error(
         "the record is of schema {schema}, and this program reads schema {SCHEMA}; use the halfrow-station that made it"
     )]

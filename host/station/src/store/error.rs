@@ -73,7 +73,7 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
-    /// Another file has the name of the lock, or none has.
+    /// Another file than the one that the program holds is called `station.lock`, or none is.
     #[error(
         "{} was replaced or removed while this program works in its folder, and nothing more is kept, since another program could start \
          there as well; end this one, see that no other works in the folder, and start it again",
