@@ -1,11 +1,12 @@
 //! What to do about errors whose message does not end in it: the act is filled in when the error happens, is another's, or is none yet.
 
+/// What to do where tables of a station or of a plant contradict its records.
+const MEND_TABLES: &str = "mend first what `check` says of records, then put a copy of the database, station.db or the plant's, back if \
+    this is still told";
+
 /// Each code with its act, in the order of the codes.
 pub(super) const ACTS: &[(&str, &str)] = &[
-    (
-        "audit-contradicts",
-        "mend first what `check` says of records, then put a copy of station.db back if this is still told",
-    ),
+    ("audit-contradicts", MEND_TABLES),
     (
         "board-of-other-datapath",
         "load a bitstream of a datapath that this halfrow knows, or install a halfrow that knows the board's",
@@ -185,18 +186,9 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     ("table-file-wrong", "mend the file as its cause says, or make it again with `halfrow tables`"),
     ("table-key-missing", "add the key, or make the file again with `halfrow tables`"),
     ("table-list-of-wrong-length", "give WANTED entries, or make the file again with `halfrow tables`"),
-    (
-        "table-row-differs",
-        "mend first what `check` says of records, then put a copy of station.db back if this is still told",
-    ),
-    (
-        "table-row-missing",
-        "mend first what `check` says of records, then put a copy of station.db back if this is still told",
-    ),
-    (
-        "table-row-surplus",
-        "mend first what `check` says of records, then put a copy of station.db back if this is still told",
-    ),
+    ("table-row-differs", MEND_TABLES),
+    ("table-row-missing", MEND_TABLES),
+    ("table-row-surplus", MEND_TABLES),
     (
         "table-value-of-wrong-kind",
         "correct the value to WANTED, or make the file again with `halfrow tables`",
