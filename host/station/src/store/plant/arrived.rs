@@ -10,7 +10,8 @@ use crate::plan::Plan;
 use crate::plan::mock::is_mock;
 use crate::record::{DeviceSeen, JobClaim, Record};
 
-/// A run that is over, with all that follows from its record. One of this id that is there stays as it is.
+/// A run that is over, with all that follows from its record. One of this id that is there stays as it is; it gets its record again if
+/// that alone was lost.
 pub(super) fn run(
     to: &mut dyn Database,
     record: &Record,
@@ -20,10 +21,14 @@ pub(super) fn run(
     let unit = rows::unit(to, &record.run, &record.plan)?;
     to.one(sql::LOCK_UNIT, values![&unit], |_| Ok(()))?;
     let counts = settles_job(to, record)?;
-    if !entered(to, record, hash, &unit, counts)? {
+    let is_new = entered(to, record, hash, &unit, counts)?;
+    let is_same = |theirs: String| theirs == hash;
+    if is_new || to.first(sql::HASH_OF, values![&record.run.id], |row| row.get(0))?.is_some_and(is_same) {
+        to.execute(sql::ADD_RECORD, values![hash, text])?;
+    }
+    if !is_new {
         return Ok(());
     }
-    to.execute(sql::ADD_RECORD, values![hash, text])?;
     if let Some(device) = record.binds() {
         let of = values![&record.run.id, device, &unit, record.ended_ms, &record.run.operator, BY_RUN];
         to.execute(sql::ADD_BINDING_UNLESS, of)?;

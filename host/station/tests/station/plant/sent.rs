@@ -39,7 +39,7 @@ pub(crate) fn presence(name: &str, origin: String) -> Presence {
 }
 
 /// The station does not know any more what it has sent.
-fn forget(made: &Made) {
+pub(super) fn forget(made: &Made) {
     let database = rusqlite::Connection::open(made.folder().database()).unwrap();
     assert!(database.execute("DELETE FROM outbox", []).unwrap() > 0);
 }
