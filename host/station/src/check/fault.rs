@@ -40,7 +40,8 @@ pub enum Fault {
     },
     /// A plant has not the record of a run, or another text under its hash.
     #[error(
-        "the record {sha256} of run {run} is not there, or not as it was sent; put it back from the folder `blobs` of the station that sent it"
+        "the record {sha256} of run {run} is not there, or not as it was sent; remove what the table `record` has under this hash, and have \
+         the station that sent it send again by `halfrow-station outbox again plant`"
     )]
     Unkept {
         /// The run.

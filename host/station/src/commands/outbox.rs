@@ -50,6 +50,15 @@ enum What {
         #[command(flatten)]
         why: Why,
     },
+    /// Have all that was kept sent again to a sink that has lost what it had, such as a plant that was put back
+    ///
+    /// The station sends it when it starts, `outbox send` at once; what the sink still has stays as it is.
+    Again {
+        /// The sink
+        sink: String,
+        #[command(flatten)]
+        why: Why,
+    },
     /// Forget what is to be sent to a sink that the settings do not name any more
     Forget {
         /// The sink
@@ -77,6 +86,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
         }
         What::Send { disk } => send(&settings, disk.opens(&settings.data)?),
         What::Release { id, sink, why } => release(&folder, id.as_deref(), sink.as_deref(), why),
+        What::Again { sink, why } => again(&settings, &folder, sink, why),
         What::Forget { sink, why } => forget(&settings, &folder, sink, why),
     }
 }
@@ -93,6 +103,15 @@ fn release(folder: &Folder, id: Option<&str>, sink: Option<&str>, why: &Why) -> 
         return Err(Failure::call(NotDead { what: what.to_owned() }));
     }
     print(&format!("{released} of {what} are tried again"))
+}
+
+fn again(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<Exit, Failure> {
+    if !settings.sink_names().any(|name| name == sink) {
+        return Err(Failure::call(SinkUnknown { sink: sink.to_owned() }));
+    }
+    let mut store = Store::open_existing(folder)?;
+    let again = store.send_again(sink, &why.operator, &why.reason)?;
+    print(&format!("{again} of {sink} are sent again"))
 }
 
 fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<Exit, Failure> {
@@ -164,6 +183,13 @@ pub(super) struct NotDead {
 #[derive(Debug, thiserror::Error)]
 #[error("the settings name the sink {sink}, which would be sent all again; take it out of them first")]
 pub(super) struct SinkInUse {
+    pub(super) sink: String,
+}
+
+/// A sink that is sent nothing.
+#[derive(Debug, thiserror::Error)]
+#[error("the settings name no sink {sink}; name `plant`, or a [[sink]] of the settings")]
+pub(super) struct SinkUnknown {
     pub(super) sink: String,
 }
 

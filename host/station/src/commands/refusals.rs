@@ -7,7 +7,7 @@ use super::evidence::{EvidenceLost, EvidenceRemoved, NoSuchRun};
 use super::export::{NoFolder, Taken};
 use super::job::{NoJob, NoWord};
 use super::lanes::EngineEnded;
-use super::outbox::{NoSink, NotDead, SinkInUse};
+use super::outbox::{NoSink, NotDead, SinkInUse, SinkUnknown};
 use super::plant::{NoPlant, NoStation};
 use super::publish::PublishError;
 use super::run::NoMock;
@@ -47,6 +47,8 @@ codes::codes! {
     NoKind [kind] => "shared-board-of-no-kind"
     ;
     SinkInUse [sink] => "sink-in-use"
+    ;
+    SinkUnknown [sink] => "sink-unknown"
     ;
     NoStation [station] => "plant-without-station"
     ;

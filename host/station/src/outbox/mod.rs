@@ -68,6 +68,8 @@ pub enum Undelivered {
     Away(Said),
     /// It does not take this for now.
     NotNow(Said),
+    /// It does not have the runs that this belongs to, whatever it had.
+    Early(Said),
     /// It never will as it is: a person looks at it.
     Refused(Said),
 }
@@ -156,11 +158,12 @@ fn given(
 
 fn became(entry: &Entry, taken: Result<(), Undelivered>) -> Tried {
     let Err(why) = taken else { return Tried::Done };
+    let next_ms = clock::now_ms().saturating_add(back_off::ms(entry.attempts));
     match why {
         Undelivered::Away(said) | Undelivered::NotNow(said) => {
-            let next_ms = clock::now_ms().saturating_add(back_off::ms(entry.attempts));
             Tried::Again { next_ms, said: said.to_string() }
         }
+        Undelivered::Early(said) => Tried::Early { next_ms, said: said.to_string() },
         Undelivered::Refused(said) => Tried::Dead { said: said.to_string() },
     }
 }

@@ -51,7 +51,11 @@ impl Sink for PlantSink {
                 return away(error);
             }
             let said = Said::of(&error);
-            if error.is_final() { Undelivered::Refused(said) } else { Undelivered::NotNow(said) }
+            match error {
+                PlantError::NotYet { .. } => Undelivered::Early(said),
+                error if error.is_final() => Undelivered::Refused(said),
+                _ => Undelivered::NotNow(said),
+            }
         })
     }
 

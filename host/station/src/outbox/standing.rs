@@ -29,11 +29,11 @@ impl Standing {
     pub(super) fn refused(&mut self, sink: &str, entry: &Entry, why: &Undelivered) {
         match why {
             Undelivered::Away(said) => self.away(sink, said),
-            Undelivered::NotNow(said) if !self.is_behind => {
+            Undelivered::NotNow(said) | Undelivered::Early(said) if !self.is_behind => {
                 self.is_behind = true;
                 tracing::warn!("{} does not take {} for now: {said}", called(sink), named(entry));
             }
-            Undelivered::NotNow(_) => {}
+            Undelivered::NotNow(_) | Undelivered::Early(_) => {}
             Undelivered::Refused(said) => {
                 tracing::warn!("{} refuses {}, which waits for a person: {said}", called(sink), named(entry));
             }

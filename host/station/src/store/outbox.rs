@@ -1,6 +1,8 @@
 //! What is to be sent on: each run, waiver and line of the audit has an entry for every sink, made in the transaction that
 //! keeps it, and kept until the sink has it for certain.
 
+mod acts;
+
 use serde::Serialize;
 
 use super::database::{Database, DatabaseError, Row, values};
@@ -151,6 +153,13 @@ pub enum Tried {
         /// What was said.
         said: String,
     },
+    /// So is this, and the runs that it belongs to, which the sink has lost, are sent again.
+    Early {
+        /// The moment.
+        next_ms: i64,
+        /// What was said.
+        said: String,
+    },
     /// A person looks at it.
     Dead {
         /// What was said.
@@ -216,47 +225,16 @@ impl Store {
                         return to.execute(sql::OUTBOX_DONE, of).map(drop);
                     }
                     Tried::Again { next_ms, said } => (*next_ms, None, said),
+                    Tried::Early { next_ms, said } => {
+                        to.execute(sql::OUTBOX_LOST, values![sink, subject])?;
+                        (*next_ms, None, said)
+                    }
                     Tried::Dead { said } => (now_ms, Some(now_ms), said),
                 };
                 let of = values![next_ms, dead_ms, said, sink, kind.name(), subject];
                 to.execute(sql::OUTBOX_FAILED, of).map(drop)
             })
         })
-    }
-
-    /// Has every sink try again what waits for a person under this id; the audit keeps who said so, and why. Returns how many did.
-    ///
-    /// # Errors
-    /// As [`Self::sends_to`].
-    pub fn release(&mut self, subject: &str, operator: &str, reason: &str) -> Result<u64, StoreError> {
-        self.released(sql::OUTBOX_RELEASED, subject, operator, reason)
-    }
-
-    /// Has this sink try again all that waits for a person; the audit keeps who said so, and why. Returns how much did.
-    ///
-    /// # Errors
-    /// As [`Self::sends_to`].
-    pub fn release_all(&mut self, sink: &str, operator: &str, reason: &str) -> Result<u64, StoreError> {
-        self.released(sql::OUTBOX_ALL_RELEASED, sink, operator, reason)
-    }
-
-    fn released(&mut self, text: &str, of: &str, operator: &str, reason: &str) -> Result<u64, StoreError> {
-        let line = [operator, "release", of, reason];
-        self.audited("what is to be sent again", line, |to| to.execute(text, values![of]))
-    }
-
-    /// Sends nothing more to this sink, and forgets what it has; the audit keeps who said so, and why. Returns how many entries it had
-    /// that it was not sent.
-    ///
-    /// # Errors
-    /// As [`Self::sends_to`].
-    pub fn forget_sink(&mut self, sink: &str, operator: &str, reason: &str) -> Result<u64, StoreError> {
-        let mut unsent = 0;
-        self.audited("that a sink is no more", [operator, "forget-sink", sink, reason], |to| {
-            unsent = to.execute(sql::FORGET_UNSENT, values![sink])?;
-            Ok(unsent + to.execute(sql::FORGET_SINK, values![sink])?)
-        })?;
-        Ok(unsent)
     }
 }
 

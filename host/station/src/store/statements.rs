@@ -99,6 +99,8 @@ statements! {
     pub(super) OUTBOX_ALL_RELEASED = "outbox-all-released.sql";
     pub(super) FORGET_UNSENT = "forget-unsent.sql";
     pub(super) FORGET_SINK = "forget-sink.sql";
+    pub(super) OUTBOX_AGAIN = "outbox-again.sql";
+    pub(super) OUTBOX_LOST = "outbox-lost.sql";
     pub(super) OUTBOX_RELEASED = "outbox-released.sql";
     pub(super) OUTBOX_ENTRY = "outbox-entry.sql";
     pub(super) WAIVER_BY_ID = "waiver-by-id.sql";

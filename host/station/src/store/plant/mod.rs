@@ -45,7 +45,10 @@ pub enum PlantError {
         theirs: String,
     },
     /// What it belongs to is not there yet.
-    #[error("the plant does not have the run {run} yet, which comes first; it is tried again")]
+    #[error(
+        "the plant does not have the run {run} yet, which comes first, so this is tried again; if the plant was put back, have all sent \
+         again by `halfrow-station outbox again plant`"
+    )]
     NotYet {
         /// The run, by its id, or of which unit.
         run: String,

@@ -1,9 +1,23 @@
 //! A plant that has lost what it had: its stations have it still.
 
+use halfrow_station::store::Plant;
+
+use super::cut::due;
+use super::refused::did;
 use super::sent::{forget, send};
 use super::server::Server;
 use super::tables::is_as;
+use crate::common::{NO_AUDIT, query};
+use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use crate::history::released::history;
+
+/// The plant's tables, with nothing in them.
+fn emptied(server: &Server) {
+    let mut client = server.client("postgres");
+    client.batch_execute("DROP DATABASE plant WITH (FORCE)").unwrap();
+    client.batch_execute("CREATE DATABASE plant").unwrap();
+    Plant::prepare(&server.address()).unwrap();
+}
 
 #[test]
 fn a_record_that_the_plant_has_lost_comes_again_with_its_run() {
@@ -14,4 +28,70 @@ fn a_record_that_the_plant_has_lost_comes_again_with_its_run() {
     let (made, all) = send(made, server.address());
     assert_eq!((all.sent, all.failed), (10, 0));
     is_as(&server, &made);
+}
+
+#[test]
+fn a_plant_that_is_put_back_has_all_again_when_its_stations_send_it_again() {
+    let server = Server::prepared();
+    let (mut made, _) = send(history(), server.address());
+    let mut client = server.client("postgres");
+    client.batch_execute("CREATE DATABASE kept TEMPLATE plant").unwrap();
+    let started_ms = BEGIN_MS + 30 * HOUR_MS;
+    made.run(&Run { lane: "3".to_owned(), started_ms, ..Run::of("S2", End::Pass) });
+    let (made, all) = send(made, server.address());
+    assert_eq!(all.sent, 1);
+    client.batch_execute("DROP DATABASE plant WITH (FORCE)").unwrap();
+    client.batch_execute("ALTER DATABASE kept RENAME TO plant").unwrap();
+    let (folder, store) = made.parts();
+    drop(store);
+    let again = ["outbox", "again", "plant", "--reason", "its disk broke", "--operator", "engel"];
+    // What cannot stand in the audit is not done, nor is anything for a sink that there is none of.
+    let database = rusqlite::Connection::open(folder.path().join("station.db")).unwrap();
+    database.execute_batch(NO_AUDIT).unwrap();
+    assert_eq!(did(folder.path(), &server, &again).code, Some(3));
+    database.execute_batch("DROP TRIGGER full").unwrap();
+    drop(database);
+    let unknown = did(folder.path(), &server, &["outbox", "again", "mes", "--reason", "it broke"]);
+    assert!(unknown.code == Some(2) && unknown.complained.contains("no sink mes"), "{unknown:?}");
+    let sent = did(folder.path(), &server, &["outbox", "send", "--any-disk"]);
+    assert!(sent.said.starts_with("0 sent, 0 not"), "{sent:?}");
+    let done = did(folder.path(), &server, &again);
+    assert_eq!((done.code, done.said.as_str()), (Some(0), "11 of plant are sent again\n"), "{done:?}");
+    // With the line of the audit that says so.
+    let sent = did(folder.path(), &server, &["outbox", "send", "--any-disk"]);
+    assert!(sent.said.starts_with("12 sent, 0 not"), "{sent:?}");
+    is_as(&server, &Made::at(folder));
+    let told = server.rows("SELECT operator_id, subject, detail FROM audit WHERE act = 'send-again'");
+    assert_eq!(told, [["engel", "plant", "its disk broke"]]);
+}
+
+/// A person need not know which runs a plant has lost where something that belongs to one of them comes later.
+#[test]
+fn runs_that_a_waiver_or_a_rebinding_misses_at_the_plant_are_sent_again() {
+    let server = Server::prepared();
+    let (mut made, _) = send(history(), server.address());
+    let later = [
+        ("kind = 'waiver'", "SELECT run_id FROM waiver"),
+        (
+            "kind = 'audit' AND subject IN (SELECT id FROM audit WHERE act = 'rebind')",
+            "SELECT run.id FROM run JOIN audit ON audit.subject = run.unit_id WHERE act = 'rebind' AND state = 'final' ORDER BY 1",
+        ),
+    ];
+    for (entry, missed) in later {
+        emptied(&server);
+        let missed = query(made.as_ref(), missed);
+        assert!(!missed.is_empty());
+        let database = rusqlite::Connection::open(made.folder().database()).unwrap();
+        database.execute("UPDATE outbox SET done_ms = 1", []).unwrap();
+        let unsent = format!("UPDATE outbox SET done_ms = NULL, next_ms = 0 WHERE {entry}");
+        assert_eq!(database.execute(&unsent, []).unwrap(), 1);
+        drop(database);
+        let all;
+        (made, all) = send(made, server.address());
+        assert_eq!((all.sent, all.failed), (0, 1));
+        due(&made);
+        (made, _) = send(made, server.address());
+        assert_eq!(server.rows("SELECT id FROM run ORDER BY id").concat(), missed);
+        assert!(made.now().unsent().unwrap().is_empty());
+    }
 }

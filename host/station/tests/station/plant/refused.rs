@@ -15,7 +15,7 @@ use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use crate::history::released::history;
 
 /// What a command of the station in this folder does, with settings that name the plant.
-fn did(folder: &Path, server: &Server, arguments: &[&str]) -> Did {
+pub(super) fn did(folder: &Path, server: &Server, arguments: &[&str]) -> Did {
     fs::write(folder.join("plan.toml"), PLAN).unwrap();
     let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n";
     let plant = crate::common::plant_settings(&server.url());
