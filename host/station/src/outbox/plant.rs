@@ -46,7 +46,7 @@ impl Sink for PlantSink {
         let away = |error: PlantError| Undelivered::Away(Said::of(&error));
         let plant = self.plant().map_err(away)?;
         plant.take(parcel).map_err(|error| {
-            if error.is_away() {
+            if error.is_away() || error.is_of_other_version() {
                 self.plant = None;
                 return away(error);
             }

@@ -24,8 +24,7 @@ pub(super) fn apply(database: &mut dyn Database, path: &Path, now_ms: i64) -> Re
     let engine = database.engine();
     let refused = |source| StoreError::refused(engine, path, "a new version", source);
     database.batch(&engine.words(SCHEMA_VERSION)).map_err(refused)?;
-    let newest: Option<i64> = database.one(NEWEST, &[], |row| row.get(0)).map_err(refused)?;
-    let found = newest.unwrap_or(0);
+    let found = newest(database).map_err(refused)?;
     not_newer(path, found)?;
     let (had, new): (Vec<_>, Vec<_>) = (1_i64..).zip(SCHEMAS).partition(|(version, _)| *version <= found);
     for (version, schema) in had {
@@ -39,6 +38,8 @@ pub(super) fn apply(database: &mut dyn Database, path: &Path, now_ms: i64) -> Re
     let change = |to: &mut dyn Database| {
         if found > 0 && engine == Engine::Postgres {
             copy_tables(to, *next)?;
+            // What a program has looked at in its transaction stays so until that is over.
+            to.batch("LOCK TABLE schema_version")?;
         }
         new.iter().try_for_each(|(version, schema)| {
             to.batch(&engine.words(schema))?;
@@ -46,6 +47,11 @@ pub(super) fn apply(database: &mut dyn Database, path: &Path, now_ms: i64) -> Re
         })
     };
     database.transaction(change).map_err(refused)
+}
+
+/// The version of a database, none being 0.
+pub(super) fn newest(database: &mut dyn Database) -> Result<i64, DatabaseError> {
+    Ok(database.one(NEWEST, &[], |row| row.get::<Option<i64>>(0))?.unwrap_or(0))
 }
 
 /// Refuses a database that is not of this program's version: `found`, and the file is `path`.

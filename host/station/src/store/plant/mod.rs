@@ -93,6 +93,12 @@ impl PlantError {
         matches!(self, Self::Store(error) if error.is_away())
     }
 
+    /// Whether its tables are of another version than this program's.
+    #[must_use]
+    pub(crate) fn is_of_other_version(&self) -> bool {
+        matches!(self, Self::Store(StoreError::Newer { .. } | StoreError::Older { .. }))
+    }
+
     /// Whether it never takes this one thing as it is.
     #[must_use]
     pub(crate) fn is_final(&self) -> bool {
@@ -140,7 +146,7 @@ impl Plant {
             if !database.one(there, &[], |row| row.get(0))? {
                 return Ok(0);
             }
-            database.one(migrations::NEWEST, &[], |row| Ok(row.get::<Option<i64>>(0)?.unwrap_or(0)))
+            migrations::newest(database)
         })?;
         migrations::is_known(&plant.shown, found)?;
         Ok(plant)
@@ -166,22 +172,18 @@ impl Plant {
     pub fn take(&mut self, parcel: &Parcel) -> Result<(), PlantError> {
         match parcel {
             Parcel::Run { record, text, sha256 } => {
-                self.carry_out("a run", |database| {
-                    database.transaction(|to| arrived::run(to, record, text, sha256))
-                })?;
+                self.bring("a run", |to| arrived::run(to, record, text, sha256))?;
                 self.has_run(&record.run.id, sha256)
             }
             Parcel::Waiver { id, waiver } => {
                 if self.hash_of(&waiver.run)?.is_none() {
                     return Err(PlantError::NotYet { run: waiver.run.clone() });
                 }
-                self.carry_out("a waiver", |database| arrived::waiver(database, id, waiver))?;
+                self.bring("a waiver", |to| arrived::waiver(to, id, waiver))?;
                 self.has(sql::WAIVER_BY_ID, id)
             }
             Parcel::Audit(line) => {
-                let is_entered = self.carry_out("a line of the audit", |database| {
-                    database.transaction(|to| arrived::audit(to, line))
-                })?;
+                let is_entered = self.bring("a line of the audit", |to| arrived::audit(to, line))?;
                 if let Some([product, serial]) = line.unit.as_ref().filter(|_| !is_entered) {
                     return Err(PlantError::NotYet { run: format!("of {product} {serial}") });
                 }
@@ -261,6 +263,25 @@ impl Plant {
         let found =
             self.carry_out("to be read back", |database| database.first(text, values![subject], |_| Ok(())))?;
         found.ok_or_else(|| PlantError::NotKept { subject: subject.to_owned() })
+    }
+
+    /// Carries out what a station sends, in a transaction that has the version for which this program knows what that leaves: the
+    /// tables may have been brought up to date since the connection came about.
+    fn bring<T>(
+        &mut self,
+        doing: &'static str,
+        act: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,
+    ) -> Result<T, StoreError> {
+        let shown = self.shown.clone();
+        self.carry_out(doing, |database| {
+            database.transaction(|to| {
+                let found = migrations::newest(to)?;
+                match migrations::is_known(&shown, found) {
+                    Ok(()) => act(to).map(Ok),
+                    Err(other) => Ok(Err(other)),
+                }
+            })
+        })?
     }
 
     fn carry_out<T>(

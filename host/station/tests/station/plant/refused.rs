@@ -4,10 +4,11 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use halfrow_station::outbox::{PlantSink, Sink as _, Undelivered};
 use halfrow_station::store::{Plant, PlantError, StoreError};
 
 use super::cut::due;
-use super::sent::send;
+use super::sent::{presence, send};
 use super::server::Server;
 use super::tables::is_as;
 use crate::common::{Did, NO_AUDIT, PLAN, program, query};
@@ -134,10 +135,8 @@ fn tables_that_are_not_there_or_of_another_version_are_no_plant() {
     assert!(matches!(newer, PlantError::Store(StoreError::Newer { found: 99, .. })), "{newer:?}");
 }
 
-/// A plant of an earlier program is copied before it is brought up to date, all in one.
-#[test]
-fn an_older_plant_is_copied_and_brought_up_to_date() {
-    let server = Server::start();
+/// The tables of the program of version 2, with a unit.
+fn older(server: &Server) {
     let words = |text: &str| {
         text.replace("{int}", "BIGINT").replace("{real}", "DOUBLE PRECISION").replace("{strict}", "")
     };
@@ -150,13 +149,63 @@ fn an_older_plant_is_copied_and_brought_up_to_date() {
         client.execute("INSERT INTO schema_version VALUES ($1, $2, 0)", &[&(number as i64), &hash]).unwrap();
     }
     client.batch_execute("INSERT INTO unit VALUES (repeat('u', 36), 'CAM-T', 'S1', 7)").unwrap();
-    let older = Plant::connect(&server.address()).unwrap_err();
-    assert!(matches!(older, StoreError::Older { found: 2, known: 7, .. }), "{older:?}");
+}
+
+/// A plant of an earlier program is copied before it is brought up to date, all in one.
+#[test]
+fn an_older_plant_is_copied_and_brought_up_to_date() {
+    let server = Server::start();
+    older(&server);
+    let refused = Plant::connect(&server.address()).unwrap_err();
+    assert!(matches!(refused, StoreError::Older { found: 2, known: 7, .. }), "{refused:?}");
     assert_eq!(Plant::prepare(&server.address()).unwrap(), 7);
     assert_eq!(server.rows("SELECT serial FROM before_3.unit"), [["S1"]]);
     assert_eq!(server.rows("SELECT serial FROM unit"), [["S1"]]);
     assert_eq!(server.rows("SELECT max(n) FROM schema_version"), [["7"]]);
     Plant::connect(&server.address()).unwrap();
+}
+
+/// What an earlier program has looked at in its transaction stays so until that is over.
+#[test]
+fn a_plant_is_brought_up_to_date_behind_what_an_earlier_program_has_under_way() {
+    let server = Server::start();
+    older(&server);
+    let mut busy = server.client("plant");
+    busy.batch_execute("BEGIN; SELECT max(n) FROM schema_version").unwrap();
+    server.client("plant").batch_execute("ALTER DATABASE plant SET lock_timeout = 100").unwrap();
+    let waits = Plant::prepare(&server.address()).unwrap_err();
+    let PlantError::Store(StoreError::Plant { source, .. }) = &waits else { panic!("{waits:?}") };
+    assert!(format!("{source:?}").contains("lock timeout"), "{source:?}");
+    assert_eq!(server.rows("SELECT max(n) FROM schema_version"), [["2"]]);
+    busy.batch_execute("COMMIT; ALTER DATABASE plant RESET lock_timeout").unwrap();
+    assert_eq!(Plant::prepare(&server.address()).unwrap(), 7);
+}
+
+/// Also over the connection that it had before: what it does not know would be missing for ever.
+#[test]
+fn a_program_that_is_older_than_the_tables_writes_nothing_into_them() {
+    let server = Server::prepared();
+    let mut made = history();
+    made.store.sends_to(vec!["plant".to_owned()]).unwrap();
+    let origin = made.store.origin().unwrap();
+    let due = made.folder().due("plant", 1, i64::MAX).unwrap();
+    let parcels: Vec<_> = due.iter().map(|entry| made.folder().parcel(entry).unwrap()).collect();
+    assert_eq!(parcels.len(), 10);
+    let mut sink = PlantSink::new(server.address(), presence("station 7", origin));
+    let mut client = server.client("plant");
+    for parcel in &parcels {
+        sink.take(&parcels[0]).unwrap();
+        client.batch_execute("INSERT INTO schema_version VALUES (99, 'x', 1)").unwrap();
+        let taken = sink.take(parcel);
+        let Err(Undelivered::Away(said)) = taken else { panic!("{taken:?}") };
+        assert!(said.to_string().contains("has version 99"), "{said}");
+        client.batch_execute("DELETE FROM schema_version WHERE n = 99").unwrap();
+    }
+    let had =
+        "SELECT (SELECT count(*) FROM run), (SELECT count(*) FROM waiver), (SELECT count(*) FROM audit)";
+    assert_eq!(server.rows(had), [["1", "0", "0"]]);
+    parcels.iter().for_each(|parcel| sink.take(parcel).unwrap());
+    is_as(&server, &made);
 }
 
 #[test]
