@@ -1,8 +1,8 @@
 //! Brings a database to the version that this program knows, on either engine.
 
 use std::fs::{self, File};
-use std::io;
 use std::path::Path;
+use std::{io, iter};
 
 use halfrow::result::sha256;
 use nix::sys::statvfs::statvfs;
@@ -19,7 +19,7 @@ const NOTE: &str = "INSERT INTO schema_version (n, sha256, applied_ms) VALUES ($
 
 /// Applies all schemas that `database`, which is at `path`, does not have yet, in one transaction: whatever comes between, it has the
 /// version that was found, or the newest. Before a database that holds results is changed, a copy of it is laid beside it: as a file,
-/// or as a schema `before_N`.
+/// or as a schema `before_N` or `before_N_2` and so on, by what is free.
 pub(super) fn apply(database: &mut dyn Database, path: &Path, now_ms: i64) -> Result<(), StoreError> {
     let engine = database.engine();
     let refused = |source| StoreError::refused(engine, path, "a new version", source);
@@ -131,10 +131,12 @@ fn remove(path: &Path) -> io::Result<()> {
 fn copy_tables(to: &mut dyn Database, version: i64) -> Result<(), DatabaseError> {
     let tables = "SELECT tablename::text FROM pg_tables WHERE schemaname = current_schema() ORDER BY 1";
     let tables: Vec<String> = to.all(tables, &[], |row| row.get(0))?;
-    to.batch(&format!("CREATE SCHEMA before_{version}"))?;
-    tables
-        .iter()
-        .try_for_each(|table| to.batch(&format!("CREATE TABLE before_{version}.{table} AS TABLE {table}")))
+    let taken: Vec<String> = to.all("SELECT nspname::text FROM pg_namespace", &[], |row| row.get(0))?;
+    let first = format!("before_{version}");
+    let mut names = iter::once(first.clone()).chain((2..).map(|nth| format!("{first}_{nth}")));
+    let copy = names.find(|name| !taken.contains(name)).unwrap_or_else(|| first.clone());
+    to.batch(&format!("CREATE SCHEMA {copy}"))?;
+    tables.iter().try_for_each(|table| to.batch(&format!("CREATE TABLE {copy}.{table} AS TABLE {table}")))
 }
 
 /// Refuses a database whose version was made by another text.

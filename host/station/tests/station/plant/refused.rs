@@ -165,6 +165,24 @@ fn an_older_plant_is_copied_and_brought_up_to_date() {
     Plant::connect(&server.address()).unwrap();
 }
 
+/// Who went back to the tables of before an upgrade brings them up to date again, and loses neither copy.
+#[test]
+fn a_plant_that_went_back_is_brought_up_to_date_beside_the_copy_of_the_first_time() {
+    let server = Server::start();
+    older(&server);
+    assert_eq!(Plant::prepare(&server.address()).unwrap(), 7);
+    for copy in ["before_3_2", "before_3_3"] {
+        server.client("plant").batch_execute("DROP SCHEMA public CASCADE; CREATE SCHEMA public").unwrap();
+        older(&server);
+        let changed = format!("UPDATE unit SET serial = '{copy}'");
+        server.client("plant").batch_execute(&changed).unwrap();
+        assert_eq!(Plant::prepare(&server.address()).unwrap(), 7);
+        assert_eq!(server.rows(&format!("SELECT serial FROM {copy}.unit")), [[copy]]);
+    }
+    assert_eq!(server.rows("SELECT serial FROM before_3.unit"), [["S1"]]);
+    assert_eq!(server.rows("SELECT serial FROM before_3_2.unit"), [["before_3_2"]]);
+}
+
 /// What an earlier program has looked at in its transaction stays so until that is over.
 #[test]
 fn a_plant_is_brought_up_to_date_behind_what_an_earlier_program_has_under_way() {
