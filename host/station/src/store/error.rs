@@ -51,10 +51,10 @@ pub enum StoreError {
         /// Why.
         source: DatabaseError,
     },
-    /// The file is no database, or one that is damaged.
+    /// The file is no database, or one that is damaged, be it by the log beside it.
     #[error(
-        "the database {} is damaged, or no database at all; lay it aside, look at the disk, and restore the folder \
-         from a copy",
+        "the database {} is damaged, or no database at all, or the station.db-wal beside it is the log of another one; lay \
+         them aside, look at the disk, and restore the folder from a copy",
         path.display()
     )]
     Damaged {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags};
 
 use super::database::Sqlite;
@@ -90,13 +91,17 @@ impl Folder {
         }
     }
 
-    /// The connection that writes.
+    /// The connection that writes. It folds no log into the database by itself, not even at its end until it is told to.
     pub(super) fn writer(&self) -> Result<Box<dyn Database>, StoreError> {
         let path = self.database();
         let place = &path;
         let refused = |doing| move |source: rusqlite::Error| StoreError::of_file(place, doing, source);
         let writer = Connection::open(&path).map_err(refused("to be opened"))?;
         writer.busy_timeout(PATIENCE).map_err(refused("to wait"))?;
+        writer
+            .set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)
+            .and_then(|_| writer.execute_batch("PRAGMA wal_autocheckpoint = 0"))
+            .map_err(refused("to keep its log"))?;
         let mode: String = writer
             .query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0))
             .map_err(refused("a write-ahead log"))?;

@@ -1,8 +1,9 @@
 //! Which `station.db` a write-ahead log is of.
 //!
-//! SQLite does not know: it plays the pages of any log into whatever database lies beside it. So each start gives the database a
-//! number of its own, in the header that every SQLite file has (`user_version`), and keeps it in `station.lock`. A copy has none,
-//! or that of an earlier start.
+//! SQLite does not know: it plays the pages of any log into whatever database lies beside it. So the database has a number in the header
+//! that every SQLite file has (`user_version`), which is kept in `station.lock`, too, and gets a new one whenever the log is folded into
+//! it. In between its file does not change: a copy with the noted number is the very file to which the log belongs, and any other copy has
+//! none, or an earlier one.
 
 use std::fs::{self, File, Metadata};
 use std::io;
@@ -20,9 +21,21 @@ const PLACE: u64 = 60;
 /// The bytes of a log that has a header alone, and no pages (there, section 4.1).
 const EMPTY_LOG: u64 = 32;
 
-/// The numbers that a database may have of which the log is, that of the last start at the end.
+/// Changes after which the log is folded. A run is two, of some fifteen pages each: that is sooner than SQLite would fold it by itself, at
+/// a thousand pages, which [`Folder::writer`] keeps it from.
+const CHANGES: u32 = 32;
+
+/// The numbers that a database may have of which the log is, the newest at the end.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct Generations(Vec<u32>);
+
+impl Generations {
+    /// Gives the database the newest of them.
+    fn give(&self, folder: &Folder, writer: &mut dyn Database) -> Result<(), StoreError> {
+        let newest = self.0.last().copied().unwrap_or_default();
+        writer.batch(&format!("PRAGMA user_version = {newest}")).map_err(|source| refused(folder, source))
+    }
+}
 
 /// A file, by its device and its inode.
 type FileId = (u64, u64);
@@ -50,12 +63,14 @@ pub(super) fn is_named(file: &File, path: &Path) -> bool {
 pub(super) struct Opened {
     file: File,
     known: Generations,
+    /// Since the log was folded.
+    changes: u32,
 }
 
 impl Opened {
     fn new(file: File, known: Generations) -> Self {
         written().extend(id(file.metadata()));
-        Self { file, known }
+        Self { file, known, changes: 0 }
     }
 
     /// Whether it is the file of its name still, and what was written to it.
@@ -68,13 +83,40 @@ impl Opened {
         matches!(number(&self.file), Ok(Some(found)) if self.known.0.contains(&found))
     }
 
-    /// Takes the last number alone, as soon as it stands in the file itself: an earlier one may be that of a copy.
-    pub(super) fn settle(
+    /// Counts a change, and folds the log as often as it is time for it.
+    pub(super) fn changed(
         &mut self,
         folder: &Folder,
         lock: &File,
         writer: &mut dyn Database,
     ) -> Result<(), StoreError> {
+        self.changes += 1;
+        if self.changes < CHANGES {
+            self.settle(folder, lock, writer)
+        } else {
+            self.fold(folder, lock, writer)
+        }
+    }
+
+    /// Folds the log into the database, which has another number from there on. What somebody reads stays in the log meanwhile.
+    pub(super) fn fold(
+        &mut self,
+        folder: &Folder,
+        lock: &File,
+        writer: &mut dyn Database,
+    ) -> Result<(), StoreError> {
+        if let [known] = self.known.0[..] {
+            let both = Generations(vec![known, chosen()?]);
+            note(folder, lock, &both)?;
+            both.give(folder, writer)?;
+            // Not before it has it: the log is folded as soon as there are two.
+            self.known = both;
+        }
+        self.settle(folder, lock, writer)
+    }
+
+    /// Takes the last number alone, as soon as it stands in the file itself: an earlier one may be that of a copy.
+    fn settle(&mut self, folder: &Folder, lock: &File, writer: &mut dyn Database) -> Result<(), StoreError> {
         let [_, .., last] = self.known.0[..] else { return Ok(()) };
         let folded = writer.one("PRAGMA wal_checkpoint(PASSIVE)", &[], |row| {
             let [busy, pages, folded] = [row.get::<i64>(0)?, row.get(1)?, row.get(2)?];
@@ -85,6 +127,7 @@ impl Opened {
             let last = Generations(vec![last]);
             note(folder, lock, &last)?;
             self.known = last;
+            self.changes = 0;
         }
         Ok(())
     }
@@ -107,7 +150,9 @@ fn refused(folder: &Folder, source: DatabaseError) -> StoreError {
 /// What is known of a log beside a database.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Log {
-    /// There is none, or it is this database's.
+    /// There is none.
+    None,
+    /// It is this database's.
     Own,
     /// It was left by a program that wrote down nothing of it, or not yet of which database it is.
     Unknown,
@@ -122,7 +167,7 @@ pub(super) fn of_left_log(folder: &Folder) -> Result<(Log, Generations), StoreEr
     let is_left = log.is_ok_and(|log| log.len() > EMPTY_LOG);
     let (Some(found), true) = (found, is_left) else {
         // A file that is not made yet will have 0.
-        return Ok((Log::Own, Generations(vec![found.unwrap_or_default()])));
+        return Ok((Log::None, Generations(vec![found.unwrap_or_default()])));
     };
     let mut noted = noted(folder);
     if noted.0.is_empty() {
@@ -189,6 +234,11 @@ fn note(folder: &Folder, lock: &File, Generations(all): &Generations) -> Result<
     written.and_then(|()| lock.sync_all()).map_err(|source| folder.refused(source))
 }
 
+/// A number that no copy has. Its end is random; `user_version` is signed, and 0 is that of a copy.
+fn chosen() -> Result<u32, StoreError> {
+    Ok((ids::new(0)?.as_u128() as u32 >> 1) | 1)
+}
+
 /// Chooses the number that this start gives the database, as the last of `known`. Beside a database that was put back it is noted before
 /// a log comes about.
 pub(super) fn choose(
@@ -198,8 +248,7 @@ pub(super) fn choose(
     mut known: Generations,
 ) -> Result<Generations, StoreError> {
     let is_noted = log == Log::Unknown || noted(folder) == known;
-    // Its end is random; `user_version` is signed, and 0 is that of a copy.
-    known.0.push((ids::new(0)?.as_u128() as u32 >> 1) | 1);
+    known.0.push(chosen()?);
     if !is_noted {
         note(folder, lock, &known)?;
     }
@@ -214,16 +263,15 @@ pub(super) fn begin(
     writer: &mut dyn Database,
     known: Generations,
 ) -> Result<Opened, StoreError> {
-    let new = known.0.last().copied().unwrap_or_default();
     note(folder, lock, &known)?;
-    writer.batch(&format!("PRAGMA user_version = {new}")).map_err(|source| refused(folder, source))?;
+    known.give(folder, writer)?;
     let file = File::open(folder.database()).map_err(|source| folder.refused(source))?;
     let mut opened = Opened::new(file, known);
     opened.settle(folder, lock, writer)?;
     if opened.is_there(folder) { Ok(opened) } else { Err(StoreError::Replaced { path: folder.database() }) }
 }
 
-/// Refuses a database in which SQLite finds anything wrong, and leaves it and its log as they are.
+/// Refuses a database in which SQLite finds anything wrong.
 pub(super) fn is_whole(folder: &Folder, database: &mut dyn Database) -> Result<(), StoreError> {
     let found = database.one("PRAGMA integrity_check(1)", &[], |row| row.get::<String>(0));
     let damage = match found {
@@ -231,7 +279,6 @@ pub(super) fn is_whole(folder: &Folder, database: &mut dyn Database) -> Result<(
         Ok(said) => rusqlite::Error::SqliteFailure(ffi::Error::new(ffi::SQLITE_CORRUPT), Some(said)).into(),
         Err(error) => error,
     };
-    database.leave_log();
     Err(StoreError::of_file(&folder.database(), "to be checked", damage))
 }
 

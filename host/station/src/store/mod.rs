@@ -119,6 +119,8 @@ impl Store {
         let (log, known) = generation::of_left_log(folder)?;
         let known = generation::choose(folder, &lock, log, known)?;
         let mut writer = folder.writer()?;
+        // One that was left stays as it is if the start fails: it may be another database's after all.
+        writer.leave_log(log != Log::None);
         if log == Log::Unknown {
             tracing::warn!(
                 "station.db-wal was left by a program that was killed; all of station.db is looked at first, which takes a while"
@@ -128,6 +130,7 @@ impl Store {
         folder.has_kept_tables(&mut *writer)?;
         migrations::apply(&mut *writer, &folder.database(), clock::now_ms())?;
         let opened = generation::begin(folder, &lock, &mut *writer, known)?;
+        writer.leave_log(false);
         crate::record::synced(&folder.0)?;
         Ok(Self {
             folder: folder.clone(),
@@ -153,6 +156,10 @@ impl Store {
     pub fn fold_log(&mut self) {
         if !self.opened.is_unspoilt() {
             return tracing::warn!("the write-ahead log stays beside the database, which is another one");
+        }
+        // What is written after it is the log of another file than before.
+        if let Err(error) = self.opened.fold(&self.folder, &self.lock, &mut *self.writer) {
+            return tracing::warn!("the write-ahead log stays beside the database: {error}");
         }
         let folded = self.writer.one("PRAGMA wal_checkpoint(TRUNCATE)", &[], |row| row.get::<i64>(0));
         match folded {
@@ -279,7 +286,7 @@ impl Store {
         self.has_its_name()?;
         let changed = self.read(doing, |writer| writer.transaction(change))?;
         self.has_its_name()?;
-        if let Err(error) = self.opened.settle(&self.folder, &self.lock, &mut *self.writer) {
+        if let Err(error) = self.opened.changed(&self.folder, &self.lock, &mut *self.writer) {
             tracing::warn!("station.db may still be taken for an earlier copy of it: {error}");
         }
         Ok(changed)
@@ -302,7 +309,7 @@ impl Store {
 impl Drop for Store {
     fn drop(&mut self) {
         if !self.opened.is_unspoilt() {
-            self.writer.leave_log();
+            self.writer.leave_log(true);
         }
     }
 }

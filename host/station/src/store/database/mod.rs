@@ -166,8 +166,8 @@ pub(crate) trait Database: Debug + Send {
     /// Carries a statement out. Returns how many rows it changed.
     fn execute(&mut self, text: &str, values: &[Value<'_>]) -> Result<u64, DatabaseError>;
 
-    /// At its end nothing is brought from the log into the file.
-    fn leave_log(&mut self) {}
+    /// Whether at its end nothing is brought from the log into the file.
+    fn leave_log(&mut self, _leaves: bool) {}
 
     /// Brings every row of a statement that reads.
     fn each(&mut self, text: &str, values: &[Value<'_>], row: Each<'_>) -> Result<(), DatabaseError>;

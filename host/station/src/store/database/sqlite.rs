@@ -43,9 +43,9 @@ impl Database for Sqlite {
         Ok(self.0.prepare_cached(text)?.execute(params_from_iter(values))? as u64)
     }
 
-    fn leave_log(&mut self) {
+    fn leave_log(&mut self, leaves: bool) {
         // It does not refuse that.
-        let _ = self.0.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true);
+        let _ = self.0.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, leaves);
     }
 
     fn each(&mut self, text: &str, values: &[Value<'_>], row: Each<'_>) -> Result<(), DatabaseError> {

@@ -5,8 +5,11 @@ use std::os::unix::fs::MetadataExt as _;
 use std::path::Path;
 use std::process::Command;
 
+use halfrow_station::check::check;
 use halfrow_station::kept::backup;
 use halfrow_station::store::{Folder, Snapshot, Store};
+use rusqlite::Connection;
+use rusqlite::config::DbConfig;
 use tempfile::TempDir;
 
 use super::made::{End, Made, Run};
@@ -241,6 +244,72 @@ fn sqlite_plays_any_log_into_any_database() {
     let left = killed(&made);
     fs::copy(earlier.path().join("station.db"), left.path().join("station.db")).unwrap();
     assert_eq!(units(left.path()), ["S1", "S2"]);
+}
+
+/// SQLite folds a log into the database many times while a station is at work: a copy of before is then one of another database, though
+/// no start lies between. Here each copy lies beside each later log.
+#[test]
+fn a_copy_that_was_made_while_a_station_was_at_work_is_taken_whole_or_refused() {
+    for is_read in [false, true] {
+        let mut made = Made::new();
+        let mut moments = Vec::new();
+        let mut reader = None;
+        for number in 1..=60 {
+            made.run(&Run::of(&format!("S{number:02}"), End::Pass));
+            match number {
+                12 if is_read => reader = Some(made.now()),
+                44 => drop(reader.take()),
+                _ if number % 10 == 0 => moments.push((killed(&made), number)),
+                _ => {}
+            }
+        }
+        let mut found = [0, 0];
+        for (later, (left, judged)) in moments.iter().enumerate() {
+            for (copy, _) in &moments[..=later] {
+                found[usize::from(is_taken(&copy.path().join("station.db"), left.path(), *judged))] += 1;
+            }
+        }
+        let [refused, taken] = found;
+        assert!(refused >= 8 && taken >= 8, "{found:?}: {is_read}");
+    }
+}
+
+/// Whether a station starts on the database `copy` beside the log in `left`, where it `judged` so many. Where it does not, nothing is
+/// shown nor spoilt.
+fn is_taken(copy: &Path, left: &Path, judged: usize) -> bool {
+    let tried = folder();
+    assert!(Command::new("cp").arg("-r").args([&left.join("."), tried.path()]).status().unwrap().success());
+    let data = Folder::new(tried.path());
+    fs::copy(copy, data.database()).unwrap();
+    let taken = Store::open(&data).map(drop);
+    if let Err(refused) = &taken {
+        assert!(refused.to_string().contains("is the log of another database"), "{refused}");
+        for refused in [Snapshot::take(&data).map(drop), check(&data).map(drop)] {
+            let refused = refused.unwrap_err().to_string();
+            assert!(refused.contains("is the log of another database"), "{refused}");
+        }
+        fs::copy(left.join("station.db"), data.database()).unwrap();
+        Store::open(&data).unwrap();
+    }
+    assert_eq!(units(tried.path()).len(), judged, "{copy:?} {taken:?}");
+    assert!(Snapshot::take(&data).unwrap().damage().unwrap().is_empty());
+    taken.is_ok()
+}
+
+/// Whatever it fails of, the log may be another one's after all.
+#[test]
+fn a_start_that_fails_leaves_the_log_that_it_found() {
+    let (made, ..) = in_its_second_session();
+    let left = killed(&made);
+    let files = || ["station.db", "station.db-wal"].map(|name| fs::read(left.path().join(name)).unwrap());
+    let newer = Connection::open(left.path().join("station.db")).unwrap();
+    newer.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true).unwrap();
+    newer.execute_batch("INSERT INTO schema_version VALUES (99, 'x', 1)").unwrap();
+    drop(newer);
+    let before = files();
+    let refused = Store::open(&Folder::new(left.path())).unwrap_err().to_string();
+    assert!(refused.contains("99"), "{refused}");
+    assert!(files() == before, "it was folded");
 }
 
 /// A program that wrote nothing of the log down may have left it.
