@@ -1,8 +1,9 @@
 //! Brings a database to the version that this program knows, on either engine.
 
 use std::fs::{self, File};
-use std::path::Path;
-use std::{io, iter};
+use std::io::{self, BufReader, Read as _};
+use std::iter;
+use std::path::{Path, PathBuf};
 
 use halfrow::result::sha256;
 use nix::sys::statvfs::statvfs;
@@ -95,7 +96,6 @@ fn missing(bytes: u64, free: Option<u64>) -> u64 {
 
 /// Lays a copy of `database`, the file `path`, beside it, whole or not at all.
 fn copy(database: &mut dyn Database, path: &Path, version: i64) -> Result<(), StoreError> {
-    let whole = path.with_extension(format!("before-{version}.db"));
     let aside = path.with_extension(format!("before-{version}.partial"));
     let folder = path.parent().unwrap_or(path);
     let refused = |source| StoreError::Folder { folder: folder.to_owned(), source };
@@ -107,6 +107,7 @@ fn copy(database: &mut dyn Database, path: &Path, version: i64) -> Result<(), St
     let named = copied.and_then(|_| {
         generation::remove(&aside)?;
         File::open(&aside).and_then(|file| file.sync_all()).map_err(refused)?;
+        let whole = free_name(path, version, &aside).map_err(refused)?;
         fs::rename(&aside, &whole).map_err(refused)
     });
     if named.is_err() {
@@ -117,6 +118,30 @@ fn copy(database: &mut dyn Database, path: &Path, version: i64) -> Result<(), St
     }
     named?;
     Ok(synced(folder)?)
+}
+
+/// What the copy in `aside` is to be called: as no other copy is, which may be all that is left of what was before an earlier change.
+fn free_name(path: &Path, version: i64, aside: &Path) -> io::Result<PathBuf> {
+    let mut whole = path.with_extension(format!("before-{version}.db"));
+    let mut number = 2;
+    while whole.exists() && !hold_the_same(aside, &whole)? {
+        whole = path.with_extension(format!("before-{version}.{number}.db"));
+        number += 1;
+    }
+    Ok(whole)
+}
+
+fn hold_the_same(one: &Path, other: &Path) -> io::Result<bool> {
+    let [one, other] = [File::open(one)?, File::open(other)?];
+    if one.metadata()?.len() != other.metadata()?.len() {
+        return Ok(false);
+    }
+    for (one, other) in BufReader::new(one).bytes().zip(BufReader::new(other).bytes()) {
+        if one? != other? {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 /// Removes the file `path`, if it is there.

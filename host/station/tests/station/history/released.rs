@@ -135,7 +135,24 @@ fn a_database_that_cannot_be_brought_up_to_date_is_the_earlier_programs_still() 
     let refused = Store::open(&Folder::new(data.path())).unwrap_err();
     assert!(format!("{refused:?}").contains("mismatch already exists"), "{refused:?}");
     assert_eq!(query(data.path(), "SELECT max(n) FROM schema_version"), ["1"]);
+    // However often it is tried, its copy is the same.
+    assert!(Store::open(&Folder::new(data.path())).is_err());
     assert_eq!(copies(data.path()), before(1));
+}
+
+/// An older database may be brought up to date in the folder of a newer one, as where a copy is tried that is too old.
+#[test]
+fn a_copy_of_before_an_upgrade_is_not_written_over() {
+    let data = left(1);
+    let first = data.path().join("station.before-2.db");
+    fs::write(&first, "of the day of the upgrade").unwrap();
+    drop(Store::open(&Folder::new(data.path())).unwrap());
+    assert_eq!(fs::read_to_string(&first).unwrap(), "of the day of the upgrade");
+    let mut all = copies(data.path());
+    all.sort();
+    assert_eq!(all, ["station.before-2.2.db", "station.before-2.db"]);
+    let copy = Connection::open(data.path().join(&all[0])).unwrap();
+    assert_eq!(names(&copy, "SELECT CAST(max(n) AS TEXT) FROM schema_version"), ["1"]);
 }
 
 /// A disk that takes nothing more of the copy.
