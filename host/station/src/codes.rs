@@ -79,6 +79,7 @@ codes::codes! {
         Folder [folder] => "store-folder-unusable",
         NoResults [folder] => "store-without-results",
         DatabaseGone [folder] => "store-without-database",
+        Unrestored [folder] => "store-restore-unfinished",
         Database [path, doing] => "database-refuses",
         Damaged [path] => "database-unreadable",
         Replaced [path] => "database-replaced",

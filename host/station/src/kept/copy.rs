@@ -10,10 +10,7 @@ use std::path::{Path, PathBuf};
 use crate::check::{Fault, check};
 use crate::published::{BundleError, Kept};
 use crate::record::{Blobs, Piece, synced};
-use crate::store::{Folder, Snapshot, Store, StoreError};
-
-/// What a copy is called that is being made.
-const ASIDE: &str = ".partial";
+use crate::store::{ASIDE, Folder, Snapshot, Store, StoreError};
 
 /// What was copied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,9 +85,20 @@ pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
         Err(CopyError::Store(StoreError::Older { .. })) => {}
         looked_at => looked_at?,
     }
+    let mut lock = None;
     made(to, |aside| {
+        if to.is_dir() {
+            // Until all is there no start comes between.
+            lock = Some(Folder::new(to).lock()?);
+        }
         let copied = into(from, aside)?;
-        sound(&Folder::new(aside), from)?;
+        let new = Folder::new(aside);
+        sound(&new, from)?;
+        if lock.is_some() && new.lock_file().exists() {
+            // It would take the name of the one that is held.
+            let refused = |source| CopyError::Io { path: to.to_owned(), source };
+            fs::remove_file(new.lock_file()).map_err(refused)?;
+        }
         Ok(copied)
     })
 }
@@ -135,10 +143,10 @@ fn private_folder(path: &Path) -> io::Result<()> {
     DirBuilder::new().mode(0o700).create(path)
 }
 
-/// Whether there is anything in `folder` but what a file system is made with.
+/// Whether there is anything in `folder` but what a file system is made with, and the lock that a restore leaves when it is killed.
 fn holds_anything(folder: &Path) -> io::Result<bool> {
     let names = fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name())).collect::<io::Result<Vec<_>>>()?;
-    Ok(names.iter().any(|name| name != "lost+found"))
+    Ok(names.iter().any(|name| name != "lost+found" && name != "station.lock"))
 }
 
 /// Moves what is in `aside` to the folder `to` around it, the database last: without it nothing is a copy. Of what fails nothing is left.

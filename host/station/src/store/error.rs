@@ -41,6 +41,15 @@ pub enum StoreError {
         /// The folder.
         folder: PathBuf,
     },
+    /// A copy is being put there, or was when its program was killed.
+    #[error(
+        "a restore has not ended in {}; wait for it, or, when none is at work, remove .partial there and restore again",
+        folder.display()
+    )]
+    Unrestored {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// The database refuses.
     #[error("the database {} refuses {doing}; check that its folder is writable and has space", path.display())]
     Database {

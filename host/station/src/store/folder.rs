@@ -16,6 +16,9 @@ use crate::record::Blobs;
 const LEAVES: Duration = Duration::from_secs(1);
 const AGAIN: Duration = Duration::from_millis(20);
 
+/// What a copy is called, in the folder that is there for it, while it is being made.
+pub(crate) const ASIDE: &str = ".partial";
+
 /// The folder of a station.
 #[derive(Clone, Debug)]
 pub struct Folder(pub(super) PathBuf);
@@ -31,6 +34,12 @@ impl Folder {
     #[must_use]
     pub fn database(&self) -> PathBuf {
         self.0.join("station.db")
+    }
+
+    /// Ends where a copy is being put, or was when its program was killed: what begins there would be in its way.
+    pub(super) fn has_no_restore(&self) -> Result<(), StoreError> {
+        let is_unfinished = self.0.join(ASIDE).exists() && !self.database().exists();
+        if is_unfinished { Err(StoreError::Unrestored { folder: self.0.clone() }) } else { Ok(()) }
     }
 
     /// Ends where there is evidence, and no database that says whose: nothing may begin anew beside it.
@@ -73,11 +82,15 @@ impl Folder {
     }
 
     /// What whoever writes holds.
-    pub(super) fn lock_file(&self) -> PathBuf {
+    pub(crate) fn lock_file(&self) -> PathBuf {
         self.0.join("station.lock")
     }
 
-    pub(super) fn lock(&self) -> Result<File, StoreError> {
+    /// The right to write to the folder, which is there, for as long as the file is open.
+    ///
+    /// # Errors
+    /// [`StoreError`] when another program has it.
+    pub(crate) fn lock(&self) -> Result<File, StoreError> {
         let file = File::options().create(true).truncate(false).write(true).open(self.lock_file());
         let file = file.map_err(|source| self.refused(source))?;
         let until = Instant::now() + LEAVES;

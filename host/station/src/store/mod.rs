@@ -41,6 +41,7 @@ use uuid::Uuid;
 pub use bindings::{Admission, Change, RebindError, Rebinding, is_device};
 pub(crate) use database::{Database, DatabaseError, Row as Found, Value, values};
 pub use error::StoreError;
+pub(crate) use folder::ASIDE;
 pub use folder::Folder;
 use generation::{Log, Opened};
 pub use outbox::{AuditLine, DEAD_SHOWN, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Standing, Tried, Unsent};
@@ -111,10 +112,13 @@ impl Store {
     /// # Errors
     /// [`StoreError`] when another program has it, or it cannot be made, read or written.
     pub fn open(folder: &Folder) -> Result<Self, StoreError> {
+        folder.has_no_restore()?;
         for place in ["blobs", "spool"] {
             fs::create_dir_all(folder.0.join(place)).map_err(|source| folder.refused(source))?;
         }
         let lock = folder.lock()?;
+        // One may have begun meanwhile.
+        folder.has_no_restore()?;
         folder.has_kept_database()?;
         let (log, known) = generation::of_left_log(folder)?;
         let known = generation::choose(folder, &lock, log, known)?;

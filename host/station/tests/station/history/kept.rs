@@ -96,6 +96,41 @@ fn a_folder_that_is_there_stays_the_one_that_it_is() {
     assert_eq!(fs::read_dir(place.path()).unwrap().count(), 2, "nothing else is left there");
 }
 
+/// A kill leaves what was copied so far, and a station that begins anew beside it would be in the way of the copy.
+#[test]
+fn no_station_begins_where_a_restore_has_not_ended() {
+    let (made, place) = (made(), tempfile::tempdir().unwrap());
+    let [copy, data] = ["copy", "data"].map(|name| place.path().join(name));
+    backup(&made.folder(), &copy).unwrap();
+    fs::create_dir_all(data.join(".partial/blobs")).unwrap();
+    let refused = Store::open(&Folder::new(&data)).unwrap_err().to_string();
+    assert!(refused.contains("a restore has not ended") && refused.contains(".partial"), "{refused}");
+    assert_eq!(fs::read_dir(&data).unwrap().count(), 1, "nothing was begun");
+    fs::remove_dir_all(data.join(".partial")).unwrap();
+    restore(&Folder::new(&copy), &data).unwrap();
+    // One that was interrupted behind its end, or of a copy, is in no station's way.
+    fs::create_dir(data.join(".partial")).unwrap();
+    drop(Store::open(&Folder::new(&data)).unwrap());
+}
+
+/// As a service manager starts a station again in the folder that is restored.
+#[test]
+fn a_restore_keeps_a_start_out_and_comes_to_no_folder_in_which_one_works() {
+    let (made, place) = (made(), tempfile::tempdir().unwrap());
+    let [copy, data] = ["copy", "data"].map(|name| place.path().join(name));
+    backup(&made.folder(), &copy).unwrap();
+    fs::create_dir(&data).unwrap();
+    let lock = fs::File::create(data.join("station.lock")).unwrap();
+    lock.lock().unwrap();
+    let refused = restore(&Folder::new(&copy), &data).unwrap_err();
+    assert!(matches!(refused, CopyError::Store(StoreError::InUse { .. })), "{refused:?}");
+    drop(lock);
+    // What a restore that was killed leaves of its lock is in no other's way.
+    restore(&Folder::new(&copy), &data).unwrap();
+    assert_eq!(sound(&Folder::new(&data)), [3, 1, 7, 0]);
+    drop(Store::open(&Folder::new(&data)).unwrap());
+}
+
 /// What anybody but the owner may do with what lies in `folder`, by its names.
 fn open_to_others(folder: &Path) -> Vec<(String, u32)> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| {

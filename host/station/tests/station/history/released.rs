@@ -226,6 +226,18 @@ fn a_backup_of_every_released_schema_is_restored_and_stays_as_it_is() {
     });
 }
 
+/// Its database is brought up to date under a lock of its own, which is not to take the name of the one that is held.
+#[test]
+fn a_backup_of_an_earlier_program_is_restored_into_a_folder_that_is_there() {
+    let (backup, data) = (left(1), tempfile::tempdir().unwrap());
+    let (code, said, complained) = did(&data, &["restore", backup.path().to_str().unwrap()]);
+    assert_eq!((code, complained.as_str()), (0, ""), "{said}");
+    assert_eq!(fs::read_to_string(data.path().join("station.lock")).unwrap(), "");
+    is_true_of(data.path());
+    let (code, _, complained) = did(&data, &["prune"]);
+    assert_eq!((code, complained.as_str()), (0, ""));
+}
+
 #[test]
 fn a_backup_of_a_newer_program_or_with_a_fault_is_refused_and_nothing_is_left() {
     let newer = "INSERT INTO schema_version (n, sha256, applied_ms) VALUES (99, 'x', 1)";
