@@ -7,7 +7,7 @@ use halfrow::result::codes::{self, CodeList, Coded};
 use halfrow_program::codes as program;
 use serde_json::Value;
 
-use crate::check::Fault;
+use crate::check::{Fault, Superseded};
 use crate::commands::refusals;
 use crate::disk::DiskError;
 use crate::engine::HookError;
@@ -345,6 +345,8 @@ codes::codes! {
     ;
     UnknownBarcode [text] => "barcode-unknown"
     ;
+    Superseded [run, row, sha256, verdict] => "run-record-superseded"
+    ;
     NoRandomness => "no-randomness"
 }
 
@@ -361,6 +363,11 @@ pub(crate) fn problem(exit: Exit, error: &anyhow::Error) -> Problem {
 /// What is wrong with what was kept.
 pub(crate) fn of_fault(fault: &Fault) -> Problem {
     Problem::by(fault, known)
+}
+
+/// A record that says otherwise of its run than the database.
+pub(crate) fn of_superseded(note: &Superseded) -> Problem {
+    Problem::by(note, known)
 }
 
 /// Every list of codes that is the station's own.

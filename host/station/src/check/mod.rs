@@ -4,13 +4,15 @@
 mod compare;
 mod fault;
 mod plant;
+mod superseded;
 
 use compare::compare;
 pub use fault::Fault;
 pub use plant::check_plant;
+pub use superseded::Superseded;
 
 use crate::plan::plan_hash;
-use crate::record::{Blobs, Piece, PlanRecord, Record, UnnamedRecord};
+use crate::record::{Blobs, PlanRecord, Record, UnnamedRecord};
 use crate::store::{Folder, OpenRun, Rebinding, Rebuilt, Removed, Snapshot, StoreError, TABLES};
 
 /// What was looked at, and what is wrong.
@@ -24,6 +26,8 @@ pub struct Checked {
     pub evidence: usize,
     /// Attachments that were removed since they were old.
     pub pruned: usize,
+    /// Records that say otherwise of a run than the database does, which may be right.
+    pub superseded: Vec<Superseded>,
     /// What is not as it was written.
     pub faults: Vec<Fault>,
 }
@@ -51,16 +55,16 @@ pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
     for (table, key) in TABLES {
         compare(table, snapshot.table(table, key), look.rebuilt.table(table, key), &mut faults)?;
     }
-    faults.extend(without_row(&folder.blobs(), &pieces, &snapshot)?);
+    let unnamed = folder.blobs().unnamed_records(&pieces, &snapshot.named_evidence()?)?;
+    let superseded = superseded::superseded(&folder.blobs(), &unnamed, &snapshot)?;
+    faults.extend(without_row(unnamed, &snapshot)?);
     let Look { evidence, pruned, .. } = look;
-    Ok(Checked { runs: finals.len(), open: open.len(), evidence, pruned, faults })
+    Ok(Checked { runs: finals.len(), open: open.len(), evidence, pruned, superseded, faults })
 }
 
-/// The records whose runs have no row. One that no row names is no fault where its run has one: it was not committed, and
-/// the run ends with another record.
-fn without_row(blobs: &Blobs, pieces: &[Piece], snapshot: &Snapshot) -> Result<Vec<Fault>, StoreError> {
-    let records = blobs.unnamed_records(pieces, &snapshot.named_evidence()?)?;
-    let lost = snapshot.without_row(records)?.into_iter();
+/// The records, of those that no row names, whose runs have no row.
+fn without_row(unnamed: Vec<UnnamedRecord>, snapshot: &Snapshot) -> Result<Vec<Fault>, StoreError> {
+    let lost = snapshot.without_row(unnamed)?.into_iter();
     Ok(lost.map(|UnnamedRecord { run, sha256, .. }| Fault::Unnamed { run, sha256 }).collect())
 }
 

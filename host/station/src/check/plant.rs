@@ -45,7 +45,7 @@ pub fn check_plant(plant: &Snapshot, told: &mut dyn FnMut(usize)) -> Result<Chec
     look.at_what_names_runs()?;
     let open = plant.open_runs()?.len();
     let Look { runs, faults, .. } = look;
-    Ok(Checked { runs, open, evidence: runs, pruned: 0, faults })
+    Ok(Checked { runs, open, evidence: runs, pruned: 0, superseded: Vec::new(), faults })
 }
 
 /// Why a plant is otherwise than its records say.

@@ -39,15 +39,18 @@ pub(super) fn tell(checked: &Checked, is_json: bool) -> Result<Exit, Failure> {
 }
 
 fn document(checked: &Checked, exit: Exit) -> Result<String, Failure> {
-    let Checked { runs, open, evidence, pruned, faults } = checked;
+    let Checked { runs, open, evidence, pruned, superseded, faults } = checked;
+    let superseded: Vec<_> = superseded.iter().map(codes::of_superseded).collect();
     let faults: Vec<_> = faults.iter().map(codes::of_fault).collect();
-    let rest =
-        json!({ "runs": runs, "open": open, "evidence": evidence, "pruned": pruned, "faults": faults });
+    let rest = json!({
+        "runs": runs, "open": open, "evidence": evidence, "pruned": pruned, "superseded": superseded, "faults": faults
+    });
     document::text("check", exit, None, rest)
 }
 
 fn text(checked: &Checked) -> String {
     let mut lines: Vec<_> = checked.faults.iter().map(|fault| format!("fault: {fault}")).collect();
+    lines.extend(checked.superseded.iter().map(|note| format!("note: {note}")));
     if checked.open > 0 {
         lines.push(format!("{} runs are open; the next start of the station closes them", checked.open));
     }

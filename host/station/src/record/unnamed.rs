@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::io;
 
+use halfrow::Verdict;
 use serde::Deserialize;
+use serde_json::Value;
 
 use super::{BlobError, Blobs, Piece};
 
@@ -16,6 +18,8 @@ pub(crate) struct UnnamedRecord {
     pub sha256: String,
     /// The run.
     pub run: String,
+    /// What it says that the run came to.
+    pub verdict: Option<Verdict>,
     /// The hashes of the evidence that it names.
     pub attachments: Vec<String>,
 }
@@ -40,9 +44,11 @@ impl Blobs {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
             read => read.map_err(|source| BlobError::Read { path, source })?,
         };
-        let Ok(Record { run, attachments, .. }) = serde_json::from_slice(&bytes) else { return Ok(None) };
+        let Ok(record) = serde_json::from_slice::<Record>(&bytes) else { return Ok(None) };
+        let Record { run, conclusion, attachments, .. } = record;
         let attachments = attachments.into_iter().map(|one| one.sha256).collect();
-        Ok(Some(UnnamedRecord { sha256: hash.to_owned(), run: run.id, attachments }))
+        let verdict = Verdict::deserialize(&conclusion["verdict"]).ok();
+        Ok(Some(UnnamedRecord { sha256: hash.to_owned(), run: run.id, verdict, attachments }))
     }
 }
 
@@ -52,6 +58,8 @@ struct Record {
     #[serde(rename = "schema")]
     _schema: u32,
     run: Run,
+    #[serde(default)]
+    conclusion: Value,
     attachments: Vec<Attachment>,
 }
 

@@ -250,6 +250,12 @@ pub(super) fn choose(
     let is_noted = log == Log::Unknown || noted(folder) == known;
     known.0.push(chosen()?);
     if !is_noted {
+        let before = noted(folder).0;
+        if !before.is_empty() && !known.0.iter().any(|one| before.contains(one)) {
+            tracing::warn!(
+                "station.db was put back, or is another one than that of the last start; `halfrow-station check` says what it lacks"
+            );
+        }
         note(folder, lock, &known)?;
     }
     Ok(known)

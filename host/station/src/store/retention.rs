@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
+use halfrow::Verdict;
+
 use super::audit::Line;
 use super::database::values;
 use super::{Folder, Snapshot, Store, StoreError, generation, statements as sql};
@@ -52,6 +54,12 @@ impl Snapshot {
             records.retain(|record| !known.contains(&record.run));
         }
         Ok(records)
+    }
+
+    /// The verdict of a run; none if the run is open or not there.
+    pub(crate) fn verdict_of(&self, run: &str) -> Result<Option<Verdict>, StoreError> {
+        let found = self.rows("to tell a verdict", sql::VERDICT_OF, values![run], |row| row.get(0))?;
+        Ok(found.into_iter().next())
     }
 
     /// What evidence was removed since it was old.

@@ -31,8 +31,8 @@ fn runs(folder: &Folder) -> Page {
 
 /// Runs over, runs open, pieces of evidence, pieces that were removed.
 fn sound(folder: &Folder) -> [usize; 4] {
-    let Checked { runs, open, evidence, pruned, faults } = check(folder).unwrap();
-    assert!(faults.is_empty(), "{faults:?}");
+    let Checked { runs, open, evidence, pruned, superseded, faults } = check(folder).unwrap();
+    assert!(faults.is_empty() && superseded.is_empty(), "{faults:?} {superseded:?}");
     [runs, open, evidence, pruned]
 }
 

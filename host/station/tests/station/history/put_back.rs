@@ -12,6 +12,7 @@ use rusqlite::Connection;
 use rusqlite::config::DbConfig;
 use tempfile::TempDir;
 
+use super::commands::did;
 use super::made::{End, Made, Run};
 use crate::common::{folder, query};
 
@@ -235,6 +236,29 @@ fn a_station_whose_lock_is_another_file_goes_on_with_nothing_and_lets_no_lock_go
     // The control: whoever closes the file gives them up.
     drop(File::open(&database).unwrap());
     assert_eq!(locks(&database), 0);
+}
+
+#[test]
+fn a_start_says_once_that_its_database_was_put_back() {
+    let (made, earlier, _) = in_its_second_session();
+    let copy = folder();
+    backup(&made.folder(), &copy.path().join("copy")).unwrap();
+    let kept = made.closed();
+    let is_said = |data: &Path| {
+        let (code, _, said) = did(&data, &["prune"]);
+        assert_eq!(code, 0, "{said}");
+        let is_said = said.contains("station.db was put back, or is another one");
+        assert_eq!(is_said, said.contains("`halfrow-station check` says what it lacks"), "{said}");
+        is_said
+    };
+    assert!(!is_said(kept.path()));
+    for from in [earlier.path().join("station.db"), copy.path().join("copy/station.db")] {
+        fs::copy(from, kept.path().join("station.db")).unwrap();
+        assert!(is_said(kept.path()));
+        assert!(!is_said(kept.path()));
+    }
+    // A folder of its own is none that was put back.
+    assert!(!is_said(&copy.path().join("copy")));
 }
 
 /// The control: without what the start wrote down nothing tells that the log is another one's.

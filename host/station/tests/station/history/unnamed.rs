@@ -8,6 +8,7 @@ use std::time::{Duration, SystemTime};
 
 use halfrow_station::check::{Fault, check};
 use halfrow_station::kept::{Copied, Unnamed, backup, prune_unnamed, restore};
+use halfrow_station::record::RunCause;
 use halfrow_station::run::recover;
 use halfrow_station::store::Folder;
 
@@ -132,6 +133,49 @@ fn a_record_that_came_to_no_row_is_no_fault() {
     is_sound(&made.folder());
     let place = tempfile::tempdir().unwrap();
     assert_eq!(backup(&made.folder(), &place.path().join("copy")).unwrap().unknown, 0);
+}
+
+/// A copy of a moment at which runs were under way is put back when they are over: nothing on the disk tells that from a power cut
+/// in front of the COMMIT.
+#[test]
+fn a_verdict_whose_run_is_open_or_another_in_the_database_is_told_and_is_no_fault() {
+    let mut made = Made::new();
+    let runs = [("1", End::Pass), ("2", End::Fail(&["memory"])), ("3", End::Error(RunCause::Link))];
+    let runs = runs.map(|(lane, end)| Run { lane: lane.to_owned(), ..Run::of(&format!("S{lane}"), end) });
+    let begun = runs.each_ref().map(|run| made.begin(run));
+    let place = tempfile::tempdir().unwrap();
+    let copy = place.path().join("copy");
+    backup(&made.folder(), &copy).unwrap();
+    for (run, (head, plan)) in runs.iter().zip(begun) {
+        made.finish(run, head, plan);
+    }
+    let kept =
+        "SELECT id || ' ' || record_sha256 || ' ' || verdict FROM run WHERE verdict <> 'ERROR' ORDER BY lane";
+    let kept = query(made.as_ref(), kept);
+    let notes =
+        |said: &str| said.lines().filter(|line| line.starts_with("note: ")).map(str::to_owned).collect();
+    let folder = made.closed();
+    let (code, said, _) = did(&folder, &["check"]);
+    assert_eq!((code, notes(&said)), (0, Vec::<String>::new()), "{said}");
+    fs::copy(copy.join("station.db"), folder.path().join("station.db")).unwrap();
+    let mut folder = Some(folder);
+    for row in ["open", "ERROR"] {
+        let data = folder.take().unwrap();
+        let (code, said, _) = did(&data, &["check"]);
+        let told: Vec<String> = notes(&said);
+        assert_eq!((code, told.len()), (0, 2), "{said}");
+        for (note, kept) in told.iter().zip(&kept) {
+            let [run, record, verdict] = kept.split(' ').collect::<Vec<_>>()[..] else { panic!("{kept}") };
+            let begins = format!("note: run {run} is {row} here, and its record {record} says {verdict}: ");
+            assert!(note.starts_with(&begins), "{note}");
+        }
+        let (_, said, _) = did(&data, &["check", "--json"]);
+        let said: serde_json::Value = serde_json::from_str(&said).unwrap();
+        assert_eq!(said["superseded"][1]["code"], "run-record-superseded", "{said}");
+        let mut made = Made::at(data);
+        recover(&mut made.store).unwrap();
+        folder = Some(made.closed());
+    }
 }
 
 #[test]

@@ -1,0 +1,58 @@
+//! Records whose runs are open in the database, or came to something else there.
+
+use std::collections::BTreeSet;
+
+use halfrow::Verdict;
+
+use crate::record::{Blobs, UnnamedRecord};
+use crate::store::{Snapshot, StoreError};
+
+/// A record that says otherwise of its run than the database does. It is no fault: that it was never committed, as where the power
+/// went behind it, and that the database is of before the COMMIT, look the same on the disk.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "run {run} is {row} here, and its record {sha256} says {verdict}: the power went before that was shown, or station.db is a copy \
+     from before it, and then it was shown; find out which, or else test the board again"
+)]
+pub struct Superseded {
+    /// The run.
+    pub run: String,
+    /// What its row says: `open`, or its verdict.
+    pub row: String,
+    /// The hash of the record.
+    pub sha256: String,
+    /// What the record says.
+    pub verdict: String,
+}
+
+/// Those of the records that no row names which are whole and say otherwise than the row of their run. An open run will be ERROR.
+pub(super) fn superseded(
+    blobs: &Blobs,
+    unnamed: &[UnnamedRecord],
+    snapshot: &Snapshot,
+) -> Result<Vec<Superseded>, StoreError> {
+    if unnamed.is_empty() {
+        return Ok(Vec::new());
+    }
+    let open: BTreeSet<_> = snapshot.open_runs()?.into_iter().map(|open| open.run.id).collect();
+    let mut found = Vec::new();
+    for UnnamedRecord { sha256, run, verdict, .. } in unnamed {
+        let row = match snapshot.verdict_of(run)? {
+            None if open.contains(run) => None,
+            None => continue,
+            row => row,
+        };
+        let Some(verdict) = verdict.filter(|said| *said != row.unwrap_or(Verdict::Error)) else { continue };
+        if blobs.get(sha256).is_ok() {
+            let row = row.map_or_else(|| "open".to_owned(), |row| row.to_string());
+            found.push(Superseded {
+                run: run.clone(),
+                row,
+                sha256: sha256.clone(),
+                verdict: verdict.to_string(),
+            });
+        }
+    }
+    found.sort_by(|one, other| one.run.cmp(&other.run));
+    Ok(found)
+}
