@@ -28,7 +28,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 
 const HEAD: &str = "# Codes of the station
 
-Every error of `halfrow-station` in JSON has a code and parameters, and so has every fault that `check` finds. Codes are
+Every error of `halfrow-station` in JSON has a code and parameters, and so has every fault or note of `check`. Codes are
 stable: none changes its meaning or its parameters' names within a schema number, and new ones may come. Their sentence
 is in `message`, and what to do in `remedy` and at its end.
 `halfrow-station codes` prints this page; a test holds the two equal. Errors of boards, links, files, the system and of

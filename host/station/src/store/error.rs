@@ -43,7 +43,8 @@ pub enum StoreError {
     },
     /// A copy is being put there, or was when its program was killed.
     #[error(
-        "a restore has not ended in {}; wait for it, or, when none is at work, remove .partial there and restore again",
+        "a restore has not ended in {}; wait for it, or, when none is at work, remove .partial there and what came out of it into the folder, \
+         and restore again",
         folder.display()
     )]
     Unrestored {
