@@ -94,6 +94,18 @@ pub enum FrameError {
 }
 
 impl FrameError {
+    /// Refuses a width that no frame has.
+    ///
+    /// # Errors
+    /// [`FrameError::Empty`] for 0, [`FrameError::OddWidth`] for an odd one.
+    pub fn check_width(width: usize) -> Result<(), Self> {
+        match width {
+            0 => Err(Self::Empty),
+            _ if width % 2 == 1 => Err(Self::OddWidth(width)),
+            _ => Ok(()),
+        }
+    }
+
     /// Refuses the first of `samples`, in rows of `width`, that `depth` cannot hold.
     pub(crate) fn check(width: usize, depth: BitDepth, samples: &[u16]) -> Result<(), Self> {
         samples.chunks(width).enumerate().try_for_each(|(row, samples)| Self::check_row(row, depth, samples))
@@ -123,12 +135,10 @@ impl Frame {
     /// [`FrameError`] when the width is odd or zero, rows are incomplete, or a sample exceeds `depth`. The limits of the
     /// datapath (64 ≤ W ≤ 2592, H ≤ 2048) are the geometry's to check.
     pub fn new(width: usize, depth: BitDepth, phase: Phase, samples: Vec<u16>) -> Result<Self, FrameError> {
-        if width == 0 || samples.is_empty() {
+        if samples.is_empty() {
             return Err(FrameError::Empty);
         }
-        if width % 2 == 1 {
-            return Err(FrameError::OddWidth(width));
-        }
+        FrameError::check_width(width)?;
         if !samples.len().is_multiple_of(width) {
             return Err(FrameError::Ragged { samples: samples.len(), width });
         }

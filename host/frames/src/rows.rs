@@ -33,11 +33,10 @@ pub struct FrameShape {
 impl FrameShape {
     /// Refuses a shape that no [`halfrow_model::Frame`] has.
     pub(super) fn check(&self) -> Result<(), FrameError> {
-        match (self.width, self.height) {
-            (0, _) | (_, 0) => Err(FrameError::Empty),
-            (width, _) if width % 2 == 1 => Err(FrameError::OddWidth(width)),
-            _ => Ok(()),
+        if self.height == 0 {
+            return Err(FrameError::Empty);
         }
+        FrameError::check_width(self.width)
     }
 }
 
