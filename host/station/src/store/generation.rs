@@ -247,11 +247,11 @@ pub(super) fn choose(
     log: Log,
     mut known: Generations,
 ) -> Result<Generations, StoreError> {
-    let is_noted = log == Log::Unknown || noted(folder) == known;
+    let before = noted(folder);
+    let is_noted = log == Log::Unknown || before == known;
     known.0.push(chosen()?);
     if !is_noted {
-        let before = noted(folder).0;
-        if !before.is_empty() && !known.0.iter().any(|one| before.contains(one)) {
+        if !before.0.is_empty() && !known.0.iter().any(|one| before.0.contains(one)) {
             tracing::warn!(
                 "station.db was put back, or is another one than that of the last start; `halfrow-station check` says what it lacks"
             );
