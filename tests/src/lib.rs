@@ -2,7 +2,7 @@
 //!
 //! [`scenarios`] says what `halfrow verify` must find on which board; [`program`] starts the program as a user does.
 //! [`served`] puts boards behind serial ports and TCP ports that the tests make, [`proxy`] spoils a connection, and
-//! [`altered`] rewrites the packets of a board.
+//! [`altered`] rewrites the packets of a board, [`through`] the exchanges of a link.
 //! [`campaign`] draws single faults of the board by the hundred, and [`poor_links`] links by the thousand; both call the
 //! library, so that a run costs no more than its samples.
 
@@ -27,6 +27,7 @@ pub mod served;
 #[cfg(feature = "sim")]
 pub mod simulated_core;
 pub mod system;
+pub mod through;
 #[cfg(target_os = "linux")]
 pub mod usb;
 pub mod whole_board;

@@ -8,13 +8,14 @@ use std::time::Duration;
 
 use halfrow::board::deadlines::RetryLimit;
 use halfrow::board::{Board, BoardError, OpenOptions, RowTiming};
-use halfrow::link::{Link, LinkError};
+use halfrow::link::Link;
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_protocol::message::Status;
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge};
 use halfrow_tests::system::System;
+use halfrow_tests::through::Through;
 
 /// The link of a mock board whose packets `alter` rewrites.
 fn altered(alter: impl FnMut(Toward, Passing) -> Vec<Passing> + Send + 'static) -> Box<dyn Link> {
@@ -66,29 +67,12 @@ fn a_request_is_tried_as_often_as_is_told() {
 }
 
 /// A link that takes nothing for as many exchanges as are left.
-struct Full {
-    link: Box<dyn Link>,
-    left: Arc<AtomicUsize>,
-}
-
-impl Link for Full {
-    fn exchange(&mut self, out: &[u8], back: &mut Vec<u8>, wait: Duration) -> Result<usize, LinkError> {
-        let is_full = self.left.load(Ordering::Relaxed) > 0;
-        self.left.fetch_sub(is_full.into(), Ordering::Relaxed);
-        self.link.exchange(if is_full { &[] } else { out }, back, wait)
-    }
-
-    fn now(&self) -> Duration {
-        self.link.now()
-    }
-
-    fn bytes_per_second(&self) -> Option<f64> {
-        self.link.bytes_per_second()
-    }
-
-    fn name(&self) -> String {
-        self.link.name()
-    }
+fn full(link: Box<dyn Link>, left: Arc<AtomicUsize>) -> Box<dyn Link> {
+    Through::boxed(link, move |link, out, back, wait| {
+        let is_full = left.load(Ordering::Relaxed) > 0;
+        left.fetch_sub(is_full.into(), Ordering::Relaxed);
+        link.exchange(if is_full { &[] } else { out }, back, wait)
+    })
 }
 
 #[test]
@@ -100,7 +84,7 @@ fn what_still_waits_to_be_written_is_not_written_twice() {
         seen.fetch_add(usize::from(is_request), Ordering::Relaxed);
         vec![packet]
     });
-    let mut board = opened(Box::new(Full { link, left: Arc::clone(&left) }), RetryLimit::NONE);
+    let mut board = opened(full(link, Arc::clone(&left)), RetryLimit::NONE);
     left.store(3, Ordering::Relaxed);
     configure(&mut board).unwrap();
     assert_eq!((left.load(Ordering::Relaxed), came.load(Ordering::Relaxed)), (0, 1));
@@ -137,45 +121,26 @@ fn a_window_that_comes_late_takes_no_credit_away() {
 }
 
 /// A link that brings one packet every so many milliseconds, in the order in which they came.
-struct OneByOne {
-    link: Box<dyn Link>,
-    every: Arc<AtomicU64>,
-    held: VecDeque<Vec<u8>>,
-    next: Duration,
-}
-
-impl Link for OneByOne {
-    fn exchange(&mut self, out: &[u8], back: &mut Vec<u8>, wait: Duration) -> Result<usize, LinkError> {
-        let every = Duration::from_millis(self.every.load(Ordering::Relaxed));
+fn one_by_one(link: Box<dyn Link>, every: Arc<AtomicU64>) -> Box<dyn Link> {
+    let (mut held, mut next) = (VecDeque::<Vec<u8>>::new(), Duration::ZERO);
+    Through::boxed(link, move |link, out, back, wait| {
+        let every = Duration::from_millis(every.load(Ordering::Relaxed));
         if every.is_zero() {
-            return self.link.exchange(out, back, wait);
+            return link.exchange(out, back, wait);
         }
-        let until = self.next.saturating_sub(self.link.now());
-        let (mut came, is_idle) = (Vec::new(), self.held.is_empty());
-        let taken = self.link.exchange(out, &mut came, if is_idle { wait } else { wait.min(until) })?;
+        let until = next.saturating_sub(link.now());
+        let (mut came, is_idle) = (Vec::new(), held.is_empty());
+        let taken = link.exchange(out, &mut came, if is_idle { wait } else { wait.min(until) })?;
         // A zero ends each packet, and begins it as well.
-        self.held
-            .extend(came.split_inclusive(|&byte| byte == 0).filter(|packet| packet.len() > 1).map(Vec::from));
+        held.extend(came.split_inclusive(|&byte| byte == 0).filter(|packet| packet.len() > 1).map(Vec::from));
         if is_idle {
-            self.next = self.link.now() + every;
-        } else if self.link.now() >= self.next {
-            self.next += every;
-            back.extend(self.held.pop_front().into_iter().flatten());
+            next = link.now() + every;
+        } else if link.now() >= next {
+            next += every;
+            back.extend(held.pop_front().into_iter().flatten());
         }
         Ok(taken)
-    }
-
-    fn now(&self) -> Duration {
-        self.link.now()
-    }
-
-    fn bytes_per_second(&self) -> Option<f64> {
-        self.link.bytes_per_second()
-    }
-
-    fn name(&self) -> String {
-        self.link.name()
-    }
+    })
 }
 
 /// Each of the copies that were sent meanwhile brings an answer, and that to the next request stands behind them all.
@@ -183,8 +148,7 @@ impl Link for OneByOne {
 fn a_request_is_waited_for_while_answers_to_the_one_before_still_come() {
     let every = Arc::new(AtomicU64::new(0));
     let link = altered(|_, packet| vec![packet]);
-    let link = OneByOne { link, every: Arc::clone(&every), held: VecDeque::new(), next: Duration::ZERO };
-    let mut board = opened(Box::new(link), RetryLimit::NONE);
+    let mut board = opened(one_by_one(link, Arc::clone(&every)), RetryLimit::NONE);
     // All eight tries of the first are under way by then.
     every.store(9800, Ordering::Relaxed);
     configure(&mut board).unwrap();

@@ -1,8 +1,6 @@
 //! Rows that do not come back: the board's fault only when the board says so itself.
 
-use std::time::Duration;
-
-use halfrow::link::{Candidate, Link, LinkError};
+use halfrow::link::{Candidate, Link};
 use halfrow::result::Report;
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
@@ -10,6 +8,7 @@ use halfrow_protocol::message::Status;
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge};
 use halfrow_tests::system::System;
+use halfrow_tests::through::Through;
 
 /// A row of every frame, or none.
 fn is_row_out(packet: &Passing, row: u16) -> bool {
@@ -123,36 +122,21 @@ fn a_packet_that_came_twice_before_excuses_no_board_that_swallows_rows() {
 }
 
 /// A link that brings bytes that are no packet behind all that it brings.
-struct Noisy(Box<dyn Link>);
-
-impl Link for Noisy {
-    fn exchange(&mut self, out: &[u8], back: &mut Vec<u8>, wait: Duration) -> Result<usize, LinkError> {
-        let taken = self.0.exchange(out, back, wait)?;
+fn noisy(link: Box<dyn Link>) -> Box<dyn Link> {
+    Through::boxed(link, |link, out, back, wait| {
+        let taken = link.exchange(out, back, wait)?;
         if !back.is_empty() {
             back.extend([3, 7, 9, 0]);
         }
         Ok(taken)
-    }
-
-    fn now(&self) -> Duration {
-        self.0.now()
-    }
-
-    fn bytes_per_second(&self) -> Option<f64> {
-        self.0.bytes_per_second()
-    }
-
-    fn name(&self) -> String {
-        self.0.name()
-    }
+    })
 }
 
 /// What came damaged may have been the row.
 #[test]
 fn a_row_is_not_swallowed_where_packets_come_damaged() {
     let candidate = Altered::new(&Options::default(), |_, packet| withhold(packet, |_| {})).candidate();
-    let link = Box::new(Noisy(candidate.link));
-    let report = System::TINY.judge_candidate(Candidate { link, ..candidate });
+    let report = System::TINY.judge_candidate(Candidate { link: noisy(candidate.link), ..candidate });
     assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
     assert!(report.headline().contains("row 3 of frame 0"), "{}", report.headline());
     assert!(report.link.damaged_in > 0);

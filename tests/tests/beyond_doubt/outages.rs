@@ -17,7 +17,7 @@ use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::patience::LIMIT;
 use halfrow_tests::system::System;
 
-use crate::stale_packets::Breakable;
+use crate::stale_packets::cut_when_told;
 
 /// How a board is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,7 +52,7 @@ fn breakable(
     is_cut: Arc<AtomicBool>,
 ) -> Candidate {
     let candidate = Altered::new(&Options::default(), alter).candidate();
-    let link: Box<dyn Link> = Box::new(Breakable { link: candidate.link, is_cut });
+    let link = cut_when_told(candidate.link, is_cut);
     Candidate { link, ..candidate }
 }
 

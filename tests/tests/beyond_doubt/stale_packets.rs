@@ -17,6 +17,7 @@ use halfrow_protocol::message::{Refusal, RefusalCode, RowOut, Status};
 use halfrow_protocol::{Kind, Packet, Reply, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge};
 use halfrow_tests::system::System;
+use halfrow_tests::through::Through;
 
 /// A link that delivers the request number `which` of a kind once more, in front of the request number `before` of another, and
 /// may lose the answer to that copy.
@@ -112,35 +113,13 @@ enum Ends {
 }
 
 /// A link that breaks when it is told to.
-pub(super) struct Breakable {
-    pub(super) link: Box<dyn Link>,
-    pub(super) is_cut: Arc<AtomicBool>,
-}
-
-impl Link for Breakable {
-    fn exchange(
-        &mut self,
-        outgoing: &[u8],
-        incoming: &mut Vec<u8>,
-        wait: Duration,
-    ) -> Result<usize, LinkError> {
-        if self.is_cut.load(Ordering::Relaxed) {
-            return Err(LinkError::Closed { link: self.name(), at: self.now() });
+pub(super) fn cut_when_told(link: Box<dyn Link>, is_cut: Arc<AtomicBool>) -> Box<dyn Link> {
+    Through::boxed(link, move |link, out, back, wait| {
+        if is_cut.load(Ordering::Relaxed) {
+            return Err(LinkError::Closed { link: link.name(), at: link.now() });
         }
-        self.link.exchange(outgoing, incoming, wait)
-    }
-
-    fn now(&self) -> Duration {
-        self.link.now()
-    }
-
-    fn bytes_per_second(&self) -> Option<f64> {
-        self.link.bytes_per_second()
-    }
-
-    fn name(&self) -> String {
-        self.link.name()
-    }
+        link.exchange(out, back, wait)
+    })
 }
 
 /// What a link does to the first session with a board.
@@ -222,7 +201,7 @@ fn first_session(is_stale: bool, ends: (usize, Ends)) -> (Report, usize) {
     };
     let alter = move |toward, packet: Passing| first.alter(toward, packet);
     let candidate = Altered::new(&halfrow_mock::Options::default(), alter).candidate();
-    let link = Box::new(Breakable { link: candidate.link, is_cut });
+    let link = cut_when_told(candidate.link, is_cut);
     let stop = Stop::when(move || is_stopped.load(Ordering::Relaxed).then_some(StoppedBy::Person));
     let options = RunOptions { stop, ..RunOptions::default() };
     let report = verify(&System::TINY.plan(), Candidate { link, ..candidate }, &options, &Silent);
@@ -269,7 +248,7 @@ fn an_old_copy_of_a_request_makes_no_sound_board_fail_that_goes_away_later() {
     };
     let sound = || Altered::new(&halfrow_mock::Options::default(), |_, packet| vec![packet]).candidate().link;
     let candidate = Altered::new(&halfrow_mock::Options::default(), alter).candidate();
-    let link = Box::new(Breakable { link: candidate.link, is_cut });
+    let link = cut_when_told(candidate.link, is_cut);
     let candidate = Candidate { link, reopen: Some(Box::new(move || Ok(sound()))), ..candidate };
     let options = RunOptions { reconnect: Some(Duration::from_secs(1000)), ..RunOptions::default() };
     let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
