@@ -1,6 +1,6 @@
 //! A PostgreSQL server in a folder of its own, which ends with its test.
 
-use std::fs;
+use std::fs::{self, File};
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -14,6 +14,9 @@ use tempfile::TempDir;
 
 /// How long a server may take to be there.
 const STARTED: Duration = Duration::from_secs(60);
+
+/// A port that was free may be another's by the time the server asks for it; not again and again.
+const PORTS_TRIED: usize = 5;
 
 /// A server.
 pub(crate) struct Server {
@@ -31,7 +34,11 @@ impl Server {
         give_to_server(folder.path());
         let mut server = Self { folder, port: free_port(), listen: "127.0.0.1", process: None };
         copy(cluster(), &server.data());
-        while !server.begins() {
+        for left in (0..PORTS_TRIED).rev() {
+            if server.begins() {
+                break;
+            }
+            assert!(left > 0, "the server does not start: {}", server.said());
             server.kill();
             server.port = free_port();
         }
@@ -56,10 +63,10 @@ impl Server {
 
     /// Starts it again.
     pub(crate) fn again(&mut self) {
-        assert!(self.begins(), "the port {} is another's by now", self.port);
+        assert!(self.begins(), "the server does not start again at port {}: {}", self.port, self.said());
     }
 
-    /// Starts it; not if its port is another's by now.
+    /// Starts it; not if its port is another's by now, or if it will not, which [`Server::said`] explains.
     fn begins(&mut self) -> bool {
         let mut server = as_server("postgres");
         server.arg("-D").arg(self.data()).args(["-p", &self.port.to_string(), "-k"]).arg(self.folder.path());
@@ -74,7 +81,8 @@ impl Server {
             "-c",
             "max_connections=400",
         ]);
-        let mut process = server.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        let log = File::create(self.log()).unwrap();
+        let mut process = server.stdout(Stdio::null()).stderr(log).spawn().unwrap();
         let until = Instant::now() + STARTED;
         let is_ours = loop {
             match self.connected("postgres") {
@@ -86,6 +94,15 @@ impl Server {
         };
         self.process = Some(process);
         is_ours
+    }
+
+    fn log(&self) -> PathBuf {
+        self.folder.path().join("server.log")
+    }
+
+    /// What it has written since it was started.
+    fn said(&self) -> String {
+        fs::read_to_string(self.log()).unwrap()
     }
 
     fn is_of(&self, client: &mut Client) -> bool {
@@ -140,15 +157,27 @@ impl Server {
     /// Kills it and every process that it has, with -9.
     pub(crate) fn kill(&mut self) {
         let Some(mut process) = self.process.take() else { return };
+        let memory = self.memory();
         // Its children end when they miss it.
         process.kill().unwrap();
         process.wait().unwrap();
+        // A machine has few of them, and they outlive whoever made them.
+        if let Some(memory) = memory {
+            let _ = Command::new("ipcrm").args(["-m", &memory]).status();
+        }
         let socket = self.folder.path().join(format!(".s.PGSQL.{}.lock", self.port));
         for left in [socket, self.data().join("postmaster.pid")] {
             let _ = fs::remove_file(left);
         }
         // It does not start while one of them still holds its memory.
         thread::sleep(Duration::from_millis(300));
+    }
+
+    /// The number of its segment of shared memory (System V), by which it tells whether another server has its folder.
+    fn memory(&self) -> Option<String> {
+        let lock = fs::read_to_string(self.data().join("postmaster.pid")).ok()?;
+        let key_and_number = lock.lines().nth(6)?;
+        key_and_number.split_whitespace().nth(1).map(str::to_owned)
     }
 
     pub(crate) fn url(&self) -> String {
@@ -256,7 +285,8 @@ fn is_root() -> bool {
 /// One of its programs, which ends with this thread.
 fn as_server(program: &str) -> Command {
     let mut command = Command::new("setpriv");
-    command.args(["--pdeathsig", "KILL"]);
+    // With it a server ends at once, too, but gives its shared memory back.
+    command.args(["--pdeathsig", "QUIT"]);
     if is_root() {
         command.args(["--reuid", USER, "--regid", USER, "--clear-groups"]);
     }
