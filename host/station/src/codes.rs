@@ -105,6 +105,7 @@ codes::codes! {
     PlantError {
         OtherContent [run, ours, theirs] => "plant-has-other-record",
         NotYet [run] => "plant-without-run",
+        Lost [run] => "plant-lost-run",
         NotKept [subject] => "plant-kept-nothing",
         OtherStation [name] => "plant-has-other-station",
         Collation [plant, collation, encoding] => "plant-of-other-collation",

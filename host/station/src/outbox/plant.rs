@@ -3,32 +3,38 @@
 use super::{Sink, Undelivered};
 use crate::clock::HeardClock;
 use crate::said::Said;
-use crate::store::{Parcel, Plant, PlantAddress, PlantError, Presence, SINK_OF_PLANT};
+use crate::store::{Folder, Parcel, Plant, PlantAddress, PlantError, Presence, SINK_OF_PLANT};
 
 /// A plant, which is connected to when there is something to send.
 #[derive(Debug)]
 pub struct PlantSink {
     address: PlantAddress,
     station: Presence,
+    /// What the station keeps, and which of it the plant has.
+    kept: Folder,
     plant: Option<Plant>,
     /// The plant's clock, once it knows that this station is who it says since the connection came about.
     clock: Option<HeardClock>,
 }
 
 impl PlantSink {
-    /// The plant at `address`, which hears of `station`.
+    /// The plant at `address`, which hears of `station`, whose folder is `kept`.
     #[must_use]
-    pub fn new(address: PlantAddress, station: Presence) -> Self {
-        Self { address, station, plant: None, clock: None }
+    pub fn new(address: PlantAddress, station: Presence, kept: Folder) -> Self {
+        Self { address, station, kept, plant: None, clock: None }
     }
 
-    /// The plant, which has heard of this station.
+    /// The plant, which has heard of this station, and has what it had.
     fn plant(&mut self) -> Result<&mut Plant, PlantError> {
         let plant = match self.plant.take() {
             Some(plant) if self.clock.is_some() => plant,
             kept => {
                 let mut plant = kept.map_or_else(|| Plant::connect(&self.address), Ok)?;
-                self.clock = Some(plant.see(&self.station)?);
+                let clock = plant.see(&self.station)?;
+                if let Some(run) = self.kept.newest_sent(SINK_OF_PLANT)? {
+                    plant.still_has(&run)?;
+                }
+                self.clock = Some(clock);
                 plant
             }
         };

@@ -289,6 +289,16 @@ impl Folder {
         Ok(self.standing(sink, run)?.is_done)
     }
 
+    /// The newest run that `sink` has for certain.
+    ///
+    /// # Errors
+    /// As [`Self::due`].
+    pub fn newest_sent(&self, sink: &str) -> Result<Option<String>, StoreError> {
+        self.read("to tell what was sent last", |from| {
+            from.first(sql::OUTBOX_NEWEST_SENT, values![sink, Kind::Run.name()], |row| row.get(0))
+        })
+    }
+
     /// How it stands with this run at `sink`.
     ///
     /// # Errors

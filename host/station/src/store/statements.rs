@@ -102,6 +102,7 @@ statements! {
     pub(super) OUTBOX_AGAIN = "outbox-again.sql";
     pub(super) OUTBOX_LOST = "outbox-lost.sql";
     pub(super) OUTBOX_RELEASED = "outbox-released.sql";
+    pub(super) OUTBOX_NEWEST_SENT = "outbox-newest-sent.sql";
     pub(super) OUTBOX_ENTRY = "outbox-entry.sql";
     pub(super) WAIVER_BY_ID = "waiver-by-id.sql";
     pub(super) AUDIT_BY_ID = "audit-by-id.sql";

@@ -53,6 +53,15 @@ pub enum PlantError {
         /// The run, by its id, or of which unit.
         run: String,
     },
+    /// It was put back from a copy, or is another plant.
+    #[error(
+        "the plant has lost the run {run}, so it was put back or is another one, and takes nothing more; have all sent again by \
+         `halfrow-station outbox again plant`"
+    )]
+    Lost {
+        /// The newest run that it had for certain.
+        run: String,
+    },
     /// What was sent is not there when it is looked for.
     #[error("the plant has not kept {subject}, which was sent; it is tried again")]
     NotKept {
@@ -203,6 +212,14 @@ impl Plant {
             to.first(sql::SEEN, of, |row| row.get(0))
         })?;
         seen_ms.map(HeardClock::shows).ok_or_else(|| PlantError::OtherStation { name: name.clone() })
+    }
+
+    /// The plant has this run, which it had for certain.
+    ///
+    /// # Errors
+    /// [`PlantError::Lost`] when it has not.
+    pub fn still_has(&mut self, run: &str) -> Result<(), PlantError> {
+        self.hash_of(run)?.map(drop).ok_or_else(|| PlantError::Lost { run: run.to_owned() })
     }
 
     /// Forgets which folder the station of this name has, so that it may have another one; the audit keeps who said so, and

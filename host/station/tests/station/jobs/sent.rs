@@ -8,7 +8,7 @@ use halfrow_station::outbox::{Outbox, PlantSink, Sink, Undelivered};
 use halfrow_station::run::Stage;
 use halfrow_station::said::{Said, Saying};
 use halfrow_station::settings::Settings;
-use halfrow_station::store::{Parcel, SINK_OF_PLANT, Store};
+use halfrow_station::store::{Parcel, SINK_OF_PLANT};
 
 use super::{any, at_work, job, judged, plan, settings, shared};
 use crate::common::{folder, program};
@@ -22,8 +22,8 @@ fn became(sends: bool, is_cancelled: bool) -> (bool, Option<bool>) {
     let folder = folder();
     let settings = Settings::load_plant(&settings(&server, folder.path(), "12")).unwrap();
     let work = at_work(&settings, program().to_owned());
-    let origin = work.store.with(Store::origin).unwrap();
-    let sink = PlantSink::new(server.address(), settings.presence(origin));
+    let (origin, kept) = work.store.with(|store| (store.origin().unwrap(), store.folder().clone()));
+    let sink = PlantSink::new(server.address(), settings.presence(origin), kept);
     let sinks: Vec<Box<dyn Sink>> = if sends { vec![Box::new(sink)] } else { Vec::new() };
     let outbox = Outbox::start(&work.store, sinks).unwrap();
     let claim = work.claim().unwrap().unwrap();

@@ -3,10 +3,10 @@
 use std::fs;
 use std::process::Command;
 
-use halfrow_station::outbox::{PlantSink, Sink as _};
+use halfrow_station::outbox::Sink as _;
 use halfrow_station::store::{SINK_OF_PLANT, StoreError};
 
-use super::sent::presence;
+use super::sent::sink;
 use super::server::Server;
 use super::waiting::{await_sent, station};
 use crate::clocks::Clocks;
@@ -32,8 +32,7 @@ fn begun(made: &mut Made, serial: &str) -> Result<(), StoreError> {
 fn no_run_begins_while_the_clocks_of_station_and_plant_are_apart() {
     let server = Server::prepared();
     let mut made = Made::new();
-    let origin = made.store.origin().unwrap();
-    let mut sink = PlantSink::new(server.address(), presence("station 7", origin));
+    let mut sink = sink("station 7", &mut made.store, server.address());
     made.store.sends_to(vec![SINK_OF_PLANT.to_owned()]).unwrap();
     // The control: clocks that agree.
     made.store.heard_plant(sink.beat(0, 0).unwrap().unwrap());

@@ -4,11 +4,11 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use halfrow_station::outbox::{PlantSink, Sink as _, Undelivered};
+use halfrow_station::outbox::{Sink as _, Undelivered};
 use halfrow_station::store::{Plant, PlantError, StoreError};
 
 use super::cut::due;
-use super::sent::{presence, send};
+use super::sent::{send, sink};
 use super::server::Server;
 use super::tables::is_as;
 use crate::common::{Did, NO_AUDIT, PLAN, program, query};
@@ -205,11 +205,10 @@ fn a_program_that_is_older_than_the_tables_writes_nothing_into_them() {
     let server = Server::prepared();
     let mut made = history();
     made.store.sends_to(vec!["plant".to_owned()]).unwrap();
-    let origin = made.store.origin().unwrap();
     let due = made.folder().due("plant", 1, i64::MAX).unwrap();
     let parcels: Vec<_> = due.iter().map(|entry| made.folder().parcel(entry).unwrap()).collect();
     assert_eq!(parcels.len(), 10);
-    let mut sink = PlantSink::new(server.address(), presence("station 7", origin));
+    let mut sink = sink("station 7", &mut made.store, server.address());
     let mut client = server.client("plant");
     for parcel in &parcels {
         sink.take(&parcels[0]).unwrap();

@@ -1,7 +1,7 @@
 //! What comes to the plant is what the station has.
 
 use halfrow_station::outbox::{PlantSink, Round, round};
-use halfrow_station::store::{PlantAddress, Presence, SINK_OF_PLANT, SharedStore};
+use halfrow_station::store::{PlantAddress, Presence, SINK_OF_PLANT, SharedStore, Store};
 
 use super::server::Server;
 use super::tables::is_as;
@@ -17,8 +17,7 @@ pub(crate) fn send(made: Made, address: PlantAddress) -> (Made, Round) {
 pub(crate) fn send_as(name: &str, made: Made, address: PlantAddress) -> (Made, Round) {
     let (folder, mut store) = made.parts();
     store.sends_to(vec![SINK_OF_PLANT.to_owned()]).unwrap();
-    let origin = store.origin().unwrap();
-    let mut sink = PlantSink::new(address, presence(name, origin));
+    let mut sink = sink(name, &mut store, address);
     let store = SharedStore::new(store);
     let mut all = Round::default();
     loop {
@@ -30,6 +29,11 @@ pub(crate) fn send_as(name: &str, made: Made, address: PlantAddress) -> (Made, R
     }
     drop(store);
     (Made::at(folder), all)
+}
+
+/// The plant at this address as the sink of a station of this name.
+pub(super) fn sink(name: &str, store: &mut Store, address: PlantAddress) -> PlantSink {
+    PlantSink::new(address, presence(name, store.origin().unwrap()), store.folder().clone())
 }
 
 /// A station of this name.

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
-use halfrow_station::outbox::{PlantSink, round};
+use halfrow_station::outbox::round;
 use halfrow_station::store::{PlantAddress, SINK_OF_PLANT, SharedStore};
 
-use super::sent::presence;
+use super::sent::sink;
 use super::server::Server;
 use crate::history::made::{End, Made, Run};
 
@@ -73,9 +73,8 @@ fn a_plant_that_answers_nothing_is_away_and_has_all_once_it_answers_again() {
         "UPDATE outbox SET next_ms = (unixepoch() + 240) * 1000 WHERE subject = (SELECT max(id) FROM run)";
     assert_eq!(database.execute(one_waits, []).unwrap(), 1);
     let due = || database.execute("UPDATE outbox SET next_ms = 0 WHERE done_ms IS NULL", []).unwrap();
-    let origin = made.store.origin().unwrap();
-    let mut sink =
-        PlantSink::new(PlantAddress::new(&url, None, None).unwrap(), presence("station 7", origin));
+    let address = PlantAddress::new(&url, None, None).unwrap();
+    let mut sink = sink("station 7", &mut made.store, address);
     let (_folder, store) = made.parts();
     let store = SharedStore::new(store);
     assert_eq!(round(&store, &mut sink).unwrap().sent, 1);
