@@ -101,7 +101,8 @@ pub fn supervise(
 
 struct Lane {
     child: Child,
-    stdin: Option<ChildStdin>,
+    /// Dropped, it ends what the process reads.
+    orders: Option<Sender<String>>,
     lines: Receiver<String>,
     events: File,
     /// Whether it has said that it is of this program.
@@ -124,9 +125,9 @@ impl Lane {
             .stderr(File::create(spool.join(LOG))?)
             .spawn()?;
         let (sender, lines) = mpsc::channel();
-        let stdout = child.stdout.take();
-        let mut lane = Self { stdin: child.stdin.take(), child, lines, events, is_own: false };
-        match hear(stdout, sender).and_then(|()| lane.brief(job, spool)) {
+        let (stdout, stdin) = (child.stdout.take(), child.stdin.take());
+        let mut lane = Self { orders: None, child, lines, events, is_own: false };
+        match hear(stdout, sender).and_then(|()| lane.brief(stdin, job, spool)) {
             Ok(()) => Ok(lane),
             Err(error) => {
                 lane.end(End::Killed(Saying::LaneNotStarted { error: error.to_string() }.into()));
@@ -136,15 +137,15 @@ impl Lane {
     }
 
     /// Notes the process, so that the next start can find it, and hands it its job.
-    fn brief(&mut self, job: &Job, spool: &Path) -> io::Result<()> {
+    fn brief(&mut self, stdin: Option<ChildStdin>, job: &Job, spool: &Path) -> io::Result<()> {
         let id = self.child.id();
         fs::write(spool.join(PROCESS), format!("{id} {}\n", started(id).unwrap_or_default()))?;
-        let job = serde_json::to_string(job)?;
-        match self.stdin.as_mut().map_or(Ok(()), |stdin| writeln!(stdin, "{job}")) {
-            // It did start, and how it ended tells more.
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-            briefed => briefed,
-        }
+        let (orders, given) = mpsc::channel();
+        give(stdin, given)?;
+        // It is read later.
+        let _ = orders.send(serde_json::to_string(job)?);
+        self.orders = Some(orders);
+        Ok(())
     }
 
     /// Hears the lane until its last message, its end, or the end of patience.
@@ -217,9 +218,9 @@ impl Lane {
     }
 
     fn tell(&mut self, control: &Control) {
-        if let (Some(stdin), Ok(line)) = (&mut self.stdin, serde_json::to_string(control)) {
+        if let (Some(orders), Ok(line)) = (&self.orders, serde_json::to_string(control)) {
             // A lane that is gone has no need to be told.
-            let _ = writeln!(stdin, "{line}");
+            let _ = orders.send(line);
         }
     }
 
@@ -229,7 +230,7 @@ impl Lane {
         let mut status = None;
         if is_over {
             // What is to be killed does not end by itself before, and hears no end of its orders.
-            drop(self.stdin.take());
+            drop(self.orders.take());
             status = waited(&mut self.child, GRACE);
         }
         if status.is_none() {
@@ -250,6 +251,16 @@ fn hear(stdout: Option<ChildStdout>, to: Sender<String>) -> io::Result<()> {
         let lines = stdout.into_iter().flat_map(|stdout| BufReader::new(stdout).lines());
         // Nobody hears it any more when the run is over.
         lines.map_while(Result::ok).take_while(|line| to.send(line.clone()).is_ok()).for_each(drop);
+    };
+    thread::Builder::new().name("lane".to_owned()).spawn(hand_on).map(drop)
+}
+
+/// Hands the lane what it is told, line by line, in a thread of its own: one that reads nothing must not keep its supervisor.
+fn give(stdin: Option<ChildStdin>, given: Receiver<String>) -> io::Result<()> {
+    let hand_on = move || {
+        let Some(mut stdin) = stdin else { return };
+        // One that is gone tells more by how it ended.
+        given.into_iter().take_while(|line| writeln!(stdin, "{line}").is_ok()).for_each(drop);
     };
     thread::Builder::new().name("lane".to_owned()).spawn(hand_on).map(drop)
 }

@@ -162,7 +162,10 @@ pub enum RecordError {
         schema: u32,
     },
     /// It cannot be written as JSON, or read.
-    #[error("the record is no JSON of schema {SCHEMA}; report this with the record")]
+    #[error(
+        "the record is not what schema {SCHEMA} is to this program; use the halfrow-station that made it, and if this is the one, report \
+         this with the record"
+    )]
     Json(#[source] serde_json::Error),
 }
 

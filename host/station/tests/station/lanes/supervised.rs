@@ -38,9 +38,15 @@ fn begun() -> String {
 
 /// How a lane ends that tells this as soon as it has its job, and then waits for what it is told.
 fn end_of(told: &str, silence: Duration, attendant: &mut dyn Attendant) -> End {
+    let lane = format!("read -r job\nprintf '{told}'\nread -r more\n");
+    end_of_script(&lane, String::new(), silence, attendant)
+}
+
+/// How a lane ends that is this script, with a plan of this text.
+fn end_of_script(lane: &str, text: String, silence: Duration, attendant: &mut dyn Attendant) -> End {
     let folder = folder();
-    let lane = script(folder.path(), "lane", &format!("read -r job\nprintf '{told}'\nread -r more\n"));
-    let [text, sha256, variant] = [""; 3].map(str::to_owned);
+    let lane = script(folder.path(), "lane", lane);
+    let [sha256, variant] = [""; 2].map(str::to_owned);
     let job = Job {
         run: "run".to_owned(),
         target: "mock".to_owned(),
@@ -62,6 +68,15 @@ fn a_lane_is_not_silent_while_the_station_takes_what_it_told() {
     let told = format!("{}{TWO}", begun());
     let slow = &mut Slow(silence + Duration::from_millis(100));
     assert_eq!(end_of(&told, silence, slow), End::Done);
+}
+
+/// Its job is more than a pipe holds.
+#[test]
+fn a_lane_that_reads_nothing_is_silent() {
+    let text = "#".repeat(1 << 20);
+    let end = end_of_script("sleep 30\n", text, Duration::from_secs(1), &mut Slow(Duration::ZERO));
+    let End::Killed(why) = end else { panic!("{end:?}") };
+    assert_eq!(why.code, "lane-silent");
 }
 
 #[test]
