@@ -9,7 +9,7 @@ use axum::{Extension, Form};
 use maud::{Markup, html};
 use serde::Deserialize;
 
-use super::access::Identified;
+use super::access::{Claimant, Identified};
 use super::language;
 use super::layout::{Here, Page};
 use super::routes::{Route, Who, act, is_page, look};
@@ -67,30 +67,32 @@ async fn log_in(
     Form(Login { badge, password }): Form<Login>,
 ) -> Result<Response, Trouble> {
     let badge = app.settings().scanner.label(&badge).map(str::to_owned).unwrap_or(badge);
-    let known = identified(&app, &visit, peer, (badge, password)).await?;
+    let known = identified(&app, &visit, Claimant::Stranger(peer), (badge, password)).await?;
     let refused = || Trouble::new(&visit, StatusCode::FORBIDDEN, visit.say("login.refused"));
     let cookie = logged_in(&app, &visit, known.ok_or_else(refused)?).await?;
     Ok(([(header::SET_COOKIE, cookie)], Redirect::to("/")).into_response())
 }
 
-/// Who this badge and this password make, as somebody says who is at `peer` and not logged in. Nobody guesses there for long.
+/// Who this badge and this password make, as somebody says who does not guess for long.
 pub(super) async fn identified(
     app: &App,
     visit: &Visit,
-    peer: IpAddr,
+    by: Claimant,
     (badge, password): (String, String),
 ) -> Result<Option<Identified>, Trouble> {
-    if let Some(wait) = app.access().attempt(peer) {
-        let seconds = (wait.as_secs() + 1).to_string();
-        let said = visit.words.fill("login.wait", &[("seconds", &seconds)]);
-        return Err(Trouble::new(visit, StatusCode::TOO_MANY_REQUESTS, said));
+    if let Some(wait) = app.access().attempt(&by) {
+        return Err(Trouble::waits(visit, wait));
     }
     let access = app.clone();
     let known = app.blocking(visit, move || access.access().identify(&badge, &password)).await?;
-    match &known {
+    match (&known, &by) {
         // Where nobody can be told, nobody has guessed.
-        Ok(Some(_)) | Err(_) => app.access().succeeded(peer),
-        Ok(None) => app.audit(visit, "login refused", &peer.to_string(), "").await?,
+        (Ok(Some(_)) | Err(_), _) => app.access().succeeded(&by),
+        (Ok(None), Claimant::Stranger(peer)) => {
+            app.audit(visit, "login refused", &peer.to_string(), "").await?;
+        }
+        // It is most likely no badge at all.
+        (Ok(None), Claimant::Session(_)) => {}
     }
     known.map_err(|error| Trouble::secret(visit, &error))
 }

@@ -137,11 +137,7 @@ async fn machine(
     let (of, token) = (app.clone(), token.to_owned());
     let asked = app.blocking(&stranger, move || of.access().machine(&token, peer)).await;
     match asked.map_err(troubled)? {
-        Machine::Waits(wait) => {
-            let seconds = (wait.as_secs() + 1).to_string();
-            let said = stranger.words.fill("login.wait", &[("seconds", &seconds)]);
-            Err(Box::new(Trouble::new(&stranger, StatusCode::TOO_MANY_REQUESTS, said).into_response()))
-        }
+        Machine::Waits(wait) => Err(troubled(Trouble::waits(&stranger, wait))),
         Machine::Unknown => {
             let visit = told(stranger, "token refused", peer.to_string()).await?;
             let mut response = refused(&visit, StatusCode::UNAUTHORIZED, visit.say("trouble.login"));

@@ -1,6 +1,7 @@
 //! Why there is no page, or why an act was not done.
 
 use std::fmt::Display;
+use std::time::Duration;
 
 use axum::http::StatusCode;
 use axum::http::header::CONTENT_TYPE;
@@ -42,6 +43,13 @@ impl Trouble {
             (None, None) => Self::new(visit, StatusCode::UNAUTHORIZED, visit.say("trouble.login")),
             (Some(_), _) => Self::new(visit, StatusCode::FORBIDDEN, visit.say("trouble.forbidden")),
         }
+    }
+
+    /// The visitor has failed too often, and waits for so long.
+    pub(super) fn waits(visit: &Visit, wait: Duration) -> Self {
+        let seconds = (wait.as_secs() + 1).to_string();
+        let said = visit.words.fill("login.wait", &[("seconds", &seconds)]);
+        Self::new(visit, StatusCode::TOO_MANY_REQUESTS, said)
     }
 
     /// Nothing has this address.

@@ -4,6 +4,7 @@
 //! by a cookie, and every form carries a mark of that cookie, which no page of another site can know.
 
 mod address;
+mod failures;
 mod key;
 mod sessions;
 mod tokens;
@@ -24,8 +25,9 @@ use super::visit::User;
 use crate::clock;
 use crate::secret::SecretError;
 use crate::settings::Settings;
+use failures::{Failures, network};
 use key::Key;
-use sessions::{Failures, Sessions};
+use sessions::Sessions;
 
 /// What the marks of forms are told from others by, and those of cookies.
 const FORM: &str = "form";
@@ -38,9 +40,12 @@ pub struct Access {
     people: People,
     key: Key,
     sessions: Mutex<Sessions>,
-    failures: Mutex<Failures>,
+    /// Who failed to log in, by where they are.
+    failures: Mutex<Failures<IpAddr>>,
     /// Machines' failures, so that one with a wrong token behind a proxy locks no operator out.
-    refused: Mutex<Failures>,
+    refused: Mutex<Failures<IpAddr>>,
+    /// Scans of those who are logged in that are no badge, by their sessions: other operators may be behind the same proxy.
+    scans: Mutex<Failures<String>>,
     /// Which machine was let in from where since the start.
     machines: Mutex<HashSet<(String, IpAddr)>>,
 }
@@ -54,6 +59,15 @@ enum People {
     Listed { file: PathBuf, tokens: Option<PathBuf>, idle: Duration },
 }
 
+/// Who says who they are.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Claimant {
+    /// Somebody who is not logged in, by where they are.
+    Stranger(IpAddr),
+    /// Somebody who is, by their session: what they scan may be the badge of another one.
+    Session(String),
+}
+
 /// A machine that asks with a token.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Machine {
@@ -64,6 +78,11 @@ pub(super) enum Machine {
     /// It is not, and has to wait so long until it is told so again.
     Waits(Duration),
 }
+
+/// So many failures within a minute are followed by a wait.
+const MOST_FAILURES: usize = 10;
+/// So many scans within a minute are more than anybody makes who does not guess.
+const MOST_SCANS: usize = 120;
 
 /// The most machines and addresses that are remembered.
 const MOST_MACHINES: usize = 1000;
@@ -102,8 +121,9 @@ impl Access {
             people,
             key,
             sessions: Mutex::new(sessions),
-            failures: Mutex::default(),
-            refused: Mutex::default(),
+            failures: Mutex::new(Failures::new(MOST_FAILURES)),
+            refused: Mutex::new(Failures::new(MOST_FAILURES)),
+            scans: Mutex::new(Failures::new(MOST_SCANS)),
             machines: Mutex::default(),
         })
     }
@@ -175,16 +195,11 @@ impl Access {
         });
         // From here on nothing waits for the disk: others wait for this.
         let Some(name) = tokens.reader(&self.key, token) else {
-            let (mut refused, now) =
-                (self.refused.lock().unwrap_or_else(PoisonError::into_inner), Instant::now());
-            let wait = refused.wait(peer, now);
-            if wait.is_none() {
-                refused.add(peer, now);
-            }
+            let wait = locked(&self.refused).attempt(network(peer), Instant::now());
             return wait.map_or(Machine::Unknown, Machine::Waits);
         };
         // One that is right never waits, for 256 bits are not guessed, and behind a proxy others have the same address.
-        let mut machines = self.machines.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut machines = locked(&self.machines);
         let is_new = machines.len() < MOST_MACHINES && machines.insert((name.to_owned(), peer));
         Machine::Known { name: name.to_owned(), is_new }
     }
@@ -216,20 +231,20 @@ impl Access {
         self.key.is_mark(FORM, session, mark)
     }
 
-    /// `peer` tries to log in, which has failed until it is known that it has not: many may try at once. How long it waits
-    /// first, if it has to.
-    pub(super) fn attempt(&self, peer: IpAddr) -> Option<Duration> {
-        let (mut failures, now) = (self.failures(), Instant::now());
-        let wait = failures.wait(peer, now);
-        if wait.is_none() {
-            failures.add(peer, now);
+    /// Somebody tries to say who they are. How long they wait first, if they have to.
+    pub(super) fn attempt(&self, by: &Claimant) -> Option<Duration> {
+        match by {
+            Claimant::Stranger(peer) => locked(&self.failures).attempt(network(*peer), Instant::now()),
+            Claimant::Session(session) => locked(&self.scans).attempt(session.clone(), Instant::now()),
         }
-        wait
     }
 
     /// An attempt did not fail.
-    pub(super) fn succeeded(&self, peer: IpAddr) {
-        self.failures().take_back(peer);
+    pub(super) fn succeeded(&self, by: &Claimant) {
+        match by {
+            Claimant::Stranger(peer) => locked(&self.failures).succeeded(&network(*peer)),
+            Claimant::Session(session) => locked(&self.scans).succeeded(session),
+        }
     }
 
     /// The name of the cookie. Cookies do not tell ports apart.
@@ -244,13 +259,13 @@ impl Access {
         format!("{}={session}; Path=/; HttpOnly; SameSite=Lax{secure}", self.cookie_name())
     }
 
-    fn failures(&self) -> MutexGuard<'_, Failures> {
-        self.failures.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     fn sessions(&self) -> MutexGuard<'_, Sessions> {
-        self.sessions.lock().unwrap_or_else(PoisonError::into_inner)
+        locked(&self.sessions)
     }
+}
+
+fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
+    of.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Adds a token to the file `file`; returns it, for it is nowhere written.

@@ -1,9 +1,8 @@
-//! Who is logged in, in which browser, and how often logging in failed.
+//! Who is logged in, in which browser.
 
-use std::collections::{HashMap, VecDeque};
-use std::net::IpAddr;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
@@ -14,11 +13,6 @@ use crate::web::visit::User;
 
 /// The most sessions at once.
 const MOST: usize = 1000;
-/// So many failures within [`WINDOW`] are the last before a wait.
-const FAILURES: usize = 10;
-const WINDOW: Duration = Duration::from_secs(60);
-/// The most addresses of which failures are kept.
-const MOST_PEERS: usize = 10_000;
 
 /// How old may be what the file says of when somebody did something last.
 const SAVED_MS: i64 = 60_000;
@@ -135,56 +129,9 @@ impl Sessions {
     }
 }
 
-/// When logging in failed, by where it was tried from.
-#[derive(Debug, Default)]
-pub(super) struct Failures(HashMap<IpAddr, VecDeque<Instant>>);
-
-impl Failures {
-    /// How long `peer` waits before it may try again; nothing if it need not.
-    pub(super) fn wait(&mut self, peer: IpAddr, now: Instant) -> Option<Duration> {
-        self.0.retain(|_, failed| {
-            failed.retain(|at| now.saturating_duration_since(*at) < WINDOW);
-            !failed.is_empty()
-        });
-        let failed = self.0.get(&peer).filter(|failed| failed.len() >= FAILURES)?;
-        failed.front().map(|first| WINDOW.saturating_sub(now.saturating_duration_since(*first)))
-    }
-
-    /// It failed.
-    pub(super) fn add(&mut self, peer: IpAddr, now: Instant) {
-        if self.0.len() < MOST_PEERS || self.0.contains_key(&peer) {
-            self.0.entry(peer).or_default().push_back(now);
-        }
-    }
-
-    /// One of them was none.
-    pub(super) fn take_back(&mut self, peer: IpAddr) {
-        self.0.get_mut(&peer).and_then(VecDeque::pop_back);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_tenth_failure_of_a_minute_is_followed_by_a_wait_for_that_address_alone() {
-        let (mut failures, start) = (Failures::default(), Instant::now());
-        let [peer, other] = ["10.0.0.1", "10.0.0.2"].map(|peer| peer.parse().unwrap());
-        for second in 0..10 {
-            assert_eq!(failures.wait(peer, start), None, "{second}");
-            failures.add(peer, start + Duration::from_secs(second));
-        }
-        let after = |seconds| start + Duration::from_secs(seconds);
-        assert_eq!(failures.wait(peer, after(20)), Some(Duration::from_secs(40)));
-        assert_eq!(failures.wait(other, after(20)), None);
-        failures.take_back(peer);
-        failures.take_back(other);
-        assert_eq!(failures.wait(peer, after(20)), None);
-        failures.add(peer, after(20));
-        assert_eq!(failures.wait(peer, after(20)), Some(Duration::from_secs(40)));
-        assert_eq!(failures.wait(peer, after(60)), None);
-    }
 
     fn identified(name: &str, who: Who) -> Identified {
         Identified { user: User { name: name.to_owned(), who }, proof: format!("{name}'s badge") }

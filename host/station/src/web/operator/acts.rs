@@ -16,6 +16,7 @@ use crate::engine::Engine;
 use crate::floor::{Act, Scan, ScanError};
 use crate::said::{Said, Saying};
 use crate::settings::PlanFile;
+use crate::web::access::Claimant;
 use crate::web::live::Became;
 use crate::web::login::{Peer, identified, logged_in};
 use crate::web::routes::Who;
@@ -95,15 +96,12 @@ async fn badge(
         return Ok(None);
     }
     let label = app.settings().scanner.label(&scanned.text).unwrap_or(&scanned.text).to_owned();
-    let known = if visit.user.is_some() {
-        // What somebody scans who tests is no guess at a badge.
-        let access = app.clone();
-        let known = app.blocking(visit, move || access.access().identify(&label, "")).await?;
-        known.map_err(|error| Trouble::secret(visit, &error))?
+    let by = if visit.user.is_some() {
+        Claimant::Session(visit.session.clone())
     } else {
-        identified(app, visit, peer, (label, String::new())).await?
+        Claimant::Stranger(peer)
     };
-    let Some(known) = known else { return Ok(None) };
+    let Some(known) = identified(app, visit, by, (label, String::new())).await? else { return Ok(None) };
     let said = visit.words.fill("login.now", &[("name", &known.user.name)]);
     let cookie = logged_in(app, visit, known).await?;
     // A badge is shown to nobody.

@@ -217,6 +217,23 @@ fn a_badge_is_scanned_into_the_page_that_nobody_is_logged_in_on() {
 }
 
 #[test]
+fn whoever_is_logged_in_does_not_guess_the_badges_of_others_for_long() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let mut browser = serving.operator();
+    let scan = |browser: &Browser, text: &str| {
+        browser.post("/scan", &[("text", text)]).with("accept", "application/json").send()
+    };
+    for wrong in 0..120 {
+        assert_eq!(scan(&browser, &format!("B-1{wrong:03}")).status, 200, "{wrong}");
+    }
+    assert_eq!(scan(&browser, "B-0022").status, 429, "also if it is right");
+    // The control: another one's session, from the same address.
+    browser = serving.operator();
+    assert!(scan(&browser, "B-0022").text().contains("Braun tests from now on"));
+}
+
+#[test]
 fn the_badge_of_another_operator_is_no_scan() {
     let station = Station::public(1);
     let serving = station.serve();
