@@ -2,13 +2,13 @@
 
 use std::io::{self, Read};
 use std::os::unix::process::CommandExt as _;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::floor::Shown;
-use crate::process_group::{kill, killed, waited};
+use crate::process_group::{kill, killed, waited, without_secrets};
 use crate::settings::{Hook, WORDS};
 
 /// The most that is kept of what a hook complains of, in bytes.
@@ -58,7 +58,7 @@ fn of(said: &str) -> String {
 /// [`HookError`] when it did not end well.
 pub(super) fn run(hook: &Hook, lane: &str, shown: &Shown) -> Result<(), HookError> {
     let program = || hook.program.display().to_string();
-    let mut child = Command::new(&hook.program)
+    let mut child = without_secrets(&hook.program)
         .args(hook.arguments.iter().map(|argument| filled(argument, lane, shown)))
         .process_group(0)
         .stdin(Stdio::null())

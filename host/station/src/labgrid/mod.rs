@@ -24,6 +24,7 @@ pub use error::LabgridError;
 pub use held::Held;
 
 use crate::presence;
+use crate::process_group::without_secrets;
 use crate::said::Said;
 
 /// The kind of such a board in the settings.
@@ -106,7 +107,7 @@ impl Place {
 
     /// The call of the program that reaches labgrid.
     fn call(&self, act: &str) -> Command {
-        let mut call = Command::new(&self.labgrid.program);
+        let mut call = without_secrets(&self.labgrid.program);
         call.args([act, "--place", &self.name, "--user", &self.user]);
         if let Some(coordinator) = &self.labgrid.coordinator {
             call.args(["--coordinator", coordinator]);

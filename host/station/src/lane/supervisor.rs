@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::io::{self, BufRead as _, BufReader, Write as _};
 use std::os::unix::process::CommandExt as _;
 use std::path::Path;
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use halfrow::verdict::StoppedBy;
 
 use super::{Control, Job, Message, Ruling};
-use crate::process_group::{kill, killed, waited};
+use crate::process_group::{kill, killed, waited, without_secrets};
 use crate::record::{BoardSeen, StepRecord};
 use crate::said::{Said, Saying};
 
@@ -115,7 +115,7 @@ impl Lane {
         let events = File::create(spool.join(EVENTS))?;
         // Lanes are many, and the board is what they wait for.
         let threads = std::env::var_os(THREADS).unwrap_or_else(|| "1".into());
-        let mut child = Command::new(program)
+        let mut child = without_secrets(program)
             .arg0(std::env::args_os().next().unwrap_or_else(|| program.into()))
             .arg("lane")
             .env(THREADS, threads)

@@ -13,6 +13,7 @@ use std::time::Duration;
 
 use halfrow::Verdict;
 
+pub(crate) use plant::PASSWORD_OF_PLANT;
 pub use plant::{PlantSettings, PlantSettingsError};
 pub(crate) use read::{LANE_NAME, is_lane_name, is_word};
 pub use sink::{Destination, Login, SinkAddress, SinkSettings};

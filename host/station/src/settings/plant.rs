@@ -11,7 +11,7 @@ use crate::secret::{self, SecretError};
 use crate::store::{PlantAddress, PlantAddressError};
 
 /// The variable that may have the password.
-const PASSWORD: &str = "HALFROW_PLANT_PASSWORD";
+pub(crate) const PASSWORD_OF_PLANT: &str = "HALFROW_PLANT_PASSWORD";
 /// How many results may be unsent until lanes take nothing more.
 const MOST_UNSENT: u32 = 10_000;
 /// How full the disk may be, in per cent, while results are unsent.
@@ -75,7 +75,7 @@ impl PlantSettings {
     pub fn address(&self) -> Result<PlantAddress, PlantSettingsError> {
         let password = match &self.password_file {
             Some(path) => Some(secret::text(path)?.trim_end_matches(['\r', '\n']).to_owned()),
-            None => std::env::var(PASSWORD).ok(),
+            None => std::env::var(PASSWORD_OF_PLANT).ok(),
         };
         Ok(PlantAddress::new(&self.url, password.as_deref(), self.ca.as_deref())?)
     }

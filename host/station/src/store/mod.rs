@@ -31,7 +31,8 @@ mod table;
 mod waivers;
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
+use std::fs::{DirBuilder, File};
+use std::os::unix::fs::DirBuilderExt as _;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -114,7 +115,9 @@ impl Store {
     pub fn open(folder: &Folder) -> Result<Self, StoreError> {
         folder.has_no_restore()?;
         for place in ["blobs", "spool"] {
-            fs::create_dir_all(folder.0.join(place)).map_err(|source| folder.refused(source))?;
+            // Whatever the umask is: nobody else puts another database there.
+            let made = DirBuilder::new().recursive(true).mode(0o750).create(folder.0.join(place));
+            made.map_err(|source| folder.refused(source))?;
         }
         let lock = folder.lock()?;
         // One may have begun meanwhile.

@@ -10,6 +10,7 @@
 
 mod access;
 mod assets;
+mod for_ever;
 mod history;
 mod jobs;
 pub(crate) mod language;

@@ -21,6 +21,8 @@ use crate::said::Said;
 
 /// How long an answer may take to begin.
 const PATIENCE: Duration = Duration::from_secs(30);
+/// How long a form may take to come, for nobody else has its place meanwhile.
+const FORM: Duration = Duration::from_secs(10);
 /// The most bytes of a form.
 const MOST: usize = 64 * 1024;
 /// The field of every form that says for whom it was made.
@@ -62,11 +64,14 @@ pub(super) struct Guarded {
 pub(super) async fn every(State(app): State<App>, request: Request, next: Next) -> Response {
     let visit = app.stranger(request.headers());
     let is_ours = host(request.headers()).is_some_and(|host| app.access().address().is_host(host));
-    let mut response = if is_ours {
+    let mut response = if !app.access().has_people() && is_forwarded(request.headers()) {
+        Trouble::new(&visit, StatusCode::MISDIRECTED_REQUEST, visit.say("trouble.proxied")).into_response()
+    } else if is_ours {
         let late = || Trouble::new(&visit, StatusCode::REQUEST_TIMEOUT, visit.say("trouble.late"));
         time::timeout(PATIENCE, next.run(request)).await.unwrap_or_else(|_| late().into_response())
     } else {
-        Trouble::new(&visit, StatusCode::MISDIRECTED_REQUEST, visit.say("trouble.host")).into_response()
+        // A page of somebody else whose name was made to lead here can read this.
+        (StatusCode::MISDIRECTED_REQUEST, visit.say("trouble.host")).into_response()
     };
     for (name, value) in HEADERS {
         response.headers_mut().entry(name).or_insert(HeaderValue::from_static(value));
@@ -90,8 +95,7 @@ pub(super) async fn route(State(guarded): State<Guarded>, request: Request, next
         Ok(visit) => visit,
         Err(refused) => return *refused,
     };
-    let checked =
-        if is_act { act(&app, &visit, who, request).await } else { look(&app, &visit, who, request) };
+    let checked = if is_act { act(&app, &visit, who, request).await } else { look(&visit, who, request) };
     match checked {
         Err(refused) => *refused,
         Ok(mut request) => {
@@ -145,7 +149,7 @@ async fn machine(
             Err(response)
         }
         Machine::Known { name, is_new } => {
-            let visit = Visit { user: Some(User { name, who: Who::Reader }), ..stranger };
+            let visit = Visit { user: Some(User { name, who: Who::Reader }), may_look: true, ..stranger };
             if is_act {
                 return Err(refused(&visit, StatusCode::FORBIDDEN, visit.say("trouble.forbidden")));
             }
@@ -155,8 +159,8 @@ async fn machine(
 }
 
 /// A page: whoever may not see it logs in.
-fn look(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Request, Refused> {
-    if who == Who::Anyone || visit.may(who) || who == Who::Reader && app.access().is_open() {
+fn look(visit: &Visit, who: Who, request: Request) -> Result<Request, Refused> {
+    if who == Who::Anyone || visit.may(who) || who == Who::Reader && visit.may_look {
         return Ok(request);
     }
     let wants_page = request
@@ -179,12 +183,16 @@ async fn act(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Req
     if who > Who::Anyone && !visit.may(who) {
         return Err(Box::new(Trouble::barred(visit).into_response()));
     }
+    let unmarked = || refused(visit, StatusCode::FORBIDDEN, visit.say("trouble.mark"));
+    if visit.is_new {
+        return Err(unmarked());
+    }
     let (parts, body) = request.into_parts();
-    let body = body::to_bytes(body, MOST).await;
+    let body = time::timeout(FORM, body::to_bytes(body, MOST)).await;
+    let body = body.map_err(|_| refused(visit, StatusCode::REQUEST_TIMEOUT, visit.say("trouble.late")))?;
     let body = body.map_err(|_| refused(visit, StatusCode::PAYLOAD_TOO_LARGE, visit.say("trouble.large")))?;
-    let is_marked = mark(&body).is_some_and(|mark| app.access().is_form_mark(&visit.session, &mark));
-    if visit.is_new || !is_marked {
-        return Err(refused(visit, StatusCode::FORBIDDEN, visit.say("trouble.mark")));
+    if !mark(&body).is_some_and(|mark| app.access().is_form_mark(&visit.session, &mark)) {
+        return Err(unmarked());
     }
     Ok(Request::from_parts(parts, Body::from(body)))
 }
@@ -201,6 +209,12 @@ fn mark(body: &Bytes) -> Option<String> {
 /// Where nothing is.
 pub(super) async fn nothing_here(State(app): State<App>, headers: HeaderMap) -> Trouble {
     app.visit(&headers, false).await.map_or_else(|trouble| trouble, |visit| Trouble::missing(&visit))
+}
+
+/// Whether a proxy says that it hands on what somebody else asks, who need not be at this computer.
+fn is_forwarded(headers: &HeaderMap) -> bool {
+    let names = ["forwarded", "via", "x-real-ip", "x-forwarded-for", "x-forwarded-host", "x-forwarded-proto"];
+    names.iter().any(|name| headers.contains_key(*name))
 }
 
 fn host(headers: &HeaderMap) -> Option<&str> {
@@ -235,6 +249,7 @@ impl App {
         let is_new = sent.is_none();
         let session = sent.or_else(|| access.begin(None).ok()).unwrap_or_default();
         let (csrf, can_log_in) = (access.form_mark(&session), access.has_people());
-        Ok(Visit { csrf, user, untold, session, is_new, can_log_in, ..stranger })
+        let may_look = stranger.may_look || user.is_some();
+        Ok(Visit { csrf, user, untold, session, may_look, is_new, can_log_in, ..stranger })
     }
 }

@@ -8,7 +8,7 @@ use axum::routing::{self, MethodRouter};
 
 use super::request_guard::{self, Guarded};
 use super::state::App;
-use super::{assets, history, jobs, login, metrics, operator, outbox, plant};
+use super::{assets, for_ever, history, jobs, login, metrics, operator, outbox, plant};
 
 /// Who may use a route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -33,6 +33,13 @@ pub struct Route {
     /// Who may.
     pub who: Who,
     handler: MethodRouter<App>,
+}
+
+impl Route {
+    /// For what has a hash in its address, and so never changes.
+    pub(super) fn for_ever(self) -> Self {
+        Self { handler: self.handler.layer(middleware::from_fn(for_ever::for_ever)), ..self }
+    }
 }
 
 /// A page to look at.

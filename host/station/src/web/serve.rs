@@ -1,6 +1,7 @@
 //! The connections: how many, how long each may take, and the thread that they are served on.
 
-use std::net::{SocketAddr, TcpListener};
+use std::collections::HashMap;
+use std::net::{IpAddr, SocketAddr, TcpListener};
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
@@ -15,6 +16,7 @@ use tokio::runtime::{Builder, Runtime};
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, oneshot};
 use tokio::time;
 
+use super::access::network;
 use super::login::Peer;
 use super::patient::Patient;
 use super::routes;
@@ -22,6 +24,8 @@ use super::state::App;
 
 /// How many connections there are at once; another one waits for its turn.
 const CONNECTIONS: usize = 64;
+/// How many of them one other computer has, so that nobody keeps all others from the pages; another one is closed.
+const CONNECTIONS_OF_ONE: usize = 48;
 /// How long the head of a request may take.
 const HEAD: Duration = Duration::from_secs(10);
 /// The longest head, in bytes.
@@ -104,11 +108,13 @@ fn serve(runtime: Runtime, listener: TcpListener, router: Router, stopped: onesh
 
 async fn accept(listener: tokio::net::TcpListener, router: Router) {
     let places = Arc::new(Semaphore::new(CONNECTIONS));
+    let mut peers = Peers::default();
     while let Ok(place) = Arc::clone(&places).acquire_owned().await {
         match listener.accept().await {
             Ok((stream, peer)) => {
+                let Some(own) = peers.place(peer.ip()) else { continue };
                 let router = router.clone().layer(Extension(Peer(peer.ip())));
-                drop(tokio::spawn(connection(stream, router, place)));
+                drop(tokio::spawn(connection(stream, router, (place, own))));
             }
             Err(error) => {
                 tracing::warn!("a connection was not taken: {error}");
@@ -118,7 +124,22 @@ async fn accept(listener: tokio::net::TcpListener, router: Router) {
     }
 }
 
-async fn connection(stream: TcpStream, router: Router, place: OwnedSemaphorePermit) {
+/// The connections of each address.
+#[derive(Debug, Default)]
+struct Peers(HashMap<IpAddr, Arc<()>>);
+
+impl Peers {
+    /// A place for one more of `peer`, which is free again when it is dropped; none if it has too many. This computer, where a proxy
+    /// may be, has as many as there are.
+    fn place(&mut self, peer: IpAddr) -> Option<Arc<()>> {
+        self.0.retain(|_, its| Arc::strong_count(its) > 1);
+        let its = self.0.entry(network(peer)).or_default();
+        let is_free = peer.to_canonical().is_loopback() || Arc::strong_count(its) <= CONNECTIONS_OF_ONE;
+        is_free.then(|| Arc::clone(its))
+    }
+}
+
+async fn connection(stream: TcpStream, router: Router, places: (OwnedSemaphorePermit, Arc<()>)) {
     // News are short, and each is waited for.
     let _ = stream.set_nodelay(true);
     let mut builder = http1::Builder::new();
@@ -128,5 +149,22 @@ async fn connection(stream: TcpStream, router: Router, place: OwnedSemaphorePerm
     if let Err(error) = pin!(served).await {
         tracing::debug!("a connection ended: {error}");
     }
-    drop(place);
+    drop(places);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nobody_has_all_connections_but_this_computer() {
+        let mut peers = Peers::default();
+        let [one, other, here] = ["10.0.0.1", "10.0.0.2", "127.0.0.1"].map(|peer| peer.parse().unwrap());
+        let mut places: Vec<_> = (0..CONNECTIONS_OF_ONE).map(|_| peers.place(one).unwrap()).collect();
+        assert!(peers.place(one).is_none() && peers.place(other).is_some());
+        places.pop();
+        assert!(peers.place(one).is_some());
+        let all: Option<Vec<_>> = (0..CONNECTIONS).map(|_| peers.place(here)).collect();
+        assert!(all.is_some());
+    }
 }

@@ -30,6 +30,8 @@ pub(super) struct Visit {
     pub(super) untold: Option<Said>,
     /// The value of the cookie that the visitor has, or is given.
     pub(super) session: String,
+    /// Whether what is tested here is shown to the visitor.
+    pub(super) may_look: bool,
     /// Whether it is given.
     pub(super) is_new: bool,
     /// Whether people log in at this station.
@@ -84,6 +86,7 @@ impl App {
             user: None,
             untold: None,
             session,
+            may_look: self.access().is_open(),
             is_new: true,
             can_log_in: false,
             csrf,

@@ -50,7 +50,7 @@ impl<Who: Eq + Hash> Failures<Who> {
 }
 
 /// Who is at `peer`: this computer, or of an address of IPv6 its network, since a computer has as many addresses there as it likes.
-pub(super) fn network(peer: IpAddr) -> IpAddr {
+pub(in crate::web) fn network(peer: IpAddr) -> IpAddr {
     match peer.to_canonical() {
         IpAddr::V6(address) if !address.is_loopback() => {
             IpAddr::V6(Ipv6Addr::from_bits(address.to_bits() & !u128::from(u64::MAX)))

@@ -25,7 +25,8 @@ use super::visit::User;
 use crate::clock;
 use crate::secret::SecretError;
 use crate::settings::Settings;
-use failures::{Failures, network};
+use failures::Failures;
+pub(super) use failures::network;
 use key::Key;
 use sessions::Sessions;
 

@@ -2,7 +2,7 @@
 
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
-use axum::http::header::{CACHE_CONTROL, CONTENT_DISPOSITION, CONTENT_TYPE};
+use axum::http::header::{CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::response::{IntoResponse as _, Response};
 
 use crate::export::{self, ExportError, Format};
@@ -14,8 +14,6 @@ use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
-/// What has a hash for its address never changes.
-pub(super) const FOR_EVER: &str = "private, max-age=31536000, immutable";
 /// Text of any kind is shown as text.
 const TEXT: &str = "text/plain; charset=utf-8";
 
@@ -27,8 +25,7 @@ pub(super) async fn attachment(
 ) -> Result<Response, Trouble> {
     let (bytes, attachment) = attached(&app, &visit, run, hash).await?;
     let (kind, how) = served_as(&attachment.media_type);
-    let headers = [(CONTENT_TYPE, kind), (CACHE_CONTROL, FOR_EVER), (CONTENT_DISPOSITION, how)];
-    Ok((headers, bytes).into_response())
+    Ok(([(CONTENT_TYPE, kind), (CONTENT_DISPOSITION, how)], bytes).into_response())
 }
 
 /// The bytes of an attachment that this run has, and what is known of it.
@@ -77,9 +74,7 @@ pub(super) async fn export(
     let (id, written) = app.look(&visit, look).await?.ok_or_else(|| Trouble::missing(&visit))?;
     let bytes = written.map_err(|error| refused(&visit, error))?;
     let how = format!("attachment; filename=\"{id}{}\"", format.ending());
-    let headers =
-        [(CONTENT_TYPE, format.media()), (CACHE_CONTROL, FOR_EVER), (CONTENT_DISPOSITION, how.as_str())];
-    Ok((headers, bytes).into_response())
+    Ok(([(CONTENT_TYPE, format.media()), (CONTENT_DISPOSITION, how.as_str())], bytes).into_response())
 }
 
 fn refused(visit: &Visit, error: ExportError) -> Trouble {

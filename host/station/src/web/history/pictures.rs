@@ -2,7 +2,7 @@
 //! for them.
 
 use axum::extract::{Path, State};
-use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
+use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse as _, Response};
 use halfrow::frames::{self, ReadOptions};
 use halfrow::model::{BitDepth, Frame};
@@ -10,7 +10,7 @@ use halfrow::report::pictures;
 use maud::{Markup, html};
 use serde_json::Value;
 
-use super::evidence::{FOR_EVER, attached};
+use super::evidence::attached;
 use super::show;
 use crate::history::runs::RunLine;
 use crate::lane::kept_frame::{KeptFrame, View};
@@ -59,7 +59,7 @@ fn decoded((bytes, attachment): &(Vec<u8>, Attachment)) -> Option<Frame> {
 }
 
 fn answer(picture: Vec<u8>) -> Response {
-    ([(CONTENT_TYPE, "image/png"), (CACHE_CONTROL, FOR_EVER)], picture).into_response()
+    ([(CONTENT_TYPE, "image/png")], picture).into_response()
 }
 
 /// The frames that were kept of a run, each as it went in, came out, should have, and where it differs.

@@ -14,7 +14,7 @@ use tokio::sync::broadcast::Receiver;
 
 use super::lane::LaneEvent;
 use crate::clock;
-use crate::web::live::{Now, Told, What};
+use crate::web::live::{Became, Now, Told, What};
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
@@ -76,14 +76,10 @@ fn news(visit: &Visit, told: &Told) -> String {
             let rows = doing.rows.map(|(done, of)| [done, of]);
             json!({ "lane": lane, "run": doing.run, "what": told.text, "lang": told.foreign, "rows": rows })
         }),
-        What::Scan(became) => event_text(
-            id,
-            "scan",
-            &json!({
-                "number": became.number, "scanned": became.scanned, "is_taken": became.is_taken,
-                "lane": became.lane, "said": visit.words.tell(&became.said).text,
-            }),
-        ),
+        // Whoever scanned is answered what became of it; it may have been a badge.
+        What::Scan(Became { is_taken, lane, .. }) => {
+            event_text(id, "scan", &json!({ "is_taken": is_taken, "lane": lane }))
+        }
         What::Hook { lane, said } => {
             event_text(id, "hook", &json!({ "lane": lane, "said": visit.words.tell(said).text }))
         }

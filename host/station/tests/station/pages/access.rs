@@ -233,6 +233,64 @@ fn whoever_is_logged_in_does_not_guess_the_badges_of_others_for_long() {
     assert!(scan(&browser, "B-0022").text().contains("Braun tests from now on"));
 }
 
+/// A proxy that hands on what others ask as if it came from this computer.
+#[test]
+fn a_station_without_people_takes_nothing_from_a_proxy() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let get = || serving.here().get("/");
+    assert_eq!(get().send().status, 200);
+    for name in ["Forwarded", "Via", "X-Real-IP", "X-Forwarded-For"] {
+        let answer = get().with(name, "192.0.2.2").send();
+        assert!(answer.status == 421 && answer.text().contains("[access]"), "{name}: {answer:?}");
+    }
+    // The control: where people log in, a proxy is as good as any other.
+    let public = Station::public(1);
+    let behind = public.serve();
+    assert_eq!(behind.operator().get("/").with("X-Forwarded-For", "192.0.2.2").send().status, 200);
+}
+
+#[test]
+fn what_is_tested_here_is_told_to_nobody_who_may_not_look() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let foreign = serving.browser(PUBLIC).get("/login").with("host", "evil.example").send();
+    assert!(foreign.status == 421 && !foreign.text().contains("CAM-T"), "{foreign:?}");
+    for page in ["/login", "/nothing/here"] {
+        let stranger = serving.browser(PUBLIC).get(page).send().text();
+        assert!(stranger.contains("<html") && !stranger.contains("CAM-T"), "{stranger}");
+        // The control.
+        assert!(serving.operator().get(page).send().text().contains("CAM-T"), "{page}");
+    }
+}
+
+/// It may be a badge, and whoever looks may be a machine.
+#[test]
+fn what_somebody_scans_is_told_to_nobody_else() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let here = serving.here();
+    let mut news = here.get("/live").lines();
+    assert!(news.any(|line| line == "event: snapshot"));
+    assert_eq!(here.post("/scan", &[("text", "BADGE-OF-A-DOOR"), ("typed", "true")]).send().status, 200);
+    assert!(news.any(|line| line == "event: scan"));
+    assert_eq!(news.next().as_deref(), Some(r#"data: {"is_taken":false,"lane":null}"#));
+}
+
+/// A browser that is everybody's keeps it, and asks.
+#[test]
+fn what_never_changes_is_shown_from_no_cache_to_whoever_has_logged_out() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let browser = serving.operator();
+    let known = browser.get("/runs/1/export/csv").with("if-none-match", "\"1\"");
+    assert_eq!(known.send().status, 304);
+    // The control: nothing is there that could be sent.
+    assert_eq!(known.clone().without("if-none-match").send().status, 404);
+    assert_eq!(browser.post("/logout", &[]).send().status, 303);
+    assert_eq!(known.send().status, 401);
+}
+
 #[test]
 fn the_badge_of_another_operator_is_no_scan() {
     let station = Station::public(1);

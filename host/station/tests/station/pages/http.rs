@@ -1,7 +1,7 @@
 //! A client that sends just what it is told to send.
 
 use std::collections::BTreeMap;
-use std::io::{self, Read as _, Write as _};
+use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::time::Duration;
 
@@ -30,13 +30,18 @@ impl Answer {
     }
 }
 
+fn connected(port: u16) -> TcpStream {
+    let stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
+    stream.set_read_timeout(Some(HANG)).unwrap();
+    stream
+}
+
 /// What comes back for these bytes, on a connection of their own.
 ///
 /// # Errors
 /// How the connection ended, when it did without an answer.
 pub(crate) fn exchange(port: u16, bytes: &[u8]) -> io::Result<Answer> {
-    let mut stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
-    stream.set_read_timeout(Some(HANG)).unwrap();
+    let mut stream = connected(port);
     // A server that has heard enough closes before it has read all.
     let _ = stream.write_all(bytes);
     let mut head = Vec::new();
@@ -121,6 +126,18 @@ impl Request {
     }
 
     pub(crate) fn send(&self) -> Answer {
+        let text = self.text();
+        exchange(self.port, text.as_bytes()).unwrap_or_else(|error| panic!("no answer to {self:?}: {error}"))
+    }
+
+    /// The lines of an answer that has no end, its head's included.
+    pub(crate) fn lines(&self) -> impl Iterator<Item = String> + use<> {
+        let mut stream = connected(self.port);
+        stream.write_all(self.text().as_bytes()).unwrap();
+        BufReader::new(stream).lines().map_while(Result::ok)
+    }
+
+    fn text(&self) -> String {
         let mut text = format!("{} {} HTTP/1.1\r\n", self.method, self.path);
         for (name, value) in &self.headers {
             text += &format!("{name}: {value}\r\n");
@@ -131,8 +148,7 @@ impl Request {
                 self.body.len()
             );
         }
-        text += &format!("connection: close\r\n\r\n{}", self.body);
-        exchange(self.port, text.as_bytes()).unwrap_or_else(|error| panic!("no answer to {self:?}: {error}"))
+        text + &format!("connection: close\r\n\r\n{}", self.body)
     }
 }
 

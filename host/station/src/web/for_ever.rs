@@ -1,0 +1,25 @@
+//! What never changes: a browser that has it need not be sent it again, and asks each time whether it may still show it, since whoever
+//! has logged out may not.
+
+use axum::extract::Request;
+use axum::http::header::{CACHE_CONTROL, ETAG, IF_NONE_MATCH};
+use axum::http::{HeaderValue, StatusCode};
+use axum::middleware::Next;
+use axum::response::{IntoResponse as _, Response};
+
+/// The only version that there is.
+const VERSION: &str = "\"1\"";
+
+/// Around a route, within what looks who asks.
+pub(super) async fn for_ever(request: Request, next: Next) -> Response {
+    let mut known = request.headers().get_all(IF_NONE_MATCH).iter();
+    let is_known = known.any(|known| known.to_str().is_ok_and(|known| known.contains(VERSION)));
+    let mut response =
+        if is_known { StatusCode::NOT_MODIFIED.into_response() } else { next.run(request).await };
+    if is_known || response.status() == StatusCode::OK {
+        let headers = response.headers_mut();
+        headers.insert(CACHE_CONTROL, HeaderValue::from_static("private, no-cache"));
+        headers.insert(ETAG, HeaderValue::from_static(VERSION));
+    }
+    response
+}
