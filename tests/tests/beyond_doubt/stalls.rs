@@ -53,6 +53,16 @@ fn on_the_virtual_clock_every_stall_within_the_patience_passes() {
     }
 }
 
+/// Of thousands of packets three in a row get lost some time. Each that is lost behind them is waited for as the first ones were.
+#[test]
+fn a_link_that_only_loses_packets_is_not_waited_for_as_one_that_is_late() {
+    let options = ",fault=lose,size=40,rate=0.085,toward=board,seed=87657095";
+    let report = System::TINY.judge(options);
+    passes(&report, options);
+    let seconds_each = report.link.seconds / report.link.retries as f64;
+    assert!((0.2..1.0).contains(&seconds_each), "{seconds_each} s on the wire's own clock");
+}
+
 /// Each answer to STATUS comes with the one to the next try, so that no link loses anything and each is asked for twice.
 #[test]
 fn a_link_that_holds_each_count_back_comes_to_an_end() {

@@ -12,6 +12,7 @@ use super::asked::{Asking, LastAsked, Stray};
 use super::conduct::Conduct;
 use super::counted::Counted;
 use super::deadlines::{RetryLimit, Step};
+use super::lateness::Lateness;
 use super::tally::Tally;
 use super::{BoardError, Heard, OpenOptions, Stop};
 use crate::link::{Link, LinkError, Severed};
@@ -61,8 +62,7 @@ pub(super) struct Conversation {
     /// Rows that may come back although nobody takes them.
     pub(super) unwanted: u32,
     asked: LastAsked,
-    /// The longest that an answer was held back that had been asked for again.
-    slowest: Duration,
+    lateness: Lateness,
     /// When the last packet came in.
     pub(super) heard_at: Duration,
     stop: Stop,
@@ -93,7 +93,7 @@ impl Conversation {
             rows_sent: 0,
             unwanted: 0,
             asked: LastAsked::default(),
-            slowest: Duration::ZERO,
+            lateness: Lateness::default(),
             heard_at: Duration::ZERO,
             stop: options.stop.clone(),
         }
@@ -156,7 +156,7 @@ impl Conversation {
 
     /// How long to wait at the try `attempt`, from 0, for what takes `bytes` both ways together.
     pub(super) fn wait_for(&self, step: Step, attempt: u32, bytes: usize) -> Duration {
-        step.wait(attempt, bytes, self.link.bytes_per_second(), self.slowest)
+        step.wait(attempt, bytes, self.link.bytes_per_second(), self.lateness.longest())
     }
 
     /// Bytes that wait to be written.
@@ -223,7 +223,7 @@ impl Conversation {
     /// Takes note of a retry that was needless, since the first answer came `took` after its request.
     pub(super) fn was_late(&mut self, took: Duration) {
         self.tally.late += 1;
-        self.slowest = self.slowest.max(took);
+        self.lateness.is_known(took);
     }
 
     /// Moves bytes both ways, for `wait` at most, and counts them and the time.

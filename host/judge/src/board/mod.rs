@@ -9,6 +9,7 @@ mod counted;
 mod counters;
 pub mod deadlines;
 mod error;
+mod lateness;
 mod legal;
 mod rows;
 mod said;

@@ -99,10 +99,7 @@ impl Conversation {
 
     /// Takes note of how long it took until something came that was asked for `again` times more.
     pub(in crate::board) fn took(&mut self, again: u32, time: Duration) {
-        // Three in a row are seldom lost, and often late.
-        if again >= 3 {
-            self.slowest = self.slowest.max(time);
-        }
+        self.lateness.took(again, time);
     }
 
     /// Asks, and takes the expected part of the reply.

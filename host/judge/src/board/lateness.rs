@@ -1,0 +1,74 @@
+//! How long a link holds answers back, as far as a run has seen.
+
+use std::time::Duration;
+
+use super::deadlines::Step;
+
+/// So often an answer was waited for in vain before it is taken for late rather than lost: three in a row are seldom lost.
+const SELDOM_LOST: u32 = 3;
+/// So many answers in a row that came at once refute that: the copies of what is late would have come as well.
+const PROMPT: u32 = 16;
+
+/// The longest that an answer was held back that had been asked for again.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Lateness {
+    /// Where all that was asked for was answered.
+    known: Duration,
+    /// Where it may have been lost.
+    guessed: Duration,
+    /// Answers in a row that came at once.
+    prompt: u32,
+}
+
+impl Lateness {
+    /// The first answer came `took` after its request, and another one behind it: nothing was lost.
+    pub(super) fn is_known(&mut self, took: Duration) {
+        self.known = self.known.max(took);
+    }
+
+    /// What was asked for `again` times more took so long.
+    pub(super) fn took(&mut self, again: u32, time: Duration) {
+        let is_prompt = again == 0 && time < Step::Request.deadline().fixed;
+        self.prompt = if is_prompt { self.prompt.saturating_add(1) } else { 0 };
+        if again >= SELDOM_LOST {
+            self.guessed = self.guessed.max(time);
+        } else if self.prompt >= PROMPT {
+            self.guessed = Duration::ZERO;
+        }
+    }
+
+    /// How long an answer may be held back.
+    pub(super) fn longest(&self) -> Duration {
+        self.known.max(self.guessed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_seems_late_is_late_until_answers_come_at_once() {
+        let (mut late, long) = (Lateness::default(), Duration::from_secs(3));
+        late.took(2, long);
+        assert_eq!(late.longest(), Duration::ZERO);
+        late.took(3, long);
+        for _ in 1..PROMPT {
+            late.took(0, Duration::ZERO);
+        }
+        assert_eq!(late.longest(), long);
+        late.took(1, Duration::ZERO);
+        (1..PROMPT).for_each(|_| late.took(0, Duration::ZERO));
+        assert_eq!(late.longest(), long, "one that was not, begins anew");
+        late.took(0, Duration::ZERO);
+        assert_eq!(late.longest(), Duration::ZERO);
+    }
+
+    #[test]
+    fn what_is_known_to_be_late_stays_so() {
+        let (mut late, long) = (Lateness::default(), Duration::from_secs(3));
+        late.is_known(long);
+        (0..10 * PROMPT).for_each(|_| late.took(0, Duration::ZERO));
+        assert_eq!(late.longest(), long);
+    }
+}
