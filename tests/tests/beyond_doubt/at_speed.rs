@@ -15,7 +15,7 @@ use halfrow_mock::Options;
 use halfrow_protocol::message::{BurstMode, BurstState, FrameRecord, Records, Request};
 use halfrow_protocol::{Kind, Packet, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge_claims, judge_each};
-use halfrow_tests::system::{System, failed_check};
+use halfrow_tests::system::{System, failed_check, judge_by_plan, streamed};
 
 const TINY: System = System::TINY;
 /// H of it.
@@ -101,15 +101,14 @@ const SPEED_FAULTS: [SpeedFault; 5] = [
 
 #[test]
 fn what_fails_at_full_speed_alone_passes_row_by_row_and_fails_in_a_burst() {
-    let judged = |fault: &str, at_speed: Option<Duration>| {
+    let judged = |fault: &str, plan: Plan| {
         let candidate = link::open(&format!("mock,fault={fault}").parse().unwrap()).unwrap();
-        let plan = Plan { at_speed, fail_fast: false, ..TINY.plan() };
-        verify(&plan, candidate, &RunOptions::default(), &Silent).unwrap().report
+        verify(&Plan { fail_fast: false, ..plan }, candidate, &RunOptions::default(), &Silent).unwrap().report
     };
     for (fault, place, sentence) in SPEED_FAULTS {
-        let unseen = judged(fault, Some(Duration::ZERO));
+        let unseen = judged(fault, streamed(TINY.plan()));
         assert_eq!(unseen.verdict, Verdict::Pass, "{fault}: {}", unseen.headline());
-        let seen = judged(fault, None);
+        let seen = judged(fault, TINY.plan());
         assert_eq!(failed_check(&seen), Some(CheckName::AtSpeed), "{fault}: {}", seen.headline());
         assert!(seen.headline().contains(sentence), "{fault}: {}", seen.headline());
         let suspected = seen.suspects.first().map(Suspect::place).unwrap_or_default();
@@ -181,6 +180,21 @@ fn why_nothing_was_tested_at_speed_is_said() {
         assert_eq!(check(&report).outcome, Outcome::Skipped);
         assert!(report.not_exercised.contains(&NotExercised::FullSpeed {}));
     }
+}
+
+/// What a board must answer about bursts is a rule as any other, however long it is judged at speed.
+#[test]
+fn a_board_whose_trap_keeps_nothing_breaks_a_rule_also_where_no_time_is_spent_at_speed() {
+    let plan = Plan { at_speed: Some(Duration::ZERO), ..TINY.plan() };
+    let nothing_kept = |toward, mut packet: Passing| {
+        if toward == Toward::Host && packet.is(Kind::Trap) {
+            packet.payload = vec![0];
+        }
+        vec![packet]
+    };
+    let report = judge_by_plan(&plan, Altered::new(&Options::default(), nothing_kept).candidate());
+    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+    assert_eq!(failed_check(&report), Some(CheckName::Rules));
 }
 
 #[test]

@@ -66,8 +66,13 @@ fn a_price_is_what_a_run_takes_and_a_little_more() {
         least.with(Part::Swap, 16).with(Part::Gaps, 7),
         Selection::all(plan(None).parts(&Build::full(64))),
     ];
-    let boards =
-        [("mock,speed=20000", 0.7), ("mock,speed=300000,delay=0.002", 0.8), ("mock,speed=5000000", 0.15)];
+    let boards = [
+        ("mock,speed=20000", 0.7),
+        ("mock,speed=300000,delay=0.002", 0.8),
+        ("mock,speed=300000,delay=0.002,bursts=untrapped", 0.8),
+        ("mock,speed=300000,delay=0.002,bursts=no,entered=no", 0.8),
+        ("mock,speed=5000000", 0.15),
+    ];
     for (board, least_share) in boards {
         let mut opened = Board::open(open(board).link, &OpenOptions::default()).unwrap();
         let rates = Rates::of(&mut opened).unwrap();

@@ -18,7 +18,7 @@ mod watched;
 use std::time::Duration;
 
 use halfrow_model::Geometry;
-use halfrow_protocol::message::BurstMode;
+use halfrow_protocol::message::{BurstMode, Capabilities};
 
 use super::findings::{During, End};
 use super::parts::Part;
@@ -58,6 +58,17 @@ const NONE: EqualAtSpeed = EqualAtSpeed {
     corners: 0,
 };
 
+/// The bursts that a board makes, or why none are known.
+pub(super) fn known_bursts(capabilities: &Capabilities) -> Result<Bursts, NoBurst> {
+    match capabilities.bursts {
+        None => Err(NoBurst::BoardMakesNone {}),
+        Some(bursts) if bursts.content != CONTENT => {
+            Err(NoBurst::ContentUnknown { content: bursts.content, known: CONTENT })
+        }
+        Some(bursts) => Ok(bursts),
+    }
+}
+
 impl Run<'_> {
     /// Judges a burst, with the board back behind `last` if it goes away meanwhile.
     pub(super) fn at_speed(&mut self, last: Option<&Segment>) -> Result<(), End> {
@@ -84,22 +95,14 @@ impl Run<'_> {
     fn bursts(&self) -> Result<Bursts, NoBurst> {
         match self.plan.amount(Part::AtSpeed) {
             0 => Err(NoBurst::LeftOut {}),
+            _ if self.plan.at_speed == Some(Duration::ZERO) => Err(NoBurst::NotAskedFor {}),
             _ => self.known_bursts(),
         }
     }
 
-    /// The bursts that the board makes, or why none are known or wanted.
+    /// The bursts that the board makes, or why none are known.
     pub(super) fn known_bursts(&self) -> Result<Bursts, NoBurst> {
-        if self.plan.at_speed == Some(Duration::ZERO) {
-            return Err(NoBurst::NotAskedFor {});
-        }
-        match self.board.capabilities.bursts {
-            None => Err(NoBurst::BoardMakesNone {}),
-            Some(bursts) if bursts.content != CONTENT => {
-                Err(NoBurst::ContentUnknown { content: bursts.content, known: CONTENT })
-            }
-            Some(bursts) => Ok(bursts),
-        }
+        known_bursts(&self.board.capabilities)
     }
 
     fn judge_burst(&mut self, bursts: Bursts) -> Result<(), End> {

@@ -1,17 +1,37 @@
-//! What trying the rules costs: little of it depends on the board, and nothing on the plan.
+//! What trying the rules costs: it depends on what the board has, and not on the plan.
 
+use crate::run::at_speed::known_bursts;
 use crate::run::prices::Prices;
 
-/// Requests that are waited for, one after the other, on a board that has everything.
-const REQUESTS: f64 = 1470.0;
-/// Bytes on the wire of all packets, those there and those back.
-const BYTES: f64 = 300_000.0;
-/// Bytes of a row that fills an output bank, comes, and comes again.
-const BYTES_A_BANK: f64 = 560.0;
+/// What a part of them takes.
+struct Cost {
+    /// Requests that are waited for, one after the other.
+    requests: f64,
+    /// Bytes on the wire of all packets, those there and those back.
+    bytes: f64,
+}
+
+/// Of every board.
+const ALWAYS: Cost = Cost { requests: 853.0, bytes: 159_000.0 };
+/// Of bursts.
+const BURSTS: Cost = Cost { requests: 454.0, bytes: 114_000.0 };
+/// Of the trap.
+const TRAP: Cost = Cost { requests: 163.0, bytes: 27_000.0 };
+/// Of an output bank: a row that fills it, comes, and comes again.
+const BANK: Cost = Cost { requests: 1.0, bytes: 560.0 };
 
 /// All of them, in seconds.
 pub(in crate::run) fn price(prices: &Prices<'_>) -> f64 {
-    let banks = f64::from(prices.capabilities.row_banks_out);
-    (REQUESTS + banks) * prices.rates.round_trip
-        + (BYTES + banks * BYTES_A_BANK) / prices.rates.bytes_per_second
+    let capabilities = prices.capabilities;
+    let bursts = known_bursts(capabilities).ok();
+    let parts = [
+        (ALWAYS, 1.0),
+        (BURSTS, f64::from(u8::from(bursts.is_some()))),
+        (TRAP, f64::from(u8::from(bursts.is_some_and(|bursts| bursts.trap)))),
+        (BANK, f64::from(capabilities.row_banks_out)),
+    ];
+    let seconds = |(Cost { requests, bytes }, times)| {
+        times * (requests * prices.rates.round_trip + bytes / prices.rates.bytes_per_second)
+    };
+    parts.into_iter().map(seconds).sum()
 }
