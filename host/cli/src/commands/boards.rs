@@ -17,7 +17,7 @@ pub(super) struct Arguments {
     /// Look at these targets instead of searching
     #[arg(value_name = "TARGET", value_parser = super::board::target())]
     targets: Vec<Target>,
-    /// Greet what is free: some ten bytes are written to it, whatever it is
+    /// Greet what is free: some thirty bytes are written to it, up to six times, whatever it is
     #[arg(long)]
     ask: bool,
 }
