@@ -187,6 +187,7 @@ codes::codes! {
     BundleError {
         Outside [name] => "plan-file-outside",
         Plan => "plan-file-named-as-plan",
+        Control [name] => "plan-file-name-unplain",
         TooLarge [bytes] => "plan-files-too-large",
         Changed [path] => "plan-file-changed",
         Malformed [sha256] => "published-plan-malformed",

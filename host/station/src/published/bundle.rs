@@ -33,6 +33,12 @@ pub enum BundleError {
         "the plan names a file {PLAN}, which it is called itself where it is unpacked; give that file another name"
     )]
     Plan,
+    /// Where a file's name ends would not be plain.
+    #[error("the plan names {name:?}, which has control characters; give that file another name")]
+    Control {
+        /// The name.
+        name: String,
+    },
     /// The files are too large.
     #[error("the plan's files have {bytes} bytes, and {MOST} may be; give fewer or smaller frames")]
     TooLarge {
@@ -48,13 +54,17 @@ pub enum BundleError {
         source: Option<io::Error>,
     },
     /// A text is no bundle.
-    #[error("what the plant has as the plan {sha256} is none; ask whoever keeps the plant")]
+    #[error(
+        "what the plant has as the plan {sha256} is none; publish it again, and ask whoever keeps the plant"
+    )]
     Malformed {
         /// The hash.
         sha256: String,
     },
     /// A bundle is not what its hash says.
-    #[error("what the plant has as the plan {sha256} has the hash {found}; ask whoever keeps the plant")]
+    #[error(
+        "what the plant has as the plan {sha256} has the hash {found}; publish it again, and ask whoever keeps the plant"
+    )]
     Damaged {
         /// The hash that it should have.
         sha256: String,
@@ -131,41 +141,59 @@ impl Bundle {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// Unpacks the bundle `text`, whose plan has the hash `expected`, into a folder of that name in `folder`. Returns the plan's file. What is
-    /// there already stays.
+    /// The bundle `text`, whose plan has the hash `expected`.
     ///
     /// # Errors
-    /// [`BundleError`] when it is not what its hash says, or cannot be kept.
-    pub fn unpack(text: &str, expected: &str, folder: &Path) -> Result<PathBuf, BundleError> {
+    /// [`BundleError`] when it is not what its hash says.
+    pub(super) fn unpacked(text: &str, expected: &str) -> Result<Unpacked, BundleError> {
         let malformed = || BundleError::Malformed { sha256: expected.to_owned() };
-        let bundle: Self = serde_json::from_str(text).map_err(|_| malformed())?;
-        let mut files = Vec::new();
-        for file in &bundle.files {
-            check_name(&file.path)?;
-            files.push((&file.path, BASE64_STANDARD.decode(&file.base64).map_err(|_| malformed())?));
+        let Self { text, files, .. } = serde_json::from_str(text).map_err(|_| malformed())?;
+        let mut unpacked = Vec::new();
+        let mut hashes = Vec::new();
+        for BundledFile { path, base64 } in files {
+            check_name(&path).map_err(|_| malformed())?;
+            let content = BASE64_STANDARD.decode(base64).map_err(|_| malformed())?;
+            hashes.push(FileHash { path: path.clone(), sha256: sha256([&content]) });
+            unpacked.push((path, content));
         }
-        let hashes: Vec<_> = files
-            .iter()
-            .map(|(path, content)| FileHash { path: (*path).clone(), sha256: sha256([content]) })
-            .collect();
-        let found = plan_hash(&bundle.text, &hashes);
+        let found = plan_hash(&text, &hashes);
         if found != expected {
             return Err(BundleError::Damaged { sha256: expected.to_owned(), found });
         }
-        let folder = folder.join(expected);
-        for (name, content) in files {
-            keep(&folder.join(name), &content)?;
+        Ok(Unpacked { text, files: unpacked })
+    }
+}
+
+/// A plan, and its files by their names.
+#[derive(Debug)]
+pub(super) struct Unpacked {
+    text: String,
+    files: Vec<(String, Vec<u8>)>,
+}
+
+impl Unpacked {
+    /// Writes it into `folder`. Returns the plan's file.
+    ///
+    /// # Errors
+    /// [`BundleError`] when it cannot be kept.
+    pub(super) fn write(&self, folder: &Path) -> Result<PathBuf, BundleError> {
+        for (name, content) in &self.files {
+            keep(&folder.join(name), content)?;
         }
         let plan = folder.join(PLAN);
-        keep(&plan, bundle.text.as_bytes())?;
+        keep(&plan, self.text.as_bytes())?;
         Ok(plan)
     }
 }
 
-/// A file of a bundle lies where the plan does, or below.
+/// A file of a bundle lies where the plan does, or below. The plan's hash is of names between line ends and NULs, so that no name has
+/// these.
 fn check_name(name: &str) -> Result<(), BundleError> {
     if name == PLAN {
         return Err(BundleError::Plan);
+    }
+    if name.contains(char::is_control) {
+        return Err(BundleError::Control { name: name.to_owned() });
     }
     let is_below = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
     if is_below && !name.is_empty() { Ok(()) } else { Err(BundleError::Outside { name: name.to_owned() }) }

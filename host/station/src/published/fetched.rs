@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::bundle::Unpacked;
 use super::kept::Signed;
 use super::{Bundle, BundleError, Kept, PublicKey, Statement};
 use crate::history::PlanName;
@@ -111,7 +112,8 @@ impl Offer {
     pub fn keep(self, kept: &Kept) -> Result<Fetched, FetchError> {
         let Self { signed, statement, bundle, is_new } = self;
         let Some(text) = bundle else { return Ok(Fetched { statement, is_new }) };
-        unpacked(&statement, &text, kept.folder())?;
+        let plan = Bundle::unpacked(&text, &statement.sha256)?;
+        kept.put(&statement, |folder| written(&statement, &plan, folder))?;
         kept.keep(&statement.plan(), &signed)?;
         Ok(Fetched { statement, is_new })
     }
@@ -125,16 +127,19 @@ pub fn look_whole(plant: &mut Plant, statement: &Statement) -> Result<(), FetchE
     let text = plant.bundle(&statement.sha256)?;
     let folder =
         tempfile::tempdir().map_err(|source| BundleError::Folder { path: std::env::temp_dir(), source })?;
-    unpacked(statement, &text, folder.path())
+    written(statement, &Bundle::unpacked(&text, &statement.sha256)?, folder.path())
 }
 
-/// Unpacks the bundle `text` into `folder`: it is the plan of this statement.
-fn unpacked(statement: &Statement, text: &str, folder: &Path) -> Result<(), FetchError> {
+/// Writes what was unpacked into `folder`, and looks whether a plan that is read there is the one of this statement.
+fn written(statement: &Statement, unpacked: &Unpacked, folder: &Path) -> Result<(), FetchError> {
     let plan = || statement.plan().to_string();
-    let file = Bundle::unpack(text, &statement.sha256, folder)?;
+    let file = unpacked.write(folder)?;
     let read = Plan::load(&file).map_err(|source| FetchError::Plan { plan: plan(), source })?;
-    let says = (read.product.as_str(), read.name.as_str(), read.version.as_str());
-    if says != (statement.product.as_str(), statement.name.as_str(), statement.version.as_str()) {
+    let Statement { product, name, version, sha256, .. } = statement;
+    if read.sha256 != *sha256 {
+        return Err(BundleError::Damaged { sha256: sha256.clone(), found: read.sha256 }.into());
+    }
+    if (&read.product, &read.name, &read.version) != (product, name, version) {
         return Err(FetchError::Untrusted { plan: plan() });
     }
     Ok(())

@@ -4,12 +4,12 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use halfrow::frames::written_aside::write_aside;
+use halfrow::frames::written_aside::{AsideFolder, Misplaced, write_aside};
 use halfrow::result::sha256;
 use serde::{Deserialize, Serialize};
 
 use super::bundle::{PLAN, keep};
-use super::{BundleError, PublicKey, Statement};
+use super::{BundleError, FetchError, PublicKey, Statement};
 use crate::history::PlanName;
 use crate::plan::Plan;
 
@@ -88,6 +88,24 @@ impl Kept {
     /// Where they are.
     pub(crate) fn folder(&self) -> &Path {
         &self.folder
+    }
+
+    /// The plan of this statement as `fill` writes it, whole or not at all. What is there of it goes.
+    pub(super) fn put(
+        &self,
+        statement: &Statement,
+        fill: impl FnOnce(&Path) -> Result<(), FetchError>,
+    ) -> Result<(), FetchError> {
+        let place = self.folder.join(&statement.sha256);
+        let refused = |source| BundleError::Folder { path: place.clone(), source };
+        fs::create_dir_all(&self.folder).map_err(refused)?;
+        let aside = AsideFolder::new(&place).map_err(refused)?;
+        fill(aside.path())?;
+        aside.replace(|_| None).map_err(|misplaced| match misplaced {
+            Misplaced::Io(source) => refused(source),
+            Misplaced::Taken(why) => refused(io::Error::other(why.unwrap_or_default())),
+        })?;
+        Ok(())
     }
 
     /// From now on this holds.

@@ -45,8 +45,8 @@ impl Plant {
         Ok(found.unwrap_or_default())
     }
 
-    /// From now on what the statement says holds; `bundle` is its plan, unless the plant has it. Returns whether it was the next one: somebody else may
-    /// have been quicker.
+    /// From now on what the statement says holds; `bundle` is its plan, unless the plant has it, and takes the place of what the plant has
+    /// under its hash. Returns whether it was the next one: somebody else may have been quicker.
     ///
     /// # Errors
     /// [`StoreError`] when the plant does not take it.

@@ -16,6 +16,7 @@ pub(crate) mod sent;
 pub(crate) mod server;
 mod silent;
 mod tables;
+mod tampered;
 mod texts;
 mod waiting;
 pub(crate) mod way;

@@ -19,14 +19,14 @@ fn picture(level: u8) -> Vec<u8> {
 }
 
 /// An engineer with a plan, and a station that would have it of the plant.
-struct Published {
-    server: Server,
+pub(super) struct Published {
+    pub(super) server: Server,
     folder: TempDir,
     trusted: String,
 }
 
 impl Published {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         let (server, folder) = (Server::prepared(), crate::common::folder());
         fs::create_dir(folder.path().join("frames")).unwrap();
         let made = Self { server, folder, trusted: String::new() };
@@ -41,12 +41,12 @@ impl Published {
         made
     }
 
-    fn path(&self, name: &str) -> String {
+    pub(super) fn path(&self, name: &str) -> String {
         self.folder.path().join(name).display().to_string()
     }
 
     /// Writes the plan down in this version, with a picture of this level.
-    fn plan(&self, version: &str, level: u8) {
+    pub(super) fn plan(&self, version: &str, level: u8) {
         let text = PLAN
             .replace("version = \"1\"", &format!("version = \"{version}\""))
             .replace("builtin:noise", "frames/a.pgm");
@@ -54,13 +54,13 @@ impl Published {
         fs::write(self.path("frames/a.pgm"), picture(level)).unwrap();
     }
 
-    fn did(&self, arguments: &[&str]) -> Did {
+    pub(super) fn did(&self, arguments: &[&str]) -> Did {
         let mut command = Command::new(program());
         command.args(arguments).env("HALFROW_STATION_SETTINGS", self.path("station.toml"));
         command.output().unwrap().into()
     }
 
-    fn publish(&self, key: &str) -> Did {
+    pub(super) fn publish(&self, key: &str) -> Did {
         let (plan, key) = (self.path("plan.toml"), self.path(key));
         self.did(&[
             "plan",
@@ -80,12 +80,12 @@ impl Published {
         self.did(&["plan", "back", "CAM-T/quick", version, "--key", &key, "--reason", "it was better"])
     }
 
-    fn fetch(&self) -> Did {
+    pub(super) fn fetch(&self) -> Did {
         self.did(&["plan", "fetch"])
     }
 
     /// The version of the plan that the station's settings have, and the level of its picture.
-    fn held(&self) -> (String, u8) {
+    pub(super) fn held(&self) -> (String, u8) {
         let settings = Settings::load(self.path("station.toml").as_ref()).unwrap();
         let plan = &settings.plans[0];
         let picture = fs::read(plan.path.parent().unwrap().join("frames/a.pgm")).unwrap();
