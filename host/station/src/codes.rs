@@ -243,6 +243,7 @@ codes::codes! {
         Contradiction [run] => "run-contradicts",
         Unkept [run, sha256] => "run-record-not-kept",
         Unnamed [run, sha256] => "run-without-row",
+        Foreign [path] => "kept-plans-foreign",
         Job [job] => "job-without-run",
         Audit [id] => "audit-contradicts",
         Plan [run] => "run-plan-wrong",

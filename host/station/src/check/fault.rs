@@ -1,5 +1,7 @@
 //! What may be wrong.
 
+use std::path::PathBuf;
+
 use crate::record::{BlobError, RecordError};
 use crate::store::StoreError;
 
@@ -60,6 +62,12 @@ pub enum Fault {
         run: String,
         /// The hash of its record.
         sha256: String,
+    },
+    /// Something that may lead out of the folder is among the plans of the plant.
+    #[error("{} is neither a file nor a folder, and no program puts such a thing there; remove it, and look who may write there", path.display())]
+    Foreign {
+        /// What it is.
+        path: PathBuf,
     },
     /// A job is done, and the run that it is done by is not there.
     #[error("the job {job} is done, and its run is not there; look at it by `halfrow-station job list`")]

@@ -12,6 +12,7 @@ pub use plant::check_plant;
 pub use superseded::Superseded;
 
 use crate::plan::plan_hash;
+use crate::published::Kept;
 use crate::record::{Blobs, PlanRecord, Record, UnnamedRecord};
 use crate::store::{Folder, OpenRun, Rebinding, Rebuilt, Removed, Snapshot, StoreError, TABLES};
 
@@ -58,6 +59,8 @@ pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
     let unnamed = folder.blobs().unnamed_records(&pieces, &snapshot.named_evidence()?)?;
     let superseded = superseded::superseded(&folder.blobs(), &unnamed, &snapshot)?;
     faults.extend(without_row(unnamed, &snapshot)?);
+    let foreign = Kept::of(folder.path()).foreign().map_err(|source| folder.refused(source))?;
+    faults.extend(foreign.into_iter().map(|path| Fault::Foreign { path }));
     let Look { evidence, pruned, .. } = look;
     Ok(Checked { runs: finals.len(), open: open.len(), evidence, pruned, superseded, faults })
 }

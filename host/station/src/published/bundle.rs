@@ -115,23 +115,10 @@ impl Bundle {
     /// # Errors
     /// [`BundleError`]
     pub fn of(path: &Path, plan: &Plan) -> Result<Self, BundleError> {
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let (mut files, mut bytes) = (Vec::new(), 0);
-        for FileHash { path: name, sha256: hash } in &plan.files {
-            check_name(name)?;
-            let path = folder.join(name);
-            let changed = |source| BundleError::Changed { path: path.clone(), source };
-            let content = fs::read(&path).map_err(|source| changed(Some(source)))?;
-            if sha256([&content]) != *hash {
-                return Err(changed(None));
-            }
-            bytes += content.len() as u64;
-            if bytes > MOST {
-                return Err(BundleError::TooLarge { bytes });
-            }
-            files.push(BundledFile { path: name.clone(), base64: BASE64_STANDARD.encode(content) });
-        }
-        Ok(Self { schema: SCHEMA, text: plan.text.clone(), files })
+        let Unpacked { text, files } = Unpacked::of(path, plan)?;
+        let bundled =
+            |(path, content)| BundledFile { path, base64: BASE64_STANDARD.encode::<Vec<u8>>(content) };
+        Ok(Self { schema: SCHEMA, text, files: files.into_iter().map(bundled).collect() })
     }
 
     /// It as a text.
@@ -172,6 +159,27 @@ pub(super) struct Unpacked {
 }
 
 impl Unpacked {
+    /// The plan that was read from the file `path`, with all that it names.
+    pub(super) fn of(path: &Path, plan: &Plan) -> Result<Self, BundleError> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let (mut files, mut bytes) = (Vec::new(), 0);
+        for FileHash { path: name, sha256: hash } in &plan.files {
+            check_name(name)?;
+            let path = folder.join(name);
+            let changed = |source| BundleError::Changed { path: path.clone(), source };
+            let content = fs::read(&path).map_err(|source| changed(Some(source)))?;
+            if sha256([&content]) != *hash {
+                return Err(changed(None));
+            }
+            bytes += content.len() as u64;
+            if bytes > MOST {
+                return Err(BundleError::TooLarge { bytes });
+            }
+            files.push((name.clone(), content));
+        }
+        Ok(Self { text: plan.text.clone(), files })
+    }
+
     /// Writes it into `folder`. Returns the plan's file.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! The plans that a station has fetched.
 
-use std::fs;
+use std::fs::{self, FileType};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -8,10 +8,11 @@ use halfrow::frames::written_aside::{AsideFolder, Misplaced, write_aside};
 use halfrow::result::sha256;
 use serde::{Deserialize, Serialize};
 
-use super::bundle::{PLAN, keep};
+use super::bundle::{PLAN, Unpacked, keep};
 use super::{BundleError, FetchError, PublicKey, Statement};
 use crate::history::PlanName;
 use crate::plan::Plan;
+use crate::record::is_hash;
 
 /// A folder of plans: each by its hash, and for each name what holds.
 #[derive(Clone, Debug)]
@@ -52,28 +53,56 @@ impl Kept {
         self.folder.join(&statement.sha256).join(PLAN)
     }
 
-    /// Copies all of it to `other`, which has nothing yet. What holds comes before the plans, which are there before it is said that they
-    /// hold.
+    /// Copies to `other`, which has nothing yet, what holds and the plans that are whole, of each what it names. What holds comes before the
+    /// plans, which are there before it is said that they hold.
     ///
     /// # Errors
     /// [`BundleError`]
     pub(crate) fn copy_to(&self, other: &Self) -> Result<(), BundleError> {
-        if !self.folder.exists() {
-            return Ok(());
+        let listed = || entries(&self.folder).map_err(|source| uncopied(&self.folder, source));
+        for (name, kind) in listed()? {
+            if kind.is_file() && name.strip_suffix(".json").is_some_and(is_hash) {
+                copy_signed(&self.folder.join(&name), &other.folder.join(&name))?;
+            }
         }
-        let mut folders = vec![self.folder.clone()];
-        while let Some(folder) = folders.pop() {
-            let refused = |source| BundleError::Uncopied { path: folder.clone(), source };
-            for entry in fs::read_dir(&folder).map_err(refused)? {
-                let path = entry.map_err(refused)?.path();
-                if path.is_dir() {
-                    folders.push(path);
-                } else if let Ok(name) = path.strip_prefix(&self.folder) {
-                    copy(&path, &other.folder.join(name))?;
-                }
+        for (name, kind) in listed()? {
+            if !kind.is_dir() || !is_hash(&name) {
+                continue;
+            }
+            match self.whole(&name) {
+                Some(plan) => drop(plan.write(&other.folder.join(&name))?),
+                None => tracing::warn!(
+                    "the plan {name} of the plant is not copied: it is not as it was published"
+                ),
             }
         }
         Ok(())
+    }
+
+    /// What lies there that no program of ours has put there, nor may be followed: it is neither a file nor a folder.
+    ///
+    /// # Errors
+    /// The system's reason when a folder cannot be read.
+    pub(crate) fn foreign(&self) -> io::Result<Vec<PathBuf>> {
+        let (mut folders, mut found) = (vec![self.folder.clone()], Vec::new());
+        while let Some(folder) = folders.pop() {
+            for (name, kind) in entries(&folder)? {
+                let path = folder.join(name);
+                if kind.is_dir() {
+                    folders.push(path);
+                } else if !kind.is_file() {
+                    found.push(path);
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// The plan of this hash with every file that it names, if it is just that.
+    fn whole(&self, hash: &str) -> Option<Unpacked> {
+        let file = self.folder.join(hash).join(PLAN);
+        let plan = Plan::load(&file).ok().filter(|plan| plan.sha256 == hash)?;
+        Unpacked::of(&file, &plan).ok()
     }
 
     /// Whether the plan is here with every file that it names, as it was published.
@@ -120,11 +149,34 @@ impl Kept {
     }
 }
 
-/// Copies a file that may be an unfinished one, and gone by now.
-fn copy(from: &Path, to: &Path) -> Result<(), BundleError> {
+/// Copies what an engineer has signed, if the file is of that form, and not gone by now.
+fn copy_signed(from: &Path, to: &Path) -> Result<(), BundleError> {
     match fs::read(from) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
-        Err(source) => Err(BundleError::Uncopied { path: from.to_owned(), source }),
-        Ok(content) => keep(to, &content),
+        Err(source) => Err(uncopied(from, source)),
+        Ok(content) if serde_json::from_slice::<Signed>(&content).is_ok() => keep(to, &content),
+        Ok(_) => Ok(()),
     }
+}
+
+fn uncopied(path: &Path, source: io::Error) -> BundleError {
+    BundleError::Uncopied { path: path.to_owned(), source }
+}
+
+/// What lies in a folder, which need not be there, and what each is, no link followed. What goes meanwhile is left out.
+fn entries(folder: &Path) -> io::Result<Vec<(String, FileType)>> {
+    let is_gone = |error: &io::Error| error.kind() == io::ErrorKind::NotFound;
+    let entries = match fs::read_dir(folder) {
+        Err(error) if is_gone(&error) => return Ok(Vec::new()),
+        entries => entries?,
+    };
+    let mut found = Vec::new();
+    for entry in entries {
+        let entry = entry?;
+        match entry.file_type() {
+            Err(error) if is_gone(&error) => {}
+            kind => found.push((entry.file_name().to_string_lossy().into_owned(), kind?)),
+        }
+    }
+    Ok(found)
 }

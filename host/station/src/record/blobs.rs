@@ -178,7 +178,8 @@ pub(crate) struct Piece {
     pub modified: SystemTime,
 }
 
-fn is_hash(name: &str) -> bool {
+/// Whether it is what evidence is called.
+pub(crate) fn is_hash(name: &str) -> bool {
     name.len() == 64 && name.bytes().all(|byte| byte.is_ascii_digit() || (b'a'..=b'f').contains(&byte))
 }
 

@@ -12,7 +12,7 @@ use halfrow::result::FileHash;
 use serde::{Deserialize, Serialize};
 
 pub use blobs::{BlobError, Blobs};
-pub(crate) use blobs::{Piece, synced};
+pub(crate) use blobs::{Piece, is_hash, synced};
 pub use conclude::Conclusion;
 pub use step::{
     BoardSeen, DeviceSeen, Measured, MeasuredOutcome, RunCause, StepOutcome, StepRecord, SuspectRecord,

@@ -77,7 +77,7 @@ impl Folder {
         self.0.join("spool")
     }
 
-    pub(super) fn refused(&self, source: std::io::Error) -> StoreError {
+    pub(crate) fn refused(&self, source: std::io::Error) -> StoreError {
         StoreError::Folder { folder: self.0.clone(), source }
     }
 

@@ -2,6 +2,7 @@
 
 pub(crate) mod commands;
 mod control;
+mod copied_plans;
 mod counted;
 mod exports;
 pub(crate) mod generated;
