@@ -148,12 +148,18 @@ async fn machine(
             response.headers_mut().insert(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
             Err(response)
         }
-        Machine::Known { name, is_new } => {
-            let visit = Visit { user: Some(User { name, who: Who::Reader }), may_look: true, ..stranger };
+        Machine::Known { name, is_noted } => {
+            let user = Some(User { name: name.clone(), who: Who::Reader });
+            let visit = Visit { user, may_look: true, ..stranger };
             if is_act {
                 return Err(refused(&visit, StatusCode::FORBIDDEN, visit.say("trouble.forbidden")));
             }
-            if is_new { told(visit, "token", peer.to_string()).await } else { Ok(visit) }
+            if is_noted {
+                return Ok(visit);
+            }
+            let visit = told(visit, "token", peer.to_string()).await?;
+            app.access().noted(name, peer);
+            Ok(visit)
         }
     }
 }

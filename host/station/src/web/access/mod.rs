@@ -6,11 +6,11 @@
 mod address;
 mod failures;
 mod key;
+mod machines;
 mod sessions;
 mod tokens;
 mod users;
 
-use std::collections::HashSet;
 use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -28,6 +28,7 @@ use crate::settings::Settings;
 use failures::Failures;
 pub(super) use failures::network;
 use key::Key;
+use machines::Machines;
 use sessions::Sessions;
 
 /// What the marks of forms are told from others by, and those of cookies.
@@ -47,8 +48,7 @@ pub struct Access {
     refused: Mutex<Failures<IpAddr>>,
     /// Scans of those who are logged in that are no badge, by their sessions: other operators may be behind the same proxy.
     scans: Mutex<Failures<String>>,
-    /// Which machine was let in from where since the start.
-    machines: Mutex<HashSet<(String, IpAddr)>>,
+    machines: Mutex<Machines>,
 }
 
 /// Who may act.
@@ -72,8 +72,8 @@ pub(super) enum Claimant {
 /// A machine that asks with a token.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Machine {
-    /// It is let in under this name, for the first time from there or not.
-    Known { name: String, is_new: bool },
+    /// It is let in under this name; the audit has it from there, or not yet.
+    Known { name: String, is_noted: bool },
     /// It is not.
     Unknown,
     /// It is not, and has to wait so long until it is told so again.
@@ -84,9 +84,6 @@ pub(super) enum Machine {
 const MOST_FAILURES: usize = 10;
 /// So many scans within a minute are more than anybody makes who does not guess.
 const MOST_SCANS: usize = 120;
-
-/// The most machines and addresses that are remembered.
-const MOST_MACHINES: usize = 1000;
 
 /// The station's key, in its folder.
 fn key_file(data: &Path) -> PathBuf {
@@ -200,9 +197,13 @@ impl Access {
             return wait.map_or(Machine::Unknown, Machine::Waits);
         };
         // One that is right never waits, for 256 bits are not guessed, and behind a proxy others have the same address.
-        let mut machines = locked(&self.machines);
-        let is_new = machines.len() < MOST_MACHINES && machines.insert((name.to_owned(), peer));
-        Machine::Known { name: name.to_owned(), is_new }
+        let is_noted = locked(&self.machines).has(name, peer);
+        Machine::Known { name: name.to_owned(), is_noted }
+    }
+
+    /// The audit has that this machine was let in from `peer`.
+    pub(super) fn noted(&self, name: String, peer: IpAddr) {
+        locked(&self.machines).note(name, peer);
     }
 
     /// A new session of `who`: the value of its cookie.

@@ -1,5 +1,6 @@
 //! A plant's figures, over all stations.
 
+use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -96,6 +97,41 @@ fn people_and_machines_look_at_a_plant_that_others_can_reach() {
     assert_eq!(serving.engineer().get("/").send().status, 200);
     let noted = server.rows("SELECT operator_id, act FROM audit ORDER BY id");
     assert_eq!(noted, [["prometheus", "token"], ["Braun", "login"]]);
+}
+
+/// The role that the page of the plant tells how to make.
+#[test]
+fn the_pages_work_with_a_role_that_only_looks_and_no_machine_is_let_in_without_the_audit() {
+    let server = Server::prepared();
+    let (_made, _) = send(history(), server.address());
+    let page = include_str!("../../../../../docs/plant.md");
+    let grants = page.split("```sql\n").find(|text| text.contains("GRANT")).unwrap();
+    let (grants, _) = grants.split_once("```").unwrap();
+    let of_audit = "GRANT INSERT ON audit TO reader;\n";
+    assert!(grants.contains(of_audit), "{grants}");
+    let grant = |text: &str| server.client("plant").batch_execute(text).unwrap();
+    grant(&grants.replace(of_audit, ""));
+    let folder = folder();
+    let public =
+        "public = \"https://station12.example\"\n[access]\nusers = \"users.toml\"\ntokens = \"tokens.toml\"";
+    let settings = settings(&server, folder.path(), public);
+    let text = fs::read_to_string(&settings).unwrap();
+    fs::write(&settings, text.replace("postgres://postgres@", "postgres://reader@")).unwrap();
+    did(&["user", "add", "Braun", "--role", "engineer"], &settings, "B-0022\ncorrect horse\n");
+    let token = did(&["token", "add", "mes", "--scope", "read"], &settings, "").said;
+    let serving = Serving::of(&mut command(&settings));
+    let ask = |path: &str| {
+        let request = Request::bare(serving.port, "GET", path).with("host", PUBLIC);
+        request.with("authorization", &format!("Bearer {}", token.trim())).send().status
+    };
+    assert_eq!([ask("/history"), ask("/history")], [503, 503]);
+    grant(of_audit);
+    for path in ["/", "/history", "/unit?serial=S1", "/yield", "/pareto", "/jobs", "/metrics"] {
+        assert_eq!(ask(path), 200, "{path}");
+    }
+    assert_eq!(serving.engineer().get("/").send().status, 200);
+    let noted = "SELECT operator_id, act FROM audit WHERE operator_id IN ('mes', 'Braun') ORDER BY id";
+    assert_eq!(server.rows(noted), [["mes", "token"], ["Braun", "login"]]);
 }
 
 /// Somebody holds a table of the plant: who watches is told soon, however often, and pages that need nothing of it go on.
