@@ -6,13 +6,14 @@ use clap::{Args, Subcommand};
 
 use super::beginning::{SettingsFile, Signal};
 use super::kept::days_ago_ms;
+use super::publish::{address, published};
 use super::why::Why;
 use super::{Failure, check, print};
 use crate::check::check_plant;
 use crate::console;
 use crate::exit::Exit;
 use crate::settings::{PlantSettings, PlantSettingsError, Settings};
-use crate::store::{Plant, PlantAddress, PlantError, Snapshot};
+use crate::store::{Plant, PlantError, Snapshot};
 use crate::web::{Access, App, Server, User, Who};
 
 /// How often it is said how far something long is.
@@ -70,21 +71,22 @@ impl Arguments {
 }
 
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
-    let settings = settings.load_plant()?;
-    let address = plant(&settings)?.address()?;
+    // No plan is looked at, for those of the plant are fetched when it has tables.
+    let address = || address(&published(settings)?);
     match what {
         What::Prepare => {
+            let address = address()?;
             let version = Plant::prepare(&address.patient())?;
             print(&format!("the plant {address} has version {version}"))
         }
         What::Forget { station, why: Why { reason, operator } } => {
-            if Plant::connect(&address)?.forget(station, operator, reason)? {
+            if Plant::connect(&address()?)?.forget(station, operator, reason)? {
                 return print(&format!("the next folder that says it is {station} is taken for it"));
             }
             Err(Failure::call(NoStation { station: station.clone() }))
         }
         What::Check { json } => {
-            let snapshot = Snapshot::of_plant(Plant::connect(&address.patient())?)?;
+            let snapshot = Snapshot::of_plant(Plant::connect(&address()?.patient())?)?;
             let mut told = progress("runs read");
             check::tell(&check_plant(&snapshot, &mut |runs| told(runs as u64))?, *json)
         }
@@ -92,10 +94,10 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             let before_ms = days_ago_ms(*older_than);
             let mut told = progress("rows removed");
             let removed =
-                Plant::connect(&address.patient())?.prune(before_ms, operator, reason, &mut told)?;
+                Plant::connect(&address()?.patient())?.prune(before_ms, operator, reason, &mut told)?;
             print(&format!("{removed} rows were removed; every record is kept"))
         }
-        What::Serve => serve(settings, address),
+        What::Serve => serve(settings.load_plant()?),
     }
 }
 
@@ -110,14 +112,15 @@ fn progress(done: &'static str) -> impl FnMut(u64) {
     }
 }
 
-fn serve(settings: Settings, plant: PlantAddress) -> Result<Exit, Failure> {
+fn serve(settings: Settings) -> Result<Exit, Failure> {
+    let address = plant(&settings)?.address()?;
     let signal = Signal::heed()?;
     std::fs::create_dir_all(&settings.data).map_err(Failure::call)?;
     let everybody = User { name: String::new(), who: Who::Reader };
     let access = Access::of(&settings, everybody).map_err(Failure::call)?;
     let listener = Server::listen(access.listen()).map_err(Failure::call)?;
     let at = listener.local_addr().map_err(Failure::error)?;
-    let app = App::of_plant(settings, plant, access.at(at.port()));
+    let app = App::of_plant(settings, address, access.at(at.port()));
     let server = Server::start(&app, listener).map_err(Failure::error)?;
     console::tell(&format!("The pages are at http://{at}/"));
     let by = signal.wait(|| ());

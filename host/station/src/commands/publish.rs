@@ -305,11 +305,12 @@ fn all_fetched(kept: &Kept, offers: Offers) -> Result<(), Failure> {
 }
 
 /// What the settings have of the plant.
-fn published(settings: &SettingsFile) -> Result<Published, Failure> {
+pub(super) fn published(settings: &SettingsFile) -> Result<Published, Failure> {
     Settings::published(&settings.path()?).map_err(Failure::call)
 }
 
-fn address(Published { plant, .. }: &Published) -> Result<PlantAddress, Failure> {
+/// Where the plant is.
+pub(super) fn address(Published { plant, .. }: &Published) -> Result<PlantAddress, Failure> {
     Ok(plant.as_ref().ok_or_else(|| Failure::call(NoPlant))?.address()?)
 }
 

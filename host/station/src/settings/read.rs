@@ -41,12 +41,7 @@ const MOST_AT_ONCE: u32 = 64;
 
 /// The settings of `text` in the file `path`.
 pub(super) fn settings(path: &Path, text: &str, has_lanes: bool) -> Result<Settings, Fault> {
-    let read: SettingsText = toml::from_str(text).map_err(|error| Fault::of_toml(&error, KEYS))?;
-    if *read.schema.get_ref() != SCHEMA {
-        let what = format!("this program reads settings of schema {SCHEMA}, not {}", read.schema.get_ref());
-        let remedy = "take the halfrow-station that they were written for";
-        return Err(Fault::wrong(read.schema.span().start, what, remedy));
-    }
+    let read = read(text)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let station = &read.station;
     if has_lanes && read.lane.is_empty() {
@@ -107,9 +102,19 @@ fn at_once(text: Option<&Spanned<u32>>) -> Result<u32, Fault> {
     }
 }
 
+fn read(text: &str) -> Result<SettingsText, Fault> {
+    let read: SettingsText = toml::from_str(text).map_err(|error| Fault::of_toml(&error, KEYS))?;
+    if *read.schema.get_ref() != SCHEMA {
+        let what = format!("this program reads settings of schema {SCHEMA}, not {}", read.schema.get_ref());
+        let remedy = "take the halfrow-station that they were written for";
+        return Err(Fault::wrong(read.schema.span().start, what, remedy));
+    }
+    Ok(read)
+}
+
 /// The plans that the settings of `text` would have of the plant, where the station's folder is, and the plant.
 pub(super) fn published(path: &Path, text: &str) -> Result<Published, Fault> {
-    let read: SettingsText = toml::from_str(text).map_err(|error| Fault::of_toml(&error, KEYS))?;
+    let read = read(text)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let of_lanes = read.lane.iter().map(|lane| &lane.plans);
     let named = of_lanes.chain(read.work.iter().map(|work| &work.plans)).flat_map(Spanned::get_ref);

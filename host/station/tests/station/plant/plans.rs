@@ -127,6 +127,20 @@ fn a_plan_comes_to_the_station_with_its_files_and_an_older_one_can_hold_again() 
     assert_eq!(acts.len(), 3);
 }
 
+/// The settings name plans that only a plant with tables can have.
+#[test]
+fn an_empty_database_is_prepared_by_the_settings_of_a_station_with_plans_of_the_plant() {
+    let made = Published::new();
+    let empty = "DROP SCHEMA public CASCADE; CREATE SCHEMA public";
+    made.server.client("plant").batch_execute(empty).unwrap();
+    assert!(made.fetch().complained.contains("plant prepare"));
+    let prepared = made.did(&["plant", "prepare"]);
+    assert_eq!(prepared.code, Some(0), "{prepared:?}");
+    assert_eq!(made.did(&["plant", "check"]).code, Some(0));
+    made.publish("engel.key");
+    assert_eq!(made.fetch().said, "CAM-T/quick 1, number 1, is new\n");
+}
+
 #[test]
 fn what_nobody_signed_who_is_trusted_is_not_taken() {
     let made = Published::new();
