@@ -255,6 +255,7 @@ codes::codes! {
         Unknown [serial] => "unit-unknown",
         Several [serial, first, second] => "unit-of-two-products",
         NoReason => "rebind-without-reason",
+        TooLong [characters, most] => "rebind-reason-too-long",
         NoDevice [device] => "device-malformed",
         UnderTest [serial] => "unit-under-test",
         = Store,

@@ -19,7 +19,7 @@ pub(super) struct Arguments {
     /// The board's serial number
     #[arg(long)]
     serial: String,
-    /// Why
+    /// Why, in 500 characters at most
     #[arg(long, value_parser = not_empty)]
     reason: String,
     /// The number of its FPGA, 16 hexadecimal digits [default: that of the board that is judged next]
@@ -63,6 +63,7 @@ impl From<RebindError> for Failure {
             RebindError::Unknown { .. }
             | RebindError::Several { .. }
             | RebindError::NoReason
+            | RebindError::TooLong { .. }
             | RebindError::NoDevice { .. } => Self::call(error),
         }
     }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::audit::Line;
 use super::database::{Database, DatabaseError, Row, values};
-use super::{Store, StoreError, statements as sql};
+use super::{MOST_REASON, Store, StoreError, statements as sql};
 use crate::clock;
 use crate::record::RunHead;
 use crate::said::{Said, Saying};
@@ -90,6 +90,10 @@ impl Store {
         if change.reason.trim().is_empty() {
             return Err(RebindError::NoReason);
         }
+        let (characters, most) = (change.reason.trim().chars().count(), MOST_REASON);
+        if characters > most {
+            return Err(RebindError::TooLong { characters, most });
+        }
         if let Some(device) = change.device.filter(|device| !is_device(device)) {
             return Err(RebindError::NoDevice { device: device.to_owned() });
         }
@@ -172,6 +176,16 @@ pub enum RebindError {
     /// Nobody says why.
     #[error("another binding needs a reason; say why, it is kept")]
     NoReason,
+    /// The reason is longer than pages and events have room for.
+    #[error(
+        "the reason has {characters} characters, and another binding's has {most} at most; say it in less"
+    )]
+    TooLong {
+        /// Its length.
+        characters: usize,
+        /// The most.
+        most: usize,
+    },
     /// This is no device.
     #[error(
         "`{device}` is no device; give 16 hexadecimal digits in lower case, not all 0, as a run prints them behind `device`"

@@ -97,7 +97,9 @@ pub(super) async fn rebind(
     let status = match &bound {
         Ok(_) => return Ok(Redirect::to(&unit_address(&serial)).into_response()),
         Err(RebindError::Unknown { .. }) => StatusCode::NOT_FOUND,
-        Err(RebindError::NoReason | RebindError::NoDevice { .. }) => StatusCode::BAD_REQUEST,
+        Err(RebindError::NoReason | RebindError::TooLong { .. } | RebindError::NoDevice { .. }) => {
+            StatusCode::BAD_REQUEST
+        }
         Err(RebindError::Several { .. } | RebindError::UnderTest { .. }) => StatusCode::CONFLICT,
         Err(RebindError::Store(_)) => StatusCode::SERVICE_UNAVAILABLE,
     };

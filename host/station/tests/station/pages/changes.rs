@@ -92,10 +92,12 @@ fn an_engineer_binds_a_unit_to_another_device_with_a_reason() {
         browser.post("/unit/rebind", &fields).send()
     };
     assert_eq!(bind(&operator, "", "repaired").status, 403);
+    let long = "x".repeat(501);
     for (device, reason, code) in [
         ("00000000000000Ff", "repaired", "device-malformed"),
         ("0000000000000000", "repaired", "device-malformed"),
         ("00000000000000ff", " ", "rebind-without-reason"),
+        ("00000000000000ff", &long, "rebind-reason-too-long"),
     ] {
         let refused = bind(&engineer, device, reason);
         assert_eq!(refused.status, 400, "{device}");
