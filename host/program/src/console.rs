@@ -26,6 +26,18 @@ pub fn print(text: &str) -> Result<(), Unprinted> {
     print_raw(&format!("{text}\n"))
 }
 
+/// Writes a document to stdout, with each of its bytes as it is. A terminal is shown what [`print()`] would show it.
+///
+/// # Errors
+/// As [`print()`].
+pub fn hand_out(document: &[u8]) -> Result<(), Unprinted> {
+    if io::stdout().is_terminal() {
+        return print_raw(&String::from_utf8_lossy(document));
+    }
+    let mut stdout = io::stdout().lock();
+    taken(stdout.write_all(document).and_then(|()| stdout.flush()))
+}
+
 /// [`print()`] without a line's end of its own.
 ///
 /// # Errors
@@ -36,7 +48,11 @@ pub(crate) fn print_raw(text: &str) -> Result<(), Unprinted> {
     // Put together first: the stripping of colours would write every piece of text by itself.
     let mut bytes = AutoStream::new(Vec::new(), AutoStream::choice(&stdout));
     let styled = bytes.write_all(text.as_bytes());
-    match styled.and_then(|()| stdout.write_all(&bytes.into_inner())).and_then(|()| stdout.flush()) {
+    taken(styled.and_then(|()| stdout.write_all(&bytes.into_inner())).and_then(|()| stdout.flush()))
+}
+
+fn taken(written: io::Result<()>) -> Result<(), Unprinted> {
+    match written {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         written => written.map_err(Unprinted),
     }

@@ -8,6 +8,7 @@ use halfrow::frames::written_aside::{Aside, WriteAsideError, write_aside};
 
 use super::looking::{Filtered, Results};
 use super::{Failure, print};
+use crate::console;
 use crate::exit::Exit;
 use crate::export::{self, ExportError, Format, Table};
 use crate::history::runs::{Filter, MOST, page};
@@ -55,9 +56,8 @@ fn one(of: &Snapshot, run: &str, format: Format, to: Option<&Path>) -> Result<Ex
         write_aside(to, false, |file| file.write_all(&bytes)).map_err(unwritten)?;
         return Ok(Exit::Pass);
     }
-    let text = String::from_utf8_lossy(&bytes);
-    // The line's end comes with the printing.
-    print(text.strip_suffix('\n').unwrap_or(&text))
+    console::hand_out(&bytes)?;
+    Ok(Exit::Pass)
 }
 
 /// Writes all runs of the filter, and says how many they were.

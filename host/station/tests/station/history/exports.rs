@@ -89,6 +89,21 @@ fn the_same_run_has_the_same_bytes_every_time() {
     assert_eq!(fs::read(first).unwrap(), fs::read(second).unwrap());
 }
 
+/// Colours are taken out of what others print, and a name may have some.
+#[test]
+fn stdout_has_the_same_bytes_as_a_file() {
+    let mut made = Made::new();
+    let run = made.run(&Run { operator: "\u{1b}[31mEve\u{1b}[0m".to_owned(), ..Run::of("S1", End::Pass) });
+    let place = tempfile::tempdir().unwrap();
+    for format in ["record", "junit", "openhtf", "csv"] {
+        let to = place.path().join(format);
+        let (code, said, _) = did(&made, &["export", &run, "--format", format]);
+        assert_eq!(code, 0, "{format}");
+        assert_eq!(did(&made, &["export", &run, "--format", format, "--to", to.to_str().unwrap()]).0, 0);
+        assert_eq!(said.as_bytes(), fs::read(to).unwrap(), "{format}");
+    }
+}
+
 #[test]
 fn nothing_is_overwritten_by_an_export() {
     let made = made();
