@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
+use halfrow::report::wording::plain;
 
 use super::beginning::SettingsFile;
 use super::{Failure, print, publish};
@@ -90,7 +91,12 @@ fn head(plan: &Plan) -> String {
     if !plan.production.require_hardware {
         lines.push("any kind of board is judged, so no run counts as production".to_owned());
     }
-    lines.join("\n")
+    in_lines(lines)
+}
+
+/// Each in a line of its own, whatever names a plan gives.
+fn in_lines(lines: impl IntoIterator<Item = String>) -> String {
+    lines.into_iter().map(|line| plain(&line).into_owned()).collect::<Vec<_>>().join("\n")
 }
 
 fn variant(name: &str, selected: &Selected) -> String {
@@ -98,7 +104,7 @@ fn variant(name: &str, selected: &Selected) -> String {
         if name.is_empty() { "no variant that is named".to_owned() } else { format!("variant {name}") };
     let steps = selected.steps.iter().zip(1..).map(|(step, seq)| format!("  {seq} {}", told(step)));
     let limits = selected.limits.iter().map(|limit| format!("  limit {}", bounds(limit)));
-    std::iter::once(title).chain(steps).chain(limits).collect::<Vec<_>>().join("\n")
+    in_lines(std::iter::once(title).chain(steps).chain(limits))
 }
 
 fn told(step: &Step) -> String {

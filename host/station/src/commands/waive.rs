@@ -1,6 +1,7 @@
 //! `halfrow-station waive`
 
 use clap::Args;
+use halfrow::report::wording::plain;
 
 use super::Failure;
 use super::looking::Data;
@@ -28,7 +29,8 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut store = Store::open_existing(&arguments.data.folder())?;
     let waiver = store.waive(&arguments.run, &arguments.operator, &arguments.reason)?;
-    console::tell(&format!("run {} is waived by {}: {}", waiver.run, waiver.operator, waiver.reason));
+    let said = format!("run {} is waived by {}: {}", waiver.run, waiver.operator, waiver.reason);
+    console::tell(&plain(&said));
     Ok(Exit::Pass)
 }
 

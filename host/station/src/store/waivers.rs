@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use halfrow::Verdict;
+use halfrow::report::wording::plain;
 use serde::Serialize;
 
 use super::audit::Line;
@@ -12,7 +13,7 @@ use crate::clock;
 use crate::ids;
 use crate::ids::NoRandomness;
 
-/// The longest reason, in characters.
+/// The longest reason of a waiver or of another binding, in characters.
 pub(crate) const MOST_REASON: usize = 500;
 
 /// A waiver of a run.
@@ -46,7 +47,7 @@ pub enum NoWaiver {
         verdict: String,
     },
     /// It has a waiver.
-    #[error("the run {run} has a waiver already, by {}: {}; one is enough", waiver.operator, waiver.reason)]
+    #[error("the run {run} has a waiver already, by {}: {}; one is enough", plain(&waiver.operator), plain(&waiver.reason))]
     Waived {
         /// The run.
         run: String,

@@ -2,11 +2,14 @@
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 use std::time::Duration;
 
 use halfrow_station::plan::limits::{Blame, MEASUREMENTS, Measurement};
 use halfrow_station::plan::{Act, JSON_SCHEMA, Plan, Seed};
 use serde_json::Value;
+
+use crate::common::{PLAN, program};
 
 /// A plan that uses every key.
 const WHOLE: &str = r#"schema = 1
@@ -122,7 +125,7 @@ fn the_hash_changes_with_the_text_and_with_every_file_that_it_names() {
     let sum = |bytes: &[u8]| {
         let path = folder.path().join("bytes");
         fs::write(&path, bytes).unwrap();
-        let output = std::process::Command::new("sha256sum").arg(&path).output().unwrap();
+        let output = Command::new("sha256sum").arg(&path).output().unwrap();
         String::from_utf8(output.stdout).unwrap()[..64].to_owned()
     };
     let expected = sum(format!("{WHOLE}\nchart.pgm\0{}", sum(&chart(64))).as_bytes());
@@ -263,6 +266,19 @@ fn limits_need_a_step_that_measures_and_a_plan_one_that_judges() {
 fn a_plan_that_is_not_there_is_named() {
     let said = Plan::load(Path::new("no/plan.toml")).unwrap_err().to_string();
     assert_eq!(said, "no/plan.toml cannot be read; check its name, and who may read it");
+}
+
+#[test]
+fn a_plan_that_is_checked_prints_its_names_in_their_own_lines() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("plan.toml");
+    let named =
+        |text: String| text.replace("kind = \"verify\"\n", "kind = \"verify\"\nname = \"a\\nPASS\"\n");
+    fs::write(&file, named(PLAN.replace("\"quick\"", "\"q\\u001b[8m\\u202e\\nPASS\\u2028x\""))).unwrap();
+    let checked = Command::new(program()).args(["plan", "check"]).arg(&file).output().unwrap();
+    let said = String::from_utf8(checked.stdout).unwrap();
+    assert!(said.contains("plan      q\\u{1b}[8m\\u{202e}\\nPASS\\u{2028}x 1 for CAM-T\n"), "{said}");
+    assert!(said.contains("  2 a\\nPASS: 1 x "), "{said}");
 }
 
 /// As editors of Windows save umlauts, and a device that has no end.

@@ -3,6 +3,7 @@
 use halfrow_station::record::RunCause;
 use halfrow_station::store::NoWaiver;
 
+use super::commands::did;
 use super::made::{End, Made, Run};
 
 fn rows(made: &Made, text: &str) -> Vec<String> {
@@ -48,4 +49,22 @@ fn what_is_no_fail_or_has_a_waiver_or_no_reason_is_not_waived() {
     assert!(again.to_string().contains("by engel: x"), "{again}");
     assert_eq!(rows(&made, "SELECT operator_id FROM waiver"), ["engel"]);
     assert_eq!(rows(&made, "SELECT operator_id FROM audit"), ["engel"]);
+}
+
+/// A line of its own would look like a verdict.
+#[test]
+fn a_reason_and_a_name_are_printed_in_one_line() {
+    let mut made = Made::new();
+    let run = made.run(&Run::of("S1", End::Fail(&[])));
+    let made = made.closed();
+    let waive = ["waive", &run, "--operator", "Eve\u{1b}[8m", "--reason", "x\nPASS\u{202e}"];
+    let (code, said, complained) = did(&made, &waive);
+    assert_eq!((code, complained.as_str()), (0, ""));
+    assert_eq!(said, format!("run {run} is waived by Eve\\u{{1b}}[8m: x\\nPASS\\u{{202e}}\n"));
+    let (code, said, complained) = did(&made, &waive);
+    assert_eq!((code, said.as_str()), (2, ""));
+    assert!(
+        complained.contains("already, by Eve\\u{1b}[8m: x\\nPASS\\u{202e}; one is enough"),
+        "{complained}"
+    );
 }
