@@ -59,10 +59,18 @@ pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
     let unnamed = folder.blobs().unnamed_records(&pieces, &snapshot.named_evidence()?)?;
     let superseded = superseded::superseded(&folder.blobs(), &unnamed, &snapshot)?;
     faults.extend(without_row(unnamed, &snapshot)?);
-    let foreign = Kept::of(folder.path()).foreign().map_err(|source| folder.refused(source))?;
-    faults.extend(foreign.into_iter().map(|path| Fault::Foreign { path }));
+    faults.extend(foreign(folder)?);
     let Look { evidence, pruned, .. } = look;
     Ok(Checked { runs: finals.len(), open: open.len(), evidence, pruned, superseded, faults })
+}
+
+/// What is among the plans in `folder` and may lead out of it, whatever version its database has.
+///
+/// # Errors
+/// [`StoreError`] when a folder cannot be read.
+pub(crate) fn foreign(folder: &Folder) -> Result<Vec<Fault>, StoreError> {
+    let found = Kept::of(folder.path()).foreign().map_err(|source| folder.refused(source))?;
+    Ok(found.into_iter().map(|path| Fault::Foreign { path }).collect())
 }
 
 /// The records, of those that no row names, whose runs have no row.

@@ -7,7 +7,7 @@ use std::io;
 use std::os::unix::fs::{DirBuilderExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
-use crate::check::{Fault, check};
+use crate::check::{Fault, check, foreign};
 use crate::published::{BundleError, Kept};
 use crate::record::{Blobs, Piece, synced};
 use crate::store::{ASIDE, Folder, Snapshot, Store, StoreError};
@@ -81,8 +81,8 @@ pub fn backup(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
 /// [`CopyError`]
 pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
     match sound(from, from) {
-        // It is looked at when it is up to date.
-        Err(CopyError::Store(StoreError::Older { .. })) => {}
+        // The rest is looked at when it is up to date.
+        Err(CopyError::Store(StoreError::Older { .. })) => refuse(from, &foreign(from)?)?,
         looked_at => looked_at?,
     }
     let mut lock = None;
@@ -177,7 +177,10 @@ pub fn faults(folder: &Folder) -> Result<Vec<Fault>, StoreError> {
 
 /// Refuses a folder in which anything is not as it was written, as a fault of the one that is `named`.
 fn sound(folder: &Folder, named: &Folder) -> Result<(), CopyError> {
-    let faults = faults(folder)?;
+    refuse(named, &faults(folder)?)
+}
+
+fn refuse(named: &Folder, faults: &[Fault]) -> Result<(), CopyError> {
     match faults.first() {
         None => Ok(()),
         Some(first) => Err(CopyError::Faulty {

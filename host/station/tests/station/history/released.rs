@@ -256,6 +256,10 @@ fn a_backup_of_a_newer_program_or_with_a_fault_is_refused_and_nothing_is_left() 
     let record = query(backup.path(), "SELECT record_sha256 FROM run WHERE verdict = 'FAIL'").remove(0);
     fs::write(Folder::new(backup.path()).blobs().path(&record), "{}").unwrap();
     refused(&backup, "holds other bytes than its name says");
+    let backup = left(1);
+    fs::create_dir(backup.path().join("plans")).unwrap();
+    std::os::unix::fs::symlink(backup.path(), backup.path().join("plans/evil")).unwrap();
+    refused(&backup, "plans/evil is neither a file nor a folder");
 }
 
 /// A restore of this is refused with these words about it, and leaves nothing behind.
