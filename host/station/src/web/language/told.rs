@@ -143,7 +143,7 @@ mod tests {
     fn what_has_a_code_is_said_in_the_language_with_its_figures_and_causes() {
         let lane = "3".to_owned();
         let out = ScanError::Lane(Refusal::Out { lane, why: Saying::OutByPerson.into() });
-        let told = "Platz 3 ist außer Betrieb: von einer Person stillgelegt; mit HR:IN wieder in Betrieb nehmen oder anderen Platz nehmen";
+        let told = "Platz 3 ist gesperrt: durch eine Person; mit HR:IN entsperren oder anderen Platz nehmen";
         assert_eq!(german(&Said::of(&out)), (told.to_owned(), None));
         let text =
             "lane 3 is out of service: taken out by a person; put it back with HR:IN, or take another lane";
@@ -191,7 +191,7 @@ mod tests {
         let (_, told) = of(Some("de"), None).parted(&lost, Some("Check the cable."));
         assert_eq!(
             text(told),
-            Some(("Kabel und Verbindung prüfen, dann noch einmal prüfen".to_owned(), None))
+            Some(("Kabel und Verbindung prüfen, dann die Platine noch einmal prüfen".to_owned(), None))
         );
     }
 
@@ -232,7 +232,7 @@ mod tests {
                 "doubt": { "of": "requests-twice", "requests": 1 },
             }),
         );
-        let link = "Kabel und Verbindung prüfen, dann noch einmal prüfen";
+        let link = "Kabel und Verbindung prüfen, dann die Platine noch einmal prüfen";
         assert_eq!(of(Some("de"), None).remedy(Some(&doubted), "in English").text, format!("{link}."));
         let doubted = Said { message: "it may be; check the link, and run again".to_owned(), ..doubted };
         let (why, asked) = of(Some("de"), None).parted(&doubted, Some("Check the link, and run again."));

@@ -160,8 +160,8 @@ fn failures_have_bars_by_part_and_by_check() {
     };
     assert!(row(&served.page("/pareto"), "memory").contains("</svg> 15</td>"));
     assert!(row(&served.page("/pareto?by=check"), "verify").contains("</svg> 15</td>"));
-    assert!(served.page("/pareto").contains("Runs that failed: 15, of units: "));
-    assert!(served.page("/pareto?plan=none").contains("Nothing failed that fits."));
+    assert!(served.page("/pareto").contains("Runs that failed: 15; units concerned: "));
+    assert!(served.page("/pareto?plan=none").contains("There are no failures that match."));
 }
 
 #[test]

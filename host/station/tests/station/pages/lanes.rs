@@ -273,10 +273,7 @@ fn nothing_that_an_operator_is_told_stays_english_in_another_language() {
     let page = |language: &str| here.get("/").with("accept-language", language).send().text();
     while !page("en").contains("lane fail") {}
     for (language, said) in [
-        (
-            "de",
-            ["Abtastwerten weichen ab", "von einer Person stillgelegt", "gesichert ", "Bitstream neu laden"],
-        ),
+        ("de", ["Abtastwerten weichen ab", "durch eine Person", "gesichert ", "Bitstream neu laden"]),
         ("zh", ["个样值中", "由人员停用", "已保存 ", "请重新加载比特流"]),
     ] {
         let page = page(language);

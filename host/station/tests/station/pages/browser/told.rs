@@ -74,8 +74,8 @@ fn what_to_do_is_shown_whole_on_every_screen_and_in_every_language() {
         for size in [(1920, 1080), (1280, 800), (360, 740)] {
             for (language, asked) in [
                 ("en", "Start ser2net or halfrow serve there, and check the port"),
-                ("de", "Prüfen, ob die Platine dort bedient wird"),
-                ("zh", "请检查那里的板卡服务"),
+                ("de", "Bei der Platine ser2net oder halfrow serve starten"),
+                ("zh", "请在板卡所在主机上启动 ser2net 或 halfrow serve，并检查端口"),
             ] {
                 shown(&mut page, &serving, language, size);
                 assert_eq!(page.evaluate(CUT), json!([]), "{lanes} {language} {size:?}");
