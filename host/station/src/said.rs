@@ -25,7 +25,26 @@ pub struct Said {
     pub causes: Vec<Self>,
 }
 
+/// What to do about what the station says, in full sentences, where its own do not end in it: by code.
+pub(crate) const REMEDIES: [(&str, &str); 8] = [
+    ("plan-takes-hardware", "Check the lane's target."),
+    ("build-not-of-plan", "Load a released build, or take the plan for this one."),
+    ("device-asked-for", "Load a build that reads the FPGA's own number."),
+    ("board-swapped", "Leave the board in its place, and test it again."),
+    ("device-in-other-lane", "Wait until that run is over."),
+    ("board-of-other-product", MIXED_UP),
+    ("board-of-other-serial", MIXED_UP),
+    ("serial-of-other-device", MIXED_UP),
+];
+const MIXED_UP: &str =
+    "Scan the label of the board that is in the lane; an engineer binds anew what was repaired.";
+
 impl Said {
+    /// What to do about it, where its sentence does not end in that.
+    pub(crate) fn remedy(&self) -> Option<&'static str> {
+        REMEDIES.into_iter().find(|(code, _)| *code == self.code).map(|(_, remedy)| remedy)
+    }
+
     /// An error of this program with its causes.
     #[must_use]
     pub fn of(error: &(dyn Error + 'static)) -> Self {

@@ -30,7 +30,7 @@ impl Rate {
     /// It in per cent with its interval, for people.
     #[must_use]
     pub fn text(&self) -> String {
-        let Some((share, [low, high])) = self.share.zip(self.interval) else { return "-".to_owned() };
+        let Some((share, [low, high])) = self.share.zip(self.interval) else { return "–".to_owned() };
         format!("{:.1} % ({:.1}–{:.1})", 100.0 * share, 100.0 * low, 100.0 * high)
     }
 }

@@ -63,14 +63,14 @@ impl Try {
         Self { remedy: problem.remedy.clone(), ..Self::of(cause, problem) }
     }
 
-    fn refused(why: Saying, remedy: &str) -> Self {
-        Self { remedy: Some(remedy.to_owned()), ..Self::of(Cause::Refused, why) }
+    fn refused(why: impl Into<Said>) -> Self {
+        let why = why.into();
+        Self { remedy: why.remedy().map(str::to_owned), ..Self::of(Cause::Refused, why) }
     }
 
     /// Somebody mixed boards up.
-    fn mixed_up(why: Said, remedy: String) -> Self {
-        let refused = Self::of(Cause::Refused, why);
-        Self { cause: RunCause::Operator, remedy: Some(remedy), ..refused }
+    fn mixed_up(why: Said) -> Self {
+        Self { cause: RunCause::Operator, ..Self::refused(why) }
     }
 
     /// With these measurements: a PASS that misses a limit is what the limit says, and a FAIL with a limit that blames
@@ -134,18 +134,14 @@ impl Common<'_> {
         }
         let Plan { production, builds, device, .. } = self.plan;
         if production.require_hardware && kind != BoardKind::Hardware {
-            let refused =
-                Try::refused(Saying::HardwareAlone { kind: kind.to_string() }, "Check the lane's target.");
+            let refused = Try::refused(Saying::HardwareAlone { kind: kind.to_string() });
             // As `halfrow verify` ends, where hardware was required and this was none.
             Some(Try { exit: Exit::NothingJudged, ..refused })
         } else if !builds.contains(&seen.build) {
             let (build, builds) = (seen.build.clone(), builds.join(", "));
-            Some(Try::refused(
-                Saying::BuildNotOfPlan { build, builds },
-                "Load a released build, or take the plan for this one.",
-            ))
+            Some(Try::refused(Saying::BuildNotOfPlan { build, builds }))
         } else if *device == DeviceRule::Required && seen.device.is_none() {
-            Some(Try::refused(Saying::DeviceAskedFor, "Load a build that reads the FPGA's own number."))
+            Some(Try::refused(Saying::DeviceAskedFor))
         } else {
             None
         }
@@ -162,7 +158,7 @@ impl Common<'_> {
         match (self.rule)(seen) {
             Ok(Ruling::Known) => of(Saying::DeviceKnown { name, kind, build, device }),
             Ok(Ruling::New) => of(Saying::DeviceNew { name, kind, build, device }),
-            Ok(Ruling::Refused { why, remedy }) => Try::mixed_up(why, remedy),
+            Ok(Ruling::Refused { why }) => Try::mixed_up(why),
             Ok(Ruling::Untold { why }) => Try::of(Cause::Station, why),
             Err(by) => Try::of(Cause::Stopped(by), Saying::StoppedBefore),
         }
@@ -261,7 +257,7 @@ impl Common<'_> {
             format!("{} of build {}", board.device.as_deref().unwrap_or("unnumbered"), board.build)
         };
         let swapped = Saying::BoardSwapped { first: name(first), now: name(seen) };
-        let refused = Try::refused(swapped, "Leave the board in its place, and test it again.");
+        let refused = Try::refused(swapped);
         Some(Try { board: Some(seen.clone()), ..refused })
     }
 

@@ -71,8 +71,6 @@ pub enum Ruling {
     Refused {
         /// Why.
         why: Said,
-        /// What to do.
-        remedy: String,
     },
     /// It cannot be told.
     Untold {

@@ -12,6 +12,9 @@ use crate::said::{Said, Saying};
 /// What a run says that ended since somebody wanted it to.
 const STOPPED: [&str; 2] = ["stopped-by-signal", "run-stopped-before"];
 
+/// What to do about an ERROR of which nothing else is known.
+pub(crate) const TEST_AGAIN: &str = "Test the board again.";
+
 /// What a run came to.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Conclusion {
@@ -85,7 +88,7 @@ impl Conclusion {
     pub fn error(cause: RunCause, why: impl Into<Said>) -> Self {
         let why = why.into();
         let exit = if cause == RunCause::Refused { Exit::Refused } else { Exit::Error };
-        let remedy = Some("Test the board again.".to_owned());
+        let remedy = Some(TEST_AGAIN.to_owned());
         let (verdict, exit_code, headline) = (Verdict::Error, exit.code(), why.to_string());
         Self { verdict, cause, exit_code, headline, remedy, finding: Some(why) }
     }

@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 pub use blobs::{BlobError, Blobs};
 pub(crate) use blobs::{Piece, is_hash, synced};
 pub use conclude::Conclusion;
+pub(crate) use conclude::TEST_AGAIN;
 pub use step::{
     BoardSeen, DeviceSeen, Measured, MeasuredOutcome, RunCause, StepOutcome, StepRecord, SuspectRecord,
     judged,

@@ -241,7 +241,7 @@ impl Attendant for Attending<'_> {
                 self.device = DeviceSeen::Known;
                 Ruling::Known
             }
-            Ok(Admission::Refused { why, remedy }) => Ruling::Refused { why, remedy: remedy.to_owned() },
+            Ok(Admission::Refused { why }) => Ruling::Refused { why },
             Err(error) => Ruling::Untold { why: Said::of(&error) },
         }
     }

@@ -27,8 +27,6 @@ pub enum Admission {
     Refused {
         /// Which board it is, and which was scanned.
         why: Said,
-        /// What to do.
-        remedy: &'static str,
     },
 }
 
@@ -65,7 +63,7 @@ impl Store {
     pub fn admit(&mut self, run: &RunHead, device: &str) -> Result<Admission, StoreError> {
         if self.admitted.get(device).is_some_and(|other| *other != run.id) {
             let why = Saying::DeviceElsewhere { device: device.to_owned() };
-            return Ok(Admission::Refused { why: why.into(), remedy: "Wait until that run is over." });
+            return Ok(Admission::Refused { why: why.into() });
         }
         let known = self.read("to tell which device has which serial number", |from| {
             let unit = |row: &Row<'_>| Ok(Unit { product: row.get(0)?, serial: row.get(1)? });
@@ -229,8 +227,6 @@ struct Known {
 impl Known {
     /// Whether the board that says it is `device` may be judged as the scanned unit.
     fn admits(&self, scanned: &Unit, device: &str) -> Admission {
-        const MIXED_UP: &str =
-            "Scan the label of the board that is in the lane; an engineer binds anew what was repaired.";
         let why = match (&self.unit, &self.device) {
             (None, None) => return Admission::New,
             (Some(unit), _) if unit == scanned => return Admission::Known,
@@ -246,7 +242,7 @@ impl Known {
                 Saying::OtherDevice { serial, device, found }
             }
         };
-        Admission::Refused { why: why.into(), remedy: MIXED_UP }
+        Admission::Refused { why: why.into() }
     }
 }
 
@@ -295,7 +291,7 @@ mod tests {
 
     fn refusal(known: &Known, serial: &str, device: &str) -> String {
         match known.admits(&unit(serial), device) {
-            Admission::Refused { why, .. } => why.to_string(),
+            Admission::Refused { why } => why.to_string(),
             other => panic!("{other:?}"),
         }
     }

@@ -1,10 +1,10 @@
 //! Whether a unit that passed already is tested again.
 
 use halfrow::Verdict;
-use jiff::Timestamp;
 
 use super::database::values;
 use super::{Folder, StoreError, statements as sql};
+use crate::clock;
 use crate::plan::{Again, Plan};
 
 /// Why a unit is not tested again.
@@ -15,7 +15,7 @@ pub enum AgainError {
     Refused {
         /// The serial number.
         serial: String,
-        /// When it passed, UTC.
+        /// When it passed, by this computer's clock on the wall, with its distance from UTC.
         when: String,
     },
     /// Nobody has said yet that it is meant.
@@ -23,7 +23,7 @@ pub enum AgainError {
     Asked {
         /// The serial number.
         serial: String,
-        /// When it passed, UTC.
+        /// When it passed, as above.
         when: String,
         /// How it is said that it is meant.
         how: &'static str,
@@ -52,8 +52,7 @@ impl Folder {
         let Some((_, ms)) = last.filter(|(verdict, _)| *verdict == Verdict::Pass) else {
             return Ok(None);
         };
-        let when =
-            Timestamp::from_millisecond(ms).map_or_else(|_| ms.to_string(), |when| format!("{when:.0}"));
+        let when = clock::local(ms).strftime("%Y-%m-%dT%H:%M:%S%:z").to_string();
         let serial = serial.to_owned();
         Ok(Some(match plan.again {
             Again::Ask => AgainError::Asked { serial, when, how },

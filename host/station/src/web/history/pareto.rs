@@ -73,7 +73,7 @@ fn row(visit: &Visit, bar: &Bar, most: u64) -> Markup {
     html! {
         tr {
             th scope="row" {
-                @if bar.name.is_empty() { (visit.say("pareto.nothing")) } @else { (show::said(&bar.name)) }
+                @if bar.name.is_empty() { (visit.say("pareto.nothing")) } @else { (show::english(visit, &bar.name)) }
             }
             td { (bars::length(bar.runs.count, most)) " " (bar.runs.count) }
             td { (show::share(visit, &bar.runs)) }

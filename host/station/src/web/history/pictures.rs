@@ -130,7 +130,7 @@ fn legend(visit: &Visit, comparison: &Value) -> Markup {
     let largest = u16::try_from(number("largest")).unwrap_or(u16::MAX);
     html! {
         p.soft {
-            (visit.say("pictures.difference")) ": " (squares)
+            (visit.say("pictures.difference")) (visit.say("told.colon")) (squares)
             @for step in pictures::steps_up_to(largest) {
                 @let [red, green, blue] = step.colour;
                 " " span.key {
@@ -151,7 +151,7 @@ fn of_frame<'a>(record: &'a Record, frame: &KeptFrame) -> Option<&'a Value> {
 /// How many samples differ, and the first of them.
 fn counted(visit: &Visit, known: &Value) -> Option<String> {
     let comparison = known.get("comparison")?;
-    let number = |of: &Value, key: &str| Some(of.get(key)?.as_u64()?.to_string());
+    let number = |of: &Value, key: &str| Some(visit.words.count(of.get(key)?.as_u64()?));
     let first = comparison.get("first")?;
     let [differing, samples] = ["differences", "samples"].map(|key| number(comparison, key));
     let [row, column, expected, found] = ["row", "column", "expected", "found"].map(|key| number(first, key));

@@ -14,6 +14,7 @@ use super::asked::unit_address;
 use super::{acts, pictures, show};
 use crate::export;
 use crate::history::unit::{self as history, UnitRun};
+use crate::plan::limits::Blame;
 use crate::record::{Attachment, DeviceSeen, Measured, Record, StepRecord};
 use crate::said::Said;
 use crate::store::{Snapshot, Waiver};
@@ -93,8 +94,12 @@ fn content(visit: &Visit, Found { run, record, kept }: &Found) -> Markup {
 /// What the run came to, and what to do.
 fn concluded(visit: &Visit, headline: Option<&str>, record: Option<&Record>) -> Markup {
     let finding = record.and_then(|record| record.conclusion.finding.as_ref());
-    let told = finding.map(|finding| visit.words.tell(finding));
-    let told = told.or_else(|| headline.map(|text| visit.words.english(text.to_owned())));
+    let recorded = record.and_then(|record| record.conclusion.remedy.as_deref());
+    let english = |text: &str| visit.words.english(text.to_owned());
+    let (told, asked) = match finding.map(|finding| visit.words.with_remedy(finding, recorded)) {
+        Some((told, asked)) => (Some(told), asked),
+        None => (headline.map(english), recorded.map(english)),
+    };
     let is_unchecked = |record: &Record| {
         record.device == DeviceSeen::NotChecked && record.conclusion.verdict == Verdict::Pass
     };
@@ -103,13 +108,11 @@ fn concluded(visit: &Visit, headline: Option<&str>, record: Option<&Record>) -> 
             p.headline {
                 (show::told(&told))
                 @if visit.words.code != "en" && finding.is_some() && record.is_some_and(is_unchecked) {
-                    "; " (visit.say("run.unchecked"))
+                    (visit.say("told.also")) (visit.say("run.unchecked"))
                 }
             }
         }
-        @if let Some(remedy) = record.and_then(|record| record.conclusion.remedy.as_ref()) {
-            p.remedy { (show::told(&visit.words.remedy(finding, remedy))) }
-        }
+        @if let Some(asked) = asked { p.remedy { (show::told(&asked)) } }
     }
 }
 
@@ -121,8 +124,10 @@ pub(super) fn suspect(visit: &Visit, suspect: &history::Suspect, defect: Option<
         let words = visit.words.fill("run.suspected", &[("what", &told.text), ("share", &share)]);
         return html! { p.suspect { (show::said(&words)) } };
     }
-    let values = [("part", suspect.part.as_str()), ("place", &suspect.place), ("share", &share)];
-    html! { p.suspect { (show::said(&visit.words.fill("run.suspect", &values))) } }
+    let words = visit.words.fill("run.suspected", &[("share", &share)]);
+    let (before, after) = words.split_once("{what}").unwrap_or_default();
+    let what = format!("{}, {}", suspect.part, suspect.place);
+    html! { p.suspect { (before) (show::english(visit, &what)) (after) } }
 }
 
 /// A waiver in one sentence.
@@ -130,7 +135,7 @@ pub(super) fn waiver(visit: &Visit, waiver: &Waiver) -> Markup {
     html! {
         p.waiver {
             b { (visit.say("history.waived")) } " " (show::moment(waiver.at_ms)) " · " (show::said(&waiver.operator))
-            ": " (show::said(&waiver.reason))
+            (visit.say("told.colon")) (show::said(&waiver.reason))
         }
     }
 }
@@ -216,6 +221,11 @@ fn steps(visit: &Visit, record: &Record) -> Markup {
 }
 
 fn step_row(visit: &Visit, step: &StepRecord, took: Option<Duration>) -> Markup {
+    let (recorded, english) = (step.remedy.as_deref(), |text: &str| visit.words.english(text.to_owned()));
+    let (told, asked) = match &step.finding {
+        Some(finding) => visit.words.with_remedy(finding, recorded),
+        None => (english(&step.detail), recorded.map(english)),
+    };
     html! {
         tr {
             td.number { (step.seq) }
@@ -226,13 +236,8 @@ fn step_row(visit: &Visit, step: &StepRecord, took: Option<Duration>) -> Markup 
             td { (outcome(visit, step.outcome.name())) }
             td.number { @if let Some(took) = took { (show::number(visit, took.as_secs_f64())) " s" } }
             td {
-                @match &step.finding {
-                    Some(finding) => (show::told(&visit.words.tell(finding))),
-                    None => (show::english(visit, &step.detail)),
-                }
-                @if let Some(remedy) = &step.remedy {
-                    br; span.soft { (show::told(&visit.words.remedy(step.finding.as_ref(), remedy))) }
-                }
+                (show::told(&told))
+                @if let Some(asked) = asked { br; span.soft { (show::told(&asked)) } }
             }
         }
     }
@@ -259,7 +264,7 @@ fn checks(visit: &Visit, record: &Record) -> Markup {
         .filter_map(|step| Some((step, step.evidence.as_ref()?.get("checks")?.as_array()?)));
     html! {
         @for (step, checks) in all {
-            h2 { (visit.say("run.checks")) ", " (show::said(&step.name)) }
+            h2 { (show::said(&visit.words.fill("run.checks", &[("step", &step.name)]))) }
             div.wide tabindex="0" { table.checks { tbody { @for check in checks { tr {
                 th scope="row" { (show::said(&text(check, "name"))) }
                 td { (outcome(visit, &text(check, "outcome"))) }
@@ -302,21 +307,21 @@ fn measured(visit: &Visit, step: &str, one: &Measured) -> Markup {
         tr {
             th scope="row" { code { (show::said(&one.name)) } }
             td.number {
-                @if let Some(value) = one.value { (show::number(visit, value)) " " (unit(&one.unit)) } @else { "–" }
+                @if let Some(value) = one.value { (show::number(visit, value)) " " (show::said(visit.words.unit(&one.unit))) } @else { "–" }
             }
-            td { (limits.join(", ")) @if !limits.is_empty() { " " span.soft { (one.blames.name()) } } }
+            td { (limits.join(visit.say("told.list"))) @if !limits.is_empty() { " " span.soft { (blamed(visit, one.blames)) } } }
             td { @if limits.is_empty() { span.soft { "–" } } @else { (outcome(visit, one.outcome.name())) } }
             td.soft { (show::said(step)) }
         }
     }
 }
 
-/// A unit as people write it. What is counted has none.
-fn unit(name: &str) -> Markup {
-    match name {
-        "1" => html! {},
-        "us" => html! { "µs" },
-        name => show::said(name),
+/// Whom a limit blames.
+fn blamed(visit: &Visit, blame: Blame) -> &'static str {
+    match blame {
+        Blame::Board => visit.say("blame.board"),
+        Blame::Station => visit.say("blame.station"),
+        Blame::Nobody => visit.say("blame.nobody"),
     }
 }
 

@@ -67,7 +67,7 @@ fn of(visit: &Visit, asked: &Asked, unit: &Unit) -> Markup {
             h2 { (visit.say("history.every")) }
             ol.story { @for run in unit.runs.iter().take(MOST_RUNS) { (story(visit, run)) } }
             @if more > 0 {
-                p.pages { a href=(asked.address("/history", None)) { (visit.say("history.further")) " (" (more) ")" } }
+                p.pages { a href=(asked.address("/history", None)) { (visit.words.fill("history.further", &[("more", &more.to_string())])) } }
             }
         }
     }

@@ -100,7 +100,7 @@ fn drawn(visit: &Visit, lines: &[Yield]) -> Markup {
     html! {
         @for of_plan in lines.chunk_by(|one, other| one.plan == other.plan) {
             figure.days {
-                figcaption { (visit.say("yield.first")) ", " (show::said(&of_plan[0].plan.plan)) }
+                figcaption { (visit.say("yield.first")) (visit.say("told.colon")) (show::said(&of_plan[0].plan.plan)) }
                 div.wide tabindex="0" { (bars::days(visit.say("yield.first"), &named_days(visit, of_plan))) }
                 (beyond(visit, of_plan))
             }
@@ -114,7 +114,7 @@ fn beyond(visit: &Visit, of_plan: &[Yield]) -> Markup {
     let days: Vec<_> = of_plan.iter().take(MOST_DAYS).filter(is_beyond).map(began).collect();
     html! {
         p.soft { (visit.say("yield.band")) }
-        @if !days.is_empty() { p.beyond { (visit.words.fill("yield.beyond", &[("days", &days.join(", "))])) } }
+        @if !days.is_empty() { p.beyond { (visit.words.fill("yield.beyond", &[("days", &days.join(visit.say("told.list")))])) } }
     }
 }
 
@@ -142,7 +142,7 @@ fn drifting(visit: &Visit, drifts: &[Drift]) -> Markup {
             @if marked.is_empty() { p { (visit.say("yield.no_drift")) } }
             @for Drift { plan, station, here, elsewhere, chance, .. } in marked {
                 p.beyond {
-                    b { (show::said(station)) } " · " (show::said(&plan.product)) " " (show::said(&plan.plan)) ": "
+                    b { (show::said(station)) } " · " (show::said(&plan.product)) " " (show::said(&plan.plan)) (visit.say("told.colon"))
                     (show::share(visit, here)) " " span.soft { (show::of(here)) } " · "
                     (visit.say("yield.elsewhere")) " " (show::share(visit, elsewhere)) " " span.soft { (show::of(elsewhere)) }
                     @if let Some(chance) = chance { " · p = " (format!("{chance:.1e}")) }
@@ -154,12 +154,13 @@ fn drifting(visit: &Visit, drifts: &[Drift]) -> Markup {
 
 fn table(visit: &Visit, by: By, lines: &[Yield]) -> Markup {
     let plan = visit.say("history.plan");
+    let of = |first: &str| [first, plan].join(visit.say("told.list"));
     let of = match by {
         By::Plan => plan.to_owned(),
-        By::Day => format!("{}, {plan}", visit.say("yield.day")),
-        By::Week => format!("{}, {plan}", visit.say("yield.week")),
-        By::Lane => format!("{}, {plan}", visit.say("history.lane")),
-        By::Station => format!("{}, {plan}", visit.say("nav.station")),
+        By::Day => of(visit.say("yield.day")),
+        By::Week => of(visit.say("yield.week")),
+        By::Lane => of(visit.say("history.lane")),
+        By::Station => of(visit.say("nav.station")),
     };
     html! {
         div.wide tabindex="0" { table.yields {
@@ -214,7 +215,7 @@ fn rate(visit: &Visit, rate: &Rate) -> Markup {
 
 fn flipped(visit: &Visit, flips: &[Flip]) -> Markup {
     html! {
-        h2 { (visit.say("yield.flips")) " (" (flips.len()) ")" }
+        h2 { (visit.words.fill("yield.flips", &[("units", &flips.len().to_string())])) }
         @if flips.is_empty() { p.soft { (visit.say("yield.no_flips")) } } @else {
             p.soft { (visit.say("yield.flips_about")) }
             table.flips {

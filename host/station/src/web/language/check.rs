@@ -11,6 +11,7 @@ use super::FILES;
 use super::told::{LATE, LATE_AT_TIMES};
 use crate::codes as station;
 use crate::input_error::{Fault, InputError};
+use crate::said::REMEDIES;
 
 /// The tables whose keys are codes.
 const SAID: &str = "said";
@@ -73,11 +74,13 @@ fn said() -> Keys {
     known.chain(findings()).chain(defects()).collect()
 }
 
-/// What a technician does about a finding or a defect, and what other findings ask for.
+/// What a technician does about a finding or a defect, what other findings ask for, and what the station does.
 fn remedies() -> Keys {
     let asks = |finding: &halfrow::result::Finding| finding.remedy().map(|_| finding.as_problem().code);
     let asking: BTreeSet<_> = examples::findings().iter().filter_map(asks).collect();
     let mut asked: Keys = findings().filter(|(code, _)| asking.contains(code)).chain(defects()).collect();
+    let said = said();
+    asked.extend(REMEDIES.map(|(code, _)| (code.to_owned(), said.get(code).cloned().unwrap_or_default())));
     if let Some(names) = asked.get(LATE).cloned() {
         asked.insert(LATE_AT_TIMES.to_owned(), names);
     }
@@ -200,6 +203,7 @@ mod tests {
     #[test]
     fn every_language_says_all_that_pages_say_and_every_code_that_is_seen_there() {
         assert!(said().len() > 180 && remedies().len() > 50, "{} {}", said().len(), remedies().len());
+        assert!(REMEDIES.iter().all(|(code, _)| said().contains_key(*code)), "{REMEDIES:?}");
         let found: Vec<_> = built_in().flat_map(|(path, text)| faults(&path, text).unwrap()).collect();
         let found: Vec<_> = found.iter().map(ToString::to_string).collect();
         assert!(found.is_empty(), "{}", found.join("\n"));

@@ -54,6 +54,17 @@ impl Words {
         printed.replace('.', self.say("history.decimal"))
     }
 
+    /// A count, its digits in groups of three where there are more than four.
+    pub(super) fn count(&self, count: u64) -> String {
+        let digits = count.to_string();
+        if digits.len() <= 4 {
+            return digits;
+        }
+        let (first, rest) = digits.split_at((digits.len() - 1) % 3 + 1);
+        let mark = self.say("history.thousands");
+        (0..rest.len()).step_by(3).fold(first.to_owned(), |text, at| text + mark + &rest[at..at + 3])
+    }
+
     /// The words of this key with the values of their `{names}`.
     pub(super) fn fill(&self, key: &'static str, values: &[(&str, &str)]) -> String {
         let value = |wanted: &str| {

@@ -1,7 +1,6 @@
 //! A lane on the page. The server alone draws it, for the page's first look as for every change.
 
 use halfrow::Verdict;
-use halfrow::progress::Step;
 use halfrow::report::wording::plain;
 use maud::{Markup, html};
 use serde::Serialize;
@@ -158,27 +157,12 @@ fn progress(visit: &Visit, lane: &str, of: Option<&Doing>) -> Markup {
     }
 }
 
-/// What the run does, in words. What its plan calls it stays as it is.
+/// What the run does, in words.
 pub(super) fn doing(visit: &Visit, doing: &Doing) -> Told {
-    let own = doing.rows.map(|_| visit.say("lane.rows")).or_else(|| step(visit, &doing.what));
-    match own {
-        Some(own) => Told { text: own.to_owned(), foreign: None },
-        None => visit.words.english(doing.what.clone()),
+    match doing.rows {
+        Some(_) => Told { text: visit.say("lane.rows").to_owned(), foreign: None },
+        None => visit.words.doing(&doing.what),
     }
-}
-
-/// The step that the judge calls so.
-fn step(visit: &Visit, what: &str) -> Option<&'static str> {
-    let known = [
-        (Step::JudgeTheJudge, visit.say("step.judge")),
-        (Step::OpenTheBoard, visit.say("step.open")),
-        (Step::TestTheLink, visit.say("step.link")),
-        (Step::AtSpeed, visit.say("step.speed")),
-        (Step::Rules, visit.say("step.rules")),
-        (Step::LookAgain, visit.say("step.again")),
-        (Step::WaitForTheBoard, visit.say("step.wait")),
-    ];
-    known.into_iter().find(|(step, _)| step.to_string() == what).map(|(_, words)| words)
 }
 
 /// What can be done with the lane, and may be. Before a board is tested it is aborted, and not taken out of service.

@@ -60,6 +60,6 @@ fn the_score_at_both_ends_is_the_normal_quantile() {
 #[test]
 fn nothing_of_nothing_is_no_rate() {
     let rate = Rate::new(0, 0);
-    assert_eq!((rate.share, rate.interval, rate.text().as_str()), (None, None, "-"));
+    assert_eq!((rate.share, rate.interval, rate.text().as_str()), (None, None, "–"));
     assert_eq!(Rate::new(29, 30).text(), "96.7 % (83.3–99.4)");
 }

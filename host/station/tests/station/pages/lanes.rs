@@ -252,43 +252,6 @@ fn the_page_counts_what_is_not_at_the_plant_and_nothing_that_other_sinks_do_not_
 }
 
 /// Reasons, refusals and headlines come by their codes.
-#[test]
-fn nothing_that_an_operator_is_told_stays_english_in_another_language() {
-    let station =
-        Station::public(2).where_instead("station.toml", "mock,serial=1", "mock,serial=1,fault=stuck-data");
-    let serving = station.serve();
-    let here = serving.engineer();
-    let scan = |text: &str, lane: &str, language: &str| {
-        let request = here.post("/scan", &[("text", text), ("lane", lane)]);
-        request.with("accept", "application/json").with("accept-language", language).send().text()
-    };
-    for (language, said) in
-        [("de", "die Prüfziffer von „CA0131103629“ ist falsch"), ("zh", "“CA0131103629”的校验位错误")]
-    {
-        let refused = scan("CA0131103629", "1", language);
-        assert!(refused.contains(said), "{refused}");
-    }
-    while !scan(SERIALS[0], "1", "de").contains("wird auf Platz 1 geprüft") {}
-    assert_eq!(here.post("/lanes/2/out", &[]).send().status, 303);
-    let page = |language: &str| here.get("/").with("accept-language", language).send().text();
-    while !page("en").contains("lane fail") {}
-    for (language, said) in [
-        ("de", ["Abtastwerten weichen ab", "durch eine Person", "gesichert ", "Bitstream neu laden"]),
-        ("zh", ["个样值中", "由人员停用", "已保存 ", "请重新加载比特流"]),
-    ] {
-        let page = page(language);
-        for said in said {
-            assert!(page.contains(said), "{said}: {page}");
-        }
-        assert!(!page.contains("class=\"why\" lang=\"en\""), "{page}");
-        let run = page.split("data-run=\"").nth(1).unwrap().split('"').next().unwrap().to_owned();
-        let run = here.get(&format!("/runs/{run}")).with("accept-language", language).send().text();
-        assert!(run.contains(said[0]) && run.contains(said[3]), "{run}");
-        let (_, body) = run.split_once("<main>").unwrap();
-        assert!(!body.contains("lang=\"en\""), "{run}");
-    }
-}
-
 /// What a page asks for names the last beat that it heard. Behind it another board may be in the lane.
 #[test]
 fn what_comes_long_behind_the_beat_that_its_page_heard_is_not_done() {

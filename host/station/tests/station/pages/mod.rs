@@ -6,5 +6,6 @@ mod changes;
 mod fuzz;
 pub(crate) mod http;
 mod lanes;
+mod languages;
 pub(crate) mod station;
 mod table;

@@ -1,14 +1,21 @@
 //! Parameters of what was told, as people read them.
 
 use halfrow::result::LateRows;
+use jiff::Timestamp;
 use serde::Deserialize as _;
 use serde_json::Value;
 
 use super::super::Words;
 use super::ENGLISH;
+use crate::clock;
 
 /// Parameters that are seconds.
 const TIMES: [&str; 4] = ["at", "seconds", "deadline", "waited"];
+/// Parameters that count what there are many of. Others that are numbers name something.
+const COUNTS: [&str; 9] =
+    ["bytes", "differences", "echoes", "nodes", "packets", "requests", "retries", "rows", "samples"];
+/// Parameters that are several names in one text.
+const LISTS: [&str; 5] = ["builds", "channels", "holders", "known", "names"];
 
 impl Words {
     /// The parameter of this name as people read it, with what others say of it; none if there is none.
@@ -20,8 +27,50 @@ impl Words {
             "is_one_row" => Some(self.one_row(parameters)),
             "rows" => self.some_rows(parameters).or_else(own),
             "bit" => self.one_of_bits(parameters).or_else(own),
+            "value" => self.measured(parameters).or_else(own),
+            "verdict" => self.verdict(value?).or_else(own),
+            "when" => moment(value?).or_else(own),
+            "table" => self.table(value?).or_else(own),
             _ => own(),
         }
+    }
+
+    /// What was measured, in its unit.
+    fn measured(&self, parameters: &Value) -> Option<String> {
+        let unit = self.unit(parameters.get("unit")?.as_str()?);
+        let value = self.value(parameters.get("value")?);
+        Some(if unit.is_empty() { value } else { format!("{value} {unit}") })
+    }
+
+    /// A unit as people write it. What is counted has none.
+    pub(in crate::web) fn unit<'a>(&'a self, name: &'a str) -> &'a str {
+        match name {
+            "1" => "",
+            "us" => "µs",
+            "clocks" => self.say("unit.clocks"),
+            name => name,
+        }
+    }
+
+    /// A verdict as a lane says it.
+    fn verdict(&self, verdict: &Value) -> Option<String> {
+        let word = match verdict.as_str()? {
+            "PASS" => self.say("state.pass"),
+            "FAIL" => self.say("state.fail"),
+            "ERROR" => self.say("state.error"),
+            _ => return None,
+        };
+        Some(word.to_owned())
+    }
+
+    /// The memory of a table.
+    fn table(&self, table: &Value) -> Option<String> {
+        let words = match table.as_str()? {
+            "rows" => self.say("told.rows-table"),
+            "kernel" => self.say("told.kernel-memory"),
+            _ => return None,
+        };
+        Some(words.to_owned())
     }
 
     /// That so many other defects explain all as well.
@@ -36,7 +85,12 @@ impl Words {
     /// Late rows of all that there are.
     fn some_rows(&self, parameters: &Value) -> Option<String> {
         let LateRows { rows, of_rows, .. } = late(parameters).filter(LateRows::are_some)?;
-        Some(self.fill("told.some", &[("some", &rows.to_string()), ("all", &of_rows.to_string())]))
+        Some(
+            self.fill(
+                "told.some",
+                &[("some", &self.count(rows as u64)), ("all", &self.count(of_rows as u64))],
+            ),
+        )
     }
 
     /// That every late row is the same one.
@@ -52,7 +106,7 @@ impl Words {
             parameters.get("bit").into_iter().chain(alike).filter_map(Value::as_u64).collect();
         bits.sort_unstable();
         let (last, first) = bits.split_last().filter(|(_, first)| !first.is_empty())?;
-        let first = first.iter().map(u64::to_string).collect::<Vec<_>>().join(", ");
+        let first = first.iter().map(u64::to_string).collect::<Vec<_>>().join(self.say("told.list"));
         Some(self.fill("told.or", &[("first", &first), ("last", &last.to_string())]))
     }
 
@@ -61,6 +115,10 @@ impl Words {
         match value.as_f64().filter(|_| value.is_f64() && TIMES.contains(&name)) {
             Some(seconds) if seconds >= 1.0 => self.figures(&format!("{}", (seconds * 10.0).round() / 10.0)),
             Some(seconds) => self.figures(&format!("{}", (seconds * 1e3).round() / 1e3)),
+            None if COUNTS.contains(&name) && value.is_u64() => {
+                self.count(value.as_u64().unwrap_or_default())
+            }
+            None if LISTS.contains(&name) => self.value(value).replace(", ", self.say("told.list")),
             None => self.value(value),
         }
     }
@@ -76,7 +134,7 @@ impl Words {
                 rounded.map_or_else(|| number.to_string(), |value| self.figures(&value.to_string()))
             }
             Value::Array(values) => {
-                values.iter().map(|value| self.value(value)).collect::<Vec<_>>().join(", ")
+                values.iter().map(|value| self.value(value)).collect::<Vec<_>>().join(self.say("told.list"))
             }
             Value::Object(fields) => {
                 let text = |key: &str| fields.get(key).and_then(Value::as_str);
@@ -89,6 +147,12 @@ impl Words {
             value @ (Value::Bool(_) | Value::Number(_)) => value.to_string(),
         }
     }
+}
+
+/// A moment by the station's clock.
+fn moment(value: &Value) -> Option<String> {
+    let at: Timestamp = value.as_str()?.parse().ok()?;
+    Some(clock::local(at.as_millisecond()).strftime("%Y-%m-%d %H:%M").to_string())
 }
 
 /// The late rows that these parameters are of, if they are of such.

@@ -1,0 +1,96 @@
+//! Whether pages say in the reader's language what is to be said.
+
+use crate::pages::station::{Browser, SERIALS, Station};
+
+/// What was scanned in the lane becomes its verdict, and here is the page of that run.
+fn run_of(here: &Browser, lane: &str, word: &str, language: &str) -> String {
+    let page = loop {
+        let page = here.get("/").send().text();
+        if page.contains(&format!("lane {word}")) {
+            break page;
+        }
+    };
+    let lane = page.split(&format!("id=\"lane-{lane}\"")).nth(1).unwrap();
+    let run = lane.split("data-run=\"").nth(1).unwrap().split('"').next().unwrap();
+    let run = here.get(&format!("/runs/{run}")).with("accept-language", language).send().text();
+    run.split_once("<main>").unwrap().1.to_owned()
+}
+
+fn scan(here: &Browser, serial: &str, lane: &str) {
+    let scan = here.post("/scan", &[("text", serial), ("lane", lane)]).with("accept", "application/json");
+    while !scan.clone().send().text().contains("\"is_taken\":true") {}
+}
+
+#[test]
+fn nothing_that_an_operator_is_told_stays_english_in_another_language() {
+    let station =
+        Station::public(2).where_instead("station.toml", "mock,serial=1", "mock,serial=1,fault=stuck-data");
+    let serving = station.serve();
+    let here = serving.engineer();
+    let scan = |text: &str, lane: &str, language: &str| {
+        let request = here.post("/scan", &[("text", text), ("lane", lane)]);
+        request.with("accept", "application/json").with("accept-language", language).send().text()
+    };
+    for (language, said) in
+        [("de", "die Prüfziffer von „CA0131103629“ ist falsch"), ("zh", "“CA0131103629”的校验位错误")]
+    {
+        let refused = scan("CA0131103629", "1", language);
+        assert!(refused.contains(said), "{refused}");
+    }
+    while !scan(SERIALS[0], "1", "de").contains("wird auf Platz 1 geprüft") {}
+    assert_eq!(here.post("/lanes/2/out", &[]).send().status, 303);
+    let page = |language: &str| here.get("/").with("accept-language", language).send().text();
+    while !page("en").contains("lane fail") {}
+    for (language, said) in [
+        ("de", ["Abtastwerten weichen ab", "durch eine Person", "gesichert ", "Bitstream neu laden"]),
+        ("zh", ["个样值中", "由人员停用", "已保存 ", "请重新加载比特流"]),
+    ] {
+        let page = page(language);
+        for said in said {
+            assert!(page.contains(said), "{said}: {page}");
+        }
+        assert!(!page.contains("class=\"why\" lang=\"en\""), "{page}");
+        let run = page.split("data-run=\"").nth(1).unwrap().split('"').next().unwrap().to_owned();
+        let run = here.get(&format!("/runs/{run}")).with("accept-language", language).send().text();
+        assert!(run.contains(said[0]) && run.contains(said[3]), "{run}");
+        let (_, body) = run.split_once("<main>").unwrap();
+        assert!(!body.contains("lang=\"en\""), "{run}");
+    }
+}
+
+/// The label of another board is the commonest mistake at a line.
+#[test]
+fn what_to_do_about_a_wrong_label_is_told_in_the_language() {
+    let station = Station::private(1).where_instead("plan.toml", "not-checked", "required");
+    let serving = station.serve();
+    let here = serving.here();
+    scan(&here, SERIALS[0], "1");
+    run_of(&here, "1", "pass", "en");
+    scan(&here, SERIALS[1], "1");
+    for (language, asked) in [
+        ("en", "Scan the label of the board that is in the lane"),
+        ("de", "Etikett der Platine scannen, die auf dem Platz liegt"),
+        ("zh", "请扫描工位上那块板卡的标签"),
+    ] {
+        let run = run_of(&here, "1", "error", language);
+        assert!(run.contains(asked), "{run}");
+        let page = here.get("/").with("accept-language", language).send().text();
+        let (_, lane) = page.split_once("id=\"lane-1\"").unwrap();
+        assert!(lane.contains(asked), "{lane}");
+        assert!(!lane.contains("lang=\"en\"") && !run.contains("lang=\"en\""), "{run}");
+    }
+}
+
+/// On a run's page, of the whole run and of its step.
+#[test]
+fn what_to_do_is_told_once_and_in_one_language() {
+    let station = Station::private(1).where_instead("station.toml", "mock,serial=1", "tcp:127.0.0.1:1");
+    let serving = station.serve();
+    let here = serving.here();
+    scan(&here, SERIALS[0], "1");
+    for language in ["en", "de", "zh"] {
+        let run = run_of(&here, "1", "error", language);
+        assert_eq!(run.matches("ser2net").count(), 2, "{language}: {run}");
+        assert_eq!(run.matches("check the port").count() == 2, language == "en", "{language}: {run}");
+    }
+}
