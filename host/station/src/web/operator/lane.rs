@@ -5,7 +5,7 @@ use halfrow::report::wording::plain;
 use maud::{Markup, html};
 use serde::Serialize;
 
-use super::shapes::{does, said, shape};
+use super::shapes::{does, is_of_mock, said, shape};
 use crate::clock;
 use crate::engine::LaneState;
 use crate::floor::{Act, Shown, Word};
@@ -112,7 +112,8 @@ fn says(visit: &Visit, state: &LaneState) -> Markup {
         @if let Some(asked) = asked { p.asks lang=[asked.foreign] { (plain(&asked.text)) } }
         @for (told, _) in &told { (why(told, None)) }
         @if let Some(shown) = fail {
-            @let remedy = shown.remedy.as_ref().map(|text| visit.words.remedy(shown.finding.as_ref(), text));
+            @let recorded = shown.remedy.as_ref().filter(|_| !is_of_mock(state));
+            @let remedy = recorded.map(|text| visit.words.remedy(shown.finding.as_ref(), text));
             (why(&headline(visit, shown), remedy.as_ref()))
         }
     }

@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use crate::engine::LaneState;
 use crate::floor::{Act, Word};
+use crate::plan::mock;
 use crate::web::routes::Who;
 use crate::web::visit::Visit;
 
@@ -41,11 +42,17 @@ pub(super) fn does(visit: &Visit, state: &LaneState, is_asked: bool) -> Option<&
         Word::Running => visit.say("does.running"),
         Word::Saving => visit.say("does.saving"),
         Word::Pass => visit.say("does.pass"),
+        Word::Fail if is_of_mock(state) => visit.say("does.mock"),
         Word::Fail => visit.say("does.fail"),
         Word::Error => visit.say("does.error"),
         Word::Unsaved => visit.say("does.unsaved"),
         Word::Out => visit.say("does.out"),
     })
+}
+
+/// Whether the verdict is the mock board's, and none on the board that is in the lane.
+pub(super) fn is_of_mock(state: &LaneState) -> bool {
+    state.shown.as_ref().is_some_and(|shown| mock::is_mock(&shown.serial))
 }
 
 /// The state's shape.
