@@ -107,7 +107,7 @@ fn concluded(visit: &Visit, headline: Option<&str>, record: Option<&Record>) -> 
         @if let Some(told) = told {
             p.headline {
                 (show::told(&told))
-                @if visit.words.code != "en" && finding.is_some() && record.is_some_and(is_unchecked) {
+                @if finding.is_some() && record.is_some_and(is_unchecked) {
                     (visit.say("told.also")) (visit.say("run.unchecked"))
                 }
             }

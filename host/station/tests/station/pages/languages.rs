@@ -120,3 +120,19 @@ fn under_the_fail_of_the_mock_board_nobody_is_told_to_put_the_own_board_aside() 
         assert!(lane.contains(said) && !lane.contains(aside), "{lane}");
     }
 }
+
+#[test]
+fn a_pass_of_a_board_whose_identity_nobody_checked_says_so_in_every_language() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let here = serving.here();
+    scan(&here, SERIALS[0], "1");
+    for (language, unchecked) in
+        [("en", "; identity not checked"), ("de", "; Identität nicht geprüft"), ("zh", "；身份未核对")]
+    {
+        let run = run_of(&here, "1", "pass", language);
+        let (_, headline) = run.split_once("<p class=\"headline\">").unwrap();
+        let (headline, _) = headline.split_once("</p>").unwrap();
+        assert!(headline.ends_with(unchecked), "{headline}");
+    }
+}
