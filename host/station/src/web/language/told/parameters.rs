@@ -30,6 +30,7 @@ impl Words {
             "value" => self.measured(parameters).or_else(own),
             "verdict" => self.verdict(value?).or_else(own),
             "when" => moment(value?).or_else(own),
+            "board.no_hardware" => Some(self.no_hardware(parameters).to_owned()),
             "table" => self.table(value?).or_else(own),
             _ => own(),
         }
@@ -61,6 +62,16 @@ impl Words {
             _ => return None,
         };
         Some(word.to_owned())
+    }
+
+    /// That a board which was judged was no hardware.
+    fn no_hardware(&self, parameters: &Value) -> &str {
+        match parameters.get("board").and_then(Value::as_str) {
+            Some("mock") => self.say("told.of-mock"),
+            Some("sim") => self.say("told.of-simulation"),
+            Some("replay") => self.say("told.of-recording"),
+            _ => "",
+        }
     }
 
     /// The memory of a table.

@@ -246,9 +246,28 @@ fn figures_are_written_as_the_language_writes_them() {
     let broke = judged("link-broke", &json!({}));
     let broke = Said { causes: vec![judged("serial-port-is-none", &json!({ "path": "p" }))], ..broke };
     assert_eq!(text("zh", &broke), "连接中断：p 不是串口");
+    let clock = json!({ "clock_hz": 96_000_000, "seen": { "least_hz": null, "most_hz": 48_000_000 } });
+    let seen = "gesehen wurden mindestens – Hz, höchstens 48000000 Hz";
+    assert!(text("de", &judged("clock-not-as-named", &clock)).ends_with(seen));
     let stuck = |table: &str| judged("table-data-stuck", &json!({ "table": table, "bit": 7, "value": 1 }));
     assert_eq!(text("de", &stuck("rows")), "Zeilentabelle, Datenbit 7, hängt auf 1");
     assert_eq!(text("zh", &stuck("kernel")), "核存储器，数据位 7，固定为 1");
+}
+
+/// Whoever reads of a PASS learns that it is no product's.
+#[test]
+fn that_no_hardware_was_tested_is_told_in_every_language() {
+    let text = |language, board: &str| {
+        let figures = json!({ "frames": 2, "samples": 9_600, "latency": 44, "board": board });
+        of(Some(language), None).tell(&judged("all-right", &figures)).text
+    };
+    for (language, end) in
+        [("de", " (Mock-Platine: keine Hardware geprüft)"), ("zh", "（模拟板：未测试硬件）")]
+    {
+        assert!(text(language, "mock").ends_with(end), "{}", text(language, "mock"));
+        assert_eq!(format!("{}{end}", text(language, "hardware")), text(language, "mock"));
+    }
+    assert!(text("de", "replay").ends_with(" (Aufzeichnung: jetzt wurde keine Hardware geprüft)"));
 }
 
 /// By the words of the lane's state, and by its clock.
