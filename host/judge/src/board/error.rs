@@ -178,7 +178,7 @@ pub enum BoardError {
         silent: Duration,
     },
     /// Somebody ended the run.
-    #[error("{0}; the board is not judged")]
+    #[error("{0}, and the board is not judged; run again")]
     Stopped(StoppedBy),
 }
 

@@ -173,7 +173,6 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     ),
     ("station-input-names-unusable", "do what its cause says, which has a code of its own"),
     ("station-input-wrong", "do what the end of its sentence says"),
-    ("stopped-by-signal", "run again: the board is not judged"),
     ("table-depth-unknown", "make the tables again with `halfrow tables` and --bits 8, 10 or 12"),
     (
         "table-file-is-memory-image",

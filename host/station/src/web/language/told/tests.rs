@@ -109,7 +109,10 @@ fn findings_within_findings_and_parts_of_a_figure_are_said_too() {
     assert!(why.text.ends_with("das kann von der Verbindung kommen"), "{why:?}");
     assert_eq!(asked.unwrap().text, link);
     let missing = said("row-missing", json!({ "place": { "frame": 2, "row": 3 }, "attempts": 8 }));
-    assert_eq!(german(&missing).0, "Zeile 3 von Bild 2 kam in 8 Versuchen nicht zurück");
+    assert_eq!(
+        german(&missing).0,
+        "Zeile 3 von Bild 2 kam in 8 Versuchen nicht zurück; mit `halfrow verify` feststellen, ob Platine oder Verbindung sie verliert"
+    );
     assert_eq!(of(Some("de"), None).remedy(None, "Look.").foreign, Some("en"));
 }
 
@@ -245,7 +248,7 @@ fn figures_are_written_as_the_language_writes_them() {
     assert_eq!(text("zh", &named), "没有工位 9；现有工位：1、2、3");
     let broke = judged("link-broke", &json!({}));
     let broke = Said { causes: vec![judged("serial-port-is-none", &json!({ "path": "p" }))], ..broke };
-    assert_eq!(text("zh", &broke), "连接中断：p 不是串口");
+    assert_eq!(text("zh", &broke), "连接中断：p 不是串口；请用 `halfrow boards` 查看现有端口");
     let clock = json!({ "clock_hz": 96_000_000, "seen": { "least_hz": null, "most_hz": 48_000_000 } });
     let seen = "gesehen wurden mindestens – Hz, höchstens 48000000 Hz";
     assert!(text("de", &judged("clock-not-as-named", &clock)).ends_with(seen));
@@ -281,4 +284,25 @@ fn a_verdict_and_an_hour_are_told_as_the_lane_says_them() {
     let passed = judged("unit-passed-already", &json!({ "serial": "CC1", "when": when }));
     let here = crate::clock::local(1_795_794_504_000).strftime("%Y-%m-%d %H:%M");
     assert!(text("de", &passed).contains(&format!("bestanden, {here}; ")), "{}", text("de", &passed));
+}
+
+/// Of errors that end in what is to be done, as their records keep it.
+#[test]
+fn what_an_error_asks_for_is_told_in_the_language() {
+    for (code, parameters, message) in [
+        (
+            "row-missing",
+            json!({ "place": { "frame": 2, "row": 3 }, "attempts": 8 }),
+            "a row is lost; let it tell",
+        ),
+        ("stopped-by-signal", json!({}), "stopped by hand, and the board is not judged; let it tell"),
+        ("board-process-stopped", json!({ "board": "b", "at": 1.0 }), "b stopped; let it tell"),
+    ] {
+        let said = Said { message: message.to_owned(), ..judged(code, &parameters) };
+        for language in ["de", "zh"] {
+            let (why, asked) = of(Some(language), None).parted(&said, Some("Let it tell."));
+            let asked = asked.unwrap();
+            assert!(why.foreign.is_none() && asked.foreign.is_none(), "{code}: {why:?} {asked:?}");
+        }
+    }
 }
