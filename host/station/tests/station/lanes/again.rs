@@ -51,3 +51,20 @@ fn a_plan_may_refuse_units_that_passed() {
     assert_eq!(running.end().0, Some(0));
     assert_eq!(station.query("SELECT count(*) FROM run"), ["1"]);
 }
+
+#[test]
+fn what_was_asked_of_one_unit_is_said_for_no_other() {
+    let station = station("ask");
+    let mut running = station.start();
+    for serial in [SERIALS[0], SERIALS[1]] {
+        running.scan(serial);
+        running.state("1", "PASS");
+    }
+    for serial in [SERIALS[0], SERIALS[1], SERIALS[0]] {
+        running.scan(serial);
+        let (is_taken, said) = running.answer(serial);
+        assert!(!is_taken && said.contains("passed already under this plan"), "{serial}: {said}");
+    }
+    assert_eq!(running.end().0, Some(0));
+    assert_eq!(station.query("SELECT count(*) FROM run"), ["2"]);
+}

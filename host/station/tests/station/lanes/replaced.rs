@@ -1,4 +1,4 @@
-//! A station at work whose program's file becomes another one, as an upgrade has it.
+//! A station at work of which a file becomes another one: that of its program, as an upgrade has it, or one of its plan.
 
 use std::fs;
 use std::process::Command;
@@ -44,4 +44,26 @@ fn a_lane_s_process_has_the_program_s_name() {
     let read = |name: &str| fs::read_to_string(format!("/proc/{lane}/{name}")).unwrap();
     assert_eq!(read("comm"), "halfrow-station\n");
     assert_eq!(read("cmdline"), format!("{}\0lane\0", own.display()));
+}
+
+/// A lane reads the files of its plan anew, and judges by no other than those that the record names.
+#[test]
+fn a_file_of_the_plan_that_becomes_another_one_at_work_judges_no_board() {
+    let station = Station::with(&["mock"], "");
+    let picture = |level: u8| {
+        let bytes = [b"P5\n64 8\n255\n".as_slice(), &[level; 512]].concat();
+        fs::write(station.path("a.pgm"), bytes).unwrap();
+    };
+    picture(7);
+    let plan = fs::read_to_string(station.path("plan.toml")).unwrap();
+    fs::write(station.path("plan.toml"), plan.replace("builtin:noise", "a.pgm")).unwrap();
+    let mut running = station.start();
+    running.state("1", "READY");
+    picture(9);
+    running.test("1", SERIALS[0]);
+    let ended = running.wait("a verdict", |news| news["shown"]["serial"] == SERIALS[0]);
+    assert_eq!(ended["shown"]["verdict"], "ERROR", "{ended}");
+    assert_eq!(running.end().0, Some(0));
+    assert_eq!(station.query("SELECT cause FROM run"), ["station"]);
+    station.assert_well();
 }

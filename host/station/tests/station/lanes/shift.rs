@@ -329,3 +329,22 @@ fn a_lane_is_out_as_soon_as_the_hours_of_its_shift_end() {
     assert!(!running.answer(SERIALS[2]).0);
     running.end();
 }
+
+/// What checks a lane checks no other lane or station, and no other plan.
+#[test]
+fn a_check_is_of_one_lane_and_of_one_plan() {
+    let station = checked_at("started_ms");
+    let path = station.path("plan.toml");
+    let ours = Plan::load(&path).unwrap();
+    fs::write(&path, with_mock().replace("version = \"1\"", "version = \"2\"")).unwrap();
+    let other = Plan::load(&path).unwrap();
+    let now_ms = station.query("SELECT max(started_ms) FROM run")[0].parse::<i64>().unwrap() + 1;
+    let owed = |name, lane, plan| {
+        let place = InLane::of(name, lane, plan);
+        Folder::new(&station.path("data")).owed(&place, now_ms).unwrap().owed.map(|owed| owed.serial)
+    };
+    assert_eq!(owed("12", "1", &ours), None);
+    for (name, lane, plan) in [("12", "2", &ours), ("13", "1", &ours), ("12", "1", &other)] {
+        assert_eq!(owed(name, lane, plan).as_deref(), Some(SERIALS[0]), "station {name}, lane {lane}");
+    }
+}

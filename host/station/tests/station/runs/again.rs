@@ -8,8 +8,8 @@ fn plan(again: &str) -> String {
     PLAN.replace("device = ", &format!("again = \"{again}\"\ndevice = "))
 }
 
-fn meant(station: &Station, serial: &str) -> Did {
-    let mut arguments = station.run_arguments(serial, "mock");
+fn meant(station: &Station, serial: &str, board: &str) -> Did {
+    let mut arguments = station.run_arguments(serial, board);
     arguments.push("--again".to_owned());
     Command::new(program()).args(arguments).output().unwrap().into()
 }
@@ -26,12 +26,33 @@ fn a_unit_that_passed_is_tested_again_as_the_plan_says() {
         let complaint = "CAT00001 passed already under this plan, at 20";
         assert_eq!(did.complained.contains(complaint), plain != 0, "{did:?}");
         assert_eq!(did.complained.contains("say --again to test it again"), again == "ask", "{did:?}");
-        assert_eq!(meant(&station, "CAT00001").code, Some(said), "{again}");
+        assert_eq!(meant(&station, "CAT00001", "mock").code, Some(said), "{again}");
         assert_eq!(station.run("CAT00002", "mock").code, Some(0), "another unit");
         // Under another plan it has not passed.
         station.plan(&plan(again).replace("version = \"1\"", "version = \"2\""));
         assert_eq!(station.run("CAT00001", "mock").code, Some(0), "{again}");
         let runs = 2 + i32::from(plain == 0) + i32::from(said == 0) + 2;
         assert_eq!(station.query("SELECT count(*) FROM run"), [runs.to_string()], "{again}");
+    }
+}
+
+/// An ERROR says nothing of a unit that passed.
+#[test]
+fn a_unit_that_passed_has_passed_though_an_error_came_behind() {
+    let station = Station::with(&plan("ask"));
+    assert_eq!(station.run("CAT00001", "mock").code, Some(0));
+    let error = meant(&station, "CAT00001", "tcp:127.0.0.1:1");
+    assert_eq!(error.code, Some(3), "{error:?}");
+    let did = station.run("CAT00001", "mock");
+    assert!(did.code == Some(2) && did.complained.contains("passed already"), "{did:?}");
+}
+
+#[test]
+fn a_unit_that_checks_shifts_is_always_tested() {
+    let shift = "[shift]\ngood = \"CAT00001\"\nbad = \"CAT00002\"\nhours = 8\n[tables]";
+    let station = Station::with(&plan("refuse").replace("[tables]", shift));
+    for _ in 0..2 {
+        let did = station.run("CAT00001", "mock");
+        assert_eq!(did.code, Some(0), "{did:?}");
     }
 }

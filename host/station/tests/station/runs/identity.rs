@@ -7,9 +7,11 @@ use std::thread;
 use std::time::Duration;
 
 use halfrow::link;
+use halfrow_station::store::{Admission, Change, RebindError};
 
 use super::bench::{Did, PLAN, Station, program};
 use super::ends::with_link;
+use crate::history::made::{BEGIN_MS, End, Made, Run};
 
 /// The mock board whose FPGA has this number.
 fn device(number: u64) -> String {
@@ -74,13 +76,14 @@ fn a_board_and_its_label_stay_together_from_the_first_judgement_on() {
     assert_well(&station);
 }
 
-/// A port behind which whoever connects finds the next of these boards.
-fn one_after_the_other(boards: [String; 2]) -> String {
+/// A port behind which whoever connects finds the next of these boards, before which this is done.
+fn one_after_the_other(boards: [String; 2], before: impl Fn() + Send + 'static) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("tcp:{}", listener.local_addr().unwrap());
     thread::spawn(move || {
         for board in boards {
             let (mut host, _) = listener.accept().unwrap();
+            before();
             let mut board = link::open(&board.parse().unwrap()).unwrap().link;
             let mut bytes = [0; 4096];
             while let Ok(read @ 1..) = host.read(&mut bytes) {
@@ -104,13 +107,31 @@ fn a_board_that_is_swapped_behind_the_identity_step_is_not_judged() {
         [(PLAN.to_owned(), &["passed", "error"][..]), (with_link(), &["passed", "error", "skipped"])]
     {
         let station = Station::with(&plan);
-        let did = station.run("CAT00017", &one_after_the_other([device(0x11), device(0x22)]));
+        let did = station.run("CAT00017", &one_after_the_other([device(0x11), device(0x22)], || ()));
         assert_eq!(did.code, Some(6), "{did:?}");
         assert!(did.said.contains("0000000000000011") && did.said.contains("0000000000000022"), "{did:?}");
         assert_eq!(station.query("SELECT outcome FROM step ORDER BY seq"), outcomes, "{did:?}");
         assert_eq!(station.query("SELECT count(*) FROM binding"), ["0"]);
         assert_well(&station);
     }
+}
+
+/// The table of bindings is gone while the board is looked at.
+#[test]
+fn a_board_of_which_nobody_can_tell_whose_it_is_is_not_judged() {
+    let station = Station::with(PLAN);
+    assert_eq!(station.run("CAT00017", &device(0x11)).code, Some(0));
+    let path = station.store().database();
+    let database = move |text: &str| rusqlite::Connection::open(&path).unwrap().execute_batch(text);
+    let again = database.clone();
+    let boards = [device(0x22), device(0x22)];
+    // Whoever connects a second time finds it gone already.
+    let gone = move || drop(database("ALTER TABLE binding RENAME TO gone"));
+    let did = station.run("CAT00017", &one_after_the_other(boards, gone));
+    assert_eq!(did.code, Some(3), "{did:?}");
+    again("ALTER TABLE gone RENAME TO binding").unwrap();
+    assert_eq!(station.query("SELECT verdict FROM run ORDER BY id"), ["PASS", "ERROR"]);
+    assert_well(&station);
 }
 
 #[test]
@@ -135,6 +156,25 @@ fn a_run_that_judged_nothing_binds_nothing() {
     assert_eq!(station.run("CAT00001", &device(7)).code, Some(3));
     assert_eq!(station.query("SELECT count(*) FROM binding"), ["0"]);
     assert_well(&station);
+}
+
+#[test]
+fn a_device_that_is_being_judged_is_admitted_and_bound_nowhere_else() {
+    let mut made = Made::new();
+    let mut begin =
+        |serial, lane: &str| made.begin(&Run { lane: lane.to_owned(), ..Run::of(serial, End::Open) }).0;
+    let [first, second] = [begin("CAT00017", "1"), begin("CAT00071", "2")];
+    let device = "0000000000000011";
+    let mut admit = |run| made.store.admit(run, device).unwrap();
+    assert_eq!(admit(&first), Admission::New);
+    assert_eq!(admit(&first), Admission::New, "its own run asks again");
+    let other = admit(&second);
+    assert!(matches!(other, Admission::Refused { .. }), "{other:?}");
+    for (serial, device) in [("CAT00017", None), ("CAT00071", Some(device))] {
+        let change = Change { serial, product: None, device, operator: "engineer", reason: "x" };
+        let bound = made.store.rebind(&change);
+        assert!(matches!(bound, Err(RebindError::UnderTest { .. })), "{bound:?}");
+    }
 }
 
 #[test]
@@ -165,6 +205,19 @@ fn an_engineer_binds_anew_with_a_reason_that_is_kept() {
     database.execute("UPDATE binding SET device = '0000000000000044' WHERE to_ms IS NULL", []).unwrap();
     let checked = station.check();
     assert!(checked.code == Some(3) && checked.said.contains("fault: table binding"), "{checked:?}");
+}
+
+/// What a clock that was set back would put in front of it would be replayed in the wrong order.
+#[test]
+fn a_run_behind_a_change_of_a_binding_has_a_later_id_whatever_the_clock_says() {
+    let mut made = Made::new();
+    made.run(&Run::of("CAT00017", End::Pass));
+    let change =
+        Change { serial: "CAT00017", product: None, device: None, operator: "engineer", reason: "x" };
+    made.store.rebind(&change).unwrap();
+    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
+    let changed = database.query_row("SELECT id FROM audit", [], |row| row.get::<_, String>(0)).unwrap();
+    assert!(made.store.new_id(BEGIN_MS).unwrap().to_string() > changed);
 }
 
 #[test]
