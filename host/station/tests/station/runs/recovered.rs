@@ -1,5 +1,8 @@
 //! What is recorded of runs that are found open.
 
+use std::os::unix::process::{CommandExt as _, ExitStatusExt as _};
+use std::process::Command;
+
 use halfrow_station::lane::Message;
 use halfrow_station::record::{BoardSeen, RunCause, StepOutcome};
 use halfrow_station::run::recover;
@@ -52,6 +55,30 @@ fn a_run_that_is_found_open_on_what_is_no_hardware_counts_as_no_production() {
         std::fs::write(spool.join("events.jsonl"), told + "\n").unwrap();
         assert_eq!(recovered(made, &hardware()), (head.serial, counts), "{kind}");
     }
+}
+
+/// One that hangs, and does not hear that its station is gone.
+#[test]
+fn the_lane_of_a_run_that_is_found_open_is_killed() {
+    let mut made = Made::new();
+    let spools = ["1", "2"].map(|lane| {
+        let run = Run { lane: lane.to_owned(), ..Run::of(&format!("CAT0000{lane}"), End::Open) };
+        let spool = made.folder().spool(&made.begin(&run).0.id);
+        std::fs::create_dir(&spool).unwrap();
+        spool
+    });
+    let mut lanes = [(); 2].map(|()| Command::new("sleep").arg("20").process_group(0).spawn().unwrap());
+    for (number, (spool, lane)) in spools.iter().zip(&lanes).enumerate() {
+        let stat = std::fs::read_to_string(format!("/proc/{}/stat", lane.id())).unwrap();
+        let began: usize = stat.split(' ').nth(21).unwrap().parse().unwrap();
+        // Another process of the second one's id.
+        std::fs::write(spool.join("lane.pid"), format!("{} {}", lane.id(), began + number)).unwrap();
+    }
+    recover(&mut made.store).unwrap();
+    let killed = lanes[0].wait().unwrap().signal();
+    assert_eq!((killed, lanes[1].try_wait().unwrap()), (Some(9), None));
+    lanes[1].kill().unwrap();
+    lanes[1].wait().unwrap();
 }
 
 #[test]
