@@ -6,6 +6,7 @@
 //! ```
 
 mod lent_board;
+mod patience;
 mod recovered;
 
 use std::borrow::Cow;
@@ -19,11 +20,11 @@ pub use recovered::{recover, recover_run};
 
 use crate::ids::NoRandomness;
 use crate::labgrid::LaneBoard;
-use crate::lane::supervisor::{Attendant, EVENTS, End, Heard, LOG, Patience};
+use crate::lane::supervisor::{Attendant, EVENTS, End, Heard, LOG};
 use crate::lane::{Job, Message, Ruling, kept_frame};
 use crate::plan::limits::Maker;
 use crate::plan::serial::{Serial, SerialError};
-use crate::plan::{Act, Plan, Selected, Step, mock};
+use crate::plan::{Plan, Selected, mock};
 use crate::record::{
     Attachment, BlobError, Blobs, BoardSeen, Conclusion, DeviceSeen, JobClaim, PlanRecord, Record, RunCause,
     RunHead, SCHEMA, StepRecord, SuspectRecord, judged,
@@ -31,9 +32,6 @@ use crate::record::{
 use crate::said::{Said, Saying};
 use crate::store::{Admission, Folder, SharedStore, StoreError, Stored};
 use crate::{clock, ids};
-
-/// Round trips, echoes, to the board, to the host, together: each takes the seconds of the plan.
-const LINK_TEST_PARTS: u32 = 5;
 
 /// What is to be done with which board.
 #[derive(Clone, Copy, Debug)]
@@ -160,7 +158,8 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     let spool = folder.spool(&head.id);
     let job = job(&head, order, ids::seed(id), &spool);
     let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked };
-    let heard = lent_board::supervised(order, job, &spool, patience(order, &selected), &mut attending);
+    let heard =
+        lent_board::supervised(order, job, &spool, patience::of(order.silence, &selected), &mut attending);
     let (device, is_stuck) = (attending.device, matches!(heard.end, End::Stuck(_)));
     let was_killed = is_stuck || matches!(heard.end, End::Killed(_));
     attending.watch.hear(Stage::Saving { was_killed, is_stuck });
@@ -245,29 +244,6 @@ impl Attendant for Attending<'_> {
             Err(error) => Ruling::Untold { why: Said::of(&error) },
         }
     }
-}
-
-/// How long the lane is waited for.
-fn patience(order: &Order<'_>, selected: &Selected) -> Patience {
-    let silence = order.silence.saturating_add(longest_link_test(selected));
-    Patience { silence, whole: whole(selected) }
-}
-
-/// How long the longest link test is silent by its nature.
-fn longest_link_test(selected: &Selected) -> Duration {
-    let parts = |step: &Step| match step.act {
-        Act::Link { each } => each.saturating_mul(LINK_TEST_PARTS),
-        Act::Identity | Act::Verify(_) => Duration::ZERO,
-    };
-    selected.steps.iter().map(parts).max().unwrap_or_default()
-}
-
-/// The longest that a run may take: every try of every step as long as it may, and as much again as one step for the
-/// rest.
-fn whole(selected: &Selected) -> Duration {
-    let tries = selected.steps.iter().map(|step| step.timeout.saturating_mul(step.retries + 1));
-    let longest = selected.steps.iter().map(|step| step.timeout).max().unwrap_or_default();
-    tries.fold(longest, Duration::saturating_add)
 }
 
 fn plan_record(plan: &Plan) -> PlanRecord {

@@ -1,0 +1,52 @@
+//! How long a lane is waited for.
+
+use std::time::Duration;
+
+use crate::lane::supervisor::Patience;
+use crate::plan::{Act, Selected, Step};
+
+/// Round trips, echoes, to the board, to the host, together: each takes the seconds of the plan.
+const LINK_TEST_PARTS: u32 = 5;
+
+/// With a lane that carries this out, and may be silent so long beside its link tests.
+pub(super) fn of(silence: Duration, selected: &Selected) -> Patience {
+    Patience { silence: silence.saturating_add(longest_link_test(selected)), whole: whole(selected) }
+}
+
+/// How long the longest link test is silent by its nature.
+fn longest_link_test(selected: &Selected) -> Duration {
+    let parts = |step: &Step| match step.act {
+        Act::Link { each } => each.saturating_mul(LINK_TEST_PARTS),
+        Act::Identity | Act::Verify(_) => Duration::ZERO,
+    };
+    selected.steps.iter().map(parts).max().unwrap_or_default()
+}
+
+/// The longest that a run may take: every try of every step as long as it may, and as much again as one step for the
+/// rest.
+fn whole(selected: &Selected) -> Duration {
+    let tries = selected.steps.iter().map(|step| step.timeout.saturating_mul(step.retries + 1));
+    let longest = selected.steps.iter().map(|step| step.timeout).max().unwrap_or_default();
+    tries.fold(longest, Duration::saturating_add)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_lane_may_be_silent_for_all_parts_of_its_longest_link_test() {
+        let step = |seconds, retries, act| Step {
+            name: "a step".to_owned(),
+            timeout: Duration::from_secs(seconds),
+            retries,
+            act,
+        };
+        let link = |seconds| Act::Link { each: Duration::from_secs(seconds) };
+        let patience = |steps| of(Duration::from_secs(5), &Selected { steps, limits: Vec::new() });
+        let tested = patience(vec![step(1, 0, Act::Identity), step(20, 2, link(3)), step(30, 0, link(2))]);
+        assert_eq!(tested.silence, Duration::from_secs(5 + 5 * 3));
+        assert_eq!(tested.whole, Duration::from_secs(1 + 3 * 20 + 30 + 30));
+        assert_eq!(patience(vec![step(1, 0, Act::Identity)]).silence, Duration::from_secs(5));
+    }
+}
