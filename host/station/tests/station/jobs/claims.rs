@@ -13,12 +13,17 @@ use super::{any, board, job, plan, run_out, shared, worker};
 use crate::history::made::{BEGIN_MS, End, Made, Run};
 use crate::plant::server::Server;
 
-/// The run of a claim, as its station sends it.
-fn run_of(claim: &Claim, number: u32, end: End) -> Parcel {
+/// The `number`-th run of this unit, as its station sends it.
+fn run_of_unit(serial: &str, number: u32, end: End) -> Parcel {
     let mut made = Made::new();
-    let run = Run { started_ms: BEGIN_MS + i64::from(number), ..Run::of(claim.serial(), end) };
+    let run = Run { started_ms: BEGIN_MS + i64::from(number), ..Run::of(serial, end) };
     let subject = made.numbered(number, &run);
-    let parcel = made.folder().parcel(&Entry { kind: Kind::Run, subject, attempts: 0 }).unwrap();
+    made.folder().parcel(&Entry { kind: Kind::Run, subject, attempts: 0 }).unwrap()
+}
+
+/// As [`run_of_unit`], for a claim.
+fn run_of(claim: &Claim, number: u32, end: End) -> Parcel {
+    let parcel = run_of_unit(claim.serial(), number, end);
     let Parcel::Run { mut record, .. } = parcel else { panic!("it is a run") };
     record.run.job = Some(JobClaim { id: claim.job.clone(), fence: claim.fence });
     let text = serde_json::to_string(&record).unwrap();
@@ -83,7 +88,7 @@ pub(crate) fn late(is_fenced: bool) -> (Server, Vec<Vec<String>>) {
     assert!(!plant.renew_claim(&first).unwrap() && plant.renew_claim(&second).unwrap());
     plant.give_back(&first.lease).unwrap();
     assert!(plant.renew_claim(&second).unwrap(), "a board is not given back by who does not have it");
-    for (claim, number) in [(&first, 1), (&second, 2), (&first, 1)] {
+    for (claim, number) in [(&first, 2), (&second, 3), (&first, 2)] {
         let Parcel::Run { mut record, mut text, mut sha256 } = run_of(claim, number, End::Pass) else {
             panic!("it is a run")
         };
@@ -105,6 +110,11 @@ fn a_run_of_a_claim_that_was_lost_is_kept_and_does_not_count() {
     assert_eq!(server.rows("SELECT runs, units, passed FROM day_count"), [["1", "1", "1"]]);
     let done = server.rows("SELECT job.state, run.nth FROM job JOIN run ON run.id = job.run_id");
     assert_eq!(done, [["done", "1"]]);
+    // Nor when an earlier run of the unit is counted in front of it.
+    let mut plant = Plant::connect(&server.address()).unwrap();
+    plant.take(&run_of_unit(&board(0, "mock").serial, 1, End::Fail(&["clock"]))).unwrap();
+    assert_eq!(server.rows("SELECT nth FROM run ORDER BY id"), [["1"], ["0"], ["2"]]);
+    assert_well(&server);
     // The control: without the fence both count.
     let (server, judged) = late(false);
     assert_eq!(judged, [["1"], ["2"]]);
@@ -119,10 +129,10 @@ fn what_judged_nothing_is_given_back_five_times_and_then_waits_for_a_person() {
     for number in 1..=5 {
         let claim = plant.claim(&worker("12")).unwrap().unwrap();
         match number {
-            // A run that is an ERROR, a board that is no board, and a worker that vanished.
-            1 | 2 => plant.take(&run_of(&claim, number, End::Error(RunCause::Link))).unwrap(),
+            // A worker that vanished, a board that is no board, and a run that is an ERROR.
+            1 | 2 => run_out(&server),
             3 => plant.fail(&claim, "it is no board").unwrap(),
-            _ => run_out(&server),
+            _ => plant.take(&run_of(&claim, number, End::Error(RunCause::Link))).unwrap(),
         }
         plant.give_back(&claim.lease).unwrap();
     }
@@ -215,6 +225,19 @@ fn what_a_claim_judged_before_a_person_cancelled_the_job_or_another_one_claimed_
             assert_well(server);
         }
     }
+}
+
+#[test]
+fn a_claim_judges_once() {
+    let (server, mut plant) = shared(1);
+    let (plan, any) = (plan(), any());
+    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    let claim = plant.claim(&worker("12")).unwrap().unwrap();
+    for (number, end) in [(1, End::Fail(&["clock"])), (2, End::Pass)] {
+        plant.take(&run_of(&claim, number, end)).unwrap();
+    }
+    assert_eq!(server.rows("SELECT nth FROM run ORDER BY id"), [["1"], ["0"]]);
+    assert_well(&server);
 }
 
 #[test]

@@ -139,3 +139,17 @@ fn stations_that_send_at_once_count_each_unit_once() {
         assert_eq!(server.rows(text), expected, "{text}");
     }
 }
+
+/// The mock that checks a shift is no unit at the plant, either.
+#[test]
+fn the_mock_that_checks_a_shift_counts_nowhere_at_the_plant() {
+    let server = Server::prepared();
+    let mut plant = Plant::connect(&server.address()).unwrap();
+    for parcel in parcels(&[Run::of("HR:MOCK:1", End::Fail(&["clock"])), Run::of("U1", End::Pass)]) {
+        plant.take(&parcel).unwrap();
+    }
+    let nths = "SELECT run.nth FROM run JOIN unit ON unit.id = run.unit_id ORDER BY unit.serial";
+    assert_eq!(server.rows(nths), [["0"], ["1"]]);
+    assert_eq!(server.rows("SELECT sum(runs)::bigint FROM day_count"), [["1"]]);
+    assert_eq!(server.rows("SELECT count(*) FROM failure"), [["0"]]);
+}

@@ -8,6 +8,7 @@ use halfrow_station::store::{AuditLine, Change, Parcel, Plant, Snapshot};
 use serde_json::Value;
 
 use super::checked::faults;
+use super::late::parcels;
 use super::pages::{served, settings, text};
 use super::sent::send_as;
 use super::server::Server;
@@ -37,9 +38,13 @@ fn judge(
     serial: &str,
     device: (DeviceSeen, &'static str),
 ) {
+    made.numbered(number, &judged(station, number, serial, device));
+}
+
+/// A run of the `number`-th hour.
+fn judged(station: &'static str, number: u32, serial: &str, device: (DeviceSeen, &'static str)) -> Run {
     let started_ms = LONG_AGO_MS + i64::from(number) * HOUR_MS;
-    let run = Run { station, started_ms, device: Some(device), ..Run::of(serial, End::Pass) };
-    made.numbered(number, &run);
+    Run { station, started_ms, device: Some(device), ..Run::of(serial, End::Pass) }
 }
 
 /// Both took D1 for another unit, and B3 for another device; of B4 they say the same.
@@ -236,5 +241,49 @@ fn what_a_run_bound_since_is_not_ended_by_a_change_that_comes_late() {
     let mut plant = Plant::connect(&server.address()).unwrap();
     plant.take(&rebinding(1, "B1", Some(d4))).unwrap();
     assert_eq!(bound(&server), ["B1 d1 1 to 101", "B1 d4 101 to 110", "B4 d4 110 to now"]);
+    assert_eq!(faults(&server, "plant"), [""; 0]);
+}
+
+/// The runs of B1 by one station and of B2 by another, with one device; the later one of B2 comes first.
+#[test]
+fn a_mismatch_is_as_new_as_its_newest_run_in_whatever_order_they_come() {
+    let server = Server::prepared();
+    let device = |seen| (seen, DEVICES[0]);
+    let [first, earlier, later] = &parcels(&[
+        judged("station 7", 1, "B1", device(DeviceSeen::New)),
+        judged("station 8", 2, "B2", device(DeviceSeen::New)),
+        judged("station 8", 3, "B2", device(DeviceSeen::Known)),
+    ])[..] else {
+        panic!("three runs")
+    };
+    let mut plant = Plant::connect(&server.address()).unwrap();
+    for parcel in [first, later, earlier] {
+        plant.take(parcel).unwrap();
+    }
+    let newest: Vec<_> = found(&server).into_iter().map(|one| (one.serial, one.last_ms)).collect();
+    assert_eq!(newest, [("B2".to_owned(), LONG_AGO_MS + 3 * HOUR_MS)]);
+    assert_eq!(faults(&server, "plant"), [""; 0]);
+}
+
+/// A person binds its unit anew in the moment in which the second run begins.
+#[test]
+fn what_a_run_began_with_is_no_mismatch_though_it_is_bound_otherwise_since() {
+    let server = Server::prepared();
+    let [d1, _, d3, _] = DEVICES;
+    let [first, second] = &parcels(&[
+        judged("station 7", 1, "B1", (DeviceSeen::New, d1)),
+        judged("station 7", 2, "B1", (DeviceSeen::Known, d1)),
+    ])[..] else {
+        panic!("two runs")
+    };
+    let Parcel::Audit(change) = rebinding(1, "B1", Some(d3)) else { panic!("a line of the audit") };
+    let at_ms = LONG_AGO_MS + 2 * HOUR_MS;
+    let change = Parcel::Audit(AuditLine { id: id(at_ms, 1), at_ms, ..change });
+    let mut plant = Plant::connect(&server.address()).unwrap();
+    for parcel in [first, &change, second] {
+        plant.take(parcel).unwrap();
+    }
+    assert_eq!(bound(&server), ["B1 d1 1 to 2", "B1 d3 2 to now"]);
+    assert_eq!(told(&server), [""; 0]);
     assert_eq!(faults(&server, "plant"), [""; 0]);
 }

@@ -182,6 +182,20 @@ fn what_nobody_signed_who_is_trusted_is_not_taken() {
     assert_eq!(made.held(), ("3".to_owned(), 3));
 }
 
+/// As after the plant was put back, and its number was given anew.
+#[test]
+fn another_plan_under_the_number_that_a_station_has_is_not_taken() {
+    let made = Published::new();
+    made.publish("engel.key");
+    made.fetch();
+    made.server.client("plant").batch_execute("DELETE FROM publication").unwrap();
+    made.plan("2", 2);
+    assert_eq!(made.publish("engel.key").said, "CAM-T/quick 2 holds, as number 1\n");
+    let other = made.fetch();
+    assert!(other.complained.contains("as its number 1, and here is number 1 already"), "{other:?}");
+    assert_eq!(made.held(), ("1".to_owned(), 1));
+}
+
 /// What the engineer with the key is made to sign by somebody who can write to the database, and has no key that anybody trusts.
 #[test]
 fn an_older_plan_holds_again_as_it_was_signed_or_not_at_all() {
