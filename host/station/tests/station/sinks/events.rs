@@ -1,7 +1,7 @@
 //! Events for dashboards, through a broker of Debian's.
 
 use std::fs;
-use std::io::{BufRead as _, BufReader};
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
@@ -188,4 +188,24 @@ fn a_broker_whose_certificate_nobody_signed_who_is_trusted_is_told_as_that() {
     let refused = send(folder.path(), &broker.sink(folder.path(), "mqtts", PASSWORD, &ca));
     let told = "the certificate of localhost is signed by nobody who is trusted";
     assert!(refused.said.starts_with("1 sent, 3 not") && refused.said.contains(told), "{refused:?}");
+}
+
+/// It lets the station in, and is gone before it confirms.
+#[test]
+fn an_event_that_no_broker_has_confirmed_is_tried_again() {
+    let folder = station();
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = listener.local_addr().unwrap().port();
+    thread::spawn(move || {
+        for stream in listener.incoming() {
+            let (mut stream, mut bytes) = (stream.unwrap(), [0; 4096]);
+            let _ = stream.read(&mut bytes);
+            // CONNACK (MQTT 3.1.1, section 3.2), and no PUBACK.
+            let _ = stream.write_all(&[0x20, 2, 0, 0]);
+            let _ = stream.read(&mut bytes);
+        }
+    });
+    let sent =
+        send(folder.path(), &format!("[[sink]]\nname = \"wall\"\nmqtt = \"mqtt://localhost:{port}/x\"\n"));
+    assert!(sent.said.starts_with("1 sent, 3 not"), "{sent:?}");
 }
