@@ -156,6 +156,19 @@ mod tests {
         assert_eq!((serial.text.as_str(), serial.variant.as_str()), ("CAW080442957X", "W"));
     }
 
+    /// The letters in front would count.
+    #[test]
+    fn a_check_digit_guards_the_number_alone() {
+        for (pattern, check, serial) in [
+            ("^CA-(?<number>[0-9A-Z]+)$", CheckDigit::Mod43, "CA-159AZH"),
+            ("^CA(?<number>[0-9A-Z]+)$", CheckDigit::Mod97, "CA370400440532013000DE89"),
+        ] {
+            assert!(rule(pattern, check).read(serial).is_ok(), "{serial}");
+            let whole = rule(&pattern.replace("?<number>", ""), check).read(serial);
+            assert!(matches!(whole, Err(SerialError::CheckDigit { .. })), "{serial}: the control");
+        }
+    }
+
     #[test]
     fn misread_labels_are_refused_each_for_its_reason() {
         let rule = rule("^CA[WN][0-9]{9}[0-9X]$", CheckDigit::Mod11);

@@ -216,3 +216,27 @@ pub(super) fn keep(path: &Path, content: &[u8]) -> Result<(), BundleError> {
     fs::create_dir_all(folder).map_err(|source| BundleError::Folder { path: folder.to_owned(), source })?;
     Ok(write_aside(path, true, |file| file.write_all(content))?)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Its hash is right, as whoever has a key that is trusted could sign it.
+    #[test]
+    fn nothing_is_unpacked_outside_of_its_folder_or_over_the_plan() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("plans");
+        for (name, is_outside) in
+            [("../../outside", true), ("/outside", true), ("a/../b", true), (PLAN, false)]
+        {
+            let hash = FileHash { path: name.to_owned(), sha256: sha256([b"x"]) };
+            let expected = plan_hash("text", &[hash]);
+            let file = BundledFile { path: name.to_owned(), base64: BASE64_STANDARD.encode("x") };
+            let bundle = Bundle { schema: SCHEMA, text: "text".to_owned(), files: vec![file] };
+            let refused = Bundle::unpack(&bundle.text(), &expected, &folder).unwrap_err();
+            assert_eq!(matches!(refused, BundleError::Outside { .. }), is_outside, "{name}: {refused}");
+            assert!(is_outside || matches!(refused, BundleError::Plan), "{name}: {refused}");
+        }
+        assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0, "nothing was written");
+    }
+}
