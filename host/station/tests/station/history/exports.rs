@@ -155,9 +155,9 @@ fn every_cell_of_the_table_is_read_back_by_python() {
     assert!(!read().status.success(), "the control");
 }
 
-/// What OpenHTF itself makes of a phase with a measurement that failed.
+/// For OpenHTF what that itself makes of a phase with a measurement that failed.
 #[test]
-fn a_phase_of_openhtf_is_as_bad_as_its_worst_measurement() {
+fn a_limit_is_told_as_what_it_blames() {
     let mut made = Made::new();
     made.run(&Run::of("S1", End::Pass));
     let hash = &hashes(&made)[0];
@@ -171,15 +171,22 @@ fn a_phase_of_openhtf_is_as_bad_as_its_worst_measurement() {
         };
         let measurements = judged(Maker::Run, &[("run.seconds", Some(1.5))], &[limit]);
         let limited = Record { measurements, ..record.clone() };
-        let json = written(&limited, Vec::new(), Format::OpenHtf).unwrap();
-        let json: serde_json::Value = serde_json::from_slice(&json).unwrap();
+        let written = |format| written(&limited, Vec::new(), format).unwrap();
+        let json: serde_json::Value = serde_json::from_slice(&written(Format::OpenHtf)).unwrap();
         let phases = json["phases"].as_array().unwrap();
-        phases.iter().map(|phase| phase["outcome"].as_str().unwrap().to_owned()).collect::<Vec<_>>()
+        let outcome = |told: &serde_json::Value| told["outcome"].as_str().unwrap().to_owned();
+        let mut told: Vec<_> = phases.iter().map(outcome).collect();
+        told.push(outcome(&phases[2]["measurements"]["run.seconds"]));
+        let junit = String::from_utf8(written(Format::Junit)).unwrap();
+        let (_, case) = junit.split_once("name=\"run.seconds (run)\"").unwrap();
+        let ends = ["failure", "error"].into_iter().find(|end| case.contains(&format!("<{end} ")));
+        told.push(ends.unwrap_or("nothing").to_owned());
+        told
     };
-    assert_eq!(outcomes(Blame::Board, 2.0), ["PASS", "PASS", "PASS"]);
-    assert_eq!(outcomes(Blame::Board, 1.0), ["PASS", "PASS", "FAIL"]);
-    assert_eq!(outcomes(Blame::Station, 1.0), ["PASS", "PASS", "ERROR"]);
-    assert_eq!(outcomes(Blame::Nobody, 1.0), ["PASS", "PASS", "PASS"]);
+    assert_eq!(outcomes(Blame::Board, 2.0), ["PASS", "PASS", "PASS", "PASS", "nothing"]);
+    assert_eq!(outcomes(Blame::Board, 1.0), ["PASS", "PASS", "FAIL", "FAIL", "failure"]);
+    assert_eq!(outcomes(Blame::Station, 1.0), ["PASS", "PASS", "ERROR", "FAIL", "error"]);
+    assert_eq!(outcomes(Blame::Nobody, 1.0), ["PASS", "PASS", "PASS", "PASS", "nothing"]);
 }
 
 /// With OpenHTF from PyPI, in a Python of its own that is made when it is not there.

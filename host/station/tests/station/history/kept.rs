@@ -246,6 +246,19 @@ fn evidence_of_a_later_run_is_missed_though_an_earlier_one_s_was_removed() {
 }
 
 #[test]
+fn evidence_that_was_removed_twice_is_not_missed() {
+    let mut made = made();
+    assert_eq!(prune(&mut made.store, i64::MAX, "engel").unwrap().pieces, 3);
+    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
+    let (removed_ms, started_ms) = (BEGIN_MS + 100 * HOUR_MS, BEGIN_MS + 101 * HOUR_MS);
+    assert_eq!(database.execute("UPDATE audit SET at_ms = $1 WHERE act = 'prune'", [removed_ms]).unwrap(), 3);
+    let lane = "2".to_owned();
+    made.run(&Run { started_ms, lane, evidence: vec!["old"], ..Run::of("S6", End::Fail(&["memory"])) });
+    assert_eq!(prune(&mut made.store, i64::MAX, "engel").unwrap().pieces, 1);
+    assert_eq!(sound(&made.folder()), [4, 1, 4, 5]);
+}
+
+#[test]
 fn a_record_is_kept_even_where_a_row_calls_it_an_attachment() {
     let mut made = made();
     let record = runs(&made.folder()).runs.last().unwrap().record_sha256.clone().unwrap();

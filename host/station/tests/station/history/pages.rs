@@ -56,6 +56,7 @@ fn walked(made: &Made, filter: &Filter, limit: u32) -> Vec<String> {
         let Page { runs, next } = page(&made.now(), filter, after.as_ref(), limit).unwrap();
         assert!(runs.len() <= limit as usize);
         assert!(next.is_none() || runs.len() == limit as usize);
+        assert!(after.is_none() || !runs.is_empty(), "the last page of {limit} named a next one");
         found.extend(runs.into_iter().map(|run| run.id));
         match next {
             Some(next) => after = Some(next),

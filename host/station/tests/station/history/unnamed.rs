@@ -135,6 +135,20 @@ fn a_record_that_came_to_no_row_is_no_fault() {
     assert_eq!(backup(&made.folder(), &place.path().join("copy")).unwrap().unknown, 0);
 }
 
+#[test]
+fn a_record_that_is_damaged_says_nothing_of_its_run() {
+    let mut made = Made::new();
+    let run = made.run(&Run::of("S1", End::Open));
+    let conclusion = serde_json::json!({ "verdict": "PASS" });
+    let left =
+        serde_json::json!({ "schema": 1, "run": { "id": run }, "conclusion": conclusion, "attachments": [] });
+    let hash = made.folder().blobs().put(left.to_string().as_bytes()).unwrap();
+    let told = || check(&made.folder()).unwrap().superseded.len();
+    assert_eq!(told(), 1, "the control");
+    fs::write(made.folder().blobs().path(&hash), format!("{left} ")).unwrap();
+    assert_eq!(told(), 0);
+}
+
 /// A copy of a moment at which runs were under way is put back when they are over: nothing on the disk tells that from a power cut
 /// in front of the COMMIT.
 #[test]

@@ -10,7 +10,7 @@ use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 /// `O` open; then the plan's name and version if they are other ones. Beside them what counts for the plan `final`:
 ///
 /// units, first pass, in the end, waived, flipped; runs, errors, crashes.
-pub(crate) const CASES: [(&str, [u64; 8]); 41] = [
+pub(crate) const CASES: [(&str, [u64; 8]); 42] = [
     ("A:P", [1, 1, 1, 0, 0, 1, 0, 0]),
     ("A:F", [1, 0, 0, 0, 0, 1, 0, 0]),
     // An ERROR is no judgement.
@@ -59,6 +59,7 @@ pub(crate) const CASES: [(&str, [u64; 8]); 41] = [
     ("A:F@final,2 A:W", [1, 0, 0, 1, 0, 2, 0, 0]),
     ("A:F A:P@intake,1", [1, 0, 0, 0, 0, 1, 0, 0]),
     ("A:P@intake,1 A:F@intake,1 A:P", [1, 1, 1, 0, 0, 1, 0, 0]),
+    ("A:P@intake,1 A:F@intake,1 A:W", [1, 0, 0, 1, 0, 1, 0, 0]),
 ];
 
 /// Enters one word of a story.
@@ -174,6 +175,13 @@ fn a_unit_belongs_to_the_lane_and_the_day_of_its_first_judgement() {
     assert_eq!(lines(&made, &all, By::Plan), of(&[("", [2, 1, 2, 4, 1])]));
     let first = Wanted { lane: Some("1".to_owned()), ..Wanted::default() };
     assert_eq!(lines(&made, &first, By::Plan), of(&[("", [1, 0, 1, 1, 0])]));
+    let period = Period { until_ms: BEGIN_MS + 24 * HOUR_MS, ..Period::default() };
+    let first = Wanted { period, ..Wanted::default() };
+    assert_eq!(lines(&made, &first, By::Plan), of(&[("", [1, 0, 1, 2, 1])]), "A passed behind it");
+    assert_eq!(yields(&made.now(), &first, By::Plan).unwrap().flips.len(), 1);
+    let period = Period { from_ms: BEGIN_MS + 24 * HOUR_MS, until_ms: BEGIN_MS + 25 * HOUR_MS };
+    let hour = Wanted { period, ..Wanted::default() };
+    assert_eq!(lines(&made, &hour, By::Plan), of(&[("", [0, 0, 0, 1, 0])]), "B began as it ended");
     let period = Period { from_ms: BEGIN_MS + 24 * HOUR_MS, ..Period::default() };
     let second = Wanted { period, ..Wanted::default() };
     assert_eq!(lines(&made, &second, By::Plan), of(&[("", [1, 1, 1, 2, 0])]));
