@@ -68,3 +68,14 @@ fn a_reason_and_a_name_are_printed_in_one_line() {
         "{complained}"
     );
 }
+
+/// The line in the audit that tells of it is none.
+#[test]
+fn a_waiver_that_is_not_sent_is_a_result_as_its_run_is() {
+    let mut made = Made::new();
+    made.store.sends_to(vec!["mes".to_owned()]).unwrap();
+    let run = made.run(&Run::of("S1", End::Fail(&[])));
+    made.store.waive(&run, "engel", "x").unwrap();
+    let [unsent] = &made.now().unsent().unwrap()[..] else { panic!("there is one sink") };
+    assert_eq!((unsent.entries, unsent.results), (3, 2));
+}
