@@ -51,3 +51,22 @@ fn said_last(folder: &Folder) -> Result<Option<String>, StoreError> {
     let unsent = Snapshot::take(folder)?.unsent()?;
     Ok(unsent.into_iter().find(|unsent| unsent.sink == SINK_OF_PLANT).and_then(|unsent| unsent.said))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::Store;
+
+    #[test]
+    fn what_waits_for_a_person_is_waited_for_no_longer() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = Folder::new(place.path());
+        drop(Store::open(&folder).unwrap());
+        let run = "0".repeat(36);
+        let entry = "INSERT INTO outbox (sink, kind, subject, attempts, next_ms, dead_ms, said) VALUES ($1, 'run', $2, 1, 0, 1, 'no')";
+        let database = rusqlite::Connection::open(folder.database()).unwrap();
+        database.execute(entry, [SINK_OF_PLANT, &run]).unwrap();
+        let sent = awaited(&folder, &run, &|| panic!("it is waited for")).unwrap();
+        assert!(matches!(&sent, Sent::Refused(said) if said == "no"), "{sent:?}");
+    }
+}
