@@ -2,12 +2,17 @@
 
 use std::io::Read as _;
 use std::net::TcpListener;
+use std::sync::Mutex;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use halfrow::Verdict;
+use halfrow_station::lane::child::{carry_out, orders};
+use halfrow_station::lane::{Control, Job, MEMORY_MIB, Message, Ruling, Stopper};
+use halfrow_station::plan::Plan;
 
 use super::bench::{Did, PLAN, Station};
+use super::identity::{device, one_after_the_other};
 
 #[test]
 fn a_sound_board_passes_and_its_record_reads_back() {
@@ -259,4 +264,37 @@ fn a_run_that_is_found_open_is_an_error() {
     let attached = "SELECT name FROM attachment";
     assert_eq!(station.query(attached), ["events.jsonl"]);
     assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+}
+
+/// Its link fails while a person ends the run.
+#[test]
+fn no_step_is_tried_again_once_the_run_is_to_end() {
+    let text = PLAN.replace("timeout = 60", "timeout = 60\nretries = 3");
+    let spool = crate::common::folder();
+    let (path, target) = (spool.path().join("plan.toml"), one_after_the_other(vec![device(0x11)], || ()));
+    let plan = Plan::parse(&path, text.clone()).unwrap();
+    let (orders, heeded) = orders();
+    let tries = Mutex::new(Vec::new());
+    let tell = |message: &Message| match message {
+        Message::Identified { .. } => orders.take(Control::Device(Ruling::New)),
+        Message::Step { seq: 2, .. } => orders.take(Control::Stop(Stopper::Person)),
+        Message::Ended { step } => tries.lock().unwrap().push((step.seq, step.attempt)),
+        _ => {}
+    };
+    let [run, variant] = ["r", ""].map(str::to_owned);
+    let spool = spool.path().to_owned();
+    let job = Job {
+        run,
+        target,
+        plan: path,
+        text,
+        sha256: plan.sha256,
+        variant,
+        seed: 1,
+        is_mock: false,
+        spool,
+        memory_mib: MEMORY_MIB,
+    };
+    carry_out(&job, &heeded, &tell);
+    assert_eq!(tries.into_inner().unwrap(), [(1, 1), (2, 1)]);
 }

@@ -14,7 +14,7 @@ use super::ends::with_link;
 use crate::history::made::{BEGIN_MS, End, Made, Run};
 
 /// The mock board whose FPGA has this number.
-fn device(number: u64) -> String {
+pub(super) fn device(number: u64) -> String {
     format!("mock,serial={number}")
 }
 
@@ -77,7 +77,7 @@ fn a_board_and_its_label_stay_together_from_the_first_judgement_on() {
 }
 
 /// A port behind which whoever connects finds the next of these boards, before which this is done.
-fn one_after_the_other(boards: [String; 2], before: impl Fn() + Send + 'static) -> String {
+pub(super) fn one_after_the_other(boards: Vec<String>, before: impl Fn() + Send + 'static) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("tcp:{}", listener.local_addr().unwrap());
     thread::spawn(move || {
@@ -107,7 +107,7 @@ fn a_board_that_is_swapped_behind_the_identity_step_is_not_judged() {
         [(PLAN.to_owned(), &["passed", "error"][..]), (with_link(), &["passed", "error", "skipped"])]
     {
         let station = Station::with(&plan);
-        let did = station.run("CAT00017", &one_after_the_other([device(0x11), device(0x22)], || ()));
+        let did = station.run("CAT00017", &one_after_the_other(vec![device(0x11), device(0x22)], || ()));
         assert_eq!(did.code, Some(6), "{did:?}");
         assert!(did.said.contains("0000000000000011") && did.said.contains("0000000000000022"), "{did:?}");
         assert_eq!(station.query("SELECT outcome FROM step ORDER BY seq"), outcomes, "{did:?}");
@@ -124,7 +124,7 @@ fn a_board_of_which_nobody_can_tell_whose_it_is_is_not_judged() {
     let path = station.store().database();
     let database = move |text: &str| rusqlite::Connection::open(&path).unwrap().execute_batch(text);
     let again = database.clone();
-    let boards = [device(0x22), device(0x22)];
+    let boards = vec![device(0x22), device(0x22)];
     // Whoever connects a second time finds it gone already.
     let gone = move || drop(database("ALTER TABLE binding RENAME TO gone"));
     let did = station.run("CAT00017", &one_after_the_other(boards, gone));
