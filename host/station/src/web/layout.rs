@@ -116,7 +116,7 @@ fn navigation(visit: &Visit, here: Here) -> Markup {
     html! {
         header.top {
             span.station {
-                @if visit.may_look && !visit.plans.is_empty() { b.plans { (visit.plans) } " · " }
+                @if visit.may(Who::Reader) && !visit.plans.is_empty() { b.plans { (visit.plans) } " · " }
                 @if visit.is_plant { (visit.say("nav.plant")) } @else { (visit.say("nav.station")) } " " b { (visit.station) }
             }
             nav aria-label=(visit.say("nav.pages")) {

@@ -150,7 +150,7 @@ async fn machine(
         }
         Machine::Known { name, is_noted } => {
             let user = Some(User { name: name.clone(), who: Who::Reader });
-            let visit = Visit { user, may_look: true, ..stranger };
+            let visit = Visit { user, ..stranger };
             if is_act {
                 return Err(refused(&visit, StatusCode::FORBIDDEN, visit.say("trouble.forbidden")));
             }
@@ -166,7 +166,7 @@ async fn machine(
 
 /// A page: whoever may not see it logs in.
 fn look(visit: &Visit, who: Who, request: Request) -> Result<Request, Refused> {
-    if who == Who::Anyone || visit.may(who) || who == Who::Reader && visit.may_look {
+    if visit.may(who) {
         return Ok(request);
     }
     let wants_page = request
@@ -186,7 +186,7 @@ async fn act(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Req
     if !is_own.is_some_and(|(host, origin)| app.access().address().is_origin(origin, host)) {
         return Err(refused(visit, StatusCode::FORBIDDEN, visit.say("trouble.origin")));
     }
-    if who > Who::Anyone && !visit.may(who) {
+    if !visit.may(who) {
         return Err(Box::new(Trouble::barred(visit).into_response()));
     }
     let unmarked = || refused(visit, StatusCode::FORBIDDEN, visit.say("trouble.mark"));
@@ -255,7 +255,6 @@ impl App {
         let is_new = sent.is_none();
         let session = sent.or_else(|| access.begin(None).ok()).unwrap_or_default();
         let (csrf, can_log_in) = (access.form_mark(&session), access.has_people());
-        let may_look = stranger.may_look || user.is_some();
-        Ok(Visit { csrf, user, untold, session, may_look, is_new, can_log_in, ..stranger })
+        Ok(Visit { csrf, user, untold, session, is_new, can_log_in, ..stranger })
     }
 }

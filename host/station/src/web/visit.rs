@@ -30,8 +30,8 @@ pub(super) struct Visit {
     pub(super) untold: Option<Said>,
     /// The value of the cookie that the visitor has, or is given.
     pub(super) session: String,
-    /// Whether what is tested here is shown to the visitor.
-    pub(super) may_look: bool,
+    /// Whether everybody who gets here may see what is tested.
+    pub(super) is_open: bool,
     /// Whether it is given.
     pub(super) is_new: bool,
     /// Whether people log in at this station.
@@ -61,7 +61,8 @@ impl Visit {
 
     /// Whether the visitor may do what `who` may.
     pub(super) fn may(&self, who: Who) -> bool {
-        self.user.as_ref().is_some_and(|user| user.who >= who)
+        let least = if self.is_open { Who::Reader } else { Who::Anyone };
+        self.user.as_ref().map_or(least, |user| user.who.max(least)) >= who
     }
 }
 
@@ -86,7 +87,7 @@ impl App {
             user: None,
             untold: None,
             session,
-            may_look: self.access().is_open(),
+            is_open: self.access().is_open(),
             is_new: true,
             can_log_in: false,
             csrf,
