@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::audit::Line;
 use super::database::{Database, DatabaseError, Row, values};
+use super::waivers::too_long;
 use super::{MOST_REASON, Store, StoreError, statements as sql};
 use crate::clock;
 use crate::record::RunHead;
@@ -88,9 +89,8 @@ impl Store {
         if change.reason.trim().is_empty() {
             return Err(RebindError::NoReason);
         }
-        let (characters, most) = (change.reason.trim().chars().count(), MOST_REASON);
-        if characters > most {
-            return Err(RebindError::TooLong { characters, most });
+        if let Some(characters) = too_long(change.reason.trim()) {
+            return Err(RebindError::TooLong { characters, most: MOST_REASON });
         }
         if let Some(device) = change.device.filter(|device| !is_device(device)) {
             return Err(RebindError::NoDevice { device: device.to_owned() });

@@ -83,9 +83,8 @@ impl Store {
         if operator.is_empty() || reason.is_empty() {
             return Err(NoWaiver::Empty);
         }
-        let (characters, most) = (reason.chars().count(), MOST_REASON);
-        if characters > most {
-            return Err(NoWaiver::TooLong { characters, most });
+        if let Some(characters) = too_long(reason) {
+            return Err(NoWaiver::TooLong { characters, most: MOST_REASON });
         }
         let stored = self.folder.verdict_of(run)?;
         let verdict = stored.ok_or_else(|| NoWaiver::NoRun { run: run.to_owned() })?.verdict;
@@ -111,6 +110,11 @@ impl Store {
         let [run, operator, reason] = [run, operator, reason].map(str::to_owned);
         Ok(Waiver { run, at_ms, operator, reason })
     }
+}
+
+/// The characters of a reason that pages and events have no room for.
+pub(super) fn too_long(reason: &str) -> Option<usize> {
+    Some(reason.chars().count()).filter(|characters| *characters > MOST_REASON)
 }
 
 fn waiver_of(database: &mut dyn Database, run: &str) -> Result<Option<Waiver>, DatabaseError> {
