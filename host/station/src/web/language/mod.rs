@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use axum::http::HeaderValue;
+use halfrow::report::wording::grouped;
 
 pub(crate) use check::{built_in, faults};
 pub(super) use told::Told;
@@ -56,13 +57,11 @@ impl Words {
 
     /// A count, its digits in groups of three where there are more than four.
     pub(super) fn count(&self, count: u64) -> String {
-        let digits = count.to_string();
-        if digits.len() <= 4 {
-            return digits;
+        if count < 10_000 {
+            count.to_string()
+        } else {
+            grouped(count).replace(',', self.say("history.thousands"))
         }
-        let (first, rest) = digits.split_at((digits.len() - 1) % 3 + 1);
-        let mark = self.say("history.thousands");
-        (0..rest.len()).step_by(3).fold(first.to_owned(), |text, at| text + mark + &rest[at..at + 3])
     }
 
     /// The words of this key with the values of their `{names}`.
