@@ -40,10 +40,8 @@ fn what_is_asked_for_is_told_apart_from_why() {
     let (why, told) = of(None, None).parted(&Saying::OutByPerson.into(), None);
     assert_eq!((why.text.as_str(), told), ("taken out by a person", None));
     let said = |code: &str, message: &str, parameters: Value| Said {
-        code: code.to_owned(),
-        parameters: parameters.as_object().cloned().unwrap_or_default(),
         message: message.to_owned(),
-        causes: Vec::new(),
+        ..judged(code, &parameters)
     };
     let cause =
         said("link-closed", "it was closed; check the cable", json!({ "link": "usb:1", "at": 11.069_952 }));
@@ -80,24 +78,18 @@ fn what_has_no_words_is_told_in_english_and_marked_so() {
 /// As the judge's reports write them: a finding within a finding, and a place with its parts.
 #[test]
 fn findings_within_findings_and_parts_of_a_figure_are_said_too() {
-    let said = |code: &str, parameters: Value| Said {
-        code: code.to_owned(),
-        parameters: parameters.as_object().cloned().unwrap_or_default(),
-        message: "in English".to_owned(),
-        causes: Vec::new(),
-    };
     let suspect = json!({ "code": "line-memory-data-stuck", "parameters": { "bit": 5, "value": 1 } });
-    let differ = said(
+    let differ = judged(
         "samples-differ",
-        json!({ "differences": 7, "samples": 99, "differing_frames": 1, "frames": 2, "suspect": suspect }),
+        &json!({ "differences": 7, "samples": 99, "differing_frames": 1, "frames": 2, "suspect": suspect }),
     );
     let told = "7 von 99 Abtastwerten weichen ab, in 1 von 2 Bildern; Verdacht: Zeilenspeicher, Datenbit 5, hängt auf 1";
     assert_eq!(german(&differ).0, told);
     let asked = of(Some("de"), None).remedy(Some(&differ), "in English");
     assert!(asked.text.starts_with("Bitstream neu laden") && asked.foreign.is_none(), "{asked:?}");
-    let doubted = said(
+    let doubted = judged(
         "wrong-over-doubtful-link",
-        json!({
+        &json!({
             "found": { "code": "table-crc-wrong", "parameters": {} },
             "doubt": { "of": "requests-twice", "requests": 1 },
         }),
@@ -108,7 +100,7 @@ fn findings_within_findings_and_parts_of_a_figure_are_said_too() {
     let (why, asked) = of(Some("de"), None).parted(&doubted, Some("Check the link, and run again."));
     assert!(why.text.ends_with("das kann von der Verbindung kommen"), "{why:?}");
     assert_eq!(asked.unwrap().text, link);
-    let missing = said("row-missing", json!({ "place": { "frame": 2, "row": 3 }, "attempts": 8 }));
+    let missing = judged("row-missing", &json!({ "place": { "frame": 2, "row": 3 }, "attempts": 8 }));
     assert_eq!(
         german(&missing).0,
         "Zeile 3 von Bild 2 kam in 8 Versuchen nicht zurück; mit `halfrow verify` feststellen, ob Platine oder Verbindung sie verliert"
