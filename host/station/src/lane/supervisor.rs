@@ -252,7 +252,7 @@ fn hear(stdout: Option<ChildStdout>, to: Sender<String>) -> io::Result<()> {
         // Nobody hears it any more when the run is over.
         lines.map_while(Result::ok).take_while(|line| to.send(line.clone()).is_ok()).for_each(drop);
     };
-    thread::Builder::new().name("lane".to_owned()).spawn(hand_on).map(drop)
+    in_thread(hand_on)
 }
 
 /// Hands the lane what it is told, line by line, in a thread of its own: one that reads nothing must not keep its supervisor.
@@ -262,6 +262,10 @@ fn give(stdin: Option<ChildStdin>, given: Receiver<String>) -> io::Result<()> {
         // One that is gone tells more by how it ended.
         given.into_iter().take_while(|line| writeln!(stdin, "{line}").is_ok()).for_each(drop);
     };
+    in_thread(hand_on)
+}
+
+fn in_thread(hand_on: impl FnOnce() + Send + 'static) -> io::Result<()> {
     thread::Builder::new().name("lane".to_owned()).spawn(hand_on).map(drop)
 }
 
