@@ -25,13 +25,13 @@ pub(in crate::run) fn price(prices: &Prices<'_>) -> f64 {
     let capabilities = prices.capabilities;
     let bursts = known_bursts(capabilities).ok();
     let parts = [
-        (ALWAYS, 1.0),
-        (BURSTS, f64::from(u8::from(bursts.is_some()))),
-        (TRAP, f64::from(u8::from(bursts.is_some_and(|bursts| bursts.trap)))),
-        (BANK, f64::from(capabilities.row_banks_out)),
+        (ALWAYS, 1),
+        (BURSTS, bursts.is_some().into()),
+        (TRAP, bursts.is_some_and(|bursts| bursts.trap).into()),
+        (BANK, capabilities.row_banks_out),
     ];
     let seconds = |(Cost { requests, bytes }, times)| {
-        times * (requests * prices.rates.round_trip + bytes / prices.rates.bytes_per_second)
+        f64::from(times) * (requests * prices.rates.round_trip + bytes / prices.rates.bytes_per_second)
     };
     parts.into_iter().map(seconds).sum()
 }
