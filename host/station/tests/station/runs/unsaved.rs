@@ -51,36 +51,43 @@ pub(crate) fn numbered(trace: &str) -> Vec<Call> {
 fn starve(places: impl Fn(usize) -> Vec<usize>) {
     let station = Station::with(PLAN);
     station.run("CAT00001", "mock");
-    let mut unsaved = 0;
     for (call, error) in [("pwrite64", "ENOSPC"), ("fsync", "EIO"), ("pwrite64", "EROFS")] {
         let all = calls(&station, "CAT00001", call).len();
         assert!(all > 2, "{all} calls of {call}");
+        let fails_from =
+            |first: usize| is_told_unsaved(&station, &format!("{call}:error={error}:when={first}+"));
         for first in places(all) {
-            let place = format!("{call}:error={error}:when={first}+");
-            let did = injected(&station, "CAT00002", &place);
-            let is_shown = did.said.contains("PASS");
-            let stored = station.query(
-                "SELECT count(*) FROM run JOIN unit ON unit.id = unit_id
-                WHERE serial = 'CAT00002' AND verdict = 'PASS'",
-            );
-            assert_eq!(is_shown, did.code == Some(0), "{did:?}");
-            assert!(!is_shown || stored != ["0"], "{place}: {did:?}");
-            assert!(is_shown || did.code == Some(3), "{place}: {did:?}");
-            unsaved += usize::from(did.said.contains("UNSAVED CAT00002: keep this board apart"));
-            let after = station.run("CAT00003", "mock");
-            assert_eq!(after.code, Some(0), "{place}: {after:?}");
+            fails_from(first);
         }
+        // Which call is the verdict's own differs by a few from run to run.
+        assert!((1..=all).rev().any(fails_from), "no run came to its end and was not saved: {call}, {error}");
     }
-    assert!(unsaved >= 4, "only {unsaved} runs came to their end and were not saved");
     assert_eq!(station.query("SELECT count(*) FROM run WHERE state = 'open'"), ["0"]);
     assert_eq!(station.check().code, Some(0), "{:?}", station.check());
 }
 
+/// Whether a run in which calls fail as `place` says told that its board is to be kept apart, since its verdict was not saved.
+fn is_told_unsaved(station: &Station, place: &str) -> bool {
+    let stored = || {
+        station.query(
+            "SELECT count(*) FROM run JOIN unit ON unit.id = unit_id
+            WHERE serial = 'CAT00002' AND verdict = 'PASS'",
+        )
+    };
+    let before = stored();
+    let did = injected(station, "CAT00002", place);
+    let is_shown = did.said.contains("PASS");
+    assert_eq!(is_shown, did.code == Some(0), "{did:?}");
+    assert!(!is_shown || stored() != before, "{place}: {did:?}");
+    assert!(is_shown || did.code == Some(3), "{place}: {did:?}");
+    let after = station.run("CAT00003", "mock");
+    assert_eq!(after.code, Some(0), "{place}: {after:?}");
+    did.said.contains("UNSAVED CAT00002: keep this board apart")
+}
+
 #[test]
 fn no_verdict_is_shown_that_the_disk_did_not_take() {
-    starve(|all| {
-        [1, all / 3, all / 2, 2 * all / 3, all - 2, all - 1, all].map(|place| place.max(1)).to_vec()
-    });
+    starve(|all| [1, all / 3, all / 2, 2 * all / 3].map(|place| place.max(1)).to_vec());
 }
 
 /// A disk tells of a lost write once, and takes what comes after: each of the three calls that bring evidence to the disk,
