@@ -1,5 +1,6 @@
 //! Faults of a program itself: a panic ends a command with an error, never by itself.
 
+use std::any::Any;
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 use std::process::ExitCode;
@@ -16,13 +17,14 @@ use crate::signals;
 )]
 pub struct InternalError(String);
 
-/// What the first panic was, for a panic that comes through other threads loses its place.
+/// What the first panic of a program was, for a panic that comes through other threads loses its place.
 static FIRST: Mutex<Option<String>> = Mutex::new(None);
 
 /// What `run` ends with, as the process's exit code; a panic is an error, which is told.
 pub fn end(run: impl FnOnce() -> Exit) -> ExitCode {
     // Where the system takes no handler, such a write ends the program, and nothing else is another.
     let _ = signals::outlive_file_limit();
+    panic::set_hook(Box::new(note));
     let exit = guarded(run).unwrap_or_else(|fault| {
         console::error(&fault);
         Exit::Error
@@ -33,18 +35,22 @@ pub fn end(run: impl FnOnce() -> Exit) -> ExitCode {
 /// What `run` returns.
 ///
 /// # Errors
-/// [`InternalError`] when it panics, on whatever thread that it waits for.
+/// [`InternalError`] when it panics, on whatever thread that it waits for; with the panic's place in a program that [`end`] runs.
 pub fn guarded<T>(run: impl FnOnce() -> T) -> Result<T, InternalError> {
-    panic::set_hook(Box::new(note));
     // An earlier one was dealt with.
-    if let Ok(mut first) = FIRST.lock() {
-        *first = None;
-    }
-    let ended = panic::catch_unwind(AssertUnwindSafe(run));
-    ended.map_err(|_| {
-        let first = FIRST.lock().ok().and_then(|mut first| first.take());
-        InternalError(first.unwrap_or_else(|| "for no reason that is known".to_owned()))
+    drop(first());
+    panic::catch_unwind(AssertUnwindSafe(run)).map_err(|panic| {
+        let said = first().or_else(|| said_by(&*panic).map(str::to_owned));
+        InternalError(said.unwrap_or_else(|| "for no reason that is known".to_owned()))
     })
+}
+
+fn first() -> Option<String> {
+    FIRST.lock().ok().and_then(|mut first| first.take())
+}
+
+fn said_by(panic: &(dyn Any + Send)) -> Option<&str> {
+    panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied())
 }
 
 /// Keeps what a panic says, and writes its backtrace where one is asked for with `RUST_BACKTRACE`.
@@ -66,6 +72,9 @@ mod tests {
 
     #[test]
     fn a_panic_becomes_an_error_that_says_what_and_where() {
+        let said = guarded(|| panic!("{} fell", "the moon")).map(|()| 0).unwrap_err().to_string();
+        assert!(said.contains("has failed: the moon fell;"), "{said}");
+        panic::set_hook(Box::new(note));
         assert_eq!(guarded(|| 7).unwrap(), 7);
         // One that somebody has dealt with says nothing of the next.
         assert!(guarded(|| panic::catch_unwind(|| panic!("a cloud")).is_err()).unwrap());
