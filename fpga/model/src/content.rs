@@ -33,9 +33,14 @@ pub(crate) struct RowStart {
 }
 
 impl Content {
+    /// What d of row `row`, below 4096, is drawn behind.
+    pub(crate) fn state(self, row: usize) -> u32 {
+        (self.seed ^ (u32::from(self.frame) << 12 | row as u32)) | 1 << 31
+    }
+
     /// Row `row`, below 4096.
     pub(crate) fn start(self, row: usize) -> RowStart {
-        let d = xorshift32((self.seed ^ (u32::from(self.frame) << 12 | row as u32)) | 1 << 31);
+        let d = xorshift32(self.state(row));
         let kind = match d % 4 {
             0 => Kind::Noise,
             1 => Kind::Swing,
@@ -81,15 +86,8 @@ pub fn xorshift32(mut x: u32) -> u32 {
 /// The signature of a row: the CRC-32 of its samples, words of 16 bits, little endian.
 #[must_use]
 pub fn row_signature(samples: &[u16]) -> u32 {
-    // Words of an array of their own are what compilers copy by vectors, and these stay in the nearest cache.
-    let mut words = [[0; 2]; 512];
-    let mut crc = crc32fast::Hasher::new();
-    for part in samples.chunks(words.len()) {
-        let words = &mut words[..part.len()];
-        words.iter_mut().zip(part).for_each(|(word, sample)| *word = sample.to_le_bytes());
-        crc.update(words.as_flattened());
-    }
-    crc.finalize()
+    let words: Vec<_> = samples.iter().map(|sample| sample.to_le_bytes()).collect();
+    crc32fast::hash(words.as_flattened())
 }
 
 /// The signature of a frame: the CRC-32 of its rows' signatures from the top, words of 32 bits, little endian.

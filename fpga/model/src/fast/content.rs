@@ -1,98 +1,110 @@
-//! The content of many rows at once.
+//! The content of a frame's rows without a step of the generator for each sample.
 //!
-//! A draw follows from the one in front of it, so a row cannot be made faster than that; but rows are independent. Those
-//! of one kind are made side by side, the state of each in a lane of its own, which compilers make vectors of.
+//! A step is linear over GF(2), and the starts of a frame's rows differ in the bits of their numbers alone. So column by
+//! column the draws of one row are those of another, exclusive or what a start of the bits in which both numbers differ would
+//! draw, which is the same for every seed and frame. One row of a frame is drawn step by step; the others follow from it.
 
 use crate::BitDepth;
 use crate::content::{Content, Kind, full, xorshift32};
 
-/// Rows that are made side by side.
-const LANES: usize = 16;
+/// Bits of a row's number.
+const ROW_BITS: usize = 12;
 
-/// Columns that are made before they are brought to their rows; even.
-const TILE: usize = 32;
+/// Columns after which every kind of toggling repeats.
+const PERIOD: usize = 16;
 
-/// Two columns of all lanes, the left one in the lower half.
-type Pair = [u32; LANES];
-
-/// A row that is waiting for others of its kind.
-struct Lane<'a> {
-    x: u32,
-    samples: &'a mut [u16],
+/// What leads from the draws of one row to those of another.
+#[derive(Default)]
+pub(super) struct Changes {
+    /// Behind the starts 2^1 − 1, 2^2 − 1 …, since neighbours differ in such bits: from row 3 to row 4 in the lowest three.
+    draws: [Vec<u16>; ROW_BITS],
 }
 
-/// Makes the rows of these numbers, each into the samples beside it.
-pub(super) fn make<'a>(
+impl Changes {
+    /// These for rows of up to `width` columns.
+    pub(super) fn reaching(&mut self, width: usize) -> &Self {
+        if self.draws[0].len() < width {
+            self.draws = std::array::from_fn(|bit| drawn((2 << bit) - 1, width));
+        }
+        self
+    }
+}
+
+/// Makes the rows of a frame in any order, in the least time those that follow each other up or down.
+pub(super) struct Maker<'a> {
     content: Content,
     depth: BitDepth,
-    rows: impl Iterator<Item = (usize, &'a mut [u16])>,
-) {
-    let mut waiting: [Vec<Lane<'a>>; 3] = Default::default();
-    for (row, samples) in rows {
-        let start = content.start(row);
-        let kind = match start.kind {
-            Kind::Toggle { p, high } => {
-                toggle(p, high, depth, samples);
-                continue;
+    changes: &'a Changes,
+    /// The row that was made last, other than by toggling.
+    row: usize,
+    /// Its draws.
+    draws: Vec<u16>,
+}
+
+impl<'a> Maker<'a> {
+    /// For a frame of `width` columns, which `changes` reach.
+    pub(super) fn new(content: Content, depth: BitDepth, width: usize, changes: &'a Changes) -> Self {
+        Self { content, depth, changes, row: 0, draws: drawn(content.state(0), width) }
+    }
+
+    /// The samples of row `row`, below 4096, with [`hold`] or what does the same.
+    pub(super) fn make(&mut self, row: usize, samples: &mut [u16], hold: impl Fn(&[u16], u16, &mut [u16])) {
+        let (depth, max) = (self.depth, self.depth.max());
+        let kind = self.content.start(row).kind;
+        if !matches!(kind, Kind::Toggle { .. }) {
+            self.go_to(row);
+        }
+        let drawn = samples.iter_mut().zip(&self.draws);
+        match kind {
+            Kind::Noise => drawn.for_each(|(sample, &draw)| *sample = level(draw, max)),
+            Kind::Swing => drawn.for_each(|(sample, &draw)| *sample = full(draw >= 1 << 15, depth)),
+            Kind::Toggle { p, high } => toggle(p, high, depth, samples),
+            Kind::Steps => {
+                samples[0] = level(self.draws[0], max);
+                hold(&self.draws, max, samples);
             }
-            Kind::Noise => 0,
-            Kind::Swing => 1,
-            Kind::Steps => 2,
-        };
-        waiting[kind].push(Lane { x: start.x, samples });
+        }
     }
-    let max = u32::from(depth.max());
-    let [noise, swing, steps] = &mut waiting;
-    for lanes in noise.chunks_mut(LANES) {
-        fill(lanes, |x, _| x >> 20 & max);
-    }
-    for lanes in swing.chunks_mut(LANES) {
-        fill(lanes, |x, _| if x >= 1 << 31 { max } else { 0 });
-    }
-    for lanes in steps.chunks_mut(LANES) {
-        fill(lanes, |x, held| if x % 16 == 0 || held == NONE { x >> 20 & max } else { held });
+
+    /// Brings the draws to those of `row`.
+    fn go_to(&mut self, row: usize) {
+        let differing = row ^ self.row;
+        // Bit k is the exclusive or of 2^(k+1) − 1 and 2^k − 1; what then stands there twice is left out.
+        let mut changes = differing ^ differing >> 1;
+        while changes != 0 {
+            let change = &self.changes.draws[changes.trailing_zeros() as usize];
+            self.draws.iter_mut().zip(change).for_each(|(draw, change)| *draw ^= change);
+            changes &= changes - 1;
+        }
+        self.row = row;
     }
 }
 
-/// No sample, as in front of a row.
-const NONE: u32 = u32::MAX;
+/// Of each of `width` draws behind those of the start `x` what counts: the upper 12 bits, which levels are made of, and below
+/// them the lowest 4, which tell where steps are.
+fn drawn(x: u32, width: usize) -> Vec<u16> {
+    let draws = std::iter::successors(Some(xorshift32(xorshift32(x))), |&x| Some(xorshift32(x)));
+    draws.map(|x| ((x >> 20) * 16 + x % 16) as u16).take(width).collect()
+}
+
+/// The level of a draw.
+fn level(draw: u16, max: u16) -> u16 {
+    draw >> 4 & max
+}
+
+/// *Steps* behind the first sample, which is there: the level of a draw that has a step, else the sample to the left.
+pub(super) fn hold(draws: &[u16], max: u16, samples: &mut [u16]) {
+    let mut held = samples[0];
+    for (sample, &draw) in samples.iter_mut().zip(draws).skip(1) {
+        held = if draw.is_multiple_of(16) { level(draw, max) } else { held };
+        *sample = held;
+    }
+}
 
 fn toggle(p: u32, high: bool, depth: BitDepth, samples: &mut [u16]) {
-    let group = 1 << p;
-    for (index, columns) in samples.chunks_mut(group).enumerate() {
-        columns.fill(full((index % 2 == 1) != high, depth));
-    }
-}
-
-/// Makes at most [`LANES`] rows of one width by `sample`, which takes a draw and the sample to its left.
-fn fill(lanes: &mut [Lane<'_>], sample: impl Fn(u32, u32) -> u32 + Copy) {
-    let width = lanes.iter().map(|lane| lane.samples.len()).max().unwrap_or(0);
-    let mut x: Pair = std::array::from_fn(|lane| lanes.get(lane).map_or(1, |lane| lane.x));
-    let mut held = [NONE; LANES];
-    for first in (0..width).step_by(TILE) {
-        let mut tile = [[0; LANES]; TILE / 2];
-        for pair in &mut tile {
-            *pair = draw_pair(&mut x, &mut held, sample);
-        }
-        for (index, lane) in lanes.iter_mut().enumerate() {
-            let end = width.min(first + TILE);
-            let (pairs, _) = lane.samples[first..end].as_chunks_mut();
-            for (samples, pair) in pairs.iter_mut().zip(&tile) {
-                *samples = [pair[index] as u16, (pair[index] >> 16) as u16];
-            }
-        }
-    }
-}
-
-/// The next two columns.
-fn draw_pair(x: &mut Pair, held: &mut Pair, sample: impl Fn(u32, u32) -> u32) -> Pair {
-    let mut pair = [0; LANES];
-    for shift in [0, 16] {
-        for lane in 0..LANES {
-            x[lane] = xorshift32(x[lane]);
-            held[lane] = sample(x[lane], held[lane]);
-            pair[lane] |= held[lane] << shift;
-        }
-    }
-    pair
+    let period: [u16; PERIOD] =
+        std::array::from_fn(|column| full((column >> p) % 2 != usize::from(high), depth));
+    let (periods, rest) = samples.as_chunks_mut();
+    periods.fill(period);
+    rest.copy_from_slice(&period[..rest.len()]);
 }

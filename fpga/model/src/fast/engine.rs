@@ -1,6 +1,7 @@
 //! The paths behind one face.
 
 use super::ModelPath;
+use super::content::hold;
 use super::located::Located;
 use super::nodes::Nodes;
 use super::padded::{Ends, Padded};
@@ -123,6 +124,15 @@ impl Engine {
             Self::Avx2(avx2, _) => avx2.bits_of(samples),
             #[cfg(target_arch = "x86_64")]
             Self::Avx512(avx512, _) => avx512.bits_of(samples),
+        }
+    }
+
+    /// [`hold`], which AVX-512 alone does faster.
+    pub(super) fn hold(&self, draws: &[u16], max: u16, samples: &mut [u16]) {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(avx512, _) => avx512.hold(draws, max, samples),
+            _ => hold(draws, max, samples),
         }
     }
 

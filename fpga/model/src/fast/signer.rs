@@ -1,22 +1,20 @@
 //! Frames of a burst made, corrected and signed, as a board does it.
 
 use std::fmt;
-use std::ops::Range;
+use std::sync::Arc;
 
-use super::{Corrector, content};
+use super::Corrector;
+use super::content::{Changes, Maker, hold};
 use crate::content::{Content, frame_signature, row_signature};
 use crate::{Frame, Geometry, Phase, TableSet};
-
-/// Rows of a frame's upper half that go from their seed to their signatures together with those that mirror them: so few
-/// that they stay in a processor's cache, and enough that there are many of each kind.
-const BAND: usize = 32;
 
 /// Predicts the signatures of a burst's frames (AT-SPEED.md) with one kernel by one [`Corrector`].
 ///
 /// It may be used for any number of frames and geometries. Several threads take one each.
 pub struct Signer {
     corrector: Corrector,
-    /// A band's rows as they enter the core, those of the upper half first.
+    changes: Changes,
+    /// Two rows that mirror each other, as they enter the core.
     inputs: Vec<u16>,
     /// The same rows as they leave it.
     outputs: Vec<u16>,
@@ -32,42 +30,35 @@ impl Signer {
     /// A signer of what `corrector` gives.
     #[must_use]
     pub fn new(corrector: Corrector) -> Self {
-        Self { corrector, inputs: Vec::new(), outputs: Vec::new() }
+        Self { corrector, changes: Changes::default(), inputs: Vec::new(), outputs: Vec::new() }
     }
 
     /// The signature of every row of the frame of `content` behind `tables`, from the top, into `rows`, and that of the
     /// frame.
     pub fn sign(&mut self, tables: &TableSet, content: Content, rows: &mut Vec<u32>) -> u32 {
-        let height = tables.geometry().height();
+        let geometry = tables.geometry();
+        let (width, height) = (geometry.width(), geometry.height());
         rows.clear();
         rows.resize(height, 0);
-        let half = height.div_ceil(2);
-        for first in (0..half).step_by(BAND) {
-            self.band(tables, content, first..half.min(first + BAND), rows);
+        for pair in [&mut self.inputs, &mut self.outputs] {
+            pair.resize(2 * width, 0);
+        }
+        let inputs = self.inputs.split_at_mut(width);
+        let outputs = self.outputs.split_at_mut(width);
+        let changes = self.changes.reaching(width);
+        let mut makers = [(); 2].map(|()| Maker::new(content, geometry.depth(), width, changes));
+        let engine = Arc::clone(&self.corrector.engine);
+        let hold = |draws: &[u16], max: u16, samples: &mut [u16]| engine.hold(draws, max, samples);
+        // A row in the middle, which nothing mirrors, is made and corrected twice.
+        for upper in 0..height.div_ceil(2) {
+            let pair = [upper, height - 1 - upper];
+            makers[0].make(pair[0], inputs.0, hold);
+            makers[1].make(pair[1], inputs.1, hold);
+            self.corrector.correct_pair(tables, pair, [inputs.0, inputs.1], [outputs.0, outputs.1]);
+            rows[pair[0]] = row_signature(outputs.0);
+            rows[pair[1]] = row_signature(outputs.1);
         }
         frame_signature(rows)
-    }
-
-    /// Signs the rows `upper` and those that mirror them.
-    fn band(&mut self, tables: &TableSet, content: Content, upper: Range<usize>, rows: &mut [u32]) {
-        let (geometry, width) = (tables.geometry(), tables.geometry().width());
-        let count = upper.len();
-        let mirrored = upper.clone().map(|row| geometry.height() - 1 - row);
-        for band in [&mut self.inputs, &mut self.outputs] {
-            band.resize(2 * count * width, 0);
-        }
-        let numbers = upper.clone().chain(mirrored.clone());
-        content::make(content, geometry.depth(), numbers.clone().zip(self.inputs.chunks_exact_mut(width)));
-        let (above, below) = self.outputs.split_at_mut(count * width);
-        let outputs = above.chunks_exact_mut(width).zip(below.chunks_exact_mut(width));
-        let inputs = self.inputs.chunks_exact(width);
-        let inputs = inputs.clone().zip(inputs.skip(count));
-        for ((pair, inputs), outputs) in upper.zip(mirrored).zip(inputs).zip(outputs) {
-            self.corrector.correct_pair(tables, pair.into(), inputs.into(), outputs.into());
-        }
-        for (row, output) in numbers.zip(self.outputs.chunks_exact(width)) {
-            rows[row] = row_signature(output);
-        }
     }
 }
 
@@ -75,8 +66,13 @@ impl Content {
     /// The whole frame, as large as `geometry` says.
     #[must_use]
     pub fn frame(self, geometry: &Geometry, phase: Phase) -> Frame {
-        let mut samples = vec![0; geometry.width() * geometry.height()];
-        content::make(self, geometry.depth(), samples.chunks_exact_mut(geometry.width()).enumerate());
+        let width = geometry.width();
+        let mut changes = Changes::default();
+        let mut maker = Maker::new(self, geometry.depth(), width, changes.reaching(width));
+        let mut samples = vec![0; width * geometry.height()];
+        for (row, samples) in samples.chunks_exact_mut(width).enumerate() {
+            maker.make(row, samples, hold);
+        }
         Frame::of_geometry(geometry, phase, samples)
     }
 }

@@ -4,6 +4,7 @@ use std::arch::x86_64::*;
 
 use super::entry::{load_16_words, load_32_samples, load_32_weights, store_32_samples};
 use crate::WEIGHT_ONE;
+use crate::fast::content;
 use crate::fast::located::Located;
 use crate::fast::nodes::{G0, G4, G6, Nodes, R1, R5, Tap};
 use crate::fast::walk::{LEADS, Start, Walk, blocks, is_within_segment};
@@ -220,4 +221,31 @@ fn add_products(sums: &mut [__m512i; 2], weights: [__m512i; 2], values: [__m512i
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
 pub(super) fn bits_of(samples: &[u16]) -> u16 {
     frame::bits_of(samples)
+}
+
+/// [`content::hold`]. Each column looks for the nearest step up to it: among two columns, then among those of the column two to
+/// the left as well, and so on up to a block.
+#[target_feature(enable = "avx512f,avx512bw,avx512vl")]
+pub(super) fn hold(draws: &[u16], max: u16, samples: &mut [u16]) {
+    let columns: [u16; BLOCK] = std::array::from_fn(|column| column as u16);
+    let columns = load_32_samples(&columns, 0);
+    let last = _mm512_set1_epi16(BLOCK as i16 - 1);
+    let mut held = _mm512_set1_epi16(samples[0] as i16);
+    let whole = samples.len() / BLOCK * BLOCK;
+    for column in (0..whole).step_by(BLOCK) {
+        let draws = load_32_samples(draws, column);
+        let steps = _mm512_testn_epi16_mask(draws, _mm512_set1_epi16(15));
+        let mut nearest = _mm512_maskz_mov_epi16(steps, columns);
+        for reach in [1, 2, 4, 8, 16] {
+            let left = _mm512_subs_epu16(columns, _mm512_set1_epi16(reach));
+            nearest = _mm512_max_epu16(nearest, _mm512_permutexvar_epi16(left, nearest));
+        }
+        let levels = _mm512_and_si512(_mm512_srli_epi16::<4>(draws), _mm512_set1_epi16(max as i16));
+        let before_steps = steps.wrapping_sub(1) & !steps;
+        let found = _mm512_permutexvar_epi16(nearest, levels);
+        let block = _mm512_mask_blend_epi16(before_steps, found, held);
+        store_32_samples(samples, column, block);
+        held = _mm512_permutexvar_epi16(last, block);
+    }
+    content::hold(&draws[whole - 1..], max, &mut samples[whole - 1..]);
 }

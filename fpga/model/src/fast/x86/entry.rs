@@ -71,6 +71,11 @@ impl Avx512 {
         // SAFETY: the token says that the processor has the three features.
         unsafe { avx512::bits_of(samples) }
     }
+
+    pub(in crate::fast) fn hold(self, draws: &[u16], max: u16, samples: &mut [u16]) {
+        // SAFETY: the token says that the processor has the three features.
+        unsafe { avx512::hold(draws, max, samples) }
+    }
 }
 
 /// 16 bytes.
