@@ -9,7 +9,7 @@ VERSION, KIND, PAYLOAD, RANGE, SESSION, HELD, BUSY, NOT_READY, TABLE_CRC, CREDIT
 PACKETS, CRC_ERRORS, FRAMING_ERRORS, FOREIGN, REFUSALS, ROWS_IN, ROWS_OUT, REPEATED, UNNEEDED, OVER = range(10)  # counters
 HEADER, SPAN, PLACE = "<BBHHBBI", "<BBBHH", "<IHHHBB"
 
-def stuff(packet):  # in pieces of at most 254 bytes; the zero behind a piece, and the one imagined at the end, are not sent
+def stuff(packet):  # in pieces of at most 254 bytes; the zero after a piece, and the one imagined at the end, are not sent
     pieces = [piece.rstrip(b"\0") for piece in re.findall(rb"[^\0]{254}(?:\0\Z)?|[^\0]*\0", packet + b"\0")]
     return b"".join(bytes([1 + len(piece)]) + piece for piece in pieces)
 
