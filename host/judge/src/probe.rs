@@ -4,7 +4,6 @@ use crate::board::{Board, BoardError, Heard, OpenOptions};
 use crate::link::discovery::Answer;
 use crate::link::{self, Class, OpenError};
 use crate::result::Problem;
-use crate::run::Draws;
 use crate::target::Target;
 use crate::verdict::Cause;
 
@@ -16,7 +15,7 @@ pub fn probe(target: &Target) -> Answer {
         Ok(candidate) => candidate,
         Err(error) => return not_opened(&error),
     };
-    let options = OpenOptions { polite: true, ..Draws::draw().into() };
+    let options = OpenOptions { polite: true, ..OpenOptions::default() };
     match Board::open(candidate.link, &options).map_err(BoardError::from) {
         Ok(mut board) => {
             let (name, datapath) = (board.capabilities.name.clone(), board.capabilities.datapath);

@@ -3,7 +3,7 @@
 use std::io::{Read as _, Write as _};
 use std::net::TcpListener;
 
-use halfrow::board::{Board, OpenOptions};
+use halfrow::board::{Board, BoardError, OpenOptions};
 use halfrow::link;
 use halfrow_cli::serve::Pty;
 use halfrow_tests::program::halfrow;
@@ -78,10 +78,22 @@ fn a_port_in_use_is_busy_and_its_holder_is_named() {
 fn a_board_that_another_host_holds_is_left_to_it() {
     for served in [Served::on_a_serial_port("mock"), Served::on_a_tcp_port("127.0.0.1", "mock")] {
         let link = link::open(&served.target().parse().unwrap()).unwrap().link;
-        let options = OpenOptions { nonce: 1, host: 1, ..Default::default() };
+        let options = OpenOptions::default();
         drop(Board::open(link, &options).unwrap());
         assert_eq!(look_at(&served.target(), &["--ask"])["answer"], json!({ "state": "held" }));
     }
+}
+
+/// Two programs that leave it to the default to draw their numbers are two hosts.
+#[test]
+fn two_sessions_by_default_options_are_two_hosts() {
+    let served = Served::on_a_tcp_port("127.0.0.1", "mock");
+    let open = || {
+        let link = link::open(&served.target().parse().unwrap()).unwrap().link;
+        Board::open(link, &OpenOptions::default()).map(drop).map_err(|failed| failed.error)
+    };
+    open().unwrap();
+    assert!(matches!(open(), Err(BoardError::Held { .. })));
 }
 
 /// A GPS receiver, a console, a board at another rate.

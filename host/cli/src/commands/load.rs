@@ -27,7 +27,6 @@ use crate::{console, pool, signals};
 use halfrow::board::{Board, BoardError, OpenOptions, Stop};
 use halfrow::link::{self, Class};
 use halfrow::result::{BoardReport, Identity};
-use halfrow::run::Draws;
 use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::StoppedBy;
 use halfrow_link::kinds;
@@ -188,7 +187,7 @@ fn greet(target: &Target, stop: Stop) -> Result<BoardReport, (Failure, Next)> {
         let next = again(error.class() != Class::Call);
         (error.into(), next)
     })?;
-    let options = OpenOptions { polite: true, stop, ..Draws::draw().into() };
+    let options = OpenOptions { polite: true, stop, ..OpenOptions::default() };
     let mut board = Board::open(candidate.link, &options).map_err(|failed| {
         let is_cut = matches!(failed.error, BoardError::Timeout { .. });
         let failure = Failure::from(failed);

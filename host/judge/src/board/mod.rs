@@ -8,6 +8,7 @@ mod conversation;
 mod counted;
 mod counters;
 pub mod deadlines;
+mod draws;
 mod error;
 mod lateness;
 mod legal;
@@ -36,6 +37,7 @@ use crate::link::Link;
 pub(crate) use bursts::{Fetched, Trapped};
 pub(crate) use conduct::Misconduct;
 pub(crate) use counted::Miscount;
+pub use draws::Draws;
 pub use error::{BoardError, Heard, OpenFailed};
 pub(crate) use legal::{LEAST_ENTRIES, MAX_LATENCY, grids, possible};
 pub(crate) use rows::{Given, Unjudged, Unreturned};
@@ -50,8 +52,8 @@ pub use halfrow_protocol::message::{
     Bank, BoardNature, Bursts, Capabilities, Datapath, RefusalCode, Status, Table, UnknownDatapath, Welcome,
 };
 
-/// How a session is opened.
-#[derive(Clone, Debug, Default)]
+/// How a session is opened. The default draws a nonce, a host and a sequence number, so that it is a session of its own.
+#[derive(Clone, Debug)]
 pub struct OpenOptions {
     /// Drawn at random for the session.
     pub nonce: u32,

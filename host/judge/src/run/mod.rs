@@ -49,6 +49,7 @@ use findings::{End, Findings};
 use reconnect::WayBack;
 use steps::Run;
 
+pub use crate::board::Draws;
 pub(crate) use at_speed::FEW as FEW_AT_SPEED;
 pub use finished::{Finished, Lack, RECORDING_LOST, REPORT_LOST};
 pub(crate) use golden::{CannotJudge, GoldenError};
@@ -76,36 +77,6 @@ pub struct Circumstances {
     pub draws: Draws,
     /// Who tests, if anybody is named.
     pub operator: Option<String>,
-}
-
-/// Numbers that a run draws at random.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct Draws {
-    /// The session's nonce.
-    pub nonce: u32,
-    /// This host.
-    pub host: u32,
-    /// The number in front of the first packet's. A recording that does not say so begins with 1.
-    #[serde(default)]
-    pub sequence: u16,
-}
-
-impl From<Draws> for OpenOptions {
-    fn from(Draws { nonce, host, sequence }: Draws) -> Self {
-        Self { nonce, host, sequence, ..Self::default() }
-    }
-}
-
-impl Draws {
-    /// Draws them from the operating system's randomness.
-    #[must_use]
-    pub fn draw() -> Self {
-        use std::hash::{BuildHasher, RandomState};
-        // A hasher's keys come from the operating system.
-        let keys = RandomState::new();
-        let (drawn, sequence) = (keys.hash_one(std::process::id()), keys.hash_one("sequence") as u16);
-        Self { nonce: drawn as u32, host: (drawn >> 32) as u32, sequence }
-    }
 }
 
 /// Judges the board behind `candidate` by `plan`, and tells `progress` what it does. What is logged meanwhile carries the

@@ -268,7 +268,7 @@ impl Common<'_> {
     fn open(&self, within: Duration) -> Result<(Board, BoardKind), Box<Try>> {
         let candidate = self.candidate()?;
         let stop = self.stop.clone().limited(Some(within)).within(Some(within));
-        let options = OpenOptions { stop, ..Draws::draw().into() };
+        let options = OpenOptions { stop, ..OpenOptions::default() };
         let board = Board::open(candidate.link, &options)
             .map_err(|failed| Box::new(Try::error(failed.error.cause(), &failed.error)))?;
         let kind = candidate.kind.confirmed_by(board.capabilities.nature);

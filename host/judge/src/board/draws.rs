@@ -1,0 +1,49 @@
+//! Numbers that a session draws at random.
+
+use super::deadlines::RetryLimit;
+use super::{OpenOptions, Stop};
+
+/// Numbers that a session draws at random. Its packets are told from another session's by them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct Draws {
+    /// The session's nonce.
+    pub nonce: u32,
+    /// This host.
+    pub host: u32,
+    /// The number in front of the first packet's. A recording that does not say so begins with 1.
+    #[serde(default)]
+    pub sequence: u16,
+}
+
+impl Draws {
+    /// Draws them from the operating system's randomness.
+    #[must_use]
+    pub fn draw() -> Self {
+        use std::hash::{BuildHasher, RandomState};
+        // A hasher's keys come from the operating system.
+        let keys = RandomState::new();
+        let (drawn, sequence) = (keys.hash_one(std::process::id()), keys.hash_one("sequence") as u16);
+        Self { nonce: drawn as u32, host: (drawn >> 32) as u32, sequence }
+    }
+}
+
+impl From<Draws> for OpenOptions {
+    fn from(Draws { nonce, host, sequence }: Draws) -> Self {
+        Self {
+            nonce,
+            host,
+            sequence,
+            take_over: false,
+            polite: false,
+            counts: false,
+            retry_limit: RetryLimit::default(),
+            stop: Stop::default(),
+        }
+    }
+}
+
+impl Default for OpenOptions {
+    fn default() -> Self {
+        Draws::draw().into()
+    }
+}
