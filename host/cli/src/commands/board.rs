@@ -19,7 +19,7 @@ use crate::signals;
 use halfrow::board::deadlines::RetryLimit;
 use halfrow::board::{OpenOptions, Stop};
 use halfrow::link::{self, Candidate, Recording, kinds};
-use halfrow::run::{Build, Draws, JUDGED, Plan};
+use halfrow::run::{Build, JUDGED, Plan};
 use halfrow::target::{BoardKind, Target, TargetError};
 use halfrow::verdict::StoppedBy;
 
@@ -161,22 +161,18 @@ impl BoardArguments {
         link::recording(&self.target(settings)?).map_err(wrong)
     }
 
-    pub(super) fn open_options(
-        &self,
-        settings: &Settings,
-        draws: Option<Draws>,
-    ) -> Result<OpenOptions, Failure> {
+    pub(super) fn open_options(&self, settings: &Settings) -> Result<OpenOptions, Failure> {
         Ok(OpenOptions {
             take_over: self.take_over,
             retry_limit: self.retry_limit(settings),
             stop: self.stop(settings)?.limited(self.timeout(settings)?),
-            ..draws.unwrap_or_else(Draws::draw).into()
+            ..OpenOptions::default()
         })
     }
 
     /// [`Self::open_options`] where a link is measured: however poor it is, unless the call itself says what is too poor.
     pub(super) fn measuring_options(&self, settings: &Settings) -> Result<OpenOptions, Failure> {
-        let options = self.open_options(settings, None)?;
+        let options = self.open_options(settings)?;
         let retry_limit = if self.retry_limit.is_some() { options.retry_limit } else { RetryLimit::NONE };
         Ok(OpenOptions { retry_limit, ..options })
     }

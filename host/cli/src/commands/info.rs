@@ -19,7 +19,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let candidate = arguments.board.candidate(&context.settings)?;
-    let options = arguments.board.open_options(&context.settings, None)?;
+    let options = arguments.board.open_options(&context.settings)?;
     let mut board = Board::open(candidate.link, &options)?;
     let status = board.status(false);
     board.close();

@@ -205,7 +205,7 @@ impl Arguments {
 
     fn open(&self, settings: &Settings) -> Result<TestedBoard, Failure> {
         let candidate = self.board.candidate(settings)?;
-        let options = self.board.open_options(settings, None)?;
+        let options = self.board.open_options(settings)?;
         let board = Board::open(candidate.link, &options)?;
         Ok(TestedBoard::new(board, candidate.kind))
     }

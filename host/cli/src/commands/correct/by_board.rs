@@ -27,7 +27,7 @@ impl Job<'_> {
         progress: &dyn Progress,
     ) -> Result<BoardKind, Failure> {
         let candidate = self.arguments.board.candidate(&context.settings)?;
-        let options = self.arguments.board.open_options(&context.settings, None)?;
+        let options = self.arguments.board.open_options(&context.settings)?;
         let mut board = Board::open(candidate.link, &options)?;
         let corrected = match run::misfit(&self.chosen.tables, &self.chosen.kernel, &board.capabilities) {
             None => self.stream(&mut board, places, progress),
