@@ -25,8 +25,8 @@ impl Run<'_> {
         self.findings.lap(CheckName::Frames);
         // Counters are of rows that came back as they should; a run that ends early leaves rows inside.
         let counters = frames.is_ok().then(|| self.counters(&status));
-        self.findings.leaves_counters_out = self.leaves_counters_out(&status);
-        let latency = latency(&self.findings.seen);
+        self.findings.look.leaves_counters_out = self.leaves_counters_out(&status);
+        let latency = latency(&self.findings.look.seen);
         let mut ends = Vec::new();
         let results = [
             (CheckName::Frames, Some(frames)),
@@ -50,18 +50,18 @@ impl Run<'_> {
     /// The tables of the last frame must still be what was uploaded; a run that ends with its first frame does not come to
     /// those that are judged. Tables that read back right for once are no better for it.
     pub(super) fn tables_after(&mut self) -> Result<Finding, End> {
-        if let Some(changed) = &self.findings.seen.changed_tables {
+        if let Some(changed) = &self.findings.look.seen.changed_tables {
             return Err(changed.clone());
         }
         let after = self.read_back_after();
         if let Err(changed @ End::Failed { .. }) = &after {
-            self.findings.seen.changed_tables = Some(changed.clone());
+            self.findings.look.seen.changed_tables = Some(changed.clone());
         }
         after
     }
 
     fn read_back_after(&mut self) -> Result<Finding, End> {
-        let last = self.findings.seen.frames.last().map_or(DECOY, |frame| frame.generation);
+        let last = self.findings.look.seen.frames.last().map_or(DECOY, |frame| frame.generation);
         let last = self.generations.iter().find(|generation| generation.number == last).cloned();
         let Some(last) = last.filter(|generation| generation.number != DECOY) else {
             return Ok(Finding::TablesUnused {});
@@ -77,7 +77,7 @@ impl Run<'_> {
     }
 
     fn frames(&self, tables_after: Option<&End>) -> Result<Finding, End> {
-        let seen = &self.findings.seen;
+        let seen = &self.findings.look.seen;
         if let Some(finding) = &seen.wrong_generation {
             return Err(End::failed(CheckName::Frames, finding.clone()));
         }
@@ -116,8 +116,8 @@ impl Run<'_> {
         diagnosis::diagnose(&Case {
             uploaded: &uploaded,
             ring: usize::from(self.board.capabilities.ring),
-            frames: &self.findings.seen.frames,
-            evidence: &self.findings.seen.evidence,
+            frames: &self.findings.look.seen.frames,
+            evidence: &self.findings.look.seen.evidence,
         })
     }
 }

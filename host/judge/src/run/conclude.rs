@@ -48,11 +48,11 @@ pub(super) fn conclude(
 ) -> Finished {
     let ending = ending(&mut findings, end);
     skip_the_rest(&mut findings.checks);
-    let street = street(plan, &findings.seen);
+    let street = street(plan, &findings.look.seen);
     let is_pass = ending.cause == Cause::Equal;
     let coverage = if is_pass { coverage(plan, &findings) } else { None };
-    let not_exercised = if is_pass { findings.not_exercised } else { Vec::new() };
-    let (evidence, evidence_report) = findings.seen.evidence.finish();
+    let not_exercised = if is_pass { findings.look.not_exercised } else { Vec::new() };
+    let (evidence, evidence_report) = findings.look.seen.evidence.finish();
     let report = Report {
         schema: Schema,
         verdict: ending.cause.verdict(),
@@ -62,8 +62,8 @@ pub(super) fn conclude(
         suspects: ending.suspects,
         checks: findings.checks,
         not_exercised,
-        frames: findings.seen.frames,
-        latency: findings.seen.latency,
+        frames: findings.look.seen.frames,
+        latency: findings.look.seen.latency,
         street,
         within: findings.within,
         coverage,
@@ -118,13 +118,13 @@ fn ending(findings: &mut Findings, end: Option<End>) -> Ending {
         findings.note_end(end);
     }
     match end {
-        None if findings.seen.samples() == 0 => {
+        None if findings.look.seen.samples() == 0 => {
             Ending { cause: Cause::NothingJudged, finding: Finding::NothingJudged {}, suspects: Vec::new() }
         }
         None => Ending { cause: Cause::Equal, finding: pass(findings), suspects: Vec::new() },
         Some(End::Failed { finding, suspects, .. }) => Ending { cause: Cause::Different, finding, suspects },
         Some(End::Error { cause, finding, .. }) => {
-            Ending { cause, finding: broken_off(finding, &findings.seen), suspects: Vec::new() }
+            Ending { cause, finding: broken_off(finding, &findings.look.seen), suspects: Vec::new() }
         }
     }
 }
@@ -142,7 +142,7 @@ fn broken_off(why: Finding, seen: &Seen) -> Finding {
 }
 
 fn pass(findings: &Findings) -> Finding {
-    let seen = &findings.seen;
+    let seen = &findings.look.seen;
     Finding::AllRight {
         frames: seen.frames.len(),
         samples: seen.samples(),

@@ -10,11 +10,11 @@ impl Run<'_> {
     /// Compares what the board counts with what the host saw. What is compared over any link must agree however poor that
     /// is; the rest only where nothing was lost or late.
     pub(super) fn counters(&self, status: &Status) -> Result<Finding, End> {
-        let (seen, rows) = (&self.findings.seen, self.findings.rows_counted);
+        let (seen, rows) = (&self.findings.look.seen, self.findings.look.rows_counted);
         let expected = u32::try_from(rows).unwrap_or(u32::MAX);
         let generation = seen.frames.last().map_or(0, |frame| frame.generation.into());
         let next_row = self.board.acknowledged();
-        let repeated = status.rows_repeated.max(self.findings.repeats_counted);
+        let repeated = status.rows_repeated.max(self.findings.look.repeats_counted);
         let is_calm = self.is_calm(status);
         let pairs = [
             (Counter::RowsIn, status.rows_in, expected, true),

@@ -86,10 +86,36 @@ impl<T> During<T> for Result<T, BoardError> {
 pub(super) struct Earlier {
     pub(super) tally: Tally,
     pub(super) seconds: Duration,
-    /// Whether something that is not judged yet was found wrong over one of them.
+}
+
+/// What one look at the board has found, of which a second one knows nothing.
+#[derive(Default)]
+pub(super) struct Look {
+    /// Empty while a segment streams: its judge has what was seen until then ([`Run::stream`](super::steps::Run::stream)), so neither
+    /// a place among all frames nor a verdict follows from it there.
+    pub(super) seen: Seen,
+    /// Rows that the board should have counted since it was greeted.
+    pub(super) rows_counted: usize,
+    /// The least that it should have counted of rows that it sent again.
+    pub(super) repeats_counted: u32,
+    /// Whether something that is not judged yet was found wrong over a link that broke.
     pub(super) found: bool,
     /// Why that may have come from the link.
     pub(super) doubt: Option<Doubt>,
+    /// What was left untouched of a board that is right.
+    pub(super) not_exercised: Vec<NotExercised>,
+    /// Whether counters were not compared for what the board alone says of its link.
+    pub(super) leaves_counters_out: bool,
+    /// Whether something was found wrong that no link brings about, whatever else it has done.
+    pub(super) beyond_links: bool,
+    /// Whether a board came back that has no number to be known by.
+    pub(super) is_unknown: bool,
+    /// What was left untouched at the full pixel clock.
+    pub(super) untested_at_speed: Vec<NotExercised>,
+    /// Tables that frames in corners were made with, at the full pixel clock.
+    pub(super) corners: Vec<Generation>,
+    /// Generations of the plan that whole frames were made with, at the full pixel clock.
+    pub(super) whole_at_speed: Vec<u8>,
 }
 
 /// What a run has found so far.
@@ -99,32 +125,12 @@ pub(super) struct Findings {
     /// What every check has taken so far, and since when the next one counts.
     spent: BTreeMap<CheckName, Duration>,
     since: Instant,
-    /// Empty while a segment streams: its judge has what was seen until then ([`Run::stream`](super::steps::Run::stream)), so neither
-    /// a place among all frames nor a verdict follows from it there.
-    pub(super) seen: Seen,
     pub(super) tally: Tally,
     pub(super) link: LinkReport,
     pub(super) earlier: Earlier,
-    /// Rows that the board should have counted since it was greeted.
-    pub(super) rows_counted: usize,
-    /// The least that it should have counted of rows that it sent again.
-    pub(super) repeats_counted: u32,
-    /// What was left untouched of a board that is right.
-    pub(super) not_exercised: Vec<NotExercised>,
+    pub(super) look: Look,
     /// Whether the run was made again since counters were wrong that a link moves as well.
     pub(super) counters_doubted: bool,
-    /// Whether something was found wrong that no link brings about, whatever else it has done.
-    pub(super) beyond_links: bool,
-    /// Whether counters were not compared for what the board alone says of its link.
-    pub(super) leaves_counters_out: bool,
-    /// Whether a board came back that has no number to be known by.
-    pub(super) is_unknown: bool,
-    /// What was left untouched at the full pixel clock.
-    pub(super) untested_at_speed: Vec<NotExercised>,
-    /// Tables that frames in corners were made with, at the full pixel clock.
-    pub(super) corners: Vec<Generation>,
-    /// Generations of the plan that whole frames were made with, at the full pixel clock.
-    pub(super) whole_at_speed: Vec<u8>,
     /// Bursts that were begun.
     pub(super) bursts: u32,
     /// What was taken of a run that must keep within a time.
@@ -143,20 +149,11 @@ impl Findings {
             checks: Vec::new(),
             spent: BTreeMap::new(),
             since: Instant::now(),
-            seen: Seen::default(),
             tally: Tally::default(),
             link,
             earlier: Earlier::default(),
-            rows_counted: 0,
-            repeats_counted: 0,
-            not_exercised: Vec::new(),
+            look: Look::default(),
             counters_doubted: false,
-            beyond_links: false,
-            leaves_counters_out: false,
-            is_unknown: false,
-            untested_at_speed: Vec::new(),
-            corners: Vec::new(),
-            whole_at_speed: Vec::new(),
             bursts: 0,
             within: None,
             soak: None,
@@ -195,15 +192,8 @@ impl Findings {
 
     /// Forgets what was found of the open board, for a look in another session; names of bursts do not come again.
     pub(super) fn begin_again(&mut self) {
-        (self.seen, self.rows_counted, self.repeats_counted) = (Seen::default(), 0, 0);
-        (self.earlier.found, self.earlier.doubt) = (false, None);
+        self.look = Look::default();
         self.checks.retain(|check| matches!(check.name, CheckName::Judge | CheckName::Identity));
-        self.not_exercised.clear();
-        (self.leaves_counters_out, self.beyond_links) = (false, false);
-        self.is_unknown = false;
-        self.untested_at_speed.clear();
-        self.corners.clear();
-        self.whole_at_speed.clear();
     }
 
     /// Takes the check that ended the run.
@@ -233,13 +223,13 @@ impl Findings {
 
     /// Takes the counts of a link that broke. Of what was found wrong before, nothing else will tell what the link did.
     pub(super) fn keep_counts(&mut self, board: &Board) {
-        if self.earlier.found || !self.seen.is_right() {
+        if self.look.found || !self.look.seen.is_right() {
             let doubt = Doubt::of_session(board).unwrap_or(Doubt::PacketsUncounted {});
-            self.earlier.doubt.get_or_insert(doubt);
+            self.look.doubt.get_or_insert(doubt);
         }
         self.earlier.tally += board.tally();
         self.earlier.seconds += board.now();
-        (self.rows_counted, self.repeats_counted) = (0, 0);
+        (self.look.rows_counted, self.look.repeats_counted) = (0, 0);
     }
 
     /// Takes note that the board came back that went away for this `reason`.

@@ -146,7 +146,7 @@ impl Run<'_> {
             && board.capabilities == self.board.capabilities;
         *self.board = board;
         // Two boards of one build that have no number look alike.
-        self.findings.is_unknown |= self.board.welcome.serial == 0;
+        self.findings.look.is_unknown |= self.board.welcome.serial == 0;
         if is_same {
             return Ok(());
         }
@@ -177,7 +177,7 @@ impl Run<'_> {
             let rendered = self.plan.render(frame, &segment.geometry);
             let rendered = rendered
                 .map_err(|error| End::error(CheckName::Frames, Cause::Station, Problem::of(&error)))?;
-            self.findings.rows_counted += rendered.height();
+            self.findings.look.rows_counted += rendered.height();
             let played = NumberedFrame { number: frame.number, frame: rendered };
             self.board.stream(&mut Unjudged(iter::once(played))).during(CheckName::Frames)?;
         }

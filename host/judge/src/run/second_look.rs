@@ -77,10 +77,10 @@ impl Run<'_> {
 
     /// Why the board may not be as the host made it in this session, although it is sound and `check` found something.
     pub(super) fn doubt(&mut self, check: CheckName) -> Option<Doubt> {
-        if self.findings.beyond_links {
+        if self.findings.look.beyond_links {
             return None;
         }
-        if let Some(doubt) = self.findings.earlier.doubt.or(Doubt::of_requests(self.board)) {
+        if let Some(doubt) = self.findings.look.doubt.or(Doubt::of_requests(self.board)) {
             return Some(doubt);
         }
         // Without an answer nothing tells what the link did before, whatever keeps it away.

@@ -4,7 +4,7 @@ use std::sync::mpsc::Receiver;
 use std::thread;
 
 use super::exercised::not_exercised;
-use super::findings::{During, End, Findings};
+use super::findings::{During, End, Findings, Look};
 use super::golden::{self, CannotJudge};
 use super::misfit::misfit;
 use super::options::RunOptions;
@@ -100,7 +100,7 @@ impl Run<'_> {
                 self.return_to(segment, 0, end)?;
             }
             self.stream(segment, source)?;
-            if self.plan.fail_fast && self.findings.seen.differences() > 0 {
+            if self.plan.fail_fast && self.findings.look.seen.differences() > 0 {
                 return Ok(Some(segment));
             }
         }
@@ -119,27 +119,28 @@ impl Run<'_> {
 
     /// What the frames left untouched of the board, as far as that is known.
     fn note_not_exercised(&mut self) {
-        let Findings { board, seen, .. } = &*self.findings;
+        let Findings { board, look: Look { seen, .. }, .. } = &*self.findings;
         let used: Vec<_> =
             self.generations.iter().filter_map(|generation| self.used_of(generation)).collect();
-        let generations: Vec<_> = used.iter().chain(&self.findings.corners).collect();
+        let generations: Vec<_> = used.iter().chain(&self.findings.look.corners).collect();
         let has_grid = generations.iter().any(|generation| generation.tables.shape().is_some());
-        let leaves_counters_out = self.findings.leaves_counters_out;
+        let leaves_counters_out = self.findings.look.leaves_counters_out;
         let no_grid = board.identity.is_some() && grids(&self.board.capabilities).is_some() && !has_grid;
-        self.findings.not_exercised = board
+        self.findings.look.not_exercised = board
             .identity
             .as_ref()
             .map_or_else(Vec::new, |board| not_exercised(board, &generations, seen.levels));
-        self.findings.not_exercised.append(&mut self.findings.untested_at_speed);
+        let mut at_speed = std::mem::take(&mut self.findings.look.untested_at_speed);
+        self.findings.look.not_exercised.append(&mut at_speed);
         let untried = !self.findings.has_passed(CheckName::Rules);
-        self.findings.not_exercised.extend(untried.then_some(NotExercised::Rules {}));
+        self.findings.look.not_exercised.extend(untried.then_some(NotExercised::Rules {}));
         let records = self.known_bursts().map_or(0, |bursts| u32::from(bursts.records));
         let are_left = !untried && records > MOST_FILLED;
         let further = are_left.then_some(NotExercised::FurtherRecords { filled: MOST_FILLED });
-        self.findings.not_exercised.extend(further);
-        self.findings.not_exercised.extend(no_grid.then_some(NotExercised::Grids {}));
-        let is_unknown = self.findings.is_unknown;
-        self.findings.not_exercised.extend(is_unknown.then_some(NotExercised::SameBoard {}));
+        self.findings.look.not_exercised.extend(further);
+        self.findings.look.not_exercised.extend(no_grid.then_some(NotExercised::Grids {}));
+        let is_unknown = self.findings.look.is_unknown;
+        self.findings.look.not_exercised.extend(is_unknown.then_some(NotExercised::SameBoard {}));
         self.findings
             .not_exercised
             .extend(leaves_counters_out.then_some(NotExercised::CountersOfPoorLinks {}));
@@ -147,7 +148,7 @@ impl Run<'_> {
 
     /// The rows of `generation` that frames were made with, if there were any.
     fn used_of(&self, generation: &Generation) -> Option<Generation> {
-        let Findings { seen, whole_at_speed, .. } = &*self.findings;
+        let Look { seen, whole_at_speed, .. } = &self.findings.look;
         let height = generation.tables.geometry().height();
         if whole_at_speed.contains(&generation.number) {
             return generation.upper(height);

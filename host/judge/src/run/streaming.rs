@@ -23,16 +23,16 @@ impl Run<'_> {
     ) -> Result<(), End> {
         let (manner, timing) = (self.manner(segment), self.timing(segment.timing));
         // The judge has what is seen while the run has the board, and what it has to say of its link.
-        let mut seen = std::mem::take(&mut self.findings.seen);
+        let mut seen = std::mem::take(&mut self.findings.look.seen);
         let frames = source.iter().take(segment.frames.len());
         let mut judge = Judge::new(frames, &mut seen, manner, timing, self.progress);
         let streamed = self.stream_to_the_end(segment, &mut judge);
         let prepared = judge.finish();
-        self.findings.seen = seen;
+        self.findings.look.seen = seen;
         streamed?;
         self.findings.begin_lap();
         prepared.map_err(|error| End::error(CheckName::Frames, Cause::Station, Problem::of(&error)))?;
-        if self.plan.fail_fast && self.findings.seen.differences() > 0 {
+        if self.plan.fail_fast && self.findings.look.seen.differences() > 0 {
             self.board.drop_rows().during(CheckName::Frames)?;
         }
         Ok(())
@@ -40,7 +40,7 @@ impl Run<'_> {
 
     fn stream_to_the_end(&mut self, segment: &Segment, judge: &mut Judge<'_>) -> Result<(), End> {
         while let Err(error) = self.board.stream(judge) {
-            self.findings.earlier.found |= judge.has_found();
+            self.findings.look.found |= judge.has_found();
             let end = self.interrupted(segment, error);
             self.return_to(segment, judge.frames_done(), end)?;
             judge.begin_again();
@@ -48,8 +48,8 @@ impl Run<'_> {
         if let Some(misconduct) = self.misconduct(CheckName::Frames) {
             return Err(misconduct);
         }
-        self.findings.rows_counted += judge.rows;
-        self.findings.repeats_counted = self.findings.repeats_counted.saturating_add(judge.repeats);
+        self.findings.look.rows_counted += judge.rows;
+        self.findings.look.repeats_counted = self.findings.look.repeats_counted.saturating_add(judge.repeats);
         Ok(())
     }
 

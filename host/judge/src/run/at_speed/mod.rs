@@ -75,8 +75,8 @@ impl Run<'_> {
         let bursts = match self.bursts() {
             Ok(bursts) => bursts,
             Err(reason) => {
-                self.findings.untested_at_speed = vec![NotExercised::FullSpeed {}];
-                self.findings.untested_at_speed.extend(self.clock_unseen());
+                self.findings.look.untested_at_speed = vec![NotExercised::FullSpeed {}];
+                self.findings.look.untested_at_speed.extend(self.clock_unseen());
                 let finding = Finding::NothingAtSpeed { reason };
                 self.findings.note(CheckName::AtSpeed, Outcome::Skipped, finding);
                 return Ok(());
@@ -114,11 +114,11 @@ impl Run<'_> {
         let corners = if self.plan.amount(Part::Corners) > 0 { self.judge_corners(bursts)? } else { 0 };
         if watched.paused == 0 {
             let made_with = [JUDGED, DECOY].into_iter().take(tables.len());
-            self.findings.whole_at_speed = made_with.collect();
+            self.findings.look.whole_at_speed = made_with.collect();
         }
         let changes = plan.mode == BurstMode::Alternating;
-        self.findings.untested_at_speed = untested(changes, watched.paused > 0);
-        self.findings.untested_at_speed.extend(self.clock_not_exercised(seen));
+        self.findings.look.untested_at_speed = untested(changes, watched.paused > 0);
+        self.findings.look.untested_at_speed.extend(self.clock_not_exercised(seen));
         let Watched { frames, paused, held_back, .. } = watched;
         self.note_right(&plan, paused, EqualAtSpeed { frames, held_back, corners, seen, ..NONE });
         Ok(())
@@ -194,10 +194,10 @@ impl Run<'_> {
         for (n, generation) in (0..).zip(tables) {
             let input = plan.content(n).frame(generation.tables.geometry(), self.plan.phase);
             if let Ok(expected) = correct(&generation.tables, &generation.kernel, &input) {
-                self.findings.seen.levels.note(&input, &expected);
+                self.findings.look.seen.levels.note(&input, &expected);
             }
         }
-        self.findings.corners.extend_from_slice(tables);
+        self.findings.look.corners.extend_from_slice(tables);
     }
 
     /// Makes the first of `tables` the active ones and the second those of the other bank.
@@ -220,7 +220,7 @@ impl Run<'_> {
     /// What frames are made with by turns: the active tables, which have the factors and the kernel to judge with whatever
     /// else was varied, and those of the other bank, which are the decoy's.
     fn tables_at_speed(&mut self) -> Result<Vec<Generation>, End> {
-        let number = self.findings.seen.frames.last().map_or(0, |frame| frame.generation);
+        let number = self.findings.look.seen.frames.last().map_or(0, |frame| frame.generation);
         let active =
             Generation { number, tables: self.plan.tables.clone(), kernel: self.plan.kernel.clone() };
         let decoy = self.generations.iter().find(|generation| generation.number == DECOY).cloned();

@@ -80,7 +80,7 @@ impl Rules<'_, '_> {
                 Finding::CounterWrong { .. } | Finding::RuleBroken { rule: Rule::NewSession, .. }
             )
         };
-        self.run.findings.beyond_links |= tried.as_ref().is_err_and(is_of_requests);
+        self.run.findings.look.beyond_links |= tried.as_ref().is_err_and(is_of_requests);
         tried
     }
 
@@ -117,7 +117,7 @@ impl Rules<'_, '_> {
             (Counter::MostLatency, status.most_latency, 0),
         ]);
         // There was no new row, and no link makes one.
-        self.run.findings.beyond_links |= of_new_rows.is_err();
+        self.run.findings.look.beyond_links |= of_new_rows.is_err();
         of_new_rows?;
         let board = &self.run.board;
         let is_calm =

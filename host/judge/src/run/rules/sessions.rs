@@ -50,7 +50,7 @@ impl Rules<'_, '_> {
             if !has_failed || self.run.board.status(false).is_ok_and(|status| status.generation != 0) {
                 return tried;
             }
-            self.run.findings.beyond_links = false;
+            self.run.findings.look.beyond_links = false;
         }
         scenario(self)
     }
@@ -227,7 +227,7 @@ impl Rules<'_, '_> {
 
     fn greet(&mut self) -> Result<(), BoardError> {
         let doubt = Doubt::of_session(self.run.board);
-        let earlier = &mut self.run.findings.earlier.doubt;
+        let earlier = &mut self.run.findings.look.doubt;
         *earlier = earlier.take().or(doubt);
         let nonce = self.run.next_nonce();
         self.run.board.open_free_session(nonce)?;

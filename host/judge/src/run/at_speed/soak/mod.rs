@@ -86,7 +86,7 @@ impl Run<'_> {
             let [frames, paused, held_back] =
                 [account.report.frames, account.report.paused, account.report.held_back].map(counted);
             self.note_right(&plan, paused, EqualAtSpeed { frames, held_back, ..NONE });
-            self.findings.untested_at_speed = super::untested(changes, paused > 0);
+            self.findings.look.untested_at_speed = super::untested(changes, paused > 0);
         }
         self.findings.soak = Some(account.report);
         ended
