@@ -1,5 +1,6 @@
 //! The steps of a run, in their order.
 
+use std::mem;
 use std::sync::mpsc::Receiver;
 use std::thread;
 
@@ -119,31 +120,28 @@ impl Run<'_> {
 
     /// What the frames left untouched of the board, as far as that is known.
     fn note_not_exercised(&mut self) {
-        let Findings { board, look: Look { seen, .. }, .. } = &*self.findings;
+        let at_speed = mem::take(&mut self.findings.look.untested_at_speed);
+        let Findings { board, look, .. } = &*self.findings;
         let used: Vec<_> =
             self.generations.iter().filter_map(|generation| self.used_of(generation)).collect();
-        let generations: Vec<_> = used.iter().chain(&self.findings.look.corners).collect();
+        let generations: Vec<_> = used.iter().chain(&look.corners).collect();
+        let identity = board.identity.as_ref();
+        let of_frames =
+            identity.map_or_else(Vec::new, |board| not_exercised(board, &generations, look.seen.levels));
         let has_grid = generations.iter().any(|generation| generation.tables.shape().is_some());
-        let leaves_counters_out = self.findings.look.leaves_counters_out;
-        let no_grid = board.identity.is_some() && grids(&self.board.capabilities).is_some() && !has_grid;
-        self.findings.look.not_exercised = board
-            .identity
-            .as_ref()
-            .map_or_else(Vec::new, |board| not_exercised(board, &generations, seen.levels));
-        let mut at_speed = std::mem::take(&mut self.findings.look.untested_at_speed);
-        self.findings.look.not_exercised.append(&mut at_speed);
+        let no_grid = identity.is_some() && grids(&self.board.capabilities).is_some() && !has_grid;
         let untried = !self.findings.has_passed(CheckName::Rules);
-        self.findings.look.not_exercised.extend(untried.then_some(NotExercised::Rules {}));
         let records = self.known_bursts().map_or(0, |bursts| u32::from(bursts.records));
         let are_left = !untried && records > MOST_FILLED;
-        let further = are_left.then_some(NotExercised::FurtherRecords { filled: MOST_FILLED });
-        self.findings.look.not_exercised.extend(further);
-        self.findings.look.not_exercised.extend(no_grid.then_some(NotExercised::Grids {}));
-        let is_unknown = self.findings.look.is_unknown;
-        self.findings.look.not_exercised.extend(is_unknown.then_some(NotExercised::SameBoard {}));
-        self.findings
-            .not_exercised
-            .extend(leaves_counters_out.then_some(NotExercised::CountersOfPoorLinks {}));
+        let left = [
+            untried.then_some(NotExercised::Rules {}),
+            are_left.then_some(NotExercised::FurtherRecords { filled: MOST_FILLED }),
+            no_grid.then_some(NotExercised::Grids {}),
+            look.is_unknown.then_some(NotExercised::SameBoard {}),
+            look.leaves_counters_out.then_some(NotExercised::CountersOfPoorLinks {}),
+        ];
+        let left = left.into_iter().flatten();
+        self.findings.look.not_exercised = of_frames.into_iter().chain(at_speed).chain(left).collect();
     }
 
     /// The rows of `generation` that frames were made with, if there were any.
