@@ -29,7 +29,7 @@ impl WholeBoard {
     /// What cases for this board are drawn for.
     #[must_use]
     pub fn build(&self) -> Build {
-        let capabilities = &self.board.capabilities;
+        let capabilities = self.board.capabilities();
         Build {
             latency: capabilities.latency,
             ring: capabilities.ring,

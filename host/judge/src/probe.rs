@@ -1,6 +1,6 @@
 //! Asks a device whether it is a board. That writes a greeting to it, whatever it is.
 
-use crate::board::{Board, BoardError, Heard, OpenOptions};
+use crate::board::{Board, BoardError, Capabilities, Heard, OpenOptions};
 use crate::link::discovery::Answer;
 use crate::link::{self, Class, OpenError};
 use crate::result::Problem;
@@ -16,12 +16,9 @@ pub fn probe(target: &Target) -> Answer {
         Err(error) => return not_opened(&error),
     };
     let options = OpenOptions { polite: true, ..OpenOptions::default() };
-    match Board::open(candidate.link, &options).map_err(BoardError::from) {
-        Ok(mut board) => {
-            let (name, datapath) = (board.capabilities.name.clone(), board.capabilities.datapath);
-            board.close();
-            Answer::Board { name, datapath }
-        }
+    let greeted = Board::with(candidate.link, &options, |board| board.capabilities.clone());
+    match greeted.map_err(BoardError::from) {
+        Ok(Capabilities { name, datapath, .. }) => Answer::Board { name, datapath },
         Err(BoardError::Held { .. }) => Answer::Held,
         Err(BoardError::NoAnswer { heard: Heard { bytes: 0, .. }, .. }) => Answer::Silent,
         Err(BoardError::NoAnswer { heard: Heard { bytes, .. }, .. }) => Answer::Babble { bytes },

@@ -78,7 +78,7 @@ fn a_price_is_what_a_run_takes_and_a_little_more() {
         let rates = Rates::of(&mut opened).unwrap();
         for selection in &selections {
             let plan = plan(Some(selection.clone()));
-            let prices = Prices::new(&plan, &opened.capabilities, rates);
+            let prices = Prices::new(&plan, opened.capabilities(), rates);
             let price = prices.opening() + prices.seconds(selection);
             let taken = judge_by_plan(&plan, open(board)).link.seconds;
             assert!(taken <= price, "{board}, {selection:?}: {taken} s for {price} s");

@@ -9,7 +9,7 @@ use super::{Context, Failure, print};
 use crate::exit::Exit;
 use halfrow::board::{Board, Status};
 use halfrow::report::wording::plain;
-use halfrow::result::{BoardReport, Identity};
+use halfrow::result::BoardReport;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -20,13 +20,11 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let candidate = arguments.board.candidate(&context.settings)?;
     let options = arguments.board.open_options(&context.settings)?;
-    let mut board = Board::open(candidate.link, &options)?;
-    let status = board.status(false);
-    board.close();
+    let asked = Board::with(candidate.link, &options, |board| {
+        (board.status(false), BoardReport::of(board, candidate.kind, candidate.target))
+    });
+    let (status, report) = asked?;
     let status = status?;
-    let identity = Identity::of(&board.welcome, &board.capabilities);
-    let kind = candidate.kind.confirmed_by(board.capabilities.nature);
-    let report = BoardReport { kind, target: candidate.target, identity: Some(identity) };
     if context.json {
         let counters: serde_json::Map<_, _> =
             status.counters().into_iter().map(|(name, count)| (name.to_owned(), count.into())).collect();

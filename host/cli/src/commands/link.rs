@@ -13,7 +13,7 @@ use crate::exit::Exit;
 use halfrow::board::Board;
 use halfrow::link_test::{self, Figures, LinkTestError, Rate, RoundTrips, Throughput};
 use halfrow::report::wording::count;
-use halfrow::result::{BoardReport, Identity};
+use halfrow::result::BoardReport;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -30,21 +30,20 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let candidate = arguments.board.candidate(&context.settings)?;
     let options = arguments.board.measuring_options(&context.settings)?;
-    let mut board = Board::open(candidate.link, &options)?;
-    let tested = link_test::run(&mut board, arguments.seconds, arguments.seed);
-    let identity = Identity::of(&board.welcome, &board.capabilities);
-    let kind = candidate.kind.confirmed_by(board.capabilities.nature);
-    board.close();
+    let asked = Board::with(candidate.link, &options, |board| {
+        let tested = link_test::run(board, arguments.seconds, arguments.seed);
+        (tested, BoardReport::of(board, candidate.kind, candidate.target))
+    });
+    let (tested, board) = asked?;
     let figures = tested.map_err(|error| match error {
         LinkTestError::Board(error) => error.into(),
         error @ LinkTestError::NoFrame(_) => Failure::error(error),
     })?;
     let exit = if figures.errors.wrong > 0 { Exit::Fail } else { Exit::Pass };
     if context.json {
-        let board = BoardReport { kind, target: candidate.target, identity: Some(identity) };
         return conclude(exit, &result_text("link", exit, Some(&board), json!({ "link": figures }))?);
     }
-    conclude(exit, &format!("{:<12} {} ({kind})\n{}", "board", candidate.target, text(&figures)))
+    conclude(exit, &format!("{:<12} {} ({})\n{}", "board", board.target, board.kind, text(&figures)))
 }
 
 fn text(figures: &Figures) -> String {

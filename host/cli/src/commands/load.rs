@@ -26,7 +26,7 @@ use crate::progress::Told;
 use crate::{console, pool, signals};
 use halfrow::board::{Board, BoardError, OpenOptions, Stop};
 use halfrow::link::{self, Class};
-use halfrow::result::{BoardReport, Identity};
+use halfrow::result::BoardReport;
 use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::StoppedBy;
 use halfrow_link::kinds;
@@ -188,16 +188,13 @@ fn greet(target: &Target, stop: Stop) -> Result<BoardReport, (Failure, Next)> {
         (error.into(), next)
     })?;
     let options = OpenOptions { polite: true, stop, ..OpenOptions::default() };
-    let mut board = Board::open(candidate.link, &options).map_err(|failed| {
+    let report = |board: &mut Board| BoardReport::of(board, candidate.kind, candidate.target);
+    Board::with(candidate.link, &options, report).map_err(|failed| {
         let is_cut = matches!(failed.error, BoardError::Timeout { .. });
         let failure = Failure::from(failed);
         let next = if is_cut { Next::TooLate } else { again(failure.exit == Exit::Error) };
         (failure, next)
-    })?;
-    let identity = Identity::of(&board.welcome, &board.capabilities);
-    let kind = candidate.kind.confirmed_by(board.capabilities.nature);
-    board.close();
-    Ok(BoardReport { kind, target: candidate.target, identity: Some(identity) })
+    })
 }
 
 /// Refuses a board of another build than the file's.

@@ -84,13 +84,12 @@ pub struct RowTiming {
     pub gap_seed: u32,
 }
 
-/// An open session with a board.
+/// An open session with a board. One that is dropped without [`Board::close`] holds the board for 10 s: [`Board::with`] closes it.
+#[must_use = "a board whose session is not closed is held for 10 s"]
 pub struct Board {
     conversation: Conversation,
-    /// Its answer to the greeting.
-    pub welcome: Welcome,
-    /// What it can do.
-    pub capabilities: Capabilities,
+    pub(crate) welcome: Welcome,
+    pub(crate) capabilities: Capabilities,
     /// How the session was opened, and the next one is.
     options: OpenOptions,
     /// The shapes of the tables of the last commit, and of the other bank.
@@ -108,7 +107,23 @@ impl fmt::Debug for Board {
 }
 
 impl Board {
-    /// Opens a session over `link`.
+    /// Opens a session over `link`, does `act` in it, and closes it whatever came of that, so that the next host finds the board
+    /// free.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn with<T>(
+        link: Box<dyn Link>,
+        options: &OpenOptions,
+        act: impl FnOnce(&mut Self) -> T,
+    ) -> Result<T, OpenFailed> {
+        let mut board = Self::open(link, options)?;
+        let done = act(&mut board);
+        board.close();
+        Ok(done)
+    }
+
+    /// Opens a session over `link`, which is open until [`Self::close`].
     ///
     /// # Errors
     /// [`OpenFailed`]: nobody answers, no halfrow board, one that cannot be, another version, held by another host.
@@ -144,6 +159,18 @@ impl Board {
                 Err(failed)
             }
         }
+    }
+
+    /// Its answer to the greeting.
+    #[must_use]
+    pub fn welcome(&self) -> &Welcome {
+        &self.welcome
+    }
+
+    /// What it can do.
+    #[must_use]
+    pub fn capabilities(&self) -> &Capabilities {
+        &self.capabilities
     }
 
     /// What the board did with rows in this session that no link can do.

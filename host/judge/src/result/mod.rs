@@ -37,6 +37,7 @@ pub mod wording;
 
 use serde::{Deserialize, Serialize};
 
+use crate::board::Board;
 use crate::frames::street::EdgeDeviation;
 use crate::verdict::{Cause, Verdict};
 use not_exercised::InWords;
@@ -236,6 +237,15 @@ pub struct BoardReport {
     pub target: String,
     /// What the board says of itself; none when it never answered.
     pub identity: Option<Identity>,
+}
+
+impl BoardReport {
+    /// Of a board that answers, behind a target of this kind.
+    #[must_use]
+    pub fn of(board: &Board, kind: BoardKind, target: String) -> Self {
+        let kind = kind.confirmed_by(board.capabilities.nature);
+        Self { kind, target, identity: Some(Identity::of(&board.welcome, &board.capabilities)) }
+    }
 }
 
 /// Façade edges of the built-in street.

@@ -1,6 +1,7 @@
 //! What a run has found so far, and why it ended where it did.
 
 use std::collections::BTreeMap;
+use std::mem;
 use std::time::{Duration, Instant};
 
 use super::plan::Generation;
@@ -8,8 +9,8 @@ use super::seen::Seen;
 use super::{Misfit, RunOptions};
 use crate::board::{Board, BoardError, Status, Tally};
 use crate::result::{
-    BoardReport, Check, CheckName, Doubt, Finding, Identity, LinkReport, NotExercised, Outcome, Problem,
-    Reconnection, SoakReport, Suspect, WithinReport,
+    BoardReport, Check, CheckName, Doubt, Finding, LinkReport, NotExercised, Outcome, Problem, Reconnection,
+    SoakReport, Suspect, WithinReport,
 };
 use crate::target::BoardKind;
 use crate::verdict::Cause;
@@ -209,8 +210,7 @@ impl Findings {
 
     /// Takes what the board says of itself.
     pub(super) fn note_identity(&mut self, board: &Board) {
-        self.board.kind = self.board.kind.confirmed_by(board.capabilities.nature);
-        self.board.identity = Some(Identity::of(&board.welcome, &board.capabilities));
+        self.board = BoardReport::of(board, self.board.kind, mem::take(&mut self.board.target));
     }
 
     /// Takes the link's counts at the end of the run.

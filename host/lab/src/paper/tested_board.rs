@@ -34,7 +34,7 @@ impl TestedBoard {
     /// Takes a session over whose link leads to a board of this kind.
     #[must_use]
     pub fn new(board: Board, kind: BoardKind) -> Self {
-        let kind = kind.confirmed_by(board.capabilities.nature);
+        let kind = kind.confirmed_by(board.capabilities().nature);
         Self { board, kind, frames: 0, generation: 0 }
     }
 
@@ -50,7 +50,7 @@ impl TestedBoard {
     /// L: the pixel clocks beyond half a row that the board says it takes.
     #[must_use]
     pub(crate) fn advertised_latency(&self) -> u16 {
-        self.board.capabilities.latency.into()
+        self.board.capabilities().latency.into()
     }
 
     /// Whether the board takes frames of this size and this kernel.
@@ -58,7 +58,7 @@ impl TestedBoard {
     /// # Errors
     /// [`PaperError::Misfit`] when it does not.
     pub(crate) fn fits(&self, tables: &TableSet, kernel: &Kernel) -> Result<(), PaperError> {
-        misfit(tables, kernel, &self.board.capabilities).map_or(Ok(()), |misfit| Err(misfit.into()))
+        misfit(tables, kernel, self.board.capabilities()).map_or(Ok(()), |misfit| Err(misfit.into()))
     }
 
     /// Corrects `inputs` with tables and kernel of their own.

@@ -116,13 +116,10 @@ pub(super) struct Common<'a> {
 impl Common<'_> {
     /// Asks the board who it is, and whether the plan may judge it. Nothing is uploaded.
     pub(super) fn identity(&self, within: Duration) -> Try {
-        let (mut board, kind) = match self.open(within) {
-            Ok(open) => open,
+        let (kind, seen) = match self.with_board(within, |_, kind, seen| (kind, seen)) {
+            Ok(greeted) => greeted,
             Err(result) => return *result,
         };
-        let identity = Identity::of(&board.welcome, &board.capabilities);
-        board.close();
-        let seen = seen(kind, &identity);
         let result = self.not_allowed(kind, &seen).unwrap_or_else(|| self.ruled(&seen));
         Try { board: Some(seen), ..result }
     }
@@ -166,16 +163,15 @@ impl Common<'_> {
 
     /// Tests the link.
     pub(super) fn link(&self, each: Duration, within: Duration) -> Try {
-        let (mut board, kind) = match self.open(within) {
-            Ok(open) => open,
+        let tested = self.with_board(within, |board, _, seen| match self.exchanged(&seen) {
+            Some(exchanged) => Err(exchanged),
+            None => Ok((link_test::run(board, each, self.seed), seen)),
+        });
+        let (tested, seen) = match tested {
+            Ok(Ok(tested)) => tested,
+            Ok(Err(exchanged)) => return exchanged,
             Err(result) => return *result,
         };
-        let seen = seen(kind, &Identity::of(&board.welcome, &board.capabilities));
-        if let Some(exchanged) = self.exchanged(&seen) {
-            return exchanged;
-        }
-        let tested = link_test::run(&mut board, each, self.seed);
-        board.close();
         let figures = match tested {
             Ok(figures) => figures,
             Err(error) => {
@@ -265,14 +261,21 @@ impl Common<'_> {
         link::open(self.target).map_err(|error: OpenError| Box::new(Try::error(error.class().into(), &error)))
     }
 
-    fn open(&self, within: Duration) -> Result<(Board, BoardKind), Box<Try>> {
+    /// Does `act` in a session with the board, with what the board says of itself.
+    fn with_board<T>(
+        &self,
+        within: Duration,
+        act: impl FnOnce(&mut Board, BoardKind, BoardSeen) -> T,
+    ) -> Result<T, Box<Try>> {
         let candidate = self.candidate()?;
         let stop = self.stop.clone().limited(Some(within)).within(Some(within));
         let options = OpenOptions { stop, ..OpenOptions::default() };
-        let board = Board::open(candidate.link, &options)
-            .map_err(|failed| Box::new(Try::error(failed.error.cause(), &failed.error)))?;
-        let kind = candidate.kind.confirmed_by(board.capabilities.nature);
-        Ok((board, kind))
+        let done = Board::with(candidate.link, &options, |board| {
+            let kind = candidate.kind.confirmed_by(board.capabilities().nature);
+            let seen = seen(kind, &Identity::of(board.welcome(), board.capabilities()));
+            act(board, kind, seen)
+        });
+        done.map_err(|failed| Box::new(Try::error(failed.error.cause(), &failed.error)))
     }
 }
 

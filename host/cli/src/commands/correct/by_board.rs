@@ -28,15 +28,13 @@ impl Job<'_> {
     ) -> Result<BoardKind, Failure> {
         let candidate = self.arguments.board.candidate(&context.settings)?;
         let options = self.arguments.board.open_options(&context.settings)?;
-        let mut board = Board::open(candidate.link, &options)?;
-        let corrected = match run::misfit(&self.chosen.tables, &self.chosen.kernel, &board.capabilities) {
-            None => self.stream(&mut board, places, progress),
-            Some(misfit) => Err(misfit.into()),
-        };
-        // Whatever happened, the next run must find the board free.
-        board.close();
-        corrected?;
-        Ok(candidate.kind.confirmed_by(board.capabilities.nature))
+        Board::with(candidate.link, &options, |board| {
+            match run::misfit(&self.chosen.tables, &self.chosen.kernel, board.capabilities()) {
+                None => self.stream(board, places, progress)?,
+                Some(misfit) => return Err(misfit.into()),
+            }
+            Ok(candidate.kind.confirmed_by(board.capabilities().nature))
+        })?
     }
 
     fn stream(&self, board: &mut Board, places: &Places, progress: &dyn Progress) -> Result<(), Failure> {
