@@ -151,9 +151,9 @@ impl Kind {
 
 fn check_of(system: &System, plan: &Plan, options: &str) -> Option<CheckName> {
     let report = judge_by_plan(plan, open(&format!("{}{options}", system.board)));
-    assert_ne!(report.verdict, Verdict::Error, "{options}: {}", report.headline());
+    assert_ne!(report.verdict(), Verdict::Error, "{options}: {}", report.headline());
     let check = failed_check(&report);
-    assert_eq!(check.is_some(), report.verdict == Verdict::Fail, "{options}: {}", report.headline());
+    assert_eq!(check.is_some(), report.verdict() == Verdict::Fail, "{options}: {}", report.headline());
     check
 }
 

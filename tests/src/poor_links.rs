@@ -122,7 +122,7 @@ impl Case {
                 system.judge_at(proxy.target())
             }
         };
-        (report.verdict, report.headline())
+        (report.verdict(), report.headline())
     }
 }
 

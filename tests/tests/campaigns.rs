@@ -148,10 +148,10 @@ fn soaked_for_eight_hours(target: &str) -> Report {
 #[ignore = "minutes long; scripts/soak runs it"]
 fn eight_hours_are_judged_frame_by_frame() {
     let sound = soaked_for_eight_hours("mock,pixel-clock=20000");
-    assert_eq!(sound.verdict, Verdict::Pass, "{}", sound.headline());
+    assert_eq!(sound.verdict(), Verdict::Pass, "{}", sound.headline());
     // 1.1 million frames have some 570 million samples.
     let broken = soaked_for_eight_hours("mock,pixel-clock=20000,fault=slow-path,one-in=50000000");
-    assert_eq!(broken.verdict, Verdict::Fail, "{}", broken.headline());
+    assert_eq!(broken.verdict(), Verdict::Fail, "{}", broken.headline());
     let soak = broken.soak.unwrap();
     assert!((1..40).contains(&soak.wrong), "{soak:?}");
     assert_eq!(soak.differences.len() as u64, soak.wrong.min(SoakReport::MOST_DIFFERENCES as u64));

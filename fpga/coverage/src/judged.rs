@@ -46,15 +46,15 @@ pub(crate) fn judge(plan: &Plan, board: &mut FaultyBoard, fault: u16) -> Result<
         let plan = Plan { parts: Some(selection), ..plan.clone() };
         is_asked.then(|| report(&plan, board, fault)).transpose()
     };
-    let least = by(Selection::least(), whole.verdict != Verdict::Pass)?.is_some_and(|part| is_found(&part));
+    let least = by(Selection::least(), whole.verdict() != Verdict::Pass)?.is_some_and(|part| is_found(&part));
     // A board that hangs does so for minutes, each time.
-    let is_asked = whole.verdict == Verdict::Fail && !least;
+    let is_asked = whole.verdict() == Verdict::Fail && !least;
     let at_speed = by(Selection::all([Part::AtSpeed]), is_asked)?.is_some_and(|part| is_found(&part));
     let corners = by(Selection::all([Part::Corners]), is_asked)?.is_some_and(|part| is_in_corner(&part));
     let rules = by(Selection::all([Part::Rules]), is_asked)?.is_some_and(|part| is_found(&part));
     Ok(Judged {
         fault,
-        verdict: whole.verdict,
+        verdict: whole.verdict(),
         finding: whole.finding.code(),
         checks: not_passed(&whole),
         frames: whole.frames.iter().filter_map(first_that_differs).collect(),
@@ -74,7 +74,7 @@ fn report(plan: &Plan, board: &mut FaultyBoard, fault: u16) -> Result<Report> {
 }
 
 fn is_found(report: &Report) -> bool {
-    report.verdict != Verdict::Pass
+    report.verdict() != Verdict::Pass
 }
 
 fn not_passed(report: &Report) -> Vec<CheckName> {

@@ -185,13 +185,13 @@ fn advice(report: &Report) -> String {
 
 /// The verdict in one line, the last one.
 fn verdict(report: &Report) -> String {
-    let style = match report.verdict {
+    let style = match report.verdict() {
         Verdict::Pass => GREEN,
         Verdict::Fail => RED,
         Verdict::Error => YELLOW,
     };
     let line = flags::named(&wording::verdict_line(report));
-    let word = report.verdict.to_string();
+    let word = report.verdict().to_string();
     let rest = line.strip_prefix(&word).unwrap_or(&line);
     format!("{style}{word}{style:#}{rest}\n")
 }

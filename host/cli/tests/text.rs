@@ -5,7 +5,7 @@
 
 use halfrow::compare::{Comparison, Difference};
 use halfrow::result::{BoardKind, Defect, FrameReport, MadeWith, Problem, Report, StaleFrames, Variation};
-use halfrow::verdict::Verdict;
+use halfrow::verdict::Cause;
 
 #[path = "../../../tests/tests/report_views/made.rs"]
 mod made;
@@ -181,7 +181,7 @@ fn what_a_board_calls_itself_cannot_drive_the_terminal() {
 #[test]
 fn a_wrong_latency_says_what_was_claimed() {
     let mut report = made::pass();
-    report.verdict = Verdict::Fail;
+    report.cause = Cause::Different;
     let latency = report.latency.as_mut().unwrap();
     (latency.most, latency.wrong_rows) = (975, 1200);
     let expected =

@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             println!(
                 "{name:<9} {seconds:>5} s: {own:5.1} % {other:5.1} %, took {taken:6.2} s, {:6.2} s here, {}",
                 wall.max(Duration::ZERO).as_secs_f64(),
-                judged.report.verdict,
+                judged.report.verdict(),
             );
         }
     }

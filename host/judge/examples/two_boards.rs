@@ -31,7 +31,7 @@ fn main() -> Result<(), Failure> {
         let mut finished = halfrow::verify(&plan, board, &RunOptions::default(), &told)?;
         finished.commit(folder)?;
         println!("{name}: {}", finished.report.headline());
-        Ok(finished.report.verdict)
+        Ok(finished.report.verdict())
     };
     let verdicts = thread::scope(|scope| {
         let sound = scope.spawn(|| judge("left", "mock"));

@@ -83,7 +83,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let options = RunOptions { reconnect: Some(Duration::from_secs(30)), ..RunOptions::default() };
     let finished = halfrow::verify(&plan, candidate, &options, &halfrow::progress::Silent)?;
     let report = &finished.report;
-    println!("{} {} {}", report.verdict, report.cause, report.link.reconnections.len());
+    println!("{} {} {}", report.verdict(), report.cause, report.link.reconnections.len());
     eprintln!("{}; {} tries to open the link again", report.headline(), opened.load(Ordering::Relaxed));
     Ok(())
 }

@@ -45,7 +45,7 @@ fn a_link_that_doubles_packets_makes_no_sound_board_fail() {
     ];
     for doubled in links {
         let report = doubling(doubled, |packet| packet);
-        assert_ne!(report.verdict, Verdict::Fail, "{}", report.headline());
+        assert_ne!(report.verdict(), Verdict::Fail, "{}", report.headline());
     }
 }
 

@@ -101,7 +101,7 @@ fn what_is_of_another_session_is_no_answer() {
         }
         _ => vec![packet],
     });
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     assert!(report.link.strays > 0);
 }
 
@@ -116,7 +116,7 @@ fn a_window_that_comes_late_takes_no_credit_away() {
         let is_behind = toward == Toward::Host && packet.is(Kind::Configure);
         [Some(packet), old.clone().filter(|_| is_behind)].into_iter().flatten().collect()
     });
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     assert!(report.link.strays > 0);
 }
 

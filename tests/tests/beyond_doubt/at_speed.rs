@@ -59,7 +59,7 @@ fn request(packet: &Passing) -> Request<'_> {
 #[test]
 fn a_sound_board_passes_with_three_frames_and_both_banks() {
     let report = TINY.judge("");
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     let Finding::EqualAtSpeed(EqualAtSpeed { frames: 3, held_back: 0, .. }) = check(&report).finding else {
         panic!("{}", check(&report).detail())
     };
@@ -107,7 +107,7 @@ fn what_fails_at_full_speed_alone_passes_row_by_row_and_fails_in_a_burst() {
     };
     for (fault, place, sentence) in SPEED_FAULTS {
         let unseen = judged(fault, streamed(TINY.plan()));
-        assert_eq!(unseen.verdict, Verdict::Pass, "{fault}: {}", unseen.headline());
+        assert_eq!(unseen.verdict(), Verdict::Pass, "{fault}: {}", unseen.headline());
         let seen = judged(fault, TINY.plan());
         assert_eq!(failed_check(&seen), Some(CheckName::AtSpeed), "{fault}: {}", seen.headline());
         assert!(seen.headline().contains(sentence), "{fault}: {}", seen.headline());
@@ -158,7 +158,7 @@ fn records_of_more_frames_than_were_asked_for_are_a_fault() {
 #[test]
 fn pauses_make_frames_no_frames_at_speed_and_not_wrong() {
     let report = with_record(|record| record.pauses = 7);
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     assert_eq!(check(&report).finding, Finding::PausedAtSpeed { frames: 3, paused: 1 });
     assert_eq!(check(&report).outcome, Outcome::Skipped);
     assert!(report.not_exercised.contains(&NotExercised::FullSpeed {}));
@@ -175,7 +175,7 @@ fn why_nothing_was_tested_at_speed_is_said() {
     let candidate = Altered::new(&Options::default(), |_, packet: Passing| vec![packet]).candidate();
     let unasked = verify(&plan, candidate, &RunOptions::default(), &Silent).unwrap().report;
     for (report, reason) in [(without, none), (unknown, other), (unasked, NoBurst::NotAskedFor {})] {
-        assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
         assert_eq!(check(&report).finding, Finding::NothingAtSpeed { reason });
         assert_eq!(check(&report).outcome, Outcome::Skipped);
         assert!(report.not_exercised.contains(&NotExercised::FullSpeed {}));
@@ -363,7 +363,7 @@ fn without_the_capability_nothing_is_read_behind_the_samples() {
             _ => packet,
         }
     });
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
 }
 
 /// The first try of a BURST comes late, behind the next one, which it sets back.
@@ -394,6 +394,6 @@ fn a_burst_that_comes_late_is_not_the_bitstreams_fault() {
         }
     });
     let report = TINY.judge_candidate(board.candidate());
-    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
     assert!(report.headline().contains("a late copy may have begun it again"), "{}", report.headline());
 }

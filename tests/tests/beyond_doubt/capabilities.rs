@@ -119,7 +119,7 @@ fn a_board_with_other_row_banks_than_it_says_fails() {
         (255, |board| board.row_banks_in = 255),
     ] {
         let report = judge_claims(&System::TINY, change);
-        assert_eq!(report.verdict, Verdict::Fail, "{banks}: {}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Fail, "{banks}: {}", report.headline());
         let said = format!("must give credit for {banks} rows behind RESET, and gave it for 4");
         assert!(report.headline().contains(&said), "{}", report.headline());
     }

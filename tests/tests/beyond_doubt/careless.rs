@@ -127,6 +127,6 @@ fn a_board_that_takes_damaged_packets_fails() {
 fn a_damaged_packet_that_a_link_makes_whole_again_makes_no_sound_board_fail() {
     for takes in 1..=2 {
         let report = report(Unlooked::Crc, takes);
-        assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     }
 }

@@ -15,14 +15,14 @@ use halfrow_tests::system::{System, failed_check, judge_by_plan};
 
 #[track_caller]
 pub(crate) fn fails(report: &Report, check: CheckName, sentence: &str) {
-    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
     assert_eq!(failed_check(report), Some(check), "{}", report.headline());
     assert!(report.headline().contains(sentence), "{}", report.headline());
 }
 
 #[track_caller]
 pub(crate) fn passes(report: &Report) {
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
 }
 
 /// The place of a returned row.
@@ -217,7 +217,7 @@ fn what_entered_is_looked_at_wherever_a_board_is_to_tell_it() {
     );
     // Beyond the frames of the plan, where rules are tried.
     let report = with_rows(|at| at.frame > 1000, |row| row.entered = row.entered.map(|crc| crc ^ 1));
-    assert_eq!((report.verdict, failed_check(&report)), (Verdict::Fail, Some(CheckName::Rules)));
+    assert_eq!((report.verdict(), failed_check(&report)), (Verdict::Fail, Some(CheckName::Rules)));
 }
 
 /// It looks like a bit that is flipped in the first column of every row, and every output that is made of that column is right.
@@ -272,7 +272,7 @@ fn a_board_that_reads_back_wrong_once_fails_whenever_that_is() {
     assert!(answers > 10, "{answers}");
     for which in 0..answers {
         let (report, _) = judged(which);
-        assert_eq!(report.verdict, Verdict::Fail, "answer {which} of {answers}: {}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Fail, "answer {which} of {answers}: {}", report.headline());
     }
 }
 
@@ -287,7 +287,7 @@ fn a_window_that_stands_still_ends_the_run() {
             }
             packet
         });
-        assert_eq!(report.verdict, Verdict::Error, "{most}: {}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Error, "{most}: {}", report.headline());
     }
 }
 
@@ -302,7 +302,7 @@ fn a_window_beyond_every_row_does_no_harm() {
             }
             packet
         });
-        assert_ne!(report.verdict, Verdict::Fail, "packet {which}: {}", report.headline());
+        assert_ne!(report.verdict(), Verdict::Fail, "packet {which}: {}", report.headline());
     }
 }
 
@@ -329,9 +329,9 @@ fn what_is_wrong_is_no_fail_while_the_board_does_not_tell_what_came_to_it() {
         (report, answers.load(Ordering::Relaxed))
     };
     let (report, answers) = judged(usize::MAX);
-    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
     let (report, _) = judged(answers - 1);
-    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
 }
 
 #[test]

@@ -98,6 +98,6 @@ fn counters_that_contradict_each_other_are_the_board_s_fault_over_any_link() {
 #[test]
 fn fewer_packets_than_were_answered_are_no_pass_and_no_fail() {
     let report = with_counter(|status| status.packets = status.packets.saturating_sub(30));
-    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
     assert!(report.headline().contains("packets that came to it"), "{}", report.headline());
 }

@@ -62,9 +62,9 @@ fn lost_and_doubled(lost: Numbered, copied: Numbered, later: usize) -> Report {
 fn no_sound_board_fails(links: &[(Numbered, Numbered, usize)]) {
     let reports = parallel::map(links, |&(lost, copied, later)| lost_and_doubled(lost, copied, later));
     for (link, report) in links.iter().zip(&reports) {
-        assert_ne!(report.verdict, Verdict::Fail, "{link:?}: {}", report.headline());
+        assert_ne!(report.verdict(), Verdict::Fail, "{link:?}: {}", report.headline());
     }
-    let errors = reports.iter().filter(|report| report.verdict == Verdict::Error).count();
+    let errors = reports.iter().filter(|report| report.verdict() == Verdict::Error).count();
     assert!(2 * errors < links.len(), "{errors} errors of {}", links.len());
 }
 

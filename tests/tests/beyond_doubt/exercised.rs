@@ -41,7 +41,7 @@ fn unseen_address_lines(plan: &Plan) -> Vec<usize> {
     for line in 0..11 {
         for value in 0..2 {
             let fault = format!("mock,fault=stuck-address,bit={line},value={value}");
-            let verdict = judge_by_plan(plan, open(&fault)).verdict;
+            let verdict = judge_by_plan(plan, open(&fault)).verdict();
             let expected = if named(line) { Verdict::Pass } else { Verdict::Fail };
             assert_eq!(verdict, expected, "line {line} at {value}");
         }
@@ -66,7 +66,7 @@ fn a_wrong_node_goes_unseen_exactly_where_the_pass_names_it() {
         let fault = format!("mock,fault=kernel-word,node={node},weight=g4,bit=13,hidden=true");
         let expected = if named(node) { Verdict::Pass } else { Verdict::Fail };
         assert_eq!(
-            judge_by_plan(&plan, open(&fault)).verdict,
+            judge_by_plan(&plan, open(&fault)).verdict(),
             expected,
             "node {node}: {:?}",
             sound.not_exercised
@@ -80,15 +80,15 @@ fn what_hides_behind_a_depth_is_named_and_found_where_the_depth_varies() {
     let stuck = "mock,fault=stuck-data,bit=9,value=0";
     let (fixed, vary) = (streamed(eight_bits()), Vary { centre: false, depth: true });
     let unseen = judge_by_plan(&fixed, open(stuck));
-    assert_eq!(unseen.verdict, Verdict::Pass);
+    assert_eq!(unseen.verdict(), Verdict::Pass);
     let bits = NotExercised::InputBits { bits: vec![8, 9, 10, 11] };
     assert!(unseen.not_exercised.contains(&bits), "{:?}", unseen.not_exercised);
     assert!(unseen.not_exercised.contains(&NotExercised::Depths { bits: vec![10, 12] }));
     let seen = judge_by_plan(&fixed.clone().varying(vary), open(stuck));
-    assert_eq!((seen.verdict, &seen.not_exercised[..]), (Verdict::Fail, &[][..]), "{}", seen.headline());
+    assert_eq!((seen.verdict(), &seen.not_exercised[..]), (Verdict::Fail, &[][..]), "{}", seen.headline());
     assert_eq!(seen.suspects[0].place(), "line memory, data bit 9, stuck at 0");
     let sound = judge_by_plan(&fixed.varying(vary), open("mock"));
-    assert_eq!(sound.verdict, Verdict::Pass, "{}", sound.headline());
+    assert_eq!(sound.verdict(), Verdict::Pass, "{}", sound.headline());
     assert!(!sound.not_exercised.contains(&bits));
 }
 
@@ -108,11 +108,11 @@ fn ignoring_the_centre() -> Candidate {
 fn a_board_that_ignores_the_centre_is_found_where_the_centre_varies() {
     let plan = streamed(SYSTEM.plan());
     let unseen = judge_by_plan(&plan, ignoring_the_centre());
-    assert_eq!(unseen.verdict, Verdict::Pass);
+    assert_eq!(unseen.verdict(), Verdict::Pass);
     assert!(unseen.not_exercised.contains(&NotExercised::OneCentre { centre2: 159 }));
     let varying = plan.varying(Vary { centre: true, depth: false });
     let seen = judge_by_plan(&varying, ignoring_the_centre());
-    assert_eq!(seen.verdict, Verdict::Fail, "{}", seen.headline());
+    assert_eq!(seen.verdict(), Verdict::Fail, "{}", seen.headline());
     let differing: Vec<_> = seen
         .frames
         .iter()
@@ -120,5 +120,5 @@ fn a_board_that_ignores_the_centre_is_found_where_the_centre_varies() {
         .map(|frame| frame.variation)
         .collect();
     assert!(matches!(differing[..], [Some(_)]), "{differing:?}");
-    assert_eq!(judge_by_plan(&varying, open("mock")).verdict, Verdict::Pass);
+    assert_eq!(judge_by_plan(&varying, open("mock")).verdict(), Verdict::Pass);
 }

@@ -37,7 +37,7 @@ fn late_refusal(which: usize) -> Report {
 fn an_old_refusal_of_a_row_is_none_of_the_rows_under_way() {
     for which in [0, 5, 30, 50] {
         let report = late_refusal(which);
-        assert_eq!(report.verdict, Verdict::Pass, "{which}: {}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Pass, "{which}: {}", report.headline());
         assert!(report.link.strays > 0, "{which}");
     }
 }
@@ -47,7 +47,7 @@ fn an_old_refusal_of_a_row_is_none_of_the_rows_under_way() {
 fn a_refusal_of_an_old_row_is_none_of_the_rows_under_way() {
     for before in 50..55 {
         let report = late_copy((Kind::RowIn, 246), (Kind::RowIn, before), true);
-        assert_eq!(report.verdict, Verdict::Pass, "{before}: {}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Pass, "{before}: {}", report.headline());
     }
 }
 
@@ -64,7 +64,7 @@ fn a_row_that_is_refused_is_not_right() {
         refused.header.kind = Kind::Refusal.code();
         vec![refused]
     });
-    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
 }
 
 /// Both copies are answered, so that the host knows.
@@ -75,7 +75,7 @@ fn an_error_that_an_old_copy_of_a_request_may_have_brought_about_is_looked_at_ag
             let report = late_copy(which, before, true);
             let what = format!("{which:?} before {before:?}: {}", report.headline());
             assert!(!report.headline().contains(BLAME), "{what}");
-            assert_ne!(report.verdict, Verdict::Fail, "{what}");
+            assert_ne!(report.verdict(), Verdict::Fail, "{what}");
         }
     }
 }
@@ -102,10 +102,10 @@ fn refusing(code: RefusalCode, sessions: usize) -> Report {
 #[test]
 fn a_board_that_refuses_over_a_link_that_doubts_is_right_in_no_session() {
     let once = refusing(RefusalCode::Range, 1);
-    assert_eq!((once.verdict, once.cause), (Verdict::Error, Cause::Station), "{}", once.headline());
+    assert_eq!((once.verdict(), once.cause), (Verdict::Error, Cause::Station), "{}", once.headline());
     assert!(matches!(once.finding, Finding::RightInAnotherSession { .. }), "{}", once.headline());
     assert!(!once.headline().contains(BLAME), "{}", once.headline());
     let always = refusing(RefusalCode::Range, usize::MAX);
-    assert_eq!((always.verdict, always.cause), (Verdict::Error, Cause::Refused), "{}", always.headline());
+    assert_eq!((always.verdict(), always.cause), (Verdict::Error, Cause::Refused), "{}", always.headline());
     assert!(always.headline().contains("its capabilities allow that"), "{}", always.headline());
 }

@@ -24,7 +24,7 @@ fn row_of_request(packet: &Passing) -> Option<u16> {
 fn a_board_that_swallows_rows_fails() {
     for row in [0, 3, 7] {
         let report = System::TINY.judge(&format!(",fault=lost-row,row={row}"));
-        assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
         let sentence = format!("row {row} of frame 0 went into the board and never came out");
         assert!(report.headline().contains(&sentence), "{}", report.headline());
     }
@@ -38,7 +38,7 @@ fn rows_that_the_board_says_it_sent_are_lost_behind_it() {
             let lost = toward == Toward::Host && is_row_out(&packet, row);
             if lost { Vec::new() } else { vec![packet] }
         });
-        assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
         assert!(report.headline().contains(&format!("row {row} of frame 0")), "{}", report.headline());
     }
 }
@@ -50,7 +50,7 @@ fn rows_that_never_reach_the_board_are_lost_in_front_of_it() {
             let lost = toward == Toward::Board && row_of_request(&packet) == Some(row);
             if lost { Vec::new() } else { vec![packet] }
         });
-        assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
     }
 }
 
@@ -67,7 +67,7 @@ fn a_row_that_waits_for_its_successor_is_not_swallowed() {
         }
         _ => vec![packet],
     });
-    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
 }
 
 /// The link changes what the board says of its window, so that row 4 is never sent, and all counts agree.
@@ -85,7 +85,7 @@ fn a_row_whose_successor_was_not_let_in_is_not_swallowed() {
         }
         vec![packet]
     });
-    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
     assert!(report.headline().contains("row 3 of frame 0"), "{}", report.headline());
 }
 
@@ -118,7 +118,7 @@ fn a_packet_that_came_twice_before_excuses_no_board_that_swallows_rows() {
         }
         withhold(packet, |_| {})
     });
-    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
 }
 
 /// A link that brings bytes that are no packet behind all that it brings.
@@ -137,7 +137,7 @@ fn noisy(link: Box<dyn Link>) -> Box<dyn Link> {
 fn a_row_is_not_swallowed_where_packets_come_damaged() {
     let candidate = Altered::new(&Options::default(), |_, packet| withhold(packet, |_| {})).candidate();
     let report = System::TINY.judge_candidate(Candidate { link: noisy(candidate.link), ..candidate });
-    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
     assert!(report.headline().contains("row 3 of frame 0"), "{}", report.headline());
     assert!(report.link.damaged_in > 0);
 }
@@ -148,7 +148,7 @@ type Denial = fn(&mut Status);
 #[test]
 fn a_row_that_the_board_does_not_admit_to_is_no_fail() {
     let admitted = withheld(|_| {});
-    assert_eq!(admitted.verdict, Verdict::Fail, "{}", admitted.headline());
+    assert_eq!(admitted.verdict(), Verdict::Fail, "{}", admitted.headline());
     let denials: [(&str, Denial); 7] = [
         ("it did not take it", |status| status.rows_in = status.rows_in.saturating_sub(1)),
         ("it waits for it", |status| status.next_row_in = status.next_row_out),
@@ -160,6 +160,6 @@ fn a_row_that_the_board_does_not_admit_to_is_no_fail() {
     ];
     for (what, denial) in denials {
         let report = withheld(denial);
-        assert_eq!(report.verdict, Verdict::Error, "{what}: {}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Error, "{what}: {}", report.headline());
     }
 }

@@ -81,17 +81,17 @@ fn unplugged_in_front_of_the_second_look(wrong: Wrong, reconnect: Option<Duratio
 #[test]
 fn a_board_that_comes_back_in_front_of_a_second_look_is_looked_at_again() {
     let report = unplugged_in_front_of_the_second_look(Wrong::Always, Some(LIMIT));
-    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
     assert_eq!(report.link.reconnections.len(), 1);
     let report = unplugged_in_front_of_the_second_look(Wrong::Once, Some(LIMIT));
     assert!(matches!(report.finding, Finding::RightInAnotherSession { .. }), "{}", report.headline());
-    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
 }
 
 #[test]
 fn what_was_found_is_told_although_the_link_broke_in_front_of_the_second_look() {
     let report = unplugged_in_front_of_the_second_look(Wrong::Always, None);
-    assert_eq!((report.verdict, report.cause), (Verdict::Error, Cause::Station), "{}", report.headline());
+    assert_eq!((report.verdict(), report.cause), (Verdict::Error, Cause::Station), "{}", report.headline());
     let Finding::SecondLookBrokenOff(broken_off) = &report.finding else { panic!("{}", report.headline()) };
     assert!(matches!(broken_off.found, Finding::SamplesDiffer { .. }), "{}", report.headline());
     assert_eq!(broken_off.reason.code(), "link-broke");
@@ -122,15 +122,15 @@ fn unplugged_in_the_middle_of_a_frame(wrong: Wrong, reconnect: Option<Duration>)
 fn rows_of_a_frame_that_the_link_broke_in_count_in_a_session_that_is_whole_alone() {
     let report = unplugged_in_the_middle_of_a_frame(Wrong::Once, Some(LIMIT));
     assert!(matches!(report.finding, Finding::RightInAnotherSession { .. }), "{}", report.headline());
-    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
     let report = unplugged_in_the_middle_of_a_frame(Wrong::Always, Some(LIMIT));
-    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
 }
 
 #[test]
 fn what_differed_in_a_frame_that_the_link_broke_in_is_in_the_report() {
     let report = unplugged_in_the_middle_of_a_frame(Wrong::Always, None);
-    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
     let [frame] = &report.frames[..] else { panic!("{:?}", report.frames) };
     assert!((1..8).contains(&frame.rows) && frame.comparison.differences > 0, "{frame:?}");
 }
@@ -152,7 +152,7 @@ fn a_soak_that_breaks_off_in_front_of_a_second_look_tells_what_differed() {
     let soak = Some(SoakLength::Frames { frames: 3 });
     let plan = Plan { soak, fail_fast: false, ..System::TINY.plan() };
     let report = verify(&plan, breakable(alter, is_cut), &RunOptions::default(), &Silent).unwrap().report;
-    assert_eq!((report.verdict, report.cause), (Verdict::Error, Cause::Station), "{}", report.headline());
+    assert_eq!((report.verdict(), report.cause), (Verdict::Error, Cause::Station), "{}", report.headline());
     let Finding::SecondLookBrokenOff(broken_off) = &report.finding else { panic!("{}", report.headline()) };
     assert!(matches!(broken_off.found, Finding::DiffersAtSpeed { .. }), "{}", report.headline());
     assert_eq!(broken_off.reason.code(), "link-broke");

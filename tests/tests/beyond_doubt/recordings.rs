@@ -83,7 +83,7 @@ fn a_recording_of_a_run_that_asked_for_no_counts_is_judged_as_it_was() {
         assert!(earlier.len() < head.len());
         folder.write("earlier.rec", [earlier.as_bytes(), exchanges].concat());
         let again = folder.halfrow(["verify", "--json", "--board", "replay:earlier.rec"]).json();
-        assert_eq!(again["verdict"], report.verdict.to_string(), "{board}: {}", again["headline"]);
+        assert_eq!(again["verdict"], report.verdict().to_string(), "{board}: {}", again["headline"]);
         assert_eq!(again["link"]["packets_out"], report.link.packets_out, "{board}");
     }
 }
@@ -136,7 +136,7 @@ fn a_recording_of_a_board_that_was_taken_over_is_judged_as_it_was() {
     let recorder = Recorder::begin(link, file, &RecordedRun::of(&plan, &options)).unwrap();
     let candidate = Candidate { link: Box::new(recorder), ..candidate };
     let report = verify(&plan, candidate, &options, &Silent).unwrap().report;
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     let again = folder.halfrow(["verify", "--json", "--board", "replay:run.rec"]).json();
     assert_eq!(again["verdict"], "PASS", "{}", again["headline"]);
 }
@@ -239,7 +239,7 @@ fn backwards() -> Candidate {
 #[test]
 fn a_clock_that_goes_back_costs_nothing_but_the_time() {
     let report = System::TINY.judge_candidate(backwards());
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
 }
 
 #[test]

@@ -38,7 +38,7 @@ fn a_refusal_of_what_a_board_says_that_it_can_is_its_own() {
     ] {
         let report = refusing(kind, code);
         let what = format!("{kind}, {code}: {}", report.headline());
-        assert_eq!((report.verdict, report.cause), (Verdict::Error, cause), "{what}");
+        assert_eq!((report.verdict(), report.cause), (Verdict::Error, cause), "{what}");
         assert!(report.headline().contains(said), "{what}");
     }
 }

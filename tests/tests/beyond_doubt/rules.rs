@@ -77,7 +77,7 @@ fn builds_of_every_kind_keep_the_rules() {
         others,
     ] {
         let report = judge_by_plan(&plan(), open(format!("mock,{options}").trim_end_matches(',')));
-        assert_eq!(report.verdict, Verdict::Pass, "{options}: {}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Pass, "{options}: {}", report.headline());
         let Finding::RulesKept { requests } = check(&report).finding else {
             panic!("{}", check(&report).detail())
         };
@@ -86,7 +86,7 @@ fn builds_of_every_kind_keep_the_rules() {
     for (height, options) in [(1, small), (2, "max-height=2"), (3, "max-height=3")] {
         let low = Plan { parts: plan().parts, ..System { height, ..System::TINY }.plan() };
         let report = judge_by_plan(&low, open(&format!("mock,{options}")));
-        assert_eq!(report.verdict, Verdict::Pass, "{options}: {}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Pass, "{options}: {}", report.headline());
     }
 }
 
@@ -101,7 +101,7 @@ fn what_a_record_may_say_is_not_looked_at() {
         }
         Some(packet)
     });
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
 }
 
 #[test]
@@ -115,7 +115,7 @@ fn each_refusal_that_does_not_come_fails() {
             count += 1;
             Some(if count == place + 1 { carried_out(&packet, refusal) } else { packet })
         });
-        if report.verdict == Verdict::Pass {
+        if report.verdict() == Verdict::Pass {
             break;
         }
         let (rule, right, found) = broken(&report);
@@ -171,7 +171,7 @@ fn upset_packets(step: usize) {
             for packet in (1..packets).step_by(step) {
                 let board = format!("mock,fault={upset},packet={packet},toward={toward}");
                 let report = judge_by_plan(&plan(), open(&board));
-                assert_eq!(report.verdict, Verdict::Pass, "{board}: {}", report.headline());
+                assert_eq!(report.verdict(), Verdict::Pass, "{board}: {}", report.headline());
             }
         }
     }
@@ -179,7 +179,7 @@ fn upset_packets(step: usize) {
 
 /// What must be said and is not, by the report.
 fn unsaid(report: &Report) -> (Rule, &Answer) {
-    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
     let Finding::WrongOverDoubtfulLink { found, .. } = &report.finding else {
         panic!("{}", report.headline())
     };
@@ -236,7 +236,7 @@ fn a_board_that_took_a_row_and_says_that_none_is_inside_is_told_of() {
         Some(Reply::Status(status)) => Some(packet.saying(&Reply::Status(Status { core_busy: 0, ..status }))),
         _ => Some(packet),
     });
-    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
     assert!(report.headline().contains("0 rows inside the core, and it is 1"), "{}", report.headline());
 }
 
@@ -250,7 +250,7 @@ fn a_link_that_loses_what_must_be_refused_does_not() {
     };
     let report = judge_by_plan(&plan(), Altered::new(&Options::default(), alter).candidate());
     assert_eq!(
-        (report.verdict, check(&report).outcome),
+        (report.verdict(), check(&report).outcome),
         (Verdict::Error, Outcome::Error),
         "{}",
         report.headline()
@@ -305,7 +305,7 @@ fn a_commit_that_is_not_checked_passes_but_for_the_rules() {
     assert_eq!(broken(&report).0, Rule::CommitCrc, "{}", report.headline());
     let without = Plan { parts: Some(Selection::least().with(Part::Corners, 1)), ..System::TINY.plan() };
     let report = judge_by_plan(&without, open(fault));
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     assert_eq!(check(&report).finding, Finding::RulesLeftOut {});
     assert!(report.not_exercised.contains(&NotExercised::Rules {}));
 }
@@ -321,6 +321,6 @@ fn a_board_whose_trap_keeps_nothing_breaks_a_rule_also_where_no_time_is_spent_at
         vec![packet]
     };
     let report = judge_by_plan(&plan, Altered::new(&Options::default(), nothing_kept).candidate());
-    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
     assert_eq!(failed_check(&report), Some(CheckName::Rules));
 }

@@ -41,7 +41,7 @@ fn a_frame_that_was_wrong_at_speed_fails_though_no_record_comes_behind_it() {
         payload[10] ^= 1;
     };
     let report = altered_once(Kind::Records, 0, first_alone, Kind::Records);
-    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
     assert!(report.headline().contains("differs at speed"), "{}", report.headline());
 }
 
@@ -49,7 +49,7 @@ fn a_frame_that_was_wrong_at_speed_fails_though_no_record_comes_behind_it() {
 fn a_table_that_was_another_fails_though_no_entry_is_read_behind_that() {
     for place in 0..4 {
         let report = altered_once(Kind::TableCrc, place, |payload| payload[0] ^= 1, Kind::TableRead);
-        assert_eq!(report.verdict, Verdict::Fail, "{place}: {}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Fail, "{place}: {}", report.headline());
         let failed = report.checks.iter().find(|check| check.name == CheckName::ReadBack).unwrap();
         assert!(failed.detail().contains("CRC"), "{place}: {}", failed.detail());
     }

@@ -99,7 +99,7 @@ fn board_of(source: u8, takes: impl Fn(usize) -> u64 + Send + 'static) -> Candid
 #[track_caller]
 fn passes(plan: &Plan) {
     let report = judge_by_plan(plan, slow_board());
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
 }
 
 #[test]
@@ -126,10 +126,10 @@ fn judged(source: u8, takes: impl Fn(usize) -> u64 + Send + 'static) -> Report {
 #[test]
 fn a_board_s_own_clock_is_the_one_that_it_names() {
     let right = judged(PLL, |_| 156);
-    assert_eq!(right.verdict, Verdict::Pass, "{}", right.headline());
+    assert_eq!(right.verdict(), Verdict::Pass, "{}", right.headline());
     for (takes, sentence) in [(0, " or more"), (3000, " Hz to ")] {
         let wrong = judged(PLL, move |_| takes);
-        assert_eq!(wrong.verdict, Verdict::Fail, "{takes} ms: {}", wrong.headline());
+        assert_eq!(wrong.verdict(), Verdict::Fail, "{takes} ms: {}", wrong.headline());
         assert!(
             matches!(wrong.finding, Finding::ClockNotAsNamed { clock_hz: CLOCK, .. }),
             "{}",
@@ -147,7 +147,7 @@ fn is_named(part: &NotExercised) -> bool {
 #[test]
 fn another_clock_from_outside_is_named_beside_a_pass() {
     let report = judged(PIXCLK, |_| 3000);
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     assert!(report.not_exercised.iter().any(is_named), "{:?}", report.not_exercised);
     let details: Vec<_> = report.checks.iter().map(Check::detail).collect();
     assert!(details.iter().any(|detail| detail.contains("at a claimed 10.0 kHz")), "{details:?}");
@@ -171,7 +171,7 @@ fn a_clock_from_outside_is_looked_at_once() {
 fn what_is_seen_once_of_a_clock_is_looked_at_again() {
     for takes in [0, 3000] {
         let report = judged(PLL, move |before| if before == 0 { takes } else { 156 });
-        assert_eq!(report.verdict, Verdict::Pass, "{takes} ms: {}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Pass, "{takes} ms: {}", report.headline());
         assert!(report.not_exercised.iter().any(is_named), "{takes} ms: {:?}", report.not_exercised);
     }
 }
@@ -180,5 +180,5 @@ fn what_is_seen_once_of_a_clock_is_looked_at_again() {
 #[test]
 fn a_clock_that_is_the_host_s_own_is_not_looked_at() {
     let report = judged(0, |_| 3000);
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
 }

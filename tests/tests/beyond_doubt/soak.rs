@@ -72,7 +72,7 @@ fn seeds_of(length: SoakLength) -> (Report, Vec<u32>) {
 #[test]
 fn a_sound_board_passes_with_all_frames_and_other_content_in_each_burst() {
     let (report, mut seeds) = seeds_of(frames(3000));
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     let soak = soak(&report);
     assert_eq!((soak.frames, soak.bursts, soak.wrong), (3000, 3, 0));
     assert_eq!(seeds.len(), 3);
@@ -91,7 +91,7 @@ fn a_sound_board_passes_with_all_frames_and_other_content_in_each_burst() {
 #[test]
 fn an_hour_is_one_on_the_links_clock() {
     let report = soaked("mock,pixel-clock=10000", SoakLength::Time { seconds: 600.0 });
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     let soak = soak(&report);
     assert!((600.0..601.0).contains(&soak.seconds), "{soak:?}");
     // (64·8 + 8) clocks of 10 kHz each are 52 ms; a burst is a minute at most.
@@ -150,7 +150,7 @@ fn stopped_at(target: &str, frames: u32) -> Report {
 #[test]
 fn an_interruption_leaves_what_was_judged_until_then() {
     let report = stopped_at("mock,pixel-clock=10000", 5000);
-    assert_eq!((report.verdict, soak(&report).wrong), (Verdict::Error, 0), "{}", report.headline());
+    assert_eq!((report.verdict(), soak(&report).wrong), (Verdict::Error, 0), "{}", report.headline());
     assert!(report.headline().contains("stopped by hand"), "{}", report.headline());
     assert!(soak(&report).frames >= 5000);
 }
@@ -220,14 +220,14 @@ fn a_time_limit_ends_a_soak_amid_a_minute_in_which_nothing_comes() {
     let options = RunOptions { timeout: Some(Duration::from_secs(30)), ..RunOptions::default() };
     let board = link::open(&"mock,pixel-clock=10000".parse().unwrap()).unwrap();
     let report = soaked_by(board, frames(3000), &options);
-    assert_eq!((report.verdict, soak(&report).wrong), (Verdict::Error, 0), "{}", report.headline());
+    assert_eq!((report.verdict(), soak(&report).wrong), (Verdict::Error, 0), "{}", report.headline());
     assert!((30.0..31.0).contains(&report.link.seconds), "{}", report.link.seconds);
 }
 
 #[test]
 fn with_one_bank_tables_change_between_bursts() {
     let report = soaked("mock,pixel-clock=10000,table-banks=1,bursts=untrapped", frames(3000));
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     assert!(report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
 }
 
@@ -250,7 +250,7 @@ fn a_board_that_was_unplugged_is_judged_on_and_whether_it_had_its_power_is_said(
     ] {
         let what = format!("{replug:?}");
         let report = unplugged(80_000, replug);
-        assert_eq!(report.verdict, Verdict::Pass, "{what}: {}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Pass, "{what}: {}", report.headline());
         assert_eq!(soak(&report).frames, 4000, "{what}");
         assert!(soak(&report).bursts >= 2, "{what}");
         let kept_tables: Vec<_> = report.link.reconnections.iter().map(|away| away.kept_tables).collect();
@@ -283,7 +283,7 @@ fn an_old_copy_of_a_request_makes_no_sound_board_fail() {
     for which in [Kind::Burst, Kind::TableWrite, Kind::Commit, Kind::Configure, Kind::Reset] {
         for before in [(Kind::Burst, 1), (Kind::Records, 3), (Kind::Records, 30), (Kind::TableCrc, 20)] {
             let report = late_copy((which, 1), before);
-            assert_ne!(report.verdict, Verdict::Fail, "{which:?} {before:?}: {}", report.headline());
+            assert_ne!(report.verdict(), Verdict::Fail, "{which:?} {before:?}: {}", report.headline());
         }
     }
 }
@@ -327,7 +327,7 @@ fn what_a_board_says_behind_an_old_burst_does_not_end_a_soak() {
     });
     let report = soaked_by(board.candidate(), frames(3000), &RunOptions::default());
     assert_eq!(soak(&report).frames, 3000, "{}", report.headline());
-    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
     assert!(matches!(report.finding, Finding::RightInAnotherSession { .. }), "{}", report.headline());
     assert!(!report.headline().contains("end what else"), "{}", report.headline());
 }
@@ -337,13 +337,13 @@ fn what_a_board_says_behind_an_old_burst_does_not_end_a_soak() {
 fn over_a_link_that_loses_answers_sound_boards_do_not_fail_and_broken_ones_do_not_pass() {
     for every in [31, 53, 211] {
         let sound = over_a_link_that_loses(every, false);
-        assert_eq!(sound.verdict, Verdict::Pass, "{every}: {}", sound.headline());
+        assert_eq!(sound.verdict(), Verdict::Pass, "{every}: {}", sound.headline());
         let broken = over_a_link_that_loses(every, true);
         assert_eq!(failed_check(&broken), Some(CheckName::AtSpeed), "{every}: {}", broken.headline());
     }
     // Each burst has a request that comes twice.
     let doubtful = over_a_link_that_loses(7, true);
-    assert_ne!(doubtful.verdict, Verdict::Pass, "{}", doubtful.headline());
+    assert_ne!(doubtful.verdict(), Verdict::Pass, "{}", doubtful.headline());
 }
 
 /// A board that says what its host did not ask for gives no verdict, and what was judged before is told.

@@ -63,8 +63,8 @@ fn an_old_copy_of_a_request_makes_no_sound_board_fail() {
                 let report = late_copy(which, before, answered);
                 let what =
                     format!("{which:?} before {before:?}, answered: {answered}: {}", report.headline());
-                assert_ne!(report.verdict, Verdict::Fail, "{what}");
-                ends.push(report.verdict);
+                assert_ne!(report.verdict(), Verdict::Fail, "{what}");
+                ends.push(report.verdict());
             }
         }
     }
@@ -216,7 +216,7 @@ fn an_end_amid_the_question_whether_a_request_came_twice_makes_no_sound_board_fa
     assert!(is_known, "{}", report.headline());
     for ends in [Ends::Cut, Ends::Stopped, Ends::SessionLost] {
         let (report, _) = first_session(true, (last, ends));
-        assert_eq!(report.verdict, Verdict::Error, "{ends:?}: {}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Error, "{ends:?}: {}", report.headline());
     }
 }
 
@@ -224,9 +224,9 @@ fn an_end_amid_the_question_whether_a_request_came_twice_makes_no_sound_board_fa
 #[test]
 fn a_stop_amid_that_question_makes_no_error_of_a_board_that_is_wrong() {
     let (report, last) = first_session(false, (0, Ends::Never));
-    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
     let (report, _) = first_session(false, (last, Ends::Stopped));
-    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
 }
 
 /// What a host knows of a session that ended amid a segment is still true of what came back in it. The frames behind the old copy are
@@ -284,7 +284,7 @@ fn no_check_of_a_doubtful_session_is_told_of_the_next_one() {
             _ => vec![packet],
         }
     });
-    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
     let told = report.checks.iter().filter(|check| check.outcome != Outcome::Skipped);
     let told: Vec<_> = told.map(|check| (check.name, check.outcome)).collect();
     let passed = [CheckName::Judge, CheckName::Identity].map(|name| (name, Outcome::Passed));
@@ -309,7 +309,7 @@ fn what_is_of_an_earlier_session_is_no_answer_to_a_greeting() {
     const BUSY: Refusal = Refusal { code: RefusalCode::Busy, kind: Kind::Configure.code(), detail: 0 };
     for (kind, reply) in [(Kind::Reset, &Reply::Reset), (Kind::Refusal, &Reply::Refusal(BUSY))] {
         let report = behind_stale(kind, reply);
-        assert_eq!(report.verdict, Verdict::Pass, "{kind}: {}", report.headline());
+        assert_eq!(report.verdict(), Verdict::Pass, "{kind}: {}", report.headline());
     }
 }
 
@@ -330,5 +330,5 @@ fn a_refusal_that_an_earlier_program_was_told_is_not_this_one_s() {
     let circumstances = Circumstances { draws, ..Circumstances::default() };
     let options = RunOptions { circumstances, ..RunOptions::default() };
     let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
 }

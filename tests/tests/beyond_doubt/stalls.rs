@@ -17,7 +17,7 @@ const STALL: Duration = Duration::from_secs(3);
 
 #[track_caller]
 fn passes(report: &Report, what: &str) {
-    assert_eq!(report.verdict, Verdict::Pass, "{what}: {}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{what}: {}", report.headline());
 }
 
 /// Judges a served board behind a proxy whose both directions stand still behind every 12,000 bytes from the host.
@@ -79,5 +79,5 @@ fn a_link_that_holds_each_count_back_comes_to_an_end() {
             Some(first) => vec![first, packet],
         }
     });
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
 }

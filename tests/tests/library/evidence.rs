@@ -38,7 +38,8 @@ fn a_frame_that_the_tables_are_not_for_is_refused_before_the_board_is_asked() {
         let file = FrameSource::File { path: "own.pgm".into(), frame: frame.into() };
         let plan = System::TINY.plan().frames([FrameSource::Builtin(Builtin::Noise), file]);
         let board = link::open(&"mock,fault=stuck-data".parse().unwrap()).unwrap();
-        let refused = verify(&plan, board, &RunOptions::default(), &Silent).map(|ended| ended.report.verdict);
+        let refused =
+            verify(&plan, board, &RunOptions::default(), &Silent).map(|ended| ended.report.verdict());
         let refused = refused.unwrap_err();
         assert!(refused.to_string().contains("own.pgm"), "{refused}");
         assert!(refused.source().is_some_and(|source| source.to_string().starts_with(why)), "{refused:?}");

@@ -36,7 +36,7 @@ fn sent(plan: &Plan) -> Vec<Passing> {
         vec![passing]
     };
     let report = judge_by_plan(plan, Altered::new(&Options::default(), alter).candidate());
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     packets.lock().unwrap().clone()
 }
 
@@ -92,7 +92,7 @@ fn one_row_and_a_burst_are_a_run() {
     let _alone = crate::RUNS.lock();
     let least = Selection::least().with(Part::AtSpeed, 2);
     let report = judged("mock", least.clone());
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     let [frame] = &report.frames[..] else { panic!("{:?}", report.frames) };
     assert_eq!((frame.first_rows, frame.rows, frame.comparison.samples), (Some(1), 1, 64));
     let at_speed = report.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap();
@@ -120,7 +120,7 @@ fn a_row_that_is_wrong_is_found_with_it_and_not_without() {
     let spoilt = "mock,fault=spoilt-row,row=9,entered=no";
     for part in [Part::Judged(2), Part::Gaps, Part::SensorBlanking, Part::Decoy, Part::Swap] {
         let [without, with] = [9, 10].map(|rows| judged(spoilt, Selection::least().with(part, rows)));
-        assert_eq!(without.verdict, Verdict::Pass, "{part}: {}", without.headline());
+        assert_eq!(without.verdict(), Verdict::Pass, "{part}: {}", without.headline());
         assert_eq!(failed_check(&with), Some(CheckName::Frames), "{part}: {}", with.headline());
         let cut: Vec<_> = with.frames.iter().filter(|frame| frame.first_rows == Some(10)).collect();
         let differ: Vec<_> = cut.iter().map(|frame| frame.comparison.first.unwrap().row).collect();
@@ -136,12 +136,12 @@ fn frames_at_another_centre_and_depth_can_be_cut_too() {
     let vary = halfrow::run::Vary { centre: true, depth: true };
     let judged = |board| judge_by_plan(&plan(Some(parts.clone())).varying(vary), open(board));
     let report = judged("mock");
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     let rows: Vec<_> = report.frames.iter().map(|frame| (frame.rows, frame.generation)).collect();
     // One row of the decoy comes before the change of tables.
     assert_eq!(rows, [(1, 1), (4, 1), (4, 2), (10, 3), (3, 4)]);
     let report = judged("mock,fault=spoilt-row,row=9,entered=no");
-    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
     let differs: Vec<_> = report.frames.iter().map(|frame| frame.comparison.differences > 0).collect();
     assert_eq!(differs, [false, false, false, true, false]);
 }
@@ -180,7 +180,7 @@ fn a_frame_of_a_file_is_cut_like_any() {
     let plan =
         Plan { at_speed: Some(Duration::ZERO), parts: Some(Selection::least()), ..whole.frames([file]) };
     let report = judge_by_plan(&plan, open("mock"));
-    assert_eq!((report.verdict, report.frames[0].first_rows), (Verdict::Pass, Some(1)));
+    assert_eq!((report.verdict(), report.frames[0].first_rows), (Verdict::Pass, Some(1)));
 }
 
 /// DATAPATH.md, "Legal": S[0] = 8·C·(2^24 - Q[0]) + 2^15·O is 24,192 - 32,768 here, and may be -2^14 at least. Half way to 1 and rounded
@@ -196,7 +196,7 @@ fn a_grid_beside_which_there_is_no_decoy_is_judged_without_one() {
     let lens = Equidistant::from_radius(100.0).unwrap();
     let plan = Plan::new(tables, Interpolant::Hermite.into()).seen_through(lens);
     let report = judge_by_plan(&plan, open("mock"));
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     // All built-in frames, one with the sensor's blanking and one with gaps, and the judged tables.
     let frames: Vec<_> = report.frames.iter().map(|frame| frame.generation).collect();
     assert_eq!(frames, vec![2; Builtin::ALL.len() + 2]);
@@ -205,6 +205,6 @@ fn a_grid_beside_which_there_is_no_decoy_is_judged_without_one() {
     assert_eq!(failed_check(&report), Some(CheckName::Frames), "{}", report.headline());
     let soak = Some(SoakLength::Frames { frames: 100 });
     let report = judge_by_plan(&Plan { soak, ..plan }, open("mock"));
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     assert!(report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
 }

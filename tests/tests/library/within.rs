@@ -38,7 +38,7 @@ fn a_run_ends_within_its_time_on_the_links_clock_and_takes_more_the_more_it_has(
         let mut last = (0, 0);
         for seconds in [1.0, 1.5, 2.5, 4.0, 6.0, 12.0, 36.0] {
             let report = judged(board, &plan(seconds)).unwrap();
-            assert_eq!(report.verdict, Verdict::Pass, "{board}: {}", report.headline());
+            assert_eq!(report.verdict(), Verdict::Pass, "{board}: {}", report.headline());
             let within = within(&report);
             assert!(report.link.seconds <= seconds, "{board}: {} of {seconds} s", report.link.seconds);
             assert!(report.link.seconds <= within.expected_seconds, "{board}: {within:?}");
@@ -83,7 +83,7 @@ fn what_is_covered_is_found_and_what_is_left_out_passes_and_is_named() {
     assert!((1..ROWS).contains(&most), "{:?}", within(&sound));
     let behind = format!("{SLOW},entered=no,fault=spoilt-row,row={most}");
     let unseen = judged(&behind, &short).unwrap();
-    assert_eq!(unseen.verdict, Verdict::Pass, "{}", unseen.headline());
+    assert_eq!(unseen.verdict(), Verdict::Pass, "{}", unseen.headline());
     let told = halfrow::report::wording::within(within(&unseen));
     let cut = format!("({most} of {ROWS})");
     assert!(told[1].starts_with("covers ") && told[1].contains(&cut), "{told:?}");
@@ -107,7 +107,7 @@ fn a_time_that_does_not_suffice_is_refused_with_the_least_that_does() {
     let WithinError::TooFew { seconds, least } = refused(&plan(0.2)) else { panic!() };
     assert!(seconds == 0.2 && (0.8..1.1).contains(&least), "{least}");
     let report = judged(SLOW, &plan(least)).unwrap();
-    assert_eq!((report.verdict, report.frames.len()), (Verdict::Pass, 1));
+    assert_eq!((report.verdict(), report.frames.len()), (Verdict::Pass, 1));
     assert!(report.link.seconds <= least);
     assert!(judged(SLOW, &plan(least - 0.002)).is_err());
 

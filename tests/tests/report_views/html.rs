@@ -196,7 +196,7 @@ fn the_head_names_board_serial_time_and_operator() {
         let first = rest.split("<h2>").nth(1).unwrap();
         assert_eq!(
             first.starts_with("What to do"),
-            report.verdict != halfrow::verdict::Verdict::Pass,
+            report.verdict() != halfrow::verdict::Verdict::Pass,
             "{first}"
         );
     }

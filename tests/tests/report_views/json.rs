@@ -104,6 +104,14 @@ fn a_check_that_does_not_exist_and_another_schema_are_not_read() {
 }
 
 #[test]
+fn a_verdict_that_its_cause_contradicts_is_not_read() {
+    let mut other = json(&made::fail().0);
+    other["verdict"] = "PASS".into();
+    let refused = serde_json::from_value::<Report>(other).unwrap_err().to_string();
+    assert!(refused.contains("the verdict PASS is not that of the cause `different`, FAIL"), "{refused}");
+}
+
+#[test]
 fn checks_have_the_names_that_their_json_has() {
     for check in CheckName::ALL {
         assert_eq!(json!(check), check.name());

@@ -77,7 +77,7 @@ fn a_wrong_frame_is_a_failure_and_what_was_not_reached_is_skipped() {
 #[test]
 fn differences_over_a_poor_link_are_errors_and_no_failures() {
     let (mut report, _) = made::fail();
-    report.verdict = halfrow::verdict::Verdict::Error;
+    report.cause = halfrow::verdict::Cause::Station;
     report.checks.clear();
     let suite = suite(&report);
     assert_eq!((suite.failures, suite.errors), (0, 2));

@@ -8,7 +8,7 @@ use halfrow::result::{
     Reading, Repetition, Report, RunReport, Schema, SoakChart, SoakDifference, SoakInterval, SoakLength,
     SoakReport, Streamed, StreetReport, Suspect, TablesReport,
 };
-use halfrow::verdict::{Cause, Verdict};
+use halfrow::verdict::Cause;
 use halfrow_model::{BitDepth, Frame, Phase};
 
 /// Two equal frames of 1920 × 1080 on the mock board.
@@ -16,7 +16,6 @@ pub(crate) fn pass() -> Report {
     let frames: Vec<_> = [(1, "builtin:street"), (2, "builtin:noise")].map(equal_frame).into();
     Report {
         schema: Schema,
-        verdict: Verdict::Pass,
         cause: Cause::Equal,
         board: board(),
         finding: Finding::AllRight {
@@ -79,7 +78,6 @@ pub(crate) fn soaked() -> Report {
         chart: SoakChart { interval_seconds: 128.0, intervals: (0..225).map(interval).collect() },
     };
     Report {
-        verdict: Verdict::Fail,
         cause: Cause::Different,
         finding,
         suspects,
@@ -110,7 +108,6 @@ pub(crate) fn fail() -> (Report, Vec<Evidence>) {
         suspect: Some(Box::new(defect.clone())),
     };
     let report = Report {
-        verdict: Verdict::Fail,
         cause: Cause::Different,
         finding: finding.clone(),
         suspects: vec![Suspect { defect, account, explained: 1.0 }],
@@ -129,7 +126,6 @@ pub(crate) fn fail() -> (Report, Vec<Evidence>) {
 /// The board never answered.
 pub(crate) fn error() -> Report {
     Report {
-        verdict: Verdict::Error,
         cause: Cause::Station,
         board: BoardReport {
             kind: BoardKind::Hardware,

@@ -26,7 +26,7 @@ const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inlin
 /// The PNG encoder's.
 pub fn render(report: &Report, evidence: &[Evidence]) -> Result<String, EncodingError> {
     let pictures = evidence::sections(report, evidence)?;
-    let title = format!("{}: halfrow {} {}", report.verdict, report.command(), plain(&report.board.target));
+    let title = format!("{}: halfrow {} {}", report.verdict(), report.command(), plain(&report.board.target));
     let body = html! {
         (banner(report))
         main {
@@ -68,12 +68,12 @@ pub fn document(title: &str, body: &Markup) -> Markup {
 fn banner(report: &Report) -> Markup {
     let facts = wording::facts(report);
     html! {
-        header.(report.verdict.to_string().to_lowercase()) {
+        header.(report.verdict().to_string().to_lowercase()) {
             div {
-                p.verdict { (report.verdict) }
+                p.verdict { (report.verdict()) }
                 p.kind { (wording::remark(&report.board)) }
             }
-            @if report.verdict == Verdict::Pass {
+            @if report.verdict() == Verdict::Pass {
                 h1 { (facts) }
             } @else {
                 h1 { (plain(&report.headline())) }

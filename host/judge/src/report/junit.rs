@@ -57,7 +57,7 @@ fn without_skipped(document: &str) -> String {
 /// What the run was, by name.
 fn properties(report: &Report) -> Vec<(&'static str, String)> {
     let mut list = vec![
-        ("verdict", report.verdict.to_string()),
+        ("verdict", report.verdict().to_string()),
         ("cause", report.cause.to_string()),
         ("board.kind", report.board.kind.to_string()),
         ("board.target", report.board.target.clone()),
@@ -77,7 +77,7 @@ fn properties(report: &Report) -> Vec<(&'static str, String)> {
 }
 
 fn verdict_case(report: &Report) -> TestCase {
-    let outcome = match report.verdict {
+    let outcome = match report.verdict() {
         Verdict::Pass => Outcome::Passed,
         Verdict::Fail => Outcome::Failed,
         Verdict::Error => Outcome::Error,

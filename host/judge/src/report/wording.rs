@@ -61,7 +61,7 @@ pub fn remark(board: &BoardReport) -> String {
 /// The verdict in one line, for people and for `tail -1`.
 #[must_use]
 pub fn verdict_line(report: &Report) -> String {
-    match report.verdict {
+    match report.verdict() {
         Verdict::Pass => format!("PASS ({})  {}", remark(&report.board), facts(report)),
         verdict => format!("{verdict}: {}", plain(&report.headline())),
     }
@@ -286,7 +286,7 @@ pub fn soak_difference(difference: &SoakDifference) -> String {
 #[must_use]
 pub(crate) fn frame_outcome(report: &Report, frame: &FrameReport) -> Outcome {
     let judged = frame.rows >= frame.comparison.by_row.len() && frame.comparison.samples > 0;
-    match (report.verdict, frame.comparison.differences) {
+    match (report.verdict(), frame.comparison.differences) {
         (_, 0) if judged => Outcome::Passed,
         (Verdict::Error, _) | (_, 0) => Outcome::Error,
         _ => Outcome::Failed,

@@ -35,7 +35,7 @@ mod suspect;
 mod within;
 pub mod wording;
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, de};
 
 use crate::board::Board;
 use crate::frames::street::EdgeDeviation;
@@ -72,14 +72,13 @@ pub(crate) const TAPS: [&str; 7] = ["G0", "R1", "G2", "R3", "G4", "R5", "G6"];
 
 /// A finished run of `verify` or `soak`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(remote = "Self")]
 pub struct Report {
     /// Which shape of JSON it has.
     pub schema: Schema,
-    /// The judgement.
-    pub verdict: Verdict,
     /// The board.
     pub board: BoardReport,
-    /// Why the verdict is what it is.
+    /// Why it ended as it did. The verdict follows from it.
     pub cause: Cause,
     /// The result.
     pub finding: Finding,
@@ -119,6 +118,12 @@ pub struct Report {
 }
 
 impl Report {
+    /// The judgement.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        self.cause.verdict()
+    }
+
     /// The command that makes such a report.
     #[must_use]
     pub fn command(&self) -> &'static str {
@@ -136,7 +141,7 @@ impl Report {
     pub fn remedy(&self) -> Option<String> {
         let of_suspect = || self.suspects.first().map(Suspect::designer);
         let of_line = || self.link.line_errors.advice().map(str::to_owned);
-        match self.verdict {
+        match self.verdict() {
             Verdict::Pass => None,
             Verdict::Fail => of_suspect().or_else(|| self.finding.remedy()),
             Verdict::Error => of_line().or_else(|| self.finding.remedy()),
@@ -148,14 +153,14 @@ impl Report {
     #[must_use]
     pub fn technician(&self) -> Option<String> {
         let of_suspect = || self.suspects.first().map(Suspect::technician);
-        let is_wrong = self.verdict == Verdict::Fail;
+        let is_wrong = self.verdict() == Verdict::Fail;
         is_wrong.then(|| of_suspect().or_else(|| self.finding.technician())).flatten()
     }
 
     /// Why there is no judgement; none under PASS and FAIL.
     #[must_use]
     pub fn error(&self) -> Option<Problem> {
-        (self.verdict == Verdict::Error)
+        (self.verdict() == Verdict::Error)
             .then(|| Problem { remedy: self.remedy(), ..self.finding.as_problem() })
     }
 }
@@ -218,13 +223,33 @@ impl Serialize for Report {
         Document {
             schema: self.schema,
             command: self.command(),
-            verdict: Some(self.verdict),
+            verdict: Some(self.verdict()),
             exit_code: self.cause.into(),
             board: Some(&self.board),
             error: self.error().as_ref(),
             rest: Rest::from(self),
         }
         .serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for Report {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        /// The document has the verdict as well, which nobody may have written anew.
+        #[derive(Deserialize)]
+        struct Read {
+            verdict: Verdict,
+            #[serde(flatten, deserialize_with = "Report::deserialize")]
+            report: Report,
+        }
+        let Read { verdict, report } = Read::deserialize(deserializer)?;
+        if verdict == report.verdict() {
+            return Ok(report);
+        }
+        let (cause, own) = (report.cause, report.verdict());
+        Err(de::Error::custom(format!(
+            "the verdict {verdict} is not that of the cause `{cause}`, {own}; take the report as it was written"
+        )))
     }
 }
 

@@ -55,7 +55,6 @@ pub(super) fn conclude(
     let (evidence, evidence_report) = findings.look.seen.evidence.finish();
     let report = Report {
         schema: Schema,
-        verdict: ending.cause.verdict(),
         cause: ending.cause,
         board: findings.board,
         finding: ending.finding,

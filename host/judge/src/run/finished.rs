@@ -58,12 +58,11 @@ impl Finished {
     pub fn lose(&mut self, what: Problem, remedy: &str) -> Lack {
         let report = &mut self.report;
         let what = Box::new(Problem { remedy: Some(remedy.to_owned()), ..what });
-        if report.verdict != Verdict::Pass {
+        if report.verdict() != Verdict::Pass {
             report.lacks.push(Problem::clone(&what));
             return Lack { what, is_told: false };
         }
         report.finding = Problem::clone(&what).into();
-        report.verdict = Verdict::Error;
         report.cause = Cause::Station;
         Lack { what, is_told: true }
     }

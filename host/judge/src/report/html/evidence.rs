@@ -39,7 +39,7 @@ pub(super) fn sections(report: &Report, evidence: &[Evidence]) -> Result<Markup,
     let known: Vec<_> =
         evidence.iter().filter_map(|kept| Some((kept, report.frames.get(kept.index)?))).collect();
     let (shown, left_out) = shown(known);
-    let most_bytes = if report.verdict == Verdict::Pass { MOST_BYTES.0 } else { MOST_BYTES.1 };
+    let most_bytes = if report.verdict() == Verdict::Pass { MOST_BYTES.0 } else { MOST_BYTES.1 };
     let (mut details, used) = all_details(&shown)?;
     let mut left = most_bytes.saturating_sub(used);
     let mut sections = Vec::with_capacity(shown.len());

@@ -8,7 +8,7 @@ use crate::verdict::Verdict;
 /// is told of the parts of a run.
 #[must_use]
 pub fn coverage(report: &Report) -> Option<String> {
-    let is_told = report.verdict == Verdict::Pass && report.within.is_none() && report.soak.is_none();
+    let is_told = report.verdict() == Verdict::Pass && report.within.is_none() && report.soak.is_none();
     if !is_told || report.board.kind == BoardKind::Mock {
         return None;
     }

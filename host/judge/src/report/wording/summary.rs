@@ -36,7 +36,7 @@ pub(in crate::report) fn advice(report: &Report) -> Vec<String> {
 /// The codes that `halfrow explain` has more of: the finding's and those of the suspects, each once; none of a PASS.
 #[must_use]
 pub fn codes(report: &Report) -> Vec<String> {
-    if report.verdict == Verdict::Pass {
+    if report.verdict() == Verdict::Pass {
         return Vec::new();
     }
     let mut codes = vec![report.finding.code()];
