@@ -39,6 +39,8 @@ pub(crate) fn verify(
         .writes_claimed("record", asked.record.as_deref())
         .writes_report("report", asked.report.as_deref());
     files.check().map_err(errors::input)?;
+    // The name of a recording that is kept says what it is.
+    _ = files.clear_leftovers();
     let report = asked.report.as_deref().map(|path| ReportFolder::prepare(path, asked.overwrite));
     let report = report.transpose().map_err(errors::input)?;
     let record = asked.record.as_deref().map(|path| RecordingFile::prepare(path, asked.overwrite));

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::files::{check_files, make_folder};
+use super::files::{make_folder, prepare_files};
 use super::{Context, Failure};
 use crate::exit::Exit;
 use halfrow::call::Files;
@@ -35,7 +35,7 @@ pub(super) fn manual(arguments: &Manual, command: clap::Command, context: &Conte
     let folder = &arguments.folder;
     let pages = man_pages::all(command).map_err(Failure::error)?;
     let places: Vec<_> = pages.iter().map(|page| folder.join(&page.name)).collect();
-    check_files(
+    prepare_files(
         &Files::new(arguments.overwrite).reads(&context.settings_file).writes_into("FOLDER", &places),
     )
     .map_err(Failure::call)?;

@@ -13,7 +13,7 @@ use serde_json::json;
 
 use super::board::{self, BoardArguments, Replays};
 use super::document::tell_result;
-use super::files::check_files;
+use super::files::prepare_files;
 use super::given::{Decider, Given};
 use super::inputs::{FrameName, InputArguments, tell_fitting};
 use super::optics::{self, LensArguments};
@@ -95,7 +95,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     };
     job.check(context.quiet).map_err(Failure::call)?;
     let files = places.add_to(files.reads(job.inputs.iter().filter_map(FrameName::file)));
-    check_files(&files).map_err(Failure::call)?;
+    prepare_files(&files).map_err(Failure::call)?;
     let watched = progress::for_stderr(context.quiet || context.json);
     watched.rows_expected((job.inputs.len() * geometry.height()) as u64);
     let board = if arguments.model {

@@ -6,9 +6,11 @@ use super::CallError;
 use crate::console;
 use halfrow::call::{Files, FilesError};
 
-/// Whether `files` can be read and written as they are to be; says what was found of runs that were killed.
-pub(super) fn check_files(files: &Files) -> Result<(), FilesError> {
-    for kept in files.check()? {
+/// Looks whether `files` can be read and written as they are to be, and clears what runs that were killed left there; says what is kept
+/// of it.
+pub(super) fn prepare_files(files: &Files) -> Result<(), FilesError> {
+    files.check()?;
+    for kept in files.clear_leftovers() {
         console::diagnose(&format_args!(
             "note: what a run that was killed had recorded is kept in {}",
             kept.display()

@@ -7,7 +7,7 @@ use halfrow_program::number::whole_number;
 use serde_json::json;
 
 use super::document::tell_result;
-use super::files::{check_files, make_folder, refuse_stdout};
+use super::files::{make_folder, prepare_files, refuse_stdout};
 use super::optics::{LensArguments, MAKING_TABLES};
 use super::{CallError, Context, Failure};
 use crate::console;
@@ -50,7 +50,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let folder = &arguments.output;
     refuse_stdout(folder, "-o").map_err(Failure::call)?;
     let places: Vec<_> = chosen.iter().map(|frame| folder.join(format!("{}.pgm", frame.name()))).collect();
-    check_files(
+    prepare_files(
         &Files::new(arguments.overwrite)
             .reads(&context.settings_file)
             .reads(arguments.lens.file())

@@ -11,7 +11,7 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::document::{print_result, tell_result};
-use super::files::check_files;
+use super::files::prepare_files;
 use super::{CallError, Context, Failure, optics, print};
 use crate::exit::Exit;
 use crate::{console, progress};
@@ -143,7 +143,7 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     let paths = paths(&arguments.images).map_err(Failure::call)?;
     // Training takes minutes, after which a refusal comes too late.
     let files = Files::new(arguments.overwrite).reads(&context.settings_file).reads(&paths);
-    check_files(&files.writes("--output", [&arguments.output])).map_err(Failure::call)?;
+    prepare_files(&files.writes("--output", [&arguments.output])).map_err(Failure::call)?;
     let (origins, images) = photographs(&paths).map_err(Failure::call)?;
     let taps = match arguments.taps {
         TapCount::Five => Taps::Five,

@@ -7,7 +7,7 @@ use halfrow_model::{GridShape, TableError};
 use serde_json::{Map, Value, json};
 
 use super::document::print_result;
-use super::files::check_files;
+use super::files::prepare_files;
 use super::optics::LensArguments;
 use super::{Context, Failure, print};
 use crate::console;
@@ -31,7 +31,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     arguments.map.as_deref().map_or(Ok(()), frames::check_png).map_err(Failure::call)?;
-    check_files(
+    prepare_files(
         &Files::new(arguments.overwrite)
             .reads(&context.settings_file)
             .reads(arguments.lens.file())

@@ -8,7 +8,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::board::{self, BoardArguments, Replays};
 use super::document::tell_result;
-use super::files::check_files;
+use super::files::prepare_files;
 use super::given::{Decider, Given};
 use super::{CallError, Context, Failure};
 use crate::exit::Exit;
@@ -180,7 +180,7 @@ impl Arguments {
             .reads(&self.photograph)
             .reads(&self.lines)
             .writes_into("--output", Folder::files(&self.output, items));
-        Ok(check_files(&files)?)
+        Ok(prepare_files(&files)?)
     }
 
     fn photographs(&self, items: &[Item]) -> anyhow::Result<Vec<RgbImage>> {

@@ -8,7 +8,7 @@ use clap::Args;
 use halfrow_program::number::{any, whole_number};
 
 use super::board::BoardArguments;
-use super::files::check_files;
+use super::files::prepare_files;
 use super::given::{Given, yes_or_no};
 use super::optics::{self, LensArguments};
 use super::table_file::{NamedTables, TableArgument};
@@ -169,7 +169,7 @@ impl RunArguments {
         let settings = &context.settings;
         let overwrite = self.overwrite.or(settings.overwrite).unwrap_or(false);
         let report = self.report_path(settings);
-        check_files(
+        prepare_files(
             &Files::new(overwrite)
                 .reads(&context.settings_file)
                 .reads(inputs)

@@ -7,7 +7,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::document::tell_result;
-use super::files::check_files;
+use super::files::prepare_files;
 use super::optics::{self, LensArguments};
 use super::{CallError, Context, Failure};
 use crate::console;
@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let format = Format::of(&arguments.output).map_err(Failure::call)?;
     let of_settings = context.settings.kernel.as_deref().map(OsStr::new);
     let kernel = arguments.kernel.as_deref().or(of_settings);
-    check_files(
+    prepare_files(
         &Files::new(arguments.overwrite)
             .reads(&context.settings_file)
             .reads(arguments.lens.file())

@@ -187,18 +187,24 @@ impl Files {
         self
     }
 
-    /// Whether everything can be written as far as can be told, no input is written to, and no two outputs are one. What runs
-    /// that were killed left in the outputs' folders is cleared; where they had recorded something, it is kept, and returned under
-    /// which name.
+    /// Whether everything can be written as far as can be told, no input is written to, and no two outputs are one. Changes nothing.
     ///
     /// # Errors
     /// [`FilesError`]
-    pub fn check(&self) -> Result<Vec<PathBuf>, FilesError> {
+    pub fn check(&self) -> Result<(), FilesError> {
         for output in &self.outputs {
             output.check(self.overwrite)?;
         }
         self.check_apart()?;
         self.check_folders()
+    }
+
+    /// Clears what runs that were killed left in the outputs' folders, once [`Self::check`] has passed. Where they had recorded
+    /// something, it is kept, and returned under which name.
+    #[must_use = "somebody is to be told where a recording is kept"]
+    pub fn clear_leftovers(&self) -> Vec<PathBuf> {
+        let folders: BTreeSet<_> = self.outputs.iter().map(|output| folder_of(&output.path)).collect();
+        folders.into_iter().flat_map(written_aside::clear).collect()
     }
 
     fn check_apart(&self) -> Result<(), FilesError> {
@@ -225,13 +231,12 @@ impl Files {
         Ok(())
     }
 
-    fn check_folders(&self) -> Result<Vec<PathBuf>, FilesError> {
+    fn check_folders(&self) -> Result<(), FilesError> {
         let folders: BTreeSet<_> = self
             .outputs
             .iter()
             .map(|output| (folder_of(&output.path), output.shape, output.option))
             .collect();
-        let mut kept = Vec::new();
         for (folder, shape, option) in folders {
             let checked = written_aside::check_folder(folder, shape == Shape::InFolder);
             let path = folder.to_owned();
@@ -241,9 +246,8 @@ impl Files {
                     FilesError::FolderUnusable { path, option, source }
                 }
             })?;
-            kept.extend(written_aside::clear(folder));
         }
-        Ok(kept)
+        Ok(())
     }
 }
 
