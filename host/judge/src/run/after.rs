@@ -117,7 +117,7 @@ impl Run<'_> {
             uploaded: &uploaded,
             ring: usize::from(self.board.capabilities.ring),
             frames: &self.findings.look.seen.frames,
-            evidence: &self.findings.look.seen.evidence,
+            evidence: self.findings.look.seen.evidence.all(),
         })
     }
 }

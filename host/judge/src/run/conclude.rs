@@ -163,7 +163,7 @@ fn skip_the_rest(checks: &mut Vec<Check>) {
 
 /// The built-in street, when it came back whole and was kept.
 fn street(plan: &Plan, seen: &Seen) -> Option<StreetReport> {
-    let street = seen.evidence.iter().find(|evidence| {
+    let street = seen.evidence.all().iter().find(|evidence| {
         seen.frames
             .get(evidence.index)
             .is_some_and(|frame| frame.name == STREET && frame.first_rows.is_none())

@@ -1,7 +1,5 @@
 //! Frames that are kept as evidence, within a budget of bytes.
 
-use std::ops::Deref;
-
 use halfrow_model::{BitDepth, Frame};
 
 use crate::compare::Comparison;
@@ -116,20 +114,17 @@ impl KeptFrames {
         comparison
     }
 
+    /// All that are kept at present, those among them that nobody wants.
+    pub(super) fn all(&self) -> &[Evidence] {
+        &self.evidence
+    }
+
     /// Takes the frames themselves that are wanted, and what is to be said of them.
     pub(super) fn finish(self) -> (Vec<Evidence>, EvidenceReport) {
         let wanted = self.evidence.into_iter().zip(self.labels).filter(|(_, label)| label.is_wanted);
         let evidence: Vec<_> = wanted.map(|(evidence, _)| evidence).collect();
         let (kept, bytes) = (evidence.len(), evidence.iter().map(bytes).sum::<usize>() as u64);
         (evidence, EvidenceReport { kept, bytes, left_out: self.left_out })
-    }
-}
-
-impl Deref for KeptFrames {
-    type Target = [Evidence];
-
-    fn deref(&self) -> &[Evidence] {
-        &self.evidence
     }
 }
 
@@ -209,7 +204,7 @@ mod tests {
         let budget = 2 * ONE * SHARE_OF_COUNTS / (SHARE_OF_COUNTS - 1);
         let mut kept = KeptFrames::default();
         let (mut made, indices) =
-            (Vec::new(), |kept: &KeptFrames| kept.iter().map(|it| it.index).collect::<Vec<_>>());
+            (Vec::new(), |kept: &KeptFrames| kept.all().iter().map(|it| it.index).collect::<Vec<_>>());
         for index in 0..100 {
             let differs = index == 50;
             let offered =
