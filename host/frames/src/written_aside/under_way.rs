@@ -170,7 +170,8 @@ fn clear(path: &Path) -> Option<PathBuf> {
         let _ = fs::remove_dir_all(path);
         None
     } else if is_worth_keeping(path) && about.len() > 0 {
-        kept(path).ok()
+        let told = |error: &_| tracing::warn!(path = %path.display(), %error, "it is worth keeping, and stays as it is");
+        kept(path).inspect_err(told).ok()
     } else {
         let _ = fs::remove_file(path);
         None

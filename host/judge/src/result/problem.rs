@@ -167,6 +167,7 @@ impl From<Problem> for Finding {
 pub(super) fn tagged(value: &impl Serialize) -> (String, Parameters) {
     let value = serde_json::to_value(value).unwrap_or_default();
     let code = value.get("code").and_then(Value::as_str).unwrap_or_default().to_owned();
+    debug_assert!(!code.is_empty(), "every finding and every defect has a code");
     let parameters = value.get("parameters").and_then(Value::as_object).cloned().unwrap_or_default();
     (code, parameters)
 }

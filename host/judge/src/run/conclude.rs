@@ -79,7 +79,8 @@ pub(super) fn conclude(
 /// What the run finds of the faults that were measured in a board of this build.
 fn coverage(plan: &Plan, findings: &Findings) -> Option<CoverageReport> {
     let build = &findings.board.identity.as_ref()?.build;
-    Faults::all().ok()?.whole(plan, build)
+    let faults = Faults::all().inspect_err(|error| tracing::warn!("no coverage is told: {error}")).ok()?;
+    faults.whole(plan, build)
 }
 
 fn run(plan: &Plan, circumstances: &Circumstances, Begun { at, since }: Begun) -> RunReport {
