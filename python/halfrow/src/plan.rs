@@ -67,7 +67,7 @@ impl Options<'_> {
     /// What the run in `recording` did, if there is one, or else what the options say; it ends early by `stop`.
     pub(crate) fn planned(&mut self, recording: Option<&Recording>, stop: Stop) -> PyResult<Planned> {
         let timeout = choices::seconds("timeout", self.timeout)?;
-        let stop = stop.within(timeout);
+        let stop = stop.wall_limit(timeout);
         let Some(recording) = recording else {
             let Judged { plan, files, kernel } = self.plan()?;
             let inputs = files.iter().map(|file| file.path.clone()).collect();

@@ -165,7 +165,7 @@ impl BoardArguments {
         Ok(OpenOptions {
             take_over: self.take_over,
             retry_limit: self.retry_limit(settings),
-            stop: self.stop(settings)?.limited(self.timeout(settings)?),
+            stop: self.stop(settings)?.link_limit(self.timeout(settings)?),
             ..OpenOptions::default()
         })
     }
@@ -182,7 +182,7 @@ impl BoardArguments {
         let signal = signals::stop();
         let lost = || pool::is_lost().then_some(StoppedBy::Caller);
         let stop = Stop::when(move || Exit::stopped_by(signal.load(Ordering::Relaxed)).or_else(lost));
-        Ok(stop.within(self.timeout(settings)?))
+        Ok(stop.wall_limit(self.timeout(settings)?))
     }
 
     pub(super) fn timeout(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {

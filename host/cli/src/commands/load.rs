@@ -155,7 +155,7 @@ fn greeted(
     let mut last = None;
     loop {
         let left = deadline.saturating_duration_since(Instant::now());
-        let (failure, next) = match greet(target, stop.clone().within(Some(left))) {
+        let (failure, next) = match greet(target, stop.clone().wall_limit(Some(left))) {
             Ok(report) => return Ok(report),
             Err(failed) => failed,
         };

@@ -29,14 +29,14 @@ impl Stop {
 
     /// Stops as well when the link's clock has passed `limit`, if there is one.
     #[must_use]
-    pub fn limited(self, limit: Option<Duration>) -> Self {
+    pub fn link_limit(self, limit: Option<Duration>) -> Self {
         Self { limit, ..self }
     }
 
     /// Stops also when `limit` from here on has passed on this computer's clock, which a board in this program or a
     /// recording does not keep to.
     #[must_use]
-    pub fn within(self, limit: Option<Duration>) -> Self {
+    pub fn wall_limit(self, limit: Option<Duration>) -> Self {
         Self { wall: limit.map(|limit| (Instant::now(), limit)), ..self }
     }
 

@@ -137,7 +137,7 @@ fn open_options(options: &RunOptions) -> OpenOptions {
         take_over: options.take_over,
         counts: options.counts,
         retry_limit: options.retry_limit,
-        stop: options.stop.clone().limited(options.timeout),
+        stop: options.stop.clone().link_limit(options.timeout),
         ..options.circumstances.draws.into()
     }
 }

@@ -10,7 +10,8 @@ use crate::board::{Draws, Stop};
 /// away, nobody cut off, any kind of board, which is asked what came to it.
 #[derive(Clone, Debug)]
 pub struct RunOptions {
-    /// The longest that the run may take on the link's clock.
+    /// The longest that the run may take on the link's clock. That of a mock or a recording is not a person's: [`Stop::wall_limit`] ends
+    /// a run by this computer's.
     pub timeout: Option<Duration>,
     /// Who else can end it early.
     pub stop: Stop,

@@ -239,7 +239,7 @@ impl Common<'_> {
         };
         RunOptions {
             timeout: Some(within),
-            stop: self.stop.clone().within(Some(within)),
+            stop: self.stop.clone().wall_limit(Some(within)),
             require_hardware: self.plan.production.require_hardware && !self.is_mock,
             circumstances,
             ..RunOptions::default()
@@ -268,7 +268,7 @@ impl Common<'_> {
         act: impl FnOnce(&mut Board, BoardKind, BoardSeen) -> T,
     ) -> Result<T, Box<Try>> {
         let candidate = self.candidate()?;
-        let stop = self.stop.clone().limited(Some(within)).within(Some(within));
+        let stop = self.stop.clone().link_limit(Some(within)).wall_limit(Some(within));
         let options = OpenOptions { stop, ..OpenOptions::default() };
         let done = Board::with(candidate.link, &options, |board| {
             let kind = candidate.kind.confirmed_by(board.capabilities().nature);
