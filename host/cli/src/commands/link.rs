@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::board::BoardArguments;
 use super::document::result_text;
-use super::{Context, Failure, conclude};
+use super::{Context, Failure, print_or_tell};
 use crate::exit::Exit;
 use halfrow::board::Board;
 use halfrow::link_test::{self, Figures, LinkTestError, Rate, RoundTrips, Throughput};
@@ -41,9 +41,9 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     })?;
     let exit = if figures.errors.wrong > 0 { Exit::Fail } else { Exit::Pass };
     if context.json {
-        return conclude(exit, &result_text("link", exit, Some(&board), json!({ "link": figures }))?);
+        return print_or_tell(exit, &result_text("link", exit, Some(&board), json!({ "link": figures }))?);
     }
-    conclude(exit, &format!("{:<12} {} ({})\n{}", "board", board.target, board.kind, text(&figures)))
+    print_or_tell(exit, &format!("{:<12} {} ({})\n{}", "board", board.target, board.kind, text(&figures)))
 }
 
 fn text(figures: &Figures) -> String {

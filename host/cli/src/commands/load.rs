@@ -20,7 +20,7 @@ use self::record::Record;
 use super::bitstreams::{BOARDS, BitstreamBoard};
 use super::board::{refuse_recording, wrong};
 use super::document::result_text;
-use super::{Context, Failure, conclude};
+use super::{Context, Failure, print_or_tell};
 use crate::exit::Exit;
 use crate::progress::Told;
 use crate::{console, pool, signals};
@@ -93,9 +93,9 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     };
     if context.json {
         let said = result_text("load", Exit::Pass, report.as_ref(), json!({ "loaded": loaded }))?;
-        return conclude(Exit::Pass, &said);
+        return print_or_tell(Exit::Pass, &said);
     }
-    conclude(Exit::Pass, &text(&loaded, report.as_ref()))
+    print_or_tell(Exit::Pass, &text(&loaded, report.as_ref()))
 }
 
 /// Whether the board behind `target` can be greeted when it is loaded: then it is too late to refuse a call.

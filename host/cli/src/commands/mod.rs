@@ -240,7 +240,7 @@ fn has_document(command: &Command) -> bool {
 }
 
 /// Prints what `exit` sums up. It stands if that cannot be printed, unless all that it says is that there was something to print.
-fn conclude(exit: Exit, text: &str) -> Result<Exit, Failure> {
+fn print_or_tell(exit: Exit, text: &str) -> Result<Exit, Failure> {
     if exit == Exit::Pass {
         print(text)?;
     } else {

@@ -218,7 +218,7 @@ pub(super) fn seconds(option: &'static str, seconds: Option<f64>) -> Result<Opti
 }
 
 /// Writes the report into its folder, if there is one, and prints it.
-pub(super) fn conclude(
+pub(super) fn write_and_tell(
     mut finished: Finished,
     folder: Option<ReportFolder>,
     context: &Context,

@@ -7,7 +7,7 @@ use halfrow_program::number::number;
 
 use super::board::refuse_recording;
 use super::given::Given;
-use super::run::{RunArguments, conclude, not_begun};
+use super::run::{RunArguments, not_begun, write_and_tell};
 use super::{Context, Failure};
 use crate::exit::Exit;
 use crate::progress;
@@ -72,7 +72,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         Ok(run::verify(&plan, candidate, &options, watched.as_ref())?)
     });
     match finished {
-        Ok(finished) => conclude(finished, outputs.report, context),
+        Ok(finished) => write_and_tell(finished, outputs.report, context),
         Err(failure) => Err(not_begun(failure, (&plan, &options), &target, outputs.report)),
     }
 }

@@ -11,7 +11,7 @@ use super::board::{self, MOCK, Replays};
 use super::given::{Decider, Given};
 use super::inputs::{FrameName, InputArguments, frame_sources, tell_fitting};
 use super::listing;
-use super::run::{RunArguments, conclude, not_begun, seconds, tell};
+use super::run::{RunArguments, not_begun, seconds, tell, write_and_tell};
 use super::{Context, Failure};
 use crate::exit::Exit;
 use crate::progress;
@@ -90,7 +90,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         .candidate_of(settings, recording)
         .and_then(|candidate| judge(candidate, (&plan, &options), outputs.recording, context));
     match finished {
-        Ok(finished) => conclude(finished, outputs.report, context),
+        Ok(finished) => write_and_tell(finished, outputs.report, context),
         Err(failure) => Err(not_begun(failure, (&plan, &options), &board.target(settings)?, outputs.report)),
     }
 }

@@ -5,7 +5,7 @@ use std::time::Instant;
 use jiff::Timestamp;
 
 use super::findings::{End, Findings};
-use super::judge::STREET;
+use super::row_judge::STREET;
 use super::seen::Seen;
 use super::{Circumstances, Finished, Plan, RunOptions};
 use crate::board::Tally;

@@ -2,7 +2,6 @@
 //!
 //! The steps stand in `steps` in their order; each adds its check to the findings or ends the run.
 
-mod after;
 mod at_speed;
 mod conclude;
 mod counters;
@@ -11,7 +10,6 @@ mod exercised;
 mod findings;
 mod finished;
 mod golden;
-mod judge;
 mod kept;
 mod lost_row;
 mod misfit;
@@ -24,6 +22,7 @@ mod prepared;
 mod prices;
 mod reconnect;
 mod recorded;
+mod row_judge;
 mod rules;
 mod schedule;
 mod second_look;
@@ -33,6 +32,7 @@ mod streaming;
 mod threads;
 mod upload;
 mod variations;
+mod what_came;
 mod within;
 
 use tracing::error_span;
@@ -92,7 +92,7 @@ pub fn verify(
     progress: &dyn Progress,
 ) -> Result<Finished, Misfit> {
     let span = error_span!("run", board = %candidate.target);
-    span.in_scope(|| judge(plan, candidate, options, progress))
+    span.in_scope(|| run_to_report(plan, candidate, options, progress))
 }
 
 /// The report of a run by `plan` that never began for a `cause`, which `problem` tells, as when the board of `target` cannot be
@@ -112,7 +112,7 @@ pub fn not_begun(
     conclude::conclude(plan, findings, Some(end), options, Begun::now())
 }
 
-fn judge(
+fn run_to_report(
     plan: &Plan,
     candidate: Candidate,
     options: &RunOptions,
@@ -124,7 +124,7 @@ fn judge(
     let mut findings = Findings::new(options, &candidate.target, candidate.kind, candidate.link.name());
     let way_back =
         WayBack { reopen: candidate.reopen, patience: options.reconnect, options: open_options(options) };
-    let end = run(plan, candidate.link, options, way_back, progress, &mut findings).err();
+    let end = drive(plan, candidate.link, options, way_back, progress, &mut findings).err();
     progress.done();
     match findings.misfit.take() {
         Some(misfit) => Err(misfit),
@@ -142,7 +142,7 @@ fn open_options(options: &RunOptions) -> OpenOptions {
     }
 }
 
-fn run(
+fn drive(
     plan: &Plan,
     link: Box<dyn Link>,
     options: &RunOptions,

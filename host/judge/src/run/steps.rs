@@ -70,7 +70,7 @@ impl Run<'_> {
             self.progress.step(Step::TestTheLink);
             self.persist(Self::link)?;
             let last = self.stream_all(&schedule, &frames)?;
-            self.conclude(last)?;
+            self.judge_over_outages(last)?;
             match self.plan.soak {
                 Some(length) => self.soak(length, last)?,
                 None => self.at_speed(last)?,
@@ -108,10 +108,10 @@ impl Run<'_> {
         Ok(last)
     }
 
-    /// Judges what was seen, with the board back where it was after `last` if it goes away meanwhile.
-    fn conclude(&mut self, last: Option<&Segment>) -> Result<(), End> {
+    /// Judges what came back, with the board back where it was after `last` if it goes away meanwhile.
+    fn judge_over_outages(&mut self, last: Option<&Segment>) -> Result<(), End> {
         loop {
-            match (self.judge(), last) {
+            match (self.judge_what_came(), last) {
                 (Err(end), Some(last)) if end.is_outage() => self.return_to(last, last.frames.len(), end)?,
                 (judged, _) => return judged,
             }

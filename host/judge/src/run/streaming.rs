@@ -5,10 +5,10 @@ use std::sync::mpsc::Receiver;
 use halfrow_protocol::message::RowPlace;
 
 use super::findings::{During, End};
-use super::judge::{Judge, Manner};
 use super::pauses::pauses;
 use super::plan::{SENSOR_BLANKING, Segment, Timing};
 use super::prepared::{PrepareError, Prepared};
+use super::row_judge::{Manner, RowJudge};
 use super::steps::Run;
 use crate::board::{BoardError, MAX_LATENCY, Misconduct};
 use crate::result::{CheckName, Finding, FrameTiming, NumberedRow, Problem, RepeatedRow};
@@ -25,7 +25,7 @@ impl Run<'_> {
         // The judge has what is seen while the run has the board, and what it has to say of its link.
         let mut seen = std::mem::take(&mut self.findings.look.seen);
         let frames = source.iter().take(segment.frames.len());
-        let mut judge = Judge::new(frames, &mut seen, manner, timing, self.progress);
+        let mut judge = RowJudge::new(frames, &mut seen, manner, timing, self.progress);
         let streamed = self.stream_to_the_end(segment, &mut judge);
         let prepared = judge.finish();
         self.findings.look.seen = seen;
@@ -38,7 +38,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    fn stream_to_the_end(&mut self, segment: &Segment, judge: &mut Judge<'_>) -> Result<(), End> {
+    fn stream_to_the_end(&mut self, segment: &Segment, judge: &mut RowJudge<'_>) -> Result<(), End> {
         while let Err(error) = self.board.stream(judge) {
             self.findings.look.found |= judge.has_found();
             let end = self.interrupted(segment, error);

@@ -53,7 +53,7 @@ struct InFlight {
 type Source<'a> = Take<mpsc::Iter<'a, Result<Prepared, PrepareError>>>;
 
 /// The judge of one segment.
-pub(super) struct Judge<'a> {
+pub(super) struct RowJudge<'a> {
     source: Source<'a>,
     seen: &'a mut Seen,
     manner: Manner,
@@ -73,7 +73,7 @@ pub(super) struct Judge<'a> {
     pub(super) repeats: u32,
 }
 
-impl<'a> Judge<'a> {
+impl<'a> RowJudge<'a> {
     pub(super) fn new(
         source: Source<'a>,
         seen: &'a mut Seen,
@@ -120,7 +120,7 @@ impl<'a> Judge<'a> {
     pub(super) fn finish(mut self) -> Result<(), PrepareError> {
         while let Some(frame) = self.in_flight.pop_front() {
             if frame.rows > 0 {
-                self.conclude(frame);
+                self.frame_done(frame);
             }
         }
         self.unprepared.map_or(Ok(()), Err)
@@ -164,7 +164,7 @@ impl<'a> Judge<'a> {
         }
     }
 
-    fn conclude(&mut self, frame: InFlight) {
+    fn frame_done(&mut self, frame: InFlight) {
         let InFlight { prepared, found, rows, comparison, .. } = frame;
         let Prepared { name, number, generation, sha256, input, expected } = prepared;
         self.seen.levels.note(&input, &expected);
@@ -196,7 +196,7 @@ impl<'a> Judge<'a> {
     }
 }
 
-impl RowTraffic for Judge<'_> {
+impl RowTraffic for RowJudge<'_> {
     fn next_frame(&mut self) -> Option<NumberedFrame> {
         if let Some(frame) = self.again.pop_front() {
             return Some(frame);
@@ -256,7 +256,7 @@ impl RowTraffic for Judge<'_> {
             if front.comparison.differences > 0 && self.manner.fail_fast {
                 flow = ControlFlow::Break(());
             }
-            self.conclude(front);
+            self.frame_done(front);
             self.frames_done += 1;
         }
         flow
@@ -281,7 +281,7 @@ mod tests {
         Prepared { name, number, generation: 2, sha256, input: Arc::clone(&frame), expected: frame }
     }
 
-    fn give(judge: &mut Judge<'_>, frame: u16, row: usize, sample: u16) {
+    fn give(judge: &mut RowJudge<'_>, frame: u16, row: usize, sample: u16) {
         let samples = &[sample; 64];
         let (first_latency, last_latency, pauses, generation) = (44, 44, 0, 2);
         let row = ReturnedRow {
@@ -316,8 +316,8 @@ mod tests {
             pauses: vec![0; HEIGHT],
         };
         let mut judge =
-            Judge::new(source.iter().take(2), &mut seen, manner, FrameTiming::Gaps { seed: 0 }, &Silent);
-        let sent = |judge: &mut Judge<'_>| judge.next_frame().map(|frame| frame.number);
+            RowJudge::new(source.iter().take(2), &mut seen, manner, FrameTiming::Gaps { seed: 0 }, &Silent);
+        let sent = |judge: &mut RowJudge<'_>| judge.next_frame().map(|frame| frame.number);
         assert_eq!((sent(&mut judge), sent(&mut judge)), (Some(7), Some(8)));
         [0, 1].into_iter().for_each(|row| give(&mut judge, 7, row, 7));
         judge.begin_again();

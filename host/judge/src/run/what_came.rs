@@ -12,7 +12,7 @@ use crate::result::{Account, CheckName, Defect, Finding, Suspect};
 impl Run<'_> {
     /// Judges what was seen, the tables and the counters. The first that is wrong ends the run; what else is wrong
     /// stands among the checks.
-    pub(super) fn judge(&mut self) -> Result<(), End> {
+    pub(super) fn judge_what_came(&mut self) -> Result<(), End> {
         let after = self.tables_after();
         self.findings.lap(CheckName::TablesAfter);
         let status = self.board.status(false).during(CheckName::Counters)?;
