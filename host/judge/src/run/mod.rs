@@ -1,6 +1,21 @@
 //! A run of `verify`: from the plan to the report.
 //!
-//! The steps stand in `steps` in their order; each adds its check to the findings or ends the run.
+//! `steps` has the order; each step adds its check to the findings or ends the run. Where a check is made:
+//!
+//! | check | in |
+//! |---|---|
+//! | `judge` | `golden` |
+//! | `identity` | `steps`, `misfit` |
+//! | `link` | `steps`, with the bytes of `patterns` |
+//! | `upload`, `read-back` | `upload` |
+//! | `frames`, `latency` | made ready in `prepared`, streamed in `streaming`, row by row in `row_judge`, judged in `what_came`; `lost_row` if one does not come |
+//! | `tables-after` | `what_came` |
+//! | `counters` | `counters` |
+//! | `at-speed` | `at_speed` |
+//! | `rules` | `rules` |
+//!
+//! Beside them: everything once more in `second_look`, a board that goes away in `reconnect`, a run that must keep within a time in
+//! `within`, and the report in `conclude` and `finished`.
 
 mod at_speed;
 mod conclude;

@@ -1,4 +1,4 @@
-//! The steps of a run, in their order.
+//! The order of a run's steps, and the first two.
 
 use std::mem;
 use std::sync::mpsc::Receiver;
