@@ -95,7 +95,7 @@ fn head(plan: &Plan) -> String {
 }
 
 /// Each in a line of its own, whatever names a plan gives.
-fn in_lines(lines: impl IntoIterator<Item = String>) -> String {
+pub(super) fn in_lines(lines: impl IntoIterator<Item = String>) -> String {
     lines.into_iter().map(|line| plain(&line).into_owned()).collect::<Vec<_>>().join("\n")
 }
 

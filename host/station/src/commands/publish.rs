@@ -6,10 +6,12 @@ use std::thread;
 use std::time::Duration;
 
 use clap::Args;
+use halfrow::report::wording::plain;
 use serde::Serialize;
 
 use super::beginning::SettingsFile;
 use super::looking::{either, table, time};
+use super::plan::in_lines;
 use super::plant::NoPlant;
 use super::why::Why;
 use super::{Failure, print};
@@ -197,7 +199,7 @@ impl Desk<'_> {
         if !self.at.publish(&statement, &signature, bundle)? {
             return Err(Failure::error(PublishError::TooLate { plan: name.to_string() }));
         }
-        print(&format!("{name} {version} holds, as number {}", statement.number))
+        print(&plain(&format!("{name} {version} holds, as number {}", statement.number)))
     }
 }
 
@@ -236,7 +238,7 @@ pub(super) fn fetch_all(settings: &SettingsFile) -> Result<Exit, Failure> {
         said.push(format!("{version}, number {number}{}", if is_new { ", is new" } else { "" }));
     }
     let named = published.plans.iter().zip(said).map(|(plan, said)| format!("{plan} {said}"));
-    print(&named.collect::<Vec<_>>().join("\n"))
+    print(&in_lines(named))
 }
 
 /// Fetches them at the beginning of a station's work, which goes on with what it has where that fails.

@@ -93,6 +93,26 @@ impl Published {
     }
 }
 
+/// As a terminal would hide what follows.
+#[test]
+fn a_name_that_a_terminal_would_obey_is_spelt_out() {
+    let made = Published::new();
+    let instead = |name: &str, was: &str, is: &str| {
+        let text = fs::read_to_string(made.path(name)).unwrap();
+        assert!(text.contains(was), "{text}");
+        fs::write(made.path(name), text.replace(was, is)).unwrap();
+    };
+    instead("plan.toml", "\"quick\"", "\"q\\u001b[8m\\nPASS\"");
+    instead("plan.toml", "version = \"1\"", "version = \"1\\u0007\"");
+    instead("station.toml", "CAM-T/quick", "CAM-T/q\\u001b[8m\\nPASS");
+    let told = "CAM-T/q\\u{1b}[8m\\nPASS 1\\u{7}";
+    assert_eq!(made.publish("engel.key").said, format!("{told} holds, as number 1\n"));
+    assert_eq!(made.fetch().said, format!("{told}, number 1, is new\n"));
+    let (name, key) = ("CAM-T/q\u{1b}[8m\nPASS", made.path("engel.key"));
+    let back = made.did(&["plan", "back", name, "1\u{7}", "--key", &key, "--reason", "as it was"]);
+    assert_eq!(back.said, format!("{told} holds, as number 2\n"));
+}
+
 #[test]
 fn a_plan_comes_to_the_station_with_its_files_and_an_older_one_can_hold_again() {
     let made = Published::new();
