@@ -213,7 +213,7 @@ fn plan((name, version): (&str, &str)) -> PlanRecord {
 }
 
 /// The record of a run that ended.
-fn record(run: RunHead, plan: PlanRecord, made: &Run) -> Record {
+pub(crate) fn record(run: RunHead, plan: PlanRecord, made: &Run) -> Record {
     let verify = verify(&run, made.end);
     let mut board = verify.board.clone();
     if let (Some(board), Some((_, device))) = (&mut board, made.device) {

@@ -3,9 +3,9 @@
 use halfrow_station::history::Period;
 use halfrow_station::history::pareto::{Of, pareto};
 use halfrow_station::history::yields::Wanted;
-use halfrow_station::record::RunCause;
+use halfrow_station::record::{RunCause, StepOutcome, StepRecord};
 
-use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run, record};
 
 /// Six runs of four units failed: three with the memory suspected first, one with the clock, one with nothing, and one
 /// was too late.
@@ -74,4 +74,20 @@ fn a_step_that_failed_by_more_than_its_limit_counts_with_both() {
 fn all_that_failed_are_told_with_their_units() {
     let all = pareto(&made().now(), &Wanted::default(), Of::Part).unwrap();
     assert_eq!((all.failed, all.units), (6, 4));
+}
+
+/// It was tried again since the station was to blame as well; in the second try the board is in time, and wrong.
+#[test]
+fn a_limit_that_a_try_missed_which_was_not_the_last_counts() {
+    let mut made = Made::new();
+    let [late, wrong] = [End::TooLate, End::Fail(&["memory"])].map(|end| Run::of("S1", end));
+    let (head, plan) = made.begin(&wrong);
+    let [late, mut tried] = [late, wrong].map(|run| record(head.clone(), plan.clone(), &run));
+    let first = StepRecord { outcome: StepOutcome::Error, cause: RunCause::Station, ..late.steps[1].clone() };
+    tried.steps[1].attempt = 2;
+    tried.steps.insert(1, first);
+    tried.marginal = true;
+    made.store.finish(&tried, 2).unwrap();
+    let right = named(&[("latency.clocks", 1, 1), ("verify", 1, 1)]);
+    assert_eq!(bars(&made, &Wanted::default(), Of::Check), right);
 }

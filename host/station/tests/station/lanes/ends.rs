@@ -1,15 +1,21 @@
 //! Every way in which runs in several lanes end.
 
-use std::io::{ErrorKind, Read as _};
+use std::io::{self, ErrorKind, Read as _};
 use std::net::TcpListener;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use halfrow::verdict::StoppedBy;
+use halfrow_station::engine::{Engine, LaneState};
+use halfrow_station::floor::Word;
+use halfrow_station::settings::Settings;
+use halfrow_station::store::{Folder, Store};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use serde_json::Value;
 
 use super::floor::{HANG, Running, SERIALS, Station};
+use crate::common::program;
 
 /// A board that takes the connection and says nothing.
 pub(crate) fn silent_board() -> (TcpListener, String) {
@@ -110,6 +116,34 @@ fn a_run_is_ended_by_a_barcode() {
     let ended = running.state("1", "ERROR");
     assert_eq!(station.query("SELECT cause FROM run"), ["operator"], "{ended}");
     running.end();
+    station.assert_well();
+}
+
+/// The result of the other lane cannot be saved meanwhile.
+#[test]
+fn no_board_is_taken_while_the_station_closes() {
+    let (listener, target) = silent_board();
+    let station = Station::with(&[&target, "mock"], "");
+    let settings = Settings::load(&station.path("station.toml")).unwrap();
+    let folder = Folder::new(&settings.data);
+    let engine = Engine::start(settings, Store::open(&folder).unwrap(), program().to_owned()).unwrap();
+    let is_ready = |lane: &LaneState| lane.state == Word::Ready;
+    while !engine.lanes().iter().all(is_ready) {
+        thread::sleep(Duration::from_millis(20));
+    }
+    engine.label(1, Some(0), SERIALS[0], "weber", None);
+    let (mut board, _) = listener.accept().unwrap();
+    let database = rusqlite::Connection::open(folder.database()).unwrap();
+    database.execute_batch("BEGIN IMMEDIATE").unwrap();
+    thread::scope(|scope| {
+        scope.spawn(|| engine.close(Some(StoppedBy::Person)));
+        // The lane lets go of its board when the station has told it to.
+        let _ = io::copy(&mut board, &mut io::sink());
+        engine.scan(2, SERIALS[1], "weber");
+        engine.label(3, Some(1), SERIALS[1], "weber", None);
+        database.execute_batch("COMMIT").unwrap();
+    });
+    assert_eq!(station.query("SELECT lane FROM run"), ["1"]);
     station.assert_well();
 }
 

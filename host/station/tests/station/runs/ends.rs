@@ -298,3 +298,23 @@ fn no_step_is_tried_again_once_the_run_is_to_end() {
     carry_out(&job, &heeded, &tell);
     assert_eq!(tries.into_inner().unwrap(), [(1, 1), (2, 1)]);
 }
+
+/// The first try alone finds the board late; the mock says how long it takes, and W/2 more are right.
+#[test]
+fn a_limit_that_only_the_first_try_of_a_step_missed_stays_told() {
+    let limit = "[limits]\n\"latency.clocks\" = { most = 44, blames = \"station\" }\n";
+    let station =
+        Station::with(&format!("{}{limit}", PLAN.replace("timeout = 60", "timeout = 60\nretries = 1")));
+    let late = format!("{},latency=13", device(0x11));
+    let boards = vec![device(0x11), late, device(0x11)];
+    let did = station.run("CAT00001", &one_after_the_other(boards, || ()));
+    assert_eq!(did.code, Some(0), "{did:?}");
+    assert!(did.said.contains("marginal  a step needed more than one try"), "{did:?}");
+    let tries = "SELECT attempt || ' ' || outcome FROM step WHERE name = 'verify' ORDER BY attempt";
+    assert_eq!(station.query(tries), ["1 error", "2 passed"]);
+    let clocks = "SELECT attempt || ' ' || value || ' ' || outcome FROM measurement WHERE name = 'latency.clocks' ORDER BY attempt";
+    assert_eq!(station.query(clocks), ["1 45.0 failed", "2 44.0 passed"]);
+    let (_, record, _) = station.saved(&did);
+    assert!(record.marginal && record.steps[1].detail.starts_with("latency.clocks is 45"), "{record:?}");
+    assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+}
