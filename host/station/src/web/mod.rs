@@ -21,6 +21,7 @@ mod metrics;
 mod operator;
 mod outbox;
 mod patient;
+mod places;
 mod plant;
 mod request_guard;
 mod routes;

@@ -1,36 +1,32 @@
 //! The connections: how many, how long each may take, and the thread that they are served on.
 
-use std::collections::HashMap;
-use std::net::{IpAddr, SocketAddr, TcpListener};
+use std::net::{SocketAddr, TcpListener};
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 use std::{io, pin::pin};
 
-use axum::{Extension, Router};
+use axum::{Extension, Router, middleware};
+use futures_util::future::{Either, select};
 use hyper::server::conn::http1;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use tokio::net::TcpStream;
 use tokio::runtime::{Builder, Runtime};
-use tokio::sync::{OwnedSemaphorePermit, Semaphore, oneshot};
+use tokio::sync::oneshot;
 use tokio::time;
 
-use super::access::network;
 use super::login::Peer;
 use super::patient::Patient;
+use super::places::{self, NoPlace, Place, Places};
 use super::routes;
 use super::state::App;
 
-/// How many connections there are at once; another one waits for its turn.
-const CONNECTIONS: usize = 64;
-/// How many of them one other computer has, so that nobody keeps all others from the pages; another one is closed.
-const CONNECTIONS_OF_ONE: usize = 48;
 /// How long the head of a request may take.
 const HEAD: Duration = Duration::from_secs(10);
 /// The longest head, in bytes.
 const MOST_HEAD: usize = 16 * 1024;
-/// How long it is waited when the system has no room for another connection.
+/// How long it is waited when there is no room for another connection, here or in the system.
 const FULL: Duration = Duration::from_millis(100);
 /// How long work for a page may go on when the pages are closed.
 const LAST: Duration = Duration::from_secs(1);
@@ -80,7 +76,8 @@ impl Server {
         let runtime = Builder::new_current_thread().enable_all().max_blocking_threads(AT_THE_DISK).build();
         let (runtime, router) = (runtime.map_err(ServeError::Room)?, routes::router(app));
         let (stop, stopped) = oneshot::channel();
-        let serve = move || serve(runtime, listener, router, stopped);
+        let places = Places::new(app.access().address().may_have_proxy_here());
+        let serve = move || serve(runtime, listener, (router, places), stopped);
         let thread =
             thread::Builder::new().name("pages".to_owned()).spawn(serve).map_err(ServeError::Room)?;
         Ok(Self { stop, thread })
@@ -95,10 +92,15 @@ impl Server {
     }
 }
 
-fn serve(runtime: Runtime, listener: TcpListener, router: Router, stopped: oneshot::Receiver<()>) {
+fn serve(
+    runtime: Runtime,
+    listener: TcpListener,
+    (router, places): (Router, Places),
+    stopped: oneshot::Receiver<()>,
+) {
     runtime.block_on(async {
         match tokio::net::TcpListener::from_std(listener) {
-            Ok(listener) => drop(tokio::spawn(accept(listener, router))),
+            Ok(listener) => drop(tokio::spawn(accept(listener, router, places))),
             Err(error) => tracing::error!("the pages cannot be served: {error}"),
         }
         let _ = stopped.await;
@@ -106,15 +108,15 @@ fn serve(runtime: Runtime, listener: TcpListener, router: Router, stopped: onesh
     runtime.shutdown_timeout(LAST);
 }
 
-async fn accept(listener: tokio::net::TcpListener, router: Router) {
-    let places = Arc::new(Semaphore::new(CONNECTIONS));
-    let mut peers = Peers::default();
-    while let Ok(place) = Arc::clone(&places).acquire_owned().await {
+async fn accept(listener: tokio::net::TcpListener, router: Router, places: Places) {
+    loop {
         match listener.accept().await {
             Ok((stream, peer)) => {
-                let Some(own) = peers.place(peer.ip()) else { continue };
-                let router = router.clone().layer(Extension(Peer(peer.ip())));
-                drop(tokio::spawn(connection(stream, router, (place, own))));
+                let Some(place) = place(&places, peer).await else { continue };
+                let place = Arc::new(place);
+                let noted = middleware::from_fn_with_state(Arc::clone(&place), places::noted);
+                let router = router.clone().layer(noted).layer(Extension(Peer(peer.ip())));
+                drop(tokio::spawn(connection(stream, router, place)));
             }
             Err(error) => {
                 tracing::warn!("a connection was not taken: {error}");
@@ -124,47 +126,27 @@ async fn accept(listener: tokio::net::TcpListener, router: Router) {
     }
 }
 
-/// The connections of each address.
-#[derive(Debug, Default)]
-struct Peers(HashMap<IpAddr, Arc<()>>);
-
-impl Peers {
-    /// A place for one more of `peer`, which is free again when it is dropped; none if it has too many. This computer, where a proxy
-    /// may be, has as many as there are.
-    fn place(&mut self, peer: IpAddr) -> Option<Arc<()>> {
-        self.0.retain(|_, its| Arc::strong_count(its) > 1);
-        let its = self.0.entry(network(peer)).or_default();
-        let is_free = peer.to_canonical().is_loopback() || Arc::strong_count(its) <= CONNECTIONS_OF_ONE;
-        is_free.then(|| Arc::clone(its))
+/// A place for `peer`; none if it has too many. Where all are taken it waits for its turn.
+async fn place(places: &Places, peer: SocketAddr) -> Option<Place> {
+    loop {
+        match places.take(peer.ip()) {
+            Ok(place) => return Some(place),
+            Err(NoPlace::OfOne) => return None,
+            Err(NoPlace::OfAll) => time::sleep(FULL).await,
+        }
     }
 }
 
-async fn connection(stream: TcpStream, router: Router, places: (OwnedSemaphorePermit, Arc<()>)) {
+async fn connection(stream: TcpStream, router: Router, place: Arc<Place>) {
     // News are short, and each is waited for.
     let _ = stream.set_nodelay(true);
     let mut builder = http1::Builder::new();
     builder.timer(TokioTimer::new()).header_read_timeout(HEAD).max_header_size(MOST_HEAD);
     let served =
         builder.serve_connection(TokioIo::new(Patient::new(stream)), TowerToHyperService::new(router));
-    if let Err(error) = pin!(served).await {
-        tracing::debug!("a connection ended: {error}");
-    }
-    drop(places);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn nobody_has_all_connections_but_this_computer() {
-        let mut peers = Peers::default();
-        let [one, other, here] = ["10.0.0.1", "10.0.0.2", "127.0.0.1"].map(|peer| peer.parse().unwrap());
-        let mut places: Vec<_> = (0..CONNECTIONS_OF_ONE).map(|_| peers.place(one).unwrap()).collect();
-        assert!(peers.place(one).is_none() && peers.place(other).is_some());
-        places.pop();
-        assert!(peers.place(one).is_some());
-        let all: Option<Vec<_>> = (0..CONNECTIONS).map(|_| peers.place(here)).collect();
-        assert!(all.is_some());
+    match select(pin!(served), pin!(place.is_lost())).await {
+        Either::Left((Err(error), _)) => tracing::debug!("a connection ended: {error}"),
+        Either::Left((Ok(()), _)) => {}
+        Either::Right(_) => tracing::debug!("a connection gave way to another one"),
     }
 }

@@ -68,6 +68,11 @@ impl Address {
         self.listen.ip().is_loopback() && !self.is_https && self.hosts.iter().all(is_here)
     }
 
+    /// Whether others may come through a proxy on this computer: to an address of its own only so, and what speaks TLS may be here.
+    pub(crate) fn may_have_proxy_here(&self) -> bool {
+        !self.is_private() && (self.listen.ip().is_loopback() || self.is_https)
+    }
+
     /// Whether no name is known under which browsers could ask for it.
     pub(crate) fn is_nameless(&self) -> bool {
         self.hosts.is_empty()

@@ -7,5 +7,6 @@ mod fuzz;
 pub(crate) mod http;
 mod lanes;
 mod languages;
+mod places;
 pub(crate) mod station;
 mod table;

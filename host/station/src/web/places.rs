@@ -1,0 +1,267 @@
+//! Who has a connection, and whose is closed when there is none left.
+
+use std::collections::{BTreeMap, HashMap};
+use std::net::IpAddr;
+use std::pin::Pin;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::task::{Context, Poll};
+
+use axum::body::Body;
+use axum::extract::{Request, State};
+use axum::http::header::CONTENT_TYPE;
+use axum::middleware::Next;
+use axum::response::Response;
+use hyper::body::{Body as HttpBody, Bytes, Frame, SizeHint};
+use tokio::sync::Notify;
+
+use super::access::network;
+
+/// How many connections there are at once.
+const CONNECTIONS: usize = 64;
+/// How many of them one address has.
+const CONNECTIONS_OF_ONE: usize = 48;
+
+/// What a connection is at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum At {
+    /// A request is being answered: it is not broken off.
+    Answers,
+    /// It tells news. Whoever shows them opens it again.
+    TellsNews,
+    /// It waits for a request.
+    Waits,
+}
+
+/// All connections.
+#[derive(Clone, Debug)]
+pub(super) struct Places(Arc<Mutex<Table>>);
+
+#[derive(Debug)]
+struct Table {
+    of_this_computer: usize,
+    /// The number of what happened last.
+    last: u64,
+    taken: BTreeMap<u64, Taken>,
+}
+
+#[derive(Debug)]
+struct Taken {
+    network: IpAddr,
+    at: At,
+    /// The number of what it has been at that for.
+    since: u64,
+    close: Arc<Notify>,
+}
+
+/// Why there is no place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum NoPlace {
+    /// This address has as many as it may.
+    OfOne,
+    /// All are taken.
+    OfAll,
+}
+
+impl Places {
+    /// All are free. Others come through a proxy on this computer if it `has_proxy`, so it may have all that there are.
+    pub(super) fn new(has_proxy: bool) -> Self {
+        let of_this_computer = if has_proxy { usize::MAX } else { CONNECTIONS_OF_ONE };
+        Self(Arc::new(Mutex::new(Table { of_this_computer, last: 0, taken: BTreeMap::new() })))
+    }
+
+    /// A place for `peer`, which is free again when it is dropped. Where there is none, another connection gives way: one of the same
+    /// address if that has its share, else one of the address that has most.
+    ///
+    /// # Errors
+    /// [`NoPlace`] where all that could give way are being answered.
+    pub(super) fn take(&self, peer: IpAddr) -> Result<Place, NoPlace> {
+        let (network, mut table) = (network(peer), self.table());
+        let most = if network.is_loopback() { table.of_this_computer } else { CONNECTIONS_OF_ONE };
+        let own = table.taken.values().filter(|taken| taken.network == network).count();
+        if own >= most {
+            table.one_gives_way(Some(network)).ok_or(NoPlace::OfOne)?;
+        } else if table.taken.len() >= CONNECTIONS {
+            table.one_gives_way(None).ok_or(NoPlace::OfAll)?;
+        }
+        let (number, close) = (table.next(), Arc::new(Notify::new()));
+        table
+            .taken
+            .insert(number, Taken { network, at: At::Waits, since: number, close: Arc::clone(&close) });
+        Ok(Place { all: self.clone(), number, close })
+    }
+
+    fn table(&self) -> MutexGuard<'_, Table> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Table {
+    fn next(&mut self) -> u64 {
+        self.last += 1;
+        self.last
+    }
+
+    /// Closes the connection that has waited longest for a request, or else told news for longest, of `network` alone or of the one
+    /// that has most; none if there is neither.
+    fn one_gives_way(&mut self, network: Option<IpAddr>) -> Option<()> {
+        let mut counts = HashMap::<IpAddr, usize>::new();
+        for taken in self.taken.values() {
+            *counts.entry(taken.network).or_default() += 1;
+        }
+        let may = |taken: &Taken| taken.at != At::Answers && network.is_none_or(|of| of == taken.network);
+        let all = self.taken.iter().filter(|(_, taken)| may(taken));
+        let (number, _) = all.max_by_key(|(_, taken)| {
+            (counts.get(&taken.network), taken.at, std::cmp::Reverse(taken.since))
+        })?;
+        let number = *number;
+        self.taken.remove(&number).map(|taken| taken.close.notify_one())
+    }
+}
+
+/// The place of a connection.
+#[derive(Debug)]
+pub(super) struct Place {
+    all: Places,
+    number: u64,
+    close: Arc<Notify>,
+}
+
+impl Place {
+    /// Returns when the connection is to give way to another one.
+    pub(super) async fn is_lost(&self) {
+        self.close.notified().await;
+    }
+
+    fn is_at(&self, at: At) {
+        let mut table = self.all.table();
+        let since = table.next();
+        if let Some(taken) = table.taken.get_mut(&self.number) {
+            (taken.at, taken.since) = (at, since);
+        }
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        self.all.table().taken.remove(&self.number);
+    }
+}
+
+/// Around every request of a connection: its place knows what it is at until the last of the answer.
+pub(super) async fn noted(State(place): State<Arc<Place>>, request: Request, next: Next) -> Response {
+    place.is_at(At::Answers);
+    let busy = Busy(place);
+    let response = next.run(request).await;
+    if response.headers().get(CONTENT_TYPE).is_some_and(|kind| kind == "text/event-stream") {
+        busy.0.is_at(At::TellsNews);
+    }
+    response.map(|body| Body::new(Answer { body, _busy: busy }))
+}
+
+/// Of a connection that waits for a request again when this is dropped.
+struct Busy(Arc<Place>);
+
+impl Drop for Busy {
+    fn drop(&mut self) {
+        self.0.is_at(At::Waits);
+    }
+}
+
+/// What an answer says.
+struct Answer {
+    body: Body,
+    _busy: Busy,
+}
+
+impl HttpBody for Answer {
+    type Data = Bytes;
+    type Error = axum::Error;
+
+    fn poll_frame(
+        mut self: Pin<&mut Self>,
+        to: &mut Context<'_>,
+    ) -> Poll<Option<Result<Frame<Bytes>, axum::Error>>> {
+        Pin::new(&mut self.body).poll_frame(to)
+    }
+
+    fn is_end_stream(&self) -> bool {
+        self.body.is_end_stream()
+    }
+
+    fn size_hint(&self) -> SizeHint {
+        self.body.size_hint()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn addresses() -> [IpAddr; 4] {
+        ["127.0.0.1", "10.0.0.1", "10.0.0.2", "10.0.0.3"].map(|peer| peer.parse().unwrap())
+    }
+
+    fn taken(places: &Places, peer: IpAddr, count: usize) -> Vec<Place> {
+        (0..count).map(|_| places.take(peer).unwrap()).collect()
+    }
+
+    /// Which of these were told to give way.
+    fn lost(of: &[Place]) -> Vec<usize> {
+        let is_there = |place: &Place| place.all.table().taken.contains_key(&place.number);
+        of.iter().enumerate().filter(|(_, place)| !is_there(place)).map(|(number, _)| number).collect()
+    }
+
+    #[test]
+    fn no_address_has_all_connections_but_that_of_a_proxy() {
+        let [here, one, other, _] = addresses();
+        for (has_proxy, peer, most) in
+            [(false, one, 48), (true, one, 48), (false, here, 48), (true, here, 64)]
+        {
+            let places = Places::new(has_proxy);
+            let busy = taken(&places, peer, most);
+            busy.iter().for_each(|place| place.is_at(At::Answers));
+            let none = if most == 64 { NoPlace::OfAll } else { NoPlace::OfOne };
+            assert_eq!(places.take(peer).unwrap_err(), none, "{has_proxy} {peer}");
+            assert_eq!(places.take(other).is_ok(), most < 64, "{has_proxy} {peer}");
+            busy[7].is_at(At::Waits);
+            let late = places.take(peer).unwrap();
+            assert_eq!(lost(&busy), [7]);
+            drop((busy, late));
+            assert_eq!(taken(&places, peer, most).len(), most);
+        }
+    }
+
+    #[test]
+    fn who_has_waited_longest_gives_way_before_news_and_no_request_does() {
+        let [here, ..] = addresses();
+        let places = Places::new(false);
+        let all = taken(&places, here, 48);
+        all.iter().for_each(|place| place.is_at(At::Answers));
+        all[5].is_at(At::TellsNews);
+        all[4].is_at(At::TellsNews);
+        all[9].is_at(At::Waits);
+        all[8].is_at(At::Waits);
+        let mut late = Vec::new();
+        for gone in [&[9][..], &[8, 9], &[5, 8, 9], &[4, 5, 8, 9]] {
+            late.push(places.take(here).unwrap());
+            late.iter().for_each(|place| place.is_at(At::Answers));
+            assert_eq!(lost(&all), gone);
+        }
+        assert_eq!(places.take(here).unwrap_err(), NoPlace::OfOne);
+    }
+
+    #[test]
+    fn where_all_are_taken_the_address_that_has_most_gives_way() {
+        let [here, one, other, new] = addresses();
+        let places = Places::new(false);
+        let (few, many, some) =
+            (taken(&places, here, 10), taken(&places, one, 34), taken(&places, other, 20));
+        many.iter().for_each(|place| place.is_at(At::TellsNews));
+        let late = taken(&places, new, 3);
+        assert_eq!((lost(&few), lost(&many), lost(&some)), (vec![], vec![0, 1, 2], vec![]));
+        many.iter().for_each(|place| place.is_at(At::Answers));
+        let later = places.take(new).unwrap();
+        assert_eq!((lost(&few), lost(&some), late.len()), (vec![], vec![0], 3));
+        drop(later);
+    }
+}
