@@ -25,6 +25,9 @@ pub struct Said {
     pub causes: Vec<Self>,
 }
 
+/// The parameter of why a run broke off that counts the samples which differed by then.
+pub(crate) const DIFFERED: &str = "differed";
+
 /// What to do about what the station says, in full sentences, where its own do not end in it: by code.
 pub(crate) const REMEDIES: [(&str, &str); 8] = [
     ("plan-takes-hardware", "Check the lane's target."),

@@ -8,12 +8,12 @@ use halfrow::board::{Board, OpenOptions, Stop};
 use halfrow::link::{self, Candidate, OpenError};
 use halfrow::link_test::{self, Figures, LinkTestError};
 use halfrow::report::wording::plain;
-use halfrow::result::{BoardReport, Identity, Problem, Suspect};
+use halfrow::result::{BoardReport, Finding, Identity, Problem, Suspect};
 use halfrow::run::{Circumstances, Draws};
 use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::{Cause, StoppedBy, Verdict};
 use halfrow::{Finished, Progress, Report, RunOptions};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::Ruling;
 use super::kept_frame::keep;
@@ -21,7 +21,7 @@ use crate::exit::Exit;
 use crate::plan::limits::{Limit, Maker, SAMPLES_DIFFERING};
 use crate::plan::{DeviceRule, Judging, Plan};
 use crate::record::{BoardSeen, Measured, RunCause, StepOutcome, SuspectRecord, judged};
-use crate::said::{Said, Saying};
+use crate::said::{DIFFERED, Said, Saying};
 
 /// What a try of a step came to.
 #[derive(Debug)]
@@ -224,7 +224,7 @@ impl Common<'_> {
             suspects: report.suspects.iter().map(suspect).collect(),
             board: seen,
             evidence: serde_json::to_value(&report).ok(),
-            ..Try::of(report.cause, &report.finding)
+            ..Try::of(report.cause, found(&report))
         };
         result.measured(measured)
     }
@@ -288,6 +288,25 @@ fn seen(kind: BoardKind, identity: &Identity) -> BoardSeen {
         device: has_number.then(|| identity.serial.clone()),
         build: identity.build.clone(),
     }
+}
+
+/// What the judge found. Where it broke off, its sentence begins with the samples that differed by then, and other languages make it
+/// of the figures.
+fn found(report: &Report) -> Said {
+    let mut said = Said::from(&report.finding);
+    let broke_off = report.verdict == Verdict::Error && matches!(report.finding, Finding::Problem(_));
+    let wrong: Vec<_> =
+        report.frames.iter().map(|frame| &frame.comparison).filter(|one| one.differences > 0).collect();
+    if broke_off && !wrong.is_empty() {
+        let differed = json!({
+            "differences": wrong.iter().map(|one| one.differences).sum::<usize>(),
+            "samples": report.frames.iter().map(|frame| frame.comparison.samples).sum::<usize>(),
+            "differing_frames": wrong.len(),
+            "frames": report.frames.len(),
+        });
+        said.parameters.insert(DIFFERED.to_owned(), differed);
+    }
+    said
 }
 
 /// What the operator does: with a board that is wrong what a technician does, else what the finding asks for.

@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::{Words, filled};
 use crate::record::TEST_AGAIN;
-use crate::said::Said;
+use crate::said::{DIFFERED, Said};
 use parameters::late;
 
 /// The language of what was told.
@@ -105,7 +105,10 @@ impl Words {
 
     fn sentence(&self, code: &str, parameters: &Value) -> Option<String> {
         let words = self.of_code("said", code)?;
-        Some(filled(words, &|name| self.named(name, parameters)))
+        let why = filled(words, &|name| self.named(name, parameters));
+        let Some(differed) = parameters.get(DIFFERED) else { return Some(why) };
+        let of = |name: &str| if name == "why" { Some(why.clone()) } else { self.named(name, differed) };
+        Some(filled(self.say("told.differed"), &of))
     }
 
     fn asked(&self, code: &str, parameters: &Value) -> Option<String> {

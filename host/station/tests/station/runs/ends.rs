@@ -3,6 +3,7 @@
 use std::io::Read as _;
 use std::net::TcpListener;
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -10,6 +11,7 @@ use halfrow::Verdict;
 use halfrow_station::lane::child::{carry_out, orders};
 use halfrow_station::lane::{Control, Job, MEMORY_MIB, Message, Ruling, Stopper};
 use halfrow_station::plan::Plan;
+use halfrow_station::record::{RunCause, StepOutcome, StepRecord};
 
 use super::bench::{Did, PLAN, Station};
 use super::identity::{device, one_after_the_other};
@@ -270,16 +272,28 @@ fn a_run_that_is_found_open_is_an_error() {
 #[test]
 fn no_step_is_tried_again_once_the_run_is_to_end() {
     let text = PLAN.replace("timeout = 60", "timeout = 60\nretries = 3");
+    let target = one_after_the_other(vec![device(0x11)], || ());
+    let steps = stopped(text, target, |message| matches!(message, Message::Step { seq: 2, .. }));
+    let tries: Vec<_> = steps.iter().map(|step| (step.seq, step.attempt)).collect();
+    assert_eq!(tries, [(1, 1), (2, 1)]);
+}
+
+/// The tries of the steps of a lane that a person stops at the first message that `is_last`.
+fn stopped(text: String, target: String, is_last: impl Fn(&Message) -> bool + Sync) -> Vec<StepRecord> {
     let spool = crate::common::folder();
-    let (path, target) = (spool.path().join("plan.toml"), one_after_the_other(vec![device(0x11)], || ()));
+    let path = spool.path().join("plan.toml");
     let plan = Plan::parse(&path, text.clone()).unwrap();
     let (orders, heeded) = orders();
     let tries = Mutex::new(Vec::new());
-    let tell = |message: &Message| match message {
-        Message::Identified { .. } => orders.take(Control::Device(Ruling::New)),
-        Message::Step { seq: 2, .. } => orders.take(Control::Stop(Stopper::Person)),
-        Message::Ended { step } => tries.lock().unwrap().push((step.seq, step.attempt)),
-        _ => {}
+    let tell = |message: &Message| {
+        match message {
+            Message::Identified { .. } => orders.take(Control::Device(Ruling::New)),
+            Message::Ended { step } => tries.lock().unwrap().push(StepRecord::clone(step)),
+            _ => {}
+        }
+        if is_last(message) {
+            orders.take(Control::Stop(Stopper::Person));
+        }
     };
     let [run, variant] = ["r", ""].map(str::to_owned);
     let spool = spool.path().to_owned();
@@ -296,7 +310,32 @@ fn no_step_is_tried_again_once_the_run_is_to_end() {
         memory_mib: MEMORY_MIB,
     };
     carry_out(&job, &heeded, &tell);
-    assert_eq!(tries.into_inner().unwrap(), [(1, 1), (2, 1)]);
+    tries.into_inner().unwrap()
+}
+
+/// What had come back by then is not judged, and is told.
+#[test]
+fn a_run_that_is_stopped_tells_with_its_figures_that_samples_differed_by_then() {
+    let text = PLAN.replace("timeout = 60", "timeout = 60\nrepeat = 1000");
+    let frames = AtomicUsize::new(0);
+    let is_last = |message: &Message| {
+        let is_frame = matches!(message, Message::Doing { what } if what == "builtin:noise");
+        is_frame && frames.fetch_add(1, Ordering::Relaxed) == 40
+    };
+    let steps = stopped(text, "mock,fault=stuck-data".to_owned(), is_last);
+    let last = steps.last().unwrap();
+    assert_eq!((last.outcome, last.cause), (StepOutcome::Error, RunCause::Operator), "{last:?}");
+    let measured = last.measurements.iter().find(|one| one.name == "frames.samples_differing").unwrap();
+    let finding = last.finding.as_ref().unwrap();
+    assert_eq!(finding.code, "stopped-by-signal");
+    let differed = |name: &str| finding.parameters["differed"][name].as_u64().unwrap();
+    assert!(measured.value.unwrap() > 0.0, "{last:?}");
+    assert_eq!(Some(differed("differences") as f64), measured.value);
+    // The judge's own sentence has the same figures.
+    let [differences, samples, wrong, frames] =
+        ["differences", "samples", "differing_frames", "frames"].map(differed);
+    let told = format!("{differences} of {samples} samples differ in {wrong} of {frames} frames");
+    assert!(finding.message.replace(',', "").starts_with(&told), "{finding}");
 }
 
 /// The first try alone finds the board late; the mock says how long it takes, and W/2 more are right.

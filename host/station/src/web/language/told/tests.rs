@@ -113,6 +113,24 @@ fn judged(code: &str, parameters: &Value) -> Said {
     Said { code: code.to_owned(), parameters, message: "in English".to_owned(), causes: Vec::new() }
 }
 
+/// Of a run that ended early nobody has looked into that, and no sentence has room for it.
+#[test]
+fn samples_that_differed_by_the_end_of_a_run_are_told_in_every_language() {
+    let differed = json!({ "differences": 12_345, "samples": 40_960, "differing_frames": 3, "frames": 8 });
+    let stopped = judged("stopped-by-signal", &json!({ "by": "stopped by hand", "differed": differed }));
+    let told = "12.345 von 40.960 Abtastwerten weichen ab, in 3 von 8 Bildern, und der Lauf brach ab, bevor das untersucht wurde: \
+                abgebrochen, die Platine ist nicht beurteilt; noch einmal prüfen";
+    assert_eq!(german(&stopped), (told.to_owned(), None));
+    let chinese = of(Some("zh"), None).tell(&stopped);
+    assert_eq!(
+        (chinese.text.as_str(), chinese.foreign),
+        (
+            "40,960 个样值中 12,345 个不同，涉及 8 帧中的 3 帧，测试在查明之前中断：已中止，该板未被判定；请重新测试",
+            None
+        )
+    );
+}
+
 /// A bit that is one of several alike, and a suspect that is one of several; records of earlier programs say of neither.
 #[test]
 fn what_is_one_of_several_is_not_told_as_the_fact_in_any_language() {
