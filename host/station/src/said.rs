@@ -48,6 +48,11 @@ impl Said {
         REMEDIES.into_iter().find(|(code, _)| *code == self.code).map(|(_, remedy)| remedy)
     }
 
+    /// A sentence in English of which no code is known.
+    pub(crate) fn uncoded(message: String) -> Self {
+        Self { code: String::new(), parameters: Parameters::new(), message, causes: Vec::new() }
+    }
+
     /// An error of this program with its causes.
     #[must_use]
     pub fn of(error: &(dyn Error + 'static)) -> Self {

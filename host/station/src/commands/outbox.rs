@@ -148,7 +148,7 @@ fn text(Left { unsent, dead }: &Left) -> String {
         return "nothing is left to be sent".to_owned();
     }
     let dead = dead.iter().map(|Dead { sink, entry, dead_ms, said }| {
-        vec![sink.clone(), entry.subject.clone(), time(*dead_ms), said.clone()]
+        vec![sink.clone(), entry.subject.clone(), time(*dead_ms), said.to_string()]
     });
     let dead = table(&["sink", "waits for a person", "since", "said"], &[], dead);
     let more = unsent.iter().filter(|unsent| unsent.dead > DEAD_SHOWN).map(|Unsent { sink, dead, .. }| {
@@ -161,7 +161,7 @@ fn text(Left { unsent, dead }: &Left) -> String {
 
 fn table_of(unsent: &[Unsent]) -> String {
     let row = |Unsent { sink, entries, dead, since_ms, said, .. }: &Unsent| {
-        let said = said.clone().unwrap_or_default();
+        let said = said.as_ref().map_or_else(String::new, ToString::to_string);
         vec![sink.clone(), entries.to_string(), dead.to_string(), time(*since_ms), said]
     };
     table(&["sink", "unsent", "dead", "since", "said last"], &[1, 2], unsent.iter().map(row))

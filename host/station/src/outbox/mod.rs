@@ -160,11 +160,9 @@ fn became(entry: &Entry, taken: Result<(), Undelivered>) -> Tried {
     let Err(why) = taken else { return Tried::Done };
     let next_ms = clock::now_ms().saturating_add(back_off::ms(entry.attempts));
     match why {
-        Undelivered::Away(said) | Undelivered::NotNow(said) => {
-            Tried::Again { next_ms, said: said.to_string() }
-        }
-        Undelivered::Early(said) => Tried::Early { next_ms, said: said.to_string() },
-        Undelivered::Refused(said) => Tried::Dead { said: said.to_string() },
+        Undelivered::Away(said) | Undelivered::NotNow(said) => Tried::Again { next_ms, said },
+        Undelivered::Early(said) => Tried::Early { next_ms, said },
+        Undelivered::Refused(said) => Tried::Dead { said },
     }
 }
 

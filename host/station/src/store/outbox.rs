@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::database::{Database, DatabaseError, Row, values};
 use super::{Folder, Snapshot, Store, StoreError, Waiver, statements as sql};
 use crate::record::Record;
+use crate::said::{Said, as_text, as_text_if_any};
 use crate::{clock, ids};
 
 /// The plant's name among the sinks. A plant that moves to another address keeps it.
@@ -71,7 +72,8 @@ pub struct Unsent {
     /// When the first of them came about, in milliseconds since 1970, UTC.
     pub since_ms: i64,
     /// What was last said to one that is tried again.
-    pub said: Option<String>,
+    #[serde(serialize_with = "as_text_if_any")]
+    pub said: Option<Said>,
 }
 
 /// How it stands with a run at a sink. One that is not to be sent there is neither done nor dead.
@@ -82,7 +84,7 @@ pub struct Standing {
     /// Whether it waits for a person.
     pub is_dead: bool,
     /// What the sink said when it was last tried in vain.
-    pub said: Option<String>,
+    pub said: Option<Said>,
 }
 
 /// An entry that waits for a person.
@@ -96,7 +98,8 @@ pub struct Dead {
     /// Since when, in milliseconds since 1970, UTC.
     pub dead_ms: i64,
     /// What the sink said.
-    pub said: String,
+    #[serde(serialize_with = "as_text")]
+    pub said: Said,
 }
 
 /// All that belongs to an entry.
@@ -151,19 +154,19 @@ pub enum Tried {
         /// The moment.
         next_ms: i64,
         /// What was said.
-        said: String,
+        said: Said,
     },
     /// So is this, and the runs that it belongs to, which the sink has lost, are sent again.
     Early {
         /// The moment.
         next_ms: i64,
         /// What was said.
-        said: String,
+        said: Said,
     },
     /// A person looks at it.
     Dead {
         /// What was said.
-        said: String,
+        said: Said,
     },
 }
 
@@ -224,14 +227,14 @@ impl Store {
                         let of = values![now_ms, sink, kind.name(), subject];
                         return to.execute(sql::OUTBOX_DONE, of).map(drop);
                     }
-                    Tried::Again { next_ms, said } => (*next_ms, None, said),
+                    Tried::Again { next_ms, said } => (*next_ms, None, written(said)),
                     Tried::Early { next_ms, said } => {
                         to.execute(sql::OUTBOX_LOST, values![sink, subject])?;
-                        (*next_ms, None, said)
+                        (*next_ms, None, written(said))
                     }
-                    Tried::Dead { said } => (now_ms, Some(now_ms), said),
+                    Tried::Dead { said } => (now_ms, Some(now_ms), written(said)),
                 };
-                let of = values![next_ms, dead_ms, said, sink, kind.name(), subject];
+                let of = values![next_ms, dead_ms, &said, sink, kind.name(), subject];
                 to.execute(sql::OUTBOX_FAILED, of).map(drop)
             })
         })
@@ -247,7 +250,7 @@ impl Snapshot {
         self.rows("to tell what is to be sent", sql::OUTBOX_STATE, &[], |row| {
             let since_ms = ids::made_ms(row.text(4)?);
             let (sink, entries, results, dead) = (row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?);
-            Ok(Unsent { sink, entries, results, dead, since_ms, said: row.get(5)? })
+            Ok(Unsent { sink, entries, results, dead, since_ms, said: said(row, 5)? })
         })
     }
 
@@ -260,7 +263,7 @@ impl Snapshot {
         for Unsent { sink, .. } in unsent.iter().filter(|unsent| unsent.dead > 0) {
             let of = values![sink, DEAD_SHOWN];
             dead.extend(self.rows("to tell what waits for a person", sql::OUTBOX_DEAD, of, |row| {
-                let said = row.get::<Option<String>>(5)?.unwrap_or_default();
+                let said = said(row, 5)?.unwrap_or_else(|| Said::uncoded(String::new()));
                 Ok(Dead { sink: row.get(0)?, entry: entry(row, 1)?, dead_ms: row.get(4)?, said })
             })?);
         }
@@ -307,7 +310,7 @@ impl Folder {
         let found = self.read("to tell what was sent", |from| {
             from.first(sql::OUTBOX_ENTRY, values![sink, Kind::Run.name(), run], |row| {
                 let [done_ms, dead_ms] = [row.get::<Option<i64>>(0)?, row.get(1)?];
-                Ok(Standing { is_done: done_ms.is_some(), is_dead: dead_ms.is_some(), said: row.get(2)? })
+                Ok(Standing { is_done: done_ms.is_some(), is_dead: dead_ms.is_some(), said: said(row, 2)? })
             })
         })?;
         Ok(found.unwrap_or_default())
@@ -344,6 +347,18 @@ impl Folder {
             }
         }
     }
+}
+
+/// What was said as it is kept, with its code, so that pages tell it in their language.
+fn written(said: &Said) -> String {
+    // What no JSON can be made of has no code, either.
+    serde_json::to_string(said).unwrap_or_else(|_| said.to_string())
+}
+
+/// What was said; earlier programs kept the sentence alone.
+fn said(row: &Row<'_>, place: usize) -> Result<Option<Said>, DatabaseError> {
+    let kept: Option<String> = row.get(place)?;
+    Ok(kept.map(|kept| serde_json::from_str(&kept).unwrap_or_else(|_| Said::uncoded(kept))))
 }
 
 fn entry(row: &Row<'_>, from: usize) -> Result<Entry, DatabaseError> {

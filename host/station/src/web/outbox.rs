@@ -52,7 +52,7 @@ fn sinks(visit: &Visit, unsent: &[Unsent]) -> Markup {
                 tr {
                     td { (show::said(sink)) } td.number { (entries) } td.number { (dead) }
                     td.when { (show::moment(*since_ms)) }
-                    td.headline { @if let Some(said) = said { (show::english(visit, said)) } }
+                    td.headline { @if let Some(said) = said { (show::told(&visit.words.tell(said))) } }
                 }
             } }
         } }
@@ -76,7 +76,7 @@ fn letter(visit: &Visit, Dead { sink, entry, dead_ms, said }: &Dead) -> Markup {
                 @if *kind == Kind::Run { a href=(show::run_address(subject)) { (subject) } } @else { (subject) }
                 " · " (show::moment(*dead_ms))
             }
-            p { (show::english(visit, said)) }
+            p { (show::told(&visit.words.tell(said))) }
             @if visit.may(Who::Engineer) {
                 (fields(visit))
                 button { (visit.say("outbox.release")) }

@@ -185,7 +185,7 @@ impl Work<'_> {
         let sent = self.sent(run, &|| holding.is_lost() || stop().is_some());
         let is_sent = matches!(sent, Sent::Yes);
         let counts = if is_sent { self.counts(run) } else { None };
-        let refused = if let Sent::Refused(said) = sent { Some(said) } else { None };
+        let refused = if let Sent::Refused(said) = sent { Some(said.to_string()) } else { None };
         holding.end();
         Ok(Judged { claim, is_sent, refused, counts, saved })
     }

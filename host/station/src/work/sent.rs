@@ -4,6 +4,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::LOOK;
+use crate::said::Said;
 use crate::store::{Folder, LEASE_MS, SINK_OF_PLANT, Snapshot, StoreError};
 
 /// How long a plant that says something else may take nothing: as long as one that is away may be away.
@@ -17,7 +18,7 @@ pub(super) enum Sent {
     /// It is sent whenever the outbox can.
     NotYet,
     /// The plant does not take it, for this reason.
-    Refused(String),
+    Refused(Said),
 }
 
 /// How it stands with a run at the plant once that has it, a person is to look at it, or the plant has taken nothing for too long;
@@ -29,8 +30,8 @@ pub(super) fn awaited(folder: &Folder, run: &str, is_over: &dyn Fn() -> bool) ->
         if entry.is_done {
             return Ok(Sent::Yes);
         }
-        if entry.is_dead {
-            return Ok(Sent::Refused(entry.said.unwrap_or_default()));
+        if let Some(said) = entry.said.as_ref().filter(|_| entry.is_dead) {
+            return Ok(Sent::Refused(said.clone()));
         }
         if is_over() {
             return Ok(Sent::NotYet);
@@ -47,7 +48,7 @@ pub(super) fn awaited(folder: &Folder, run: &str, is_over: &dyn Fn() -> bool) ->
 }
 
 /// What the plant said last to anything that is tried again.
-fn said_last(folder: &Folder) -> Result<Option<String>, StoreError> {
+fn said_last(folder: &Folder) -> Result<Option<Said>, StoreError> {
     let unsent = Snapshot::take(folder)?.unsent()?;
     Ok(unsent.into_iter().find(|unsent| unsent.sink == SINK_OF_PLANT).and_then(|unsent| unsent.said))
 }
@@ -67,6 +68,6 @@ mod tests {
         let database = rusqlite::Connection::open(folder.database()).unwrap();
         database.execute(entry, [SINK_OF_PLANT, &run]).unwrap();
         let sent = awaited(&folder, &run, &|| panic!("it is waited for")).unwrap();
-        assert!(matches!(&sent, Sent::Refused(said) if said == "no"), "{sent:?}");
+        assert!(matches!(&sent, Sent::Refused(said) if said.message == "no"), "{sent:?}");
     }
 }

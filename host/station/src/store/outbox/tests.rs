@@ -13,7 +13,7 @@ fn what_was_said_last_is_that_of_the_last_try() {
         for vain in 0..tries {
             // The earlier tries lie as far back as their waits are long.
             let next_ms = at_ms + if vain + 1 < tries { 0 } else { 875 << vain };
-            let again = Tried::Again { next_ms, said: said.to_owned() };
+            let again = Tried::Again { next_ms, said: Said::uncoded(said.to_owned()) };
             store.tried("mes", &[(entries[place].clone(), again)], at_ms).unwrap();
         }
     };
@@ -23,7 +23,7 @@ fn what_was_said_last_is_that_of_the_last_try() {
     let [unsent] = &Snapshot::take(&Folder::new(folder.path())).unwrap().unsent().unwrap()[..] else {
         panic!("there is one sink")
     };
-    assert_eq!(unsent.said.as_deref(), Some("asked again later"));
+    assert_eq!(unsent.said, Some(Said::uncoded("asked again later".to_owned())));
 }
 
 /// What a sink has refused stands in front of what it is sent, and may be all that was kept for years.
@@ -37,4 +37,18 @@ fn what_is_due_is_found_without_a_look_at_what_waits_for_a_person() {
         from.all(&text, values!["mes", 0_i64, 0_i64], |row| row.get::<String>(3))
     });
     assert_eq!(plan.unwrap(), ["SEARCH outbox USING INDEX outbox_due (sink=?)"]);
+}
+
+/// As an earlier program kept it, which had no code for it.
+#[test]
+fn what_was_said_to_an_earlier_program_is_told_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = Folder::new(folder.path());
+    let mut store = Store::open(&folder).unwrap();
+    store.sends_to(vec!["mes".to_owned()]).unwrap();
+    store.note("weber", "scan", "1", "1").unwrap();
+    let database = rusqlite::Connection::open(folder.database()).unwrap();
+    database.execute("UPDATE outbox SET attempts = 1, said = 'zone unknown'", []).unwrap();
+    let unsent = Snapshot::take(&folder).unwrap().unsent().unwrap().remove(0);
+    assert_eq!(serde_json::to_value(unsent).unwrap()["said"], "zone unknown");
 }

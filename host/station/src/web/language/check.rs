@@ -18,12 +18,15 @@ const SAID: &str = "said";
 const REMEDY: &str = "remedy";
 
 /// The types of the station's errors that operators, or engineers at a page, come to see.
-const OF_STATION: [&str; 16] = [
+const OF_STATION: [&str; 19] = [
     "SerialError",
     "ScanError",
     "Refusal",
     "RunError",
     "StoreError",
+    "PlantError",
+    "SinkError",
+    "ExportError",
     "CertificateError",
     "BlobError",
     "AgainError",

@@ -65,7 +65,7 @@ fn a_server_that_is_killed_and_comes_back_gets_all() {
     assert_eq!((vain.sent, vain.failed, vain.is_away), (0, 1, true));
     let [unsent] = &made.now().unsent().unwrap()[..] else { panic!("all was sent") };
     assert_eq!((unsent.entries, unsent.dead), (10, 0));
-    assert!(unsent.said.as_ref().unwrap().contains("refuses a connection"), "{unsent:?}");
+    assert!(unsent.said.as_ref().unwrap().to_string().contains("refuses a connection"), "{unsent:?}");
     server.again();
     due(&made);
     let (made, all) = send(made, server.address());

@@ -43,7 +43,7 @@ fn a_run_that_the_plant_has_with_another_record_is_an_alarm_and_waits_for_a_pers
     let unsent = made.now().unsent().unwrap();
     let [dead] = &made.now().dead(&unsent).unwrap()[..] else { panic!("nothing waits") };
     assert_eq!(dead.entry.subject, run);
-    assert!(dead.said.contains("nothing was changed: keep both"), "{dead:?}");
+    assert!(dead.said.to_string().contains("nothing was changed: keep both"), "{dead:?}");
     let at_plant = format!("SELECT record_sha256 FROM run WHERE id = '{run}'");
     assert_eq!(server.rows(&at_plant), [["0".repeat(64)]]);
     // It is not tried again by itself.
@@ -89,7 +89,7 @@ fn a_waiver_waits_for_its_run() {
     let (made, _) = send(made, server.address());
     let [unsent] = &made.now().unsent().unwrap()[..] else { panic!("all was sent") };
     assert_eq!((unsent.entries, unsent.dead), (2, 0), "{unsent:?}");
-    assert!(unsent.said.as_ref().unwrap().contains("which comes first"), "{unsent:?}");
+    assert!(unsent.said.as_ref().unwrap().to_string().contains("which comes first"), "{unsent:?}");
     due(&made);
     let (made, rest) = send(made, server.address());
     assert_eq!((rest.sent, rest.failed), (2, 0));
@@ -109,7 +109,7 @@ fn a_rebinding_waits_for_the_runs_of_its_unit() {
     let (made, _) = send(made, server.address());
     let [unsent] = &made.now().unsent().unwrap()[..] else { panic!("all was sent") };
     assert_eq!((unsent.entries as usize, unsent.dead), (behind + 1, 0), "{unsent:?}");
-    assert!(unsent.said.as_ref().unwrap().contains("the run of CAM-T S2 yet"), "{unsent:?}");
+    assert!(unsent.said.as_ref().unwrap().to_string().contains("the run of CAM-T S2 yet"), "{unsent:?}");
     due(&made);
     let (made, rest) = send(made, server.address());
     assert_eq!((rest.sent, rest.failed), (behind + 1, 0));
@@ -254,7 +254,12 @@ fn a_station_with_another_folder_is_taken_for_itself_when_a_person_says_so() {
     assert_eq!((refused.sent, refused.is_away), (0, true));
     let [unsent] = &made.now().unsent().unwrap()[..] else { panic!("all was sent") };
     assert!(
-        unsent.said.as_ref().unwrap().contains("another station of this plant is called station 7"),
+        unsent
+            .said
+            .as_ref()
+            .unwrap()
+            .to_string()
+            .contains("another station of this plant is called station 7"),
         "{unsent:?}"
     );
     let forget = ["plant", "forget", "station 7", "--reason", "its disk broke", "--operator", "engel"];

@@ -41,5 +41,5 @@ fn what_a_plant_can_never_hold_waits_for_a_person() {
     assert_eq!((all.sent, all.failed, all.is_away), (9, 1, false));
     let unsent = made.now().unsent().unwrap();
     let [dead] = &made.now().dead(&unsent).unwrap()[..] else { panic!("nothing waits") };
-    assert!(dead.said.contains("no such character"), "{dead:?}");
+    assert!(dead.said.to_string().contains("no such character"), "{dead:?}");
 }

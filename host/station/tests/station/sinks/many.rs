@@ -1,5 +1,6 @@
 //! A sink that has refused a great many entries.
 
+use halfrow_station::said::{Said, Saying};
 use halfrow_station::store::Tried;
 
 use super::did;
@@ -17,7 +18,9 @@ fn refused(many: usize) -> Made {
         if due.is_empty() {
             return made;
         }
-        let dead = Tried::Dead { said: "it takes none of these".to_owned() };
+        let message = "it takes none of these".to_owned();
+        let said = Said { message, ..Saying::NotAtPlant.into() };
+        let dead = Tried::Dead { said };
         let tried: Vec<_> = due.into_iter().map(|entry| (entry, dead.clone())).collect();
         made.store.tried("mes", &tried, now_ms()).unwrap();
     }

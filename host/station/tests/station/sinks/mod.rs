@@ -5,12 +5,14 @@ mod events;
 mod folder;
 mod many;
 mod post;
+mod told;
 
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
 use halfrow_station::outbox::{Round, Sink, Undelivered, round};
+use halfrow_station::said::Saying;
 use halfrow_station::settings::Settings;
 use halfrow_station::store::{Folder, Parcel, SharedStore, Snapshot, Store, Tried};
 
@@ -154,7 +156,7 @@ fn what_waits_for_a_time_of_a_wrong_clock_is_sent_all_the_same() {
     for (wait_ms, sent) in [(200_000, 0), (86_400_000, 1)] {
         store.note("weber", "scan", "1", "1").unwrap();
         let entry = folder.due("mes", now_ms(), i64::MAX).unwrap().remove(0);
-        let again = Tried::Again { next_ms: now_ms() + wait_ms, said: "not now".to_owned() };
+        let again = Tried::Again { next_ms: now_ms() + wait_ms, said: Saying::NotAtPlant.into() };
         store.tried("mes", &[(entry, again)], now_ms()).unwrap();
         let shared = SharedStore::new(store);
         let mut sink = Looking { folder: folder.clone(), unsent: Vec::new() };
