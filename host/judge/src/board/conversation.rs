@@ -149,6 +149,14 @@ impl Conversation {
         done
     }
 
+    /// Does `act` under the number of another session, or under none with 0, and goes on in the open one.
+    pub(super) fn under_session<T>(&mut self, session: u8, act: impl FnOnce(&mut Self) -> T) -> T {
+        let own = std::mem::replace(&mut self.session, session);
+        let done = act(self);
+        self.session = own;
+        done
+    }
+
     /// The time since `then`; none if the link's clock went back, as that of a spoilt recording does.
     pub(super) fn since(&self, then: Duration) -> Duration {
         self.now().saturating_sub(then)

@@ -50,11 +50,8 @@ impl Board {
         let conversation = &mut self.conversation;
         let before = conversation.tally;
         // What is answered in another session must be heard as well.
-        let own = mem::take(&mut conversation.session);
-        let greeted = greet(conversation, &options);
-        conversation.session = own;
-        let welcome = greeted?;
-        if welcome.session == own {
+        let welcome = conversation.under_session(0, |conversation| greet(conversation, &options))?;
+        if welcome.session == conversation.session {
             conversation.count_behind(before.retries);
         } else {
             conversation.leave_session();
@@ -79,13 +76,12 @@ impl Board {
             take_over: false,
         };
         self.conversation.queue_zeros(2);
-        let own = mem::take(&mut self.conversation.session);
         let request = Request::Hello(hello);
         let asking = Asking::Request(&request);
-        let answer = self.conversation.ask(&asking, Step::Hello, |packet| is_for(packet, hello.nonce));
-        self.conversation.session = own;
-        let answer = answer?;
-        if answer.header.kind == Kind::Hello.code() && answer.header.session != own {
+        let answer = self.conversation.under_session(0, |conversation| {
+            conversation.ask(&asking, Step::Hello, |packet| is_for(packet, hello.nonce))
+        })?;
+        if answer.header.kind == Kind::Hello.code() && answer.header.session != self.session() {
             self.close_foreign(answer.header.session);
         }
         said(Kind::Hello, &answer)
@@ -120,13 +116,14 @@ impl Board {
         kind: Kind,
         payload: &[u8],
     ) -> Result<Said, BoardError> {
-        let own = mem::replace(&mut self.conversation.session, session);
-        // A session that is not open has nobody to ask.
-        let counts = mem::take(&mut self.conversation.counts);
-        let said = self.ask(kind, payload);
-        self.conversation.session = own;
-        self.conversation.counts = counts;
-        match said {
+        let answer = self.conversation.under_session(session, |conversation| {
+            // A session that is not open has nobody to ask.
+            let counts = mem::take(&mut conversation.counts);
+            let answer = conversation.ask(&Asking::Bytes(kind, payload), Step::Request, |_| true);
+            conversation.counts = counts;
+            answer
+        });
+        match answer.and_then(|answer| said(kind, &answer)) {
             Err(BoardError::SessionLost) => {
                 Ok(Said::Refused(Refusal { code: RefusalCode::Session, kind: kind.code(), detail: 0 }))
             }
@@ -137,11 +134,11 @@ impl Board {
     /// Says under the number of the session `session`, which is not open, that all rows before `row_sequence` have come back. That is
     /// not answered.
     pub(crate) fn acknowledge_in_session(&mut self, session: u8, row_sequence: u32) {
-        let conversation = &mut self.conversation;
-        let own = mem::replace(&mut conversation.session, session);
-        let acknowledged = mem::replace(&mut conversation.acknowledged, row_sequence);
-        let sequence = conversation.next_sequence();
-        conversation.queue(&Request::RowAck, sequence);
-        (conversation.session, conversation.acknowledged) = (own, acknowledged);
+        self.conversation.under_session(session, |conversation| {
+            let acknowledged = mem::replace(&mut conversation.acknowledged, row_sequence);
+            let sequence = conversation.next_sequence();
+            conversation.queue(&Request::RowAck, sequence);
+            conversation.acknowledged = acknowledged;
+        });
     }
 }
