@@ -38,7 +38,7 @@ impl Conversation {
     /// What echoes: a line, or a device that has more to say, which may come later. Packets of a board beside an echo would not
     /// make it one.
     pub(super) fn echoed(&mut self) -> Result<BoardError, BoardError> {
-        if self.session != 0 {
+        if self.session.number != 0 {
             return Ok(BoardError::Echoed);
         }
         let begun = self.now();

@@ -24,6 +24,32 @@ const BRIEF: Duration = Duration::from_millis(50);
 /// How far a board's window can be ahead of the rows that came back: the most banks each way, and two rows in the core.
 const MOST_AHEAD: u32 = 2 * u8::MAX as u32 + 2;
 
+/// What belongs to a session, and is forgotten with it.
+#[derive(Default)]
+pub(super) struct Session {
+    /// 0 until a board has answered HELLO.
+    pub(super) number: u8,
+    /// The board's, the greatest of all packets.
+    pub(super) window: u32,
+    /// The row sequence number before which every row has come back.
+    pub(super) acknowledged: u32,
+    /// The same as packets tell it, where that is not all that came back.
+    pub(super) acknowledges_to: Option<u32>,
+    /// What its rows have shown of the board.
+    pub(super) conduct: Conduct,
+    /// Requests that change the board and came to it more than once, as far as can be seen.
+    pub(super) repeated_changes: u64,
+    /// Requests that change the board and were answered twice though sent once, of which the next count tells whether they came twice.
+    pub(super) doubled_changes: u64,
+    /// All requests that were answered twice though sent once.
+    pub(super) second_answers: u64,
+    /// The row sequence number behind all rows that were sent.
+    rows_sent: u32,
+    /// Rows that may come back although nobody takes them.
+    pub(super) unwanted: u32,
+    asked: LastAsked,
+}
+
 pub(super) struct Conversation {
     link: Box<dyn Link>,
     encoder: Encoder,
@@ -32,36 +58,16 @@ pub(super) struct Conversation {
     incoming: Vec<u8>,
     /// The last packet's.
     pub(super) sequence: u16,
-    /// 0 until a board has answered HELLO.
-    pub(super) session: u8,
-    /// The board's, the greatest of all packets.
-    pub(super) window: u32,
-    /// The row sequence number before which every row has come back.
-    pub(super) acknowledged: u32,
-    /// The same as packets tell it, where that is not all that came back.
-    pub(super) acknowledges_to: Option<u32>,
+    pub(super) session: Session,
     pub(super) tally: Tally,
     pub(super) limit: RetryLimit,
     /// The time that was spent waiting at the link, by which deadlines go: a host that is kept from running, or has something
     /// else to do, cannot say that a board is late.
     pub(super) waited: Duration,
-    /// What the session's rows have shown of the board.
-    pub(super) conduct: Conduct,
     /// What the board counts of what was sent.
     pub(super) counted: Counted,
     /// Whether it is asked for that wherever a packet may have been lost unseen.
     pub(super) counts: bool,
-    /// Requests that change the board and came to it more than once in this session, as far as can be seen.
-    pub(super) repeated_changes: u64,
-    /// Requests that change the board and were answered twice though sent once, of which the next count tells whether they came twice.
-    pub(super) doubled_changes: u64,
-    /// All requests that were answered twice though sent once.
-    pub(super) second_answers: u64,
-    /// The row sequence number behind all rows that were sent in this session.
-    rows_sent: u32,
-    /// Rows that may come back although nobody takes them.
-    pub(super) unwanted: u32,
-    asked: LastAsked,
     lateness: Lateness,
     /// When the last packet came in.
     pub(super) heard_at: Duration,
@@ -77,22 +83,12 @@ impl Conversation {
             outgoing: Vec::new(),
             incoming: Vec::new(),
             sequence: options.sequence,
-            session: 0,
-            window: 0,
-            acknowledged: 0,
-            acknowledges_to: None,
+            session: Session::default(),
             tally: Tally::default(),
             limit: options.retry_limit,
             waited: Duration::ZERO,
-            conduct: Conduct::default(),
             counted: Counted::default(),
             counts: options.counts,
-            repeated_changes: 0,
-            doubled_changes: 0,
-            second_answers: 0,
-            rows_sent: 0,
-            unwanted: 0,
-            asked: LastAsked::default(),
             lateness: Lateness::default(),
             heard_at: Duration::ZERO,
             stop: options.stop.clone(),
@@ -101,16 +97,12 @@ impl Conversation {
 
     /// Forgets the session, and what belongs to it.
     pub(super) fn leave_session(&mut self) {
-        (self.session, self.window, self.acknowledged, self.rows_sent, self.unwanted) = (0, 0, 0, 0, 0);
-        self.acknowledges_to = None;
-        self.conduct = Conduct::default();
-        self.asked = LastAsked::default();
-        (self.repeated_changes, self.doubled_changes, self.second_answers) = (0, 0, 0);
+        self.session = Session::default();
     }
 
     /// The row sequence number before which rows may be sent: the board's window, as far as it can be true.
     pub(super) fn credit(&self) -> u32 {
-        self.window.min(self.acknowledged.saturating_add(MOST_AHEAD))
+        self.session.window.min(self.session.acknowledged.saturating_add(MOST_AHEAD))
     }
 
     /// Closes the link and forgets what it did.
@@ -151,9 +143,9 @@ impl Conversation {
 
     /// Does `act` under the number of another session, or under none with 0, and goes on in the open one.
     pub(super) fn under_session<T>(&mut self, session: u8, act: impl FnOnce(&mut Self) -> T) -> T {
-        let own = std::mem::replace(&mut self.session, session);
+        let own = std::mem::replace(&mut self.session.number, session);
         let done = act(self);
-        self.session = own;
+        self.session.number = own;
         done
     }
 
@@ -191,14 +183,14 @@ impl Conversation {
     pub(super) fn tell(&mut self, asking: &Asking<'_>) {
         let sequence = self.next_sequence();
         self.counted.is_blind = true;
-        self.asked.asked(asking, sequence, self.now());
+        self.session.asked.asked(asking, sequence, self.now());
         self.queue_packet(asking.kind(), sequence, |payload| asking.write(payload));
     }
 
     /// Queues a row under the next number, its samples packed where they go.
     pub(super) fn queue_row(&mut self, place: &RowPlace, samples: &[u16]) {
         let sequence = self.next_sequence();
-        self.rows_sent = self.rows_sent.max(place.row_sequence.saturating_add(1));
+        self.session.rows_sent = self.session.rows_sent.max(place.row_sequence.saturating_add(1));
         self.queue_packet(Kind::RowIn, sequence, |payload| RowIn::write_samples(place, samples, payload));
     }
 
@@ -211,8 +203,8 @@ impl Conversation {
     }
 
     fn header(&self, kind: Kind, sequence: u16) -> Header {
-        let session = if kind == Kind::Hello { 0 } else { self.session };
-        let window = self.acknowledges_to.unwrap_or(self.acknowledged);
+        let session = if kind == Kind::Hello { 0 } else { self.session.number };
+        let window = self.session.acknowledges_to.unwrap_or(self.session.acknowledged);
         Header { kind: kind.code(), sequence, reply: false, session, window }
     }
 
@@ -265,13 +257,13 @@ impl Conversation {
         let mut bytes = self.incoming.as_slice();
         while let Some(packet) = self.decoder.next(&mut bytes) {
             match packet {
-                Ok(packet) if packet.header.session == self.session || self.session == 0 => {
+                Ok(packet) if packet.header.session == self.session.number || self.session.number == 0 => {
                     self.heard_at = now;
                     self.tally.packets_in += 1;
-                    if self.session != 0 {
-                        self.window = self.window.max(packet.header.window);
-                        self.conduct.packet(&packet, self.rows_sent);
-                        if let Some(stray) = self.asked.answered(&packet, now) {
+                    if self.session.number != 0 {
+                        self.session.window = self.session.window.max(packet.header.window);
+                        self.session.conduct.packet(&packet, self.session.rows_sent);
+                        if let Some(stray) = self.session.asked.answered(&packet, now) {
                             strays.push(stray);
                             continue;
                         }
@@ -284,7 +276,7 @@ impl Conversation {
                 }
                 Err(damage) => {
                     tracing::debug!("a damaged packet: {damage}");
-                    self.tally.damaged_in += u64::from(self.session != 0);
+                    self.tally.damaged_in += u64::from(self.session.number != 0);
                 }
             }
         }
@@ -294,8 +286,9 @@ impl Conversation {
 
     fn count_stray(&mut self, Stray { needless, changed, is_second }: Stray) {
         self.tally.strays += 1;
-        self.second_answers += u64::from(is_second);
-        let changes = if is_second { &mut self.doubled_changes } else { &mut self.repeated_changes };
+        self.session.second_answers += u64::from(is_second);
+        let changes =
+            if is_second { &mut self.session.doubled_changes } else { &mut self.session.repeated_changes };
         *changes += u64::from(changed);
         needless.into_iter().for_each(|took| self.was_late(took));
     }

@@ -112,21 +112,21 @@ impl Conversation {
         let is_calm = self.tally.retries == self.counted.retries;
         self.counted.take(status, least, self.tally.packets_out);
         let came_once = is_calm && !was_blind && self.counted.lost == lost && self.counted.wrong.is_none();
-        let doubled = mem::take(&mut self.doubled_changes);
-        self.repeated_changes += if came_once { 0 } else { doubled };
+        let doubled = mem::take(&mut self.session.doubled_changes);
+        self.session.repeated_changes += if came_once { 0 } else { doubled };
         (self.counted.is_blind, self.counted.retries) = (false, self.tally.retries);
     }
 
     /// Asks for a count where something was answered twice.
     pub(super) fn count_doubled(&mut self) {
-        if self.doubled_changes > 0 {
+        if self.session.doubled_changes > 0 {
             self.count();
         }
     }
 
     /// The same behind a board that answers twice, so that a second answer that is still under way is settled as well.
     pub(super) fn count_second_answers(&mut self) {
-        if self.second_answers > 0 {
+        if self.session.second_answers > 0 {
             self.count();
         }
     }

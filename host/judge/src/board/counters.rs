@@ -88,6 +88,6 @@ impl Board {
     /// The fewest ROW_OUT packets that the board has sent in this session, by its own numbers.
     #[must_use]
     pub(crate) fn packets_numbered(&self) -> u32 {
-        self.conversation.conduct.packets_numbered()
+        self.conversation.session.conduct.packets_numbered()
     }
 }

@@ -176,20 +176,20 @@ impl Board {
     /// What the board did with rows in this session that no link can do.
     #[must_use]
     pub(crate) fn misconduct(&self) -> Option<Misconduct> {
-        self.conversation.conduct.misconduct()
+        self.conversation.session.conduct.misconduct()
     }
 
     /// How many requests that change the board came to it more than once in this session, as far as can be seen. The second
     /// copy of one may have come late, behind others, and then the board is not as the host thinks that it is.
     #[must_use]
     pub(crate) fn repeated_changes(&self) -> u64 {
-        self.conversation.repeated_changes + self.conversation.doubled_changes
+        self.conversation.session.repeated_changes + self.conversation.session.doubled_changes
     }
 
     /// The row sequence number before which every row has come back.
     #[must_use]
     pub fn acknowledged(&self) -> u32 {
-        self.conversation.acknowledged
+        self.conversation.session.acknowledged
     }
 
     /// What the link did so far.
@@ -317,7 +317,7 @@ fn reset_to(conversation: &mut Conversation, reset: Reset, step: Step) -> Result
     let next_row = reset.next_row;
     let reset = Request::Reset(reset);
     conversation.request(&reset, step, |reply| matches!(reply, Reply::Reset).then_some(()))?;
-    conversation.acknowledged = next_row;
+    conversation.session.acknowledged = next_row;
     Ok(())
 }
 
@@ -341,7 +341,7 @@ fn greet_or_take_over(conversation: &mut Conversation, options: &OpenOptions) ->
         greeted => greeted,
     };
     greeted.inspect(|welcome| {
-        conversation.session = welcome.session;
+        conversation.session.number = welcome.session;
         let tally = conversation.tally;
         conversation.counted = Counted::in_new_session(tally, tally.packets_out - sent);
     })

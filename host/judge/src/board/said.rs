@@ -116,7 +116,7 @@ impl Board {
     /// and how many are broken otherwise.
     pub(crate) fn give_damaged(&mut self, request: &Request<'_>) -> [u32; 2] {
         let number = self.conversation.next_sequence();
-        self.conversation.conduct.await_answer(number);
+        self.conversation.session.conduct.await_answer(number);
         let from = self.conversation.queued();
         self.conversation.queue_damaged(request);
         self.conversation.queue_misnamed(request);
@@ -125,9 +125,9 @@ impl Board {
 
     /// The same with ROW_ACKs of all rows before `row_sequence`.
     pub(crate) fn acknowledge_damaged(&mut self, row_sequence: u32) -> [u32; 2] {
-        let before = self.conversation.acknowledges_to.replace(row_sequence);
+        let before = self.conversation.session.acknowledges_to.replace(row_sequence);
         let damaged = self.give_damaged(&Request::RowAck);
-        self.conversation.acknowledges_to = before;
+        self.conversation.session.acknowledges_to = before;
         damaged
     }
 
@@ -138,22 +138,23 @@ impl Board {
 
     /// Of the requests that changed the board and came to it more than once, those beyond so many cast no doubt on what was found.
     pub(crate) fn excuse_changes(&mut self, changes: u64) {
-        self.conversation.repeated_changes = changes.saturating_sub(self.conversation.doubled_changes);
+        self.conversation.session.repeated_changes =
+            changes.saturating_sub(self.conversation.session.doubled_changes);
     }
 
     /// What the board answered those packets with, if it did.
     pub(crate) fn answer_to_damaged(&self) -> Option<Said> {
-        self.conversation.conduct.answer_to_damaged().cloned()
+        self.conversation.session.conduct.answer_to_damaged().cloned()
     }
 
     /// Requests that were answered, and those that were answered once more though sent once.
     pub(crate) fn answers(&self) -> [u64; 2] {
-        [self.conversation.tally.answered, self.conversation.second_answers]
+        [self.conversation.tally.answered, self.conversation.session.second_answers]
     }
 
     /// ROW_OUT packets that came twice.
     pub(crate) fn rows_doubled(&self) -> u32 {
-        self.conversation.conduct.doubled()
+        self.conversation.session.conduct.doubled()
     }
 
     /// What came to the board and back more often than it was sent has its reason by now, and casts no doubt on what was found.
@@ -162,7 +163,7 @@ impl Board {
     /// [`BoardError`] when the board does not set its counters back.
     pub(crate) fn excuse_repeats(&mut self) -> Result<(), BoardError> {
         self.status(true)?;
-        (self.conversation.repeated_changes, self.conversation.doubled_changes) = (0, 0);
+        (self.conversation.session.repeated_changes, self.conversation.session.doubled_changes) = (0, 0);
         self.conversation.counted.wrong = None;
         Ok(())
     }
@@ -194,7 +195,7 @@ impl Board {
         let request = Request::Reset(reset);
         let answer = self.conversation.ask(&Asking::Request(&request), Step::Request, |_| true)?;
         take_reply(Kind::Reset, &answer, |reply| matches!(reply, Reply::Reset).then_some(()))?;
-        self.conversation.acknowledged = reset.next_row;
+        self.conversation.session.acknowledged = reset.next_row;
         Ok(answer.header.window.saturating_sub(reset.next_row))
     }
 
@@ -247,40 +248,40 @@ impl Board {
 
     /// From now on packets acknowledge the rows before `row_sequence` alone, or all that came back if it is none.
     pub(crate) fn acknowledge_to(&mut self, row_sequence: Option<u32>) {
-        self.conversation.acknowledges_to = row_sequence;
+        self.conversation.session.acknowledges_to = row_sequence;
     }
 
     /// Sends a ROW_ACK of all rows before `row_sequence`, which no other packet acknowledges thereby.
     pub(crate) fn acknowledge_alone(&mut self, row_sequence: u32) {
-        let before = self.conversation.acknowledges_to.replace(row_sequence);
+        let before = self.conversation.session.acknowledges_to.replace(row_sequence);
         let sequence = self.conversation.next_sequence();
         self.conversation.queue(&Request::RowAck, sequence);
-        self.conversation.acknowledges_to = before;
+        self.conversation.session.acknowledges_to = before;
     }
 
     /// So many rows may come while something else is waited for.
     pub(crate) fn disregard_rows(&mut self, rows: u32) {
-        self.conversation.unwanted = rows;
+        self.conversation.session.unwanted = rows;
     }
 
     /// The ROW_OUT packets that came in this session, each counted once however often the link delivers it.
     pub(crate) fn rows_came(&self) -> u32 {
-        self.conversation.conduct.came()
+        self.conversation.session.conduct.came()
     }
 
     /// What the board refused the row with that was sent in the packet `number`, if that was the last that it refused.
     pub(crate) fn refusal_of_row(&self, number: u16) -> Option<Refusal> {
-        self.conversation.conduct.refused_row(number)
+        self.conversation.session.conduct.refused_row(number)
     }
 
     /// The row sequence number before which the board lets rows be sent, the greatest that it said.
     pub(crate) fn window(&self) -> u32 {
-        self.conversation.window
+        self.conversation.session.window
     }
 
     /// Counts all rows before `row_sequence` as come back.
     pub(crate) fn acknowledge(&mut self, row_sequence: u32) {
-        self.conversation.acknowledged = row_sequence;
+        self.conversation.session.acknowledged = row_sequence;
     }
 
     /// Starts `burst`, and drops it and all rows as soon as so many bytes without meaning have gone to the board behind it.
@@ -298,10 +299,10 @@ impl Board {
     /// # Errors
     /// [`BoardError`] when the board refuses, or does not answer.
     pub(crate) fn drop_rows_behind(&mut self, bytes: usize, given: u32) -> Result<(), BoardError> {
-        self.conversation.unwanted = given;
+        self.conversation.session.unwanted = given;
         self.conversation.queue_zeros(bytes);
         let dropped = self.drop_rows();
-        self.conversation.unwanted = 0;
+        self.conversation.session.unwanted = 0;
         dropped
     }
 

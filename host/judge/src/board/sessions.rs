@@ -14,7 +14,7 @@ use super::{Board, BoardError, OpenOptions, VERSION, greet, greet_or_take_over, 
 impl Board {
     /// Number of the open session.
     pub(crate) fn session(&self) -> u8 {
-        self.conversation.session
+        self.conversation.session.number
     }
 
     /// Opens another session over the same link, by a nonce that none before had. Whatever is still under way of the one before means
@@ -51,11 +51,11 @@ impl Board {
         let before = conversation.tally;
         // What is answered in another session must be heard as well.
         let welcome = conversation.under_session(0, |conversation| greet(conversation, &options))?;
-        if welcome.session == conversation.session {
+        if welcome.session == conversation.session.number {
             conversation.count_behind(before.retries);
         } else {
             conversation.leave_session();
-            conversation.session = welcome.session;
+            conversation.session.number = welcome.session;
             let sent = conversation.tally.packets_out - before.packets_out;
             conversation.counted = Counted::in_new_session(conversation.tally, sent);
         }
@@ -135,10 +135,10 @@ impl Board {
     /// not answered.
     pub(crate) fn acknowledge_in_session(&mut self, session: u8, row_sequence: u32) {
         self.conversation.under_session(session, |conversation| {
-            let acknowledged = mem::replace(&mut conversation.acknowledged, row_sequence);
+            let acknowledged = mem::replace(&mut conversation.session.acknowledged, row_sequence);
             let sequence = conversation.next_sequence();
             conversation.queue(&Request::RowAck, sequence);
-            conversation.acknowledged = acknowledged;
+            conversation.session.acknowledged = acknowledged;
         });
     }
 }

@@ -37,12 +37,12 @@ impl Conversation {
     ) -> Result<OwnedPacket, BoardError> {
         let (kind, sequence, begun) = (asking.kind(), self.next_sequence(), self.now());
         let attempts = step.deadline().attempts;
-        self.asked.asked(asking, sequence, begun);
+        self.session.asked.asked(asking, sequence, begun);
         let mut attempt = 0;
         while attempt < attempts {
             if attempt > 0 {
                 tracing::info!("{kind} was not answered; asking again");
-                self.repeated_changes += u64::from(self.asked.asked_again());
+                self.session.repeated_changes += u64::from(self.session.asked.asked_again());
                 self.count_retry()?;
             }
             if attempt == 0 || self.queued() == 0 {
@@ -87,8 +87,8 @@ impl Conversation {
                 answer.get_or_insert_with(|| OwnedPacket { header, payload: packet.payload.to_vec() });
             }
         })?;
-        let unwanted = rows.min(self.unwanted.into());
-        self.unwanted -= unwanted as u32;
+        let unwanted = rows.min(self.session.unwanted.into());
+        self.session.unwanted -= unwanted as u32;
         self.tally.strays += rows - unwanted;
         let sent = self.header(asking.kind(), sequence);
         match answer {

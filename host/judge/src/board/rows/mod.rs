@@ -50,7 +50,7 @@ pub(crate) struct Given {
 }
 
 /// Streams all frames of `traffic` through the board, of which rows may have been `given` already. Rows are numbered from
-/// `conversation.acknowledged` on.
+/// `conversation.session.acknowledged` on.
 pub(super) fn stream(
     conversation: &mut Conversation,
     traffic: &mut dyn RowTraffic,
@@ -68,7 +68,7 @@ pub(super) fn stream_once(
     conversation: &mut Conversation,
     traffic: &mut dyn RowTraffic,
 ) -> Result<Option<Unreturned>, BoardError> {
-    let first_row = conversation.acknowledged;
+    let first_row = conversation.session.acknowledged;
     let mut stream = Stream::new(conversation, traffic, Given::default(), 1);
     match stream.run() {
         Ok(()) => Ok(None),
@@ -110,7 +110,7 @@ impl<'a> Stream<'a> {
         given: Given,
         most: u32,
     ) -> Self {
-        let (first_row, now) = (conversation.acknowledged, conversation.waited);
+        let (first_row, now) = (conversation.session.acknowledged, conversation.waited);
         let numbers = Numbers::new(given, conversation.tally.packets_out);
         Self {
             conversation,
@@ -218,7 +218,7 @@ impl<'a> Stream<'a> {
                 }
             },
         )?;
-        self.conversation.acknowledged = self.missing();
+        self.conversation.session.acknowledged = self.missing();
         self.conversation.tally.strays += std::mem::take(&mut self.arrivals.old_refusals);
         self.conversation.counted.came((self.came() - came).into());
         taken?;
