@@ -5,7 +5,7 @@ use std::time::Duration;
 use halfrow::link::{self, Candidate};
 use halfrow::progress::Silent;
 use halfrow::result::{CheckName, Outcome, Report};
-use halfrow::run::{Build, Circumstances, Part, Plan, RunOptions, Selection, Vary, verify};
+use halfrow::run::{AtSpeed, Build, Circumstances, Part, Plan, RunOptions, Selection, Vary, verify};
 use halfrow::target::Target;
 use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, Kernel, TableSet};
 
@@ -119,7 +119,7 @@ pub fn streamed(plan: Plan) -> Plan {
     let all = plan.clone().varying(Vary { centre: true, depth: true }).parts(&Build::full(2048));
     let streamed =
         all.into_iter().filter(|part| !matches!(part, Part::AtSpeed | Part::Corners | Part::Rules));
-    Plan { at_speed: Some(Duration::ZERO), parts: Some(Selection::all(streamed)), ..plan }
+    Plan { at_speed: AtSpeed::Off, parts: Some(Selection::all(streamed)), ..plan }
 }
 
 /// The report on a board by this plan.

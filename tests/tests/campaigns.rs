@@ -8,7 +8,7 @@ use std::time::Duration;
 use halfrow::link;
 use halfrow::progress::Silent;
 use halfrow::result::{Report, SoakLength, SoakReport};
-use halfrow::run::{Plan, RunOptions, verify};
+use halfrow::run::{AtSpeed, Plan, RunOptions, verify};
 use halfrow::verdict::Verdict;
 use halfrow_tests::campaign::{self, Found, Kind};
 use halfrow_tests::poor_links::{self, Case, Kept, Way};
@@ -127,8 +127,11 @@ fn none_of_twenty_thousand_poor_links_gives_a_false_verdict() {
 /// Eight hours of the mock's clock, at which a burst has 2307 frames of 64 x 8 samples, and the host looks every 250 ms.
 #[allow(clippy::print_stdout)]
 fn soaked_for_eight_hours(target: &str) -> Report {
-    let plan =
-        Plan { soak: Some(SoakLength::Time { seconds: 28_800.0 }), fail_fast: false, ..System::TINY.plan() };
+    let plan = Plan {
+        at_speed: AtSpeed::Soak(SoakLength::Time { seconds: 28_800.0 }),
+        fail_fast: false,
+        ..System::TINY.plan()
+    };
     let candidate = link::open(&target.parse().unwrap()).unwrap();
     let report = verify(&plan, candidate, &RunOptions::default(), &Silent).unwrap().report;
     let soak = report.soak.as_ref().unwrap();

@@ -131,7 +131,7 @@ impl Options<'_> {
             frames,
             repeat: self.repeat,
             vary: Vary { centre: is_free, depth: is_free },
-            at_speed: choices::seconds("at_speed", self.at_speed)?,
+            at_speed: choices::seconds("at_speed", self.at_speed)?.into(),
             within: choices::within(self.within)?,
             fail_fast: self.fail_fast,
             seed: self.seed,

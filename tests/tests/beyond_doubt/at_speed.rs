@@ -1,15 +1,13 @@
 //! Frames that a board makes on its own: what is wrong with them is the board's, what is missing is nobody's, and what was not
 //! judged is said.
 
-use std::time::Duration;
-
 use halfrow::link;
 use halfrow::progress::Silent;
 use halfrow::result::{
     BurstCount, Check, CheckName, Defect, EqualAtSpeed, Finding, NoBurst, NotExercised, Outcome, Repetition,
     Report, Streamed, Suspect,
 };
-use halfrow::run::{Plan, RunOptions, verify};
+use halfrow::run::{AtSpeed, Plan, RunOptions, verify};
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
 use halfrow_protocol::message::{BurstMode, BurstState, FrameRecord, Records, Request};
@@ -171,7 +169,7 @@ fn why_nothing_was_tested_at_speed_is_said() {
     let unknown = judge_claims(&TINY, |board| {
         board.bursts.iter_mut().for_each(|bursts| bursts.content = 2);
     });
-    let plan = Plan { at_speed: Some(Duration::ZERO), ..TINY.plan() };
+    let plan = Plan { at_speed: AtSpeed::Off, ..TINY.plan() };
     let candidate = Altered::new(&Options::default(), |_, packet: Passing| vec![packet]).candidate();
     let unasked = verify(&plan, candidate, &RunOptions::default(), &Silent).unwrap().report;
     for (report, reason) in [(without, none), (unknown, other), (unasked, NoBurst::NotAskedFor {})] {

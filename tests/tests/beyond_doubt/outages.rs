@@ -8,7 +8,7 @@ use std::time::Duration;
 use halfrow::link::{Candidate, Link};
 use halfrow::progress::Silent;
 use halfrow::result::{CheckName, Finding, Outcome, Report, SoakLength};
-use halfrow::run::{Plan, RunOptions, verify};
+use halfrow::run::{AtSpeed, Plan, RunOptions, verify};
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
 use halfrow_protocol::message::{Records, RowOut};
@@ -149,8 +149,8 @@ fn a_soak_that_breaks_off_in_front_of_a_second_look_tells_what_differed() {
         let twice = (toward == Toward::Board && packet.is(Kind::Burst)).then(|| packet.clone());
         twice.into_iter().chain([packet]).collect()
     };
-    let soak = Some(SoakLength::Frames { frames: 3 });
-    let plan = Plan { soak, fail_fast: false, ..System::TINY.plan() };
+    let at_speed = AtSpeed::Soak(SoakLength::Frames { frames: 3 });
+    let plan = Plan { at_speed, fail_fast: false, ..System::TINY.plan() };
     let report = verify(&plan, breakable(alter, is_cut), &RunOptions::default(), &Silent).unwrap().report;
     assert_eq!((report.verdict(), report.cause), (Verdict::Error, Cause::Station), "{}", report.headline());
     let Finding::SecondLookBrokenOff(broken_off) = &report.finding else { panic!("{}", report.headline()) };

@@ -1,9 +1,7 @@
 //! What a board must refuse, keep and end: one that does otherwise fails, wherever it does, and a sound one never.
 
-use std::time::Duration;
-
 use halfrow::result::{Answer, Check, CheckName, Finding, NotExercised, Outcome, Report, Rule};
-use halfrow::run::{Part, Plan, Selection};
+use halfrow::run::{AtSpeed, Part, Plan, Selection};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_protocol::message::{BurstState, Records, Refusal, RowOut, Status, TrappedRow};
@@ -313,7 +311,7 @@ fn a_commit_that_is_not_checked_passes_but_for_the_rules() {
 /// What a board must answer about bursts is a rule as any other, however long it is judged at speed.
 #[test]
 fn a_board_whose_trap_keeps_nothing_breaks_a_rule_also_where_no_time_is_spent_at_speed() {
-    let plan = Plan { at_speed: Some(Duration::ZERO), ..System::TINY.plan() };
+    let plan = Plan { at_speed: AtSpeed::Off, ..System::TINY.plan() };
     let nothing_kept = |toward, mut packet: Passing| {
         if toward == Toward::Host && packet.is(Kind::Trap) {
             packet.payload = vec![0];

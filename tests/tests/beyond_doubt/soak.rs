@@ -12,7 +12,7 @@ use halfrow::result::{
     CheckName, Defect, EqualAtSpeed, Finding, NoBurst, NotExercised, Repetition, Report, SoakDifference,
     SoakInterval, SoakLength, SoakReport,
 };
-use halfrow::run::{Plan, RunOptions, verify};
+use halfrow::run::{AtSpeed, Plan, RunOptions, verify};
 use halfrow::verdict::{Cause, StoppedBy, Verdict};
 use halfrow_mock::Options;
 use halfrow_protocol::message::{BurstState, FrameRecord, Records, Request};
@@ -26,7 +26,7 @@ use halfrow_tests::system::{System, failed_check};
 const TINY: System = System::TINY;
 
 fn plan(length: SoakLength) -> Plan {
-    Plan { soak: Some(length), fail_fast: false, ..TINY.plan() }
+    Plan { at_speed: AtSpeed::Soak(length), fail_fast: false, ..TINY.plan() }
 }
 
 /// A board whose bursts of a minute have 1153 frames: (64·8 + 8) clocks of 10 kHz each.

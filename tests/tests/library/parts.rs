@@ -1,12 +1,11 @@
 //! Runs of some of their parts.
 
 use std::sync::{Arc, Mutex};
-use std::time::Duration;
 
 use halfrow::board::{Board, OpenOptions};
 use halfrow::frames::Builtin;
 use halfrow::result::{CheckName, EqualAtSpeed, Finding, NoBurst, NotExercised, Outcome, Report, SoakLength};
-use halfrow::run::{Build, FrameSource, Part, Plan, Prices, Rates, Selection};
+use halfrow::run::{AtSpeed, Build, FrameSource, Part, Plan, Prices, Rates, Selection};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_model::{BitDepth, Equidistant, Geometry, GridShape, Interpolant, TableSet};
@@ -177,8 +176,7 @@ fn a_frame_of_a_file_is_cut_like_any() {
     let scene = whole.scene(7);
     let frame = Arc::new(Builtin::Noise.render(&scene).unwrap());
     let file = FrameSource::File { path: "own.pgm".into(), frame };
-    let plan =
-        Plan { at_speed: Some(Duration::ZERO), parts: Some(Selection::least()), ..whole.frames([file]) };
+    let plan = Plan { at_speed: AtSpeed::Off, parts: Some(Selection::least()), ..whole.frames([file]) };
     let report = judge_by_plan(&plan, open("mock"));
     assert_eq!((report.verdict(), report.frames[0].first_rows), (Verdict::Pass, Some(1)));
 }
@@ -203,8 +201,8 @@ fn a_grid_beside_which_there_is_no_decoy_is_judged_without_one() {
     assert!(report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
     let report = judge_by_plan(&plan, open("mock,fault=stuck-data"));
     assert_eq!(failed_check(&report), Some(CheckName::Frames), "{}", report.headline());
-    let soak = Some(SoakLength::Frames { frames: 100 });
-    let report = judge_by_plan(&Plan { soak, ..plan }, open("mock"));
+    let at_speed = AtSpeed::Soak(SoakLength::Frames { frames: 100 });
+    let report = judge_by_plan(&Plan { at_speed, ..plan }, open("mock"));
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     assert!(report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
 }

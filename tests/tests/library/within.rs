@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use halfrow::progress::Silent;
 use halfrow::result::{CheckName, Report, WithinReport};
-use halfrow::run::{Misfit, Plan, RunOptions, Vary, WithinError, verify};
+use halfrow::run::{AtSpeed, Misfit, Plan, RunOptions, Vary, WithinError, verify};
 use halfrow::verdict::Verdict;
 use halfrow_tests::system::{System, failed_check, open};
 
@@ -111,7 +111,7 @@ fn a_time_that_does_not_suffice_is_refused_with_the_least_that_does() {
     assert!(report.link.seconds <= least);
     assert!(judged(SLOW, &plan(least - 0.002)).is_err());
 
-    let at_speed = |seconds| Plan { at_speed: Some(Duration::from_millis(10)), ..plan(seconds) };
+    let at_speed = |seconds| Plan { at_speed: AtSpeed::For(Duration::from_millis(10)), ..plan(seconds) };
     // 10 ms are 930 frames of 1,024 clocks and 8; their records of 18 bytes take 0.84 s.
     let WithinError::AtSpeed { least, .. } = refused(&at_speed(1.8)) else { panic!() };
     assert!((1.8..3.0).contains(&least), "{least}");

@@ -19,7 +19,7 @@ use crate::signals;
 use halfrow::board::deadlines::RetryLimit;
 use halfrow::board::{OpenOptions, Stop};
 use halfrow::link::{self, Candidate, Recording, kinds};
-use halfrow::run::{Build, JUDGED, Plan};
+use halfrow::run::{AtSpeed, Build, JUDGED, Plan};
 use halfrow::target::{BoardKind, Target, TargetError};
 use halfrow::verdict::StoppedBy;
 
@@ -126,7 +126,7 @@ impl BoardArguments {
         let tables = &plan.tables;
         let grid = tables.shape().map(|_| tables.units().len());
         let (width, height) = (tables.geometry().width(), tables.geometry().height());
-        let at_speed = plan.at_speed != Some(Duration::ZERO);
+        let at_speed = plan.at_speed != AtSpeed::Off;
         let streamed = Streamed { width, height, grid, frames, at_speed };
         match fault.and_then(|fault| fault.without_effect(&streamed)) {
             None => Ok(()),

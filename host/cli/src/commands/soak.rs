@@ -14,7 +14,7 @@ use crate::progress;
 use crate::settings::Settings;
 use halfrow::frames::Builtin;
 use halfrow::result::SoakLength;
-use halfrow::run::{self, FrameSource, Plan, RunOptions};
+use halfrow::run::{self, AtSpeed, FrameSource, Plan, RunOptions};
 
 /// How long a board may stay away when nothing is said of it: longer than it takes somebody to come by and plug it in again.
 const PATIENCE: Duration = Duration::from_secs(300);
@@ -83,7 +83,8 @@ impl Arguments {
         let tables = self.run.table_file(&self.given, settings)?;
         let (chosen, inputs) = self.run.chosen(tables, settings)?;
         let plan = chosen.plan(self.run.lens.phase).frames([FrameSource::Builtin(Builtin::Noise)]);
-        let plan = Plan { soak: Some(self.length.asked()), seed: self.run.seed(settings), ..plan };
+        let plan =
+            Plan { at_speed: AtSpeed::Soak(self.length.asked()), seed: self.run.seed(settings), ..plan };
         // Settings are of all runs, and few of those last for hours.
         let longer = settings.reconnect.filter(|&seconds| seconds > PATIENCE.as_secs_f64());
         let patience = self.run.patience(longer, PATIENCE)?.unwrap_or(PATIENCE);

@@ -212,7 +212,7 @@ impl Arguments {
         Ok(Plan {
             frames,
             repeat: self.repeat,
-            at_speed: seconds("--at-speed", self.at_speed.or(settings.at_speed))?,
+            at_speed: seconds("--at-speed", self.at_speed.or(settings.at_speed))?.into(),
             within: self.within.and_then(call::within),
             fail_fast: self.fail_fast,
             seed: self.run.seed(settings),

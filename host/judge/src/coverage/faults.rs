@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use crate::frames::Builtin;
 use crate::result::CoverageReport;
-use crate::run::{Build, FEW_AT_SPEED, FrameSource, Part, Plan, Selection, Vary};
+use crate::run::{AtSpeed, Build, FEW_AT_SPEED, FrameSource, Part, Plan, Selection, Vary};
 
 /// Frames at speed that faults were looked for with.
 pub(super) const FRAMES: usize = FEW_AT_SPEED as usize;
@@ -214,8 +214,7 @@ impl Faults {
     /// What a whole run by `plan` on a board of this build finds; none when that was not measured.
     #[must_use]
     pub fn whole(&self, plan: &Plan, build: &str) -> Option<CoverageReport> {
-        let is_whole =
-            plan.parts.is_none() && plan.within.is_none() && plan.at_speed.is_none() && plan.soak.is_none();
+        let is_whole = plan.parts.is_none() && plan.within.is_none() && plan.at_speed == AtSpeed::Usual;
         (is_whole && self.are_of(plan, build)).then(|| CoverageReport {
             found: self.found_by_whole(),
             faults: self.count(),
@@ -351,7 +350,7 @@ mod tests {
         assert_eq!(faults.whole(&plan, "00000000"), None);
         let others = [
             Plan { seed: 2, ..plan.clone() },
-            Plan { at_speed: Some(Duration::ZERO), ..plan.clone() },
+            Plan { at_speed: AtSpeed::Off, ..plan.clone() },
             Plan { within: Some(Duration::from_secs(1)), ..plan.clone() },
             Plan { parts: Some(Selection::least()), ..plan.clone() },
             Plan { kernel: Interpolant::Linear.into(), ..plan.clone() },

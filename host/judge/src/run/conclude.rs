@@ -66,7 +66,7 @@ pub(super) fn conclude(
         street,
         within: findings.within,
         coverage,
-        soak: findings.soak.or_else(|| plan.soak.map(SoakReport::new)),
+        soak: findings.soak.or_else(|| plan.at_speed.soak().map(SoakReport::new)),
         evidence: evidence_report,
         lacks: Vec::new(),
         link: link(findings.link, &findings.tally),

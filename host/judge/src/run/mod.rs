@@ -72,7 +72,8 @@ pub use misfit::{Misfit, misfit};
 pub use options::RunOptions;
 pub use parts::{Part, Selection};
 pub use plan::{
-    DECOY, FrameSource, Generation, JUDGED, MOST_FRAMES, Plan, ScheduledFrame, Segment, Timing, TooManyFrames,
+    AtSpeed, DECOY, FrameSource, Generation, JUDGED, MOST_FRAMES, Plan, ScheduledFrame, Segment, Timing,
+    TooManyFrames,
 };
 pub(crate) use prepared::PrepareError;
 pub use prices::{Prices, Rates, usual_capabilities};

@@ -83,6 +83,41 @@ pub enum Timing {
     Gaps(u32),
 }
 
+/// How long a board makes frames on its own, at its full pixel clock.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum AtSpeed {
+    /// For 3 s of its clock on hardware; some frames on any other board.
+    #[default]
+    Usual,
+    /// Not at all.
+    Off,
+    /// For so long on its clock.
+    For(Duration),
+    /// For a soak, which may take hours, and behind which no rules are tried.
+    Soak(SoakLength),
+}
+
+impl AtSpeed {
+    /// The length of the soak, if it is one.
+    pub(crate) fn soak(self) -> Option<SoakLength> {
+        match self {
+            Self::Soak(length) => Some(length),
+            Self::Usual | Self::Off | Self::For(_) => None,
+        }
+    }
+}
+
+/// What a call says of it: nothing, none at all, or a time.
+impl From<Option<Duration>> for AtSpeed {
+    fn from(asked: Option<Duration>) -> Self {
+        match asked {
+            None => Self::Usual,
+            Some(Duration::ZERO) => Self::Off,
+            Some(time) => Self::For(time),
+        }
+    }
+}
+
 /// What a run will do. How it is done stands in [`RunOptions`](super::RunOptions).
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -111,11 +146,8 @@ pub struct Plan {
     /// How long the run may take on the link's clock: what finds most a second is taken of it then. None for the whole run,
     /// or the `parts`. What is chosen depends on the link, so a recording of such a run cannot be judged again.
     pub within: Option<Duration>,
-    /// How long the board makes frames on its own, on its own clock: 3 s of hardware and some frames of any other board when
-    /// not given.
-    pub at_speed: Option<Duration>,
-    /// How long a soak is that takes the place of those frames, if there is one.
-    pub soak: Option<SoakLength>,
+    /// The frames that the board makes on its own, at its full pixel clock.
+    pub at_speed: AtSpeed,
     /// End with the first frame that differs.
     pub fail_fast: bool,
     /// The seed of nonces, link test and noise.
@@ -163,7 +195,7 @@ pub const JUDGED: u8 = 2;
 const VARIED: u8 = 3;
 
 impl Plan {
-    /// To judge with `tables` and `kernel`, once each, the built-in frames as the paper's lens sees them.
+    /// A plan that streams each built-in frame once, as the paper's lens sees it, and judges by `tables` and `kernel`.
     #[must_use]
     pub fn new(tables: TableSet, kernel: Kernel) -> Self {
         Self {
@@ -179,8 +211,7 @@ impl Plan {
             vary: Vary::default(),
             parts: None,
             within: None,
-            at_speed: None,
-            soak: None,
+            at_speed: AtSpeed::Usual,
             fail_fast: false,
             seed: 1,
         }

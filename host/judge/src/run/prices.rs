@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::at_speed;
 use super::parts::{Part, Selection, parts_of};
 use super::patterns::patterns;
-use super::plan::{Plan, SENSOR_BLANKING, Segment, Timing};
+use super::plan::{AtSpeed, Plan, SENSOR_BLANKING, Segment, Timing};
 use super::rules;
 use super::variations::Build;
 use crate::board::{Board, BoardError, BoardNature, Bursts, Capabilities, Table};
@@ -123,7 +123,7 @@ impl<'a> Prices<'a> {
     }
 
     fn has_bursts(&self) -> bool {
-        self.plan.at_speed != Some(Duration::ZERO)
+        self.plan.at_speed != AtSpeed::Off
             && self.capabilities.bursts.is_some_and(|bursts| bursts.content == at_speed::CONTENT)
     }
 

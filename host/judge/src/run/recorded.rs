@@ -9,7 +9,7 @@ use std::time::Duration;
 use halfrow_model::{Equidistant, Frame, FrameError, Geometry, LensError, Phase, UnknownPhase};
 use serde::{Deserialize, Serialize};
 
-use super::{Circumstances, Draws, FrameSource, JUDGED, Plan, RunOptions, Selection, Vary};
+use super::{AtSpeed, Circumstances, Draws, FrameSource, JUDGED, Plan, RunOptions, Selection, Vary};
 use crate::board::Sent;
 use crate::board::deadlines::RetryLimit;
 use crate::frames::{Builtin, UnknownBuiltin};
@@ -102,7 +102,11 @@ impl RecordedRun {
             repeat: plan.repeat,
             vary: plan.vary,
             parts: plan.parts.clone(),
-            at_speed: plan.at_speed,
+            at_speed: match plan.at_speed {
+                AtSpeed::Usual | AtSpeed::Soak(_) => None,
+                AtSpeed::Off => none_at_speed(),
+                AtSpeed::For(time) => Some(time),
+            },
             fail_fast: plan.fail_fast,
             take_over: options.take_over,
             counts: options.counts,
@@ -131,7 +135,7 @@ impl RecordedRun {
             repeat: run.repeat,
             vary: run.vary,
             parts: run.parts.clone(),
-            at_speed: run.at_speed,
+            at_speed: run.at_speed.into(),
             fail_fast: run.fail_fast,
             seed: run.seed,
             frames: run.frames(recording, file.tables.geometry(), phase)?,

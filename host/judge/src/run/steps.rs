@@ -71,7 +71,7 @@ impl Run<'_> {
             self.persist(Self::link)?;
             let last = self.stream_all(&schedule, &frames)?;
             self.judge_over_outages(last)?;
-            match self.plan.soak {
+            match self.plan.at_speed.soak() {
                 Some(length) => self.soak(length, last)?,
                 None => self.at_speed(last)?,
             }

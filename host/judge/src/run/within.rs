@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::findings::{During, End, Findings};
 use super::parts::{Part, Selection};
-use super::plan::Plan;
+use super::plan::{AtSpeed, Plan};
 use super::prices::{Prices, Rates};
 use super::{Misfit, misfit};
 use crate::board::Board;
@@ -131,7 +131,7 @@ fn chosen(prices: &Prices<'_>, build: &str, time: Time) -> Result<(Selection, Wi
             false => WithinError::TooFew { seconds, least },
         });
     }
-    if prices.plan().at_speed.is_some() && prices.parts().contains(&Part::AtSpeed) {
+    if matches!(prices.plan().at_speed, AtSpeed::For(_)) && prices.parts().contains(&Part::AtSpeed) {
         from = from.with(Part::AtSpeed, prices.most(Part::AtSpeed));
         if let Some(least) = least_for(&from) {
             return Err(WithinError::AtSpeed { seconds, least });

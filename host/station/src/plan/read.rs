@@ -259,7 +259,7 @@ impl Judging {
             Seed::Fixed(seed) => seed,
         };
         let plan = self.chosen.clone().plan(self.phase).frames(self.frames.iter().cloned());
-        halfrow::Plan { repeat: self.repeat, at_speed: self.at_speed, seed, ..plan }
+        halfrow::Plan { repeat: self.repeat, at_speed: self.at_speed.into(), seed, ..plan }
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
+use halfrow::run::AtSpeed;
 use halfrow_station::plan::limits::{Blame, MEASUREMENTS, Measurement};
 use halfrow_station::plan::{Act, JSON_SCHEMA, Plan, Seed};
 use serde_json::Value;
@@ -113,7 +114,7 @@ fn a_plan_says_what_is_done_with_each_variant() {
     assert_ne!(judging(of_narrow, 2).chosen.kernel, judging(of_narrow, 3).chosen.kernel);
     assert_eq!((judging(of_wide, 2).seed, judging(of_wide, 3).seed), (Seed::Run, Seed::Fixed(7)));
     let at_speed = [2, 3].map(|step| judging(of_wide, step).plan(0).at_speed);
-    assert_eq!(at_speed, [Some(Duration::from_millis(1500)), None]);
+    assert_eq!(at_speed, [AtSpeed::For(Duration::from_millis(1500)), AtSpeed::Usual]);
 }
 
 /// The hash is of the text and of what it names, by a calculation of its own: `sha256sum` of the same bytes.

@@ -22,7 +22,7 @@ use halfrow_protocol::message::{BurstMode, Capabilities};
 
 use super::findings::{During, End};
 use super::parts::Part;
-use super::plan::{DECOY, Generation, JUDGED, Segment};
+use super::plan::{AtSpeed, DECOY, Generation, JUDGED, Segment};
 use super::steps::Run;
 use crate::board::{Bank, Bursts, RowTiming};
 use crate::progress::Step;
@@ -95,7 +95,7 @@ impl Run<'_> {
     fn bursts(&self) -> Result<Bursts, NoBurst> {
         match self.plan.amount(Part::AtSpeed) {
             0 => Err(NoBurst::LeftOut {}),
-            _ if self.plan.at_speed == Some(Duration::ZERO) => Err(NoBurst::NotAskedFor {}),
+            _ if self.plan.at_speed == AtSpeed::Off => Err(NoBurst::NotAskedFor {}),
             _ => self.known_bursts(),
         }
     }

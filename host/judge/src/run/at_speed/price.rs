@@ -1,5 +1,7 @@
 //! What frames at speed cost.
 
+use std::time::Duration;
+
 use halfrow_model::Geometry;
 use halfrow_protocol::message::{BurstMode, FrameRecord};
 
@@ -7,7 +9,7 @@ use super::burst::{BurstPlan, USUAL_CLOCK};
 use super::{FEW, USUAL, corners};
 use crate::board::{BoardNature, Bursts, Capabilities};
 use crate::run::prices::Prices;
-use crate::run::{Generation, Plan};
+use crate::run::{AtSpeed, Generation, Plan};
 
 /// Payload of a request for records, and of the reply beside these.
 const LOOK: (usize, usize) = (4, 10);
@@ -25,9 +27,12 @@ pub(super) fn usual_burst(
 ) -> BurstPlan {
     let mut burst = BurstPlan::new(plan.tables.geometry(), plan.seed, capabilities, bursts, mode, 0);
     burst.frames = match plan.at_speed {
-        Some(time) => burst.frames_in(time),
-        None if capabilities.nature == BoardNature::Hardware => burst.frames_in(USUAL),
-        None => FEW,
+        AtSpeed::Off => burst.frames_in(Duration::ZERO),
+        AtSpeed::For(time) => burst.frames_in(time),
+        AtSpeed::Usual | AtSpeed::Soak(_) if capabilities.nature == BoardNature::Hardware => {
+            burst.frames_in(USUAL)
+        }
+        AtSpeed::Usual | AtSpeed::Soak(_) => FEW,
     };
     burst
 }

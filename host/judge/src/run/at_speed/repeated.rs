@@ -138,7 +138,7 @@ impl Run<'_> {
             return Ok(Repetition::NothingTrapped { frames }.into());
         };
         // A soak goes on, and none of its time is for rows that a link carries.
-        let is_soak = self.plan.soak.is_some();
+        let is_soak = self.plan.at_speed.soak().is_some();
         let right = seen.evidence.expected.samples();
         let back = if is_soak { None } else { self.first_rows_streamed(generation, content, right) };
         let streamed = match &back {

@@ -52,7 +52,7 @@ const FIRST_FACTOR: Span = Span { table: Table::RowFactors, bank: Bank::Shadow, 
 impl Run<'_> {
     /// Whether this run tries the rules; a soak never does.
     pub(super) fn tries_rules(&self) -> bool {
-        self.plan.soak.is_none() && self.plan.amount(Part::Rules) > 0
+        self.plan.at_speed.soak().is_none() && self.plan.amount(Part::Rules) > 0
     }
 
     /// Tries the rules, with the board back behind `last` if it goes away meanwhile.
