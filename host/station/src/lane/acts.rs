@@ -294,7 +294,7 @@ fn seen(kind: BoardKind, identity: &Identity) -> BoardSeen {
 /// of the figures.
 fn found(report: &Report) -> Said {
     let mut said = Said::from(&report.finding);
-    let broke_off = report.verdict == Verdict::Error && matches!(report.finding, Finding::Problem(_));
+    let broke_off = report.verdict() == Verdict::Error && matches!(report.finding, Finding::Problem(_));
     let wrong: Vec<_> =
         report.frames.iter().map(|frame| &frame.comparison).filter(|one| one.differences > 0).collect();
     if broke_off && !wrong.is_empty() {
