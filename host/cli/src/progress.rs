@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use halfrow::progress::{Event, Progress, Silent, Soaked};
-use halfrow::report::wording::{count, grouped, plain, span};
+use halfrow::words::{count, grouped, plain, span};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use crate::console;

@@ -5,9 +5,10 @@ use std::fmt::Write as _;
 use anstyle::{AnsiColor, Style};
 use comfy_table::{CellAlignment, Table, presets};
 
-use halfrow::report::wording::{self, grouped, mark, plain};
+use halfrow::report::wording::{self, mark};
 use halfrow::result::{FrameReport, FrameTiming, Outcome, Report, SoakReport, Suspect};
 use halfrow::verdict::Verdict;
+use halfrow::words::{self, grouped, plain};
 
 use crate::flags;
 
@@ -54,7 +55,7 @@ fn head(report: &Report) -> String {
         None => "it never said what it is".to_owned(),
         Some(it) => format!(
             "{}, serial {}, build {}, datapath {}, wire {}",
-            wording::board_name(&it.name),
+            words::board_name(&it.name),
             it.serial,
             it.build,
             it.datapaths(),
@@ -106,7 +107,7 @@ fn frames(report: &Report) -> String {
     }
     let mut text = table.lines().fold(String::new(), |text, line| text + line.trim_end() + "\n");
     if left_out > 0 {
-        let _ = writeln!(text, "{DIM}   … and {}{DIM:#}", wording::count(left_out, "more frame"));
+        let _ = writeln!(text, "{DIM}   … and {}{DIM:#}", words::count(left_out, "more frame"));
     }
     text
 }
@@ -131,7 +132,7 @@ fn soak(soak: &SoakReport) -> String {
     }
     let left_out = soak.differences.len().saturating_sub(MOST_DIFFERENCES);
     if left_out > 0 {
-        let _ = writeln!(text, "{DIM}   … and {}{DIM:#}", wording::count(left_out, "more difference"));
+        let _ = writeln!(text, "{DIM}   … and {}{DIM:#}", words::count(left_out, "more difference"));
     }
     text
 }

@@ -29,6 +29,7 @@
 //! board to correct frames, [`lenses`] reads what calibrations leave, [`optics`] makes a plan of it, and [`call`] looks at what
 //! a call names before anything is done.
 //! [`compare`], [`diagnosis`], [`result`] and [`report`] see samples and counts, never a link.
+//! [`words`] has numbers and names as all of them tell them.
 
 #![warn(missing_debug_implementations)]
 
@@ -51,6 +52,7 @@ pub mod result;
 pub mod run;
 pub mod tables;
 pub mod verdict;
+pub mod words;
 
 pub use halfrow_frames as frames;
 pub use halfrow_link as link;

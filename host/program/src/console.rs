@@ -11,7 +11,7 @@ use std::io::{self, IsTerminal as _, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anstream::AutoStream;
-use halfrow::report::wording::plain;
+use halfrow::words::plain;
 
 /// A result that stdout did not take.
 #[derive(Debug, thiserror::Error)]

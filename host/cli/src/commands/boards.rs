@@ -7,8 +7,8 @@ use super::bitstreams::{BOARDS, BitstreamBoard};
 use super::document::print_result;
 use super::{Context, Failure, print};
 use crate::exit::Exit;
-use halfrow::report::wording::{count, plain};
 use halfrow::target::{BoardKind, Target, TargetError};
+use halfrow::words::{count, plain};
 use halfrow_link::discovery::{self, Access, Answer, Found};
 use halfrow_link::kinds::{Form, KINDS};
 

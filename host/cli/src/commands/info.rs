@@ -8,8 +8,8 @@ use super::document::print_result;
 use super::{Context, Failure, print};
 use crate::exit::Exit;
 use halfrow::board::{Board, Status};
-use halfrow::report::wording::plain;
 use halfrow::result::BoardReport;
+use halfrow::words::plain;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

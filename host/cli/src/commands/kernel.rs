@@ -18,9 +18,9 @@ use crate::{console, progress};
 use halfrow::call::Files;
 use halfrow::frames::preview::RgbImage;
 use halfrow::frames::{FrameFile, check_regular, lying};
-use halfrow::report::wording::count;
 use halfrow::result::sha256;
 use halfrow::tables::KernelFile;
+use halfrow::words::count;
 use halfrow_lab::training;
 use halfrow_lab::training::{
     Gains, Model, RIDGE, Spread, Trained, TrainingError, measure, noise_gain, train,

@@ -12,8 +12,8 @@ use super::{Context, Failure, print_or_tell};
 use crate::exit::Exit;
 use halfrow::board::Board;
 use halfrow::link_test::{self, Figures, LinkTestError, Rate, RoundTrips, Throughput};
-use halfrow::report::wording::count;
 use halfrow::result::BoardReport;
+use halfrow::words::count;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

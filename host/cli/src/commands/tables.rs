@@ -14,8 +14,8 @@ use crate::console;
 use crate::exit::Exit;
 use halfrow::call::Files;
 use halfrow::optics::outside_circle;
-use halfrow::report::wording::count;
 use halfrow::tables::{TableFile, mem};
+use halfrow::words::count;
 use halfrow_frames::written_aside::WriteAsideError;
 
 #[derive(Debug, Args)]

@@ -10,8 +10,8 @@ use halfrow_protocol::message::{Malformed, Refusal, RefusalCode, RowPlace};
 use super::Tally;
 use super::conversation::Conversation;
 use crate::link::LinkError;
-use crate::report::wording::{count, span};
 use crate::verdict::{Cause, StoppedBy};
+use crate::words::{count, span};
 
 /// Why a board could not be driven.
 #[derive(Debug, thiserror::Error)]

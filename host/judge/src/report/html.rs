@@ -9,10 +9,11 @@ mod within;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use png::EncodingError;
 
-use super::wording::{self, plain};
+use super::wording;
 use crate::result::wording::{MAPS, NO_MAPS};
 use crate::result::{Check, Evidence, Report, Suspect};
 use crate::verdict::Verdict;
+use crate::words::{board_name, plain};
 
 const STYLE: &str = include_str!("style.css");
 
@@ -92,7 +93,7 @@ fn unit(report: &Report) -> Markup {
     let target = plain(&report.board.target);
     html! {
         @match &report.board.identity {
-            Some(it) => { (wording::board_name(&it.name)) ", serial " strong { (plain(&it.serial)) } ", at " (target) },
+            Some(it) => { (board_name(&it.name)) ", serial " strong { (plain(&it.serial)) } ", at " (target) },
             None => { "a board that never said what it is, at " (target) },
         }
     }

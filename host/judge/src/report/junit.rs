@@ -10,9 +10,10 @@ use quick_junit::{
     TestSuite,
 };
 
-use super::wording::{self, plain};
+use super::wording;
 use crate::result::{Check, FrameReport, Outcome, Report};
 use crate::verdict::Verdict;
+use crate::words::{count, differ, grouped, plain};
 
 /// The report as an XML document.
 ///
@@ -35,7 +36,7 @@ pub fn render(report: &Report) -> Result<String, SerializeError> {
 /// The document of one suite, as Jenkins' schema has it.
 ///
 /// # Errors
-/// The XML writer's, for text that XML has no letters for; [`plain`](super::wording::plain) leaves none.
+/// The XML writer's, for text that XML has no letters for; [`plain`](crate::words::plain) leaves none.
 pub fn document(suite: TestSuite) -> Result<String, SerializeError> {
     let mut document = Document::new(suite.name.as_str());
     document.time = suite.time;
@@ -94,12 +95,7 @@ fn frame_case(report: &Report, frame: &FrameReport) -> TestCase {
     let comparison = &frame.comparison;
     let message = match comparison.differences {
         0 => format!("{} of {} rows came back", frame.rows, comparison.by_row.len()),
-        some => format!(
-            "{} of {} {}",
-            wording::grouped(some),
-            wording::count(comparison.samples, "sample"),
-            wording::differ(some)
-        ),
+        some => format!("{} of {} {}", grouped(some), count(comparison.samples, "sample"), differ(some)),
     };
     let first = comparison.first.map_or_else(String::new, |first| {
         format!(

@@ -1,7 +1,6 @@
-//! The words and figures that the views share, here and in programs, so that all of them say the same.
+//! What a report says in words, which the views share, here and in programs, so that all of them say the same.
 
 mod coverage;
-mod figures;
 mod summary;
 mod within;
 
@@ -16,10 +15,9 @@ use crate::result::{
 };
 use crate::run::DECOY;
 use crate::verdict::Verdict;
+use crate::words::{board_name, bytes, count, differ, grouped, percent, plain, span};
 
 pub use coverage::coverage;
-pub(crate) use figures::differ;
-pub use figures::{bytes, count, grouped, hertz, percent, span};
 pub(super) use summary::advice;
 pub use summary::{codes, summary};
 pub use within::within;
@@ -311,39 +309,4 @@ pub fn worth_listing(report: &Report, most: usize) -> (Vec<&FrameReport>, usize)
     let listed: Vec<_> = report.frames.iter().filter(wanted).take(most).collect();
     let left_out = all - listed.len();
     (listed, left_out)
-}
-
-/// What a board calls itself.
-#[must_use]
-pub fn board_name(name: &str) -> Cow<'_, str> {
-    if name.trim().is_empty() { Cow::Borrowed("unnamed") } else { plain(name) }
-}
-
-/// Text from outside with its control characters spelt out, since boards and file names can hold any, and terminals
-/// obey some.
-#[must_use]
-pub fn plain(text: &str) -> Cow<'_, str> {
-    // What turns the direction of text round makes it another one.
-    let unfit = |letter: char| {
-        letter.is_control()
-            || matches!(letter, '\u{fffe}' | '\u{ffff}' | '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
-    };
-    if !text.contains(unfit) {
-        return Cow::Borrowed(text);
-    }
-    let spelt =
-        |letter: char| if unfit(letter) { letter.escape_default().to_string() } else { letter.into() };
-    Cow::Owned(text.chars().map(spelt).collect())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_terminal_never_sees_a_control_character() {
-        assert_eq!(plain("a\u{1b}[2Jb\u{9b}\n"), "a\\u{1b}[2Jb\\u{9b}\\n");
-        assert_eq!(plain("\u{202e}evil"), "\\u{202e}evil");
-        assert!(matches!(plain("façade.pgm"), Cow::Borrowed(_)));
-    }
 }

@@ -9,9 +9,9 @@ use super::prices::{Prices, Rates};
 use super::{Misfit, misfit};
 use crate::board::Board;
 use crate::coverage::{self, Faults, FaultsError};
-use crate::report::wording::hertz;
 use crate::result::{CheckName, CoveragePoint, Problem, WithinPart, WithinReport};
 use crate::verdict::Cause;
+use crate::words::hertz;
 
 /// The share of the time that is kept for what no price knows: a retry, a host that is late.
 const KEPT: f64 = 0.05;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use halfrow::frames::written_aside::write_aside;
-use halfrow::report::wording::count;
+use halfrow::words::count;
 
 use super::export::{NoFolder, unwritten};
 use super::looking::Data;

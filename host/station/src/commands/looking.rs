@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use comfy_table::{CellAlignment, Table, presets};
 use halfrow::Verdict;
-use halfrow::report::wording::plain;
+use halfrow::words::plain;
 use jiff::Timestamp;
 use serde::Serialize;
 

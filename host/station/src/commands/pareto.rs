@@ -1,7 +1,7 @@
 //! `halfrow-station pareto`
 
 use clap::{Args, ValueEnum};
-use halfrow::report::wording::count;
+use halfrow::words::count;
 
 use super::Failure;
 use super::looking::{Counted, Results, either, table};

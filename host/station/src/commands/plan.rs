@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use halfrow::report::wording::plain;
+use halfrow::words::plain;
 
 use super::beginning::SettingsFile;
 use super::{Failure, print, publish};

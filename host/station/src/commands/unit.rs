@@ -1,7 +1,7 @@
 //! `halfrow-station unit`
 
 use clap::Args;
-use halfrow::report::wording::plain;
+use halfrow::words::plain;
 
 use super::Failure;
 use super::looking::{Results, either, time};

@@ -1,7 +1,7 @@
 //! `halfrow-station waive`
 
 use clap::Args;
-use halfrow::report::wording::plain;
+use halfrow::words::plain;
 
 use super::Failure;
 use super::looking::Data;

@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::fmt::Write as _;
 
 use clap::{Args, ValueEnum};
-use halfrow::report::wording::count;
+use halfrow::words::count;
 
 use super::Failure;
 use super::looking::{Counted, Results, either, table, time};

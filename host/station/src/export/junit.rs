@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use halfrow::Verdict;
-use halfrow::report::{junit_document, wording::plain};
+use halfrow::report::junit_document;
+use halfrow::words::plain;
 use jiff::Timestamp;
 use quick_junit::{NonSuccessKind, Property, SerializeError, TestCase, TestCaseStatus as Status, TestSuite};
 

@@ -7,11 +7,11 @@ use std::time::{Duration, Instant};
 use halfrow::board::{Board, OpenOptions, Stop};
 use halfrow::link::{self, Candidate, OpenError};
 use halfrow::link_test::{self, Figures, LinkTestError};
-use halfrow::report::wording::plain;
 use halfrow::result::{BoardReport, Finding, Identity, Problem, Suspect};
 use halfrow::run::{Circumstances, Draws};
 use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::{Cause, StoppedBy, Verdict};
+use halfrow::words::plain;
 use halfrow::{Finished, Progress, Report, RunOptions};
 use serde_json::{Value, json};
 

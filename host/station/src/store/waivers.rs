@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use halfrow::Verdict;
-use halfrow::report::wording::plain;
+use halfrow::words::plain;
 use serde::Serialize;
 
 use super::audit::Line;

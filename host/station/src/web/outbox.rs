@@ -3,7 +3,7 @@
 use axum::Form;
 use axum::extract::{Path, State};
 use axum::response::{IntoResponse as _, Redirect, Response};
-use halfrow::report::wording::plain;
+use halfrow::words::plain;
 use maud::{Markup, html};
 use serde::Deserialize;
 

@@ -3,7 +3,7 @@
 use std::io;
 use std::sync::Arc;
 
-use halfrow::report::wording::plain;
+use halfrow::words::plain;
 use tokio::task;
 
 use super::access::Access;

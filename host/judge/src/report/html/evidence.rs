@@ -9,9 +9,10 @@ use png::EncodingError;
 use super::charts;
 use super::facts::{mark, pair};
 use crate::report::pictures::{self, Picture, Window};
-use crate::report::wording::{self, count, grouped};
+use crate::report::wording;
 use crate::result::{Evidence, FrameReport, Report, sha256};
 use crate::verdict::Verdict;
+use crate::words::{count, grouped, percent};
 
 /// Bytes of all pictures together, of a PASS and of anything else. Base 64 makes 1.5 and 3.4 MB of them, which leaves half a megabyte of
 /// 2 and of 4 to text and charts.
@@ -141,7 +142,7 @@ fn came_out(frame: &FrameReport) -> String {
 
 fn summary(frame: &FrameReport, kept: &Evidence) -> Markup {
     let comparison = &frame.comparison;
-    let share = wording::percent(comparison.differences as f64 / comparison.samples.max(1) as f64);
+    let share = percent(comparison.differences as f64 / comparison.samples.max(1) as f64);
     html! {
         dl {
             @if let (Some(first), Some((least, most))) = (comparison.first, comparison.extremes) {

@@ -3,8 +3,9 @@
 use maud::{Markup, html};
 
 use crate::report::shell_word;
-use crate::report::wording::{self, count, grouped, plain};
+use crate::report::wording;
 use crate::result::{FrameReport, LinkReport, Outcome, Report, TablesReport};
+use crate::words::{count, grouped, plain};
 
 /// Rows of the table of frames.
 const MOST_FRAMES: usize = 400;

@@ -5,8 +5,9 @@ use std::fmt::Write as _;
 use maud::{Markup, html};
 
 use super::suspects;
-use crate::report::wording::{self, grouped, plain, span};
+use crate::report::wording;
 use crate::result::{SoakChart, SoakDifference, SoakInterval, SoakReport};
+use crate::words::{grouped, plain, span};
 
 /// The height of the tallest bar.
 const TALLEST: u64 = 100;

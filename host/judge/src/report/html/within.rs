@@ -4,8 +4,9 @@ use std::fmt::Write as _;
 
 use maud::{Markup, html};
 
-use crate::report::wording::{self, grouped, span};
+use crate::report::wording;
 use crate::result::WithinReport;
+use crate::words::{grouped, span};
 
 /// Width and height of the chart.
 const WIDE: f64 = 240.0;

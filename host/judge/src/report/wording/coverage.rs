@@ -1,8 +1,8 @@
 //! What is said of the faults that a run finds.
 
-use super::grouped;
 use crate::result::{BoardKind, CoverageReport, Report};
 use crate::verdict::Verdict;
+use crate::words::grouped;
 
 /// What share of the Verilog's faults a PASS stands for, without a full stop; none of a board that is not made of it, and where it
 /// is told of the parts of a run.

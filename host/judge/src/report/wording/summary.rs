@@ -1,8 +1,9 @@
 //! The report in lines, for views without a table.
 
-use super::{mark, not_exercised, plain, remedy, technician, verdict_line};
+use super::{mark, not_exercised, remedy, technician, verdict_line};
 use crate::result::{Report, Suspect};
 use crate::verdict::Verdict;
+use crate::words::plain;
 
 /// The verdict with every check and what to do, a line each: for views without a table.
 #[must_use]

@@ -1,7 +1,7 @@
 //! What is said of a run that had to keep within a time.
 
-use super::{bytes, grouped, plain, span};
 use crate::result::{WithinPart, WithinReport};
+use crate::words::{bytes, grouped, plain, span};
 
 /// What was taken of a run that had to keep within a time, what was left out, and what that finds: a sentence each, without a
 /// full stop.

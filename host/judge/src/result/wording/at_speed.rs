@@ -2,10 +2,10 @@
 
 use super::places;
 use super::{LOGIC, TIMING, Words, suspicion};
-use crate::report::wording::{count, differ, grouped, hertz, span};
 use crate::result::{
     BurstCount, ClockSeen, Corner, EqualAtSpeed, Finding, FlippedBit, NoBurst, Repetition, Streamed,
 };
+use crate::words::{count, differ, grouped, hertz, span};
 
 pub(super) fn changed_on_entry(
     (rows, first, frame): (usize, usize, u16),

@@ -1,8 +1,8 @@
 //! Why a defect is suspected.
 
 use super::words;
-use crate::report::wording::{count, grouped};
 use crate::result::{Account, Defect};
+use crate::words::{count, grouped};
 
 /// What speaks for a defect, in one sentence without a full stop.
 #[must_use]

@@ -1,8 +1,8 @@
 //! What a finding says, and what it asks for.
 
 use super::{at_speed, designer, evidence, place, rules, suspicion};
-use crate::report::wording::{board_name, count, differ, grouped};
 use crate::result::{Account, BoardKind, Defect, Doubt, Finding, LateRows, NumberedRow, RepeatedRow};
+use crate::words::{board_name, count, differ, grouped};
 
 const CHECK_THE_LINK: &str = "Check the link, and run again.";
 

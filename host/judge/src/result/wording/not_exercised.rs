@@ -2,8 +2,8 @@
 
 use super::at_speed::seen_of_clock;
 use super::places::{named, numbered};
-use crate::report::wording::hertz;
 use crate::result::NotExercised;
+use crate::words::hertz;
 
 /// It in words, so that "not exercised: …" makes a sentence.
 #[must_use]

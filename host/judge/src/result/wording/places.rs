@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::{LOGIC, REPORT, TIMING, Words, tables};
-use crate::report::wording::{count, grouped};
 use crate::result::{Defect, Extent, MadeWith, RowSource, StaleFrames};
+use crate::words::{count, grouped};
 
 /// Bits that are told when nothing differs in another.
 const FEW_BITS: usize = 2;

@@ -2,8 +2,8 @@
 
 use halfrow_protocol::message::RefusalCode;
 
-use crate::report::wording::count;
 use crate::result::{Answer, Finding, Rule};
+use crate::words::count;
 
 /// What to do about any of them.
 pub(super) const REMEDY: &str = "Check how the board takes requests apart, and try it with the conformance tests; what it must refuse stands in protocol/WIRE.md.";

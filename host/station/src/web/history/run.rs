@@ -327,7 +327,7 @@ fn blamed(visit: &Visit, blame: Blame) -> &'static str {
 
 /// So many bytes, with the language's decimal point.
 fn size(visit: &Visit, bytes: u64) -> String {
-    visit.words.figures(&halfrow::report::wording::bytes(bytes))
+    visit.words.figures(&halfrow::words::bytes(bytes))
 }
 
 /// Exports and evidence.

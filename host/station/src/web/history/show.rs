@@ -1,6 +1,6 @@
 //! How moments, verdicts and shares are shown on every page of the history.
 
-use halfrow::report::wording::plain;
+use halfrow::words::plain;
 use jiff::Timestamp;
 use maud::{Markup, html};
 

@@ -3,7 +3,7 @@
 use axum::extract::{Query, State};
 use axum::http::StatusCode;
 use axum::response::Response;
-use halfrow::report::wording::plain;
+use halfrow::words::plain;
 use maud::{Markup, html};
 
 use super::acts::Refused;

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use axum::http::HeaderValue;
-use halfrow::report::wording::grouped;
+use halfrow::words::grouped;
 
 pub(crate) use check::{built_in, faults};
 pub(super) use told::Told;

@@ -1,7 +1,7 @@
 //! A lane on the page. The server alone draws it, for the page's first look as for every change.
 
 use halfrow::Verdict;
-use halfrow::report::wording::plain;
+use halfrow::words::plain;
 use maud::{Markup, html};
 use serde::Serialize;
 

@@ -1,4 +1,6 @@
-//! Numbers as people read them.
+//! Numbers and names as people read them, without what could drive a terminal.
+
+use std::borrow::Cow;
 
 /// `1 frame`, `16 frames`, `17,280 rows`.
 #[must_use]
@@ -74,9 +76,39 @@ pub fn span(seconds: f64) -> String {
     }
 }
 
+/// What a board calls itself.
+#[must_use]
+pub fn board_name(name: &str) -> Cow<'_, str> {
+    if name.trim().is_empty() { Cow::Borrowed("unnamed") } else { plain(name) }
+}
+
+/// Text from outside with its control characters spelt out, since boards and file names can hold any, and terminals
+/// obey some.
+#[must_use]
+pub fn plain(text: &str) -> Cow<'_, str> {
+    // What turns the direction of text round makes it another one.
+    let unfit = |letter: char| {
+        letter.is_control()
+            || matches!(letter, '\u{fffe}' | '\u{ffff}' | '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    if !text.contains(unfit) {
+        return Cow::Borrowed(text);
+    }
+    let spelt =
+        |letter: char| if unfit(letter) { letter.escape_default().to_string() } else { letter.into() };
+    Cow::Owned(text.chars().map(spelt).collect())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_terminal_never_sees_a_control_character() {
+        assert_eq!(plain("a\u{1b}[2Jb\u{9b}\n"), "a\\u{1b}[2Jb\\u{9b}\\n");
+        assert_eq!(plain("\u{202e}evil"), "\\u{202e}evil");
+        assert!(matches!(plain("façade.pgm"), Cow::Borrowed(_)));
+    }
 
     #[test]
     fn every_third_digit_is_set_off() {
