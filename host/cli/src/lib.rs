@@ -3,8 +3,13 @@
 #[cfg(not(target_os = "linux"))]
 compile_error!("halfrow-cli is for Linux alone; docs/portable.md says what works elsewhere");
 
+mod arguments;
 mod beside;
+mod bitstreams;
+mod call_error;
 pub mod commands;
+mod document;
+mod files;
 pub mod flags;
 pub mod pool;
 mod progress;

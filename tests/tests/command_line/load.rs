@@ -285,7 +285,7 @@ fn the_boards_that_have_bitstreams_are_listed_with_what_to_load() {
     let listed = halfrow(["boards", "--json"]).json();
     let boards = listed["bitstreams"].as_array().unwrap();
     let names: BTreeSet<_> = boards.iter().map(|board| board["name"].as_str().unwrap().to_owned()).collect();
-    assert_eq!(names, folders(), "host/cli/src/commands/bitstreams.rs");
+    assert_eq!(names, folders(), "host/cli/src/bitstreams.rs");
     let text = halfrow(["boards"]).stdout;
     for board in boards {
         assert!(text.contains(&format!("halfrow load {}", board["bitstream"].as_str().unwrap())), "{text}");

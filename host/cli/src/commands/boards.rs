@@ -3,9 +3,9 @@
 use clap::Args;
 use serde::Serialize;
 
-use super::bitstreams::{BOARDS, BitstreamBoard};
-use super::document::print_result;
 use super::{Context, Failure, print};
+use crate::bitstreams::{BOARDS, BitstreamBoard};
+use crate::document::print_result;
 use crate::exit::Exit;
 use halfrow::target::{BoardKind, Target, TargetError};
 use halfrow::words::{count, plain};
@@ -15,7 +15,7 @@ use halfrow_link::kinds::{Form, KINDS};
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// Look at these targets instead of searching
-    #[arg(value_name = "TARGET", value_parser = super::board::target())]
+    #[arg(value_name = "TARGET", value_parser = crate::arguments::board::target())]
     targets: Vec<Target>,
     /// Greet what is free: some thirty bytes are written to it, up to six times, whatever it is
     #[arg(long)]

@@ -8,10 +8,10 @@ use halfrow_pipe::{FaultError, TargetError as BoardTargetError, ValueError};
 use halfrow_program::codes::{self as program, parameters};
 use serde_json::{Value, json};
 
-use super::call_error::CallError;
-use super::document::print_result;
 use super::load::LoadError;
 use super::{Context, Failure, print};
+use crate::call_error::CallError;
+use crate::document::print_result;
 use crate::exit::Exit;
 use crate::pool::PoolError;
 use crate::serve::ServeError;
@@ -175,7 +175,7 @@ fn known(error: &(dyn Error + 'static)) -> Option<Coded> {
 }
 
 /// Why a command came to no result.
-pub(super) fn problem(exit: Exit, error: &anyhow::Error) -> Problem {
+pub(crate) fn problem(exit: Exit, error: &anyhow::Error) -> Problem {
     program::problem(exit, error, known)
 }
 

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::files::{make_folder, prepare_files};
 use super::{Context, Failure};
 use crate::exit::Exit;
+use crate::files::{make_folder, prepare_files};
 use halfrow::call::Files;
 use halfrow_frames::written_aside::write_aside;
 use halfrow_program::man_pages::{self, Shell};

@@ -6,8 +6,9 @@ use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, Args, Command};
 use serde_json::json;
 
-use super::document::print_result;
-use super::{CallError, Context, Failure, print};
+use super::{Context, Failure, print};
+use crate::call_error::CallError;
+use crate::document::print_result;
 use crate::exit::Exit;
 use crate::text::{BOLD, push};
 use known::{Explanation, MEANINGS, known};

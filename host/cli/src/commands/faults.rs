@@ -5,8 +5,8 @@ use halfrow_pipe::FaultInfo;
 use serde::Serialize;
 use serde_json::json;
 
-use super::document::print_result;
 use super::{Context, Failure, print};
+use crate::document::print_result;
 use crate::exit::Exit;
 
 #[derive(Debug, Args)]

@@ -6,12 +6,13 @@ use clap::{Arg, Args};
 use halfrow_program::number::whole_number;
 use serde_json::json;
 
-use super::document::tell_result;
-use super::files::{make_folder, prepare_files, refuse_stdout};
-use super::optics::{LensArguments, MAKING_TABLES};
-use super::{CallError, Context, Failure};
+use super::{Context, Failure};
+use crate::arguments::optics::{LensArguments, MAKING_TABLES};
+use crate::call_error::CallError;
 use crate::console;
+use crate::document::tell_result;
 use crate::exit::Exit;
+use crate::files::{make_folder, prepare_files, refuse_stdout};
 use halfrow::call::Files;
 use halfrow::frames::{self, Builtin};
 

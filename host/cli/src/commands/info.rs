@@ -3,9 +3,9 @@
 use clap::Args;
 use serde_json::json;
 
-use super::board::BoardArguments;
-use super::document::print_result;
 use super::{Context, Failure, print};
+use crate::arguments::board::BoardArguments;
+use crate::document::print_result;
 use crate::exit::Exit;
 use halfrow::board::{Board, Status};
 use halfrow::result::BoardReport;

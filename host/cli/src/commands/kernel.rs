@@ -10,10 +10,12 @@ use halfrow_model::{Kernel, Taps};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-use super::document::{print_result, tell_result};
-use super::files::prepare_files;
-use super::{CallError, Context, Failure, optics, print};
+use super::{Context, Failure, print};
+use crate::arguments::optics;
+use crate::call_error::CallError;
+use crate::document::{print_result, tell_result};
 use crate::exit::Exit;
+use crate::files::prepare_files;
 use crate::{console, progress};
 use halfrow::call::Files;
 use halfrow::frames::preview::RgbImage;

@@ -6,12 +6,12 @@ use clap::Args;
 use halfrow_model::{GridShape, TableError};
 use serde_json::{Map, Value, json};
 
-use super::document::print_result;
-use super::files::prepare_files;
-use super::optics::LensArguments;
 use super::{Context, Failure, print};
+use crate::arguments::optics::LensArguments;
 use crate::console;
+use crate::document::print_result;
 use crate::exit::Exit;
+use crate::files::prepare_files;
 use halfrow::call::Files;
 use halfrow::frames::{self, HeatMap};
 use halfrow::optics::{Optics, OpticsError, TablesBy};

@@ -7,7 +7,7 @@ use clap::{ArgAction, Parser, Subcommand};
 use halfrow_model::ModelPath;
 use halfrow_program::line;
 
-use super::given::Given;
+use crate::arguments::given::Given;
 
 /// Validates a board that straightens fisheye Bayer video, bit for bit.
 ///

@@ -6,9 +6,9 @@ use clap::Args;
 use halfrow_program::number::seconds;
 use serde_json::json;
 
-use super::board::BoardArguments;
-use super::document::result_text;
 use super::{Context, Failure, print_or_tell};
+use crate::arguments::board::BoardArguments;
+use crate::document::result_text;
 use crate::exit::Exit;
 use halfrow::board::Board;
 use halfrow::link_test::{self, Figures, LinkTestError, Rate, RoundTrips, Throughput};

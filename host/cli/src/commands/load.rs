@@ -17,10 +17,10 @@ use serde_json::json;
 
 use self::loader::Call;
 use self::record::Record;
-use super::bitstreams::{BOARDS, BitstreamBoard};
-use super::board::{refuse_recording, wrong};
-use super::document::result_text;
 use super::{Context, Failure, print_or_tell};
+use crate::arguments::board::{refuse_recording, wrong};
+use crate::bitstreams::{BOARDS, BitstreamBoard};
+use crate::document::result_text;
 use crate::exit::Exit;
 use crate::progress::Told;
 use crate::{console, pool, signals};
@@ -42,7 +42,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(BOARDS.map(|board| board.name)))]
     onto: Option<String>,
     /// The loaded board behind its link: it is greeted, and must be of the file's build
-    #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD", value_parser = super::board::target())]
+    #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD", value_parser = crate::arguments::board::target())]
     board: Option<Target>,
     /// The longest that loading may take, and the board until it answers
     #[arg(long, value_name = "SECONDS", default_value = "120", value_parser = seconds(0.1..=86_400.0))]

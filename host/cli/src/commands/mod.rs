@@ -1,35 +1,25 @@
-//! The command line: one file a command.
+//! The commands: one file each, called as the command; `overview` is `halfrow commands`, `completions` is `manual` as well, and `line` has
+//! the grammar of them all.
 
-mod bitstreams;
-mod board;
 mod boards;
-mod call_error;
-mod codes;
+pub(crate) mod codes;
 mod completions;
 mod correct;
-mod document;
 mod explain;
 mod faults;
-mod files;
 mod frames;
-mod given;
 mod info;
-mod inputs;
 mod kernel;
 mod lens;
 mod line;
 mod link;
-mod listing;
 mod load;
-mod optics;
 mod overview;
 mod paper;
-mod run;
 mod schema;
 mod serve;
 mod soak;
 mod station;
-mod table_file;
 mod tables;
 mod verify;
 
@@ -37,7 +27,8 @@ use std::path::{Path, PathBuf};
 
 use clap::CommandFactory as _;
 
-use self::call_error::CallError;
+use crate::arguments::given;
+use crate::call_error::CallError;
 use crate::console;
 use crate::exit::Exit;
 use crate::settings::Settings;
@@ -48,7 +39,7 @@ use halfrow::run::{Misfit, WithinError};
 
 use line::{Command, Line};
 
-pub use document::{code, failure};
+pub use crate::document::{code, failure};
 
 /// What every command is given beside its own arguments.
 pub struct Context {
@@ -259,6 +250,6 @@ fn json_text(result: &impl serde::Serialize) -> Result<String, Failure> {
 }
 
 /// Prints a result, which is the command's only one.
-fn print(text: &str) -> Result<(), Failure> {
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
     console::print(text).map_err(Failure::error)
 }

@@ -6,12 +6,13 @@ use std::time::Instant;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
-use super::board::{self, BoardArguments, Replays};
-use super::document::tell_result;
-use super::files::prepare_files;
-use super::given::{Decider, Given};
-use super::{CallError, Context, Failure};
+use super::{Context, Failure};
+use crate::arguments::board::{self, BoardArguments, Replays};
+use crate::arguments::given::{Decider, Given};
+use crate::call_error::CallError;
+use crate::document::tell_result;
 use crate::exit::Exit;
+use crate::files::prepare_files;
 use crate::settings::Settings;
 use crate::{console, progress};
 use halfrow::board::Board;

@@ -3,7 +3,8 @@
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::{CallError, Failure, codes, print_json};
+use super::{Failure, codes, print_json};
+use crate::call_error::CallError;
 use crate::exit::Exit;
 
 /// What the program prints as JSON, which is written by hand; the codes alone come from the program.

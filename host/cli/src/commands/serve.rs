@@ -5,8 +5,8 @@ use std::sync::atomic::Ordering;
 
 use clap::Args;
 
-use super::board::refuse_recording;
 use super::{Failure, print};
+use crate::arguments::board::refuse_recording;
 use crate::exit::Exit;
 use crate::serve::{Hosted, Name, Port, Pty, ServeError, Traffic};
 use crate::signals;
@@ -15,7 +15,7 @@ use halfrow::target::Target;
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The board to serve
-    #[arg(long, value_name = "TARGET", default_value = "mock", value_parser = super::board::target())]
+    #[arg(long, value_name = "TARGET", default_value = "mock", value_parser = crate::arguments::board::target())]
     board: Target,
     /// A TCP port instead of a pseudo-terminal: PORT of this computer alone, or ADDRESS:PORT; 0 for any that is free
     #[arg(long, value_name = "PORT", value_parser = door)]

@@ -5,10 +5,10 @@ use std::time::Duration;
 use clap::Args;
 use halfrow_program::number::number;
 
-use super::board::refuse_recording;
-use super::given::Given;
-use super::run::{RunArguments, not_begun, write_and_tell};
 use super::{Context, Failure};
+use crate::arguments::board::refuse_recording;
+use crate::arguments::given::Given;
+use crate::arguments::judging::{RunArguments, not_begun, write_and_tell};
 use crate::exit::Exit;
 use crate::progress;
 use crate::settings::Settings;

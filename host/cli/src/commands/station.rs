@@ -8,8 +8,9 @@ use std::process::Command;
 
 use clap::Args;
 
-use super::{CallError, Failure};
+use super::Failure;
 use crate::beside;
+use crate::call_error::CallError;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
-use super::document::tell_result;
-use super::files::prepare_files;
-use super::optics::{self, LensArguments};
-use super::{CallError, Context, Failure};
+use super::{Context, Failure};
+use crate::arguments::optics::{self, LensArguments};
+use crate::call_error::CallError;
 use crate::console;
+use crate::document::tell_result;
 use crate::exit::Exit;
+use crate::files::prepare_files;
 use halfrow::call::Files;
 use halfrow::optics::outside_circle;
 use halfrow::tables::{TableFile, mem};

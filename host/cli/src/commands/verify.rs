@@ -1,5 +1,7 @@
 //! `halfrow verify`
 
+mod listing;
+
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -7,12 +9,11 @@ use clap::Args;
 use clap::builder::RangedI64ValueParser;
 use halfrow_program::number::any;
 
-use super::board::{self, MOCK, Replays};
-use super::given::{Decider, Given};
-use super::inputs::{FrameName, InputArguments, frame_sources, tell_fitting};
-use super::listing;
-use super::run::{RunArguments, not_begun, seconds, tell, write_and_tell};
 use super::{Context, Failure};
+use crate::arguments::board::{self, MOCK, Replays};
+use crate::arguments::given::{Decider, Given};
+use crate::arguments::inputs::{FrameName, InputArguments, frame_sources, tell_fitting};
+use crate::arguments::judging::{RunArguments, not_begun, seconds, tell, write_and_tell};
 use crate::exit::Exit;
 use crate::progress;
 use crate::settings::Settings;

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{bail, ensure};
 
-use super::super::CallError;
-use super::super::files::{make_folder, refuse_stdout};
-use super::super::inputs::FrameName;
+use crate::arguments::inputs::FrameName;
+use crate::call_error::CallError;
+use crate::files::{make_folder, refuse_stdout};
 use halfrow::call::Files;
 use halfrow::frames::{Format, check_png};
 use halfrow_frames::written_aside::Place;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::LoadError;
-use crate::commands::CallError;
+use crate::call_error::CallError;
 use halfrow::frames::check_regular;
 use halfrow::result::sha256;
 use halfrow::tables::text;

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::given::{Decider, Given, yes_or_no};
-use super::{CallError, Failure};
+use crate::call_error::CallError;
+use crate::commands::Failure;
 use crate::console;
 use crate::settings::Settings;
 use clap::Args;
@@ -22,7 +23,7 @@ use halfrow::run::FrameSource;
 /// How frame files are read.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Frame files")]
-pub(super) struct InputArguments {
+pub(crate) struct InputArguments {
     /// Layout of headerless frame files: u8, u16le, mipi10 or mipi12; their size is the tables'
     #[arg(long, value_name = "LAYOUT")]
     raw: Option<RawLayout>,
@@ -34,7 +35,7 @@ pub(super) struct InputArguments {
 
 impl InputArguments {
     /// Refuses `--fit` beside `--raw`.
-    pub(super) fn refuse_void(&self, given: &Given, settings: &Settings) -> Result<(), Failure> {
+    pub(crate) fn refuse_void(&self, given: &Given, settings: &Settings) -> Result<(), Failure> {
         match self.raw {
             Some(_) => given.refuse_void(Decider::Headerless, &settings.keys()).map_err(Failure::call),
             None => Ok(()),
@@ -42,7 +43,7 @@ impl InputArguments {
     }
 
     /// How to read a frame for `geometry`.
-    pub(super) fn read_options(&self, geometry: &Geometry, phase: Phase, settings: &Settings) -> ReadOptions {
+    pub(crate) fn read_options(&self, geometry: &Geometry, phase: Phase, settings: &Settings) -> ReadOptions {
         let (width, height) = (geometry.width(), geometry.height());
         let raw = self.raw.map(|layout| RawGeometry { width, height, layout });
         let size = match self.fit.or(settings.fit).unwrap_or(false) {
@@ -55,7 +56,7 @@ impl InputArguments {
 
 /// A frame that a user names.
 #[derive(Clone, Debug)]
-pub(super) enum FrameName {
+pub(crate) enum FrameName {
     /// `builtin:NAME`
     Builtin(Builtin),
     /// Any other name.
@@ -64,7 +65,7 @@ pub(super) enum FrameName {
 
 impl FrameName {
     /// The frames with these names. A file's name need not be text.
-    pub(super) fn all<S: AsRef<OsStr>>(names: &[S]) -> anyhow::Result<Vec<Self>> {
+    pub(crate) fn all<S: AsRef<OsStr>>(names: &[S]) -> anyhow::Result<Vec<Self>> {
         let read = |name: &S| match name.as_ref().to_str().map_or(Ok(None), Builtin::named)? {
             Some(builtin) => Ok(Self::Builtin(builtin)),
             None => Ok(Self::File(PathBuf::from(name))),
@@ -73,7 +74,7 @@ impl FrameName {
     }
 
     /// The file, if it is one.
-    pub(super) fn file(&self) -> Option<&Path> {
+    pub(crate) fn file(&self) -> Option<&Path> {
         match self {
             Self::Builtin(_) => None,
             Self::File(path) => Some(path),
@@ -81,7 +82,7 @@ impl FrameName {
     }
 
     /// The name without folder and extension.
-    pub(super) fn stem(&self) -> anyhow::Result<String> {
+    pub(crate) fn stem(&self) -> anyhow::Result<String> {
         match self {
             Self::Builtin(builtin) => Ok(builtin.name().to_owned()),
             Self::File(path) => {
@@ -92,7 +93,7 @@ impl FrameName {
     }
 
     /// Whether it is a file, there or not, that can be read twice, as a pipe cannot.
-    pub(super) fn can_be_read_twice(&self) -> bool {
+    pub(crate) fn can_be_read_twice(&self) -> bool {
         match self {
             Self::Builtin(_) => false,
             Self::File(path) => fs::metadata(path).map_or(true, |about| about.is_file()),
@@ -100,12 +101,12 @@ impl FrameName {
     }
 
     /// Whether it is a photograph, whose colours are coded for the screen.
-    pub(super) fn is_photograph(&self) -> bool {
+    pub(crate) fn is_photograph(&self) -> bool {
         self.file().is_some_and(frames::is_photograph)
     }
 
     /// The rows of the frame: of a file that is read as `how` says, or rendered for `scene`, whose size both must have.
-    pub(super) fn rows(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<RowReader> {
+    pub(crate) fn rows(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<RowReader> {
         match self {
             Self::Builtin(builtin) => Ok(builtin.render(scene)?.into()),
             Self::File(path) => {
@@ -117,7 +118,7 @@ impl FrameName {
     }
 
     /// The frame with these rows.
-    pub(super) fn frame(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<Decoded> {
+    pub(crate) fn frame(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<Decoded> {
         match self {
             Self::Builtin(builtin) => Ok(builtin.render(scene)?.into()),
             Self::File(path) => Ok(read_frame(path, how, &scene.geometry)?.0),
@@ -126,7 +127,7 @@ impl FrameName {
 }
 
 /// Says how the picture in the file `path` was fitted, if it was.
-pub(super) fn tell_fitting(path: &Path, fitting: Option<Fitting>, quiet: bool) {
+pub(crate) fn tell_fitting(path: &Path, fitting: Option<Fitting>, quiet: bool) {
     if let Some(fitting) = fitting.filter(|_| !quiet) {
         console::diagnose(&format_args!("fitted {}: {fitting}", path.display()));
     }
@@ -134,7 +135,7 @@ pub(super) fn tell_fitting(path: &Path, fitting: Option<Fitting>, quiet: bool) {
 
 /// These frames, the files' read whole, which must fit `geometry`; and of those that were, `tell` is told how. What they were read
 /// from joins `inputs`.
-pub(super) fn frame_sources(
+pub(crate) fn frame_sources(
     names: Vec<FrameName>,
     how: &ReadOptions,
     geometry: &Geometry,

@@ -10,8 +10,9 @@ use clap::{Arg, Args};
 use halfrow_mock::Streamed;
 use halfrow_program::number::{any, number};
 
-use super::run::seconds;
-use super::{CallError, Failure};
+use super::judging::seconds;
+use crate::call_error::CallError;
+use crate::commands::Failure;
 use crate::exit::Exit;
 use crate::pool::{self, PoolError};
 use crate::settings::Settings;
@@ -26,7 +27,7 @@ use halfrow::verdict::StoppedBy;
 /// Which board, and how patiently.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Board")]
-pub(super) struct BoardArguments {
+pub(crate) struct BoardArguments {
     #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD", help = help(Replays::No, MOCK), value_parser = target())]
     board: Option<Target>,
     /// The longest that the run may take, in seconds: of this computer's clock or the link's, whichever is over first
@@ -37,15 +38,15 @@ pub(super) struct BoardArguments {
     retry_limit: Option<f64>,
     /// Take the board over from another host that holds it
     #[arg(long)]
-    pub(super) take_over: bool,
+    pub(crate) take_over: bool,
 }
 
 /// What most commands do without a board.
-pub(super) const MOCK: &str = " [default: mock]";
+pub(crate) const MOCK: &str = " [default: mock]";
 
 /// Whether a command can do with a recording, which answers what it was asked and nothing else.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Replays {
+pub(crate) enum Replays {
     Yes,
     No,
 }
@@ -59,12 +60,12 @@ fn help(replays: Replays, without: &str) -> String {
 }
 
 /// `argument` with that help if it is `--board`. In its place: clap puts a single one that is changed behind all others.
-pub(super) fn helped(argument: Arg, replays: Replays, without: &str) -> Arg {
+pub(crate) fn helped(argument: Arg, replays: Replays, without: &str) -> Arg {
     if argument.get_id() == "board" { argument.help(help(replays, without)) } else { argument }
 }
 
 /// Refuses a recording where a board is needed that answers anew.
-pub(super) fn refuse_recording(target: &Target) -> Result<(), Failure> {
+pub(crate) fn refuse_recording(target: &Target) -> Result<(), Failure> {
     match kinds::of(target) {
         Some(kind) if kind.board == BoardKind::Replay => {
             Err(wrong(Failure::call(CallError::RecordingCorrects)))
@@ -74,12 +75,12 @@ pub(super) fn refuse_recording(target: &Target) -> Result<(), Failure> {
 }
 
 /// `failure`, as one of what names the board.
-pub(super) fn wrong(failure: impl Into<Failure>) -> Failure {
+pub(crate) fn wrong(failure: impl Into<Failure>) -> Failure {
     failure.into().in_value_of("--board")
 }
 
 /// Reads a target, and names its option when it is no text.
-pub(super) fn target() -> impl TypedValueParser<Value = Target> {
+pub(crate) fn target() -> impl TypedValueParser<Value = Target> {
     OsStringValueParser::new().try_map(|text| match text.into_string() {
         Ok(text) => text.parse().map_err(|error: TargetError| error.to_string()),
         Err(_) => Err("a target is text in UTF-8; give the file another name, or link to it".to_owned()),
@@ -88,17 +89,17 @@ pub(super) fn target() -> impl TypedValueParser<Value = Target> {
 
 impl BoardArguments {
     /// Whether a board was named at all.
-    pub(super) fn is_named(&self, settings: &Settings) -> bool {
+    pub(crate) fn is_named(&self, settings: &Settings) -> bool {
         self.board.is_some() || settings.board.is_some()
     }
 
     /// The recording that the target names, if it is one.
-    pub(super) fn replayed(&self, settings: &Settings) -> Result<Option<PathBuf>, Failure> {
+    pub(crate) fn replayed(&self, settings: &Settings) -> Result<Option<PathBuf>, Failure> {
         Ok(link::recording_file(&self.named(settings)?).map(Path::to_owned))
     }
 
     /// The board that is named, or the pool of them.
-    pub(super) fn named(&self, settings: &Settings) -> Result<Target, Failure> {
+    pub(crate) fn named(&self, settings: &Settings) -> Result<Target, Failure> {
         match (&self.board, &settings.board) {
             (Some(target), _) => Ok(target.clone()),
             (None, Some(text)) => text.parse().map_err(Failure::call).map_err(wrong),
@@ -107,7 +108,7 @@ impl BoardArguments {
     }
 
     /// The board that is named, or that was got of the pool that is.
-    pub(super) fn target(&self, settings: &Settings) -> Result<Target, Failure> {
+    pub(crate) fn target(&self, settings: &Settings) -> Result<Target, Failure> {
         pool::resolved(self.named(settings)?).map_err(|error| match error {
             PoolError::NoKind => wrong(Failure::call(error)),
             error => Failure::error(error),
@@ -115,7 +116,7 @@ impl BoardArguments {
     }
 
     /// Refuses a fault of the mock board that a run of `plan` never comes upon.
-    pub(super) fn check_fault(&self, settings: &Settings, plan: &Plan) -> Result<(), Failure> {
+    pub(crate) fn check_fault(&self, settings: &Settings, plan: &Plan) -> Result<(), Failure> {
         let target = self.target(settings)?;
         let fault = link::fault(&target).map_err(wrong)?;
         let judged = plan
@@ -138,14 +139,14 @@ impl BoardArguments {
     }
 
     /// The link to the board that is named, which is no recording; by default the mock, never a guess.
-    pub(super) fn candidate(&self, settings: &Settings) -> Result<Candidate, Failure> {
+    pub(crate) fn candidate(&self, settings: &Settings) -> Result<Candidate, Failure> {
         let target = self.target(settings)?;
         refuse_recording(&target)?;
         link::open(&target).map_err(wrong)
     }
 
     /// The link to the board that is named, which is the one in `recording` if there is one.
-    pub(super) fn candidate_of(
+    pub(crate) fn candidate_of(
         &self,
         settings: &Settings,
         recording: Option<Recording>,
@@ -157,11 +158,11 @@ impl BoardArguments {
     }
 
     /// The recording, if the target is one.
-    pub(super) fn recording(&self, settings: &Settings) -> Result<Option<Recording>, Failure> {
+    pub(crate) fn recording(&self, settings: &Settings) -> Result<Option<Recording>, Failure> {
         link::recording(&self.target(settings)?).map_err(wrong)
     }
 
-    pub(super) fn open_options(&self, settings: &Settings) -> Result<OpenOptions, Failure> {
+    pub(crate) fn open_options(&self, settings: &Settings) -> Result<OpenOptions, Failure> {
         Ok(OpenOptions {
             take_over: self.take_over,
             retry_limit: self.retry_limit(settings),
@@ -171,25 +172,25 @@ impl BoardArguments {
     }
 
     /// [`Self::open_options`] where a link is measured: however poor it is, unless the call itself says what is too poor.
-    pub(super) fn measuring_options(&self, settings: &Settings) -> Result<OpenOptions, Failure> {
+    pub(crate) fn measuring_options(&self, settings: &Settings) -> Result<OpenOptions, Failure> {
         let options = self.open_options(settings)?;
         let retry_limit = if self.retry_limit.is_some() { options.retry_limit } else { RetryLimit::NONE };
         Ok(OpenOptions { retry_limit, ..options })
     }
 
     /// What ends the run early: a signal, the loss of a board of a pool, or the call's limit on this computer's clock.
-    pub(super) fn stop(&self, settings: &Settings) -> Result<Stop, Failure> {
+    pub(crate) fn stop(&self, settings: &Settings) -> Result<Stop, Failure> {
         let signal = signals::stop();
         let lost = || pool::is_lost().then_some(StoppedBy::Caller);
         let stop = Stop::when(move || Exit::stopped_by(signal.load(Ordering::Relaxed)).or_else(lost));
         Ok(stop.wall_limit(self.timeout(settings)?))
     }
 
-    pub(super) fn timeout(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
+    pub(crate) fn timeout(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
         seconds("--timeout", self.timeout.or(settings.timeout))
     }
 
-    pub(super) fn retry_limit(&self, settings: &Settings) -> RetryLimit {
+    pub(crate) fn retry_limit(&self, settings: &Settings) -> RetryLimit {
         let limit = RetryLimit::default();
         match self.retry_limit.or(settings.retry_limit) {
             Some(percent) => RetryLimit { share: percent / 100.0, ..limit },

@@ -9,7 +9,8 @@ use clap::{Args, ValueEnum};
 use halfrow_model::{BitDepth, Equidistant, Geometry, Kernel, LensError, Phase};
 use halfrow_program::number::any;
 
-use super::{CallError, Failure};
+use crate::call_error::CallError;
+use crate::commands::Failure;
 use halfrow::kernels;
 use halfrow::lenses::LensFile;
 
@@ -20,12 +21,12 @@ use halfrow::optics::{self, Chosen, EQUIDISTANT, Optics, OpticsError, PAPER_FIEL
 const DEFAULT_PITCH: f64 = 2.2;
 
 /// The options that say how tables are made.
-pub(super) const MAKING_TABLES: [&str; 3] = ["rows", "projection", "entries"];
+pub(crate) const MAKING_TABLES: [&str; 3] = ["rows", "projection", "entries"];
 
 /// The size and depth of frames, the lens, and the optical centre. The defaults are the paper's system.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Frame and lens")]
-pub(super) struct LensArguments {
+pub(crate) struct LensArguments {
     /// Columns, even, 64 to 2592 [default: 1920, or those of the lens file's pictures]
     #[arg(long, value_name = "SAMPLES")]
     #[arg(value_parser = any::<usize>("a whole number of samples"))]
@@ -39,7 +40,7 @@ pub(super) struct LensArguments {
     bits: BitDepth,
     /// Bayer phase: grbg, rggb, bggr or gbrg
     #[arg(long, default_value_t = Phase::Grbg)]
-    pub(super) phase: Phase,
+    pub(crate) phase: Phase,
     /// The lens: a file of OpenCV's fisheye model (FileStorage, camera_info, camchain) or of OCamCalib, or equidistant:RADIUS
     #[arg(long, value_name = "FILE|equidistant:RADIUS")]
     #[arg(value_parser = OsStringValueParser::new().try_map(LensName::read))]
@@ -140,7 +141,7 @@ fn depth(text: &str) -> Result<BitDepth, String> {
 
 impl LensArguments {
     /// The file that describes the lens, if one does.
-    pub(super) fn file(&self) -> Option<&Path> {
+    pub(crate) fn file(&self) -> Option<&Path> {
         match &self.lens {
             Some(LensName::File(path)) => Some(path),
             _ => None,
@@ -148,7 +149,7 @@ impl LensArguments {
     }
 
     /// Whether the option `id`, one of [`super::given::IN_TABLE_FILES`], says what `geometry` has.
-    pub(super) fn agrees(&self, id: &str, geometry: &Geometry) -> bool {
+    pub(crate) fn agrees(&self, id: &str, geometry: &Geometry) -> bool {
         match id {
             "width" => self.width == Some(geometry.width()),
             "height" => self.height == Some(geometry.height()),
@@ -158,7 +159,7 @@ impl LensArguments {
     }
 
     /// The option by which the call says how tables are made, if it does.
-    pub(super) fn says_how(&self) -> Option<&'static str> {
+    pub(crate) fn says_how(&self) -> Option<&'static str> {
         match (self.rows, self.projection) {
             (Some(_), _) => Some("--rows"),
             (None, Some(_)) => Some("--projection"),
@@ -177,7 +178,7 @@ impl LensArguments {
     }
 
     /// The frame and the lens before it.
-    pub(super) fn optics(&self) -> Result<Optics, Failure> {
+    pub(crate) fn optics(&self) -> Result<Optics, Failure> {
         self.check().map_err(Failure::call)?;
         match self.file() {
             Some(path) => self.calibrated(path),
@@ -261,18 +262,18 @@ impl LensArguments {
 }
 
 /// The help of an option that takes a kernel.
-pub(super) fn kernel_help(instead: &str) -> String {
+pub(crate) fn kernel_help(instead: &str) -> String {
     format!("The kernel: {}, or a file{instead}", kernels::names(", "))
 }
 
 /// A kernel by name, or from a kernel file.
-pub(super) fn kernel(name: &OsStr) -> Result<Kernel, Failure> {
+pub(crate) fn kernel(name: &OsStr) -> Result<Kernel, Failure> {
     Ok(optics::kernel(name)?)
 }
 
 /// Takes the tables `named` if there are some, and those of the lens otherwise; `kernel_name` replaces the file's
 /// kernel.
-pub(super) fn choose(
+pub(crate) fn choose(
     named: Option<NamedTables>,
     lens: &LensArguments,
     kernel_name: Option<&OsStr>,

@@ -2,13 +2,13 @@
 
 use serde::Serialize;
 
-use super::{Failure, codes, print};
+use crate::commands::{Failure, codes, print};
 use crate::exit::Exit;
 use crate::{console, flags, json};
 use halfrow::result::{BoardReport, Document, Problem, Schema};
 
 /// The result of a command that judges nothing.
-pub(super) fn result_text(
+pub(crate) fn result_text(
     command: &str,
     exit_code: Exit,
     board: Option<&BoardReport>,
@@ -19,7 +19,7 @@ pub(super) fn result_text(
 }
 
 /// Prints the result of a command that judges nothing, which is its only one.
-pub(super) fn print_result(
+pub(crate) fn print_result(
     command: &str,
     exit_code: Exit,
     board: Option<&BoardReport>,
@@ -29,7 +29,7 @@ pub(super) fn print_result(
 }
 
 /// Tells the result of a command that left files, which stand whether or not it can be told.
-pub(super) fn tell_result(
+pub(crate) fn tell_result(
     command: &str,
     exit_code: Exit,
     board: Option<&BoardReport>,

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use super::CallError;
+use crate::call_error::CallError;
 use crate::console;
 use halfrow::call::{Files, FilesError};
 
 /// Looks whether `files` can be read and written as they are to be, and clears what runs that were killed left there; says what is kept
 /// of it.
-pub(super) fn prepare_files(files: &Files) -> Result<(), FilesError> {
+pub(crate) fn prepare_files(files: &Files) -> Result<(), FilesError> {
     files.check()?;
     for kept in files.clear_leftovers() {
         console::diagnose(&format_args!(
@@ -20,12 +20,12 @@ pub(super) fn prepare_files(files: &Files) -> Result<(), FilesError> {
 }
 
 /// Refuses `-`, which many programs take for stdout, as a place of frames: it would become a folder of that name.
-pub(super) fn refuse_stdout(place: &Path, option: &'static str) -> Result<(), CallError> {
+pub(crate) fn refuse_stdout(place: &Path, option: &'static str) -> Result<(), CallError> {
     if place == Path::new("-") { Err(CallError::FramesToStdout { option }) } else { Ok(()) }
 }
 
 /// Makes a folder, and those that it lies in.
-pub(super) fn make_folder(folder: &Path) -> Result<(), CallError> {
+pub(crate) fn make_folder(folder: &Path) -> Result<(), CallError> {
     std::fs::create_dir_all(folder)
         .map_err(|source| CallError::FolderNotMade { path: folder.to_owned(), source })
 }

@@ -15,14 +15,14 @@ use halfrow::call::{self, VoidOption};
 /// It has to be the first field of a command's arguments: what clap derives takes each field's values out of the
 /// matches, and with them where they come from.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Given {
+pub(crate) struct Given {
     flags: Vec<String>,
     variables: Vec<String>,
 }
 
 /// What decides in the place of options.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Decider {
+pub(crate) enum Decider {
     /// A recording that is judged again.
     Recording,
     /// A recording that is made.
@@ -48,7 +48,7 @@ pub(super) enum Decider {
 }
 
 /// Options that tables are made from, and that a table file has too: they stand where both say the same.
-pub(super) const IN_TABLE_FILES: [&str; 4] = ["width", "height", "bits", "centre_x"];
+pub(crate) const IN_TABLE_FILES: [&str; 4] = ["width", "height", "bits", "centre_x"];
 
 /// Options that mean nothing but making tables, or rendering built-in frames through their lens.
 const LENS: [&str; 10] = [
@@ -112,18 +112,18 @@ impl Decider {
 
 impl Given {
     /// Whether the command line gives the option `id`.
-    pub(super) fn is_flag(&self, id: &str) -> bool {
+    pub(crate) fn is_flag(&self, id: &str) -> bool {
         self.flags.iter().any(|flag| flag == id)
     }
 
     /// The first of the options that are void beside `decider` and on the command line, as it is written there.
-    pub(super) fn void_flag(&self, decider: Decider) -> Option<String> {
+    pub(crate) fn void_flag(&self, decider: Decider) -> Option<String> {
         decider.voids().into_iter().find(|id| self.is_flag(id)).map(written)
     }
 
     /// Which place says what the option `id` stands for, if it is not the command line: the environment, or else the file `settings`,
     /// which has these `keys`.
-    pub(super) fn place(&self, id: &str, settings: Option<&Path>, keys: &[&str]) -> Option<String> {
+    pub(crate) fn place(&self, id: &str, settings: Option<&Path>, keys: &[&str]) -> Option<String> {
         if self.is_flag(id) {
             return None;
         }
@@ -136,7 +136,7 @@ impl Given {
 
     /// Refuses a flag that is void beside `decider`. Of what the environment or the settings, which have the keys
     /// `settings`, say in vain is only told in the log.
-    pub(super) fn refuse_void(&self, decider: Decider, settings: &[&str]) -> Result<(), VoidOption> {
+    pub(crate) fn refuse_void(&self, decider: Decider, settings: &[&str]) -> Result<(), VoidOption> {
         if let Some(option) = self.void_flag(decider) {
             return Err(VoidOption { option, reason: decider.reason() });
         }
@@ -152,7 +152,7 @@ impl Given {
 }
 
 /// What an option that the environment and the settings may give, too, says.
-pub(super) fn yes_or_no(text: &str) -> Result<bool, String> {
+pub(crate) fn yes_or_no(text: &str) -> Result<bool, String> {
     match text.to_ascii_lowercase().as_str() {
         "1" | "yes" | "y" | "true" | "t" | "on" => Ok(true),
         "0" | "no" | "n" | "false" | "f" | "off" => Ok(false),
@@ -161,12 +161,12 @@ pub(super) fn yes_or_no(text: &str) -> Result<bool, String> {
 }
 
 /// An option as the command line has it.
-pub(super) fn written(id: &str) -> String {
+pub(crate) fn written(id: &str) -> String {
     format!("--{}", id.replace('_', "-"))
 }
 
 /// The id of an option that the command line has as `written`.
-pub(super) fn id(written: &str) -> String {
+pub(crate) fn id(written: &str) -> String {
     written.trim_start_matches('-').replace('-', "_")
 }
 
@@ -206,12 +206,13 @@ impl Args for Given {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Cli, correct, paper, verify};
     use super::*;
+    use crate::commands::Cli;
 
     /// The ids of the options that a command has by itself.
-    fn options<Arguments: Args>() -> Vec<String> {
-        let command = Arguments::augment_args(Command::new("halfrow"));
+    fn options(command: &str) -> Vec<String> {
+        let line = Cli::line();
+        let command = line.find_subcommand(command).unwrap();
         command.get_arguments().map(|argument| argument.get_id().to_string()).collect()
     }
 
@@ -236,7 +237,7 @@ mod tests {
         let mut decided: Vec<&str> = Decider::Recording.voids();
         decided.extend(stand);
         decided.sort_unstable();
-        let mut options = options::<verify::Arguments>();
+        let mut options = options("verify");
         options.sort_unstable();
         assert_eq!(options, decided);
     }
@@ -244,15 +245,15 @@ mod tests {
     #[test]
     fn options_that_are_void_exist() {
         for (decider, known) in [
-            (Decider::Record, options::<verify::Arguments>()),
-            (Decider::Tables, options::<verify::Arguments>()),
-            (Decider::Model, options::<correct::Arguments>()),
-            (Decider::NoFrameFile, options::<correct::Arguments>()),
-            (Decider::Headerless, options::<correct::Arguments>()),
-            (Decider::NoBoardItem, options::<paper::Arguments>()),
-            (Decider::NoPhotographItem, options::<paper::Arguments>()),
-            (Decider::NoFigure4, options::<paper::Arguments>()),
-            (Decider::NoSynthesisItem, options::<paper::Arguments>()),
+            (Decider::Record, options("verify")),
+            (Decider::Tables, options("verify")),
+            (Decider::Model, options("correct")),
+            (Decider::NoFrameFile, options("correct")),
+            (Decider::Headerless, options("correct")),
+            (Decider::NoBoardItem, options("paper")),
+            (Decider::NoPhotographItem, options("paper")),
+            (Decider::NoFigure4, options("paper")),
+            (Decider::NoSynthesisItem, options("paper")),
         ] {
             assert!(decider.voids().iter().all(|id| known.iter().any(|known| known == id)), "{decider:?}");
         }

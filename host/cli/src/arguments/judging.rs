@@ -8,12 +8,12 @@ use clap::Args;
 use halfrow_program::number::{any, whole_number};
 
 use super::board::BoardArguments;
-use super::files::prepare_files;
 use super::given::{Given, yes_or_no};
 use super::optics::{self, LensArguments};
 use super::table_file::{NamedTables, TableArgument};
-use super::{Context, Failure, codes};
+use crate::commands::{Context, Failure, codes};
 use crate::exit::Exit;
+use crate::files::prepare_files;
 use crate::pool::PoolError;
 use crate::settings::Settings;
 use crate::{console, flags, text};
@@ -31,9 +31,9 @@ use halfrow::verdict::Cause;
 const PATIENCE: Duration = Duration::from_secs(30);
 
 #[derive(Debug, Args)]
-pub(super) struct RunArguments {
+pub(crate) struct RunArguments {
     #[command(flatten)]
-    pub(super) board: BoardArguments,
+    pub(crate) board: BoardArguments,
     #[command(flatten)]
     tables: TableArgument,
     #[arg(long, value_name = "NAME|FILE", help = optics::kernel_help(", instead of the table file's"), env = "HALFROW_KERNEL")]
@@ -60,20 +60,20 @@ pub(super) struct RunArguments {
     #[arg(long, value_name = "SEED", env = "HALFROW_SEED", value_parser = whole_number())]
     seed: Option<u64>,
     #[command(flatten)]
-    pub(super) lens: LensArguments,
+    pub(crate) lens: LensArguments,
 }
 
 /// Where a run writes, with the places taken.
-pub(super) struct Outputs {
+pub(crate) struct Outputs {
     /// The report's folder.
-    pub(super) report: Option<ReportFolder>,
+    pub(crate) report: Option<ReportFolder>,
     /// The recording's file.
-    pub(super) recording: Option<RecordingFile>,
+    pub(crate) recording: Option<RecordingFile>,
 }
 
 impl RunArguments {
     /// The table file to judge with; none if the lens options make the tables.
-    pub(super) fn table_file(
+    pub(crate) fn table_file(
         &self,
         given: &Given,
         settings: &Settings,
@@ -82,7 +82,7 @@ impl RunArguments {
     }
 
     /// Tables and kernel to judge with, of `tables` if there are any, and the files that they and the lens were read from.
-    pub(super) fn chosen(
+    pub(crate) fn chosen(
         &self,
         tables: Option<NamedTables>,
         settings: &Settings,
@@ -98,30 +98,30 @@ impl RunArguments {
     }
 
     /// Tables and lens that are files.
-    pub(super) fn input_files(&self, settings: &Settings) -> Vec<PathBuf> {
+    pub(crate) fn input_files(&self, settings: &Settings) -> Vec<PathBuf> {
         let tables = self.tables.path(settings).map(PathBuf::as_path);
         tables.into_iter().chain(self.lens.file()).map(PathBuf::from).collect()
     }
 
     /// Refuses tables and a lens that are files and cannot be read twice.
-    pub(super) fn check_inputs(&self, settings: &Settings) -> Result<(), Failure> {
+    pub(crate) fn check_inputs(&self, settings: &Settings) -> Result<(), Failure> {
         self.lens.file().map_or(Ok(()), check_regular).map_err(Failure::call)?;
         let tables = self.tables.path(settings).map(PathBuf::as_path);
         tables.map_or(Ok(()), check_regular).map_err(|error| Failure::call(error).in_value_of("--tables"))
     }
 
-    pub(super) fn seed(&self, settings: &Settings) -> u64 {
+    pub(crate) fn seed(&self, settings: &Settings) -> u64 {
         self.seed.or(settings.seed).unwrap_or(1)
     }
 
     /// Who tests; none if nobody is named.
-    pub(super) fn operator(&self) -> Option<String> {
+    pub(crate) fn operator(&self) -> Option<String> {
         self.operator.clone().filter(|name| !name.trim().is_empty())
     }
 
     /// How long a board may stay away: what the call says, where the `usual` stands for no number, or else the settings; none if neither
     /// says anything.
-    pub(super) fn patience(
+    pub(crate) fn patience(
         &self,
         settings: Option<f64>,
         usual: Duration,
@@ -131,7 +131,7 @@ impl RunArguments {
     }
 
     /// How a run is made that judges with what was read from `inputs`.
-    pub(super) fn options(&self, inputs: Vec<Input>, settings: &Settings) -> Result<RunOptions, Failure> {
+    pub(crate) fn options(&self, inputs: Vec<Input>, settings: &Settings) -> Result<RunOptions, Failure> {
         let circumstances = Circumstances {
             arguments: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
             files: inputs.into_iter().map(FileHash::from).collect(),
@@ -151,7 +151,7 @@ impl RunArguments {
         })
     }
 
-    pub(super) fn requires_hardware(&self, settings: &Settings) -> bool {
+    pub(crate) fn requires_hardware(&self, settings: &Settings) -> bool {
         self.require_hardware.or(settings.require_hardware).unwrap_or(false)
     }
 
@@ -160,7 +160,7 @@ impl RunArguments {
     }
 
     /// Looks at all that is read, `inputs` among it, and written, and takes the places of what is written.
-    pub(super) fn outputs(
+    pub(crate) fn outputs(
         &self,
         inputs: Vec<PathBuf>,
         record: Option<&Path>,
@@ -191,7 +191,7 @@ impl RunArguments {
 
     /// Writes the report of a run that a pool gave no board for, whose plan, options and input files `free` tells; and hands
     /// the failure on.
-    pub(super) fn without_board(
+    pub(crate) fn without_board(
         &self,
         failure: Failure,
         context: &Context,
@@ -213,12 +213,12 @@ impl RunArguments {
 }
 
 /// The time of an `option` in seconds.
-pub(super) fn seconds(option: &'static str, seconds: Option<f64>) -> Result<Option<Duration>, Failure> {
+pub(crate) fn seconds(option: &'static str, seconds: Option<f64>) -> Result<Option<Duration>, Failure> {
     call::seconds(option, seconds).map_err(|error| Failure::call(error).in_value_of(option))
 }
 
 /// Writes the report into its folder, if there is one, and prints it.
-pub(super) fn write_and_tell(
+pub(crate) fn write_and_tell(
     mut finished: Finished,
     folder: Option<ReportFolder>,
     context: &Context,
@@ -237,7 +237,7 @@ pub(super) fn write_and_tell(
 
 /// Writes the report of a run that never began, as when its board cannot be opened, so that nobody takes an earlier one for its
 /// own; and hands the failure on. A call that is wrong is no run.
-pub(super) fn not_begun(
+pub(crate) fn not_begun(
     failure: Failure,
     (plan, options): (&Plan, &RunOptions),
     target: &Target,
@@ -259,7 +259,7 @@ pub(super) fn not_begun(
 }
 
 /// Says what a verdict that stands lacks.
-pub(super) fn tell(lack: &Lack) {
+pub(crate) fn tell(lack: &Lack) {
     if !lack.is_told {
         console::error(&flags::named(&lack.to_string()));
     }

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::document::print_result;
-use super::{Failure, print};
+use crate::commands::{Failure, print};
+use crate::document::print_result;
 use crate::exit::Exit;
 use halfrow::board::{BoardNature, Capabilities};
 use halfrow::result::Variation;

@@ -9,7 +9,7 @@ use halfrow::frames::Format;
 
 /// A call that cannot be carried out as it stands. Options are named as they are written on the command line.
 #[derive(Debug, Error)]
-pub(super) enum CallError {
+pub(crate) enum CallError {
     /// A command that prints nothing that could be JSON.
     #[error("`halfrow {command}` has no result in JSON; leave --json out")]
     NoJson { command: &'static str },

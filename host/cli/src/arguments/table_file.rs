@@ -6,7 +6,8 @@ use clap::Args;
 
 use super::given::{Decider, Given, IN_TABLE_FILES, written};
 use super::optics::LensArguments;
-use super::{CallError, Failure};
+use crate::call_error::CallError;
+use crate::commands::Failure;
 use crate::settings::Settings;
 use halfrow::call::Input;
 use halfrow::optics::OpticsError;
@@ -14,7 +15,7 @@ use halfrow::tables::TableFile;
 
 /// The table file that the command line or the environment names.
 #[derive(Clone, Debug, Args)]
-pub(super) struct TableArgument {
+pub(crate) struct TableArgument {
     /// The table file; without it the lens options make the tables
     ///
     /// Options that make tables are refused beside it, but a size, depth or column of the centre that is the file's.
@@ -24,20 +25,20 @@ pub(super) struct TableArgument {
 }
 
 /// A table file that was read.
-pub(super) struct NamedTables {
-    pub(super) input: Input,
-    pub(super) file: TableFile,
+pub(crate) struct NamedTables {
+    pub(crate) input: Input,
+    pub(crate) file: TableFile,
 }
 
 impl TableArgument {
     /// The file that is named, whether its tables will be taken or not.
-    pub(super) fn path<'a>(&'a self, settings: &'a Settings) -> Option<&'a PathBuf> {
+    pub(crate) fn path<'a>(&'a self, settings: &'a Settings) -> Option<&'a PathBuf> {
         self.tables.as_ref().or(settings.tables.as_ref())
     }
 
     /// The file to take the tables from; none for those of the lens options. Options that make tables are flags, and so come
     /// before a file that the environment or `settings` names.
-    pub(super) fn read(
+    pub(crate) fn read(
         &self,
         given: &Given,
         lens: &LensArguments,

@@ -4,27 +4,27 @@ use serde::Serialize;
 
 /// A board of `fpga/boards`.
 #[derive(Debug, Serialize)]
-pub(super) struct BitstreamBoard {
+pub(crate) struct BitstreamBoard {
     /// The name of its folder there.
-    pub(super) name: &'static str,
+    pub(crate) name: &'static str,
     /// Its FPGA.
-    pub(super) device: &'static str,
+    pub(crate) device: &'static str,
     /// The kinds of target that reach it, as `--board` takes them.
-    pub(super) links: &'static [&'static str],
+    pub(crate) links: &'static [&'static str],
     /// What makes its bitstreams, in the project's folder.
-    pub(super) build: &'static str,
+    pub(crate) build: &'static str,
     /// What that leaves to be loaded, in the project's folder.
-    pub(super) bitstream: &'static str,
+    pub(crate) bitstream: &'static str,
     /// The target that the board is judged by with it, `PATH` for a serial port's.
-    pub(super) target: &'static str,
+    pub(crate) target: &'static str,
     /// What openFPGALoader calls the board.
-    pub(super) loader_name: &'static str,
+    pub(crate) loader_name: &'static str,
     /// Another program that loads it, without the file, for who has no openFPGALoader.
-    pub(super) other_loader: &'static str,
+    pub(crate) other_loader: &'static str,
 }
 
 /// All of them. The loader's names are those of openFPGALoader 0.10 (`--list-boards`).
-pub(super) const BOARDS: [BitstreamBoard; 2] = [
+pub(crate) const BOARDS: [BitstreamBoard; 2] = [
     BitstreamBoard {
         name: "minispartan6plus",
         device: "XC6SLX25-3-FTG256",
@@ -49,12 +49,12 @@ pub(super) const BOARDS: [BitstreamBoard; 2] = [
 
 impl BitstreamBoard {
     /// The one of that name.
-    pub(super) fn named(name: &str) -> Option<&'static Self> {
+    pub(crate) fn named(name: &str) -> Option<&'static Self> {
         BOARDS.iter().find(|board| board.name == name)
     }
 
     /// All names, for a sentence.
-    pub(super) fn names() -> String {
+    pub(crate) fn names() -> String {
         BOARDS.map(|board| board.name).join(", ")
     }
 }
