@@ -312,7 +312,7 @@ pub struct RunReport {
     pub commit: String,
     /// The command line.
     pub arguments: Vec<String>,
-    /// Seed of the run's nonces and link test.
+    /// Seed of noise, gaps, the link test, the rules and what the board makes on its own. The session's numbers are drawn without it.
     pub seed: u64,
     /// When it began, RFC 3339, UTC.
     pub started: String,

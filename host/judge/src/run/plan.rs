@@ -150,7 +150,8 @@ pub struct Plan {
     pub at_speed: AtSpeed,
     /// End with the first frame that differs.
     pub fail_fast: bool,
-    /// The seed of nonces, link test and noise.
+    /// The seed of noise, gaps, the link test, the rules and what the board makes on its own. The session's numbers are drawn without it:
+    /// [`Circumstances::draws`](super::Circumstances::draws).
     pub seed: u64,
 }
 

@@ -157,7 +157,7 @@ pub struct Judging {
     /// How long the board makes frames on its own at the full pixel clock behind them, on its clock, zero for none; if none is
     /// said, as long as the judge does on its own.
     pub at_speed: Option<Duration>,
-    /// The seed of noise, gaps and nonces.
+    /// The seed of noise, gaps, the link test, the rules and what the board makes on its own.
     pub seed: Seed,
 }
 
