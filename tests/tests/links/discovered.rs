@@ -86,14 +86,15 @@ fn a_board_that_another_host_holds_is_left_to_it() {
 
 /// Two programs that leave it to the default to draw their numbers are two hosts.
 #[test]
-fn two_sessions_by_default_options_are_two_hosts() {
+fn a_session_that_is_dropped_holds_the_board_and_one_that_was_closed_does_not() {
     let served = Served::on_a_tcp_port("127.0.0.1", "mock");
-    let open = || {
-        let link = link::open(&served.target().parse().unwrap()).unwrap().link;
-        Board::open(link, &OpenOptions::default()).map(drop).map_err(|failed| failed.error)
-    };
-    open().unwrap();
-    assert!(matches!(open(), Err(BoardError::Held { .. })));
+    let link = || link::open(&served.target().parse().unwrap()).unwrap().link;
+    let options = OpenOptions::default;
+    let ended_early = Board::with(link(), &options(), |_| Err::<(), _>("early"));
+    assert_eq!(ended_early.unwrap(), Err("early"));
+    drop(Board::open(link(), &options()).unwrap());
+    let refused = Board::open(link(), &options()).map(drop).map_err(|failed| failed.error);
+    assert!(matches!(refused, Err(BoardError::Held { .. })), "{refused:?}");
 }
 
 /// A GPS receiver, a console, a board at another rate.
