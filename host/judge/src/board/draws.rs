@@ -3,8 +3,8 @@
 use super::deadlines::RetryLimit;
 use super::{OpenOptions, Stop};
 
-/// Numbers that a session draws at random. Its packets are told from another session's by them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+/// Numbers that a session draws at random, and its packets are told from another session's by. The default draws them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Draws {
     /// The session's nonce.
     pub nonce: u32,
@@ -27,6 +27,12 @@ impl Draws {
     }
 }
 
+impl Default for Draws {
+    fn default() -> Self {
+        Self::draw()
+    }
+}
+
 impl From<Draws> for OpenOptions {
     fn from(Draws { nonce, host, sequence }: Draws) -> Self {
         Self {
@@ -44,6 +50,6 @@ impl From<Draws> for OpenOptions {
 
 impl Default for OpenOptions {
     fn default() -> Self {
-        Draws::draw().into()
+        Draws::default().into()
     }
 }

@@ -82,7 +82,7 @@ pub(crate) use threads::NoThread;
 pub use variations::{Build, Vary};
 pub use within::WithinError;
 
-/// What the report says of the run beside its findings.
+/// What the report says of the run beside its findings. The default draws its numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Circumstances {
     /// The command line.

@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use super::Circumstances;
+use crate::board::Stop;
 use crate::board::deadlines::RetryLimit;
-use crate::board::{Draws, Stop};
 
 /// How a run is made. The default is a patient one: no time limit, the usual share of retries, an end when the board goes
 /// away, nobody cut off, any kind of board, which is asked what came to it.
@@ -56,7 +56,7 @@ impl Default for RunOptions {
             require_hardware: false,
             evidence_bytes: Self::EVIDENCE_BYTES,
             keep_equal: false,
-            circumstances: Circumstances { draws: Draws::draw(), ..Circumstances::default() },
+            circumstances: Circumstances::default(),
         }
     }
 }
