@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use nix::sys::statfs::statfs;
 
 /// File systems that may lose what was brought to the disk, by their numbers in statfs(2).
-const REFUSED: [(i64, &str); 11] = [
+const REFUSED: [(i64, &str); 12] = [
     (0x0102_1994, "tmpfs, which is memory"),
     (0x8584_58F6, "ramfs, which is memory"),
     (0x6969, "NFS, which is another computer's"),
@@ -15,6 +15,7 @@ const REFUSED: [(i64, &str); 11] = [
     (0xFE53_4D42, "SMB, which is another computer's"),
     (0xFF53_4D42, "CIFS, which is another computer's"),
     (0x5346_414F, "AFS, which is another computer's"),
+    (0x6B41_4653, "AFS, which is another computer's"),
     (0x7375_7245, "Coda, which is another computer's"),
     (0x00C3_6400, "Ceph, which is another computer's"),
     (0x0102_1997, "9P, which is another computer's"),
@@ -77,13 +78,19 @@ pub fn keeps(folder: &Path) -> Result<(), DiskError> {
 fn is_volatile(mounts: &str, place: &Path) -> bool {
     let mount = |line: &str| {
         let mut words = line.split(' ');
-        let (at, how) = (words.nth(4)?.to_owned(), words.next_back()?.to_owned());
+        let (at, how) = (unescaped(words.nth(4)?), words.next_back()?.to_owned());
         Some((at, how))
     };
     let over = mounts.lines().filter_map(mount).filter(|(at, _)| place.starts_with(at));
     // Of mounts in one place the last one covers the others.
     let nearest = over.max_by_key(|(at, _)| at.len());
     nearest.is_some_and(|(_, how)| how.split(',').any(|option| option == "volatile"))
+}
+
+/// A word of that file as it was before the kernel wrote it without blanks.
+fn unescaped(word: &str) -> String {
+    let escapes = [("\\040", " "), ("\\011", "\t"), ("\\012", "\n"), ("\\134", "\\")];
+    escapes.iter().fold(word.to_owned(), |word, (escape, letter)| word.replace(escape, letter))
 }
 
 #[cfg(test)]
@@ -101,11 +108,42 @@ mod tests {
     fn an_overlay_is_asked_whether_it_is_volatile() {
         let mounts = "36 35 98:0 / / rw,noatime shared:1 - ext4 /dev/root rw,errors=continue\n\
                       40 36 0:32 / /a rw - overlay overlay rw,lowerdir=/l,upperdir=/u,workdir=/w,volatile\n\
-                      41 40 0:33 / /a/b rw - overlay overlay rw,lowerdir=/l,upperdir=/u,workdir=/w\n";
+                      41 40 0:33 / /a/b rw - overlay overlay rw,lowerdir=/l,upperdir=/u,workdir=/w\n\
+                      42 36 0:34 / /a\\040b rw - overlay overlay rw,lowerdir=/l,upperdir=/u,workdir=/w,volatile\n";
         for (place, volatile) in
-            [("/x", false), ("/a", true), ("/a/c", true), ("/a/b/c", false), ("/ab", false)]
+            [("/x", false), ("/a", true), ("/a/c", true), ("/a/b/c", false), ("/ab", false), ("/a b/c", true)]
         {
             assert_eq!(is_volatile(mounts, place.as_ref()), volatile, "{place}");
         }
+        // What is mounted over a volatile one covers it.
+        let covered =
+            format!("{mounts}43 40 0:35 / /a rw - overlay overlay rw,lowerdir=/l,upperdir=/v,workdir=/w\n");
+        assert!(!is_volatile(&covered, "/a/c".as_ref()));
+    }
+
+    /// The numbers of Linux's own include/uapi/linux/magic.h.
+    #[test]
+    fn what_may_lose_what_was_brought_to_the_disk_is_known_by_the_kernel_s_numbers() {
+        let named =
+            |number: i64| REFUSED.into_iter().find(|(known, _)| *known == number).map(|(_, what)| what);
+        for (number, name) in [
+            (0x0102_1994, "tmpfs"),
+            (0x8584_58f6, "ramfs"),
+            (0x6969, "NFS"),
+            (0x517b, "SMB"),
+            (0xfe53_4d42, "SMB"),
+            (0xff53_4d42, "CIFS"),
+            (0x5346_414f, "AFS"),
+            (0x6b41_4653, "AFS"),
+            (0x7375_7245, "Coda"),
+            (0x00c3_6400, "Ceph"),
+            (0x0102_1997, "9P"),
+            (0x6573_5546, "FUSE"),
+        ] {
+            assert!(named(number).is_some_and(|what| what.starts_with(name)), "{name} {number:#x}");
+        }
+        // ext4, XFS and btrfs; overlayfs is asked more.
+        assert_eq!([0xef53, 0x5846_5342, 0x9123_683e, OVERLAY].map(named), [None; 4]);
+        assert_eq!(OVERLAY, 0x794c_7630);
     }
 }
