@@ -112,7 +112,55 @@ fn status(kind: Option<NonSuccessKind>, message: &str, description: &str) -> Sta
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plan::limits::{Blame, Limit, Maker, Measurement};
+    use crate::record::judged;
     use crate::record::tests::{pass, step};
+
+    /// The element of this tag whose head holds `name`, to its end.
+    fn element(document: &str, tag: &str, name: &str) -> String {
+        let head = format!("<{tag} ");
+        let heads = document.match_indices(&head).map(|(at, _)| &document[at..]);
+        let mut named = heads.filter(|from| from.split('>').next().unwrap().contains(name));
+        let from = named.next().unwrap_or_else(|| panic!("no {name} in {document}"));
+        let end = if from.split('>').next().unwrap().ends_with('/') { "/>" } else { "</testcase>" };
+        from[..from.find(end).unwrap()].to_owned()
+    }
+
+    #[test]
+    fn the_last_try_of_each_step_is_a_case_and_each_limit_with_what_to_do_behind_a_fail() {
+        let steps = vec![
+            step(1, 1, StepOutcome::Error, RunCause::Link),
+            step(1, 2, StepOutcome::Passed, RunCause::None),
+            step(2, 1, StepOutcome::Failed, RunCause::Board),
+            step(3, 1, StepOutcome::Skipped, RunCause::None),
+        ];
+        let limit = Limit {
+            measurement: Measurement::named("run.seconds").unwrap(),
+            least: None,
+            most: Some(60.0),
+            blames: Blame::Board,
+        };
+        let measurements = judged(Maker::Run, &[("run.seconds", Some(1.5))], &[limit]);
+        let mut record = Record { steps, measurements, ..pass() };
+        (record.conclusion.verdict, record.conclusion.cause) = (Verdict::Fail, RunCause::Board);
+        record.conclusion.remedy = Some("Put the board aside.".to_owned());
+        let document = render(&record).unwrap();
+        assert!(document.contains("tests=\"5\"") && document.contains("skipped=\"1\""), "{document}");
+        assert!(document.contains("failures=\"2\" errors=\"0\""), "{document}");
+        assert!(!document.contains("step 1, try 1"), "{document}");
+        assert!(element(&document, "testcase", "\"step 3 (step 3, try 1)\"").contains("<skipped"));
+        assert!(element(&document, "testcase", "\"verdict\"").contains("Put the board aside."));
+        element(&document, "testcase", "\"run.seconds (run)\"");
+        for (name, value) in
+            [("product", "CAM-A"), ("serial", "CA1"), ("station", "12"), ("operator", "weber")]
+        {
+            let property = format!("<property name=\"{name}\" value=\"{value}\"");
+            assert!(document.contains(&property), "{property}: {document}");
+        }
+        // A measurement without a limit is no case.
+        let none = judged(Maker::Run, &[("run.seconds", Some(1.5))], &[]);
+        assert!(!render(&Record { measurements: none, ..record }).unwrap().contains("run.seconds (run)"));
+    }
 
     #[test]
     fn a_run_is_as_long_as_it_was_although_its_computer_was_set() {

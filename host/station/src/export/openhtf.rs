@@ -137,3 +137,65 @@ fn range(one: &Measured) -> Option<String> {
         (Some(low), Some(high)) => Some(format!("{low:?} <= x <= {high:?}")),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::limits::{Blame, Limit, Maker, Measurement};
+    use crate::record::judged;
+    use crate::record::tests::{pass, step};
+
+    /// As `test_record.Outcome` and `PhaseOutcome` of OpenHTF 1.6 are called.
+    #[test]
+    fn a_run_and_its_tries_end_as_openhtf_calls_it() {
+        let steps = vec![
+            step(1, 1, StepOutcome::Error, RunCause::Link),
+            step(1, 2, StepOutcome::Passed, RunCause::None),
+            step(2, 1, StepOutcome::Failed, RunCause::Board),
+            step(3, 1, StepOutcome::Skipped, RunCause::None),
+        ];
+        let mut record =
+            Record { steps, measurements: Vec::new(), marginal: true, seconds: Some(2.5), ..pass() };
+        record.conclusion.cause = RunCause::Operator;
+        let told = of(&record);
+        let phases: Vec<_> = told["phases"].as_array().unwrap().iter().collect();
+        let ended: Vec<_> = phases.iter().map(|phase| (&phase["outcome"], &phase["marginal"])).collect();
+        let expected = [("ERROR", false), ("PASS", true), ("FAIL", false), ("SKIP", false)]
+            .map(|(outcome, marginal)| (json!(outcome), json!(marginal)));
+        assert_eq!(ended, expected.each_ref().map(|(outcome, marginal)| (outcome, marginal)));
+        assert_eq!((&told["outcome"], &told["marginal"]), (&json!("ABORTED"), &json!(true)));
+        assert_eq!((&told["start_time_millis"], &told["end_time_millis"]), (&json!(1), &json!(2501)));
+        record.conclusion.cause = RunCause::None;
+        assert_eq!(of(&record)["outcome"], "PASS");
+    }
+
+    /// The sentences are those of `validators.InRange.__str__` of OpenHTF 1.6.
+    #[test]
+    fn a_measurement_has_its_value_and_its_limit_in_openhtf_s_words() {
+        let measured = |value, least, most, blames| {
+            let measurement = Measurement::named("run.seconds").unwrap();
+            judged(Maker::Run, &[("run.seconds", value)], &[Limit { measurement, least, most, blames }])
+                .remove(0)
+        };
+        for (value, least, most, outcome, told) in [
+            (Some(1.5), Some(1.0), None, "PASS", "1.0 <= x"),
+            (Some(1.5), None, Some(1.0), "FAIL", "x <= 1.0"),
+            (Some(1.5), Some(1.0), Some(2.0), "PASS", "1.0 <= x <= 2.0"),
+            (Some(1.5), Some(1.5), Some(1.5), "PASS", "x == 1.5"),
+            (None, Some(1.0), None, "UNSET", "1.0 <= x"),
+        ] {
+            let one = measurement(&measured(value, least, most, Blame::Board));
+            assert_eq!((&one["outcome"], &one["validators"]), (&json!(outcome), &json!([told])));
+            assert_eq!(one.get("measured_value"), value.map(|value| json!(value)).as_ref());
+        }
+        // What was not measured has not passed, either where nobody is blamed or asks.
+        assert_eq!(measurement(&measured(None, Some(1.0), None, Blame::Nobody))["outcome"], "UNSET");
+        let unlimited = judged(Maker::Run, &[], &[]).remove(0);
+        assert_eq!(measurement(&unlimited)["outcome"], "UNSET");
+        // No FAIL of a station's.
+        let of = |blames| measured(Some(1.5), Some(2.0), None, blames);
+        assert_eq!(worst(&[of(Blame::Board), of(Blame::Station)]), "ERROR");
+        assert_eq!(worst(&[of(Blame::Nobody), of(Blame::Board)]), "FAIL");
+        assert_eq!(worst(&[of(Blame::Nobody)]), "PASS");
+    }
+}

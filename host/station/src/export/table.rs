@@ -176,3 +176,23 @@ fn measurement(one: &Measured) -> [String; 7] {
 fn number(value: Option<f64>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::tests::{pass, step};
+    use crate::record::{RunCause, StepOutcome};
+
+    /// As of one whose lane died before its first step: it was a run all the same.
+    #[test]
+    fn a_run_of_which_nothing_was_measured_has_a_line() {
+        let lines = |steps: Vec<StepRecord>| {
+            let mut table = Table::further(Vec::new());
+            table.add(&Record { steps, measurements: Vec::new(), ..pass() }).unwrap();
+            let text = String::from_utf8(table.end()).unwrap();
+            text.lines().map(|line| line.split(',').nth(25).unwrap().to_owned()).collect::<Vec<_>>()
+        };
+        assert_eq!(lines(Vec::new()), ["run"]);
+        assert_eq!(lines(vec![step(1, 1, StepOutcome::Error, RunCause::Crash)]), ["step 1"]);
+    }
+}
