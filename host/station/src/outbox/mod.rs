@@ -260,6 +260,18 @@ fn logged_round(
     Ok(round)
 }
 
+/// How long it is waited behind a round; `vain` counts those before it for which the sink was away.
+fn wait_behind(round: Round, vain: &mut u32) -> Duration {
+    if round.is_away {
+        let wait = back_off::ms(*vain);
+        *vain = vain.saturating_add(1);
+        return Duration::from_millis(wait.unsigned_abs());
+    }
+    *vain = 0;
+    // There may be more.
+    if round.sent > 0 { Duration::ZERO } else { LOOK }
+}
+
 /// Sends until the outbox is closed.
 fn send(store: &SharedStore, mut sink: Box<dyn Sink>, stopped: &Receiver<()>) {
     let (mut vain, mut worked, mut beaten) = (0, Instant::now(), None::<Instant>);
@@ -278,15 +290,39 @@ fn send(store: &SharedStore, mut sink: Box<dyn Sink>, stopped: &Receiver<()>) {
         } else if worked.elapsed() > IDLE {
             sink.rest();
         }
-        vain = if round.is_away { vain + 1 } else { 0 };
-        let wait = match round {
-            Round { is_away: true, .. } => Duration::from_millis(back_off::ms(vain - 1).unsigned_abs()),
-            // There may be more.
-            Round { sent: 1.., .. } => Duration::ZERO,
-            _ => LOOK,
-        };
-        if stopped.recv_timeout(wait) == Err(RecvTimeoutError::Disconnected) {
+        if stopped.recv_timeout(wait_behind(round, &mut vain)) == Err(RecvTimeoutError::Disconnected) {
             return;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::Kind;
+
+    /// docs/station.md: a second, then two, four, up to five minutes.
+    #[test]
+    fn what_is_not_taken_is_tried_again_later_and_later() {
+        for (attempts, most) in [(0, 1_000), (3, 8_000), (20, 300_000)] {
+            let entry = Entry { kind: Kind::Run, subject: "run".to_owned(), attempts };
+            let said = Said::from(crate::said::Saying::PlanChanged);
+            let before = clock::now_ms();
+            let Tried::Again { next_ms, .. } = became(&entry, Err(Undelivered::NotNow(said))) else {
+                panic!("it is tried again")
+            };
+            assert!(next_ms >= before + 3 * most / 4 && next_ms <= clock::now_ms() + most, "{attempts}");
+        }
+    }
+
+    #[test]
+    fn a_sink_that_was_away_once_is_asked_as_soon_when_it_is_away_again() {
+        let (away, idle) = (Round { is_away: true, ..Round::default() }, Round::default());
+        let mut vain = 0;
+        for (round, most_ms) in [(away, 1_000), (away, 2_000), (away, 4_000), (idle, 200), (away, 1_000)] {
+            let wait = wait_behind(round, &mut vain).as_millis();
+            assert!((3 * most_ms / 4..=most_ms).contains(&wait), "{wait} ms, not {most_ms}");
+        }
+        assert_eq!(wait_behind(Round { sent: 1, ..idle }, &mut vain), Duration::ZERO, "there may be more");
     }
 }

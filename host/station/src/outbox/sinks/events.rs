@@ -196,3 +196,58 @@ impl Sink for EventSink {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use serde_json::{Value, json};
+
+    use super::*;
+    use crate::record::RunHead;
+    use crate::record::tests::pass;
+
+    fn sink(name: &str, station: &str, path: &str) -> EventSink {
+        let (url, host) = ("mqtt://broker/x".to_owned(), "broker".to_owned());
+        let address =
+            SinkAddress { url, host, port: 1883, path: path.to_owned(), is_protected: false, ca: None };
+        EventSink::new(name.to_owned(), station, &address, None).unwrap()
+    }
+
+    /// What a dashboard shows of it is the board's, and of that run.
+    #[test]
+    fn an_event_says_of_a_run_what_its_record_says() {
+        let run = RunHead { started_ms: 1_000, lane: "left".to_owned(), ..pass().run };
+        let event: Value =
+            serde_json::to_value(RunEvent::of(&Record { run, ended_ms: 2_500, ..pass() })).unwrap();
+        let told = json!({
+            "schema": 1,
+            "run": "017f22e2-79b0-7cc3-98c4-dc0c0c07398f",
+            "station": "12",
+            "lane": "left",
+            "product": "CAM-A",
+            "serial": "CA1",
+            "plan": "n",
+            "version": "1",
+            "verdict": "PASS",
+            "cause": "none",
+            "headline": "all is right",
+            "started_ms": 1_000,
+            "ended_ms": 2_500,
+            "production": true,
+        });
+        assert_eq!(event, told);
+    }
+
+    /// No topic that something is published to has a wildcard (MQTT 3.1.1, section 4.7.1), and a level more is another topic.
+    #[test]
+    fn a_name_adds_no_level_and_no_wildcard_to_a_topic() {
+        assert_eq!(sink("wall", "a/b+c#", "/hall/").topic(&["1\0", "run"]), "hall/a-b-c-/1-/run");
+        assert_eq!(sink("wall", "12", "/").topic(&["waiver"]), "12/waiver");
+    }
+
+    /// A broker ends the earlier of two connections of one name (MQTT 3.1.1, section 3.1.4).
+    #[test]
+    fn two_sinks_are_two_clients_of_a_broker() {
+        let [one, other] = ["wall", "office"].map(|name| sink(name, "12", "/").options.client_id());
+        assert_ne!(one, other);
+    }
+}

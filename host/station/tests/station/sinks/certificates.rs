@@ -1,5 +1,6 @@
 //! Servers whose certificates are not good. Those of the tests are good for two days.
 
+use std::fs;
 use std::path::Path;
 use std::process::Command;
 
@@ -66,6 +67,45 @@ fn a_certificate_out_of_its_time_is_told_with_its_date_and_the_clock_s() {
     let early = ends.told("localhost", ends.ours.path(), -5 * DAY);
     let from = format!("is valid from {} on, and this computer's clock says 20", ends.date("-startdate"));
     assert!(early.contains("the certificate of localhost") && early.contains(&from), "{early}");
+}
+
+/// A file of which a part cannot be read trusts nobody by the rest of it, and one without certificates trusts nobody at all.
+#[test]
+fn a_file_of_certificates_that_is_not_whole_is_told_before_anything_is_sent() {
+    let ends = Ends::new();
+    let path = ends.ours.path().join("half.pem");
+    let whole = fs::read_to_string(ends.ours.path().join("ca.pem")).unwrap();
+    let key = fs::read_to_string(ends.ours.path().join("ca.key")).unwrap();
+    let broken = format!("{whole}-----BEGIN CERTIFICATE-----\n!!!!\n-----END CERTIFICATE-----\n");
+    for (text, said) in [
+        (broken.as_str(), "the certificates in "),
+        (key.as_str(), "there is no certificate to know the other side by"),
+    ] {
+        fs::write(&path, text).unwrap();
+        let ca = format!("ca = \"{}\"", path.display());
+        let sink = sink(&format!("https://localhost:{}/", ends.server.port), &ca);
+        let refused: Did = command(ends.folder.path(), &sink, &SEND).output().unwrap().into();
+        assert!(refused.code == Some(2) && refused.complained.contains(said), "{refused:?}");
+    }
+    assert!(ends.server.requests().is_empty());
+}
+
+/// As where the system trusts a proxy of the house, which reads what goes through it.
+#[test]
+fn who_signs_is_of_the_file_of_the_settings_alone_and_not_of_the_system_s() {
+    let ends = Ends::new();
+    let theirs = certified();
+    let ca = |place: &TempDir| place.path().join("ca.pem");
+    let url = format!("https://localhost:{}/", ends.server.port);
+    let sent = |of_system: &TempDir, of_settings: String| -> Did {
+        let mut send = command(ends.folder.path(), &sink(&url, &of_settings), &SEND);
+        send.env("SSL_CERT_FILE", ca(of_system)).env_remove("SSL_CERT_DIR").output().unwrap().into()
+    };
+    let refused = sent(&ends.ours, format!("ca = \"{}\"", ca(&theirs).display()));
+    assert!(refused.said.contains("is signed by nobody who is trusted"), "{refused:?}");
+    assert!(ends.server.requests().is_empty());
+    // Without a file the system's own are taken.
+    assert!(sent(&ends.ours, String::new()).said.starts_with("10 sent, 0 not"));
 }
 
 #[test]

@@ -58,9 +58,6 @@ fn a_sink_that_is_not_one_is_refused_with_its_line() {
             "name = \"mes\"\nfolder = \"a\"\n[[sink]]\nname = \"mes\"\nfolder = \"b\"",
             "two sinks are called mes",
         ),
-        ("name = \"mes\"\nfolder = \"a\"\nformat = \"xls\"", "unknown variant `xls`"),
-        ("name = \"mes\"\nfolder = \"a\"\nuser = \"me\"", "user says nothing to this sink"),
-        ("name = \"mes\"\nmqtt = \"mqtt://localhost\"\nformat = \"csv\"", "format says nothing to this sink"),
         (
             "name = \"mes\"\nmqtt = \"mqtt://localhost\"\nuser = \"me\"",
             "a user and a password belong together",
@@ -71,6 +68,10 @@ fn a_sink_that_is_not_one_is_refused_with_its_line() {
         ("name = \"mes\"\npost = \"https://me:secret@mes.example/\"", "anybody may see who"),
         ("name = \"mes\"\npost = \"http://mes.example/runs\"", "would send results openly to mes.example"),
         ("name = \"mes\"\nmqtt = \"mqtt://10.0.0.1\"", "would send results openly to 10.0.0.1"),
+        (
+            "name = \"mes\"\npost = \"http://localhost.example/\"",
+            "would send results openly to localhost.example",
+        ),
     ];
     are_refused(folder.path(), &cases);
     for right in
@@ -88,6 +89,26 @@ fn are_refused(folder: &Path, sinks: &[(&str, &str)]) {
         let error = Settings::load(&folder.join("station.toml")).unwrap_err().to_string();
         assert!(error.contains(expected) && error.contains("station.toml:"), "{sink}: {error}");
     }
+}
+
+#[test]
+fn a_key_that_says_nothing_to_a_sink_is_refused_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases = [
+        ("name = \"mes\"\nfolder = \"a\"\nformat = \"xls\"", "unknown variant `xls`"),
+        ("name = \"mes\"\nfolder = \"a\"\nuser = \"me\"", "user says nothing to this sink"),
+        ("name = \"mes\"\nfolder = \"a\"\nca = \"ca.pem\"", "ca says nothing to this sink"),
+        (
+            "name = \"mes\"\nmqtt = \"mqtt://localhost\"\ntoken_file = \"t\"",
+            "token_file says nothing to this sink",
+        ),
+        (
+            "name = \"mes\"\npost = \"http://localhost\"\npassword_file = \"p\"",
+            "password_file says nothing to this sink",
+        ),
+        ("name = \"mes\"\nmqtt = \"mqtt://localhost\"\nformat = \"csv\"", "format says nothing to this sink"),
+    ];
+    are_refused(folder.path(), &cases);
 }
 
 #[test]
@@ -109,6 +130,7 @@ fn a_way_to_a_sink_that_is_none_is_refused_with_its_line() {
         ("name = \"mes\"\nfolder = \"a\"\nproxy = \"http://p.example\"", "proxy says nothing to this sink"),
         ("name = \"mes\"\nmqtt = \"mqtt://localhost/a+b\"", "no topic may have"),
         ("name = \"mes\"\nmqtt = \"mqtt://localhost/a/#\"", "no topic may have"),
+        ("name = \"mes\"\nmqtt = \"mqtt://localhost/a?b\"", "no topic may have"),
     ];
     are_refused(folder.path(), &cases);
 }

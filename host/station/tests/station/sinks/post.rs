@@ -95,7 +95,9 @@ fn each_run_is_posted_once_with_its_key_and_again_only_when_nobody_knows() {
             assert_eq!(request["path"], "/api/runs?line=3");
             assert_eq!(headers["authorization"], "Bearer rosebud-5e1f");
             assert_eq!(headers["content-type"], "application/json");
-            let key = headers["idempotency-key"].as_str().unwrap().trim_matches('"').to_owned();
+            // A string of structured fields (draft-ietf-httpapi-idempotency-key-header-07, section 2.1) is in quotes.
+            let key = headers["idempotency-key"].as_str().unwrap();
+            let key = key.strip_prefix('"').unwrap().strip_suffix('"').unwrap().to_owned();
             let body = base64::prelude::BASE64_STANDARD.decode(request["body"].as_str().unwrap()).unwrap();
             (key, body)
         })
@@ -110,6 +112,30 @@ fn each_run_is_posted_once_with_its_key_and_again_only_when_nobody_knows() {
     assert!(server.requests().is_empty());
 }
 
+/// By the media types of RFC 7303, RFC 4180 and RFC 8259.
+#[test]
+fn each_document_says_what_it_is_whatever_runs_are_written_as() {
+    for (format, of_runs) in [
+        ("record", "application/json"),
+        ("junit", "application/xml"),
+        ("csv", "text/csv; charset=utf-8"),
+        ("openhtf", "application/json"),
+    ] {
+        let server = Server::start(None);
+        let folder = history().closed();
+        let sink = sink(&format!("http://127.0.0.1:{}/", server.port), &format!("format = \"{format}\""));
+        assert!(send(folder.path(), &sink).said.starts_with("10 sent, 0 not"));
+        let waiver = query(folder.path(), "SELECT id FROM waiver").remove(0);
+        let requests = server.requests();
+        assert_eq!(requests.len(), 8);
+        for request in requests {
+            let is_waiver = request["headers"]["idempotency-key"] == format!("\"{waiver}\"");
+            let expected = if is_waiver { "application/json" } else { of_runs };
+            assert_eq!(request["headers"]["content-type"], expected, "{format}, {request}");
+        }
+    }
+}
+
 #[test]
 fn what_a_server_answers_says_who_waits_for_whom() {
     let server = Server::start(None);
@@ -119,8 +145,13 @@ fn what_a_server_answers_says_who_waits_for_whom() {
     for (answer, said) in [
         ("503 later", "answers 503; it is asked again later"),
         ("429 slowly", "answers 429; it is asked again later"),
+        ("408 slow", "answers 408; it is asked again later"),
+        ("425 early", "answers 425; it is asked again later"),
         ("401 who", "check the address and the token"),
+        ("403 no", "check the address and the token"),
+        ("407 by whom", "check the address and the token"),
         ("302 elsewhere", "answers 302 to everything"),
+        ("308 elsewhere", "answers 308 to everything"),
     ] {
         server.answers(answer);
         let sent = send(folder.path(), &sink);

@@ -23,6 +23,8 @@ class Handler(http.server.BaseHTTPRequestHandler):
             out.write(json.dumps(told) + "\n")
         status, _, text = (FOLDER / "answer").read_text().partition(" ")
         self.send_response(int(status))
+        if status.startswith("3"):
+            self.send_header("Location", "/" + text)
         self.send_header("Content-Length", str(len(text.encode())))
         self.end_headers()
         self.wfile.write(text.encode())
