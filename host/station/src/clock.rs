@@ -120,6 +120,9 @@ mod tests {
         );
         assert_eq!(midnight(&at(DAY, &india)), Some(DAY - 11 * HOUR / 2));
         assert_eq!(midnight(&at(DAY + 23 * HOUR, &europe)), Some(DAY + 23 * HOUR));
+        // Some write a colon in front, as POSIX.1-2024, 8.3 has it of what is no rule.
+        let with_colon = zone(":IST-5:30").unwrap();
+        assert_eq!(shown(&with_colon, DAY), "22 05:30");
         assert_eq!(zone("no/such/place"), None);
     }
 }

@@ -199,3 +199,34 @@ fn read(
         lines.for_each(|text| drop(to.send(line(text))));
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use nix::unistd::{Pid, getpgid};
+
+    use super::*;
+
+    /// An address of IPv6 stands between brackets in front of a port (RFC 3986, section 3.2.2).
+    #[test]
+    fn a_port_is_reached_where_its_exporter_says_and_its_deadlines_know_the_line_behind_it() {
+        for (answer, target) in [
+            (r#"{"host": "bench", "port": 4001, "speed": 115200}"#, "tcp:bench:4001,baud=115200"),
+            (r#"{"host": "fd00::7", "port": 4001, "speed": null}"#, "tcp:[fd00::7]:4001"),
+            (r#"{"host": "[fd00::7]", "port": 4001}"#, "tcp:[fd00::7]:4001"),
+        ] {
+            let port = serde_json::from_str(answer).unwrap();
+            assert_eq!(reached(&port).to_string(), target);
+        }
+    }
+
+    /// Ctrl-C goes to the whole group of the station, and the run is to end before its board is given away.
+    #[test]
+    fn what_has_the_place_is_in_a_group_of_its_own() {
+        let holder = Holder::start(Command::new("cat")).unwrap();
+        let process = Pid::from_raw(holder.child.id().cast_signed());
+        assert_eq!(getpgid(Some(process)), Ok(process));
+        let mut holder = holder;
+        drop(holder.stdin.take());
+        holder.left("cam-1", Duration::from_secs(60));
+    }
+}

@@ -141,3 +141,18 @@ pub fn give_back<'a>(boards: impl Iterator<Item = &'a LaneBoard>) {
         });
     });
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// labgrid takes a user's name apart at its slash, and shows what stands in front of it as the computer.
+    #[test]
+    fn the_name_under_which_a_place_is_had_holds_nothing_that_labgrid_reads_otherwise() {
+        let labgrid =
+            Labgrid { program: PROGRAM.into(), coordinator: None, deadline: Duration::from_secs(30) };
+        let call = Place::new("cam-1".to_owned(), "Linie 4/Prüfplatz", "1", labgrid).call("hold");
+        let arguments: Vec<_> = call.get_args().map(|word| word.to_string_lossy()).collect();
+        assert_eq!(arguments, ["hold", "--place", "cam-1", "--user", "halfrow-Linie-4-Pr-fplatz-1"]);
+    }
+}

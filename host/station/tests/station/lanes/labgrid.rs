@@ -65,37 +65,59 @@ fn the_board_of_a_place_is_judged_where_labgrid_says_and_the_place_given_back() 
     station.assert_well();
 }
 
+/// What is answered, and the code and the beginning of the sentence that are shown then.
+const REFUSALS: [(&str, &str, &str); 8] = [
+    (
+        r#"{"refused": {"why": "held", "holder": "bench/alice"}}"#,
+        "labgrid-place-held",
+        "bench/alice has labgrid's place cam-1; wait",
+    ),
+    (
+        r#"{"refused": {"why": "unknown", "known": "cam-2"}}"#,
+        "labgrid-place-unknown",
+        "labgrid knows no place cam-1; write one of: cam-2",
+    ),
+    (
+        r#"{"refused": {"why": "no-port"}}"#,
+        "labgrid-place-without-port",
+        "labgrid's place cam-1 has no NetworkSerialPort; give it",
+    ),
+    (
+        r#"{"refused": {"why": "not-acquired", "said": "reserved"}}"#,
+        "labgrid-place-not-given",
+        "labgrid does not give the place cam-1: reserved; see",
+    ),
+    (
+        r#"{"refused": {"why": "several-ports", "ports": "a, b"}}"#,
+        "labgrid-place-with-several-ports",
+        "labgrid's place cam-1 has several ports (a, b); call",
+    ),
+    (
+        r#"{"refused": {"why": "port-away"}}"#,
+        "labgrid-port-away",
+        "the port of labgrid's place cam-1 is not there; look at its exporter",
+    ),
+    (
+        r#"{"refused": {"why": "protocol", "protocol": "rfc2217"}}"#,
+        "labgrid-port-not-raw",
+        "the port of labgrid's place cam-1 is exported by rfc2217, and",
+    ),
+    (
+        r#"{"refused": {"why": "coordinator-away", "coordinator": "bench:20408"}}"#,
+        "labgrid-coordinator-away",
+        "labgrid's coordinator bench:20408 does not answer; start it",
+    ),
+];
+
 #[test]
 fn a_place_that_is_not_had_is_an_error_that_says_what_to_do() {
-    let refusals = [
-        (
-            r#"{"refused": {"why": "held", "holder": "bench/alice"}}"#,
-            "held",
-            "bench/alice has labgrid's place cam-1; wait",
-        ),
-        (
-            r#"{"refused": {"why": "unknown", "known": "cam-2"}}"#,
-            "unknown",
-            "labgrid knows no place cam-1; write one of: cam-2",
-        ),
-        (
-            r#"{"refused": {"why": "no-port"}}"#,
-            "without-port",
-            "labgrid's place cam-1 has no NetworkSerialPort; give it",
-        ),
-        (
-            r#"{"refused": {"why": "not-acquired", "said": "reserved"}}"#,
-            "not-given",
-            "labgrid does not give the place cam-1: reserved; see",
-        ),
-    ];
-    for (answer, code, sentence) in refusals {
+    for (answer, code, sentence) in REFUSALS {
         let station = station(answer, "");
         let mut running = station.start();
         running.test("1", SERIALS[0]);
         let ended = running.state("1", "ERROR");
         let shown = &ended["shown"];
-        assert_eq!(shown["finding"]["code"], format!("labgrid-place-{code}"), "{ended}");
+        assert_eq!(shown["finding"]["code"], code, "{ended}");
         assert!(shown["headline"].as_str().unwrap().starts_with(sentence), "{ended}");
         let run = shown["run"].as_str().unwrap();
         assert_eq!(station.query(&format!("SELECT cause FROM run WHERE id = '{run}'")), ["station"]);
