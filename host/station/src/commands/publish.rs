@@ -6,7 +6,7 @@ use std::thread;
 use std::time::Duration;
 
 use clap::Args;
-use halfrow::report::wording::plain;
+use halfrow::words::plain;
 use serde::Serialize;
 
 use super::beginning::SettingsFile;

@@ -1,5 +1,7 @@
 //! Plans: what is taken, and what is refused with its line and a remedy.
 
+mod tables;
+
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -115,6 +117,28 @@ fn a_plan_says_what_is_done_with_each_variant() {
     assert_eq!((judging(of_wide, 2).seed, judging(of_wide, 3).seed), (Seed::Run, Seed::Fixed(7)));
     let at_speed = [2, 3].map(|step| judging(of_wide, step).plan(0).at_speed);
     assert_eq!(at_speed, [AtSpeed::For(Duration::from_millis(1500)), AtSpeed::Usual]);
+    assert_eq!([2, 3].map(|step| judging(of_wide, step).plan(0).repeat), [2, 1]);
+    assert_eq!(of_wide.steps[2].timeout, Duration::from_secs(60));
+    let limited = |selected: &halfrow_station::plan::Selected| {
+        let mut names: Vec<_> = selected.limits.iter().map(|limit| limit.measurement.name).collect();
+        names.sort_unstable();
+        names
+    };
+    let all = ["latency.clocks", "link.together", "run.seconds"];
+    assert_eq!((limited(of_narrow), limited(of_wide)), (all.to_vec(), all.to_vec()));
+    assert_eq!(plan.production.shift.as_ref().unwrap().lasts, Duration::from_secs(8 * 3600));
+}
+
+#[test]
+fn what_differs_from_what_holds_without_it_is_what_the_plan_says() {
+    let text = WHOLE.replace("seconds = 0.5", "seconds = 0.25").replace("at_speed = 1.5", "at_speed = 0.0");
+    let plan = load(&text.replace("blames = \"station\"", "blames = \"board\"")).unwrap();
+    let selected = plan.variant("N");
+    assert!(matches!(selected.steps[1].act, Act::Link { each } if each == Duration::from_millis(250)));
+    let Act::Verify(judging) = &selected.steps[2].act else { panic!("{selected:?}") };
+    assert_eq!(judging.plan(0).at_speed, AtSpeed::Off, "no frames of the board's own");
+    let limit = selected.limits.iter().find(|limit| limit.measurement.name == "link.together").unwrap();
+    assert_eq!(limit.blames, Blame::Board);
 }
 
 /// The hash is of the text and of what it names, by a calculation of its own: `sha256sum` of the same bytes.

@@ -1,0 +1,107 @@
+//! What a plan says of tables, and the files that they are made of.
+
+use std::fs;
+use std::process::Command;
+
+use halfrow_station::plan::{Act, Plan};
+
+use super::{WHOLE, load};
+use crate::common::program;
+
+/// With tables, and of two steps one with tables of its own.
+fn of_tables(tables: &str, own: &str) -> String {
+    let [head, rest] = [&WHOLE[..WHOLE.find("[tables]").unwrap()], "frames = [\"builtin:noise\"]\n"];
+    let own = format!("[[step]]\nkind = \"verify\"\nname = \"own\"\n{rest}[step.tables]\n{own}\n");
+    format!("{head}[tables]\n{tables}\n[[step]]\nkind = \"verify\"\n{rest}{own}")
+}
+
+/// What a step says of tables is as if the plan said it for all.
+#[test]
+fn tables_of_a_step_stand_in_the_place_of_the_plan_s_key_by_key() {
+    let tables = "radius = 20.0\nwidth = 64\nheight = 16\nbits = 10\nphase = \"rggb\"\nrows = \"equation-9\"\nkernel = \"hermite\"";
+    let chosen = |text: &str, step: usize| {
+        let plan = load(text).unwrap();
+        let Act::Verify(judging) = &plan.variant("").steps[step].act else { panic!("{step}") };
+        let chosen = &judging.chosen;
+        (chosen.tables.clone(), chosen.kernel.clone(), judging.phase)
+    };
+    let of_plan = chosen(&of_tables(tables, ""), 1);
+    assert_eq!(chosen(&of_tables(tables, ""), 2), of_plan);
+    for (key, other) in [
+        ("radius = 20.0", "radius = 30.0"),
+        ("width = 64", "width = 128"),
+        ("height = 16", "height = 32"),
+        ("bits = 10", "bits = 12"),
+        ("phase = \"rggb\"", "phase = \"bggr\""),
+        ("rows = \"equation-9\"", "rows = \"fitted\""),
+        ("kernel = \"hermite\"", "kernel = \"keys\""),
+    ] {
+        let own = chosen(&of_tables(tables, other), 2);
+        assert_ne!(own, of_plan, "{other}");
+        assert_eq!(own, chosen(&of_tables(&tables.replace(key, other), ""), 1), "{other}");
+    }
+    // A lens takes the place of a radius.
+    let other = load(&of_tables(tables, "lens = \"other.yml\"")).map(drop).unwrap_err();
+    assert!(other.contains("the file other.yml cannot be read"), "{other}");
+}
+
+/// What is in a row of a colour picture is red where the phase says so.
+#[test]
+fn a_picture_in_colour_is_seen_through_the_phase_of_the_plan() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = [200, 100, 50].repeat(64 * 16);
+    let image = halfrow::frames::preview::RgbImage { width: 64, height: 16, data };
+    halfrow::frames::write_rgb(&folder.path().join("colour.png"), &image, false).unwrap();
+    let first = |phase: &str| {
+        let text = WHOLE.replace("\"rggb\"", &format!("\"{phase}\"")).replace("chart.pgm", "colour.png");
+        let plan = Plan::parse(&folder.path().join("plan.toml"), text).unwrap();
+        let Act::Verify(judging) = &plan.variant("N").steps[2].act else { panic!("{phase}") };
+        let halfrow::FrameSource::File { frame, .. } = &judging.frames[1] else { panic!("{phase}") };
+        frame.row(0)[..2].to_vec()
+    };
+    let [red, blue] = [first("rggb"), first("bggr")];
+    assert!(red[0] > red[1] && red[1] == blue[1] && blue[1] > blue[0], "{red:?}, {blue:?}");
+}
+
+/// A lens, a table file or a kernel of the same name with other bytes is another plan.
+#[test]
+fn every_file_that_tables_are_made_of_is_in_the_hash() {
+    let folder = tempfile::tempdir().unwrap();
+    let lens = include_bytes!("../../../../judge/tests/lenses/files/opencv-4.10.yml");
+    let kernel = include_bytes!("../../../../judge/src/kernels/sharp7.json");
+    let of_all = halfrow::model::Geometry::new(64, 16, halfrow::model::BitDepth::Ten, 126).unwrap();
+    let row = vec![16_777_216; 16];
+    let tables = halfrow::model::TableSet::from_units(of_all, &row).unwrap();
+    let kernel_of_file = halfrow::model::Interpolant::Hermite.into();
+    let file = halfrow::tables::TableFile { tables, kernel: kernel_of_file, about: None }.to_json();
+    for (name, bytes, key) in [
+        ("lens.yml", lens.as_slice(), "lens = \"lens.yml\"\nwidth = 128\nheight = 72"),
+        ("kernel.json", kernel, "radius = 20.0\nwidth = 64\nheight = 16\nkernel = \"kernel.json\""),
+        ("tables.json", file.as_bytes(), "file = \"tables.json\""),
+    ] {
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        let text = of_tables(key, "");
+        let plan = Plan::parse(&folder.path().join("plan.toml"), text.clone()).unwrap();
+        let sum = halfrow::result::sha256([bytes]);
+        assert_eq!(
+            plan.files.iter().map(|file| (file.path.as_str(), &file.sha256)).collect::<Vec<_>>(),
+            [(name, &sum)]
+        );
+        assert_eq!(plan.sha256, halfrow::result::sha256([format!("{text}\n{name}\0{sum}")]));
+    }
+}
+
+/// Nobody writes to it, and whoever opened it would wait for ever.
+#[test]
+fn a_pipe_that_a_plan_names_is_refused_before_it_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = Command::new("mkfifo").arg(folder.path().join("chart.pgm")).status();
+    assert!(made.unwrap().success());
+    let file = folder.path().join("plan.toml");
+    fs::write(&file, WHOLE).unwrap();
+    let checked =
+        Command::new("timeout").arg("60").arg(program()).args(["plan", "check"]).arg(&file).output().unwrap();
+    let said = String::from_utf8(checked.stderr).unwrap();
+    assert!(checked.status.code() == Some(2) && said.contains("plan.toml:27: the file "), "{said}");
+}
