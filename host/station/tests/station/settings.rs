@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use halfrow::Verdict;
 use halfrow_station::floor::Starts;
-use halfrow_station::settings::Settings;
+use halfrow_station::settings::{Destination, Settings, SinkSettings};
 
 use crate::common::PLAN;
 
@@ -81,6 +81,74 @@ fn every_key_means_what_it_says() {
     assert_eq!(hooks, [(Verdict::Pass, 10.0), (Verdict::Error, 2.5)]);
     assert_eq!(settings.hooks[0].program.to_string_lossy(), "lamp", "looked for where the shell looks");
     assert!(settings.hooks[1].program.is_absolute());
+}
+
+/// What [`WHOLE`] has not, and little else.
+const REST: &str = r#"schema = 1
+[station]
+name = "12"
+data = "data"
+[access]
+users = "users"
+hours = 0.5
+[plant]
+url = "postgres://halfrow@localhost/plant"
+[work]
+plans = ["a.toml"]
+has = ["fixture-3"]
+at_once = 4
+[[sink]]
+name = "wall"
+mqtt = "mqtts://broker.example/hall"
+[[sink]]
+name = "near"
+mqtt = "mqtt://localhost"
+[[lane]]
+name = "1"
+board = "mock"
+plans = ["b.toml"]
+start = ["presence"]
+[[on-fail]]
+program = "lamp"
+"#;
+
+/// The defaults are those of docs/station.md and docs/plant.md, the ports those that IANA has for MQTT.
+#[test]
+fn what_is_left_out_is_as_the_pages_say() {
+    let settings = load(REST).unwrap();
+    assert_eq!((settings.silence, settings.memory_mib), (Duration::from_secs(60), 4096));
+    assert!(!settings.scan_then_plug);
+    assert_eq!(settings.access.as_ref().unwrap().idle, Duration::from_secs(1800));
+    let shift = load(&REST.replace("hours = 0.5\n", "")).unwrap();
+    assert_eq!(shift.access.unwrap().idle, Duration::from_secs(8 * 3600));
+    let plant = settings.plant.as_ref().unwrap();
+    assert_eq!((plant.is_green_at_plant, plant.most_unsent, plant.most_filled), (false, 10_000, 95));
+    let [lane] = settings.lanes.as_slice() else { panic!("{settings:?}") };
+    assert_eq!(lane.starts, Starts { scan: false, button: false, presence: true });
+    let work = settings.work.as_ref().unwrap();
+    assert_eq!((&settings.plans[work.plans[0]].plan.product[..], work.plans.len()), ("CAM-T", 1));
+    assert_eq!((work.has.as_slice(), work.at_once), (["fixture-3".to_owned()].as_slice(), 4));
+    assert_eq!(load(&REST.replace("at_once = 4\n", "")).unwrap().work.unwrap().at_once, 1);
+    assert_eq!(settings.hooks.iter().map(|hook| hook.on).collect::<Vec<_>>(), [Verdict::Fail]);
+    let port = |sink: &SinkSettings| match &sink.to {
+        Destination::Events { address, .. } => address.port,
+        to => panic!("{to:?}"),
+    };
+    assert_eq!(settings.sinks.iter().map(port).collect::<Vec<_>>(), [8883, 1883]);
+}
+
+/// `plan fetch` fetches what lanes and jobs are judged by, each once.
+#[test]
+fn a_plan_of_the_plant_is_fetched_for_lanes_and_for_jobs() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("station.toml");
+    let text = REST.replace("[\"b.toml\"]", "[\"plant:CAM-T/final\", \"b.toml\"]");
+    let text = text.replace("[\"a.toml\"]", "[\"plant:CAM-T/jobs\", \"plant:CAM-T/final\"]");
+    fs::write(&path, text).unwrap();
+    let published = Settings::published(&path).unwrap();
+    let names: Vec<_> = published.plans.iter().map(|plan| (&plan.product[..], &plan.plan[..])).collect();
+    assert_eq!(names, [("CAM-T", "final"), ("CAM-T", "jobs")]);
+    assert_eq!(published.data, folder.path().join("data"));
 }
 
 /// A change of [`WHOLE`], and what the error says, which names the line.
