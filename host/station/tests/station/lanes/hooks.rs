@@ -4,9 +4,9 @@ use std::process::Command;
 
 use super::floor::{SERIALS, Station};
 use super::stuck::Stuck;
-use crate::common::script;
+use crate::common::{program, script};
 
-/// A hook that writes down what it was told, and fails if the record is not there by then.
+/// A hook that writes down what it was told, and fails if the record is not there by then, or if it has the plant's password.
 #[test]
 fn hooks_are_told_after_the_commit() {
     let settings = r#"
@@ -20,10 +20,13 @@ arguments = ["{lane}", "{serial}", "{verdict}", "{record}"]
     let station = Station::with(&["mock", "mock,fault=stuck-data"], settings);
     let lamp = station.path("lamp");
     let script = "#!/bin/sh\necho \"$1 $2 $3\" > \"$(dirname \"$0\")/lamp-$1\"\n\
-                  find \"$(dirname \"$0\")/data/blobs\" -name \"$4\" | grep -q . || exit 1\n";
+                  find \"$(dirname \"$0\")/data/blobs\" -name \"$4\" | grep -q . || exit 1\n\
+                  [ -z \"$HALFROW_PLANT_PASSWORD\" ] || exit 1\n";
     std::fs::write(&lamp, script).unwrap();
     std::fs::set_permissions(&lamp, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
-    let mut running = station.start();
+    let mut program = Command::new(program());
+    program.env("HALFROW_PLANT_PASSWORD", "rosebud-5e1f");
+    let mut running = station.started(program);
     running.test("1", SERIALS[0]);
     running.test("2", SERIALS[1]);
     let (code, heard) = running.end();
@@ -103,7 +106,7 @@ program = "sh"
 arguments = ["-c", "echo no paper >&2; yes | head -c 300000 >&2 || exit 4; echo printed > done; exit 3"]
 "#;
     let station = Station::with(&["mock"], settings);
-    let mut program = Command::new(crate::common::program());
+    let mut program = Command::new(program());
     program.current_dir(station.path(""));
     let mut running = station.started(program);
     running.scan(SERIALS[0]);

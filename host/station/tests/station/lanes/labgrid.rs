@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use nix::sys::signal::{Signal, kill};
@@ -9,6 +10,7 @@ use nix::unistd::Pid;
 
 use super::ends::{connected, silent_board};
 use super::floor::{SERIALS, Station};
+use crate::common::program;
 
 /// Says what stands in `answer`, and keeps a diary: what it was called with, and that its stdin ended.
 const LENDER: &str = r#"#!/bin/sh
@@ -163,6 +165,30 @@ fn a_station_that_is_killed_gives_the_place_back() {
     let _again = station.start();
     assert_eq!(written(&station, 4)[3], FREE);
     assert_eq!(station.query("SELECT cause FROM run"), ["crash"]);
+}
+
+/// Neither has any need for it, and what it starts would have it, too.
+#[test]
+fn neither_a_lane_nor_what_has_its_place_is_told_the_plant_s_password() {
+    let (listener, target) = silent_board();
+    let port = target.rsplit(':').next().unwrap();
+    let answer = format!(r#"{{"held": {{"host": "127.0.0.1", "port": {port}}}}}"#);
+    let station = station(&answer, "");
+    let mut program = Command::new(program());
+    program.env("HALFROW_PLANT_PASSWORD", "rosebud-5e1f");
+    let mut running = station.started(program);
+    running.test("1", SERIALS[0]);
+    connected(&listener);
+    let children = format!("/proc/{}/task", running.id());
+    let children = fs::read_dir(children).unwrap().map(|task| task.unwrap().path().join("children"));
+    let children: String = children.filter_map(|task| fs::read_to_string(task).ok()).collect();
+    assert!(children.split_whitespace().count() >= 2, "{children}");
+    for child in children.split_whitespace() {
+        let environment = fs::read(format!("/proc/{child}/environ")).unwrap();
+        assert!(!String::from_utf8_lossy(&environment).contains("rosebud"), "{child}");
+    }
+    running.test("1", "HR:ABORT");
+    running.state("1", "ERROR");
 }
 
 #[test]
