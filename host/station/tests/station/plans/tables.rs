@@ -1,4 +1,4 @@
-//! What a plan says of tables, and the files that they are made of.
+//! What a plan says of tables and frames, and the files that they are made of.
 
 use std::fs;
 use std::process::Command;
@@ -104,4 +104,17 @@ fn a_pipe_that_a_plan_names_is_refused_before_it_is_read() {
         Command::new("timeout").arg("60").arg(program()).args(["plan", "check"]).arg(&file).output().unwrap();
     let said = String::from_utf8(checked.stderr).unwrap();
     assert!(checked.status.code() == Some(2) && said.contains("plan.toml:27: the file "), "{said}");
+}
+
+/// Frames are counted by 16 bits on the wire, and a few of the numbers are not theirs (protocol/WIRE.md).
+#[test]
+fn more_frames_than_a_run_can_number_are_refused_when_the_plan_is_read() {
+    let of_so_many = |count: usize| {
+        let names = vec!["\"builtin:noise\""; count].join(", ");
+        let text = WHOLE.replace("\"builtin:noise\", \"chart.pgm\"", &names);
+        load(&text.replace("repeat = 2", "repeat = 1000")).map(drop)
+    };
+    assert_eq!(of_so_many(65), Ok(()));
+    let said = of_so_many(66).unwrap_err();
+    assert!(said.starts_with("plan.toml:27: so many frames cannot be used: 66000 frames"), "{said}");
 }
