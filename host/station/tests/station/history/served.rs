@@ -1,6 +1,7 @@
 //! The station's own program, with its pages for whoever looks.
 
 use std::fs;
+use std::process::Command;
 
 use tempfile::TempDir;
 
@@ -24,6 +25,17 @@ pub(crate) struct Served {
 impl Served {
     /// Serves what was made.
     pub(crate) fn of(made: Made) -> Self {
+        Self::called(made, |_| ())
+    }
+
+    /// Serves what was made, with a clock on the wall of this zone.
+    pub(crate) fn in_zone(made: Made, zone: &str) -> Self {
+        Self::called(made, |call| {
+            call.env("TZ", zone);
+        })
+    }
+
+    fn called(made: Made, with: impl FnOnce(&mut Command)) -> Self {
         let (data, settings) = (made.closed(), tempfile::tempdir().unwrap());
         fs::write(settings.path().join("plan.toml"), plan()).unwrap();
         let text = format!(
@@ -33,7 +45,9 @@ impl Served {
         );
         let file = settings.path().join("station.toml");
         fs::write(&file, text).unwrap();
-        Self { serving: Serving::of(&mut command(&file)), data, _settings: settings }
+        let mut call = command(&file);
+        with(&mut call);
+        Self { serving: Serving::of(&mut call), data, _settings: settings }
     }
 
     pub(crate) fn folder(&self) -> halfrow_station::store::Folder {

@@ -5,6 +5,8 @@ use halfrow_station::history::yields::{By, Wanted, Yields, yields};
 use halfrow_station::record::RunCause;
 
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use super::served::Served;
+use crate::common::now_ms;
 
 /// Runs in their order: the unit, then `P` PASS, `F` FAIL, `W` a FAIL that is waived, `E` ERROR, `C` a crash, `R` refused,
 /// `O` open; then the plan's name and version if they are other ones. Beside them what counts for the plan `final`:
@@ -186,4 +188,21 @@ fn a_unit_belongs_to_the_lane_and_the_day_of_its_first_judgement() {
     let second = Wanted { period, ..Wanted::default() };
     assert_eq!(lines(&made, &second, By::Plan), of(&[("", [1, 1, 1, 2, 0])]));
     assert_eq!(yields(&made.now(), &second, By::Plan).unwrap().flips, Vec::new());
+}
+
+/// A shift counts its own boards, wherever the midnight of UTC is.
+#[test]
+fn the_day_so_far_begins_at_midnight_by_the_clock_on_the_wall() {
+    let now_ms = now_ms();
+    // Half past one in the night, as many minutes east of UTC as make it so (POSIX.1-2024, 8.3 counts them to the west).
+    let east = (90 - now_ms / 60_000).rem_euclid(1440);
+    let east = if east > 720 { east - 1440 } else { east };
+    let sign = if east > 0 { '-' } else { '+' };
+    let zone = format!("XYZ{sign}{:02}:{:02}", east.abs() / 60, east.abs() % 60);
+    let mut made = Made::new();
+    for (serial, hours) in [("S1", 3), ("S2", 1)] {
+        made.run(&Run { started_ms: now_ms - hours * HOUR_MS, ..Run::of(serial, End::Pass) });
+    }
+    let today = Served::in_zone(made, &zone).page("/today");
+    assert!(today.contains("today 1 judged"), "{zone}: {today}");
 }
