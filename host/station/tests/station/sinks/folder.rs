@@ -5,6 +5,8 @@ use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
 use std::process::Command;
 
+use halfrow_station::store::Folder;
+
 use super::{did, send, settings};
 use crate::common::{Did, NO_AUDIT, program, query};
 use crate::history::made::Made;
@@ -107,6 +109,26 @@ fn a_folder_that_is_away_is_waited_for_and_another_file_is_never_written_over() 
     let again = send(folder.path(), &sink);
     assert!(again.said.contains(" sent, 0 not"), "{again:?}");
     assert_eq!(fs::metadata(&other).unwrap().modified().unwrap(), modified);
+}
+
+/// It comes when its record is put back, and what is behind it does not wait for that.
+#[test]
+fn a_run_whose_record_cannot_be_read_is_not_taken_for_sent() {
+    let (folder, sink) = station("record");
+    let share = folder.path().join("share");
+    fs::create_dir(&share).unwrap();
+    let of_first = "SELECT record_sha256 FROM run WHERE state = 'final' ORDER BY id LIMIT 1";
+    let hash = query(folder.path(), of_first).remove(0);
+    let record = Folder::new(folder.path()).blobs().path(&hash);
+    let aside = folder.path().join("aside");
+    fs::rename(&record, &aside).unwrap();
+    let sent = send(folder.path(), &sink);
+    assert!(sent.said.starts_with("9 sent, 1 not") && sent.code == Some(3), "{sent:?}");
+    assert_eq!(names(&share).len(), 7);
+    fs::rename(&aside, &record).unwrap();
+    let sent = send(folder.path(), &sink);
+    assert!(sent.said.starts_with("1 sent, 0 not") && sent.code == Some(0), "{sent:?}");
+    assert_eq!(names(&share).len(), 8);
 }
 
 #[test]
