@@ -197,19 +197,23 @@ fn a_spool_goes_a_day_after_its_run_was_lost_and_that_of_an_open_run_stays() {
     let mut made = Made::new();
     let open = made.run(&Run::of("S1", End::Open));
     let over = made.run(&Run { lane: "2".to_owned(), ..Run::of("S2", End::Pass) });
-    let [old, young] = [7, 8].map(|number| id(BEGIN_MS, number));
+    let [old, young, written] = [7, 8, 9].map(|number| id(BEGIN_MS, number));
     let folder = made.folder();
     for (run, hours) in [(&open, 100), (&over, 100), (&old, 25), (&young, 23)] {
         spool(&folder, run, hours * HOUR);
     }
+    // Its folder is as old as its first file, and was written to since.
+    spool(&folder, &written, 25 * HOUR);
+    aged(&folder.spool(&written).join("events.jsonl"), HOUR);
     let removed = prune_unnamed(&mut made.store, "engel").unwrap();
     assert_eq!(removed, Unnamed { pieces: 0, spools: 1, bytes: 3 });
     let is_there = |run: &str| folder.spool(run).exists();
-    assert_eq!([&open, &over, &old, &young].map(|run| is_there(run)), [true, true, false, true]);
+    let are_there = || [&open, &over, &old, &young, &written].map(|run| is_there(run));
+    assert_eq!(are_there(), [true, true, false, true, true]);
     // The next start closes the open run with what is in its spool, and needs that of the other no more.
     spool(&folder, &old, 25 * HOUR);
     assert_eq!(recover(&mut made.store).unwrap()[0].record.attachments[0].name, "events.jsonl");
-    assert_eq!([&open, &over, &old, &young].map(|run| is_there(run)), [false, false, false, true]);
+    assert_eq!(are_there(), [false, false, false, true, true]);
     is_sound(&folder);
 }
 
