@@ -67,3 +67,21 @@ impl Production {
         self.require_hardware && !self.is_reference(serial)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What checks a lane is judged again in every shift, and would be counted as a product each time.
+    #[test]
+    fn a_unit_that_checks_a_shift_counts_as_no_product() {
+        let counts = |require_hardware, bad| {
+            let shift = Shift { good: "GOOD".to_owned(), bad, lasts: Duration::from_secs(3600) };
+            let production = Production { require_hardware, shift: Some(shift) };
+            ["OTHER", "GOOD", "BAD", "HR:MOCK:1"].map(|serial| production.counts(serial))
+        };
+        assert_eq!(counts(true, Bad::Unit("BAD".to_owned())), [true, false, false, false]);
+        assert_eq!(counts(true, Bad::Mock), [true, false, true, false]);
+        assert_eq!(counts(false, Bad::Mock), [false; 4]);
+    }
+}
