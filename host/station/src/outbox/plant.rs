@@ -75,3 +75,27 @@ impl Sink for PlantSink {
         self.plant = None;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The plant shows them beside the station's name, and one of the two wants a person.
+    #[test]
+    fn a_plant_hears_how_much_waits_and_how_much_of_that_for_a_person() {
+        let presence = Presence {
+            name: "12".to_owned(),
+            origin: "here".to_owned(),
+            program: "0".to_owned(),
+            plans: String::new(),
+            unsent: 0,
+            dead: 0,
+        };
+        // Nobody answers there.
+        let address = PlantAddress::new("postgres://halfrow@127.0.0.1:1/plant", None, None).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let mut sink = PlantSink::new(address, presence, Folder::new(folder.path()));
+        sink.beat(7, 2).unwrap_err();
+        assert_eq!((sink.station.unsent, sink.station.dead), (7, 2));
+    }
+}
