@@ -121,6 +121,23 @@ fn a_run_of_a_claim_that_was_lost_is_kept_and_does_not_count() {
     assert_eq!(server.rows("SELECT sum(runs) FROM day_count"), [["2"]]);
 }
 
+/// Only the plant knows that it does not count: its record is as that of the one which does.
+#[test]
+fn an_error_of_a_claim_that_was_lost_counts_nowhere_and_is_no_fault() {
+    let (server, mut plant) = shared(1);
+    let (plan, any) = (plan(), any());
+    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    let first = plant.claim(&worker("first")).unwrap().unwrap();
+    run_out(&server);
+    let second = plant.claim(&worker("second")).unwrap().unwrap();
+    for (claim, number) in [(&first, 2), (&second, 3)] {
+        plant.take(&run_of(claim, number, End::Error(RunCause::Link))).unwrap();
+    }
+    assert_eq!(server.rows("SELECT nth FROM run ORDER BY id"), [["0"], ["1"]]);
+    assert_eq!(server.rows("SELECT runs, errors FROM day_count"), [["1", "1"]]);
+    assert_well(&server);
+}
+
 #[test]
 fn what_judged_nothing_is_given_back_five_times_and_then_waits_for_a_person() {
     let (server, mut plant) = shared(1);
