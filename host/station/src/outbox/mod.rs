@@ -315,6 +315,35 @@ mod tests {
         }
     }
 
+    /// It hears of both when it beats, and the plant shows who is to look at something.
+    #[test]
+    fn what_waits_for_a_person_is_told_from_what_is_tried_again() {
+        struct Listening(Option<(u32, u32)>);
+        impl Sink for Listening {
+            fn name(&self) -> &str {
+                "mes"
+            }
+            fn take(&mut self, _: &Parcel) -> Result<(), Undelivered> {
+                Ok(())
+            }
+            fn beat(&mut self, unsent: u32, dead: u32) -> Result<Option<HeardClock>, Said> {
+                self.0 = Some((unsent, dead));
+                Ok(None)
+            }
+        }
+        let place = tempfile::tempdir().unwrap();
+        let folder = Folder::new(place.path());
+        let mut store = crate::store::Store::open(&folder).unwrap();
+        store.sends_to(vec!["mes".to_owned()]).unwrap();
+        ["1", "2", "3"].iter().for_each(|number| store.note("weber", "scan", "1", number).unwrap());
+        let first = folder.due("mes", clock::now_ms(), i64::MAX).unwrap().remove(0);
+        let dead = Tried::Dead { said: "no".to_owned() };
+        store.tried("mes", &[(first, dead)], clock::now_ms()).unwrap();
+        let mut sink = Listening(None);
+        beat(&SharedStore::new(store), &mut sink, &mut Standing::default());
+        assert_eq!(sink.0, Some((3, 1)));
+    }
+
     #[test]
     fn a_sink_that_was_away_once_is_asked_as_soon_when_it_is_away_again() {
         let (away, idle) = (Round { is_away: true, ..Round::default() }, Round::default());
