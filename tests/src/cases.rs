@@ -134,7 +134,7 @@ impl Case {
         player.configure(self.settings.clone()).unwrap();
         let mut played = Played::default();
         for (number, (set, kernel, frame)) in self.frames.iter().enumerate() {
-            let entries: Vec<_> = set.units().collect();
+            let entries: Vec<_> = set.entries().collect();
             match set.shape() {
                 None => tables.write_factors(0, &entries).unwrap(),
                 Some(_) => tables.write_grid(0, &entries).unwrap(),

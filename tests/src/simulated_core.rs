@@ -116,7 +116,7 @@ impl<'a> Bench<'a> {
             return;
         }
         let table_bank = self.tables % 2 == 1;
-        let row_factors = (0..).zip(set.units()).map(|(table_entry, units)| CoreInputs {
+        let row_factors = (0..).zip(set.entries()).map(|(table_entry, units)| CoreInputs {
             step_write: true,
             table_entry,
             table_data: [units, 0, 0],

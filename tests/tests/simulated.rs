@@ -78,7 +78,7 @@ fn boards_agree(front: Front, cases: u64) {
 /// Two tables for photographs at the paper's size: row factors, and others that reach further.
 fn row_factors(geometry: Geometry) -> [TableSet; 2] {
     let tables = TableSet::from_lens(geometry, &Equidistant::default(), None).unwrap();
-    let reversed: Vec<_> = tables.units().rev().collect();
+    let reversed: Vec<_> = tables.entries().rev().collect();
     let narrower: Vec<_> = reversed.iter().map(|units| units - units / 16).collect();
     let narrower = TableSet::from_units(geometry, &narrower).unwrap();
     [tables, narrower]

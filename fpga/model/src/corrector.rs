@@ -170,7 +170,7 @@ pub fn correct(tables: &TableSet, kernel: &Kernel, frame: &Frame) -> Result<Fram
     let outputs = samples.chunks_exact_mut(geometry.width());
     let mut values = RowValues::default();
     for (index, (row, output)) in frame.rows().zip(outputs).enumerate() {
-        match tables.entries() {
+        match tables.stored() {
             Entries::Rows(row_factors) => correct_row(geometry, row_factors[index], kernel, row, output),
             Entries::Grid(grid) => {
                 grid.values(geometry, index, &mut values);

@@ -15,7 +15,7 @@ impl TableSet {
     /// [`TableError::BeforeFirst`], [`TableError::BehindLast`], [`TableError::LookAhead`] or [`TableError::LookBack`] for
     /// the first row that breaks a condition.
     pub fn check_ring(&self, ring: usize) -> Result<(), TableError> {
-        match self.entries() {
+        match self.stored() {
             Entries::Rows(row_factors) => {
                 let mut rows = row_factors.iter().enumerate();
                 rows.try_for_each(|(row, &row_factor)| self.check_row(row, self.ends(row_factor), ring))

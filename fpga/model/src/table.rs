@@ -195,7 +195,9 @@ impl TableSet {
     pub fn with_geometry(&self, geometry: Geometry) -> Result<Self, TableError> {
         match &self.entries {
             Entries::Rows(row_factors) => Self::new(geometry, row_factors.clone()),
-            Entries::Grid(grid) => Self::from_grid(geometry, grid.shape(), &self.units().collect::<Vec<_>>()),
+            Entries::Grid(grid) => {
+                Self::from_grid(geometry, grid.shape(), &self.entries().collect::<Vec<_>>())
+            }
         }
     }
 
@@ -230,7 +232,7 @@ impl TableSet {
         &self.geometry
     }
 
-    pub(crate) fn entries(&self) -> &Entries {
+    pub(crate) fn stored(&self) -> &Entries {
         &self.entries
     }
 
@@ -274,7 +276,7 @@ impl TableSet {
 
     /// The entries in a board's order, in units of 2^-24: row factors from the top, which [`Self::from_units`] takes, or
     /// those of a grid, which [`Self::from_grid`] takes.
-    pub fn units(&self) -> impl DoubleEndedIterator<Item = u32> + ExactSizeIterator + '_ {
+    pub fn entries(&self) -> impl DoubleEndedIterator<Item = u32> + ExactSizeIterator + '_ {
         let count = match &self.entries {
             Entries::Rows(row_factors) => row_factors.len(),
             Entries::Grid(grid) => grid.len(),
@@ -288,6 +290,6 @@ impl TableSet {
     /// The tables as a board takes them: each entry as 32 bits, little endian, in a board's order.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
-        self.units().flat_map(u32::to_le_bytes).collect()
+        self.entries().flat_map(u32::to_le_bytes).collect()
     }
 }

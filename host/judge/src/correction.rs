@@ -12,7 +12,7 @@ use crate::progress::Progress;
 /// What a board is to correct with.
 #[derive(Clone, Copy, Debug)]
 pub struct Correction<'a> {
-    /// The row factors.
+    /// Row factors or a grid.
     pub tables: &'a TableSet,
     /// The kernel.
     pub kernel: &'a Kernel,

@@ -170,7 +170,7 @@ impl Optics {
     pub fn check_circle(&self, tables: &TableSet) -> Result<(), OpticsError> {
         let (rows, outside) = (self.camera.geometry().height(), self.camera.rows_outside_circle());
         let (radius, centre) = (self.camera.radius(), self.camera.centre().1);
-        let stretches = outside < rows && tables.units().any(|entry| entry != RowFactor::ONE.get());
+        let stretches = outside < rows && tables.entries().any(|entry| entry != RowFactor::ONE.get());
         if outside > 0 && !stretches {
             return Err(OpticsError::OutsideCircle { outside, rows, radius, centre });
         }

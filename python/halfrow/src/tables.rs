@@ -143,7 +143,7 @@ impl Tables {
     /// The entries in a board's order, in units of 2^-24: uint32 of shape (entries,), one a row for row factors.
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        PyArray1::from_vec(py, self.chosen.tables.units().collect())
+        PyArray1::from_vec(py, self.chosen.tables.entries().collect())
     }
 
     /// The row factor of each row, above 0 to 1: float64 of shape (height,). None of a grid.

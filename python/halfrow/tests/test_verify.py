@@ -68,7 +68,7 @@ IN_THE_DOCUMENT_ALONE = {
     "Comparison": {"extremes", "bits", "by_row", "by_column"},
     "Frame": {"timing", "variation", "first_rows"},
     "Link": {"late", "strays", "line_errors", "retry_limit", "reconnections"},
-    "TablesUsed": {"steps_crc32", "kernel_crc32"},
+    "TablesUsed": {"tables_crc32", "kernel_crc32"},
     "Facts": {"operator"},
     "Problem": {"causes"},
 }

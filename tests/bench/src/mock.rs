@@ -13,7 +13,7 @@ pub(crate) fn benchmarks() -> Result<Vec<Benchmark>, Box<dyn Error>> {
     let options = Options::default();
     let (set, frame) = (tables(HEIGHT)?, frame(HEIGHT, 0)?);
     let mut tables = Tables::new(&options, None);
-    tables.write_factors(0, &set.units().collect::<Vec<_>>())?;
+    tables.write_factors(0, &set.entries().collect::<Vec<_>>())?;
     let nodes: Vec<_> = Kernel::from(Interpolant::Hermite).nodes().iter().copied().map(Node::from).collect();
     tables.write_nodes(0, &nodes)?;
     tables.commit(1, 0)?;

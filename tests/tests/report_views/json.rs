@@ -77,6 +77,22 @@ fn a_report_that_does_not_say_what_was_varied_is_read() {
     assert_eq!(read, Report { not_exercised: Vec::new(), ..made::pass() });
 }
 
+/// A report of when row factors were the only tables.
+#[test]
+fn a_report_with_the_earlier_names_of_tables_is_read() {
+    let uploaded = Finding::TablesUploaded { entries: 1080, nodes: 65, generation: 2 };
+    let now = Report { finding: uploaded, ..made::pass() };
+    let mut old = json(&now);
+    for (place, name, earlier) in
+        [("/tables", "tables_crc32", "steps_crc32"), ("/finding/parameters", "entries", "rows")]
+    {
+        let of = old.pointer_mut(place).unwrap().as_object_mut().unwrap();
+        let value = of.remove(name).unwrap();
+        of.insert(earlier.to_owned(), value);
+    }
+    assert_eq!(serde_json::from_value::<Report>(old).unwrap(), now);
+}
+
 /// What serde says of a code that does not exist names all that do.
 fn codes_known<T: serde::de::DeserializeOwned + std::fmt::Debug>() -> BTreeSet<String> {
     let refused = serde_json::from_value::<T>(json!({ "code": "none", "parameters": {} })).unwrap_err();

@@ -240,7 +240,7 @@ fn tables() -> TablesReport {
         bits: 12,
         centre2: 1919,
         rows_outside_circle: Some(0),
-        steps_crc32: "5f5a7553".to_owned(),
+        tables_crc32: "5f5a7553".to_owned(),
         kernel_crc32: "16e29b0f".to_owned(),
     }
 }

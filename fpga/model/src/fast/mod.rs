@@ -121,7 +121,7 @@ impl Corrector {
         if index >= geometry.height() {
             return;
         }
-        match tables.entries() {
+        match tables.stored() {
             Entries::Rows(row_factors) => self.correct_row(geometry, row_factors[index], row, output),
             Entries::Grid(grid) => {
                 grid.values(geometry, index, &mut self.values);

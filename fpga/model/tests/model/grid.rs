@@ -53,7 +53,7 @@ pub(crate) fn any_grid(widest: usize) -> impl Strategy<Value = TableSet> {
 fn added_up(tables: &TableSet, row: usize) -> Vec<u64> {
     const S: u64 = (1 << 40) - 1;
     let (geometry, shape) = (tables.geometry(), tables.shape().unwrap());
-    let (rows, entries): (usize, Vec<_>) = (shape.rows(geometry), tables.units().map(u64::from).collect());
+    let (rows, entries): (usize, Vec<_>) = (shape.rows(geometry), tables.entries().map(u64::from).collect());
     let (grid_row, t) = (row >> shape.v(), ((row % (1 << shape.v())) << (6 - shape.v())) as u64);
     let weights = [(64 - t) * (64 - t), 8192 - (64 - t) * (64 - t) - t * t, t * t];
     let value = |column: usize| {
@@ -161,7 +161,7 @@ fn a_grid_is_sent_column_by_column_little_endian() {
     let geometry = Geometry::new(64, 1, BitDepth::Twelve, 63).unwrap();
     let entries: Vec<u32> = (0..9).map(|entry| 0x0012_3400 + entry).collect();
     let tables = TableSet::from_grid(geometry, shape(6, 6), &entries).unwrap();
-    assert!(tables.units().eq(entries));
+    assert!(tables.entries().eq(entries));
     assert_eq!(tables.to_bytes()[..8], [0x00, 0x34, 0x12, 0, 0x01, 0x34, 0x12, 0]);
     assert_eq!((tables.row_factors(), tables.row_factor(0)), (None, None));
     assert_eq!(tables.shape(), Some(shape(6, 6)));
@@ -174,7 +174,7 @@ fn entries_go_with_another_geometry_of_the_same_size() {
     let rows = TableSet::from_lens(geometry(96, 95), &lens, None).unwrap();
     for tables in [rows, identity(geometry(96, 95), shape(2, 5))] {
         let moved = tables.with_geometry(geometry(96, 30)).unwrap();
-        assert!(moved.units().eq(tables.units()) && moved.geometry().centre2() == 30);
+        assert!(moved.entries().eq(tables.entries()) && moved.geometry().centre2() == 30);
         assert_eq!(moved.shape(), tables.shape());
     }
     assert!(identity(geometry(96, 95), shape(2, 5)).with_geometry(geometry(128, 30)).is_err());
@@ -184,10 +184,10 @@ fn entries_go_with_another_geometry_of_the_same_size() {
 fn tables_that_stretch_half_as_far_lie_half_way_to_the_identity() {
     let geometry = Geometry::new(64, 2, BitDepth::Twelve, 63).unwrap();
     let tables = TableSet::from_units(geometry, &[ONE / 2, ONE]).unwrap();
-    assert!(tables.halved().units().eq([ONE / 4 * 3, ONE]));
+    assert!(tables.halved().entries().eq([ONE / 4 * 3, ONE]));
     let entries = [ONE, 0, (1 << 25) - 1, 1, 2, 3, ONE, ONE, ONE];
     let grid = TableSet::from_grid(geometry, shape(6, 6), &entries).unwrap();
-    assert!(grid.halved().units().take(6).eq([ONE, ONE / 2, 25_165_823, 8_388_608, 8_388_609, 8_388_609]));
+    assert!(grid.halved().entries().take(6).eq([ONE, ONE / 2, 25_165_823, 8_388_608, 8_388_609, 8_388_609]));
 }
 
 proptest! {

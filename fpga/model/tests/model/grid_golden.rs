@@ -44,7 +44,7 @@ fn crc32<const N: usize>(words: impl Iterator<Item = [u8; N]>) -> u32 {
 #[test]
 fn the_table_of_the_paper_s_lens_is_the_golden_one() {
     let tables = golden_table();
-    let entries: Vec<_> = tables.units().collect();
+    let entries: Vec<_> = tables.entries().collect();
     assert_eq!(entries.len(), 1152);
     // (0, 0), (0, 18), then nodes (0, 0), (15, 0) and (0, 18).
     assert_eq!(

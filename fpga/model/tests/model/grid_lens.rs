@@ -98,7 +98,7 @@ fn the_best_grid_has_the_least_error_that_the_entries_allow() {
     let mut before = f64::INFINITY;
     for entries in [48, 90, 200, 2048] {
         let best = camera.best_grid(entries).unwrap();
-        assert!(best.units().len() <= entries);
+        assert!(best.entries().len() <= entries);
         let found = largest(&camera, &best);
         assert!(found < before, "{found} with {entries} entries, {before} with fewer");
         for shape in GridShape::all().filter(|shape| shape.entries(camera.geometry()) <= entries) {
@@ -219,7 +219,7 @@ proptest! {
         let geometry = Geometry::centred(width, height, BitDepth::Twelve).unwrap();
         if let Ok(camera) = Camera::new(geometry, lens, centre, 180.0) {
             let tables = camera.grid_by_formula(shape(v, k));
-            prop_assert_eq!(tables.units().len(), shape(v, k).entries(&geometry));
+            prop_assert_eq!(tables.entries().len(), shape(v, k).entries(&geometry));
             let residuals = camera.grid_residuals(&tables, 7);
             prop_assert!(residuals.circle.max.is_finite());
             // Every row begins in the frame or right of it.

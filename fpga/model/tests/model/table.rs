@@ -23,7 +23,7 @@ fn row_factors_follow_the_circle_of_the_lens() {
     let tables = TableSet::from_lens(geometry(13, 63), &lens, None).unwrap();
     // 2^24 · (3, 4)/5 = 10066329.6 and 13421772.8; 2^24 · sqrt(21)/5 = 15376572.5; 2^24 · sqrt(24)/5 = 16438247.4
     let half = [ONE, ONE, 10_066_330, 13_421_773, 15_376_572, 16_438_247];
-    assert!(tables.units().take(6).eq(half));
+    assert!(tables.entries().take(6).eq(half));
     assert_eq!(tables.row_factor(6), Some(RowFactor::ONE));
     let rows = tables.row_factors().unwrap();
     assert!(rows[..6].iter().eq(rows[7..].iter().rev()));
@@ -34,7 +34,7 @@ fn row_factors_follow_the_circle_of_the_lens() {
 fn the_optical_centre_may_lie_on_any_row() {
     let lens = Equidistant::from_radius(5.0).unwrap();
     let tables = TableSet::from_lens(geometry(4, 63), &lens, Some(-3.0)).unwrap();
-    assert!(tables.units().eq([13_421_773, 10_066_330, ONE, ONE]));
+    assert!(tables.entries().eq([13_421_773, 10_066_330, ONE, ONE]));
     let refused = TableSet::from_lens(geometry(4, 63), &lens, Some(f64::INFINITY));
     assert_eq!(refused, Err(TableError::CentreRow(f64::INFINITY)));
 }
@@ -44,7 +44,7 @@ fn a_row_factor_is_never_zero() {
     // The largest y below R = 1: sqrt(1 − y²) is 2^-26, and 2^24 times it rounds to 0.
     let lens = Equidistant::from_radius(1.0).unwrap();
     let tables = TableSet::from_lens(geometry(1, 63), &lens, Some(f64::EPSILON / 2.0 - 1.0)).unwrap();
-    assert!(tables.units().eq([1]));
+    assert!(tables.entries().eq([1]));
 }
 
 #[test]

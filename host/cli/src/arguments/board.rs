@@ -125,7 +125,7 @@ impl BoardArguments {
             .flat_map(|segment| segment.frames);
         let frames = judged.filter(|frame| frame.generation == JUDGED).count();
         let tables = &plan.tables;
-        let grid = tables.shape().map(|_| tables.units().len());
+        let grid = tables.shape().map(|_| tables.entries().len());
         let (width, height) = (tables.geometry().width(), tables.geometry().height());
         let at_speed = plan.at_speed != AtSpeed::Off;
         let streamed = Streamed { width, height, grid, frames, at_speed };

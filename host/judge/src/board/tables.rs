@@ -93,7 +93,7 @@ impl Board {
         tables: &TableSet,
         kernel: &Kernel,
     ) -> Result<Vec<ReadBack>, BoardError> {
-        let entries = (tables.units().len() as u16, crc32fast::hash(&tables.to_bytes()));
+        let entries = (tables.entries().len() as u16, crc32fast::hash(&tables.to_bytes()));
         let nodes = (NODES as u16, crc32fast::hash(&kernel.to_bytes()));
         let mut read = Vec::new();
         for port in self.table_ports(table_of(tables)) {

@@ -29,7 +29,7 @@ pub use read_back::read_back;
 pub struct Uploaded<'a> {
     /// Their generation.
     pub generation: u8,
-    /// The row factors.
+    /// Row factors or a grid.
     pub tables: &'a TableSet,
     /// The kernel.
     pub kernel: &'a Kernel,

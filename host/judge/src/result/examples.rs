@@ -28,7 +28,7 @@ fn right() -> Vec<(Option<Verdict>, Finding)> {
         Finding::GoldenSamplesFound { samples: 4_147_328, path: "avx2".to_owned() },
         Finding::BoardIdentified { name: "halfrow mock".to_owned(), wire: 1, datapath: 1 },
         Finding::EchoesReturned { bytes: 8192, echoes: 5 },
-        Finding::TablesUploaded { rows: 1080, nodes: 65, generation: 2 },
+        Finding::TablesUploaded { entries: 1080, nodes: 65, generation: 2 },
         Finding::TablesReadBack { ports: 3 },
         Finding::FramesEqual { frames: 16, samples: 33_177_600 },
         Finding::LatencyRight { clocks: 972 },

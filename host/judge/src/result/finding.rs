@@ -36,8 +36,9 @@ pub enum Finding {
     },
     /// Tables were uploaded.
     TablesUploaded {
-        /// Row factors.
-        rows: usize,
+        /// Row factors, or entries of a grid. Earlier reports say `rows`.
+        #[serde(alias = "rows")]
+        entries: usize,
         /// Nodes of the kernel.
         nodes: usize,
         /// As this generation.

@@ -297,8 +297,9 @@ pub struct TablesReport {
     pub centre2: u32,
     /// Rows outside the image circle, which row factors do not stretch, and a grid not exactly; none when the tables are a file, which does not say.
     pub rows_outside_circle: Option<usize>,
-    /// CRC-32 of the row factors, as on the wire.
-    pub steps_crc32: String,
+    /// CRC-32 of the row factors or of the grid's entries, as on the wire. Earlier reports say `steps_crc32`.
+    #[serde(alias = "steps_crc32")]
+    pub tables_crc32: String,
     /// CRC-32 of the kernel's nodes, as on the wire.
     pub kernel_crc32: String,
 }

@@ -185,7 +185,7 @@ fn tables(plan: &Plan) -> TablesReport {
         bits: geometry.depth().bits(),
         centre2: geometry.centre2(),
         rows_outside_circle: plan.rows_outside_circle,
-        steps_crc32: crc(&plan.tables.to_bytes()),
+        tables_crc32: crc(&plan.tables.to_bytes()),
         kernel_crc32: crc(&plan.kernel.to_bytes()),
     }
 }

@@ -116,7 +116,7 @@ fn look_back(tables: &TableSet) -> Option<i64> {
 fn row_table_lines(tables: &[&TableSet], board: &Identity) -> Vec<usize> {
     let tells = |line: &usize| {
         tables.iter().any(|tables| {
-            let factors: Vec<_> = tables.units().collect();
+            let factors: Vec<_> = tables.entries().collect();
             let above = (0..factors.len()).filter(|row| row >> line & 1 == 1);
             above.into_iter().any(|row| factors[row] != factors[row - (1 << line)])
         })
@@ -125,7 +125,7 @@ fn row_table_lines(tables: &[&TableSet], board: &Identity) -> Vec<usize> {
 }
 
 fn factor_bits(tables: &[&TableSet]) -> Vec<usize> {
-    Levels::of(tables.iter().flat_map(|tables| tables.units())).constant(RowFactor::BITS)
+    Levels::of(tables.iter().flat_map(|tables| tables.entries())).constant(RowFactor::BITS)
 }
 
 /// Nodes that no output is made with, and taps of a board of `taps` that weigh nothing in any.
@@ -134,7 +134,7 @@ fn unused_of_kernel(generations: &[&Generation], taps: u8) -> (Vec<usize>, Vec<S
     let alike = |one: &Generation, other: &Generation| {
         one.tables.geometry().centre2() == other.tables.geometry().centre2()
             && one.tables.shape() == other.tables.shape()
-            && one.tables.units().eq(other.tables.units())
+            && one.tables.entries().eq(other.tables.entries())
             && one.kernel == other.kernel
     };
     for (place, generation) in generations.iter().enumerate() {

@@ -139,7 +139,7 @@ pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -
 fn grid_misfit(tables: &TableSet, capabilities: &Capabilities) -> Option<Misfit> {
     let shape = tables.shape()?;
     let Some(grids) = grids(capabilities) else { return Some(Misfit::NoGrids) };
-    let (entries, most) = (tables.units().len(), usize::from(grids.entries));
+    let (entries, most) = (tables.entries().len(), usize::from(grids.entries));
     if entries > most {
         return Some(Misfit::GridEntries { entries, most });
     }

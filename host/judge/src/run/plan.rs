@@ -19,7 +19,7 @@ pub(crate) const SENSOR_BLANKING: u16 = 900;
 pub struct Generation {
     /// 1 to 255.
     pub number: u8,
-    /// The row factors.
+    /// Row factors or a grid.
     pub tables: TableSet,
     /// The kernel.
     pub kernel: Kernel,

@@ -34,8 +34,8 @@ impl Run<'_> {
     fn upload(&mut self, generation: &Generation, first_frame: u16, rows: usize) -> Result<(), End> {
         let Generation { number, tables, kernel } = generation;
         self.board.upload(tables, kernel).during(CheckName::Upload)?;
-        let (entries, nodes) = (tables.units().len(), kernel.nodes().len());
-        let uploaded = Finding::TablesUploaded { rows: entries, nodes, generation: *number };
+        let (entries, nodes) = (tables.entries().len(), kernel.nodes().len());
+        let uploaded = Finding::TablesUploaded { entries, nodes, generation: *number };
         self.findings.passed(CheckName::Upload, uploaded);
         let ports = self.check_read_back(CheckName::ReadBack, Bank::Shadow, generation)?;
         let upper = generation.upper(rows);
@@ -76,7 +76,7 @@ impl Run<'_> {
         let Generation { number, tables, kernel } = generation;
         let uploaded = Uploaded { generation: *number, tables, kernel };
         let entries = match wrong.port.table {
-            Table::RowFactors | Table::Grid => tables.units().len(),
+            Table::RowFactors | Table::Grid => tables.entries().len(),
             Table::Kernel => kernel.nodes().len(),
         };
         let found = match self.board.read_entries(bank, wrong.port, entries) {

@@ -11,7 +11,7 @@ const ENTRIES_A_LINE: usize = 10;
 /// The text of a table file, its members in the order of [`TableFile::KEYS`] or of [`TableFile::GRID_KEYS`].
 pub(super) fn table_file(file: &TableFile) -> String {
     let geometry = file.tables.geometry();
-    let entries: Vec<_> = file.tables.units().map(|units| units.to_string()).collect();
+    let entries: Vec<_> = file.tables.entries().map(|units| units.to_string()).collect();
     let shape = file.tables.shape();
     let keys = if shape.is_some() { &TableFile::GRID_KEYS[..] } else { &TableFile::KEYS };
     let members = keys.iter().filter_map(|&place| match place {

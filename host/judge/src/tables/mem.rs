@@ -115,7 +115,7 @@ pub fn row_factors_text(tables: &TableSet) -> String {
             shape.unwrap_or_default()
         ),
     ];
-    let words = tables.units().map(|units| format!("{units:0ENTRY_DIGITS$x}"));
+    let words = tables.entries().map(|units| format!("{units:0ENTRY_DIGITS$x}"));
     lines(header.into_iter().chain(words))
 }
 

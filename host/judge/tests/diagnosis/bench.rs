@@ -177,7 +177,7 @@ impl Bench {
             _ => return,
         };
         let nodes: Vec<_> = generation.kernel.nodes().iter().copied().map(Node::from).collect();
-        let entries: Vec<_> = generation.tables.units().collect();
+        let entries: Vec<_> = generation.tables.entries().collect();
         let shape =
             generation.tables.shape().map(|shape| GridShape::new(shape.v() as u8, shape.k() as u8).unwrap());
         match shape {

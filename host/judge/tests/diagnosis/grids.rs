@@ -129,7 +129,7 @@ fn drawn() -> Bench {
 
 /// The grid with entries that are read otherwise.
 fn read_as(tables: &TableSet, read: impl Fn(&[u32], usize) -> u32) -> TableSet {
-    let entries: Vec<_> = tables.units().collect();
+    let entries: Vec<_> = tables.entries().collect();
     let read: Vec<_> = (0..entries.len()).map(|index| read(&entries, index)).collect();
     TableSet::from_grid(*tables.geometry(), tables.shape().unwrap(), &read).unwrap()
 }

@@ -33,7 +33,7 @@ fn read_factors(found: &[u32]) -> Vec<Suspect> {
 /// A grid of 8 columns and 8 rows whose entries are changed.
 fn read_grid(change: impl Fn(usize, &mut u32)) -> Vec<Suspect> {
     let tables = &grid().generations[1].tables;
-    let mut entries: Vec<_> = tables.units().collect();
+    let mut entries: Vec<_> = tables.entries().collect();
     entries.iter_mut().enumerate().for_each(|(index, entry)| change(index, entry));
     read(tables, Table::Grid, &bytes(&entries))
 }

@@ -131,7 +131,7 @@ impl Left {
             equation_9,
             fitted,
             shape: grid.shape().map_or_else(String::new, |shape| format!("{}, {}", shape.v(), shape.k())),
-            entries: grid.units().len(),
+            entries: grid.entries().len(),
             exact,
         })
     }

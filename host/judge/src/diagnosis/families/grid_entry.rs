@@ -66,12 +66,12 @@ impl EntryBit {
     }
 
     fn word(self, tables: &TableSet) -> Option<u32> {
-        tables.units().nth(self.index(tables)?)
+        tables.entries().nth(self.index(tables)?)
     }
 
     /// The grid with another word at this place.
     fn replaced(self, tables: &TableSet, word: u32) -> Option<TableSet> {
-        let mut entries: Vec<_> = tables.units().collect();
+        let mut entries: Vec<_> = tables.entries().collect();
         *entries.get_mut(self.index(tables)?)? = word;
         TableSet::from_grid(*tables.geometry(), tables.shape()?, &entries).ok()
     }

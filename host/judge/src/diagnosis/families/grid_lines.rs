@@ -12,7 +12,7 @@ use crate::result::Defect;
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let mut generations = witnesses.generations();
     generations.retain(|uploaded| uploaded.tables.shape().is_some());
-    let entries = generations.iter().map(|uploaded| uploaded.tables.units().len()).max();
+    let entries = generations.iter().map(|uploaded| uploaded.tables.entries().len()).max();
     let Some(entries) = entries else { return Vec::new() };
     let address_bits = usize::BITS - (entries - 1).leading_zeros();
     let lines = Lines { generations, ring: witnesses.case.ring };
@@ -50,7 +50,7 @@ impl Lines<'_> {
     fn read<'a>(&self, defect: Defect, read: impl Fn(&[u32], usize) -> Option<u32>) -> Hypothesis<'a> {
         let grid = |uploaded: &Uploaded<'_>| {
             let tables = uploaded.tables;
-            let entries: Vec<_> = tables.units().collect();
+            let entries: Vec<_> = tables.entries().collect();
             let entry = |index| read(&entries, index).unwrap_or(RowFactor::ONE.get());
             let read: Vec<_> = (0..entries.len()).map(entry).collect();
             let grid = TableSet::from_grid(*tables.geometry(), tables.shape()?, &read).ok()?;

@@ -137,7 +137,7 @@ fn tables(tables: &TablesReport) -> Markup {
             @if let Some(outside) = tables.rows_outside_circle {
                 (pair("Outside the image circle", count(outside, "row")))
             }
-            (pair("CRC-32", format!("row factors {}, kernel {}", tables.steps_crc32, tables.kernel_crc32)))
+            (pair("CRC-32", format!("tables {}, kernel {}", tables.tables_crc32, tables.kernel_crc32)))
         }
     }
 }

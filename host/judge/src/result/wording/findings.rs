@@ -19,9 +19,9 @@ pub fn sentence(finding: &Finding) -> String {
         Finding::EchoesReturned { bytes, echoes } => {
             format!("{} in {} echoes came back as they went", count(*bytes, "byte"), grouped(*echoes))
         }
-        Finding::TablesUploaded { rows, nodes, generation } => {
+        Finding::TablesUploaded { entries, nodes, generation } => {
             let nodes = count(*nodes, "kernel node");
-            format!("{} table entries and {nodes}, as generation {generation}", grouped(*rows))
+            format!("{} table entries and {nodes}, as generation {generation}", grouped(*entries))
         }
         Finding::TablesReadBack { ports } => {
             format!("{} read what was uploaded", count(*ports, "datapath port"))

@@ -130,7 +130,7 @@ mod tests {
                     let geometry =
                         Geometry::new(width, height, halfrow_model::BitDepth::Twelve, centre2).unwrap();
                     let tables = drawn_grid(geometry, shape, ring, &mut draws).unwrap();
-                    let offsets: Vec<_> = tables.units().take(shape.rows(&geometry)).collect();
+                    let offsets: Vec<_> = tables.entries().take(shape.rows(&geometry)).collect();
                     let one = RowFactor::ONE.get();
                     right += usize::from(offsets.iter().any(|&offset| offset > one));
                     left += usize::from(offsets.iter().any(|&offset| offset < one));

@@ -59,7 +59,7 @@ pub(in crate::run) fn price_of_corners(prices: &Prices<'_>) -> f64 {
     let corner = |tables: &Vec<Generation>| {
         let Some(active) = tables.first().map(|first| &first.tables) else { return 0.0 };
         let geometry = active.geometry();
-        let upload = |own: &Generation| prices.short_request() + prices.upload_of(own.tables.units().len());
+        let upload = |own: &Generation| prices.short_request() + prices.upload_of(own.tables.entries().len());
         let uploads = tables.iter().map(upload).sum::<f64>();
         let rows = if active.shape().is_some() { geometry.height() } else { 1 };
         let activated = prices.short_request() + prices.commit() + prices.rows(rows, geometry.width(), 0);

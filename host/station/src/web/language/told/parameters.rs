@@ -12,8 +12,18 @@ use crate::clock;
 /// Parameters that are seconds.
 const TIMES: [&str; 4] = ["at", "seconds", "deadline", "waited"];
 /// Parameters that count what there are many of. Others that are numbers name something.
-const COUNTS: [&str; 9] =
-    ["bytes", "differences", "echoes", "nodes", "packets", "requests", "retries", "rows", "samples"];
+const COUNTS: [&str; 10] = [
+    "bytes",
+    "differences",
+    "echoes",
+    "entries",
+    "nodes",
+    "packets",
+    "requests",
+    "retries",
+    "rows",
+    "samples",
+];
 /// Parameters that are several names in one text.
 const LISTS: [&str; 5] = ["builds", "channels", "holders", "known", "names"];
 
@@ -26,6 +36,8 @@ impl Words {
             "others" => Some(self.others(value.and_then(Value::as_u64).unwrap_or_default())),
             "is_one_row" => Some(self.one_row(parameters)),
             "rows" => self.some_rows(parameters).or_else(own),
+            // Earlier records name the entries of tables so.
+            "entries" if value.is_none() => self.named("rows", parameters),
             "bit" => self.one_of_bits(parameters).or_else(own),
             "value" => self.measured(parameters).or_else(own),
             "verdict" => self.verdict(value?).or_else(own),
