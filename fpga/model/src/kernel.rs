@@ -14,8 +14,11 @@ const MIN_WEIGHT: f64 = -2.0;
 /// The largest weight that 16 bits hold: 2 − 2^-14.
 const MAX_WEIGHT: f64 = i16::MAX as f64 / WEIGHT_ONE as f64;
 
-/// The stored weights' taps, in their order. Those of G2 and R3 follow from the five.
-pub const TAP_NAMES: [&str; 5] = ["g0", "r1", "g4", "r5", "g6"];
+/// The taps in the order of their columns: the samples that an output is made of.
+pub const TAP_NAMES: [&str; 7] = ["G0", "R1", "G2", "R3", "G4", "R5", "G6"];
+
+/// The stored weights, in their order. Those of the taps G2 and R3 follow from the five.
+pub const WEIGHT_NAMES: [&str; 5] = ["g0", "r1", "g4", "r5", "g6"];
 
 /// The weights of a kernel at its [`NODES`] nodes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,7 +51,7 @@ pub enum KernelError {
     Weight {
         /// The node, 0 to 64.
         node: usize,
-        /// The tap's name, one of [`TAP_NAMES`].
+        /// The weight's name, one of [`WEIGHT_NAMES`].
         tap: &'static str,
         /// The weight given.
         weight: f64,
@@ -117,7 +120,7 @@ impl From<Interpolant> for Kernel {
 }
 
 fn round_node(node: usize, weights: &[f64; 5]) -> Result<[i16; 5], KernelError> {
-    for (tap, weight) in TAP_NAMES.into_iter().zip(*weights) {
+    for (tap, weight) in WEIGHT_NAMES.into_iter().zip(*weights) {
         if !(MIN_WEIGHT..=MAX_WEIGHT).contains(&weight) {
             return Err(KernelError::Weight { node, tap, weight });
         }

@@ -50,7 +50,7 @@ pub use grid::{
     GridResidual, GridResiduals, GridRoomError, GridShape, GridShapeError, ResidualSum, RowValues,
 };
 pub use interpolant::{Interpolant, UnknownInterpolant};
-pub use kernel::{Kernel, KernelError, NODES, TAP_NAMES, Taps, WEIGHT_ONE};
+pub use kernel::{Kernel, KernelError, NODES, TAP_NAMES, Taps, WEIGHT_NAMES, WEIGHT_ONE};
 pub use lens::{Equidistant, LensError, MAX_RADIUS, MIN_RADIUS, Short, Spherical};
 pub use profile::Profile;
 pub use projection::{exact, exact_inverse, simplified, simplified_inverse, stretch_factor};

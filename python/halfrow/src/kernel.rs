@@ -49,7 +49,7 @@ impl Kernel {
         name: &str,
     ) -> PyResult<Self> {
         let weights = weights.as_array();
-        if weights.ncols() != model::TAP_NAMES.len() {
+        if weights.ncols() != model::WEIGHT_NAMES.len() {
             return Err(errors::wrong_value(format!(
                 "a node has {} weights; give G0, R1, G4, R5 and G6",
                 weights.ncols()
@@ -75,7 +75,7 @@ impl Kernel {
     fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let weights = self.kernel.nodes().as_flattened().iter();
         let weights = weights.map(|&weight| f64::from(weight) / f64::from(WEIGHT_ONE)).collect();
-        numpy::PyArray1::from_vec(py, weights).reshape([model::NODES, model::TAP_NAMES.len()])
+        numpy::PyArray1::from_vec(py, weights).reshape([model::NODES, model::WEIGHT_NAMES.len()])
     }
 
     /// Writes it to a kernel file (JSON), where the notes of a file that it was read from stay. A file that is there is replaced

@@ -2,7 +2,7 @@
 
 mod lines;
 
-use halfrow_model::{RowFactor, TAP_NAMES};
+use halfrow_model::{RowFactor, WEIGHT_NAMES};
 
 use super::Uploaded;
 use crate::board::Table;
@@ -64,7 +64,7 @@ impl<'a> Words<'a> {
     fn per_entry(self) -> usize {
         match self.table {
             Table::RowFactors | Table::Grid => 1,
-            Table::Kernel => TAP_NAMES.len(),
+            Table::Kernel => WEIGHT_NAMES.len(),
         }
     }
 
@@ -110,7 +110,7 @@ impl<'a> Words<'a> {
     fn weight(self, index: usize) -> Option<String> {
         match self.table {
             Table::RowFactors | Table::Grid => None,
-            Table::Kernel => TAP_NAMES.get(index % self.per_entry()).map(|&weight| weight.to_owned()),
+            Table::Kernel => WEIGHT_NAMES.get(index % self.per_entry()).map(|&weight| weight.to_owned()),
         }
     }
 }

@@ -257,10 +257,10 @@ fn in_tables() -> Vec<Defect> {
             reading: reading(16_000_064, 16_000_000),
             illegal: false,
         },
-        Defect::KernelWordBitWrong { node: 7, weight: "G4".to_owned(), bit: 3, reading: reading(-120, -128) },
+        Defect::KernelWordBitWrong { node: 7, weight: "g4".to_owned(), bit: 3, reading: reading(-120, -128) },
         Defect::KernelWordWrong {
             node: 7,
-            weight: "G4".to_owned(),
+            weight: "g4".to_owned(),
             generation: 2,
             least: -120,
             most: -120,
@@ -283,7 +283,7 @@ fn of_lines() -> Vec<Defect> {
         Defect::RowTableAddressStuck { bit: 2, value: 0 },
         Defect::RowTableAddressOff { entries: -1 },
         Defect::KernelAddressStuck { bit: 3, value: 0 },
-        Defect::KernelDataStuck { weight: "G0".to_owned(), bit: 3, value: 0 },
+        Defect::KernelDataStuck { weight: "g0".to_owned(), bit: 3, value: 0 },
     ]
 }
 
@@ -312,7 +312,7 @@ fn read_back() -> impl Iterator<Item = Defect> {
         Defect::TableWordWrong {
             table: Memory::Kernel,
             entry: 7,
-            weight: Some("G4".to_owned()),
+            weight: Some("g4".to_owned()),
             bits: vec![3],
             uploaded: -128,
             read: -120,

@@ -67,9 +67,6 @@ pub use soak::{SoakChart, SoakDifference, SoakInterval, SoakLength, SoakReport};
 pub use suspect::{Account, Suspect};
 pub use within::{CoveragePoint, WithinPart, WithinReport};
 
-/// The taps in the order of their columns, as suspects and what was not exercised name them.
-pub(crate) const TAPS: [&str; 7] = ["G0", "R1", "G2", "R3", "G4", "R5", "G6"];
-
 /// A finished run of `verify` or `soak`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(remote = "Self")]

@@ -3,10 +3,10 @@
 
 use std::collections::BTreeSet;
 
-use halfrow_model::{Frame, NODES, RowFactor, Source, TableSet};
+use halfrow_model::{Frame, NODES, RowFactor, Source, TAP_NAMES, TableSet};
 
 use super::plan::Generation;
-use crate::result::{Identity, NotExercised, TAPS};
+use crate::result::{Identity, NotExercised};
 
 /// The levels that bits have had.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -130,7 +130,7 @@ fn factor_bits(tables: &[&TableSet]) -> Vec<usize> {
 
 /// Nodes that no output is made with, and taps of a board of `taps` that weigh nothing in any.
 fn unused_of_kernel(generations: &[&Generation], taps: u8) -> (Vec<usize>, Vec<String>) {
-    let (mut used, mut weighed) = ([false; NODES], [false; TAPS.len()]);
+    let (mut used, mut weighed) = ([false; NODES], [false; TAP_NAMES.len()]);
     let alike = |one: &Generation, other: &Generation| {
         one.tables.geometry().centre2() == other.tables.geometry().centre2()
             && one.tables.shape() == other.tables.shape()
@@ -151,7 +151,7 @@ fn unused_of_kernel(generations: &[&Generation], taps: u8) -> (Vec<usize>, Vec<S
     }
     let unused = (0..NODES).filter(|&node| !used[node]).collect();
     let of_board = if taps < 7 { 1..6 } else { 0..7 };
-    let unweighed = of_board.filter(|&tap| !weighed[tap]).map(|tap| TAPS[tap].to_owned()).collect();
+    let unweighed = of_board.filter(|&tap| !weighed[tap]).map(|tap| TAP_NAMES[tap].to_owned()).collect();
     (unused, unweighed)
 }
 

@@ -4,8 +4,8 @@ use std::io;
 use std::path::Path;
 
 use halfrow_model::{
-    BitDepth, Geometry, GridShape, Kernel, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH, NODES, RowFactor, TAP_NAMES,
-    TableSet,
+    BitDepth, Geometry, GridShape, Kernel, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH, NODES, RowFactor, TableSet,
+    WEIGHT_NAMES,
 };
 use halfrow_protocol::message::Datapath;
 use serde_json::{Map, Value};
@@ -222,9 +222,9 @@ fn kernel(value: &Value) -> Result<Kernel, ContentError> {
 }
 
 fn weights(node: usize, value: &Value) -> Result<[i16; 5], ContentError> {
-    let values = list(Place::Node { node }, value, TAP_NAMES.len())?;
-    let mut weights = [0; TAP_NAMES.len()];
-    for ((weight, value), tap) in weights.iter_mut().zip(values).zip(TAP_NAMES) {
+    let values = list(Place::Node { node }, value, WEIGHT_NAMES.len())?;
+    let mut weights = [0; WEIGHT_NAMES.len()];
+    for ((weight, value), tap) in weights.iter_mut().zip(values).zip(WEIGHT_NAMES) {
         *weight = number(Place::Weight { node, tap }, value, &(i16::MIN..=i16::MAX))?;
     }
     Ok(weights)

@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use halfrow_model::{BitDepth, Geometry, GridShape, Kernel, TAP_NAMES, TableSet};
+use halfrow_model::{BitDepth, Geometry, GridShape, Kernel, TableSet, WEIGHT_NAMES};
 use halfrow_protocol::message::Datapath;
 
 use super::text::{self, quoted};
@@ -22,7 +22,7 @@ const ENTRY_DIGITS: usize = 7;
 const WEIGHT_DIGITS: usize = 4;
 
 /// Hexadecimal digits of a node.
-const NODE_DIGITS: usize = WEIGHT_DIGITS * TAP_NAMES.len();
+const NODE_DIGITS: usize = WEIGHT_DIGITS * WEIGHT_NAMES.len();
 
 /// What stands in the names of the two files.
 const PARTS: [&str; 2] = ["steps", "kernel"];

@@ -46,7 +46,7 @@ pub enum Place {
     Weight {
         /// The node, 0 to 64.
         node: usize,
-        /// The tap's name, one of [`halfrow_model::TAP_NAMES`].
+        /// The weight's name, one of [`halfrow_model::WEIGHT_NAMES`].
         tap: &'static str,
     },
 }

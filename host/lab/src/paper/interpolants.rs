@@ -1,6 +1,6 @@
 //! Fig. 8: what each interpolant makes of the samples of a row.
 
-use halfrow_model::Interpolant;
+use halfrow_model::{Interpolant, TAP_NAMES};
 
 use super::Item;
 use super::exhibit::{Cell, Drawing, Exhibit, Picture, Table};
@@ -87,7 +87,7 @@ fn table() -> Table {
         cells.push(Cell::Number(value(interpolant, x), 4));
         cells
     };
-    let heads = ["interpolant", "x, px"].into_iter().chain(taps).chain(["G(x) of the drawing"]);
+    let heads = ["interpolant", "x, px"].into_iter().chain(TAP_NAMES).chain(["G(x) of the drawing"]);
     Table {
         name: "fig-8",
         caption: "The weights at the kernel's 65 nodes (Eqs. 10, 11, 12, 18), and the drawn curves."

@@ -1,6 +1,6 @@
 //! One word of the kernel with a bit inverted.
 
-use halfrow_model::{Kernel, NODES, TAP_NAMES};
+use halfrow_model::{Kernel, NODES, WEIGHT_NAMES};
 
 use super::table_word::{Word, changed, inversions, reading};
 use crate::diagnosis::Uploaded;
@@ -23,13 +23,13 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
 pub(super) struct KernelWord {
     /// Its node, 0 to 64.
     pub(super) node: usize,
-    /// Its weight, an index of [`TAP_NAMES`].
+    /// Its weight, an index of [`WEIGHT_NAMES`].
     pub(super) tap: usize,
 }
 
 /// The words that every differing sample depends on.
 pub(super) fn common_words(witnesses: &Witnesses<'_>) -> Vec<KernelWord> {
-    let weights = |node| (0..TAP_NAMES.len()).map(move |tap| KernelWord { node, tap });
+    let weights = |node| (0..WEIGHT_NAMES.len()).map(move |tap| KernelWord { node, tap });
     common_nodes(witnesses).into_iter().flat_map(weights).collect()
 }
 
@@ -66,7 +66,7 @@ impl KernelWord {
 
     /// The name of the tap that it weighs.
     pub(super) fn weight(self) -> String {
-        TAP_NAMES.get(self.tap).copied().unwrap_or_default().to_owned()
+        WEIGHT_NAMES.get(self.tap).copied().unwrap_or_default().to_owned()
     }
 
     /// The word with each of its bits broken.

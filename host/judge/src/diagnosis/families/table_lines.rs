@@ -1,6 +1,6 @@
 //! A line of a table's memory stuck, so that many entries are read wrong.
 
-use halfrow_model::{Kernel, NODES, RowFactor, TAP_NAMES};
+use halfrow_model::{Kernel, NODES, RowFactor, WEIGHT_NAMES};
 
 use super::StuckLine;
 use super::row_factor::with_entry;
@@ -20,7 +20,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let row_bits = usize::BITS - (geometry.height() - 1).leading_zeros();
     let generations = witnesses.generations();
     let weights =
-        (0..TAP_NAMES.len()).flat_map(|tap| StuckLine::all(WEIGHT_BITS).map(move |line| (tap, line)));
+        (0..WEIGHT_NAMES.len()).flat_map(|tap| StuckLine::all(WEIGHT_BITS).map(move |line| (tap, line)));
     StuckLine::all(RowFactor::BITS)
         .map(move |line| factor_data(line, ring))
         .chain(StuckLine::all(row_bits).map(move |line| factor_address(line, ring)))
@@ -75,7 +75,7 @@ fn node_address<'a>(generations: &[Uploaded<'_>], line: StuckLine) -> Hypothesis
 }
 
 fn weight_data<'a>(generations: &[Uploaded<'_>], tap: usize, line: StuckLine) -> Hypothesis<'a> {
-    let weight = TAP_NAMES.get(tap).copied().unwrap_or_default();
+    let weight = WEIGHT_NAMES.get(tap).copied().unwrap_or_default();
     let defect = Defect::KernelDataStuck { weight: weight.to_owned(), bit: line.bit, value: line.value() };
     with_nodes(generations, defect, |nodes| {
         let mut nodes = nodes.to_vec();

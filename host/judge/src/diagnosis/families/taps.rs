@@ -1,15 +1,17 @@
 //! Taps that carry other samples than their own.
 
+use halfrow_model::TAP_NAMES;
+
 use crate::diagnosis::datapath::{DeadTap, Wiring};
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::Witnesses;
-use crate::result::{Defect, TAPS};
+use crate::result::Defect;
 
 /// Offsets of the window, dead taps, and a base of the wrong colour.
 pub(super) fn propose<'a>(_: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let offsets = [-1, 1, -2, 2, -3, 3].map(offset);
-    let dead = (0..TAPS.len()).flat_map(|tap| {
-        let others = (0..TAPS.len()).filter(move |&other| other != tap).map(Some);
+    let dead = (0..TAP_NAMES.len()).flat_map(|tap| {
+        let others = (0..TAP_NAMES.len()).filter(move |&other| other != tap).map(Some);
         std::iter::once(None).chain(others).map(move |reads| dead(DeadTap { tap, reads }))
     });
     offsets.into_iter().chain(dead).chain([other_colour()]).collect()
@@ -23,7 +25,7 @@ fn offset<'a>(columns: i64) -> Hypothesis<'a> {
 }
 
 fn dead<'a>(dead_tap: DeadTap) -> Hypothesis<'a> {
-    let name = |tap: usize| TAPS.get(tap).copied().unwrap_or_default().to_owned();
+    let name = |tap: usize| TAP_NAMES.get(tap).copied().unwrap_or_default().to_owned();
     let defect = Defect::TapDead { tap: name(dead_tap.tap), reads: dead_tap.reads.map(name) };
     wired(Wiring { dead_tap: Some(dead_tap), ..Wiring::default() }, defect)
 }

@@ -1,6 +1,6 @@
 //! Single lines of a table's memory that make many words wrong.
 
-use halfrow_model::TAP_NAMES;
+use halfrow_model::WEIGHT_NAMES;
 
 use super::Words;
 use crate::board::Table;
@@ -86,7 +86,7 @@ fn data_lines(words: Words<'_>, bit: u32, value: u8) -> Vec<Line<'_>> {
     };
     let weights = match words.table {
         Table::RowFactors | Table::Grid => &[][..],
-        Table::Kernel => &TAP_NAMES[..],
+        Table::Kernel => &WEIGHT_NAMES[..],
     };
     let of_weight = |(tap, weight): (usize, &&str)| Line {
         defect: Defect::TableDataStuck { table, weight: Some((*weight).to_owned()), bit, value },
