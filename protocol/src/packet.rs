@@ -94,12 +94,11 @@ impl Kind {
     pub const fn code(self) -> u8 {
         self as u8
     }
-}
 
-/// As WIRE.md writes it: `ROW_IN`.
-impl fmt::Display for Kind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+    /// As WIRE.md writes it: `ROW_IN`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
             Self::Hello => "HELLO",
             Self::Capabilities => "CAPABILITIES",
             Self::Status => "STATUS",
@@ -118,7 +117,14 @@ impl fmt::Display for Kind {
             Self::Expect => "EXPECT",
             Self::Trap => "TRAP",
             Self::Refusal => "REFUSAL",
-        })
+        }
+    }
+}
+
+/// Its name.
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
     }
 }
 

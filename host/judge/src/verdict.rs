@@ -113,6 +113,19 @@ impl Cause {
     }
 }
 
+impl StoppedBy {
+    /// Its name: stable, lower case.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Person => "person",
+            Self::System => "system",
+            Self::Disconnection => "disconnection",
+            Self::Caller => "caller",
+        }
+    }
+}
+
 impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())
@@ -124,8 +137,8 @@ impl fmt::Display for StoppedBy {
         f.write_str(match self {
             Self::Person => "stopped by hand",
             Self::System => "stopped by the system",
-            Self::Disconnection => "stopped since the terminal or connection is gone",
-            Self::Caller => "stopped by the program that began it",
+            Self::Disconnection => "stopped because the terminal or connection is gone",
+            Self::Caller => "stopped by the program that started it",
         })
     }
 }

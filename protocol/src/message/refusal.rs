@@ -7,12 +7,12 @@ use crate::Malformed;
 use crate::bytes::Fields;
 
 macro_rules! codes {
-    ($($(#[$doc:meta])* $name:ident = $code:literal, $text:literal;)*) => {
+    ($($(#[$doc:meta])* $variant:ident = $code:literal, $name:literal, $text:literal;)*) => {
         /// Why a request was refused.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
         pub enum RefusalCode {
-            $($(#[$doc])* $name = $code,)*
+            $($(#[$doc])* $variant = $code,)*
         }
 
         impl RefusalCode {
@@ -20,15 +20,21 @@ macro_rules! codes {
             #[must_use]
             pub fn from_code(code: u8) -> Option<Self> {
                 match code {
-                    $($code => Some(Self::$name),)*
+                    $($code => Some(Self::$variant),)*
                     _ => None,
                 }
+            }
+
+            /// Its name in WIRE.md, section 6.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name,)* }
             }
         }
 
         impl fmt::Display for RefusalCode {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(match self { $(Self::$name => $text,)* })
+                f.write_str(match self { $(Self::$variant => $text,)* })
             }
         }
     };
@@ -36,29 +42,29 @@ macro_rules! codes {
 
 codes! {
     /// No common version of the wire; `detail` is the board's.
-    Version = 1, "the board speaks another version of the wire";
+    Version = 1, "version", "the board speaks another version of the wire";
     /// The kind is not known to the board.
-    Kind = 2, "the board does not know this request";
+    Kind = 2, "kind", "the board does not know this request";
     /// The payload is not the kind's.
-    Payload = 3, "the request's payload is malformed";
+    Payload = 3, "payload", "the request's payload is malformed";
     /// A value out of range; `detail` is the index of the entry, or the field's place in WIRE.md.
-    Range = 4, "a value is out of the board's range";
+    Range = 4, "range", "a value is out of the board's range";
     /// The packet's session is not open.
-    Session = 5, "the session is not open: the board was reset, or another host has taken it over";
+    Session = 5, "session", "the session is not open: the board was reset, or another host has taken it over";
     /// Another host holds the board; `detail` is the time in tenths of a second until it would be free.
-    Held = 6, "another host holds the board";
+    Held = 6, "held", "another host holds the board";
     /// The core is not empty, or the shadow bank is still in use.
-    Busy = 7, "the core is busy";
+    Busy = 7, "busy", "the core is busy";
     /// Rows came before a configuration and a commit.
-    NotReady = 8, "geometry and tables have not been set";
+    NotReady = 8, "not ready", "geometry and tables have not been set";
     /// The tables read back otherwise than the host says they are; `detail` is the table.
-    TableCrc = 9, "a table reads back with another CRC";
+    TableCrc = 9, "table crc", "a table reads back with another CRC";
     /// A row beyond the credit.
-    Credit = 10, "a row was sent without credit";
+    Credit = 10, "credit", "a row was sent without credit";
     /// The row's place or width is not the configuration's.
-    Row = 11, "a row does not fit the configuration or the order";
+    Row = 11, "row", "a row does not fit the configuration or the order";
     /// The kernel needs the outer taps, and the board has none; `detail` is the node.
-    Taps = 12, "the kernel needs seven taps and the board has five";
+    Taps = 12, "taps", "the kernel needs seven taps and the board has five";
 }
 
 /// A refused request.

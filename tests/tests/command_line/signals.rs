@@ -25,7 +25,7 @@ fn interrupted(folder: &Folder, signal: &str, arguments: &[&str]) -> Ended {
 const SIGNALS: [(&str, i32); 3] = [("HUP", 129), ("INT", 130), ("TERM", 143)];
 /// Who stopped them, in the order of [`SIGNALS`].
 const STOPPED: [&str; 3] =
-    ["stopped since the terminal or connection is gone", "stopped by hand", "stopped by the system"];
+    ["stopped because the terminal or connection is gone", "stopped by hand", "stopped by the system"];
 
 #[test]
 fn a_signal_ends_a_run_with_its_code() {

@@ -71,13 +71,13 @@ impl Parameter for UsbBoard {
 
 impl Parameter for Kind {
     fn parameter(&self) -> Value {
-        format!("{self:?}").into()
+        self.name().into()
     }
 }
 
 impl Parameter for Refusal {
     fn parameter(&self) -> Value {
-        json!({ "code": self.code as u8, "reason": format!("{:?}", self.code), "detail": self.detail })
+        json!({ "code": self.code as u8, "reason": self.code.name(), "detail": self.detail })
     }
 }
 
@@ -95,6 +95,21 @@ impl Parameter for BitDepth {
 
 impl Parameter for StoppedBy {
     fn parameter(&self) -> Value {
-        self.to_string().into()
+        self.name().into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use halfrow_protocol::message::RefusalCode;
+
+    use super::*;
+
+    #[test]
+    fn programs_read_the_names_of_the_wires_page() {
+        assert_eq!(Kind::TableWrite.parameter(), "TABLE_WRITE");
+        let refusal = Refusal { code: RefusalCode::NotReady, kind: 0x13, detail: 0 };
+        assert_eq!(refusal.parameter(), json!({ "code": 8, "reason": "not ready", "detail": 0 }));
+        assert_eq!(StoppedBy::Disconnection.parameter(), "disconnection");
     }
 }

@@ -64,15 +64,7 @@ fn did(found: &Answer) -> String {
 
 /// The reason's name in WIRE.md, section 6.
 fn reason(code: u8) -> String {
-    let Some(reason) = RefusalCode::from_code(code) else { return format!("code {code}") };
-    let mut words = String::new();
-    for letter in format!("{reason:?}").chars() {
-        if letter.is_uppercase() && !words.is_empty() {
-            words.push(' ');
-        }
-        words.extend(letter.to_lowercase());
-    }
-    words
+    RefusalCode::from_code(code).map_or_else(|| format!("code {code}"), |reason| reason.name().to_owned())
 }
 
 fn meaning(rule: Rule) -> &'static str {
