@@ -31,7 +31,7 @@ static LOST: AtomicBool = AtomicBool::new(false);
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum PoolError {
     /// The target says no kind.
-    #[error("`pool` is a board of a kind; write pool:KIND, as `halfrow-station board list` names the kinds")]
+    #[error("`pool` needs a kind; write pool:KIND, as `halfrow-station board list` names the kinds")]
     NoKind,
     /// What leases boards is not there.
     #[error(
@@ -40,13 +40,16 @@ pub(crate) enum PoolError {
     )]
     NoStation(#[source] io::Error),
     /// It ended without a board, and has said why.
-    #[error("no board of the kind {kind} was got; see what {STATION} says above")]
+    #[error("no board of the kind {kind} could be leased; see what {STATION} says above")]
     None {
         /// The kind.
         kind: String,
     },
+    /// What it says does not arrive whole, or is no text.
+    #[error("the output of {STATION} cannot be read; install the one that belongs to this version")]
+    Unread(#[source] io::Error),
     /// It says what is no message.
-    #[error("{STATION} says `{line}`, which is no message; take the one that belongs to this version")]
+    #[error("{STATION} says `{line}`, which is no message; install the one that belongs to this version")]
     Message {
         /// What it says.
         line: String,
@@ -54,7 +57,9 @@ pub(crate) enum PoolError {
         source: serde_json::Error,
     },
     /// The place of the board is none.
-    #[error("the board {board} is shared at `{target}`, which is no board; share it anew")]
+    #[error(
+        "the board {board} is shared at `{target}`, which is no board; share it again with `halfrow-station board share`"
+    )]
     Target {
         /// The board.
         board: String,
@@ -146,8 +151,10 @@ fn hold(kind: &str) -> io::Result<Child> {
 
 fn next(told: Option<&mut BufReader<ChildStdout>>) -> Result<Option<Message>, PoolError> {
     let mut line = String::new();
-    // A reader that fails has come to its end.
-    let read = told.map_or(0, |told| told.read_line(&mut line).unwrap_or(0));
+    let read = match told {
+        Some(told) => told.read_line(&mut line).map_err(PoolError::Unread)?,
+        None => 0,
+    };
     if read == 0 {
         return Ok(None);
     }
@@ -168,7 +175,8 @@ fn watch(mut told: Option<BufReader<ChildStdout>>, mut child: Child) {
     let watched = thread::Builder::new().name("pool".to_owned()).spawn(move || {
         let said = match next(told.as_mut()) {
             Ok(Some(Message::Lost { said })) => said,
-            _ => format!("{STATION}, which held the board, has ended"),
+            Ok(_) => format!("{STATION}, which held the board, has ended"),
+            Err(error) => error.to_string(),
         };
         LOST.store(true, Ordering::Relaxed);
         console::error(&said);

@@ -125,6 +125,7 @@ codes::codes! {
         NoKind => "pool-without-kind",
         NoStation => "pool-without-station",
         None [kind] => "pool-without-board",
+        Unread => "pool-unreadable",
         Message [line] => "pool-message-wrong",
         Target [board, target] => "pool-board-without-place",
     }
