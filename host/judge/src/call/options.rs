@@ -8,10 +8,17 @@ use thiserror::Error;
 /// How often a call can have its frames streamed.
 pub const REPEATS: RangeInclusive<u32> = 1..=1000;
 
-/// The longest time that a run can be asked to keep within, in seconds.
-const LONGEST: f64 = 1e6;
-/// What to give that [`within`] takes.
-pub const WITHIN_TAKES: &str = "give a number of seconds, more than 0 and at most 1000000";
+/// The longest time that a run can be asked to keep within, and what to give that [`within`] takes.
+macro_rules! longest {
+    ($seconds:literal) => {
+        /// The longest time that a run can be asked to keep within, in seconds.
+        const LONGEST: u32 = $seconds;
+        /// What to give that [`within`] takes.
+        pub const WITHIN_TAKES: &str =
+            concat!("give a number of seconds, more than 0 and at most ", $seconds);
+    };
+}
+longest!(1_000_000);
 
 /// An option beside another thing that decides in its place.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -25,7 +32,7 @@ pub struct VoidOption {
 
 /// A number of seconds that is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("{option} takes a number of seconds; give one from 0 to 10^19")]
+#[error("{option} takes a number of seconds; give 0 or more")]
 pub struct NoTime {
     /// The option, as the caller names it.
     pub option: &'static str,
@@ -101,9 +108,9 @@ pub fn seconds(option: &'static str, seconds: Option<f64>) -> Result<Option<Dura
     seconds.map(Duration::try_from_secs_f64).transpose().map_err(|_| NoTime { option })
 }
 
-/// The time to judge within that `seconds` are: more than 0 and at most 1,000,000; none of any other.
+/// The time to judge within that `seconds` are; none if that is no such time as [`WITHIN_TAKES`] says.
 #[must_use]
 pub fn within(seconds: f64) -> Option<Duration> {
-    let is_time = seconds > 0.0 && seconds <= LONGEST;
+    let is_time = seconds > 0.0 && seconds <= f64::from(LONGEST);
     is_time.then(|| Duration::from_secs_f64(seconds))
 }
