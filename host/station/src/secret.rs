@@ -31,8 +31,8 @@ pub enum SecretError {
     },
     /// Others may read what it is given.
     #[error(
-        "others may read {0}, which has a secret; as the user of the station run: chmod 600 {0}; or as root, with the \
-         station's group: chown root:GROUP {0} && chmod 640 {0}", path.display()
+        "others may read {0}, which has a secret; run as the station's user: chmod 600 {0}, or as root, with the station's \
+         group: chown root:GROUP {0} && chmod 640 {0}", path.display()
     )]
     GivenOpen {
         /// The file.

@@ -138,8 +138,8 @@ pub enum BoardError {
     /// Too many retries.
     #[error(
         "the link is too poor to judge a board over: {retries} of {packets} packets had to be sent again, and {limit} \
-         are allowed; check cable, connectors and rate, or raise the retry limit; if `halfrow link` finds the link good, \
-         look why the board answers late or not at all"
+         are allowed; check cable, connectors and rate, or raise the retry limit, and if `halfrow link` finds the link good, \
+         find out why the board answers late or not at all"
     )]
     TooPoor {
         /// Packets sent again.

@@ -195,4 +195,14 @@ mod tests {
             "Wait until it is done (silent for 10 s, of which 0.5 s are left), or take the board over.";
         assert_eq!(held.remedy.as_deref(), Some(asked));
     }
+
+    #[test]
+    fn all_that_a_poor_link_asks_for_is_in_its_remedy() {
+        let problem = Problem::of(&BoardError::TooPoor { retries: 9, packets: 99, limit: 5 });
+        let remedy = problem.remedy.clone().unwrap();
+        assert!(remedy.starts_with("Check cable, connectors and rate"), "{remedy}");
+        assert!(remedy.contains("`halfrow link`"), "{remedy}");
+        let left = problem.unasked().message;
+        assert!(left.ends_with("5 are allowed"), "{left}");
+    }
 }

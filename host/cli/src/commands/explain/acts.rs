@@ -90,10 +90,6 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "link-broke",
         "do what its cause says, which has a code of its own: most often check the cable and the board's power, then run again",
     ),
-    (
-        "link-too-poor",
-        "check cable, connectors and rate; if `halfrow link` finds the link good, look why the board answers late or not at all",
-    ),
     ("link-without-board", "plug the board in at the far end, and check the device that its ser2net names"),
     ("mem-depth-unknown", "make the file again with `halfrow tables` and --bits 8, 10 or 12"),
     ("mem-file-wrong", "do what its cause says, or make the file again with `halfrow tables`"),
@@ -353,6 +349,19 @@ mod tests {
 
     #[test]
     fn acts_stand_in_the_order_of_their_codes_and_no_message_has_its_own_beside_them() {
+    #[test]
+    fn a_message_of_an_error_asks_once() {
+        let is_error = |of: &str| ["error", "station-error"].contains(&of);
+        for it in known().into_values().flatten().filter(|it| is_error(&it.of)) {
+            let message = if it.sentence.is_empty() { &it.meaning } else { &it.sentence };
+            // The rows of a matrix stand in brackets.
+            let outside = message.split(['[', ']']).step_by(2);
+            let asked: usize = outside.map(|part| part.matches("; ").count()).sum();
+            // What is behind the last one is the remedy: of two, the first would be lost.
+            assert!(asked < 2, "{}: {message}", it.code);
+        }
+    }
+
         assert!(ACTS.is_sorted_by(|one, other| one.0 < other.0));
         let is_error = |of: &str| ["error", "station-error"].contains(&of);
         let errors: Vec<_> = known().into_values().flatten().filter(|it| is_error(&it.of)).collect();
