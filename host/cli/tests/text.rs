@@ -72,8 +72,8 @@ fn a_fail_names_the_suspect_and_the_next_step_before_the_verdict() {
 suspect  row factor, row 3's factor, bit 4 (explains 100 % of the differences)
          reading 16000016 for 16000000 gives all 5 differing samples examined,
          to the bit, and changes no other
-         At the bench: Reload the bitstream and run again; if it returns, set
-         the board aside: a memory or a line of its FPGA is broken.
+         At the bench: Reload the bitstream and run again. If the fault comes
+         back, set the board aside: a memory or a line of its FPGA is broken.
          Next: Check entry 3 of the row table as the datapath reads it, and the
          memory that holds it.
 explain  halfrow explain samples-differ row-factor-bit-wrong
@@ -194,7 +194,7 @@ fn a_wrong_latency_says_what_was_claimed() {
 fn a_soak_says_what_was_judged_and_when_it_differed() {
     let text = plain(&made::soaked());
     let words = text.split_whitespace().collect::<Vec<_>>().join(" ");
-    let judged = "soak 8 h 0 min of 8 h 0 min: 1,326,976 frames in 480 bursts, 2 of which differ differs behind 2 h 13 min";
+    let judged = "soak 8 h 0 min of 8 h 0 min: 1,326,976 frames in 480 bursts, 2 of which differ differs after 2 h 13 min";
     assert!(words.contains(judged), "{text}");
     assert_eq!(text.matches("\ndiffers  behind ").count(), 2, "{text}");
     // A suspect that explains no counted differences claims no share of them.

@@ -36,22 +36,24 @@ pub(super) struct Words {
 }
 
 /// Memory may be upset once, or be broken.
-const MEMORY: &str = "Reload the bitstream and run again; if it returns, set the board aside: a memory or a line of its FPGA is broken.";
+const MEMORY: &str = "Reload the bitstream and run again. If the fault comes back, set the board aside: a memory or a line of its FPGA \
+                      is broken.";
 /// Wrong logic is wrong on every board that it is loaded into.
-const LOGIC: &str = "Make sure that the right bitstream is loaded and run again; if it returns, try another board: if that one \
-                     does the same, the design is wrong, and else set this board aside.";
+const LOGIC: &str = "Make sure that the right bitstream is loaded, and run again. If the fault comes back, try another board: if that \
+                     one fails the same way, the design is wrong; otherwise set this board aside.";
 /// What depends on when things happen may come and go with supply and temperature.
-const TIMING: &str = "Switch the board off and on, reload the bitstream and run three times; if it ever returns, set the board \
-                      aside with its reports.";
+const TIMING: &str = "Switch the board off and on, reload the bitstream and run three times. If the fault comes back even once, set \
+                      the board aside with its reports.";
 /// What is asked for where no defect explains what differs.
 pub(crate) const MAPS: &str = "Look at the difference maps of a report.";
 /// The same where a report has no map of it.
-pub(crate) const NO_MAPS: &str = "No map shows it: every frame that has one is right, and what differs does so at full speed or behind the frames alone.";
+pub(crate) const NO_MAPS: &str = "No map shows the differences: every frame that has a map is right, and samples differ only at full speed \
+                                  or after the frames.";
 /// What is said of differences that no defect explains.
 const UNEXPLAINED: &str = "no single defect that is known explains them";
 /// Nothing is known.
-const REPORT: &str = "Reload the bitstream and run again with a report; if it returns, set the board aside, and hand the report \
-                      to the designer.";
+const REPORT: &str = "Reload the bitstream and run again with a report. If the fault comes back, set the board aside, and give the \
+                      report to the designer.";
 
 /// The kind of part, in lower case.
 #[must_use]
