@@ -10,7 +10,7 @@ const COMMANDS: [(&str, &str); 21] = [
     ("soak", "Judge a board for hours"),
     ("correct", "Correct frames"),
     ("tables", "Make a table file"),
-    ("lens", "Tell a lens's figures"),
+    ("lens", "Show a lens's figures"),
     ("kernel", "Fit a kernel to photographs"),
     ("paper", "Reproduce the paper's figures"),
     ("frames", "Write the built-in frames"),
@@ -60,7 +60,7 @@ fn the_page_of_commands_shows_what_the_command_line_takes() {
     {
         assert!(page.contains(shown), "{shown}");
     }
-    assert!(page.contains("the lens options make the tables. Options that make tables are refused"));
+    assert!(page.contains("the lens options make the tables. With it, options that make tables are refused"));
 }
 
 /// Each is refused there.

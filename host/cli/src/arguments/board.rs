@@ -33,7 +33,8 @@ pub(crate) struct BoardArguments {
     /// The longest that the run may take, in seconds: of this computer's clock or the link's, whichever is over first
     #[arg(long, value_name = "SECONDS", env = "HALFROW_TIMEOUT", value_parser = any::<f64>("a number of seconds"))]
     timeout: Option<f64>,
-    /// Packets that may be sent again, in percent of those sent, beyond 16; above it the link is too poor [default: 5; `link` has none]
+    /// How many packets may be sent again: 16, and this percentage of all sent. A link that needs more is too poor to judge over
+    /// [default: 5; `link` has none]
     #[arg(long, value_name = "PERCENT", env = "HALFROW_RETRY_LIMIT", value_parser = number("percent", 0.0..=100.0))]
     retry_limit: Option<f64>,
     /// Take the board over from another host that holds it

@@ -46,19 +46,19 @@ pub(crate) struct LensArguments {
     #[arg(value_parser = OsStringValueParser::new().try_map(LensName::read))]
     #[arg(conflicts_with_all = ["radius", "focal_length"])]
     lens: Option<LensName>,
-    /// Distance between two pixels of the camera that the lens file was made with, in micrometres: takes the lens alone from
-    /// it, scaled to --pixel-pitch, with its axis in the middle of the frame
+    /// Distance between two pixels of the camera that the lens file was made with, in micrometres: only the lens is then taken
+    /// from the file, scaled to --pixel-pitch, with its axis in the middle of the frame
     #[arg(long, value_name = "UM")]
     #[arg(value_parser = any::<f64>("a number of micrometres"))]
     lens_pitch: Option<f64>,
     /// How the row factors are found [default: fitted for a lens file, equation-9 otherwise]
     #[arg(long, value_enum)]
     rows: Option<Rows>,
-    /// What tables follow: the projection by rows, one factor each, or the exact one by a grid of factors, which boards with
-    /// datapath 2 take [default: rows]
+    /// The projection that the tables follow: by rows, with one factor each, or exact, by a grid of factors, for boards with
+    /// datapath 2 [default: rows]
     #[arg(long, value_enum)]
     projection: Option<Projection>,
-    /// The most entries of a grid, as many as the board has room for [default: 2048, which every one has]
+    /// The most entries that a grid may have: what the board has room for [default: 2048, for which every board has room]
     #[arg(long, value_name = "ENTRIES", requires = "projection")]
     #[arg(value_parser = any::<usize>("a whole number of entries"))]
     entries: Option<usize>,
@@ -74,8 +74,8 @@ pub(crate) struct LensArguments {
     #[arg(long, value_name = "UM")]
     #[arg(value_parser = any::<f64>("a number of micrometres"))]
     pixel_pitch: Option<f64>,
-    /// Angle across the circle to whose width Eq. 9 stretches rows, in degrees. With any other than 180 it bends verticals more,
-    /// whatever the lens sees; fitted rows are fitted to what is inside [default: 180]
+    /// Angle that the image circle spans in Eq. 9, in degrees. Any angle but 180 bends verticals more, whatever the lens sees;
+    /// fitted rows are fitted to what is inside the circle [default: 180]
     #[arg(long, value_name = "DEGREES")]
     #[arg(value_parser = any::<f64>("a number of degrees"))]
     field_of_view: Option<f64>,

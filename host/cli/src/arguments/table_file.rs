@@ -18,8 +18,8 @@ use halfrow::tables::TableFile;
 pub(crate) struct TableArgument {
     /// The table file; without it the lens options make the tables
     ///
-    /// Options that make tables are refused beside it, but a size, depth or column of the centre that is the file's.
-    /// Built-in frames are seen through the default lens then; `halfrow frames` writes them through others.
+    /// With it, options that make tables are refused; --width, --height, --bits and --centre-x may be given if they agree with
+    /// the file. Built-in frames are then seen through the default lens; `halfrow frames` writes them through others.
     #[arg(long, value_name = "FILE", env = "HALFROW_TABLES")]
     tables: Option<PathBuf>,
 }

@@ -9,7 +9,7 @@ use halfrow_program::line;
 
 use crate::arguments::given::Given;
 
-/// Validates a board that straightens fisheye Bayer video, bit for bit.
+/// Judges a board that straightens fisheye Bayer video, bit for bit.
 ///
 /// Without a board, `halfrow verify` judges the built-in mock board.
 #[derive(Debug, Parser)]
@@ -30,7 +30,7 @@ pub(super) struct Line<Commands: Subcommand> {
     /// How the model computes, always to the same bits: reference, scalar, avx2 or avx512 [default: the fastest here]
     #[arg(long, global = true, value_name = "PATH", env = "HALFROW_MODEL_PATH")]
     pub(super) model_path: Option<ModelPath>,
-    /// Print the result, or why there is none, as JSON; `halfrow schema` tells its shape
+    /// Print the result, or why there is none, as JSON; `halfrow schema` prints its schema
     #[arg(long, global = true)]
     pub(super) json: bool,
     #[command(subcommand)]
@@ -78,26 +78,26 @@ macro_rules! commands {
 commands! {
     /// Judge a board: stream frames through it and compare every sample with the reference
     ///
-    /// Without --board the built-in mock board is judged. Unless tables, frames, --centre-x or --bits say otherwise, the optical
-    /// centre and the depth vary in frames of their own; a PASS names what no frame exercised. Exit codes: 0 PASS, 1 FAIL, 2 usage,
-    /// 3 ERROR, 4 busy, 5 nothing judged, 6 identity or version refused, 129, 130 or 143 interrupted.
+    /// Without --board the built-in mock board is judged. Unless tables, frames, --centre-x or --bits are given, extra frames vary
+    /// the optical centre and the depth; a PASS names what no frame exercised. Exit codes: 0 PASS, 1 FAIL, 2 usage, 3 ERROR, 4 busy,
+    /// 5 nothing judged, 6 identity or version refused, 129, 130 or 143 interrupted.
     Verify(super::verify::Arguments), "verify";
     /// Judge a board for hours, by frames that it makes at its full pixel clock
     ///
-    /// Some frames are streamed through it first. Then it makes one burst after the other, each with content of its own, tables and
-    /// kernel by turns, and goes on behind whatever differs. A board that goes away is waited for, 300 s unless --reconnect says
-    /// otherwise. The report says what was judged and when something differed, also of a soak that was interrupted. Exit codes are
-    /// those of verify; 5 if the board makes no frames.
+    /// First, some frames are streamed through the board. Then it makes one burst of frames after the other, each with its own
+    /// content, and with tables and kernels in turn; it goes on after a difference. If the board goes away, the soak waits for it,
+    /// for 300 s unless --reconnect says otherwise. The report says what was judged and when something differed, even if the soak
+    /// was interrupted. Exit codes are those of verify; 5 if the board makes no frames.
     Soak(super::soak::Arguments), "soak";
     /// Correct frames with the reference model, or with a board, unjudged
     Correct(super::correct::Arguments), "correct";
     /// Make a table file: a row factor for every row, and a kernel
     Tables(super::tables::Arguments), "tables";
-    /// Tell a lens's figures, and the error that row factors leave of it
+    /// Show a lens's figures and the error that remains after correction
     ///
-    /// The error is that of each sample against the exact projection, which puts every vertical of the scene at the column where
-    /// the lens images it on the horizon. Its vertical part is how far the sample is from the row where the lens images its
-    /// latitude above or below the axis; no row factor changes that.
+    /// The error is the distance of each sample from where the exact projection puts it: every vertical of the scene stands at the
+    /// column where the lens images it on the horizon. The vertical part of the error is the distance from the row where the lens
+    /// images the sample's latitude above or below the axis; no row factor changes that.
     Lens(super::lens::Arguments), "lens";
     /// Fit a kernel to photographs, or measure one on them
     Kernel(super::kernel::Arguments), "kernel";
@@ -118,21 +118,21 @@ commands! {
     Info(super::info::Arguments), "info";
     /// Test the link to a board: error rate, round trips, throughput each way and together
     ///
-    /// Random bytes go to the board and come back; nothing that the board computes is judged. Its tables are lost. Exit codes: 0 the
-    /// link was measured, 1 the board itself spoils what it returns, 3 the link broke or is too poor, 4 busy.
+    /// Random bytes go to the board and come back; nothing that the board computes is judged. The board's tables are lost. Exit
+    /// codes: 0 the link was measured, 1 the board itself spoils what it returns, 3 the link broke or is too poor, 4 busy.
     Link(super::link::Arguments), "link";
     /// Load a bitstream into a board
     ///
-    /// Calls openFPGALoader, which must be installed. With --board the board is greeted behind it, and its build compared with
-    /// the one that stands in the file beside the bitstream (top.bit.json of top.bit), which the build scripts write. Exit codes: 0
-    /// loaded, and the same build where it was compared, 2 usage or no loader, nothing was loaded, 3 the loader failed or was
-    /// killed at its deadline, or nothing answers, 4 busy, 6 the board is of another build.
+    /// Calls openFPGALoader, which must be installed. With --board, the loaded board is then greeted, and its build compared with
+    /// the one in the file next to the bitstream (top.bit.json of top.bit), which the build scripts write. Exit codes: 0 loaded,
+    /// and the same build where it was compared, 2 usage or no loader, nothing was loaded, 3 the loader failed or was killed at its
+    /// deadline, or nothing answers, 4 busy, 6 the board is of another build.
     Load(super::load::Arguments), "load";
     /// Serve a mock or simulated board to other programs
     ///
-    /// It is put behind a pseudo-terminal or a TCP port. Prints the target that leads to it, and goes on until Ctrl-C or
-    /// SIGTERM. One host at a time is served; one that vanishes leaves a board that the next can use. A board whose wire breaks
-    /// (fault=disconnect) hangs up, as a board does that is unplugged.
+    /// The board is put behind a pseudo-terminal or a TCP port. The command prints the target that leads to it, and serves until
+    /// Ctrl-C or SIGTERM. It serves one host at a time; if a host vanishes, the next one can use the board. A board whose wire
+    /// breaks (fault=disconnect) hangs up, like a board that is unplugged.
     Serve(super::serve::Arguments), "serve";
     /// Start the production station, a program of its own
     ///
@@ -140,9 +140,9 @@ commands! {
     Station(super::station::Arguments), "station";
     /// List the faults that the mock board can have
     ///
-    /// Use one as `--board mock,fault=NAME`, with its parameters behind further commas. Those of the wire serve `sim` as well.
+    /// Use one as `--board mock,fault=NAME`, with its parameters after further commas. Faults of the wire also work with `sim`.
     Faults(super::faults::Arguments), "faults";
-    /// List the codes of all findings, defects and errors, as they stand in JSON
+    /// List the codes of all findings, defects and errors, as JSON has them
     ///
     /// Prints the page docs/CODES.md.
     Codes(super::codes::Arguments), "codes";
@@ -152,7 +152,8 @@ commands! {
     Commands(super::overview::Arguments), "commands";
     /// Say what a code means, whose fault it is, and what to do first
     ///
-    /// What to do is said where it can be told beforehand. Codes stand in JSON, in reports, and behind errors. An unknown one is answered with those that are like it, exit code 2.
+    /// It says what to do where that can be known beforehand. Codes are in JSON, in reports, and at the end of errors. For an unknown
+    /// code it lists similar ones, with exit code 2.
     Explain(super::explain::Arguments), "explain";
     /// Print the JSON Schema of what --json prints and of report.json
     Schema(super::schema::Arguments), "schema";

@@ -48,16 +48,16 @@ enum What {
         #[arg(long)]
         json: bool,
     },
-    /// Give a board to nobody any more; whoever has it loses it
+    /// Take a board out of use; whoever has it loses it
     Out(Change),
-    /// Give it out again
+    /// Put a board back into use
     In(Change),
-    /// Share it no more
+    /// Stop sharing a board
     Unshare(Change),
     /// Wait for a board of a kind, and hold it until the end of stdin
     ///
-    /// Prints a JSON object a line: "waits" with how many are in front and for how many seconds it was waited, "held" with the board, and "lost" with the
-    /// reason, behind which it ends.
+    /// Prints one JSON object per line: "waits" with how many are in front and how many seconds it has waited, "held" with
+    /// the board, and "lost" with the reason, after which it ends.
     Hold {
         /// The kind
         kind: String,
@@ -68,7 +68,7 @@ enum What {
 struct Share {
     /// Its name
     name: String,
-    /// Whoever needs any board needs one of a kind
+    /// Its kind: whoever needs any board asks for a kind
     #[arg(long)]
     kind: String,
     /// Where it is, as `halfrow boards` names it

@@ -14,7 +14,7 @@ use crate::store::Folder;
 
 /// Read everything that the station has kept, and say what is not as it was written
 ///
-/// Every hash is computed anew, and the database is made anew from the records, beside it, and compared. Exit codes: 0
+/// Every hash is computed again, and a second database is made from the records and compared with the first. Exit codes: 0
 /// all is as it was written, 3 something is not.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

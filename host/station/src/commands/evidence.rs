@@ -18,8 +18,8 @@ use crate::store::{Snapshot, StoreError};
 
 /// Copy the evidence of a run into a folder
 ///
-/// Frames as PNGs of their very samples, and what else was kept of it, under the names that the run's page has. Nothing else that
-/// is there is overwritten. A plant leaves evidence with the station that took it, so it is asked for there.
+/// Frames as PNGs of their exact samples, and whatever else was kept of the run, under the names on the run's page. Nothing
+/// else that is there is overwritten. A plant leaves evidence at the station that took it, so ask for it there.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The run, as `halfrow-station history` names it

@@ -17,12 +17,12 @@ use crate::store::Snapshot;
 
 /// Write runs for other programs
 ///
-/// One run goes to stdout, or to the file of `--to`. Without a run all that the filters leave are written: `csv` into the file
-/// of `--to`, and each other format into a file for each run in the folder of `--to`. Nothing is overwritten. Runs that are open
-/// are left out.
+/// One run goes to stdout, or to the file of `--to`. Without a run, all runs that pass the filters are written: `csv` into
+/// the file of `--to`, and each other format into a file for each run in the folder of `--to`. Nothing is overwritten. Runs
+/// that are open are left out.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The run, as `halfrow-station history` names it [default: all that the filters leave]
+    /// The run, as `halfrow-station history` names it [default: all that pass the filters]
     #[arg(conflicts_with_all = Filtered::GROUPS)]
     run: Option<String>,
     #[command(flatten)]

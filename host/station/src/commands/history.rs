@@ -17,10 +17,10 @@ pub(super) struct Arguments {
     results: Results,
     #[command(flatten)]
     filtered: Filtered,
-    /// So many at most
+    /// How many at most
     #[arg(long, value_name = "RUNS", default_value = "50", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST)))]
     limit: u32,
-    /// Go on after this place, with which the page before ends
+    /// Continue after this place, with which the page before ended
     #[arg(long, value_name = "PLACE")]
     after: Option<Place>,
     /// Print JSON

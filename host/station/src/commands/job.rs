@@ -44,9 +44,9 @@ enum What {
         #[arg(long)]
         json: bool,
     },
-    /// Judge a job no more; a run of it that is under way is ended, and does not count
+    /// Cancel a job; a run of it that is under way is ended, and does not count
     Cancel(Change),
-    /// Judge a job after all that came to nothing
+    /// Try a job again that came to nothing
     Retry(Change),
 }
 
@@ -104,9 +104,7 @@ impl State {
 
 /// A job that is not as the command wants it.
 #[derive(Debug, thiserror::Error)]
-#[error(
-    "there is no job {id} that could be {done}; `halfrow-station job list` tells how it stands with each"
-)]
+#[error("there is no job {id} that could be {done}; `halfrow-station job list` shows the state of each")]
 pub(super) struct NoJob {
     pub(super) id: String,
     done: &'static str,

@@ -15,7 +15,8 @@ use crate::store::{Folder, Store};
 
 /// Copy all that the station has kept to a new folder, while runs go on
 ///
-/// The copy is looked at as `restore` does. Exit codes: 0 it can be restored, 3 it was not made, or is kept and has faults.
+/// The copy is checked as `restore` checks it. Exit codes: 0 it can be restored, 3 it was not made, or is kept and has
+/// faults.
 #[derive(Debug, Args)]
 pub(super) struct Backup {
     /// The folder, which must be new or empty
@@ -74,7 +75,7 @@ fn with_unknown(Copied { unknown, .. }: Copied) -> String {
 
 /// Remove evidence that no row names, and that of old runs; records and rows are kept for ever
 ///
-/// No row names what a run left that ended before its row was written. It is removed when it is a day old.
+/// Evidence that no row names was left by runs that ended before their row was written. It is removed when it is a day old.
 #[derive(Debug, Args)]
 pub(super) struct Prune {
     #[command(flatten)]

@@ -21,8 +21,9 @@ const LOOK: Duration = Duration::from_millis(100);
 
 /// Judge the boards in all lanes of a station, with scans from stdin
 ///
-/// Every line of stdin is a scan: a serial number, or HR:LANE:NAME, HR:START, HR:ABORT, HR:OUT, HR:IN, HR:MOCK. What happens is
-/// printed, one JSON object a line. At the end of stdin the runs that are under way come to theirs; a signal ends them.
+/// Every line of stdin is a scan: a serial number, or HR:LANE:NAME, HR:START, HR:ABORT, HR:OUT, HR:IN, HR:MOCK. What
+/// happens is printed, one JSON object per line. When stdin ends, the runs under way are finished; a signal ends them at
+/// once.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The station's settings
@@ -66,7 +67,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 
 /// The station's engine is gone.
 #[derive(Debug, thiserror::Error)]
-#[error("the station works no more, by a fault of its own that the log tells; start it again")]
+#[error("the station has stopped working, by a fault of its own that the log describes; start it again")]
 pub(super) struct EngineEnded;
 
 /// The lines of stdin, counted, until its end.

@@ -10,9 +10,9 @@ use crate::exit::Exit;
 use crate::input_error::text_of;
 use crate::web::language;
 
-/// Check a language of the pages: whether its words are all there, and none too many
+/// Check a language of the pages: whether all words are there, and none too many
 ///
-/// Every fault is told with its line: keys that are missing or that no page says, and figures in braces that a sentence
+/// Every fault is shown with its line: keys that are missing or that no page says, and figures in braces that a sentence
 /// does not have. host/station/lang/de.toml is one to begin with; its keys stay, its words change.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

@@ -78,13 +78,13 @@ impl Range {
 /// Which units are counted.
 #[derive(Debug, Args)]
 pub(super) struct Counted {
-    /// Under plans of this name
+    /// Only under plans of this name
     #[arg(long, value_name = "NAME")]
     plan: Option<String>,
-    /// At this station of a plant
+    /// Only at this station of a plant
     #[arg(long, value_name = "NAME")]
     station: Option<String>,
-    /// In this lane
+    /// Only in this lane
     #[arg(long)]
     lane: Option<String>,
     #[command(flatten)]
@@ -102,22 +102,22 @@ impl Counted {
 /// Which runs are meant, by what they say of themselves.
 #[derive(Debug, Args)]
 struct Said {
-    /// Of the units of this serial number
+    /// Only units of this serial number
     #[arg(long)]
     serial: Option<String>,
-    /// Of this verdict
+    /// Only this verdict
     #[arg(long, value_enum, ignore_case = true)]
     verdict: Option<Word>,
-    /// Under plans of this name
+    /// Only under plans of this name
     #[arg(long, value_name = "NAME")]
     plan: Option<String>,
-    /// At this station of a plant
+    /// Only at this station of a plant
     #[arg(long, value_name = "NAME")]
     station: Option<String>,
-    /// In this lane
+    /// Only in this lane
     #[arg(long)]
     lane: Option<String>,
-    /// By this operator
+    /// Only by this operator
     #[arg(long, value_name = "NAME")]
     operator: Option<String>,
 }

@@ -25,13 +25,13 @@ pub(super) struct Arguments {
 enum What {
     /// Print what is still to be sent, and what waits for a person
     ///
-    /// Of what waits at a sink the first hundred are printed; how many do stands under `dead`.
+    /// Of the entries that wait at a sink, the first hundred are printed; `dead` says how many there are.
     List {
         /// Print JSON
         #[arg(long)]
         json: bool,
     },
-    /// Send all that is left while the station does not run, which sends by itself
+    /// Send all that is left while the station is not running; a running station sends by itself
     ///
     /// What was tried in vain is tried again at once; what waits for a person is not. Exit codes: 0 nothing is left to be sent, 3
     /// something is, also what waits for a person.
@@ -181,7 +181,7 @@ pub(super) struct NotDead {
 
 /// A sink that is still sent to.
 #[derive(Debug, thiserror::Error)]
-#[error("the settings name the sink {sink}, which would be sent all again; take it out of them first")]
+#[error("the settings name the sink {sink}, so all would be sent to it again; take it out of them first")]
 pub(super) struct SinkInUse {
     pub(super) sink: String,
 }

@@ -24,7 +24,7 @@ enum Command {
     Check {
         /// The plan
         file: PathBuf,
-        /// What would be run with the board of this serial number alone
+        /// Only what would be run with the board of this serial number
         #[arg(long)]
         serial: Option<String>,
     },

@@ -43,9 +43,9 @@ enum What {
     },
     /// Read everything that the plant keeps, and say what is not as it was sent
     ///
-    /// Every record's hash is computed anew, and all tables are made anew from the records, beside them, and compared: in memory, and
-    /// beyond 64 MiB in a file in the folder that SQLITE_TMPDIR or TMPDIR names. Exit codes: 0 all is as it was sent, 3 something is
-    /// not.
+    /// Every record's hash is computed again, and all tables are made a second time from the records and compared: in
+    /// memory, and beyond 64 MiB in a file in the folder that SQLITE_TMPDIR or TMPDIR names. Exit codes: 0 all is as it was
+    /// sent, 3 something is not.
     Check {
         /// Print JSON
         #[arg(long)]
@@ -59,7 +59,7 @@ enum What {
         #[command(flatten)]
         why: Why,
     },
-    /// Show the results of all stations in a browser; its pages only look
+    /// Show the results of all stations in a browser; its pages change nothing
     Serve,
 }
 

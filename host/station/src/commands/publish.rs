@@ -42,7 +42,7 @@ pub(super) struct Publish {
     signed: Signed,
 }
 
-/// Have an earlier version of a plan hold again
+/// Make an earlier version of a plan the valid one again
 #[derive(Debug, Args)]
 pub(super) struct Back {
     #[command(flatten)]
@@ -66,7 +66,7 @@ struct Signed {
     why: Why,
 }
 
-/// Print the plans that hold at the plant
+/// Print the plans that are valid at the plant
 #[derive(Debug, Args)]
 pub(super) struct List {
     #[command(flatten)]
@@ -96,8 +96,8 @@ pub(super) enum PublishError {
     NoVersion { plan: String, version: String },
     /// Whoever signed what the plant has is not known here.
     #[error(
-        "what the plant has of the plan {plan} is signed neither by this key nor by one of `trusts` in [plant]; write whose it is there if \
-         you know it, and ask whoever keeps the plant if not"
+        "the plant's plan {plan} is signed neither by this key nor by one of `trusts` in [plant]; write the key \
+         there if you know whose it is, and ask whoever keeps the plant if not"
     )]
     Untrusted { plan: String },
     /// Its last statement has the last number that there is.

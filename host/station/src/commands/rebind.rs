@@ -39,7 +39,7 @@ fn not_empty(text: &str) -> Result<String, String> {
 }
 
 fn device(text: &str) -> Result<String, String> {
-    let says = "give 16 hexadecimal digits in lower case, not all 0, as a run prints them behind `device`";
+    let says = "give 16 hexadecimal digits in lower case, not all 0, as a run prints them after `device`";
     if is_device(text) { Ok(text.to_owned()) } else { Err(says.to_owned()) }
 }
 

@@ -58,7 +58,7 @@ pub(super) struct Arguments {
     /// The station's name [default: this computer's]
     #[arg(long, value_name = "NAME", env = "HALFROW_STATION")]
     station: Option<String>,
-    /// Kill the lane when it tells nothing for so long
+    /// Kill the lane when it sends nothing for this long
     #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds(0.1..=86_400.0))]
     silence: Duration,
     /// How much memory the lane may have, in MiB of addresses

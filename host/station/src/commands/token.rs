@@ -9,8 +9,8 @@ use crate::web::{Scope, TokenError, Tokens, add_token};
 
 /// Say which machines may read the pages
 ///
-/// A machine sends its token with every request, as `Authorization: Bearer TOKEN`. The file that `tokens` under `[access]` of the
-/// settings names keeps of a token its mark under the station's key. Changes count at once.
+/// A machine sends its token with every request, as `Authorization: Bearer TOKEN`. The file that `tokens` under `[access]`
+/// of the settings names keeps the mark of a token under the station's key. Changes take effect at once.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]

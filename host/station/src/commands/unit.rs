@@ -9,7 +9,7 @@ use crate::exit::Exit;
 use crate::history::mismatch::{Bound, Mismatch};
 use crate::history::unit::{Unit, UnitRun, units};
 
-/// Tell all that is known of the units of a serial number
+/// Show all that is known of the units of a serial number
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The serial number

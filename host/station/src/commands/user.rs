@@ -14,8 +14,8 @@ use crate::web::{Role, UserError, Users, add_user};
 
 /// Say who may act on the pages
 ///
-/// The file that `[access]` of the settings names keeps of a badge its mark under the station's key, and of a password its
-/// hash. Changes count at once.
+/// The file that `[access]` of the settings names keeps the mark of a badge under the station's key, and the hash of a
+/// password. Changes take effect at once.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]

@@ -11,7 +11,8 @@ use crate::store::{NoWaiver, Store};
 
 /// Waive the FAIL of a run: it stays FAIL, and everyone sees who waived it and why
 ///
-/// For a unit that is used as it is, or a FAIL that was the fixture's. Yields count the unit as failed, and as waived besides.
+/// For a unit that is used as it is, or a FAIL that the fixture caused. Yields count the unit as failed, and also as
+/// waived.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The run, as `halfrow-station history` names it

@@ -16,8 +16,8 @@ const MOST_FLIPS: usize = 20;
 
 /// Count how many units are judged good, at first and in the end
 ///
-/// A unit belongs to the lane and the day of its first judgement. ERROR is no judgement, and has a rate of its own.
-/// Behind each share stands its 95 % interval (Wilson).
+/// A unit belongs to the lane and the day of its first judgement. ERROR is no judgement, and has a rate of its own. Each
+/// share is followed by its 95 % interval (Wilson).
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]

@@ -51,11 +51,11 @@ def verify(
     seed: of noise, gaps, link test and what the board makes on its own.
     at_speed: seconds of the board's clock for which it makes frames at its full pixel clock, 0 for none; 3 on hardware and
         three frames on any other board when not given.
-    within: take of the run what finds most faults a second, for so many seconds in all.
+    within: judge within this many seconds, by the parts of the run that find the most faults per second.
     fail_fast: end with the first frame that differs.
     timeout: seconds that the run may take, of this computer's clock or the link's, whichever is over first.
     reconnect: seconds that a board which goes away may stay away; without it that ends the run.
-    retry_limit: packets that may be sent again, in percent of those sent, beyond 16; 5 when not given.
+    retry_limit: how many packets may be sent again: 16, and this percentage of all sent; 5 when not given.
     take_over: take the board from another host that holds it.
     require_hardware: refuse to judge anything else.
     report: a folder for report.json, report.xml (JUnit) and report.html.
