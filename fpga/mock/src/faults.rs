@@ -169,7 +169,7 @@ pub const FAULTS: &[Fault<BoardFault>] = &[
     fault("counters-kept", "a new session goes on with the counters of the one before", &[], |_| {
         Ok(BoardFault::Conduct(Conduct::CountersKept))
     }),
-    fault("packets-anew", "the count of ROW_OUT packets begins anew behind a RESET", &[], |_| {
+    fault("packets-anew", "the count of ROW_OUT packets starts again after a RESET", &[], |_| {
         Ok(BoardFault::Conduct(Conduct::PacketsAnew))
     }),
     fault("rows-anywhere", "rows are taken in any place of their frame", &[], |_| {

@@ -20,7 +20,7 @@ pub(crate) enum CallError {
     #[error("there is no code `{code}`; {remedy}")]
     CodeUnknown { code: String, remedy: String },
     /// `correct` without a board or the model.
-    #[error("nobody is named to correct; give --model or --board TARGET")]
+    #[error("nothing is named to correct with; give --model or --board TARGET")]
     NobodyCorrects,
     /// A recording where a board is needed that answers anew, as for new frames.
     #[error(
@@ -54,11 +54,12 @@ pub(crate) enum CallError {
     RadiusTwice,
     /// A way to make row factors beside a grid.
     #[error(
-        "--rows says how one factor a row is found, and --projection exact takes a grid of them; leave out one of the two"
+        "--rows says how one factor per row is found, but --projection exact takes a grid of factors; leave out one \
+         of the two"
     )]
     RowsOfGrid,
     /// Room for a grid that is not made.
-    #[error("--entries is for the grid of --projection exact; leave it out, or give that")]
+    #[error("--entries is for the grid of --projection exact; leave it out, or give --projection exact too")]
     EntriesOfRows,
     /// A calibration without a size.
     #[error("the lens file {} does not say how large its pictures are; give --width and --height", path.display())]
@@ -73,13 +74,13 @@ pub(crate) enum CallError {
     #[error("{} is one file for {frames} frames; name a folder with {option}", path.display())]
     OneFile { path: PathBuf, frames: usize, option: &'static str },
     /// Frames to stdout.
-    #[error("a frame goes to a file, and `{option} -` names none; give the name of a file or a folder")]
+    #[error("a frame goes to a file, but `{option} -` names none; give the name of a file or a folder")]
     FramesToStdout { option: &'static str },
     /// An input whose output would have no name.
     #[error("{} has no file name; name a file", path.display())]
     Unnamed { path: PathBuf },
     /// Two frames in one place.
-    #[error("two inputs would both be written to {}, or a frame and its preview; part them", path.display())]
+    #[error("two inputs would both be written to {}, or a frame and its preview; give them different names", path.display())]
     FramesShare { path: PathBuf },
     /// A folder that cannot be made.
     #[error("the folder {} cannot be made; name another", path.display())]

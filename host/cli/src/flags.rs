@@ -1,6 +1,7 @@
 //! The flags that the settings have that the libraries name in words: the one place where a remedy gets its flag.
 
-/// What sentences of the libraries say, and the flag for it, or what to call. None of them is part of another.
+/// What sentences of the libraries say, and the flag for it, or what to call. None of them is part of another. A phrase is an order that
+/// reads well alone, with any figure after it, or a noun that keeps its sense wherever it stands.
 pub const FLAGS: [(&str, &str); 23] = [
     ("allow it to be overwritten", "--overwrite"),
     ("another place for the recording", "--record"),
@@ -11,7 +12,7 @@ pub const FLAGS: [(&str, &str); 23] = [
     ("record a run with `halfrow verify`", "--record"),
     ("take the board over", "--take-over"),
     ("raise the retry limit", "--retry-limit"),
-    ("of its time limit", "--timeout"),
+    ("within its time limit", "--timeout"),
     ("name a real board", "--board"),
     ("repeat them less often", "--repeat"),
     ("Name at least one frame", "--frame"),
@@ -23,7 +24,7 @@ pub const FLAGS: [(&str, &str); 23] = [
     ("name the bits", "--bits"),
     ("the lens pitch and the optical centre", "--lens-pitch, --centre-x, --centre-y"),
     ("leave out the exact projection", "--projection"),
-    ("the most entries of a grid", "--entries"),
+    ("limit the entries of a grid", "--entries"),
     ("Cargo's feature `sim`", "cargo run --release --features sim"),
 ];
 

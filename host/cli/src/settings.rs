@@ -66,7 +66,7 @@ pub enum SettingsError {
     /// The system did not hand the file over, or it is no text.
     #[error(
         "cannot read the settings file {}; check that it exists and that you may read it, name another with \
-         --settings, or do without by HALFROW_SETTINGS=/dev/null",
+         --settings, or do without one by HALFROW_SETTINGS=/dev/null",
         path.display()
     )]
     Io {

@@ -118,8 +118,8 @@ pub enum DecodeError {
     },
     /// Bytes after the last sample.
     #[error(
-        "it goes on for {extra} bytes after its last sample; check width, height and layout, \
-         or split a file of several frames"
+        "it has {extra} more bytes after its last sample; check width, height and layout, or split a file of \
+         several frames"
     )]
     Trailing {
         /// Bytes too many.
@@ -294,7 +294,7 @@ pub enum WriteError {
         path: PathBuf,
     },
     /// The name is no PNG's.
-    #[error("{} is to be a PNG; end its name in .{}", path.display(), Format::Png.extension())]
+    #[error("{} must be a PNG; end its name in .{}", path.display(), Format::Png.extension())]
     NotPng {
         /// The file.
         path: PathBuf,

@@ -89,7 +89,7 @@ impl fmt::Display for Step {
             Self::TestTheLink => "testing the link",
             Self::AtSpeed => "frames at the full pixel clock",
             Self::Rules => "what the board must refuse",
-            Self::LookAgain => "looking again, in a session of its own",
+            Self::LookAgain => "testing again, in a new session",
             Self::WaitForTheBoard => "waiting for the board to come back",
         })
     }

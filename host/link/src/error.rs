@@ -14,7 +14,9 @@ pub enum OpenError {
     #[error("`{0}` is no kind of board that this program knows; {remedy}", remedy = instead_of(.0))]
     UnknownKind(String),
     /// A kind that has no address.
-    #[error("`{kind}` takes no address, and got `{address}`; write `{kind}` alone, options behind a comma")]
+    #[error(
+        "`{kind}` takes no address, but got `{address}`; write `{kind}` alone, with options after a comma"
+    )]
     NoAddress {
         /// The kind.
         kind: String,
@@ -22,7 +24,7 @@ pub enum OpenError {
         address: String,
     },
     /// A kind that needs an address.
-    #[error("`{kind}` needs to be told which; write {form}")]
+    #[error("`{kind}` needs an address; write {form}")]
     AddressMissing {
         /// The kind.
         kind: String,
@@ -40,7 +42,7 @@ pub enum OpenError {
         known: &'static str,
     },
     /// A kind that has no options.
-    #[error("`{kind}` takes no option, and got `{option}`; leave it out")]
+    #[error("`{kind}` takes no option, but got `{option}`; leave it out")]
     NoOption {
         /// The kind.
         kind: String,
@@ -79,7 +81,7 @@ pub enum OpenError {
     #[cfg(feature = "sim")]
     #[error(transparent)]
     Trace(#[from] halfrow_sim::TraceError),
-    /// The system does not give the board's device or connection the properties that a link needs, or not at all.
+    /// The system does not let the board's device or connection be used, or not with the properties that a link needs.
     #[error("the system does not let `{target}` be used; check that it is there and that you may use it")]
     System {
         /// The target.

@@ -162,7 +162,7 @@ pub enum LinkError {
     },
     /// What the host sends is not what it sent when the recording was made.
     #[error(
-        "the recording holds another conversation from byte {byte} of what was sent on; replay it with the program, \
+        "from byte {byte} on, this run sends something else than the recorded one; replay it with the program, \
          tables and frames of the run that made it"
     )]
     OtherConversation {

@@ -24,7 +24,7 @@ pub enum TcpError {
     #[error("`{0}` is no host and port; write tcp:HOST:PORT, and tcp:[ADDRESS]:PORT for an IPv6 address")]
     Address(String),
     /// Nobody knows the host.
-    #[error("the host of `{address}` is not known; check its name, or give its number")]
+    #[error("the host of `{address}` is not known; check its name, or give its IP address")]
     UnknownHost {
         /// Host and port.
         address: String,
@@ -50,7 +50,7 @@ pub enum TcpError {
         seconds: Duration,
     },
     /// There is no way there.
-    #[error("there is no way to `{address}`; check this computer's network")]
+    #[error("there is no route to `{address}`; check this computer's network")]
     Unreachable {
         /// Host and port.
         address: String,

@@ -40,7 +40,7 @@ pub(crate) const REMEDIES: [(&str, &str); 8] = [
     ("serial-of-other-device", MIXED_UP),
 ];
 const MIXED_UP: &str =
-    "Scan the label of the board that is in the lane; an engineer binds anew what was repaired.";
+    "Scan the label of the board that is in the lane; after a repair, an engineer binds it again.";
 
 impl Said {
     /// What to do about it, where its sentence does not end in that.
@@ -127,7 +127,7 @@ pub enum Saying {
     PutBack { lane: String },
     #[error("{serial} is tested in lane {lane}")]
     Tested { serial: String, lane: String },
-    #[error("the mock board with a drawn fault is judged in lane {lane}")]
+    #[error("the mock board with a random fault is judged in lane {lane}")]
     MockJudged { lane: String },
     #[error("{serial} waits in lane {lane}")]
     Waits { serial: String, lane: String },
@@ -141,20 +141,21 @@ pub enum Saying {
     OutByPerson,
     #[error("its process cannot be killed; restart the computer")]
     Unkillable,
-    #[error("the good unit {serial} came to {verdict}; an engineer looks at the lane")]
+    #[error("the good unit {serial} was judged {verdict}; have an engineer look at the lane")]
     GoodUnitWrong { serial: String, verdict: String },
-    #[error("the bad unit {serial} came to {verdict}; an engineer looks at the lane")]
+    #[error("the bad unit {serial} was judged {verdict}; have an engineer look at the lane")]
     BadUnitWrong { serial: String, verdict: String },
-    #[error("the good unit {serial} is to come to PASS first, to check this shift; scan its label")]
+    #[error("to check this shift, the good unit {serial} must be judged PASS first; scan its label")]
     GoodUnitDue { serial: String },
-    #[error("the bad unit {serial} is to come to FAIL first, to check this shift; scan its label")]
+    #[error("to check this shift, the bad unit {serial} must be judged FAIL first; scan its label")]
     BadUnitDue { serial: String },
     #[error(
-        "the mock board with a drawn fault is to come to FAIL first, to check this shift; scan {barcode}"
+        "to check this shift, the mock board with a random fault must be judged FAIL first; scan {barcode}"
     )]
     MockDue { barcode: String },
     #[error(
-        "{target} came to {verdict}, so the plan does not find this fault; an engineer looks at the plan, and {barcode} draws another one"
+        "{target} was judged {verdict}, so the plan does not find this fault; have an engineer look at the plan, \
+         and scan {barcode} for another fault"
     )]
     MockWrong { target: String, verdict: String, barcode: String },
     #[error("the settings have no such lane or plan")]
@@ -162,14 +163,14 @@ pub enum Saying {
     #[error("the system has no thread for it ({error}); end other programs")]
     NoThread { error: String },
     #[error(
-        "the hooks are not started: those of {verdicts} verdicts before are not done; look at what they drive"
+        "the hooks are not started: those of {verdicts} earlier verdicts are not done; look at what they drive"
     )]
     HooksBehind { verdicts: usize },
-    #[error("the board is a {kind}, and the plan takes hardware alone")]
+    #[error("the board is a {kind}, but the plan takes only hardware")]
     HardwareAlone { kind: String },
-    #[error("the board's build is {build}, and the plan takes {builds}")]
+    #[error("the board's build is {build}, but the plan takes {builds}")]
     BuildNotOfPlan { build: String, builds: String },
-    #[error("the board does not say which device it is, and the plan asks for it")]
+    #[error("the board does not say which device it is, but the plan asks for it")]
     DeviceAskedFor,
     #[error("the board does not say which device it is")]
     DeviceUnsaid,
@@ -183,7 +184,7 @@ pub enum Saying {
     StoppedBefore,
     #[error("the link was tested: {link}")]
     LinkTested { link: String },
-    #[error("{wrong} answers hold other bytes than were sent, under a right CRC")]
+    #[error("{wrong} answers hold other bytes than were sent, with a right CRC")]
     LinkAnswersWrong { wrong: u64 },
     #[error("the board was exchanged during the run: {first} became {now}")]
     BoardSwapped { first: String, now: String },
@@ -208,11 +209,11 @@ pub enum Saying {
     /// What the plan has a limit for was not measured.
     #[error("{sentence}")]
     NotMeasured { sentence: String, name: String, unit: String, low: Option<f64>, high: Option<f64> },
-    #[error("{passed} of {planned} steps passed, and of the others nothing is known")]
+    #[error("{passed} of {planned} steps passed, and nothing is known of the others")]
     StepsUnknown { passed: usize, planned: u32 },
     #[error("not reached")]
     StepNotReached,
-    #[error("the lane told what is no message: {line}")]
+    #[error("the lane sent a line that is no message: {line}")]
     LaneBabbles { line: String },
     #[error("the lane is not of this station's program, which is {program}; start the station again")]
     LaneOfOtherProgram { program: String },
@@ -220,7 +221,7 @@ pub enum Saying {
     LaneDied { status: String },
     #[error("the lane could not be started: {error}")]
     LaneNotStarted { error: String },
-    #[error("the lane told nothing for {seconds} s")]
+    #[error("the lane sent nothing for {seconds} s")]
     LaneSilent { seconds: f64 },
     #[error("the lane took longer than {seconds} s")]
     LaneLate { seconds: f64 },
@@ -236,10 +237,13 @@ pub enum Saying {
     StationEnded { tries: usize },
     #[error("the result could not be saved when the run was over, after {tries} tries of steps")]
     SavedTooLate { tries: usize },
-    #[error("it is saved here, and not at the plant yet; the lane waits for the plant")]
+    #[error("the result is saved here, but not at the plant yet; the lane waits for the plant")]
     NotAtPlant,
-    #[error("{entries} results are not at the plant, and {most} may be; look at the network and the plant")]
+    #[error(
+        "{entries} results are not at the plant yet, and at most {most} may wait; look at the network and the \
+             plant"
+    )]
     TooMuchUnsent { entries: u32, most: u32 },
-    #[error("the disk is full to {percent} %; make room on it, or have the plant take what is unsent")]
+    #[error("the disk is {percent} % full; make room on it, or have the plant take what is unsent")]
     DiskTooFull { percent: u64 },
 }

@@ -50,7 +50,7 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",table-banks=1,fault=row-factor,row=1079,bit=0,hidden=true",
         "row 1079's factor, bit 0",
     ),
-    fails("a row that changes on its way in", ",fault=spoilt-row", "not computed wrongly"),
+    fails("a row that changes on its way in", ",fault=spoilt-row", "not in the computation"),
     fails(
         "a path that is too slow",
         ",fault=slow-path,one-in=2000",
@@ -62,7 +62,7 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         "a path of a bit beyond the depth that is too slow",
         ",fault=slow-path,bit=10,one-in=1",
         &["--width", "128", "--height", "72", "--radius", "73.78", "--bits", "8"],
-        "streamed it is right; the suspect is a path that fails at the full pixel clock, seen in bit 10",
+        "streamed, it is right; the suspect is a path that fails at the full pixel clock, seen in bit 10",
     ),
     fails(
         "an address line that only rows behind the frames are long enough for",
@@ -72,19 +72,19 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
     fails(
         "an address line that no row of the run is long enough for",
         ",fault=stuck-address,bit=9",
-        "streamed it is wrong, too; the suspect is line memory, address bit 9",
+        "streamed, it is wrong, too; the suspect is line memory, address bit 9",
     ),
     fails(
         "a bit that flips when warm",
         ",fault=warm-bit,row=1,bit=11",
-        "in row 1 first; streamed it is right",
+        "first in row 1; streamed, it is right",
     ),
     fails("tables that change late", ",fault=late-swap", "the change of table banks between two frames"),
     fails("a pause that is not counted", ",fault=hidden-pause", "pixel clocks of most latency"),
     fails(
         "a false claim of the pixel clock",
         ",fault=wrong-clock-claim",
-        "the board names a pixel clock of 1 Hz, and its clock was seen to be",
+        "the board names a pixel clock of 1 Hz, but its clock was seen to be",
     ),
     fails("packets of any session", ",fault=any-session", "a packet of another session has no effect"),
     fails(
@@ -101,11 +101,15 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
     fails(
         "any host at any time",
         ",fault=never-held",
-        "a board is held for 10 s behind its holder's last packet",
+        "a board is held for 10 s after its holder's last packet",
     ),
-    fails("counters of the session before", ",fault=counters-kept", "rows in, and it is 0"),
-    fails("ROW_OUT packets that are counted anew", ",fault=packets-anew", "by the board's own numbers"),
-    fails("rows in any place", ",fault=rows-anywhere", "took it without a word (a row out of place)"),
+    fails("counters of the session before", ",fault=counters-kept", "rows in; the right number is 0"),
+    fails(
+        "ROW_OUT packets that are counted anew",
+        ",fault=packets-anew",
+        "by the board's own packet numbers",
+    ),
+    fails("rows in any place", ",fault=rows-anywhere", "took it without an answer (a row out of place)"),
     fails("a commit that is not checked", ",fault=unchecked-commit", "the board must refuse COMMIT"),
     expect(
         "ERROR",

@@ -47,7 +47,7 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
     fails(
         "a false claim of the pixel clock behind a grid",
         ",fault=wrong-clock-claim",
-        "the board names a pixel clock of 1 Hz, and its clock was seen to be",
+        "the board names a pixel clock of 1 Hz, but its clock was seen to be",
     ),
     fails(
         "packets of any session behind a grid",
@@ -68,25 +68,29 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
     fails(
         "any host at any time behind a grid",
         ",fault=never-held",
-        "a board is held for 10 s behind its holder's last packet",
+        "a board is held for 10 s after its holder's last packet",
     ),
-    fails("counters of the session before, behind a grid", ",fault=counters-kept", "rows in, and it is 0"),
+    fails(
+        "counters of the session before, behind a grid",
+        ",fault=counters-kept",
+        "rows in; the right number is 0",
+    ),
     fails(
         "ROW_OUT packets that are counted anew behind a grid",
         ",fault=packets-anew",
-        "by the board's own numbers",
+        "by the board's own packet numbers",
     ),
     fails(
         "rows in any place behind a grid",
         ",fault=rows-anywhere",
-        "took it without a word (a row out of place)",
+        "took it without an answer (a row out of place)",
     ),
     fails(
         "a commit of a grid that is not checked",
         ",fault=unchecked-commit",
         "the board must refuse COMMIT",
     ),
-    fails("a row that changes on its way to a grid", ",fault=spoilt-row", "not computed wrongly"),
+    fails("a row that changes on its way to a grid", ",fault=spoilt-row", "not in the computation"),
     fails(
         "a path that is too slow behind a grid",
         ",fault=slow-path,one-in=2000",
@@ -95,7 +99,7 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
     fails(
         "a bit that flips when warm behind a grid",
         ",fault=warm-bit,row=1,bit=11",
-        "in row 1 first; streamed it is right",
+        "first in row 1; streamed, it is right",
     ),
     fails("grids that change late", ",fault=late-swap", "the change of table banks between two frames"),
     fails("a pause that is not counted behind a grid", ",fault=hidden-pause", "pixel clocks of most latency"),

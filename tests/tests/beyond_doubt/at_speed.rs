@@ -91,8 +91,8 @@ const SPEED_FAULTS: [SpeedFault; 5] = [
         "fails at the full pixel clock, seen in bit 5 of the corrected samples",
         "made again",
     ),
-    ("warm-bit", "fails at the full pixel clock, seen in bit 5 of the corrected samples", "in row 3 first"),
-    ("warm-bit,after=1,row=7,bit=11", "seen in bit 11 of the corrected samples", "in row 7 first"),
+    ("warm-bit", "fails at the full pixel clock, seen in bit 5 of the corrected samples", "first in row 3"),
+    ("warm-bit,after=1,row=7,bit=11", "seen in bit 11 of the corrected samples", "first in row 7"),
     ("late-swap", "the change of table banks between two frames", "2 of 3 frames differ at speed"),
     ("hidden-pause", "a path that fails at the full pixel clock", "45 pixel clocks of most latency"),
 ];
@@ -238,7 +238,7 @@ fn what_is_wrong_at_any_clock_is_not_called_a_matter_of_speed() {
     let report = TINY.judge(",fault=row-factor,row=40,bit=20,hidden=true");
     assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{}", report.headline());
     assert!(
-        report.headline().contains("in row 40 first; streamed it is wrong, too"),
+        report.headline().contains("first in row 40; streamed, it is wrong, too"),
         "{}",
         report.headline()
     );
@@ -283,7 +283,7 @@ fn without_a_trap_it_is_said_that_no_row_was_kept() {
     let Finding::DiffersAtSpeed { repetition: Repetition::NoTrap {}, .. } = report.finding else {
         panic!("{}", report.headline())
     };
-    assert!(report.headline().contains("of which the board keeps no row"), "{}", report.headline());
+    assert!(report.headline().contains("of which the board kept no row"), "{}", report.headline());
 }
 
 /// A board that stays with the active tables makes every second frame wrong, all of it.
@@ -324,7 +324,7 @@ fn a_row_that_changes_on_its_way_in_is_not_said_to_be_computed_wrongly() {
     assert_eq!(report.finding, Finding::RowsEnteredChanged { rows: 1, row: 3, frame: 2, flipped: None });
     let defect = Defect::RowsChangedOnEntry { rows: 1, first: 3, frame: 2, flipped: None };
     assert_eq!(report.suspects[0].defect, defect);
-    assert!(report.headline().contains("not computed wrongly"), "{}", report.headline());
+    assert!(report.headline().contains("not in the computation"), "{}", report.headline());
 }
 
 #[test]
@@ -393,5 +393,9 @@ fn a_burst_that_comes_late_is_not_the_bitstreams_fault() {
     });
     let report = TINY.judge_candidate(board.candidate());
     assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
-    assert!(report.headline().contains("a late copy may have begun it again"), "{}", report.headline());
+    assert!(
+        report.headline().contains("a late copy may have restarted an earlier burst"),
+        "{}",
+        report.headline()
+    );
 }

@@ -75,7 +75,7 @@ fn a_board_that_cannot_be_is_refused_by_the_capability_s_name() {
         let report = judge_claims(&System::TINY, change);
         assert_eq!(report.cause, Cause::Refused, "{claim}: {}", report.headline());
         assert!(
-            report.headline().contains(&format!("the board says {claim}, and ")),
+            report.headline().contains(&format!("the board says {claim}, but ")),
             "{}",
             report.headline()
         );
@@ -96,7 +96,7 @@ fn a_board_that_cannot_be_is_refused_by_whoever_opens_it() {
         let link = Altered::new(&Options::default(), claims).candidate().link;
         let OpenFailed { error, .. } = Board::open(link, &OpenOptions::default()).map(drop).unwrap_err();
         assert_eq!(error.cause(), Cause::Refused, "{claim}: {error}");
-        assert!(error.to_string().contains(&format!("the board says {claim}, and ")), "{error}");
+        assert!(error.to_string().contains(&format!("the board says {claim}, but ")), "{error}");
     }
 }
 
@@ -120,7 +120,7 @@ fn a_board_with_other_row_banks_than_it_says_fails() {
     ] {
         let report = judge_claims(&System::TINY, change);
         assert_eq!(report.verdict(), Verdict::Fail, "{banks}: {}", report.headline());
-        let said = format!("must give credit for {banks} rows behind RESET, and gave it for 4");
+        let said = format!("must give credit for {banks} rows after RESET, but it gave credit for 4");
         assert!(report.headline().contains(&said), "{}", report.headline());
     }
 }
@@ -140,7 +140,7 @@ type Greeting = (fn(&mut Welcome), &'static str);
 #[test]
 fn a_greeting_that_no_board_answers_with_is_refused() {
     let greetings: [Greeting; 2] = [
-        (|welcome| welcome.session = 0, "what answers is no halfrow board"),
+        (|welcome| welcome.session = 0, "the device that answers is not a halfrow board"),
         (|welcome| welcome.version = 2, "the board speaks version 2 of the wire and this program version 1"),
     ];
     for (change, said) in greetings {

@@ -92,7 +92,7 @@ fn a_second_copy_that_differs_is_the_board_s_fault() {
         row.repeats = 1;
         packed.iter_mut().for_each(|byte| *byte ^= 0xff);
     });
-    fails(&report, CheckName::Frames, "row 3 of frame 0 came twice, and not the same both times");
+    fails(&report, CheckName::Frames, "row 3 of frame 0 came twice with different samples");
 }
 
 #[test]
@@ -149,7 +149,7 @@ fn a_board_that_reorders_rows_is_told_from_a_link_that_does() {
     fails(
         &reorders(true),
         CheckName::Frames,
-        "the board reorders rows: row 4 of frame 0 left it behind a later row",
+        "the board reorders rows: by the board's own packet numbers, row 4 of frame 0 left it after a later row",
     );
     passes(&reorders(false));
 }
@@ -165,7 +165,7 @@ fn of_two_rows_with_each_other_s_numbers_the_earlier_one_left_late() {
         }
         packet
     });
-    let sentence = "the board reorders rows: row 4 of frame 0 left it behind a later row";
+    let sentence = "the board reorders rows: by the board's own packet numbers, row 4 of frame 0 left it after a later row";
     fails(&report, CheckName::Frames, sentence);
 }
 
@@ -175,7 +175,7 @@ fn gaps_are_compared_with_their_seed() {
         Some(at) if at.row == 5 => changed(&packet, packet.header.sequence, |row, _| row.pauses += 1),
         _ => packet,
     });
-    fails(&report, CheckName::Counters, "was kept waiting by gaps for 1 board clocks");
+    fails(&report, CheckName::Counters, "the board counts 1 board clocks of gaps");
 }
 
 /// What each row says of itself, as `change` has it.
@@ -189,7 +189,7 @@ fn with_rows(is_meant: fn(&RowPlace) -> bool, change: fn(&mut RowOut<'_>)) -> Re
 #[test]
 fn rows_that_say_that_they_were_sent_before_are_compared_with_the_board_s_count() {
     let report = with_rows(|at| at.frame == 2 && at.row == 5, |row| row.repeats = 7);
-    fails(&report, CheckName::Counters, "0 rows sent again, and it is 7");
+    fails(&report, CheckName::Counters, "0 rows sent again; the right number is 7");
 }
 
 /// Under its own number, and another place.
@@ -203,7 +203,7 @@ fn a_row_that_comes_under_another_place_is_the_board_s_fault() {
     ];
     for change in changes {
         let report = with_rows(|at| at.frame == 2 && at.row == 5, change);
-        fails(&report, CheckName::Frames, "under a place that was never sent");
+        fails(&report, CheckName::Frames, "with a place that was never sent");
     }
 }
 
@@ -213,7 +213,7 @@ fn what_entered_is_looked_at_wherever_a_board_is_to_tell_it() {
     fails(
         &report,
         CheckName::Frames,
-        "the board's CRC of what entered the core is not that of what was sent",
+        "the board's CRC of the samples that entered the core differs from that of the samples that were sent",
     );
     // Beyond the frames of the plan, where rules are tried.
     let report = with_rows(|at| at.frame > 1000, |row| row.entered = row.entered.map(|crc| crc ^ 1));

@@ -26,7 +26,11 @@ fn numbers_of_packets_that_were_never_sent_are_the_board_s_fault() {
         |right| right.wrapping_add(1),
         |right| if right < 5 { right } else { right.wrapping_add(1) },
     ] {
-        fails(&numbered(number), CheckName::Counters, "ROW_OUT packets by their numbers, and it is");
+        fails(
+            &numbered(number),
+            CheckName::Counters,
+            "ROW_OUT packets by their numbers; the right number is",
+        );
     }
 }
 
@@ -44,15 +48,15 @@ fn with_counter(change: fn(&mut Status)) -> Report {
 #[test]
 fn counters_are_compared_with_what_the_host_saw() {
     for (sentence, change) in [
-        ("rows in, and it is", (|status| status.rows_in += 1) as fn(&mut Status)),
-        ("rows out, and it is", |status| status.rows_out += 1),
+        ("rows in; the right number is", (|status| status.rows_in += 1) as fn(&mut Status)),
+        ("rows out; the right number is", |status| status.rows_out += 1),
         ("as the first row that has not arrived", |status| status.next_row_in += 1),
         ("as the first row that is not acknowledged", |status| status.next_row_out += 1),
-        ("as the tables' generation, and it is 2", |status| status.generation = 7),
-        ("rows sent again, and it is 0", |status| status.rows_repeated = 3),
-        ("rows that were not needed, and it is 0", |status| status.rows_unneeded = 3),
-        ("1 refusals, and it is 0", |status| status.refusals = 1),
-        ("packets of another session, and it is 0", |status| status.foreign_packets = 2),
+        ("as the tables' generation; the right number is 2", |status| status.generation = 7),
+        ("rows sent again; the right number is 0", |status| status.rows_repeated = 3),
+        ("rows that were not needed; the right number is 0", |status| status.rows_unneeded = 3),
+        ("1 refusals; the right number is 0", |status| status.refusals = 1),
+        ("packets of another session; the right number is 0", |status| status.foreign_packets = 2),
     ] {
         fails(&with_counter(change), CheckName::Counters, sentence);
     }
@@ -63,7 +67,11 @@ fn damaged_packets_that_nobody_missed_are_only_noted() {
     let report = with_counter(|status| status.crc_errors = 5);
     passes(&report);
     let counters = report.checks.iter().find(|check| check.name == CheckName::Counters).unwrap();
-    assert!(counters.detail().contains("it counts 5 damaged packets, and nothing had to be sent again"));
+    assert!(
+        counters
+            .detail()
+            .contains("the board counts 5 damaged packets, although nothing had to be sent again")
+    );
     assert!(report.not_exercised.contains(&NotExercised::CountersOfPoorLinks {}));
 }
 
@@ -90,7 +98,11 @@ fn counters_that_contradict_each_other_are_the_board_s_fault_over_any_link() {
         |status| (status.crc_errors, status.rows_unneeded) = (1, 4242),
         |status| (status.crc_errors, status.foreign_packets) = (1, 4242),
     ] {
-        fails(&with_counter(change), CheckName::Counters, "packets that came to it, and it is at least");
+        fails(
+            &with_counter(change),
+            CheckName::Counters,
+            "packets that came to it; the right number is at least",
+        );
     }
 }
 

@@ -10,7 +10,7 @@ use halfrow::verdict::Verdict;
 use halfrow_tests::system::{System, judge_by_plan, open};
 
 /// Said of a line that echoes.
-const SAID: &str = "the line sends back what is sent to it";
+const SAID: &str = "the line returns what is sent to it";
 
 /// A link whose line echoes as soon as so many bytes have been sent.
 struct Echoes {
@@ -129,7 +129,11 @@ fn a_console_that_echoes_is_told_from_a_loopback_plug() {
         let report =
             judge_by_plan(&System::TINY.plan(), Candidate::new("console", BoardKind::Hardware, link));
         let (headline, is_console) = (report.headline(), !says.is_empty());
-        assert_eq!(headline.contains("another device with a console"), is_console, "{says:?}: {headline}");
+        assert_eq!(
+            headline.contains("the device at this port has a console"),
+            is_console,
+            "{says:?}: {headline}"
+        );
         assert_eq!(headline.contains(SAID), !is_console, "{says:?}: {headline}");
     }
 }

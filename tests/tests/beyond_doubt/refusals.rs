@@ -28,12 +28,12 @@ fn a_refusal_of_what_a_board_says_that_it_can_is_its_own() {
         (Kind::Configure, RefusalCode::Range, Cause::Refused, own),
         (Kind::TableWrite, RefusalCode::Taps, Cause::Refused, own),
         (Kind::TableCrc, RefusalCode::Range, Cause::Refused, own),
-        (Kind::Status, RefusalCode::Kind, Cause::Refused, "every board answers it"),
+        (Kind::Status, RefusalCode::Kind, Cause::Refused, "every board must answer it"),
         (Kind::Burst, RefusalCode::Kind, Cause::Refused, own),
         (Kind::Commit, RefusalCode::Payload, Cause::Refused, own),
         (Kind::Commit, RefusalCode::NotReady, Cause::Station, passing),
         (Kind::Commit, RefusalCode::Range, Cause::Station, passing),
-        (Kind::Configure, RefusalCode::Busy, Cause::Station, "end what else feeds the board's core"),
+        (Kind::Configure, RefusalCode::Busy, Cause::Station, "stop whatever else feeds the board's core"),
         (Kind::Configure, RefusalCode::Session, Cause::Station, "run again"),
     ] {
         let report = refusing(kind, code);

@@ -235,7 +235,11 @@ fn a_board_that_took_a_row_and_says_that_none_is_inside_is_told_of() {
         _ => Some(packet),
     });
     assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
-    assert!(report.headline().contains("0 rows inside the core, and it is 1"), "{}", report.headline());
+    assert!(
+        report.headline().contains("0 rows inside the core; the right number is 1"),
+        "{}",
+        report.headline()
+    );
 }
 
 /// Both copies of a request may be lost as well, and then nothing is said of the board.
@@ -292,7 +296,7 @@ fn a_burst_that_never_ends_is_told_with_what_was_said_of_it() {
         _ => Some(packet),
     });
     assert_eq!(broken(&report).0, Rule::Ended);
-    let said = "must answer RECORDS with a burst that has ended and 2 records, and answered with one under way and 2 records";
+    let said = "must answer RECORDS with a burst that has ended and 2 records, but it answered with one under way and 2 records";
     assert!(report.headline().contains(said), "{}", report.headline());
 }
 

@@ -56,7 +56,7 @@ fn a_file_that_goes_on_is_refused() {
         [("frame.pgm", "long.pgm", &[][..]), ("frame.raw", "long.raw", &["--raw", "u16le"])]
     {
         folder.write(long, [folder.read(name), vec![0; 3]].concat());
-        bad_frame(&folder, long, options, "it goes on for 3 bytes after its last sample");
+        bad_frame(&folder, long, options, "it has 3 more bytes after its last sample");
     }
 }
 
@@ -66,7 +66,7 @@ fn a_frame_of_another_size_is_refused_with_the_size_that_would_do() {
     let other = ["--width", "128", "--height", "18", "--only", "black", "-o", "other"];
     assert_eq!(folder.halfrow(["frames"].into_iter().chain(other)).code, Some(0));
     bad_frame(&folder, "other/black.pgm", &[], "is 128 x 18, and the tables are for 128 x 16");
-    bad_frame(&folder, "frame.raw", &["--raw", "u8"], "it goes on for 2048 bytes");
+    bad_frame(&folder, "frame.raw", &["--raw", "u8"], "it has 2048 more bytes");
 }
 
 #[test]

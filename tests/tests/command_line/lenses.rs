@@ -133,7 +133,7 @@ fn refused_map(folder: &Folder) {
     let ended = folder.halfrow(["lens", "--lens", "dsl215.txt", "--map", "left.png"]);
     assert!(ended.code == Some(2) && ended.stderr.contains("--overwrite"), "{}", ended.stderr);
     assert!(folder.read("left.png") == before);
-    refused(folder, &["lens", "--lens", "dsl215.txt", "--map", "left.txt"], "left.txt is to be a PNG");
+    refused(folder, &["lens", "--lens", "dsl215.txt", "--map", "left.txt"], "left.txt must be a PNG");
 }
 
 /// The same lens on the paper's sensor, whose pixels have 2.2 µm, not 6.

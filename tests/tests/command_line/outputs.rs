@@ -65,7 +65,7 @@ fn a_hyphen_is_no_folder() {
         refused(
             &folder,
             &small(call[0], &call[1..]),
-            &format!("a frame goes to a file, and `{option} -` names none"),
+            &format!("a frame goes to a file, but `{option} -` names none"),
         );
     };
     hyphen(&["correct", "builtin:black", "--model", "-o", "-"], "-o");

@@ -61,16 +61,15 @@ fn a_run_that_is_killed_gives_its_board_back_and_one_whose_board_is_lost_ends() 
     running.send("KILL");
     let _ = running.end();
     wait_until("the board to be given back", || folder.names(".").contains(&"back".to_owned()));
-    let lost = LEASES.replace("BOARD", crate::running::SLOW).replace(
-        "cat > /dev/null",
-        "sleep 1
-echo '{\"lost\":{\"board\":\"shelf-1\",\"said\":\"somebody has it\"}}'",
-    );
-    for (script, said) in [
-        (lost.as_str(), "error: somebody has it"),
-        (&lost.replace("lost", "held"), "which held the board, has ended"),
+    let lost = r#"echo '{"lost":{"board":"shelf-1","said":"somebody has it"}}'"#;
+    for (told, said) in [
+        (lost, "error: somebody has it"),
+        (&lost.replace("lost", "held"), "which is no message; install the one"),
+        (r"printf '\377\n'", "the output of halfrow-station cannot be read; install the one"),
+        ("", "which held the board, has ended"),
     ] {
-        let folder = leased_by(script);
+        let script = LEASES.replace("BOARD", crate::running::SLOW);
+        let folder = leased_by(&script.replace("cat > /dev/null", &format!("sleep 1\n{told}")));
         let ended = finish(&mut verify(&folder, "pool:ulx3s"));
         assert_eq!(ended.code, Some(130), "{ended:?}");
         assert!(ended.stderr.contains(said), "{ended:?}");
@@ -81,7 +80,7 @@ echo '{\"lost\":{\"board\":\"shelf-1\",\"said\":\"somebody has it\"}}'",
 fn without_a_board_nothing_is_judged_and_it_is_said_why() {
     let nothing = "#!/bin/sh\necho 'error: the plant is away' >&2\nexit 3\n";
     let cases = [
-        (nothing, "pool:ulx3s", 3, "no board of the kind ulx3s was got"),
+        (nothing, "pool:ulx3s", 3, "no board of the kind ulx3s could be leased"),
         ("#!/bin/sh\necho hello\n", "pool:ulx3s", 3, "says `hello`, which is no message"),
         (nothing, "pool:", 2, "write pool:KIND"),
         (nothing, "pool", 2, "write pool:KIND"),

@@ -90,7 +90,7 @@ fn previews_that_have_no_place_are_refused() {
         refused(&folder, &small("correct", &call), sentence);
     };
     refuse(&["--preview", "look.png"], "look.png exists; allow it to be overwritten (--overwrite)");
-    refuse(&["--preview", "look.jpg"], "look.jpg is to be a PNG; end its name in .png");
+    refuse(&["--preview", "look.jpg"], "look.jpg must be a PNG; end its name in .png");
     refuse(&["builtin:white", "--preview", "new.png"], "one file for 2 frames");
     refuse(&["--format", "pgm"], "out.dng is no pgm; leave --format out");
     refuse(&["--format", "jpeg"], "use pgm, png, tif, dng or raw");

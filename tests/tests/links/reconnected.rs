@@ -56,7 +56,7 @@ fn goes_on_after(count: usize) {
         assert_eq!(report.cause, Cause::Equal, "{cut:?}: {}; {away:?}", report.headline());
         assert_eq!((rows(report), away.len()), (all_rows, 1), "{cut:?}: {away:?}");
         assert!(
-            report.headline().ends_with("the board went away and came back, 1 x"),
+            report.headline().ends_with("the board went away and came back 1 time"),
             "{}",
             report.headline()
         );
@@ -120,7 +120,7 @@ fn another_board_is_not_taken_for_the_one_that_went_away() {
         let report = interrupted(board, 3000, Replug::Switched(other.to_owned()));
         assert_eq!(report.cause, Cause::Refused, "{other}: {}", report.headline());
         assert!(
-            report.headline().contains("another board, or another bitstream, came back"),
+            report.headline().contains("the board that came back is another one"),
             "{other}: {}",
             report.headline()
         );

@@ -79,7 +79,7 @@ fn a_line_that_echoes_is_no_board_with_a_wrong_bitstream() {
         let mut back = host.try_clone().unwrap();
         std::io::copy(&mut host, &mut back)
     });
-    ends(&verify(&target, &[]), 3, "the line sends back what is sent to it");
+    ends(&verify(&target, &[]), 3, "the line returns what is sent to it");
     server.join().unwrap().unwrap();
 }
 

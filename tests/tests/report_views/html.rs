@@ -220,7 +220,7 @@ fn a_soak_is_shown_over_time_with_what_differed() {
         rest.split('"').next().unwrap().matches('M').count()
     };
     assert_eq!((path("judged"), path("wrong")), (224, 2));
-    assert!(page.contains("behind 2 h 13 min, content of seed 08d12e6a, tables of generation 2:"));
+    assert!(page.contains("after 2 h 13 min, content of seed 08d12e6a, tables of generation 2:"));
     assert!(!self::page(&made::pass(), &[]).contains("over time"));
 }
 
@@ -262,7 +262,7 @@ fn a_report_asks_nobody_to_make_one() {
     assert!(page(&report, &evidence).contains("Look at the difference maps below."));
     report.frames.truncate(1);
     let without_maps = page(&report, &[]);
-    assert!(without_maps.contains("every frame that has one is right"), "{without_maps}");
+    assert!(without_maps.contains("every frame that has a map is right"), "{without_maps}");
     // Beside what explains it, that something else does not is no news.
     report.suspects = [known, vec![unknown()]].concat();
     let page = page(&report, &[]);

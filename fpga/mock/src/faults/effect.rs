@@ -115,8 +115,8 @@ impl Streamed {
         let last = (self.frames.saturating_sub(1) * self.height + row) as u64;
         (u64::from(after) > last).then(|| {
             format!(
-                "with after={after} the bit flips when {what} has been played for the last time, behind {last} others; \
-                 give {last} at most, or stream more frames"
+                "with after={after} the bit flips when {what} has been played for the last time, after {last} \
+                 others; give {last} at most, or stream more frames"
             )
         })
     }

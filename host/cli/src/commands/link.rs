@@ -64,7 +64,7 @@ fn text(figures: &Figures) -> String {
     if errors.wrong > 0 {
         let (answers, hold) =
             (count(errors.wrong, "answer"), if errors.wrong == 1 { "holds" } else { "hold" });
-        lines.push(format!("{:<12} {answers} {hold} other bytes than were sent, under a right CRC", "BOARD"));
+        lines.push(format!("{:<12} {answers} {hold} other bytes than were sent, with a right CRC", "BOARD"));
     }
     lines.join("\n")
 }

@@ -43,7 +43,7 @@ impl Conversation {
         }
         let begun = self.now();
         while let Some(wait) = MORE.checked_sub(self.since(begun)).filter(|wait| !wait.is_zero()) {
-            self.exchange(wait, || "listening behind an echo".to_owned(), |_| {})?;
+            self.exchange(wait, || "listening after an echo".to_owned(), |_| {})?;
         }
         let beside = self.tally.bytes_in.saturating_sub(self.tally.bytes_out);
         let is_board = self.tally.packets_in > self.tally.packets_out;

@@ -42,18 +42,20 @@ pub enum BoardError {
         heard: Heard,
     },
     /// Somebody answered, but not as a halfrow board.
-    #[error("what answers is no halfrow board; check the target and what is loaded into the FPGA")]
+    #[error(
+        "the device that answers is not a halfrow board; check the target and what is loaded into the FPGA"
+    )]
     NotABoard,
     /// What was sent came back as it was.
     #[error(
-        "the line sends back what is sent to it, in place of a board's answer; look for a loopback plug, for TX and RX that \
-         touch, and for a port that echoes"
+        "the line returns what is sent to it, instead of a board's answer; look for a loopback plug, for TX and RX \
+         that touch, and for a port that echoes"
     )]
     Echoed,
-    /// It says of itself what no board can be, so that no command can use it.
+    /// The board claims a capability that no board can have, so no command can use it.
     #[error(
-        "the board says {capability} = {value}, and {legal}; correct what it says of itself (CAPABILITIES in protocol/WIRE.md), or \
-         load another bitstream"
+        "the board says {capability} = {value}, but {legal}; correct what it says of itself (CAPABILITIES in \
+         protocol/WIRE.md), or load another bitstream"
     )]
     Impossible {
         /// The capability.
@@ -65,8 +67,8 @@ pub enum BoardError {
     },
     /// What was sent came back, and more than that.
     #[error(
-        "what is sent comes back, and {} beside it: another device with a console is at this port, as a modem or a Linux \
-         system is, and no halfrow board; choose another port",
+        "the bytes that are sent come back, with {} more: the device at this port has a console, like a modem or a \
+         Linux system, and is not a halfrow board; choose another port",
         count(*bytes, "byte")
     )]
     Console {
@@ -98,8 +100,8 @@ pub enum BoardError {
         "the board no longer knows this session: it was reset or lost power, or another host took it over; run again"
     )]
     SessionLost,
-    /// The board refused a request. A kind, a payload, taps and most ranges depend on the board alone, which then does not do what it
-    /// says that it can; any other refusal may come of another host or of an old packet.
+    /// The board refused a request. If it refuses a kind, a payload, taps or, most often, a range, the board does not do
+    /// what it says that it can; any other refusal may come from another host or from an old packet.
     #[error(
         "the board refused {kind}: {code} (detail {detail}){}", advice(.refusal), kind = .kind, code = .refusal.code,
         detail = .refusal.detail
@@ -125,10 +127,10 @@ pub enum BoardError {
         /// The request.
         kind: Kind,
     },
-    /// Another burst than the one that was begun last, over a link that brought requests twice.
+    /// The board runs another burst than the one that was begun last, over a link that brought requests twice.
     #[error(
-        "the board is at another burst than the last one that it was told, and {} came to it twice: a late copy may have begun \
-         it again; check the cable, its connectors and the link, then run again",
+        "the board runs another burst than the one asked for last, and {} reached it twice: a late copy may have restarted an \
+         earlier burst; check the cable, its connectors and the link, then run again",
         count(*again, "request")
     )]
     OtherBurst {
@@ -151,8 +153,8 @@ pub enum BoardError {
     },
     /// A row did not come back.
     #[error(
-        "row {row} of frame {frame} did not come back in {attempts} tries; let `halfrow verify` tell whether the board or \
-         the link loses it", row = .place.row, frame = .place.frame
+        "row {row} of frame {frame} did not come back in {attempts} tries; run `halfrow verify` to find out whether \
+         the board or the link loses it", row = .place.row, frame = .place.frame
     )]
     RowMissing {
         /// The row.
@@ -162,7 +164,7 @@ pub enum BoardError {
     },
     /// A row came back under another name.
     #[error(
-        "the board returned row {row} of frame {frame} under a place that was never sent; load a bitstream that this \
+        "the board returned row {row} of frame {frame} with a place that was never sent; load a bitstream that this \
          halfrow is made for", row = .place.row, frame = .place.frame
     )]
     WrongPlace {
@@ -170,7 +172,7 @@ pub enum BoardError {
         place: RowPlace,
     },
     /// The run's own time limit.
-    #[error("the run took longer than the {} of its time limit{}", span(limit.as_secs_f64()), slow_or_silent(*silent))]
+    #[error("the run did not end within its time limit of {}{}", span(limit.as_secs_f64()), slow_or_silent(*silent))]
     Timeout {
         /// The limit.
         limit: Duration,
@@ -240,8 +242,8 @@ fn suspect(heard: Heard) -> String {
             "; check that the board is powered and loaded, and that the target's rate is the board's".into()
         }
         Heard { packets: 0, damaged: 0, bytes, .. } => format!(
-            ", though {} came, no packet among them; check that the target's rate is the board's, and that a halfrow \
-             board is what is at this port",
+            ", though {} came, with no packet among them; check that the target's rate is the board's, and that the \
+             device at this port is a halfrow board",
             count(bytes, "byte")
         ),
         Heard { damaged: 0, .. } => {
@@ -280,13 +282,13 @@ fn is_of_every_board(kind: Kind) -> bool {
 fn advice(refusal: &Refusal) -> &'static str {
     match refusal.code {
         RefusalCode::Kind if Kind::from_code(refusal.kind).is_some_and(is_of_every_board) => {
-            "; every board answers it: see protocol/WIRE.md, section 3"
+            "; every board must answer it: see protocol/WIRE.md, section 3"
         }
         _ if is_own(refusal) => {
             "; its capabilities allow that: correct what it says of itself (`halfrow info`), or load another bitstream"
         }
-        RefusalCode::Busy => "; end what else feeds the board's core, then run again",
-        _ => "; run again, and if it refuses each time load a bitstream that keeps to protocol/WIRE.md",
+        RefusalCode::Busy => "; stop whatever else feeds the board's core, then run again",
+        _ => "; run again, and if it refuses each time, load a bitstream that follows protocol/WIRE.md",
     }
 }
 
@@ -296,7 +298,7 @@ const SILENT: Duration = Duration::from_secs(1);
 /// What a run wants that did not end in time.
 fn slow_or_silent(silent: Duration) -> String {
     if silent < SILENT {
-        return "; give it more, or use a faster link".to_owned();
+        return "; give it more time, or use a faster link".to_owned();
     }
     let silent = span(silent.as_secs_f64());
     format!(

@@ -26,7 +26,7 @@ pub enum FilesError {
         option: &'static str,
     },
     /// Two outputs in one place.
-    #[error("{first} and {second} would both be written to {}; part them", path.display())]
+    #[error("{first} and {second} would both be written to {}; give them different names", path.display())]
     OutputsShare {
         /// The option that names the one.
         first: &'static str,

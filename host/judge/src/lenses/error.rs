@@ -64,7 +64,7 @@ pub enum LensContentError {
         keys: String,
     },
     /// Two keys that differ by case or punctuation alone.
-    #[error("`{second}` says again what `{first}` says; leave one of them")]
+    #[error("`{second}` says again what `{first}` says; leave one of them out")]
     Twice {
         /// The key that is there first.
         first: String,
@@ -170,8 +170,8 @@ pub enum LensContentError {
     },
     /// A polynomial of OCamCalib's file that does not begin with a count.
     #[error(
-        "line {line}: {what} begins with {}, and how many coefficients follow is a whole number from 1 to {most}; export \
-         the file again",
+        "line {line}: {what} begins with {}, in place of the number of coefficients that follow, from 1 to {most}; \
+         export the file again",
         Short(*.found),
         most = super::MAX_COEFFICIENTS
     )]
@@ -193,8 +193,8 @@ pub enum LensContentError {
     },
     /// A polynomial that begins with the wrong sign.
     #[error(
-        "the direct polynomial begins with {0}, and OCamCalib's begin below zero; if z counts forwards in your program, \
-         turn the signs of all of its coefficients"
+        "the direct polynomial begins with {0}, and OCamCalib's begin below zero; if z counts forwards in your \
+         program, change the signs of all of its coefficients"
     )]
     Sign(f64),
     /// Two polynomials that disagree.

@@ -234,8 +234,8 @@ pub fn share(suspect: &Suspect) -> Option<String> {
 pub fn away(away: &Reconnection) -> String {
     let kept = match away.kept_tables {
         None => "",
-        Some(true) => "; it had gone on, and had its tables still",
-        Some(false) => "; it had begun anew, without tables",
+        Some(true) => "; it had kept running, and still had its tables",
+        Some(false) => "; it had started again, without tables",
     };
     format!("for {:.1} s: {}{kept}", away.seconds_away, away.reason)
 }
@@ -274,7 +274,7 @@ pub fn soak(soak: &SoakReport) -> String {
 pub fn soak_difference(difference: &SoakDifference) -> String {
     let SoakDifference { seconds, seed, generation, finding, .. } = difference;
     format!(
-        "behind {}, content of seed {seed:08x}, tables of generation {generation}: {}",
+        "after {}, content of seed {seed:08x}, tables of generation {generation}: {}",
         span(*seconds),
         finding.sentence()
     )

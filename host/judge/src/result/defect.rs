@@ -87,7 +87,7 @@ pub enum Defect {
         /// Its level.
         value: u8,
     },
-    /// A data line behind the datapath.
+    /// A data line after the datapath.
     OutputDataStuck {
         /// The line.
         bit: u32,
@@ -150,7 +150,7 @@ pub enum Defect {
         /// Its level.
         value: u8,
     },
-    /// The row table is read beside the row's entry.
+    /// The row table is read at the entry next to the row's own.
     RowTableAddressOff {
         /// How many entries ahead.
         entries: isize,
@@ -199,7 +199,7 @@ pub enum Defect {
         /// The first.
         first: usize,
     },
-    /// Rows enter the core otherwise than they were sent.
+    /// Rows are changed before they enter the core.
     RowsChangedOnEntry {
         /// How many.
         rows: usize,
@@ -210,7 +210,7 @@ pub enum Defect {
         /// The one bit that is flipped in the first of them, if the CRC tells one.
         flipped: Option<FlippedBit>,
     },
-    /// Frames begin with the tables of the frame in front of them.
+    /// Frames begin with the tables of the frame before them.
     TablesChangeLate {
         /// So many rows.
         rows: usize,
@@ -233,7 +233,7 @@ pub enum Defect {
         /// Bits of them that do.
         bits: Vec<u32>,
     },
-    /// None that is known explains most of the differences: where they lie.
+    /// No known defect explains most of the differences; this says where they lie.
     NoneKnown {
         /// Their rows.
         rows: Option<Extent>,
@@ -256,7 +256,7 @@ pub enum Defect {
         /// Of so many.
         of_frames: usize,
     },
-    /// Another number of entries reads back than was uploaded.
+    /// The number of entries that read back is not the number that was uploaded.
     TableLengthWrong {
         /// The table.
         table: Memory,

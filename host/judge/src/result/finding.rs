@@ -74,7 +74,7 @@ pub enum Finding {
     },
     /// Frames that the board made on its own are the reference's, at the full pixel clock.
     EqualAtSpeed(EqualAtSpeed),
-    /// They are the reference's, and the enable was off in some.
+    /// They are the reference's, but the enable was off in some.
     PausedAtSpeed {
         /// Frames.
         frames: u32,
@@ -126,7 +126,7 @@ pub enum Finding {
     },
     /// Echoed bytes came back as others, under a CRC of the board's.
     EchoWrong {},
-    /// A table reads back otherwise than it was uploaded.
+    /// A table does not read back as it was uploaded.
     TableReadsWrong {
         /// What is wrong with it.
         defect: Box<Defect>,
@@ -169,7 +169,7 @@ pub enum Finding {
         #[serde(default)]
         others: usize,
     },
-    /// Rows entered the core otherwise than they were sent, by the board's own CRC.
+    /// By the board's own CRC, rows were changed before they entered the core.
     RowsEnteredChanged {
         /// How many.
         rows: usize,
@@ -180,7 +180,7 @@ pub enum Finding {
         /// The one bit that is flipped in the first of them, if the CRC tells one.
         flipped: Option<FlippedBit>,
     },
-    /// The board's CRC of what entered is another one, and so it is of rows of which every output is right.
+    /// The board's CRC of the samples that entered is wrong, also for rows in which every output is right.
     EntryMiscounted {
         /// How many.
         rows: usize,
@@ -250,7 +250,7 @@ pub enum Finding {
         /// What it should; of packets at least, of rows numbered at most.
         right: u32,
     },
-    /// The board counts other pauses for a row than the gaps of its seed are.
+    /// The board counts pauses for a row that are not the gaps of its seed.
     GapsMiscounted {
         /// The row, the first of them.
         row: usize,
@@ -317,9 +317,9 @@ pub enum Finding {
     },
     /// Two different `ROW_OUT` packets have the same number.
     RowNumberedTwice(NumberedRow),
-    /// A row was sent twice, and says both times that it was sent as often before.
+    /// A row was sent twice, and names the same number of repeats both times.
     RowRepeatsStand(RepeatedRow),
-    /// A row left the board behind a later one.
+    /// A row left the board after a later one.
     RowOutOfOrder {
         /// The row that came too late.
         row: u16,
@@ -370,7 +370,7 @@ pub enum Finding {
         /// What it is.
         board: BoardKind,
     },
-    /// Another board came back than went away.
+    /// The board that came back is not the one that went away.
     BoardExchanged {},
     /// The board went away and did not come back.
     BoardStayedAway {

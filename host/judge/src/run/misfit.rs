@@ -12,7 +12,7 @@ use crate::board::{Capabilities, grids};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Misfit {
     /// The board's datapath is none that tables can be made for.
-    #[error("the board can be given no tables")]
+    #[error("no tables can be made for this board's datapath")]
     Datapath(#[from] UnknownDatapath),
     /// The frames are too large.
     #[error(
@@ -44,7 +44,7 @@ pub enum Misfit {
     NoGrids,
     /// The grid has more entries than a bank of the board.
     #[error(
-        "the grid has {entries} entries, and the board takes {most}; say that {most} are the most entries of a grid"
+        "the grid has {entries} entries, and the board has room for {most}; limit the entries of a grid to {most}"
     )]
     GridEntries {
         /// Entries of the grid.

@@ -60,11 +60,13 @@ pub enum RestoreError {
     #[error("the tables in the recording cannot be used; make the recording again")]
     Tables(#[source] ContentError),
     /// Its head names a frame, a Bayer phase or a lens that there is not.
-    #[error("the recording's head says what no run can have; make the recording again with this halfrow")]
+    #[error(
+        "the recording's head describes a run that cannot be; make the recording again with this halfrow"
+    )]
     Value(#[source] Box<dyn std::error::Error + Send + Sync>),
     /// What was sent is no frame.
     #[error(
-        "what the recorded run sent as {name} is no frame of its tables' size and depth; make the recording again"
+        "the recorded run sent {name}, which is not a frame of its tables' size and depth; make the recording again"
     )]
     Frame {
         /// The frame.

@@ -10,7 +10,8 @@ use crate::verdict::Cause;
 /// The system gives this program no thread on which it can work out what must come back.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "this computer has no thread left for what must come back; end other programs, or allow this user more processes, then run again"
+    "this computer has no thread left to compute what must come back; end other programs, or allow this user more \
+     processes, then run again"
 )]
 pub(crate) struct NoThread(#[source] io::Error);
 

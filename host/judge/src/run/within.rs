@@ -32,10 +32,11 @@ pub enum WithinError {
         /// The least that would do, rounded up.
         least: f64,
     },
-    /// It is over before a row is judged by the pixel clock that the board names, which nothing has looked at, and would do over this link.
+    /// At the pixel clock that the board names, which nothing has checked, the time is over before a row is judged; over
+    /// this link alone it would be enough.
     #[error(
-        "{seconds} s are too few at the pixel clock of {} that the board names, and would do over this link; look at that clock in \
-         a run without a time to judge within, or give at least {least} s", hertz(*clock_hz)
+        "{seconds} s are too few at the pixel clock of {} that the board names, but would be enough over this link; \
+         look at that clock in a run without a time to judge within, or give at least {least} s", hertz(*clock_hz)
     )]
     TooFewOfClock {
         /// The time.

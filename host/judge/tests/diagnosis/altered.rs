@@ -110,7 +110,7 @@ fn rows_shifted_along_themselves_are_named() {
     });
     assert_eq!(
         certain(&suspects),
-        ("row shift", "the corrected row's first sample, 2 to the left".to_owned())
+        ("row shift", "corrected rows, shifted by 2 columns to the left".to_owned())
     );
 }
 

@@ -76,7 +76,7 @@ fn a_grids_entry_that_drifts_during_the_run_is_named_with_its_onset() {
     let suspects = bench.judge(&seen);
     assert_eq!(suspects[0].place(), "grid row 4, node 2, bit 18", "{suspects:#?}");
     assert_eq!((suspects.len(), suspects[0].explained), (1, 1.0));
-    assert!(suspects[0].evidence().contains("set in during the run"), "{}", suspects[0].evidence());
+    assert!(suspects[0].evidence().contains("began during the run"), "{}", suspects[0].evidence());
 }
 
 #[test]

@@ -187,7 +187,7 @@ fn ocamcalib_s_counts_are_counts() {
     for (count, found) in [("2.5", "2.5"), ("0", "0"), ("1e30", "1e30"), ("-5", "-5"), ("65", "65")] {
         let text = format!("{count} -259 1 2\n229 364\n1 0 0\n480 752\n");
         let sentence = format!(
-            "line 1: the direct polynomial begins with {found}, and how many coefficients follow is a whole number from 1 to 64"
+            "line 1: the direct polynomial begins with {found}, in place of the number of coefficients that follow, from 1 to 64"
         );
         let refused = refusal(&text).to_string();
         assert!(refused.contains(&sentence), "{count}: {refused}");

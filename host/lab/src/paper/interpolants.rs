@@ -78,7 +78,6 @@ fn drawn(interpolants: &[Interpolant]) -> String {
 }
 
 fn table() -> Table {
-    let taps = ["G0", "R1", "G2", "R3", "G4", "R5", "G6"];
     let row = |interpolant: Interpolant, node: u32| {
         let x = f64::from(node) / 32.0;
         let weights = interpolant.weights(x).map(|weight| Cell::Number(weight, 8));

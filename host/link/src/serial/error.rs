@@ -54,8 +54,8 @@ pub enum SerialError {
     },
     /// The driver took another rate.
     #[error(
-        "{path} cannot make {baud} baud, and its driver took {taken} in their place; give a rate that port and board \
-         have with baud=RATE"
+        "{path} cannot make {baud} baud, and its driver took {taken} instead; give a rate that both port and board \
+         have, with baud=RATE"
     )]
     OtherRate {
         /// The port.

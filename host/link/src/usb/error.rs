@@ -16,8 +16,8 @@ pub enum UsbError {
     NoUsb,
     /// Nothing is there.
     #[error(
-        "no board with an FTDI chip is plugged in; check cable and power, and that a virtual machine or container is given \
-         the device"
+        "no board with an FTDI chip is plugged in; check cable and power, and, in a virtual machine or container, \
+         that it is given the device"
     )]
     NoneFound,
     /// None of the chips that boards have.

@@ -32,7 +32,8 @@ pub enum Fault {
     },
     /// A record does not fit the records before it.
     #[error(
-        "the record of run {run} does not fit those before it, as where one of them cannot be read; mend that one first, and check again"
+        "the record of run {run} does not fit those before it, as happens when one of them cannot be read; mend \
+         that one first, and check again"
     )]
     Contradiction {
         /// The run.

@@ -11,8 +11,8 @@ use crate::store::{Snapshot, StoreError};
 /// went behind it, and that the database is of before the COMMIT, look the same on the disk.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "run {run} is {row} here, and its record {sha256} says {verdict}: the power went before that was shown, or station.db is a copy \
-     from before it, and then it was shown; find out which, or else test the board again"
+    "run {run} is {row} here, and its record {sha256} says {verdict}: the power failed before that was shown, or \
+     station.db is an earlier copy, and then it was shown; find out which, or else test the board again"
 )]
 pub struct Superseded {
     /// The run.

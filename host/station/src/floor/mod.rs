@@ -63,7 +63,7 @@ pub enum ScanError {
     #[error("the scan came without what the scanner adds to every label; scan the label again")]
     Incomplete,
     /// It was made so long ago that the lane may have another board by now.
-    #[error("this came too late, and another board may be there by now; do it once more")]
+    #[error("this came too late, and another board may be there by now; do it again")]
     Late,
     /// There is no such lane.
     #[error("there is no lane {lane}; the lanes are {known}")]
@@ -84,7 +84,7 @@ pub enum ScanError {
     Serial(#[from] SerialError),
     /// Two plans would take it.
     #[error(
-        "`{serial}` is a serial number of {first} and of {second}; an engineer makes their patterns differ"
+        "`{serial}` is a serial number of {first} and of {second}; have an engineer make their patterns differ"
     )]
     Ambiguous {
         /// What was scanned.

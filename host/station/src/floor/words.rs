@@ -210,7 +210,7 @@ pub enum Refusal {
         why: Said,
     },
     /// It owes its shift no mock board.
-    #[error("lane {lane} is to be checked by no mock board now; scan the label of the board in it")]
+    #[error("lane {lane} needs no check by a mock board now; scan the label of the board in it")]
     NoMock {
         /// The lane.
         lane: String,

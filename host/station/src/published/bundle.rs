@@ -54,16 +54,14 @@ pub enum BundleError {
         source: Option<io::Error>,
     },
     /// A text is no bundle.
-    #[error(
-        "what the plant has as the plan {sha256} is none; publish it again, and ask whoever keeps the plant"
-    )]
+    #[error("the plant's plan {sha256} is not a plan; publish it again, and ask whoever keeps the plant")]
     Malformed {
         /// The hash.
         sha256: String,
     },
     /// A bundle is not what its hash says.
     #[error(
-        "what the plant has as the plan {sha256} has the hash {found}; publish it again, and ask whoever keeps the plant"
+        "the plant's plan {sha256} has the hash {found}; publish it again, and ask whoever keeps the plant"
     )]
     Damaged {
         /// The hash that it should have.
@@ -80,7 +78,7 @@ pub enum BundleError {
         source: io::Error,
     },
     /// What was kept cannot be read to be copied.
-    #[error("{} cannot be read, which the plans of the plant are kept in; check who may read it", path.display())]
+    #[error("{}, in which the plans of the plant are kept, cannot be read; check who may read it", path.display())]
     Uncopied {
         /// The file or the folder.
         path: PathBuf,

@@ -172,11 +172,11 @@ pub enum RebindError {
         second: String,
     },
     /// Nobody says why.
-    #[error("another binding needs a reason; say why, it is kept")]
+    #[error("another binding needs a reason; say why: the reason is kept")]
     NoReason,
     /// The reason is longer than pages and events have room for.
     #[error(
-        "the reason has {characters} characters, and another binding's has {most} at most; say it in less"
+        "the reason has {characters} characters, and another binding's has {most} at most; say it in fewer"
     )]
     TooLong {
         /// Its length.
@@ -186,7 +186,8 @@ pub enum RebindError {
     },
     /// This is no device.
     #[error(
-        "`{device}` is no device; give 16 hexadecimal digits in lower case, not all 0, as a run prints them behind `device`"
+        "`{device}` is no device; give 16 hexadecimal digits in lower case, not all 0, as a run prints them after \
+         `device`"
     )]
     NoDevice {
         /// What was given.

@@ -43,8 +43,8 @@ pub enum StoreError {
     },
     /// A copy is being put there, or was when its program was killed.
     #[error(
-        "a restore has not ended in {}; wait for it, or, when none is at work, remove .partial there and what came out of it into the folder, \
-         and restore again",
+        "a restore in {} has not ended; wait for it, or, if none is at work, remove .partial there and what was \
+         already moved out of it into the folder, and restore again",
         folder.display()
     )]
     Unrestored {
@@ -63,8 +63,8 @@ pub enum StoreError {
     },
     /// The file is no database, or one that is damaged, be it by the log beside it.
     #[error(
-        "the database {} is damaged, or no database at all, or the station.db-wal beside it is the log of another one; lay \
-         them aside, look at the disk, and restore the folder from a copy",
+        "the database {} is damaged, or no database at all, or the station.db-wal beside it is the log of another \
+         one; move them aside, look at the disk, and restore the folder from a copy",
         path.display()
     )]
     Damaged {
@@ -75,8 +75,9 @@ pub enum StoreError {
     },
     /// Another file has the name of the database that was opened, or none has.
     #[error(
-        "the database {} was replaced or removed while this program works with it, and nothing is kept that would be in no file of this \
-         name; end the program, see by `halfrow-station check` what the database lacks that is there now, and start it again",
+        "the database {} was replaced or removed while this program was using it, and nothing more is kept, since \
+         it would be lost; end the program, run `halfrow-station check` to see what the new database lacks, and \
+         start the program again",
         path.display()
     )]
     Replaced {
@@ -85,8 +86,9 @@ pub enum StoreError {
     },
     /// Another file than the one that the program holds is called `station.lock`, or none is.
     #[error(
-        "{} was replaced or removed while this program works in its folder, and nothing more is kept, since another program could start \
-         there as well; end this one, see that no other works in the folder, and start it again",
+        "{} was replaced or removed while this program was using its folder, and nothing more is kept, since \
+         another program could start there as well; end this one, make sure that no other uses the folder, and \
+         start it again",
         path.display()
     )]
     LockReplaced {
@@ -107,8 +109,8 @@ pub enum StoreError {
     },
     /// The disk has no room to bring it up to date.
     #[error(
-        "the database {} is not brought up to date, for its disk has {megabytes} MB too few for a copy of it as it is; make room \
-         there, or go on with the earlier program",
+        "the database {} cannot be brought up to date: its disk lacks {megabytes} MB for a copy of it as it is; \
+         make room there, or go on with the earlier program",
         path.display()
     )]
     NoRoom {
@@ -119,7 +121,8 @@ pub enum StoreError {
     },
     /// The plant's database refuses.
     #[error(
-        "the plant {plant} refuses {doing}; look whether it is there and whom it lets in, and ask whoever keeps it"
+        "the plant {plant} refuses {doing}; check that it is there and lets this station in, and ask whoever keeps \
+         it"
     )]
     Plant {
         /// Its address, without the password.
@@ -190,8 +193,8 @@ pub enum StoreError {
     },
     /// The station's clock and the plant's show different times.
     #[error(
-        "the station's clock and the plant's are {minutes} min apart, and the plant tells by them which judgement of a unit is the \
-         last one; set the one that is wrong"
+        "the station's clock and the plant's are {minutes} min apart, and the plant uses them to tell which \
+         judgement of a unit is the last one; set the one that is wrong"
     )]
     ClockApart {
         /// How far.

@@ -58,7 +58,7 @@ pub enum NoWaiver {
     #[error("a waiver needs a name and a reason; say both")]
     Empty,
     /// Its reason is longer than pages and events have room for.
-    #[error("the reason has {characters} characters, and a waiver's has {most} at most; say it in less")]
+    #[error("the reason has {characters} characters, and a waiver's has {most} at most; say it in fewer")]
     TooLong {
         /// Its length.
         characters: usize,

@@ -51,7 +51,8 @@ impl Held {
 pub enum Lost {
     /// Somebody took it: the lease had run out, a person took the board out, or the job was cancelled.
     #[error(
-        "the board {board} is not ours any more: it was taken out, its job cancelled, or it was not heard of us for too long"
+        "the board {board} is not ours any more: it was taken out, its job was cancelled, or nothing was heard of \
+         this station for too long"
     )]
     Taken {
         /// The board.

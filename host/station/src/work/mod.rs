@@ -65,7 +65,8 @@ pub enum WorkError {
     },
     /// The plant is there, and does not take what the job came to.
     #[error(
-        "the plant does not take the run {run}, which is kept here: {said}; `halfrow-station outbox list` tells how it stands"
+        "the plant does not take the run {run}, which is kept here: {said}; `halfrow-station outbox list` shows its \
+         state"
     )]
     NotTaken {
         /// The run.

@@ -1,8 +1,8 @@
 //! What to do about errors whose message does not end in it: the act is filled in when the error happens, is another's, or is none yet.
 
 /// What to do where tables of a station or of a plant contradict its records.
-const MEND_TABLES: &str = "mend first what `check` says of records, then put a copy of the database, station.db or the plant's, back if \
-    this is still told";
+const MEND_TABLES: &str = "mend first what `check` says of records, and if this is still reported, put back a copy \
+                           of the database: station.db, or the plant's";
 
 /// Each code with its act, in the order of the codes.
 pub(super) const ACTS: &[(&str, &str)] = &[
@@ -27,11 +27,12 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     ("fault-unknown", "choose from KNOWN"),
     (
         "fault-without-effect",
-        "give the run what its sentence misses, or choose another fault of `halfrow faults`",
+        "give the run what its sentence says is missing, or choose another fault of `halfrow faults`",
     ),
     (
         "file-not-finished",
-        "keep or remove the file beside the place, which the message names, mend what its cause says, and write it again",
+        "keep or remove the file next to that place, which the message names, mend what its cause says, and write \
+         the file again",
     ),
     ("foreign-cause", "do what the error in front of it says: it has a code of its own"),
     (
@@ -103,7 +104,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "ocam-inverse-contradicts",
         "export the file again: its polynomials are of two calibrations or in another order",
     ),
-    ("ocam-sign-wrong", "turn the signs of all coefficients if z counts forwards in your program"),
+    ("ocam-sign-wrong", "change the signs of all coefficients if z counts forwards in your program"),
     ("option-without-effect", "leave the option out, or the one that decides in its place"),
     ("paper-board-failed", "do what its cause says about the board, then run again"),
     ("pgm-header-wrong", "write the header as `P5 WIDTH HEIGHT MAXVAL`, or export the file again"),
@@ -156,7 +157,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     ),
     (
         "serial-rate-not-made",
-        "give baud= a rate that the chip makes, as those that the message names, and build the board for it",
+        "give baud= a rate that the chip makes, such as those that the message names, and build the board for it",
     ),
     (
         "simulation-not-built",
@@ -194,7 +195,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     ),
     (
         "target-kind-unknown",
-        "write one of the kinds that `halfrow help verify` names behind --board; a serial port is serial:/dev/ttyUSB0",
+        "write one of the kinds that `halfrow help verify` names for --board; a serial port is serial:/dev/ttyUSB0",
     ),
     ("target-option-unknown", "choose from KNOWN"),
     ("target-options-wrong", "do what its cause says, which has a code of its own"),
@@ -221,7 +222,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     ),
     (
         "usb-rate-not-made",
-        "give baud= a rate that the chip makes, as those that the message names, and build the board for it",
+        "give baud= a rate that the chip makes, such as those that the message names, and build the board for it",
     ),
     ("usb-several-boards", "choose one of the targets that the message names"),
     ("waveform-not-written", "check that the folder of the waveform exists, is writable and has space"),
@@ -248,7 +249,7 @@ mod tests {
     const REPORTED: &str = "this is a fault of halfrow, so report it";
 
     /// What acts begin with.
-    const VERBS: [&str; 62] = [
+    const VERBS: [&str; 63] = [
         "add",
         "allow",
         "ask",
@@ -272,6 +273,7 @@ mod tests {
         "keep",
         "leave",
         "let",
+        "limit",
         "load",
         "look",
         "make",
@@ -348,8 +350,6 @@ mod tests {
     }
 
     #[test]
-    fn acts_stand_in_the_order_of_their_codes_and_no_message_has_its_own_beside_them() {
-    #[test]
     fn a_message_of_an_error_asks_once() {
         let is_error = |of: &str| ["error", "station-error"].contains(&of);
         for it in known().into_values().flatten().filter(|it| is_error(&it.of)) {
@@ -362,6 +362,8 @@ mod tests {
         }
     }
 
+    #[test]
+    fn acts_stand_in_the_order_of_their_codes_and_no_message_has_its_own_beside_them() {
         assert!(ACTS.is_sorted_by(|one, other| one.0 < other.0));
         let is_error = |of: &str| ["error", "station-error"].contains(&of);
         let errors: Vec<_> = known().into_values().flatten().filter(|it| is_error(&it.of)).collect();

@@ -115,11 +115,11 @@ fn words() -> impl Iterator<Item = Explanation> {
 /// What a verdict asks for, whatever led to it.
 const fn act(verdict: Verdict) -> &'static str {
     match verdict {
-        Verdict::Pass => "Nothing. What no frame put to the test is named behind `limits`.",
+        Verdict::Pass => "Nothing. The line `limits` names what no frame put to the test.",
         Verdict::Fail => {
-            "What the suspect says behind \"At the bench\", then run again. If it fails again, set the board aside with its report."
+            "Do what stands after \"At the bench\", then run again. If the board fails again, set it aside with its report."
         }
-        Verdict::Error => "What stands behind `do`, then run again: of the board nothing is known yet.",
+        Verdict::Error => "Do what stands after `do`, then run again: nothing is known of the board yet.",
     }
 }
 

@@ -47,7 +47,7 @@ const LINES: &[Line] = &[
         word: "skipped",
         meaning: "The check beside it was not made, and nothing is known of what it looks at.",
         fault: "as the check says that ended the run, or the option that left this one out",
-        act: "Look at the check that is no `ok`, and run again when it is put right.",
+        act: "Look at the check that is not `ok`, put that right, and run again.",
         place: "`outcome` of each of a result's `checks`, `skipped`",
     },
     Line {
@@ -59,9 +59,9 @@ const LINES: &[Line] = &[
     },
     Line {
         word: "differs",
-        meaning: "A frame of a soak that came out otherwise than it must, and when.",
+        meaning: "A frame of a soak that came out wrong, and when.",
         fault: "the board's",
-        act: "Do what stands behind `do`: a fault that comes with time is most often one of heat, supply or timing.",
+        act: "Do what stands after `do`: a fault that comes with time is most often one of heat, supply or timing.",
         place: "`differences` of a result's `soak`",
     },
     Line {
@@ -99,14 +99,15 @@ const LINES: &[Line] = &[
         word: "limits",
         meaning: "What no frame of the run put to the test, so that a fault there would have gone unseen: what a PASS says nothing about.",
         fault: "nobody's: the frames of the run leave it open",
-        act: "Stream all built-in frames, at the size and speed of use, and have nothing left out; ask `halfrow explain` for the code of each, which \
-              the line `explain` names.",
+        act: "Stream all built-in frames, at the size and speed of use, and leave nothing out; ask `halfrow \
+              explain` for the code of each, which the line `explain` names.",
         place: "`not_exercised` of a result",
     },
     Line {
         word: "coverage",
-        meaning: "Which share of the single faults that were put into the project's Verilog one by one a run with these frames finds at this geometry. A \
-                  mock board is not made of it and has no such line.",
+        meaning: "The share of single faults that a run with these frames finds at this geometry, of those that \
+                  were put into the project's Verilog one by one. A mock board is not made of that Verilog and has \
+                  no such line.",
         fault: NOBODYS,
         act: "",
         place: "`coverage` of a result",
@@ -115,7 +116,7 @@ const LINES: &[Line] = &[
         word: "suspect",
         meaning: "The part of the board that explains the differences that were seen, the likeliest first, with the evidence below it.",
         fault: "the board's",
-        act: "Do what stands behind \"At the bench\"; \"Next\" is for whoever designed the board.",
+        act: "Do what stands after \"At the bench\"; \"Next\" is for whoever designed the board.",
         place: "`suspects` of a result",
     },
     Line {

@@ -10,11 +10,11 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub(in crate::commands) enum LoadError {
     /// A record that cannot be read as one.
-    #[error("{} does not tell how a bitstream was made; build it anew, or take that file away", path.display())]
+    #[error("{} does not say how a bitstream was made; build it again, or remove that file", path.display())]
     RecordMalformed { path: PathBuf, source: serde_json::Error },
     /// A bitstream that is not the one of its record.
     #[error(
-        "{} is not the bitstream that {} tells of; build it anew, or copy both files together", path.display(),
+        "{} is not the bitstream that {} describes; build it again, or copy both files together", path.display(),
         record.display()
     )]
     OtherBitstream { path: PathBuf, record: PathBuf },
@@ -34,7 +34,8 @@ pub(in crate::commands) enum LoadError {
     OfPool { target: String },
     /// A board in this program.
     #[error(
-        "{target} is a board in this program, and no FPGA is behind it; name the place of the one that is loaded with --board"
+        "{target} is a board in this program, with no FPGA behind it; name the place of the one that is loaded with \
+         --board"
     )]
     BuiltIn { target: String },
     /// No loader.
@@ -45,7 +46,7 @@ pub(in crate::commands) enum LoadError {
     )]
     LoaderMissing { other: String },
     /// A loader that does not start, or whose end nobody knows.
-    #[error("`{call}` cannot be run; check that openFPGALoader may be executed here, or install it anew")]
+    #[error("`{call}` cannot be run; check that openFPGALoader may be executed here, or install it again")]
     LoaderNotStarted { call: String, source: io::Error },
     /// A loader that failed.
     #[error(
@@ -61,9 +62,9 @@ pub(in crate::commands) enum LoadError {
     LoaderLate { call: String, deadline: f64, said: String },
     /// A board that runs another bitstream than the one that was loaded.
     #[error(
-        "{target} is of build {board}, and the file that was loaded of build {file}: it is another board than the one \
-         that was loaded, or kept what it had; check which board --board names, and that the bitstream has the link of its \
-         USB chip"
+        "{target} runs build {board}, but the file that was loaded is build {file}: it is another board than the \
+         one that was loaded, or it kept its old bitstream; check which board --board names, and that the bitstream \
+         has the link of its USB chip"
     )]
     OtherBuild { target: String, board: String, file: String },
 }

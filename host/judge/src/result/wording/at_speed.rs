@@ -18,7 +18,10 @@ pub(super) fn changed_on_entry(
         place: format!(
             "the way of a row from its packet to the core, row {first} of frame {frame}{others}{bit}"
         ),
-        defect: "the board's own CRC of what entered the core is not that of what was sent".to_owned(),
+        defect:
+            "the board's own CRC of the samples that entered the core differs from that of the samples that \
+                 were sent"
+                .to_owned(),
         designer: "Check the banks that rows wait in, and the unpacking of samples in front of them."
             .to_owned(),
         technician: LOGIC,
@@ -36,9 +39,9 @@ pub(super) fn tables_late(rows: usize) -> Words {
     Words {
         part: "stale tables",
         place: "the change of table banks between two frames".to_owned(),
-        defect: format!("{rows} of a frame made with the tables of the frame in front"),
+        defect: format!("{rows} of a frame made with the tables of the frame before"),
         designer:
-            "Check when the switch of table banks takes effect where a frame follows another without a pause."
+            "Check when the switch of table banks takes effect if a frame follows another without a pause."
                 .to_owned(),
         technician: TIMING,
     }
@@ -49,7 +52,7 @@ pub(super) fn only_at_speed(row: Option<usize>, samples: usize, bits: &[u32]) ->
     Words {
         part: "timing",
         place: format!("a path that fails at the full pixel clock{bits}"),
-        defect: format!("what was streamed row by row is right, and what runs without a pause is not{kept}"),
+        defect: format!("frames that were streamed row by row are right, and frames without a pause are not{kept}"),
         designer: "Check the timing of the datapath at this clock, and its supply while every clock carries a sample."
             .to_owned(),
         technician: TIMING,
@@ -60,7 +63,7 @@ pub(super) fn seen_at_speed(row: Option<usize>, samples: usize, bits: &[u32]) ->
     let (bits, kept) = seen(row, samples, bits);
     Words {
         part: "timing or logic",
-        place: format!("a path that fails at the full pixel clock, and perhaps at any{bits}"),
+        place: format!("a path that fails at the full pixel clock, and perhaps at any clock{bits}"),
         defect: format!("seen at speed only in a frame that was not streamed{kept}"),
         designer: "Stream a frame of this size with these tables: if it is right, check the timing of the datapath at this \
                    clock, and its supply; if it is not, look for what depends on size, centre, depth and tables."
@@ -74,7 +77,7 @@ fn seen(row: Option<usize>, samples: usize, bits: &[u32]) -> (String, String) {
     let Some(row) = row else { return (String::new(), String::new()) };
     (
         format!(", seen in {} of the corrected samples", places::bits(bits)),
-        format!("; row {row} was kept, in which {} {}", count(samples, "sample"), differ(samples)),
+        format!("; the board kept row {row}, in which {} {}", count(samples, "sample"), differ(samples)),
     )
 }
 
@@ -83,10 +86,10 @@ pub(super) fn sentence(finding: &Finding) -> Option<String> {
     Some(match finding {
         Finding::EqualAtSpeed(at_speed) => equal(at_speed) + &elsewhere(at_speed.corners),
         Finding::ClockNotAsNamed { clock_hz, seen } => {
-            format!("the board names a pixel clock of {}, and {}", hertz(*clock_hz), seen_of_clock(*seen))
+            format!("the board names a pixel clock of {}, but {}", hertz(*clock_hz), seen_of_clock(*seen))
         }
         Finding::InCorner { corner: Corner { width, height, bits, centre2, grid }, found } => format!(
-            "with frames of {width} x {height}, {bits} bits, centre {:.1}, drawn {} and kernels: {}",
+            "with frames of {width} x {height}, {bits} bits, centre {:.1}, random {} and kernels: {}",
             f64::from(*centre2) / 2.0,
             if *grid { "grids, row factors" } else { "tables" },
             found.sentence()
@@ -101,19 +104,21 @@ pub(super) fn sentence(finding: &Finding) -> Option<String> {
             differs((*wrong, *frames), *first, *repetition, suspect)
         }
         Finding::MiscountedAtSpeed { count: BurstCount::Records, counted, right, .. } => {
-            format!("the board gives {counted} records of {} at speed", count(*right, "frame"))
+            format!("the board gives {counted} records for {} at speed", count(*right, "frame"))
         }
         Finding::MiscountedAtSpeed { frame, count, counted, right } => {
+            let (counted, right) = (grouped(*counted), grouped(*right));
             format!(
-                "the board counts {counted} {} for frame {frame} at speed, and it is {right}",
+                "the board counts {counted} {} for frame {frame} at speed; the right number is {right}",
                 words(*count)
             )
         }
         Finding::BurstStalled { frame, frames, seconds } => format!(
-            "frame {frame} of {frames} at speed did not come in {seconds:.1} s; check the board's clock, and run again"
+            "frame {frame} of {frames} at speed did not come within {seconds:.1} s; check the board's clock, and \
+             run again"
         ),
         Finding::BurstEndedEarly { came, frames } => {
-            format!("the board ended its frames at speed behind {came} of {frames}; run again")
+            format!("the board ended its frames at speed after {came} of {frames}; run again")
         }
         _ => return None,
     })
@@ -184,7 +189,7 @@ pub(crate) fn named_clock(clock_hz: u32, seen: ClockSeen) -> String {
 pub(crate) fn seen_of_clock(seen: ClockSeen) -> String {
     let between = match (seen.least_hz, seen.most_hz) {
         (Some(least), Some(most)) if least > most => {
-            return "its clock was seen to be no steady one".to_owned();
+            return "its clock was seen not to be steady".to_owned();
         }
         (Some(least), Some(most)) => format!("{} to {}", hertz(least), hertz(most)),
         // The end of the count, which no clock is.
@@ -199,7 +204,7 @@ pub(crate) fn seen_of_clock(seen: ClockSeen) -> String {
 fn elsewhere(corners: u32) -> String {
     match corners {
         0 => String::new(),
-        some => format!("; so it is with {} that no frame of the run has", count(some, "setting")),
+        some => format!("; also equal with {} that no streamed frame has", count(some, "setting")),
     }
 }
 
@@ -217,20 +222,20 @@ fn because(reason: NoBurst) -> String {
 fn shown(repetition: Repetition) -> String {
     match repetition {
         Repetition::NotNeeded {} => String::new(),
-        Repetition::NoTrap {} => ", of which the board keeps no row".to_owned(),
+        Repetition::NoTrap {} => ", of which the board kept no row".to_owned(),
         Repetition::AllRight { frames } => {
             format!("; made again by itself, it was right {}", count(frames, "time"))
         }
         Repetition::Trapped { frames, row, streamed } => {
             let streamed = match streamed {
                 Streamed::NotTried => "",
-                Streamed::Right => "; streamed it is right",
-                Streamed::Wrong => "; streamed it is wrong, too",
+                Streamed::Right => "; streamed, it is right",
+                Streamed::Wrong => "; streamed, it is wrong, too",
             };
-            format!("; made again, it differed at try {frames}, in row {row} first{streamed}")
+            format!("; made again, it differed at try {frames}, first in row {row}{streamed}")
         }
         Repetition::NothingTrapped { frames } => {
-            format!("; made again, it differed at try {frames}, and the board kept no row that does")
+            format!("; made again, it differed at try {frames}, but the board kept no row that differs")
         }
         Repetition::Impossible {} => "; it could not be made again".to_owned(),
     }

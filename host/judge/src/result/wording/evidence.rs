@@ -21,12 +21,12 @@ pub fn evidence(defect: &Defect, account: &Account) -> String {
     match *account {
         Account::Samples { differing, explained, contradicted, others, set_in } => {
             let onset =
-                if set_in { "; it set in during the run, since rows before came back right" } else { "" };
+                if set_in { "; it began during the run, because earlier rows came back right" } else { "" };
             format!("{defect} {}{onset}", samples(differing, explained, contradicted, others))
         }
         Account::Words { wrong, explained, others } => {
             let unsure =
-                if others > 0 { "; other lines would read alike, so this is not certain" } else { "" };
+                if others > 0 { "; other lines would read the same, so this is not certain" } else { "" };
             let wrong = count(wrong, "wrong word");
             format!("{defect} gives {} of the {wrong}, and changes no other{unsure}", grouped(explained))
         }

@@ -60,7 +60,7 @@ fn all_right(
     };
     let away = match reconnections {
         0 => String::new(),
-        times => format!("; the board went away and came back, {times} x"),
+        times => format!("; the board went away and came back {}", count(times, "time")),
     };
     format!(
         "{}, {}, all equal to the reference; every row takes {latency} pixel clocks{untested}{away}",
@@ -72,7 +72,10 @@ fn all_right(
 fn counters_right(rows: usize, damaged: u32) -> String {
     let unseen = match damaged {
         0 => String::new(),
-        _ => format!("; it counts {}, and nothing had to be sent again", count(damaged, "damaged packet")),
+        _ => format!(
+            "; the board counts {}, although nothing had to be sent again",
+            count(damaged, "damaged packet")
+        ),
     };
     let rows = count(rows, "row");
     format!("{rows} in, {rows} out{unseen}")
@@ -82,7 +85,7 @@ fn counters_right(rows: usize, damaged: u32) -> String {
 fn of_board(finding: &Finding) -> String {
     match finding {
         Finding::CapabilityImpossible { capability, value, legal } => format!(
-            "the board says {capability} = {value}, and {legal}; correct what it says of itself (CAPABILITIES in \
+            "the board says {capability} = {value}, but {legal}; correct what it says of itself (CAPABILITIES in \
              protocol/WIRE.md), or load another bitstream"
         ),
         Finding::EchoWrong {} => {
@@ -93,7 +96,7 @@ fn of_board(finding: &Finding) -> String {
             "a table's CRC is wrong although every entry reads back right".to_owned()
         }
         Finding::CommitCrcWrong {} => {
-            "the tables read back right, and the board finds another CRC when it commits them".to_owned()
+            "the tables read back right, but the board finds another CRC when it commits them".to_owned()
         }
         Finding::TablesChanged { found } => format!("the tables changed during the run: {}", sentence(found)),
         Finding::SamplesDiffer { differences, samples, differing_frames, frames, suspect, others } => {
@@ -101,15 +104,20 @@ fn of_board(finding: &Finding) -> String {
             format!("{differ}; {}", suspicion(suspect.as_deref(), *others))
         }
         Finding::CounterWrong { counter, counted, right } => {
-            format!("the board counts {counted} {}, and it is {}{right}", counter.words(), counter.bound())
+            let (counted, right) = (grouped(*counted), grouped(*right));
+            format!(
+                "the board counts {counted} {}; the right number is {}{right}",
+                counter.words(),
+                counter.bound()
+            )
         }
         Finding::GapsMiscounted { row, frame, counted, expected } => format!(
-            "row {row} of frame {frame} was kept waiting by gaps for {counted} board clocks by the board's count, and the gaps \
-             of its seed are {expected}"
+            "the board counts {counted} board clocks of gaps in row {row} of frame {frame}, but the gaps of its \
+             seed are {expected}"
         ),
         Finding::LatencyMiscounted { least, most, counted_least, counted_most } => format!(
-            "the rows name latencies of {least} to {most} pixel clocks, and the board's counters {counted_least} to \
-             {counted_most}"
+            "the rows name latencies of {least} to {most} pixel clocks, but the board's counters say \
+             {counted_least} to {counted_most}"
         ),
         other => of_rows(other),
     }
@@ -143,28 +151,30 @@ fn table(defect: &Defect, account: &Account) -> String {
 fn of_rows(finding: &Finding) -> String {
     match finding {
         Finding::GenerationWrong { row, frame, named, committed } => format!(
-            "row {row} of frame {frame} names the tables of generation {named}, and generation {committed} was committed \
-             for it"
+            "row {row} of frame {frame} names the tables of generation {named}, but generation {committed} was \
+             committed for it"
         ),
         Finding::RowsEnteredChanged { rows, row, frame, flipped } => format!(
-            "{} changed on the way into the core, not computed wrongly: the board's own CRC of what entered is not that \
-             of what was sent, first for row {row} of frame {frame}{}",
+            "{} changed on the way into the core, and the error is not in the computation: the board's own CRC of \
+             the samples that entered differs from that of the samples that were sent, first in row {row} of frame \
+             {frame}{}",
             count(*rows, "row"),
             at_speed::flipped_bit(*flipped)
         ),
         Finding::EntryMiscounted { rows, row, frame } => format!(
-            "{} came out right, and the board's CRC of what entered the core is not that of what was sent, first for row \
-             {row} of frame {frame}: the CRC unit is wrong, or samples that no output reads changed on their way in",
+            "{} came out right, but the board's CRC of the samples that entered the core differs from that of the \
+             samples that were sent, first in row {row} of frame {frame}: the CRC unit is wrong, or samples that no \
+             output reads changed on their way in",
             count(*rows, "row")
         ),
         Finding::LatencyWrong(late) => late_rows(late),
         Finding::RowMisplaced { row, frame } => format!(
-            "the board returned row {row} of frame {frame} under a place that was never sent; its bitstream and this halfrow \
-             do not match"
+            "the board returned row {row} of frame {frame} with a place that was never sent; its bitstream and this \
+             halfrow do not match"
         ),
         Finding::RowSwallowed { row, frame, again } => format!(
-            "row {row} of frame {frame} went into the board and never came out; played again, with nothing else lost or late, \
-             row {again} was lost, and the board counts it as taken"
+            "row {row} of frame {frame} went into the board and never came out; when it was streamed again, nothing \
+             else was lost or late, but row {again} was lost, and the board counts it as taken"
         ),
         other => of_conduct(other),
     }
@@ -174,22 +184,22 @@ fn of_rows(finding: &Finding) -> String {
 fn of_conduct(finding: &Finding) -> String {
     match finding {
         Finding::RowCopyDiffers { row, frame } => format!(
-            "row {row} of frame {frame} came twice, and not the same both times, each under a CRC that is right"
+            "row {row} of frame {frame} came twice with different samples, each time with a right CRC"
         ),
         Finding::RowNeverSent { row, frame, sequence } => format!(
             "the board returned row {row} of frame {frame}, number {sequence} of the session, which it was never given"
         ),
         Finding::RowNumberedTwice(NumberedRow { row, frame, number }) => format!(
-            "the board numbers its ROW_OUT packets wrongly: row {row} of frame {frame} has the number {number}, and so has \
-             another one shortly before it"
+            "the board numbers its ROW_OUT packets wrongly: row {row} of frame {frame} has the number {number}, and \
+             so has another row shortly before it"
         ),
         Finding::RowRepeatsStand(RepeatedRow { row, frame, repeats }) => format!(
-            "the board sent row {row} of frame {frame} again, and `repeats` says {repeats} both times: it is one greater \
+            "the board sent row {row} of frame {frame} again, and `repeats` says {repeats} both times, and must grow by one \
              each time"
         ),
         Finding::RowOutOfOrder { row, frame } => format!(
-            "the board reorders rows: row {row} of frame {frame} left it behind a later row, by the board's own numbers of \
-             its packets"
+            "the board reorders rows: by the board's own packet numbers, row {row} of frame {frame} left it after a \
+             later row"
         ),
         other => perhaps_of_link(other),
     }
@@ -198,31 +208,31 @@ fn of_conduct(finding: &Finding) -> String {
 /// What may be the board's or the link's.
 fn perhaps_of_link(finding: &Finding) -> String {
     let missing = |row: &u16, frame: &u16| {
-        format!("row {row} of frame {frame} did not come back however often it was asked for")
+        format!("row {row} of frame {frame} did not come back, although it was asked for again and again")
     };
     match finding {
         Finding::RowLostOnce { row, frame } => format!(
-            "{}; played again, the frame came back whole; check cable and connectors, and run again",
+            "{}; when it was streamed again, the whole frame came back; check cable and connectors, and run again",
             missing(row, frame)
         ),
         Finding::RowLostAmongOthers { row, frame } => format!(
-            "{}; played again, other packets were lost or late as well, so it may be the link; check cable, connectors and \
-             rate",
+            "{}; when it was streamed again, other packets were lost or late as well, so the link may be the cause; \
+             check cable, connectors and rate",
             missing(row, frame)
         ),
         Finding::RightInAnotherSession { found, doubt } => format!(
-            "{}; that may have come from the link, since {}: done again in a session of its own, everything was right; check \
-             the link, and run again",
+            "{}; the link may have caused that, because {}: in another session everything was right; check the \
+             link, and run again",
             sentence(found),
             because(*doubt)
         ),
         Finding::WrongOverDoubtfulLink { found, doubt } => format!(
-            "{}; and {}, so that it may come from the link; check the link, and run again",
+            "{}; but the link may have caused that, because {}; check the link, and run again",
             sentence(found),
             because(*doubt)
         ),
         Finding::SecondLookBrokenOff(it) => format!(
-            "{}; that may have come from the link, since {}, and the look in another session broke off: {}",
+            "{}; the link may have caused that, because {}, and the second look, in another session, broke off: {}",
             sentence(&it.found),
             because(it.doubt),
             sentence(&it.reason)
@@ -235,19 +245,19 @@ fn perhaps_of_link(finding: &Finding) -> String {
 pub(crate) fn because(doubt: Doubt) -> String {
     match doubt {
         Doubt::RequestsTwice { requests } => {
-            format!("{} to change the board may have come to it twice", count(requests, "request"))
+            format!("{} to change the board may have reached it twice", count(requests, "request"))
         }
         Doubt::PacketsMiscounted { counted, sent } => {
             format!(
-                "the board counts {}, and {} should have come to it",
+                "the board counts {}, but {} should have reached it",
                 count(counted, "packet"),
                 grouped(sent)
             )
         }
         Doubt::CountersOfLinks {} => {
-            "a link that brings one packet twice and loses another moves such counters as well".to_owned()
+            "a link that brings one packet twice and loses another changes such counters too".to_owned()
         }
-        Doubt::PacketsUncounted {} => "the board does not tell how many packets came to it".to_owned(),
+        Doubt::PacketsUncounted {} => "the board does not tell how many packets reached it".to_owned(),
         Doubt::AnswerLost {} => "a link can lose the same packet each time".to_owned(),
     }
 }
@@ -257,19 +267,21 @@ fn unjudged(finding: &Finding) -> String {
     match finding {
         Finding::NothingJudged {} => "nothing was judged: no frame came back".to_owned(),
         Finding::DatapathUnknown { datapath, known } => format!(
-            "the board computes datapath {datapath}, and this program judges datapath {known}; load a bitstream of datapath \
-             {known}, or install a halfrow that knows {datapath}"
+            "the board computes datapath {datapath}, but this program judges datapath {known}; load a bitstream of \
+             datapath {known}, or install a halfrow that knows {datapath}"
         ),
         Finding::HardwareRequired { .. } => {
-            "hardware is required and this is none, so nothing was judged; name a real board".to_owned()
+            "hardware is required, and this board is not hardware, so nothing was judged; name a real board"
+                .to_owned()
         }
         Finding::BoardExchanged {} => {
-            "another board, or another bitstream, came back than went away; run again".to_owned()
+            "the board that came back is another one, or runs another bitstream; run again".to_owned()
         }
         Finding::BoardStayedAway { reason, seconds } => {
             format!("{}; the board did not come back in {seconds} s", reason.sentence())
         }
-        _ => String::new(),
+        // A sentence that is still to be written: never an empty one.
+        other => other.code(),
     }
 }
 

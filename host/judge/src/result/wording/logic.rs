@@ -12,7 +12,7 @@ pub(super) fn tap_offset(columns: i64) -> Words {
     Words {
         part: "tap offset",
         place: format!("the window's read address, {distance} to the {side}"),
-        defect: "every tap taken from there".to_owned(),
+        defect: "every tap read from there".to_owned(),
         designer: "Check the offset between the source column and the line memory's read address.".to_owned(),
         technician: LOGIC,
     }

@@ -50,7 +50,7 @@ pub(crate) const MAPS: &str = "Look at the difference maps of a report.";
 pub(crate) const NO_MAPS: &str = "No map shows the differences: every frame that has a map is right, and samples differ only at full speed \
                                   or after the frames.";
 /// What is said of differences that no defect explains.
-const UNEXPLAINED: &str = "no single defect that is known explains them";
+const UNEXPLAINED: &str = "no single known defect explains them";
 /// Nothing is known.
 const REPORT: &str = "Reload the bitstream and run again with a report. If the fault comes back, set the board aside, and give the \
                       report to the designer.";
@@ -71,8 +71,8 @@ pub fn place(defect: &Defect) -> String {
 fn suspicion(suspect: Option<&Defect>, others: usize) -> String {
     let unsure = match others {
         0 => String::new(),
-        1 => ", or another defect that gives the same".to_owned(),
-        more => format!(", or one of {more} others that give the same"),
+        1 => ", or another defect with the same effect".to_owned(),
+        more => format!(", or one of {more} others with the same effect"),
     };
     match suspect {
         None => UNEXPLAINED.to_owned(),
@@ -172,7 +172,8 @@ mod tests {
         };
         assert_eq!(
             sentence(&differ),
-            "105 of 39,398,400 samples differ, in 3,607 of 3,607 frames; no single defect that is known explains them: bit 5 alone"
+            "105 of 39,398,400 samples differ, in 3,607 of 3,607 frames; no single known defect explains them: bit \
+             5 alone"
         );
     }
 
@@ -197,8 +198,8 @@ mod tests {
         };
         for (others, end) in [
             (0, "the suspect is corrected samples, bit 9, stuck at 1"),
-            (1, "stuck at 1, or another defect that gives the same"),
-            (3, "stuck at 1, or one of 3 others that give the same"),
+            (1, "stuck at 1, or another defect with the same effect"),
+            (3, "stuck at 1, or one of 3 others with the same effect"),
         ] {
             for told in differ(others) {
                 assert!(told.ends_with(end), "{told}");

@@ -31,18 +31,19 @@ pub fn not_exercised(part: &NotExercised) -> String {
             format!("{}, since {}", clock(*clock_hz), seen_of_clock(*seen))
         }
         NotExercised::UnseenClock { clock_hz } => {
-            format!("{}, which only frames at speed tell", clock(*clock_hz))
+            format!("{}, which only frames at speed show", clock(*clock_hz))
         }
         NotExercised::Rules {} => "what the board must refuse, keep and end".to_owned(),
         NotExercised::Grids {} => "grids, which are datapath 2".to_owned(),
         NotExercised::FurtherRecords { filled } => {
-            format!("records of bursts behind the first {filled}")
+            format!("records of bursts after the first {filled}")
         }
         NotExercised::CountersOfPoorLinks {} => {
-            "counters that a poor link moves as well, since the board counts damaged packets, or others than were sent".to_owned()
+            "counters that a poor link changes too, because the board counts damaged packets, or another number of \
+             packets than were sent".to_owned()
         }
         NotExercised::SameBoard {} => {
-            "that the board that came back is the one that went away, since it has no serial number".to_owned()
+            "whether the board that came back is the one that went away, because it has no serial number".to_owned()
         }
         NotExercised::Depths { bits } => depths(bits),
     }

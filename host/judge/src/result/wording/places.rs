@@ -100,12 +100,13 @@ fn exchanged(source: RowSource, mostly: bool) -> Words {
         rows if rows < 0 => format!("the row {} above", -rows),
         rows => format!("the row {rows} below"),
     };
-    let most = if mostly { "rows holding other rows, mostly" } else { "rows holding" };
+    let (most, pause) = if mostly { ("rows holding other rows, mostly", ",") } else { ("rows holding", "") };
     let defect = match source {
-        RowSource::Output { frames: 0, rows } => format!("{most} {},", name(rows)),
+        RowSource::Output { frames: 0, rows } => format!("{most} {}{pause}", name(rows)),
         RowSource::Output { frames, rows } => {
             let when = if frames < 0 { "earlier" } else { "later" };
-            format!("{most} {} of the frame {} {when},", name(rows), frames.abs())
+            let frames = count(frames.unsigned_abs(), "frame");
+            format!("{most} {} from {frames} {when}{pause}", name(rows))
         }
         RowSource::Input { rows } => format!("{most} {}, made with their own factor,", name(rows)),
     };
@@ -122,8 +123,11 @@ fn shifted(columns: isize) -> Words {
     let side = if columns < 0 { "left" } else { "right" };
     Words {
         part: "row shift",
-        place: format!("the corrected row's first sample, {} to the {side}", columns.unsigned_abs()),
-        defect: "every row moved by as many columns".to_owned(),
+        place: format!(
+            "corrected rows, shifted by {} to the {side}",
+            count(columns.unsigned_abs(), "column")
+        ),
+        defect: "every row shifted by that much".to_owned(),
         designer: "Check on which pixel clock the capture of a corrected row begins.".to_owned(),
         technician: LOGIC,
     }
@@ -143,6 +147,7 @@ fn lost(rows: usize, first: usize) -> Words {
 }
 
 fn unknown(defect: &Defect) -> Words {
+    debug_assert!(matches!(defect, Defect::NoneKnown { .. }), "{defect:?} has no words");
     Words {
         part: "unknown",
         place: "an unknown part".to_owned(),

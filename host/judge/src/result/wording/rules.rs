@@ -6,17 +6,18 @@ use crate::result::{Answer, Finding, Rule};
 use crate::words::count;
 
 /// What to do about any of them.
-pub(super) const REMEDY: &str = "Check how the board takes requests apart, and try it with the conformance tests; what it must refuse stands in protocol/WIRE.md.";
+pub(super) const REMEDY: &str = "Check how the board decodes requests, and try it with the conformance tests; \
+                                 protocol/WIRE.md says what it must refuse.";
 
 /// A finding on rules, if it is one.
 pub(super) fn sentence(finding: &Finding) -> Option<String> {
     Some(match finding {
         Finding::RulesKept { requests } => {
-            format!("{} answered as the wire's rules have it", count(*requests, "request"))
+            format!("{} answered as the wire's rules say", count(*requests, "request"))
         }
         Finding::RulesLeftOut {} => "left out of this run".to_owned(),
         Finding::RuleBroken { rule, request, right, found } => {
-            format!("the board must {}, and {} ({})", must(right, request), did(found), meaning(*rule))
+            format!("the board must {}, but it {} ({})", must(right, request), did(found), meaning(*rule))
         }
         _ => return None,
     })
@@ -29,7 +30,7 @@ fn must(right: &Answer, request: &str) -> String {
         }
         Answer::Replied { payload } if payload.is_empty() => format!("carry out {request}"),
         Answer::Replied { payload } => format!("answer {request} with {payload}"),
-        Answer::Credit { rows } => format!("give credit for {} behind {request}", count(*rows, "row")),
+        Answer::Credit { rows } => format!("give credit for {} after {request}", count(*rows, "row")),
         Answer::Session { number } => format!("answer {request} with session {number}"),
         Answer::Taken {} => format!("take {request}"),
         Answer::Burst { ended, records } => {
@@ -48,9 +49,9 @@ fn did(found: &Answer) -> String {
         Answer::Refused { code, detail } => format!("refused as `{}`, detail {detail}", reason(*code)),
         Answer::Replied { payload } if payload.is_empty() => "carried it out".to_owned(),
         Answer::Replied { payload } => format!("answered with {payload}"),
-        Answer::Credit { rows } => format!("gave it for {rows}"),
+        Answer::Credit { rows } => format!("gave credit for {rows}"),
         Answer::Session { number } => format!("answered with session {number}"),
-        Answer::Taken {} => "took it without a word".to_owned(),
+        Answer::Taken {} => "took it without an answer".to_owned(),
         Answer::Burst { ended, records } => {
             let state = if *ended { "that has ended" } else { "under way" };
             format!("answered with one {state} and {}", count(*records, "record"))
@@ -71,7 +72,7 @@ fn meaning(rule: Rule) -> &'static str {
     match rule {
         Rule::Payload => "a request is cut short or has a field without meaning",
         Rule::Kind => "the kind is no request",
-        Rule::Skipped => "what stands behind fields, or means nothing in a row's place, is not looked at",
+        Rule::Skipped => "what follows the fields, or means nothing in a row's place, is ignored",
         Rule::Configuration => "a configuration is set as it is, or refused without effect",
         Rule::Span => "a span that is in no table",
         Rule::Entry => "a table's entry out of range",
@@ -79,7 +80,7 @@ fn meaning(rule: Rule) -> &'static str {
         Rule::Damage => "a damaged packet has no effect",
         Rule::Once => "each request has one answer, and most had two",
         Rule::Session => "a packet of another session has no effect",
-        Rule::Held => "a board is held for 10 s behind its holder's last packet",
+        Rule::Held => "a board is held for 10 s after its holder's last packet",
         Rule::NewSession => "a greeting opens the next session, which keeps nothing but tables and settings",
         Rule::Closed => "RESET closes a session with level 1 alone, and drops tables with level 2 alone",
         Rule::CommitCrc => "a commit with another CRC than the tables have",
@@ -94,7 +95,7 @@ fn meaning(rule: Rule) -> &'static str {
         Rule::Inside => "rows are inside the core, or kept for the host",
         Rule::Rows => "rows come back in place",
         Rule::Samples => "samples beyond their depth go in as they are",
-        Rule::Again => "a row comes again until it is acknowledged",
+        Rule::Again => "a row is sent again until it is acknowledged",
         Rule::Banks => "row_banks_out rows are kept until they are acknowledged, and no more are made",
         Rule::Wide => "rows of the greatest width",
         Rule::RowNumber => "numbers of rows",

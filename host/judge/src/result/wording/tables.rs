@@ -25,7 +25,7 @@ pub(super) fn as_seen(defect: &Defect) -> Option<Words> {
 }
 
 fn row_bit(row: usize, bit: u32, reading: &Reading, above_one: bool) -> Words {
-    let illegal = if above_one { ", above 1, where only part of the row can be foretold," } else { "" };
+    let illegal = if above_one { ", above 1, so that only part of the row can be predicted," } else { "" };
     row_factor(
         row,
         format!("row {row}'s factor, {}", bits(bit, reading)),
@@ -52,7 +52,7 @@ fn row_factor(row: usize, place: String, defect: String) -> Words {
 
 fn grid_bit(entry: (usize, usize), bit: u32, reading: &Reading, illegal: bool) -> Words {
     let illegal =
-        if illegal { ", which leads out of the row, where only part of it can be foretold," } else { "" };
+        if illegal { ", which leads out of the row, so that only part of it can be predicted," } else { "" };
     let (column, row) = entry;
     Words {
         part: "grid entry",

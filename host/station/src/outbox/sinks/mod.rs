@@ -113,7 +113,7 @@ pub enum SinkError {
         said: String,
     },
     /// It takes others, and not this.
-    #[error("{host} answers {status} to this ({answer}); put right there what it says, and release it")]
+    #[error("{host} answers {status} to this ({answer}); correct there what it complains of, and release it")]
     Rejected {
         /// The other side.
         host: String,

@@ -95,7 +95,7 @@ fn a_lane_that_hangs_is_killed_and_recorded_and_the_others_do_not_notice() {
     running.test("2", SERIALS[1]);
     running.state("2", "PASS");
     let ended = running.state("1", "ERROR");
-    assert!(ended["shown"]["headline"].as_str().unwrap().contains("told nothing for 5 s"), "{ended}");
+    assert!(ended["shown"]["headline"].as_str().unwrap().contains("sent nothing for 5 s"), "{ended}");
     assert!(kill(Pid::from_raw(lane), None).is_err(), "it is gone");
     assert_eq!(station.query("SELECT cause FROM run WHERE lane = '1'"), ["crash"]);
     running.test("2", SERIALS[1]);

@@ -21,12 +21,14 @@ fn a_lane_is_out_until_the_good_unit_passed_and_the_bad_one_failed() {
     let mut running = station.start();
     let out = running.state("1", "OUT");
     assert!(
-        out["note"].as_str().unwrap().contains("the good unit CA0131103628 is to come to PASS first"),
+        out["note"].as_str().unwrap().contains("the good unit CA0131103628 must be judged PASS first"),
         "{out}"
     );
     for early in [product, bad] {
         running.test("1", early);
-        assert!(running.answer(early).1.contains("lane 1 is out of service: the good unit"));
+        assert!(
+            running.answer(early).1.contains("lane 1 is out of service: to check this shift, the good unit")
+        );
     }
     running.test("1", good);
     let out = running
@@ -35,14 +37,14 @@ fn a_lane_is_out_until_the_good_unit_passed_and_the_bad_one_failed() {
     // The good board under the bad one's number passes, so the lane finds nothing.
     running.test("1", bad);
     running.wait("a bad unit that passed", |news| {
-        news["note"].as_str().is_some_and(|note| note.contains("the bad unit CA0201134373 came to PASS"))
+        news["note"].as_str().is_some_and(|note| note.contains("the bad unit CA0201134373 was judged PASS"))
     });
     running.test("1", product);
     assert!(!running.answer(product).0);
     // In the other lane the good unit fails.
     running.test("2", good);
     running.wait("a good unit that failed", |news| {
-        news["lane"] == "2" && news["note"].as_str().is_some_and(|note| note.contains("came to FAIL"))
+        news["lane"] == "2" && news["note"].as_str().is_some_and(|note| note.contains("was judged FAIL"))
     });
     running.end();
     station.assert_well();
@@ -123,11 +125,11 @@ fn the_mock_with_a_drawn_fault_may_be_what_is_known_to_be_bad() {
         assert_eq!(good_passes(&mut running, lane)["state"], "PASS");
     }
     running.test("1", product);
-    assert!(running.answer(product).1.contains("the mock board with a drawn fault is to come to FAIL first"));
+    assert!(running.answer(product).1.contains("with a random fault must be judged FAIL first"));
     let failed = mock_fails(&mut running, "1");
     assert_eq!(failed["shown"]["serial"], "HR:MOCK:1");
     running.test("1", "HR:MOCK");
-    assert!(running.answer("HR:MOCK").1.contains("by no mock board now"));
+    assert!(running.answer("HR:MOCK").1.contains("no check by a mock board now"));
     running.test("1", product);
     running.state("1", "PASS");
     // The other lane is not checked by it.
@@ -180,7 +182,7 @@ fn a_drawn_fault_that_the_plan_does_not_find_keeps_the_lane_out() {
     let target = station.query("SELECT target FROM run")[0].clone();
     let mut running = station.start();
     running.test("1", SERIALS[0]);
-    let said = format!("{target} came to PASS, so the plan does not find this fault");
+    let said = format!("{target} was judged PASS, so the plan does not find this fault");
     let wants = |news: &Value| news["note"].as_str().is_some_and(|note| note.contains(&said));
     assert_eq!(running.wait("a mock that passed", wants)["state"], "PASS");
     running.test("1", SERIALS[2]);
@@ -273,7 +275,7 @@ fn what_failed_before_the_good_unit_passed_checks_no_shift() {
     running.test("1", SERIALS[2]);
     let (is_taken, said) = running.answer(SERIALS[2]);
     assert!(
-        !is_taken && said.contains("the mock board with a drawn fault is to come to FAIL first"),
+        !is_taken && said.contains("the mock board with a random fault must be judged FAIL first"),
         "{said}"
     );
     mock_fails(&mut running, "1");

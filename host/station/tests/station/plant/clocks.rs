@@ -84,7 +84,7 @@ fn a_station_goes_on_without_its_plant_when_its_computer_slept_and_not_when_its_
     };
     clocks.ahead(3600, 0);
     let refused = came_to(SERIALS[1]);
-    assert!(refused["note"].to_string().contains(" min apart, and the plant tells"), "{refused}");
+    assert!(refused["note"].to_string().contains(" min apart, and the plant uses"), "{refused}");
     clocks.ahead(3600, 3600);
     let slept = came_to(SERIALS[1]);
     assert_eq!(slept["shown"]["verdict"], "PASS", "{slept}");

@@ -111,10 +111,10 @@ fn the_pages_show_every_station_and_only_look() {
     let browser = serving.here();
     let stations = text(&browser, "/");
     assert!(stations.contains("station 7") && stations.contains("station 8"), "{stations}");
-    assert!(stations.contains("CAM-T intake 1") && !stations.contains("not heard of"), "{stations}");
+    assert!(stations.contains("CAM-T intake 1") && !stations.contains("not heard from"), "{stations}");
     let silent = "UPDATE station SET seen_ms = seen_ms - 121000 WHERE name = 'station 8'";
     server.client("plant").batch_execute(silent).unwrap();
-    assert!(text(&browser, "/").contains("not heard of"));
+    assert!(text(&browser, "/").contains("not heard from"));
     let listed = text(&browser, "/history");
     assert!(listed.contains("S1") && listed.contains("station 7") && !listed.contains("S6"), "{listed}");
     let failed =
@@ -181,7 +181,7 @@ fn a_plant_that_is_away_is_said_to_be_and_is_shown_again_when_it_is_back() {
     server.kill();
     let away = browser.get("/history").with("accept", "text/html").send();
     assert_eq!(away.status, 503, "{}", away.text());
-    assert!(away.text().contains("look whether it is there"), "{}", away.text());
+    assert!(away.text().contains("check that it is there"), "{}", away.text());
     let german = browser.get("/history").with("accept", "text/html").with("accept-language", "de").send();
     assert!(german.text().contains("prüfen, ob es da ist"), "{}", german.text());
     server.again();

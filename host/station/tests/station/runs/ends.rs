@@ -85,7 +85,7 @@ fn a_build_that_the_plan_does_not_name_is_refused_before_a_frame_is_sent() {
         (Some(5), vec!["refused".to_owned()]),
         "{did:?}"
     );
-    assert!(did.said.contains("the board is a mock, and the plan takes hardware alone"), "{did:?}");
+    assert!(did.said.contains("the board is a mock, but the plan takes only hardware"), "{did:?}");
     assert_eq!(
         (station.saved(&did).1.production, did.said.contains("the board is no hardware")),
         (false, true),
@@ -204,7 +204,7 @@ fn a_lane_that_hangs_is_killed_and_recorded() {
     signal(lane, Signal::SIGSTOP);
     let did = Did::from(running.wait_with_output().unwrap());
     assert_eq!(did.code, Some(3), "{did:?}");
-    assert!(did.said.contains("the lane told nothing for 1 s"), "{did:?}");
+    assert!(did.said.contains("the lane sent nothing for 1 s"), "{did:?}");
     assert!(!exists(lane), "the lane is gone");
     assert_eq!(station.query("SELECT cause FROM run"), ["crash"]);
     assert_eq!(station.run("CAT00001", "mock").code, Some(0));
