@@ -393,9 +393,5 @@ fn a_burst_that_comes_late_is_not_the_bitstreams_fault() {
     });
     let report = TINY.judge_candidate(board.candidate());
     assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
-    assert!(
-        report.headline().contains("a late copy may have restarted an earlier burst"),
-        "{}",
-        report.headline()
-    );
+    assert!(report.headline().contains("may have restarted an earlier burst"), "{}", report.headline());
 }
