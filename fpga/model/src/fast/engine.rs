@@ -4,13 +4,14 @@ use super::ModelPath;
 use super::content::hold;
 use super::located::Located;
 use super::nodes::Nodes;
-use super::padded::{Ends, Padded};
+use super::padded::{Ends, Outputs, Padded};
 use super::scalar;
 use super::walk::{Curve, Line, Walk};
 #[cfg(target_arch = "x86_64")]
 use super::x86;
 use crate::corrector::{correct_row, correct_row_of_values};
 use crate::frame::bits_of;
+use crate::grid::Grid;
 use crate::{Geometry, Kernel, RowFactor, RowValues};
 
 /// Rows whose outputs come from the same places, to be corrected together.
@@ -19,7 +20,7 @@ pub(super) struct Rows<'a, W, const ROWS: usize> {
     pub(super) width: usize,
     pub(super) max: u16,
     pub(super) inputs: [Padded<'a>; ROWS],
-    pub(super) outputs: [&'a mut [u16]; ROWS],
+    pub(super) outputs: [Outputs<'a>; ROWS],
 }
 
 /// What a path keeps of a kernel.
@@ -67,20 +68,23 @@ impl Engine {
         self.correct_along(Line::new(geometry, row_factor), ends, geometry, rows, outputs);
     }
 
-    /// Corrects a row of the values `values`, with `ends` to keep its ends in.
-    pub(super) fn correct_row_of_values(
+    /// Corrects row `index` of `grid`, with `ends` to keep its ends in and `values` for its values.
+    pub(super) fn correct_row_of_grid(
         &self,
-        ends: &mut [Ends; 2],
+        (ends, values): (&mut [Ends; 2], &mut RowValues),
         geometry: &Geometry,
-        values: &RowValues,
+        (grid, index): (&Grid, usize),
         row: &[u16],
         output: &mut [u16],
     ) {
         if let Self::Reference(kernel) = self {
+            grid.values(geometry, index, values);
             correct_row_of_values(geometry, values, kernel, row, output);
             return;
         }
-        self.correct_along(Curve::new(values), ends, geometry, [row], [output]);
+        let nodes = values.nodes_mut();
+        grid.nodes(geometry, index, nodes);
+        self.correct_along(Curve::new(nodes), ends, geometry, [row], [output]);
     }
 
     fn correct_along<W: Walk, const ROWS: usize>(
@@ -95,6 +99,7 @@ impl Engine {
         let rows = rows.map(|row| &row[..width]);
         rows.iter().zip(&mut *ends).for_each(|(row, ends)| ends.take(row));
         let inputs = std::array::from_fn(|row| Padded::new(rows[row], &ends[row]));
+        let outputs = outputs.map(|output| Outputs::new(&mut output[..width]));
         self.correct(Rows { walk, width, max: geometry.depth().max(), inputs, outputs });
     }
 
@@ -136,14 +141,14 @@ impl Engine {
         }
     }
 
-    /// The sources of a block of columns; the oracle has those of its own.
-    pub(super) fn locate(&self, walk: impl Walk, column: usize) -> Located {
+    /// The sources of the next block of columns; the oracle has those of its own.
+    pub(super) fn locate(&self, walk: &mut impl Walk) -> Located {
         match self {
-            Self::Reference(_) | Self::Scalar(_) => scalar::locate_block(walk, column),
+            Self::Reference(_) | Self::Scalar(_) => scalar::locate_block(walk),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2(avx2, _) => avx2.locate(walk, column),
+            Self::Avx2(avx2, _) => avx2.locate(walk),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512(avx512, _) => avx512.locate(walk, column),
+            Self::Avx512(avx512, _) => avx512.locate(walk),
         }
     }
 }

@@ -124,8 +124,8 @@ impl Corrector {
         match tables.stored() {
             Entries::Rows(row_factors) => self.correct_row(geometry, row_factors[index], row, output),
             Entries::Grid(grid) => {
-                grid.values(geometry, index, &mut self.values);
-                self.engine.correct_row_of_values(&mut self.ends, geometry, &self.values, row, output);
+                let kept = (&mut self.ends, &mut self.values);
+                self.engine.correct_row_of_grid(kept, geometry, (grid, index), row, output);
             }
         }
     }
@@ -264,22 +264,23 @@ impl Corrector {
         distances: &mut [u16],
     ) {
         let oracle = |column| values.source(column);
-        self.locate_along(Curve::new(values), oracle, geometry, (bases, distances));
+        self.locate_along(Curve::new(values.nodes()), oracle, geometry, (bases, distances));
     }
 
     fn locate_along(
         &self,
-        walk: impl Walk,
+        mut walk: impl Walk,
         oracle: impl Fn(usize) -> Source,
         geometry: &Geometry,
         (bases, distances): (&mut [i16], &mut [u16]),
     ) {
-        for column in blocks(geometry.width(), BLOCK) {
+        let width = geometry.width();
+        for column in blocks(width) {
             let located = match *self.engine {
                 Engine::Reference(_) => Located::by_oracle(column, &oracle),
-                _ => self.engine.locate(walk, column),
+                _ => self.engine.locate(&mut walk),
             };
-            located.write(&mut bases[column..column + BLOCK], &mut distances[column..column + BLOCK]);
+            located.write(&mut bases[column..width], &mut distances[column..width]);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! A row with its edges drawn out, so that no tap is a special case.
+//! A row with its edges drawn out, so that no tap is a special case, and its outputs, so that no block is.
 
 use super::BLOCK;
 
@@ -57,5 +57,32 @@ impl<'a> Padded<'a> {
             let first = first.max(0).cast_unsigned().min(self.ends.padded.len() - WINDOW);
             &self.ends.padded[first..first + WINDOW]
         }
+    }
+}
+
+/// A row's outputs, of which a path takes a block at a time. The last block may go on behind the row.
+pub(super) struct Outputs<'a> {
+    row: &'a mut [u16],
+    /// The last block, where the row does not hold all of it.
+    last: [u16; BLOCK],
+}
+
+impl<'a> Outputs<'a> {
+    pub(super) fn new(row: &'a mut [u16]) -> Self {
+        Self { row, last: [0; BLOCK] }
+    }
+
+    /// The block that starts at `column`.
+    #[inline]
+    pub(super) fn block(&mut self, column: usize) -> &mut [u16; BLOCK] {
+        let rest = self.row.get_mut(column..).unwrap_or_default();
+        rest.first_chunk_mut().unwrap_or(&mut self.last)
+    }
+
+    /// Puts what the row holds of its last block in its place.
+    pub(super) fn finish(self) {
+        let whole = self.row.len() / BLOCK * BLOCK;
+        let rest = &mut self.row[whole..];
+        rest.copy_from_slice(&self.last[..rest.len()]);
     }
 }

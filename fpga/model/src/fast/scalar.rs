@@ -5,6 +5,7 @@
 
 use super::located::Located;
 use super::nodes::{G0, G4, G6, Nodes, R1, R5};
+use super::padded::Outputs;
 use super::walk::{LEADS, Start, Walk, blocks};
 use super::{BLOCK, Rows};
 use crate::WEIGHT_ONE;
@@ -49,17 +50,17 @@ fn correct_as<W: Walk, T: Copy + Into<i32>, const ROWS: usize>(
     weights: &[[T; TERMS]],
     rows: Rows<'_, W, ROWS>,
 ) {
-    let Rows { walk, width, max, inputs, mut outputs } = rows;
+    let Rows { mut walk, width, max, inputs, mut outputs } = rows;
     let max = i32::from(max);
     let Some(weights) = weights.first_chunk::<DISTANCES>() else { return };
-    for column in blocks(width, BLOCK) {
-        let start = walk.start(column);
-        let places = locate(walk, column, &start);
+    for column in blocks(width) {
+        let start = walk.next();
+        let places = locate(&walk, &start);
         for (row, output) in inputs.iter().zip(&mut outputs) {
-            let output = &mut output[column..column + BLOCK];
-            correct_block(weights, row.window(start.first), &places, max, output);
+            correct_block(weights, row.window(start.first), &places, max, output.block(column));
         }
     }
+    outputs.into_iter().for_each(Outputs::finish);
 }
 
 /// Corrects a block of one row whose taps begin at the places' bases of the window.
@@ -68,7 +69,7 @@ fn correct_block<T: Copy + Into<i32>>(
     window: &[u16],
     places: &Places,
     max: i32,
-    output: &mut [u16],
+    output: &mut [u16; BLOCK],
 ) {
     // The sums first, and then what vectors do at once to all of them.
     let mut sums = [0; BLOCK];
@@ -90,17 +91,15 @@ struct Places {
     x: [u16; BLOCK],
 }
 
-/// n, then a and x, of the whole block: what compilers make vectors of.
+/// a and x of the whole block: what compilers make vectors of.
 #[inline]
-fn locate<W: Walk>(walk: W, column: usize, start: &Start) -> Places {
-    let relatives = walk.relatives(column, start);
+fn locate<W: Walk>(walk: &W, start: &Start) -> Places {
+    let displacements = walk.displacements(start);
     let leads = &LEADS[usize::from(start.lead)];
     let mut places = Places { base: [0; BLOCK], x: [0; BLOCK] };
-    for (index, relative) in relatives.into_iter().enumerate() {
-        let n = relative >> 25;
-        let back = (n ^ index as u32) & 1;
-        places.x[index] = (relative >> 12 & 0x1fff | back << 13) as u16;
-        places.base[index] = ((n + (index as u32 & 1)) as u16 & !1).wrapping_add(leads[index]);
+    for (index, displacement) in displacements.into_iter().enumerate() {
+        places.x[index] = (displacement >> 13 & 0x3fff) as u16;
+        places.base[index] = ((displacement.cast_signed() >> 26) as u16 & !1).wrapping_add(leads[index]);
     }
     places
 }
@@ -111,9 +110,9 @@ fn weighted<T: Copy + Into<i32>>(weights: &[T; TERMS], taps: &[u16]) -> i32 {
     weights.iter().zip(taps).map(|(&weight, &tap)| weight.into() * i32::from(tap as i16)).sum()
 }
 
-/// The sources of one block, for those who check them.
-pub(super) fn locate_block(walk: impl Walk, column: usize) -> Located {
-    let start = walk.start(column);
-    let Places { base, x } = locate(walk, column, &start);
+/// The sources of the next block, for those who check them.
+pub(super) fn locate_block(walk: &mut impl Walk) -> Located {
+    let start = walk.next();
+    let Places { base, x } = locate(walk, &start);
     Located { first: start.first, base, x }
 }

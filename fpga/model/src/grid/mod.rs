@@ -17,7 +17,7 @@ pub(crate) use lattice::{height_in_circle, is_inner};
 pub use residual_sum::{GridResidual, ResidualSum};
 pub use shape::{GridShape, GridShapeError};
 pub use values::RowValues;
-pub(crate) use values::{Parabola, rounded};
+pub(crate) use values::{RowNodes, curve, rounded};
 
 use crate::{Geometry, RowFactor};
 
@@ -99,6 +99,12 @@ impl Grid {
 
     /// The values of row `row`, which the frame has, in the place of those that `values` held.
     pub(crate) fn values(&self, geometry: &Geometry, row: usize, values: &mut RowValues) {
+        self.nodes(geometry, row, values.nodes_mut());
+        values.lay_out();
+    }
+
+    /// What they are made of.
+    pub(crate) fn nodes(&self, geometry: &Geometry, row: usize, values: &mut RowNodes) {
         let (first, weights) = spline(self.shape, row);
         let [above, own, below] = weights.map(u64::from);
         let value = |[first, second, third]: [u32; 3]| {

@@ -5,11 +5,12 @@
 
 use std::arch::x86_64::*;
 
-use super::entry::{load_8_samples, load_8_words, load_16_bytes, store_16_samples};
+use super::entry::{load_8_samples, load_16_bytes, load_16_samples, store_16_samples};
 use crate::WEIGHT_ONE;
 use crate::fast::located::Located;
 use crate::fast::nodes::{G0, G4, G6, INTERVALS, Nodes, R1, R5};
-use crate::fast::walk::{LEADS, Start, Walk, blocks, is_within_segment};
+use crate::fast::padded::Outputs;
+use crate::fast::walk::{LEADS, Start, Walk, turns};
 use crate::fast::{BLOCK, Rows};
 use crate::frame;
 
@@ -63,10 +64,10 @@ struct Places {
 /// What the lanes of a row of one factor have in common.
 #[derive(Clone, Copy)]
 struct Lanes {
-    /// 2Q times the even columns of each vector, in 32-bit lanes.
+    /// The way from the first column to the even ones of each vector, in 32-bit lanes.
     even: [__m256i; 2],
-    /// 2Q in 32-bit lanes.
-    stride: __m256i,
+    /// The way from one column to the next.
+    step: __m256i,
 }
 
 /// Corrects the rows with the kernel's own combination of taps and wildness.
@@ -85,107 +86,91 @@ fn correct_as<W: Walk, const ROWS: usize, const WEIGHTS: usize, const WILD: bool
     planes: &Planes,
     rows: Rows<'_, W, ROWS>,
 ) {
-    let Rows { walk, width, max, inputs, mut outputs } = rows;
-    let lanes = lanes(walk);
+    let Rows { mut walk, width, max, inputs, mut outputs } = rows;
+    let lanes = lanes(&walk);
     let max = _mm256_set1_epi16(max as i16);
-    for column in blocks(width, BLOCK) {
-        let start = walk.start(column);
-        let places = locate(relatives(walk, &lanes, column, &start), start.lead);
+    let mut ahead = None;
+    for column in turns(width) {
+        let start = walk.next();
+        let located = (start.first, locate(displacements::<W>(&lanes, &start), start.lead));
+        let (Some(column), Some((first, places))) = (column, ahead.replace(located)) else { continue };
         let weights = weights::<WEIGHTS, WILD>(planes, [places[0].x, places[1].x]);
         for (row, output) in inputs.iter().zip(&mut outputs) {
-            let window = row.window(start.first);
-            let output = &mut output[column..column + BLOCK];
-            for part in 0..2 {
+            let window = row.window(first);
+            for (part, output) in output.block(column).as_chunks_mut().0.iter_mut().enumerate() {
                 let [low, high] = places[part].least;
                 // Both below 32 as they are; that the compiler sees it saves checking.
                 let halves = [&window[low % BLOCK..], &window[high % BLOCK..]];
                 let samples = blend::<WEIGHTS, WILD>(&weights[part], halves, places[part].base, max);
-                store_16_samples(output, VECTOR * part, samples);
+                store_16_samples(output, samples);
             }
         }
     }
+    outputs.into_iter().for_each(Outputs::finish);
 }
 
-/// The sources of one block, for those who check them.
+/// The sources of the next block, for those who check them.
 #[target_feature(enable = "avx2")]
-pub(super) fn locate_block(walk: impl Walk, column: usize) -> Located {
-    let start = walk.start(column);
+pub(super) fn locate_block<W: Walk>(walk: &mut W) -> Located {
+    let (lanes, start) = (lanes(walk), walk.next());
+    let places = locate(displacements::<W>(&lanes, &start), start.lead);
     let mut located = Located { first: start.first, base: [0; BLOCK], x: [0; BLOCK] };
-    let places = locate(relatives(walk, &lanes(walk), column, &start), start.lead);
-    for (from, places) in [0, VECTOR].into_iter().zip(places) {
+    let parts = located.base.as_chunks_mut().0.iter_mut().zip(located.x.as_chunks_mut().0);
+    for ((bases, x), places) in parts.zip(places) {
         let [low, high] = places.least.map(|least| _mm_set1_epi16(least as i16));
-        let base = _mm256_add_epi16(places.base, _mm256_set_m128i(high, low));
-        store_16_samples(&mut located.base, from, base);
-        store_16_samples(&mut located.x, from, places.x);
+        store_16_samples(bases, _mm256_add_epi16(places.base, _mm256_set_m128i(high, low)));
+        store_16_samples(x, places.x);
     }
     located
 }
 
 #[target_feature(enable = "avx2")]
-fn lanes(walk: impl Walk) -> Lanes {
-    let stride = _mm256_set1_epi32(walk.stride() as i32);
-    let first = _mm256_mullo_epi32(stride, _mm256_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14));
-    Lanes { even: [first, _mm256_add_epi32(first, _mm256_slli_epi32::<4>(stride))], stride }
+fn lanes(walk: &impl Walk) -> Lanes {
+    let step = _mm256_set1_epi32(walk.step() as i32);
+    Lanes { even: pairs().map(|pairs| _mm256_mullo_epi32(_mm256_add_epi32(step, step), pairs)), step }
 }
 
-/// The coordinates of each vector's even and odd columns relative to the block: below 2^26 + 31 · 2^25, so 31 bits hold them.
+/// 0 to 15 in 32-bit lanes.
 #[target_feature(enable = "avx2")]
 #[inline]
-fn relatives<W: Walk>(walk: W, lanes: &Lanes, column: usize, start: &Start) -> [[__m256i; 2]; 2] {
+fn pairs() -> [__m256i; 2] {
+    [_mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7), _mm256_setr_epi32(8, 9, 10, 11, 12, 13, 14, 15)]
+}
+
+/// The displacements of each vector's even and odd columns.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn displacements<W: Walk>(lanes: &Lanes, start: &Start) -> [[__m256i; 2]; 2] {
+    let first = _mm256_set1_epi32(start.displacement as i32);
     if !W::CURVED {
-        let first = _mm256_set1_epi32(start.relative as i32);
-        let [low, high] = [_mm256_add_epi32(first, lanes.even[0]), _mm256_add_epi32(first, lanes.even[1])];
-        return [[low, _mm256_add_epi32(low, lanes.stride)], [high, _mm256_add_epi32(high, lanes.stride)]];
+        return lanes.even.map(|even| {
+            let even = _mm256_add_epi32(first, even);
+            [even, _mm256_add_epi32(even, lanes.step)]
+        });
     }
-    if !is_within_segment(column) {
-        return scattered(walk, column, start);
-    }
-    let even = _mm256_setr_epi32(-16, -14, -12, -10, -8, -6, -4, -2);
-    let odd = _mm256_setr_epi32(-15, -13, -11, -9, -7, -5, -3, -1);
-    let later = |columns| _mm256_add_epi32(columns, _mm256_set1_epi32(VECTOR as i32));
-    [[along(start, even), along(start, odd)], [along(start, later(even)), along(start, later(odd))]]
+    let &Start { step, half, bend, .. } = start;
+    let [twice, half, bend] = [step.wrapping_mul(2), half, bend].map(|word| _mm256_set1_epi32(word as i32));
+    pairs().map(|pairs| {
+        let bent = _mm256_mullo_epi32(pairs, bend);
+        let even = _mm256_add_epi32(first, _mm256_mullo_epi32(pairs, _mm256_add_epi32(bent, twice)));
+        [even, _mm256_add_epi32(even, _mm256_add_epi32(bent, half))]
+    })
 }
 
-/// The coordinates of columns that lie across two segments.
-#[target_feature(enable = "avx2")]
-#[cold]
-#[inline(never)]
-fn scattered(walk: impl Walk, column: usize, start: &Start) -> [[__m256i; 2]; 2] {
-    let of = |first: usize| std::array::from_fn(|lane| walk.relative(column + first + 2 * lane, start));
-    let words = |first: usize| load_8_words(&of(first));
-    [[words(0), words(1)], [words(VECTOR), words(VECTOR + 1)]]
-}
-
-/// The coordinates at these columns from the block's middle.
-#[target_feature(enable = "avx2")]
-#[inline]
-fn along(start: &Start, columns: __m256i) -> __m256i {
-    let piece = &start.piece;
-    let squares = _mm256_mullo_epi32(columns, columns);
-    let bent = _mm256_mullo_epi32(squares, _mm256_set1_epi32(piece.curve));
-    let bent = _mm256_srai_epi32::<3>(_mm256_add_epi32(bent, _mm256_set1_epi32(piece.rest as i32)));
-    let straight = _mm256_mullo_epi32(columns, _mm256_set1_epi32(piece.slope as i32));
-    let middle = _mm256_set1_epi32((start.relative + piece.middle) as i32);
-    _mm256_add_epi32(_mm256_add_epi32(straight, middle), bent)
-}
-
-/// n, then a and x, of each vector from its coordinates.
+/// a and x of each vector from its displacements.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn locate([low, high]: [[__m256i; 2]; 2], lead: bool) -> [Places; 2] {
-    [place(low, lead), place(high, lead)]
+    let leads = &LEADS[usize::from(lead)];
+    [place(low, load_16_samples(leads, 0)), place(high, load_16_samples(leads, VECTOR))]
 }
 
 #[target_feature(enable = "avx2")]
 #[inline]
-fn place([even, odd]: [__m256i; 2], lead: bool) -> Places {
-    let n = _mm256_blend_epi16::<0xAA>(_mm256_srli_epi32::<25>(even), _mm256_srli_epi32::<9>(odd));
-    let q = _mm256_blend_epi16::<0xAA>(_mm256_srli_epi32::<12>(even), _mm256_slli_epi32::<4>(odd));
-    // n counts from an even column, so bit 13 of q tells its parity, and that of x whether it is the output's.
-    let x = _mm256_xor_si256(q, _mm256_set1_epi32(1 << 29));
-    let rounded = _mm256_and_si256(_mm256_add_epi16(n, _mm256_set1_epi32(1 << 16)), _mm256_set1_epi16(!1));
-    let leads = _mm256_broadcastsi128_si256(load_8_samples(&LEADS[usize::from(lead)], 0));
-    let from_block = _mm256_add_epi16(rounded, leads);
+fn place([even, odd]: [__m256i; 2], leads: __m256i) -> Places {
+    let moved = _mm256_blend_epi16::<0xAA>(_mm256_srai_epi32::<26>(even), _mm256_srai_epi32::<10>(odd));
+    let x = _mm256_blend_epi16::<0xAA>(_mm256_srli_epi32::<13>(even), _mm256_slli_epi32::<3>(odd));
+    let from_block = _mm256_add_epi16(_mm256_and_si256(moved, _mm256_set1_epi16(!1)), leads);
     // The lesser of a half's first two is its least.
     let first = _mm256_shuffle_epi8(from_block, _mm256_set1_epi16(0x0100));
     let second = _mm256_shuffle_epi8(from_block, _mm256_set1_epi16(0x0302));

@@ -2,12 +2,13 @@
 
 use std::arch::x86_64::*;
 
-use super::entry::{load_16_words, load_32_samples, load_32_weights, store_32_samples};
+use super::entry::{load_32_samples, load_32_weights, store_32_samples};
 use crate::WEIGHT_ONE;
 use crate::fast::content;
 use crate::fast::located::Located;
 use crate::fast::nodes::{G0, G4, G6, Nodes, R1, R5, Tap};
-use crate::fast::walk::{LEADS, Start, Walk, blocks, is_within_segment};
+use crate::fast::padded::Outputs;
+use crate::fast::walk::{LEADS, Start, Walk, turns};
 use crate::fast::{BLOCK, Rows};
 use crate::frame;
 
@@ -16,14 +17,16 @@ const ODD: u32 = 0xAAAA_AAAA;
 
 /// What the lanes of a row of one factor have in common.
 struct Lanes {
-    /// 2Q times the even columns, 0 to 30, in 32-bit lanes.
+    /// The way from the first column to the even ones, in 32-bit lanes.
     even: __m512i,
-    /// 2Q in 32-bit lanes.
-    stride: __m512i,
+    /// The way from one column to the next.
+    step: __m512i,
 }
 
 /// Where the outputs of a block come from, in 16-bit lanes.
 struct Places {
+    /// [`Start::first`].
+    first: isize,
     /// a − the block's least a, 0 to 31.
     base: __m512i,
     /// x, the lower 14 bits.
@@ -54,32 +57,34 @@ fn correct_as<W: Walk, const ROWS: usize, const WEIGHTS: usize, const WILD: bool
     nodes: &Nodes,
     rows: Rows<'_, W, ROWS>,
 ) {
-    let Rows { walk, width, max, inputs, mut outputs } = rows;
+    let Rows { mut walk, width, max, inputs, mut outputs } = rows;
     let mut tables = [table(&nodes.taps[0]); WEIGHTS];
     for (table_of, tap) in tables.iter_mut().zip(&nodes.taps) {
         *table_of = table(tap);
     }
-    let lanes = lanes(walk);
+    let lanes = lanes(&walk);
     let max = _mm512_set1_epi16(max as i16);
-    for column in blocks(width, BLOCK) {
-        let start = walk.start(column);
-        let places = locate(relatives(walk, &lanes, column, &start), start.lead);
+    let mut ahead = None;
+    for column in turns(width) {
+        let places = ahead.replace(locate(&mut walk, &lanes));
+        let (Some(column), Some(places)) = (column, places) else { continue };
         let weights = weights::<WEIGHTS, WILD>(&tables, places.x);
         for (row, output) in inputs.iter().zip(&mut outputs) {
-            let window = row.window(start.first);
-            store_32_samples(output, column, blend::<WEIGHTS, WILD>(&weights, window, places.base, max));
+            let samples = blend::<WEIGHTS, WILD>(&weights, row.window(places.first), places.base, max);
+            store_32_samples(output.block(column), samples);
         }
     }
+    outputs.into_iter().for_each(Outputs::finish);
 }
 
-/// The sources of one block, for those who check them.
+/// The sources of the next block, for those who check them.
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
-pub(super) fn locate_block(walk: impl Walk, column: usize) -> Located {
-    let start = walk.start(column);
-    let places = locate(relatives(walk, &lanes(walk), column, &start), start.lead);
-    let mut located = Located { first: start.first, base: [0; BLOCK], x: [0; BLOCK] };
-    store_32_samples(&mut located.base, 0, places.base);
-    store_32_samples(&mut located.x, 0, places.x);
+pub(super) fn locate_block(walk: &mut impl Walk) -> Located {
+    let lanes = lanes(walk);
+    let places = locate(walk, &lanes);
+    let mut located = Located { first: places.first, base: [0; BLOCK], x: [0; BLOCK] };
+    store_32_samples(&mut located.base, places.base);
+    store_32_samples(&mut located.x, places.x);
     located
 }
 
@@ -93,63 +98,45 @@ fn table(tap: &Tap) -> Table {
 }
 
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
-fn lanes(walk: impl Walk) -> Lanes {
-    let stride = _mm512_set1_epi32(walk.stride() as i32);
-    let columns = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
-    Lanes { even: _mm512_mullo_epi32(stride, columns), stride }
+fn lanes(walk: &impl Walk) -> Lanes {
+    let step = _mm512_set1_epi32(walk.step() as i32);
+    Lanes { even: _mm512_mullo_epi32(_mm512_add_epi32(step, step), pairs()), step }
 }
 
-/// The coordinates of the even and of the odd columns relative to the block: below 2^26 + 31 · 2^25, so 31 bits hold them.
+/// 0 to 15 in 32-bit lanes.
+#[target_feature(enable = "avx512f")]
+#[inline]
+fn pairs() -> __m512i {
+    _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
+}
+
+/// The displacements of the even and of the odd columns.
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
 #[inline]
-fn relatives<W: Walk>(walk: W, lanes: &Lanes, column: usize, start: &Start) -> [__m512i; 2] {
+fn displacements<W: Walk>(lanes: &Lanes, start: Start) -> [__m512i; 2] {
+    let first = _mm512_set1_epi32(start.displacement as i32);
     if !W::CURVED {
-        let even = _mm512_add_epi32(_mm512_set1_epi32(start.relative as i32), lanes.even);
-        return [even, _mm512_add_epi32(even, lanes.stride)];
+        let even = _mm512_add_epi32(first, lanes.even);
+        return [even, _mm512_add_epi32(even, lanes.step)];
     }
-    if !is_within_segment(column) {
-        return scattered(walk, column, start);
-    }
-    let even = _mm512_setr_epi32(-16, -14, -12, -10, -8, -6, -4, -2, 0, 2, 4, 6, 8, 10, 12, 14);
-    let odd = _mm512_setr_epi32(-15, -13, -11, -9, -7, -5, -3, -1, 1, 3, 5, 7, 9, 11, 13, 15);
-    [along(start, even), along(start, odd)]
+    let Start { step, half, bend, .. } = start;
+    let bent = _mm512_mullo_epi32(pairs(), _mm512_set1_epi32(bend as i32));
+    let along = _mm512_add_epi32(bent, _mm512_set1_epi32(step.wrapping_mul(2) as i32));
+    let even = _mm512_add_epi32(first, _mm512_mullo_epi32(pairs(), along));
+    [even, _mm512_add_epi32(even, _mm512_add_epi32(bent, _mm512_set1_epi32(half as i32)))]
 }
 
-/// The coordinates of columns that lie across two segments.
-#[target_feature(enable = "avx512f,avx512bw,avx512vl")]
-#[cold]
-#[inline(never)]
-fn scattered(walk: impl Walk, column: usize, start: &Start) -> [__m512i; 2] {
-    let of = |first: usize| std::array::from_fn(|lane| walk.relative(first + 2 * lane, start));
-    [load_16_words(&of(column)), load_16_words(&of(column + 1))]
-}
-
-/// The coordinates at these columns from the block's middle.
+/// a and x from the displacements.
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
 #[inline]
-fn along(start: &Start, columns: __m512i) -> __m512i {
-    let piece = &start.piece;
-    let squares = _mm512_mullo_epi32(columns, columns);
-    let bent = _mm512_mullo_epi32(squares, _mm512_set1_epi32(piece.curve));
-    let bent = _mm512_srai_epi32::<3>(_mm512_add_epi32(bent, _mm512_set1_epi32(piece.rest as i32)));
-    let straight = _mm512_mullo_epi32(columns, _mm512_set1_epi32(piece.slope as i32));
-    _mm512_add_epi32(
-        _mm512_add_epi32(straight, _mm512_set1_epi32((start.relative + piece.middle) as i32)),
-        bent,
-    )
-}
-
-/// n, then a and x, from the coordinates relative to the block.
-#[target_feature(enable = "avx512f,avx512bw,avx512vl")]
-#[inline]
-fn locate([even, odd]: [__m512i; 2], lead: bool) -> Places {
-    let n = _mm512_mask_blend_epi16(ODD, _mm512_srli_epi32::<25>(even), _mm512_srli_epi32::<9>(odd));
-    let q = _mm512_mask_blend_epi16(ODD, _mm512_srli_epi32::<12>(even), _mm512_slli_epi32::<4>(odd));
-    // n counts from an even column, so bit 13 of q tells its parity, and that of x whether it is the output's.
-    let x = _mm512_xor_si512(q, _mm512_set1_epi32(1 << 29));
-    let rounded = _mm512_and_si512(_mm512_add_epi16(n, _mm512_set1_epi32(1 << 16)), _mm512_set1_epi16(!1));
-    let base = _mm512_add_epi16(rounded, load_32_samples(&LEADS[usize::from(lead)], 0));
-    Places { base, x }
+fn locate<W: Walk>(walk: &mut W, lanes: &Lanes) -> Places {
+    let start = walk.next();
+    let [even, odd] = displacements::<W>(lanes, start);
+    let moved = _mm512_mask_blend_epi16(ODD, _mm512_srai_epi32::<26>(even), _mm512_srai_epi32::<10>(odd));
+    let x = _mm512_mask_blend_epi16(ODD, _mm512_srli_epi32::<13>(even), _mm512_slli_epi32::<3>(odd));
+    let own = _mm512_and_si512(moved, _mm512_set1_epi16(!1));
+    let base = _mm512_add_epi16(own, load_32_samples(&LEADS[usize::from(start.lead)], 0));
+    Places { first: start.first, base, x }
 }
 
 /// w = low + ((rise · t + 2^7) >> 8), which is what a rounding multiplication by t · 2^7 gives.
@@ -231,8 +218,9 @@ pub(super) fn hold(draws: &[u16], max: u16, samples: &mut [u16]) {
     let columns = load_32_samples(&columns, 0);
     let last = _mm512_set1_epi16(BLOCK as i16 - 1);
     let mut held = _mm512_set1_epi16(samples[0] as i16);
-    let whole = samples.len() / BLOCK * BLOCK;
-    for column in (0..whole).step_by(BLOCK) {
+    let (blocks, _) = samples.as_chunks_mut();
+    let whole = BLOCK * blocks.len();
+    for (block, column) in blocks.iter_mut().zip((0..).step_by(BLOCK)) {
         let draws = load_32_samples(draws, column);
         let steps = _mm512_testn_epi16_mask(draws, _mm512_set1_epi16(15));
         let mut nearest = _mm512_maskz_mov_epi16(steps, columns);
@@ -243,9 +231,9 @@ pub(super) fn hold(draws: &[u16], max: u16, samples: &mut [u16]) {
         let levels = _mm512_and_si512(_mm512_srli_epi16::<4>(draws), _mm512_set1_epi16(max as i16));
         let before_steps = steps.wrapping_sub(1) & !steps;
         let found = _mm512_permutexvar_epi16(nearest, levels);
-        let block = _mm512_mask_blend_epi16(before_steps, found, held);
-        store_32_samples(samples, column, block);
-        held = _mm512_permutexvar_epi16(last, block);
+        let filled = _mm512_mask_blend_epi16(before_steps, found, held);
+        store_32_samples(block, filled);
+        held = _mm512_permutexvar_epi16(last, filled);
     }
     content::hold(&draws[whole - 1..], max, &mut samples[whole - 1..]);
 }

@@ -38,9 +38,9 @@ impl Avx2 {
         unsafe { avx2::correct(nodes, rows) }
     }
 
-    pub(in crate::fast) fn locate(self, walk: impl Walk, column: usize) -> Located {
+    pub(in crate::fast) fn locate(self, walk: &mut impl Walk) -> Located {
         // SAFETY: the token says that the processor has AVX2.
-        unsafe { avx2::locate_block(walk, column) }
+        unsafe { avx2::locate_block(walk) }
     }
 
     pub(in crate::fast) fn bits_of(self, samples: &[u16]) -> u16 {
@@ -62,9 +62,9 @@ impl Avx512 {
         unsafe { avx512::correct(nodes, rows) }
     }
 
-    pub(in crate::fast) fn locate(self, walk: impl Walk, column: usize) -> Located {
+    pub(in crate::fast) fn locate(self, walk: &mut impl Walk) -> Located {
         // SAFETY: the token says that the processor has the three features.
-        unsafe { avx512::locate_block(walk, column) }
+        unsafe { avx512::locate_block(walk) }
     }
 
     pub(in crate::fast) fn bits_of(self, samples: &[u16]) -> u16 {
@@ -98,26 +98,18 @@ pub(super) fn load_8_samples(samples: &[u16], from: usize) -> __m128i {
 /// Sixteen samples from `from` on.
 #[target_feature(enable = "avx2")]
 #[inline]
-pub(super) fn store_16_samples(samples: &mut [u16], from: usize, vector: __m256i) {
-    let samples = &mut samples[from..from + 16];
-    // SAFETY: 32 bytes may be written at the slice's address, and the store asks for no alignment.
-    unsafe { _mm256_storeu_si256(samples.as_mut_ptr().cast(), vector) }
+pub(super) fn load_16_samples(samples: &[u16], from: usize) -> __m256i {
+    let samples = &samples[from..from + 16];
+    // SAFETY: 32 bytes may be read at the slice's address, and the load asks for no alignment.
+    unsafe { _mm256_loadu_si256(samples.as_ptr().cast()) }
 }
 
-/// Eight 32-bit words.
+/// Sixteen samples.
 #[target_feature(enable = "avx2")]
 #[inline]
-pub(super) fn load_8_words(words: &[u32; 8]) -> __m256i {
-    // SAFETY: 32 bytes may be read at the array's address, and the load asks for no alignment.
-    unsafe { _mm256_loadu_si256(words.as_ptr().cast()) }
-}
-
-/// Sixteen 32-bit words.
-#[target_feature(enable = "avx512f")]
-#[inline]
-pub(super) fn load_16_words(words: &[u32; 16]) -> __m512i {
-    // SAFETY: 64 bytes may be read at the array's address, and the load asks for no alignment.
-    unsafe { _mm512_loadu_si512(words.as_ptr().cast()) }
+pub(super) fn store_16_samples(samples: &mut [u16; 16], vector: __m256i) {
+    // SAFETY: 32 bytes may be written at the array's address, and the store asks for no alignment.
+    unsafe { _mm256_storeu_si256(samples.as_mut_ptr().cast(), vector) }
 }
 
 /// 32 samples from `from` on.
@@ -137,11 +129,10 @@ pub(super) fn load_32_weights(words: &[i16; 32]) -> __m512i {
     unsafe { _mm512_loadu_si512(words.as_ptr().cast()) }
 }
 
-/// 32 samples from `from` on.
+/// 32 samples.
 #[target_feature(enable = "avx512f")]
 #[inline]
-pub(super) fn store_32_samples(samples: &mut [u16], from: usize, vector: __m512i) {
-    let samples = &mut samples[from..from + 32];
-    // SAFETY: 64 bytes may be written at the slice's address, and the store asks for no alignment.
+pub(super) fn store_32_samples(samples: &mut [u16; 32], vector: __m512i) {
+    // SAFETY: 64 bytes may be written at the array's address, and the store asks for no alignment.
     unsafe { _mm512_storeu_si512(samples.as_mut_ptr().cast(), vector) }
 }
