@@ -55,7 +55,7 @@ fn correct_as<W: Walk, T: Copy + Into<i32>, const ROWS: usize>(
     let Some(weights) = weights.first_chunk::<DISTANCES>() else { return };
     for column in blocks(width) {
         let start = walk.next();
-        let places = locate(&walk, &start);
+        let places = locate(&start);
         for (row, output) in inputs.iter().zip(&mut outputs) {
             correct_block(weights, row.window(start.first), &places, max, output.block(column));
         }
@@ -93,8 +93,8 @@ struct Places {
 
 /// a and x of the whole block: what compilers make vectors of.
 #[inline]
-fn locate<W: Walk>(walk: &W, start: &Start) -> Places {
-    let displacements = walk.displacements(start);
+fn locate(start: &Start) -> Places {
+    let displacements = start.displacements();
     let leads = &LEADS[usize::from(start.lead)];
     let mut places = Places { base: [0; BLOCK], x: [0; BLOCK] };
     for (index, displacement) in displacements.into_iter().enumerate() {
@@ -113,6 +113,6 @@ fn weighted<T: Copy + Into<i32>>(weights: &[T; TERMS], taps: &[u16]) -> i32 {
 /// The sources of the next block, for those who check them.
 pub(super) fn locate_block(walk: &mut impl Walk) -> Located {
     let start = walk.next();
-    let Places { base, x } = locate(walk, &start);
+    let Places { base, x } = locate(&start);
     Located { first: start.first, base, x }
 }

@@ -25,9 +25,6 @@ pub(super) trait Walk {
 
     /// [`Start::step`] of a row of one factor.
     fn step(&self) -> u32;
-
-    /// The displacements of a block, each by itself: what compilers make vectors of.
-    fn displacements(&self, start: &Start) -> [u32; BLOCK];
 }
 
 /// Where a block of columns finds its samples.
@@ -68,6 +65,30 @@ impl Start {
         let lead = displacement.wrapping_add(half) >> 31 != 0;
         let first = 2 * even as isize + LEFT as isize - 2 - isize::from(lead);
         Self { first, lead, displacement, step, half, bend }
+    }
+
+    /// The displacements of the block by adders, four columns at a time: what compilers make vectors of.
+    #[inline]
+    pub(super) fn displacements(&self) -> [u32; BLOCK] {
+        let &Self { displacement, step, half, bend, .. } = self;
+        let third = displacement.wrapping_add(step.wrapping_mul(2)).wrapping_add(bend);
+        let mut four = [
+            displacement,
+            displacement.wrapping_add(half),
+            third,
+            third.wrapping_add(half).wrapping_add(bend),
+        ];
+        let mut ways =
+            [4, 6, 8, 10].map(|bends: u32| bends.wrapping_mul(bend).wrapping_add(step.wrapping_mul(4)));
+        let mut displacements = [0; BLOCK];
+        for columns in displacements.as_chunks_mut().0 {
+            *columns = four;
+            for (column, way) in four.iter_mut().zip(&mut ways) {
+                *column = column.wrapping_add(*way);
+                *way = way.wrapping_add(bend.wrapping_mul(8));
+            }
+        }
+        displacements
     }
 }
 
@@ -111,11 +132,6 @@ impl Walk for Line {
     #[inline]
     fn step(&self) -> u32 {
         self.stride.wrapping_sub(COLUMN)
-    }
-
-    #[inline]
-    fn displacements(&self, start: &Start) -> [u32; BLOCK] {
-        std::array::from_fn(|index| start.displacement.wrapping_add((index as u32).wrapping_mul(self.step())))
     }
 }
 
@@ -169,31 +185,9 @@ impl Walk for Curve<'_> {
     fn step(&self) -> u32 {
         0
     }
-
-    #[inline]
-    fn displacements(&self, start: &Start) -> [u32; BLOCK] {
-        let &Start { step, half, bend, .. } = start;
-        let mut displacements = [0; BLOCK];
-        for (j, pair) in displacements.as_chunks_mut().0.iter_mut().enumerate() {
-            let bent = (j as u32).wrapping_mul(bend);
-            let even = step.wrapping_mul(2).wrapping_add(bent).wrapping_mul(j as u32);
-            let even = start.displacement.wrapping_add(even);
-            *pair = [even, even.wrapping_add(half).wrapping_add(bent)];
-        }
-        displacements
-    }
 }
 
 /// The blocks that cover a row. The last one may go on behind it.
 pub(super) fn blocks(width: usize) -> impl Iterator<Item = usize> {
     (0..width).step_by(BLOCK)
-}
-
-/// The blocks of a row in turns, each with one that is to be located and the one in front of it, which has been and is to be
-/// corrected. The first turn has none of the latter, and what the last one locates is behind the row.
-///
-/// A processor begins only so much of what comes next before it has ended what it waits for. A block that is located in the turn
-/// in front of its own has it wait half as long.
-pub(super) fn turns(width: usize) -> impl Iterator<Item = Option<usize>> {
-    (0..width + BLOCK).step_by(BLOCK).map(|next| next.checked_sub(BLOCK))
 }

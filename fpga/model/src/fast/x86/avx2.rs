@@ -10,7 +10,7 @@ use crate::WEIGHT_ONE;
 use crate::fast::located::Located;
 use crate::fast::nodes::{G0, G4, G6, INTERVALS, Nodes, R1, R5};
 use crate::fast::padded::Outputs;
-use crate::fast::walk::{LEADS, Start, Walk, turns};
+use crate::fast::walk::{LEADS, Start, Walk, blocks};
 use crate::fast::{BLOCK, Rows};
 use crate::frame;
 
@@ -89,11 +89,10 @@ fn correct_as<W: Walk, const ROWS: usize, const WEIGHTS: usize, const WILD: bool
     let Rows { mut walk, width, max, inputs, mut outputs } = rows;
     let lanes = lanes(&walk);
     let max = _mm256_set1_epi16(max as i16);
-    let mut ahead = None;
-    for column in turns(width) {
-        let start = walk.next();
-        let located = (start.first, locate(displacements::<W>(&lanes, &start), start.lead));
-        let (Some(column), Some((first, places))) = (column, ahead.replace(located)) else { continue };
+    // A processor waits for the steps of a block less long when it has located it while the one in front was corrected.
+    let mut ahead = locate(&mut walk, &lanes);
+    for column in blocks(width) {
+        let (first, places) = std::mem::replace(&mut ahead, locate(&mut walk, &lanes));
         let weights = weights::<WEIGHTS, WILD>(planes, [places[0].x, places[1].x]);
         for (row, output) in inputs.iter().zip(&mut outputs) {
             let window = row.window(first);
@@ -112,9 +111,9 @@ fn correct_as<W: Walk, const ROWS: usize, const WEIGHTS: usize, const WILD: bool
 /// The sources of the next block, for those who check them.
 #[target_feature(enable = "avx2")]
 pub(super) fn locate_block<W: Walk>(walk: &mut W) -> Located {
-    let (lanes, start) = (lanes(walk), walk.next());
-    let places = locate(displacements::<W>(&lanes, &start), start.lead);
-    let mut located = Located { first: start.first, base: [0; BLOCK], x: [0; BLOCK] };
+    let lanes = lanes(walk);
+    let (first, places) = locate(walk, &lanes);
+    let mut located = Located { first, base: [0; BLOCK], x: [0; BLOCK] };
     let parts = located.base.as_chunks_mut().0.iter_mut().zip(located.x.as_chunks_mut().0);
     for ((bases, x), places) in parts.zip(places) {
         let [low, high] = places.least.map(|least| _mm_set1_epi16(least as i16));
@@ -157,12 +156,14 @@ fn displacements<W: Walk>(lanes: &Lanes, start: &Start) -> [[__m256i; 2]; 2] {
     })
 }
 
-/// a and x of each vector from its displacements.
+/// [`Start::first`] of the next block, and a and x of each vector.
 #[target_feature(enable = "avx2")]
 #[inline]
-fn locate([low, high]: [[__m256i; 2]; 2], lead: bool) -> [Places; 2] {
-    let leads = &LEADS[usize::from(lead)];
-    [place(low, load_16_samples(leads, 0)), place(high, load_16_samples(leads, VECTOR))]
+fn locate<W: Walk>(walk: &mut W, lanes: &Lanes) -> (isize, [Places; 2]) {
+    let start = walk.next();
+    let [low, high] = displacements::<W>(lanes, &start);
+    let leads = &LEADS[usize::from(start.lead)];
+    (start.first, [place(low, load_16_samples(leads, 0)), place(high, load_16_samples(leads, VECTOR))])
 }
 
 #[target_feature(enable = "avx2")]

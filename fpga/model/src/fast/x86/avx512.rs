@@ -8,7 +8,7 @@ use crate::fast::content;
 use crate::fast::located::Located;
 use crate::fast::nodes::{G0, G4, G6, Nodes, R1, R5, Tap};
 use crate::fast::padded::Outputs;
-use crate::fast::walk::{LEADS, Start, Walk, turns};
+use crate::fast::walk::{LEADS, Start, Walk, blocks};
 use crate::fast::{BLOCK, Rows};
 use crate::frame;
 
@@ -64,10 +64,10 @@ fn correct_as<W: Walk, const ROWS: usize, const WEIGHTS: usize, const WILD: bool
     }
     let lanes = lanes(&walk);
     let max = _mm512_set1_epi16(max as i16);
-    let mut ahead = None;
-    for column in turns(width) {
-        let places = ahead.replace(locate(&mut walk, &lanes));
-        let (Some(column), Some(places)) = (column, places) else { continue };
+    // A processor waits for the steps of a block less long when it has located it while the one in front was corrected.
+    let mut ahead = locate(&mut walk, &lanes);
+    for column in blocks(width) {
+        let places = std::mem::replace(&mut ahead, locate(&mut walk, &lanes));
         let weights = weights::<WEIGHTS, WILD>(&tables, places.x);
         for (row, output) in inputs.iter().zip(&mut outputs) {
             let samples = blend::<WEIGHTS, WILD>(&weights, row.window(places.first), places.base, max);
