@@ -337,7 +337,7 @@ mod tests {
         store.sends_to(vec!["mes".to_owned()]).unwrap();
         ["1", "2", "3"].iter().for_each(|number| store.note("weber", "scan", "1", number).unwrap());
         let first = folder.due("mes", clock::now_ms(), i64::MAX).unwrap().remove(0);
-        let dead = Tried::Dead { said: "no".to_owned() };
+        let dead = Tried::Dead { said: Said::uncoded("no".to_owned()) };
         store.tried("mes", &[(first, dead)], clock::now_ms()).unwrap();
         let mut sink = Listening(None);
         beat(&SharedStore::new(store), &mut sink, &mut Standing::default());
