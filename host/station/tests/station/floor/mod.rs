@@ -325,7 +325,8 @@ fn a_verdict_stays_though_its_lane_owes_a_check() {
 fn the_mock_is_judged_where_it_is_owed_without_a_board_and_nowhere_else() {
     let mut floor = floor(&[SCAN, BUTTON], false);
     assert!(floor.scan("HR:MOCK", WEBER, at(0)).is_err(), "no lane is named");
-    assert!(floor.scan_for(0, "HR:MOCK", WEBER, at(0)).unwrap_err().to_string().contains("no mock board"));
+    let refused = floor.scan_for(0, "HR:MOCK", WEBER, at(0)).unwrap_err().to_string();
+    assert!(refused.contains("no check by a mock board"), "{refused}");
     assert!(floor.scan_for(0, "HR:MOCK:1", WEBER, at(0)).is_err(), "its serial number is no barcode");
     for lane in 0..2 {
         let serial = Some(format!("HR:MOCK:{}", lane + 1));

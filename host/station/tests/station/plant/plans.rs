@@ -191,7 +191,7 @@ fn what_nobody_signed_who_is_trusted_is_not_taken() {
     change("UPDATE bundle SET text = replace(text, 'timeout = 60', 'timeout = 61')");
     refused("has the hash");
     change("UPDATE bundle SET text = 'nothing'");
-    refused("is none");
+    refused("is not a plan");
     // A statement that was right once is not taken behind a later one.
     made.plan("3", 3);
     made.publish("engel.key");
