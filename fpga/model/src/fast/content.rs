@@ -31,6 +31,7 @@ impl Changes {
 }
 
 /// Makes the rows of a frame in any order, in the least time those that follow each other up or down.
+#[derive(Clone)]
 pub(super) struct Maker<'a> {
     content: Content,
     depth: BitDepth,

@@ -46,7 +46,8 @@ impl Signer {
         let inputs = self.inputs.split_at_mut(width);
         let outputs = self.outputs.split_at_mut(width);
         let changes = self.changes.reaching(width);
-        let mut makers = [(); 2].map(|()| Maker::new(content, geometry.depth(), width, changes));
+        let maker = Maker::new(content, geometry.depth(), width, changes);
+        let mut makers = [maker.clone(), maker];
         let engine = Arc::clone(&self.corrector.engine);
         let hold = |draws: &[u16], max: u16, samples: &mut [u16]| engine.hold(draws, max, samples);
         // A row in the middle, which nothing mirrors, is made and corrected twice.
