@@ -9,9 +9,9 @@ use std::borrow::Cow;
 use crate::board::MAX_LATENCY;
 use crate::result::wording::named_clock;
 use crate::result::{
-    Account, BoardKind, BoardReport, EqualAtSpeed, Finding, FrameReport, LatencyReport, LinkReport,
-    NotExercised, Outcome, Reconnection, Report, SoakDifference, SoakLength, SoakReport, StreetReport,
-    Suspect,
+    Account, BoardKind, BoardReport, EqualAtSpeed, Finding, FrameReport, FrameTotals, LatencyReport,
+    LinkReport, NotExercised, Outcome, Reconnection, Report, SoakDifference, SoakLength, SoakReport,
+    StreetReport, Suspect,
 };
 use crate::run::DECOY;
 use crate::verdict::Verdict;
@@ -113,9 +113,8 @@ pub fn not_exercised(report: &Report) -> Option<String> {
 /// What was judged, in figures.
 #[must_use]
 pub fn facts(report: &Report) -> String {
-    let samples: usize = report.frames.iter().map(|frame| frame.comparison.samples).sum();
-    let differences: usize = report.frames.iter().map(|frame| frame.comparison.differences).sum();
-    let mut facts = vec![count(report.frames.len(), "frame")];
+    let FrameTotals { frames, samples, differences, .. } = FrameTotals::of(&report.frames);
+    let mut facts = vec![count(frames, "frame")];
     facts.push(match differences {
         _ if samples == 0 => "nothing judged".to_owned(),
         0 => format!("{} equal", count(samples, "sample")),

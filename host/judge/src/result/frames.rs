@@ -8,6 +8,33 @@ use serde::{Deserialize, Serialize};
 use super::as_text;
 use crate::compare::Comparison;
 
+/// How frames compare, taken together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameTotals {
+    /// How many there are.
+    pub frames: usize,
+    /// How many of them differ.
+    pub differing_frames: usize,
+    /// Samples that were compared.
+    pub samples: usize,
+    /// Samples that differ.
+    pub differences: usize,
+}
+
+impl FrameTotals {
+    /// Of these frames.
+    #[must_use]
+    pub fn of(frames: &[FrameReport]) -> Self {
+        let compared = || frames.iter().map(|frame| &frame.comparison);
+        Self {
+            frames: frames.len(),
+            differing_frames: compared().filter(|one| one.differences > 0).count(),
+            samples: compared().map(|one| one.samples).sum(),
+            differences: compared().map(|one| one.differences).sum(),
+        }
+    }
+}
+
 /// One streamed frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameReport {

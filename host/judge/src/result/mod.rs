@@ -55,7 +55,7 @@ pub use doubt::{BrokenOff, Doubt};
 pub use evidence::{Evidence, EvidenceReport};
 pub use extent::Extent;
 pub use finding::Finding;
-pub use frames::{FrameReport, FrameTiming, LatencyReport, Variation};
+pub use frames::{FrameReport, FrameTiming, FrameTotals, LatencyReport, Variation};
 pub use identity::{BurstsReport, Identity};
 pub use late_rows::LateRows;
 pub use link::{LinkReport, Reconnection};

@@ -12,8 +12,8 @@ use crate::board::Tally;
 use crate::coverage::Faults;
 use crate::frames::street;
 use crate::result::{
-    Check, CheckName, CoverageReport, Finding, LinkReport, Outcome, Problem, Report, RunReport, Schema,
-    SoakReport, StreetReport, Suspect, TablesReport, wording,
+    Check, CheckName, CoverageReport, Finding, FrameTotals, LinkReport, Outcome, Problem, Report, RunReport,
+    Schema, SoakReport, StreetReport, Suspect, TablesReport, wording,
 };
 use crate::verdict::Cause;
 
@@ -131,12 +131,12 @@ fn ending(findings: &mut Findings, end: Option<End>) -> Ending {
 
 /// Why the run broke off, behind what nobody looked into then.
 fn broken_off(why: Finding, seen: &Seen) -> Finding {
-    let (differing, differences) = (seen.differing_frames(), seen.differences());
+    let FrameTotals { frames, differing_frames, samples, differences } = seen.totals();
     let Finding::Problem(problem) = why else { return why };
-    if differing == 0 {
+    if differing_frames == 0 {
         return Finding::Problem(problem);
     }
-    let (samples, frames) = ((differences, seen.samples()), (differing, seen.frames.len()));
+    let (samples, frames) = ((differences, samples), (differing_frames, frames));
     let message = wording::broken_off(samples, frames, &problem.message);
     Finding::Problem(Box::new(Problem { message, ..*problem }))
 }

@@ -5,7 +5,7 @@ use super::exercised::SampleLevels;
 use super::findings::End;
 use super::kept::KeptFrames;
 use crate::board::ReturnedRow;
-use crate::result::{Finding, FrameReport, LateRows, LatencyReport};
+use crate::result::{Finding, FrameReport, FrameTotals, LateRows, LatencyReport};
 
 /// What the judge has seen of all frames so far.
 #[derive(Default)]
@@ -55,16 +55,20 @@ impl Seen {
         rows && self.wrong_pauses.is_none() && self.changed_tables.is_none() && self.differences() == 0
     }
 
+    pub(super) fn totals(&self) -> FrameTotals {
+        FrameTotals::of(&self.frames)
+    }
+
     pub(super) fn differences(&self) -> usize {
-        self.frames.iter().map(|frame| frame.comparison.differences).sum()
+        self.totals().differences
     }
 
     pub(super) fn differing_frames(&self) -> usize {
-        self.frames.iter().filter(|frame| frame.comparison.differences > 0).count()
+        self.totals().differing_frames
     }
 
     pub(super) fn samples(&self) -> usize {
-        self.frames.iter().map(|frame| frame.comparison.samples).sum()
+        self.totals().samples
     }
 
     /// Takes the latency of a row that came back, of which the board claims `claimed` and may have `limit` pixel clocks.

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use halfrow::board::{Board, OpenOptions, Stop};
 use halfrow::link::{self, Candidate, OpenError};
 use halfrow::link_test::{self, Figures, LinkTestError};
-use halfrow::result::{BoardReport, Finding, Identity, Problem, Suspect};
+use halfrow::result::{BoardReport, Finding, FrameTotals, Identity, Problem, Suspect};
 use halfrow::run::{Circumstances, Draws};
 use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::{Cause, StoppedBy, Verdict};
@@ -295,14 +295,13 @@ fn seen(kind: BoardKind, identity: &Identity) -> BoardSeen {
 fn found(report: &Report) -> Said {
     let mut said = Said::from(&report.finding);
     let broke_off = report.verdict() == Verdict::Error && matches!(report.finding, Finding::Problem(_));
-    let wrong: Vec<_> =
-        report.frames.iter().map(|frame| &frame.comparison).filter(|one| one.differences > 0).collect();
-    if broke_off && !wrong.is_empty() {
+    let FrameTotals { frames, differing_frames, samples, differences } = FrameTotals::of(&report.frames);
+    if broke_off && differing_frames > 0 {
         let differed = json!({
-            "differences": wrong.iter().map(|one| one.differences).sum::<usize>(),
-            "samples": report.frames.iter().map(|frame| frame.comparison.samples).sum::<usize>(),
-            "differing_frames": wrong.len(),
-            "frames": report.frames.len(),
+            "differences": differences,
+            "samples": samples,
+            "differing_frames": differing_frames,
+            "frames": frames,
         });
         said.parameters.insert(DIFFERED.to_owned(), differed);
     }
@@ -341,13 +340,12 @@ fn of_verify(report: &Report, took: Duration) -> [(&'static str, Option<f64>); 5
     let clocks = report.latency.map(|latency| f64::from(latency.most));
     let BoardReport { identity, .. } = &report.board;
     let hertz = identity.as_ref().map(|identity| f64::from(identity.clock_hz)).filter(|hertz| *hertz > 0.0);
-    let differing: usize = report.frames.iter().map(|frame| frame.comparison.differences).sum();
     [
         ("latency.clocks", clocks),
         ("latency.microseconds", clocks.zip(hertz).map(|(clocks, hertz)| 1e6 * clocks / hertz)),
         ("verify.retries", Some(report.link.retries as f64)),
         ("verify.seconds", Some(took.as_secs_f64())),
-        (SAMPLES_DIFFERING, Some(differing as f64)),
+        (SAMPLES_DIFFERING, Some(FrameTotals::of(&report.frames).differences as f64)),
     ]
 }
 
