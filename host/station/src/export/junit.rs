@@ -114,7 +114,7 @@ mod tests {
     use super::*;
     use crate::plan::limits::{Blame, Limit, Maker, Measurement};
     use crate::record::judged;
-    use crate::record::tests::{pass, step};
+    use crate::record::tests::{pass, step, steps};
 
     /// The element of this tag whose head holds `name`, to its end.
     fn element(document: &str, tag: &str, name: &str) -> String {
@@ -128,12 +128,6 @@ mod tests {
 
     #[test]
     fn the_last_try_of_each_step_is_a_case_and_each_limit_with_what_to_do_behind_a_fail() {
-        let steps = vec![
-            step(1, 1, StepOutcome::Error, RunCause::Link),
-            step(1, 2, StepOutcome::Passed, RunCause::None),
-            step(2, 1, StepOutcome::Failed, RunCause::Board),
-            step(3, 1, StepOutcome::Skipped, RunCause::None),
-        ];
         let limit = Limit {
             measurement: Measurement::named("run.seconds").unwrap(),
             least: None,
@@ -141,7 +135,7 @@ mod tests {
             blames: Blame::Board,
         };
         let measurements = judged(Maker::Run, &[("run.seconds", Some(1.5))], &[limit]);
-        let mut record = Record { steps, measurements, ..pass() };
+        let mut record = Record { steps: steps(), measurements, ..pass() };
         (record.conclusion.verdict, record.conclusion.cause) = (Verdict::Fail, RunCause::Board);
         record.conclusion.remedy = Some("Put the board aside.".to_owned());
         let document = render(&record).unwrap();

@@ -143,19 +143,13 @@ mod tests {
     use super::*;
     use crate::plan::limits::{Blame, Limit, Maker, Measurement};
     use crate::record::judged;
-    use crate::record::tests::{pass, step};
+    use crate::record::tests::{pass, steps};
 
     /// As `test_record.Outcome` and `PhaseOutcome` of OpenHTF 1.6 are called.
     #[test]
     fn a_run_and_its_tries_end_as_openhtf_calls_it() {
-        let steps = vec![
-            step(1, 1, StepOutcome::Error, RunCause::Link),
-            step(1, 2, StepOutcome::Passed, RunCause::None),
-            step(2, 1, StepOutcome::Failed, RunCause::Board),
-            step(3, 1, StepOutcome::Skipped, RunCause::None),
-        ];
         let mut record =
-            Record { steps, measurements: Vec::new(), marginal: true, seconds: Some(2.5), ..pass() };
+            Record { steps: steps(), measurements: Vec::new(), marginal: true, seconds: Some(2.5), ..pass() };
         record.conclusion.cause = RunCause::Operator;
         let told = of(&record);
         let phases: Vec<_> = told["phases"].as_array().unwrap().iter().collect();

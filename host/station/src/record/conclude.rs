@@ -134,6 +134,16 @@ impl Conclusion {
 pub(crate) mod tests {
     use super::*;
 
+    /// The second of two tries passed, a step that failed, and one that was skipped.
+    pub(crate) fn steps() -> Vec<StepRecord> {
+        vec![
+            step(1, 1, StepOutcome::Error, RunCause::Link),
+            step(1, 2, StepOutcome::Passed, RunCause::None),
+            step(2, 1, StepOutcome::Failed, RunCause::Board),
+            step(3, 1, StepOutcome::Skipped, RunCause::None),
+        ]
+    }
+
     pub(crate) fn step(seq: u32, attempt: u32, outcome: StepOutcome, cause: RunCause) -> StepRecord {
         StepRecord {
             seq,

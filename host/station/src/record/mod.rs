@@ -252,7 +252,7 @@ fn between(from_ms: i64, to_ms: i64) -> Option<Duration> {
 
 #[cfg(test)]
 pub(crate) mod tests {
-    pub(crate) use super::conclude::tests::step;
+    pub(crate) use super::conclude::tests::{step, steps};
     use super::*;
     use crate::plan::limits::Maker;
 

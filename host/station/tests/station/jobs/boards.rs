@@ -7,7 +7,7 @@ use std::thread;
 use halfrow_station::store::{Plant, SharedBoard, Turn, Waiter};
 use serde_json::Value;
 
-use super::{any, board, job, plan, run_out, settings, shared, worker};
+use super::{any, board, job, plan, run_out, settings, shared, with_a_job, worker};
 use crate::common::program;
 use crate::plant::server::Server;
 
@@ -17,9 +17,7 @@ fn waiter(name: &str) -> Waiter {
 
 #[test]
 fn who_waits_longest_is_the_next_and_a_job_comes_behind_people() {
-    let (server, mut plant) = shared(1);
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    let (server, mut plant, _) = with_a_job();
     let [first, second, third] = ["first", "second", "third"].map(|name| {
         thread::sleep(std::time::Duration::from_millis(2));
         waiter(name)

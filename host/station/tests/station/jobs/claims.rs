@@ -9,7 +9,7 @@ use halfrow_station::check::check_plant;
 use halfrow_station::record::{JobClaim, Record, RunCause};
 use halfrow_station::store::{Claim, Entry, Kind, Parcel, Plant, Snapshot, Wanted, Worker};
 
-use super::{any, board, job, plan, run_out, shared, worker};
+use super::{any, board, job, plan, run_out, shared, with_a_job, worker};
 use crate::history::made::{BEGIN_MS, End, Made, Run};
 use crate::plant::server::Server;
 
@@ -78,9 +78,7 @@ fn a_job_is_had_by_one_at_a_time_and_so_is_a_board() {
 
 /// What a worker that had stood still for too long does, and what the next one does: how many runs count as judgements.
 pub(crate) fn late(is_fenced: bool) -> (Server, Vec<Vec<String>>) {
-    let (server, mut plant) = shared(1);
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    let (server, mut plant, _) = with_a_job();
     let first = plant.claim(&worker("first")).unwrap().unwrap();
     run_out(&server);
     let second = plant.claim(&worker("second")).unwrap().unwrap();
@@ -124,9 +122,7 @@ fn a_run_of_a_claim_that_was_lost_is_kept_and_does_not_count() {
 /// Only the plant knows that it does not count: its record is as that of the one which does.
 #[test]
 fn an_error_of_a_claim_that_was_lost_counts_nowhere_and_is_no_fault() {
-    let (server, mut plant) = shared(1);
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    let (server, mut plant, _) = with_a_job();
     let first = plant.claim(&worker("first")).unwrap().unwrap();
     run_out(&server);
     let second = plant.claim(&worker("second")).unwrap().unwrap();
@@ -140,9 +136,7 @@ fn an_error_of_a_claim_that_was_lost_counts_nowhere_and_is_no_fault() {
 
 #[test]
 fn what_judged_nothing_is_given_back_five_times_and_then_waits_for_a_person() {
-    let (server, mut plant) = shared(1);
-    let (plan, any) = (plan(), any());
-    let id = plant.add_jobs(&job(&plan, &any), 1).unwrap().remove(0);
+    let (server, mut plant, id) = with_a_job();
     for number in 1..=5 {
         let claim = plant.claim(&worker("12")).unwrap().unwrap();
         match number {
@@ -173,9 +167,7 @@ fn what_judged_nothing_is_given_back_five_times_and_then_waits_for_a_person() {
 
 /// A plant to which the run of a job's fifth claim comes when that has run out, others have asked for a job, and this was done `meanwhile`.
 fn fifth_claim(end: End, meanwhile: impl Fn(&mut Plant, &str)) -> Server {
-    let (server, mut plant) = shared(1);
-    let (plan, any) = (plan(), any());
-    let id = plant.add_jobs(&job(&plan, &any), 1).unwrap().remove(0);
+    let (server, mut plant, id) = with_a_job();
     let fifth = (0..5).map(|_| {
         run_out(&server);
         plant.claim(&worker("away")).unwrap().unwrap()
@@ -246,9 +238,7 @@ fn what_a_claim_judged_before_a_person_cancelled_the_job_or_another_one_claimed_
 
 #[test]
 fn a_claim_judges_once() {
-    let (server, mut plant) = shared(1);
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    let (server, mut plant, _) = with_a_job();
     let claim = plant.claim(&worker("12")).unwrap().unwrap();
     for (number, end) in [(1, End::Fail(&["clock"])), (2, End::Pass)] {
         plant.take(&run_of(&claim, number, end)).unwrap();
@@ -259,9 +249,7 @@ fn a_claim_judges_once() {
 
 #[test]
 fn a_job_that_is_cancelled_is_lost_to_whoever_has_it() {
-    let (server, mut plant) = shared(1);
-    let (plan, any) = (plan(), any());
-    let id = plant.add_jobs(&job(&plan, &any), 1).unwrap().remove(0);
+    let (server, mut plant, id) = with_a_job();
     let claim = plant.claim(&worker("12")).unwrap().unwrap();
     assert!(plant.cancel_job(&id, "engel", "a mistake").unwrap());
     assert!(!plant.renew_claim(&claim).unwrap());

@@ -10,7 +10,7 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use tempfile::TempDir;
 
-use super::{any, at_work, job, judged, plan, settings, shared};
+use super::{any, at_work, job, judged, plan, settings, shared, with_a_job};
 use crate::common::{Did, folder, program, query};
 use crate::lanes::floor::HANG;
 use crate::plant::server::Server;
@@ -126,9 +126,7 @@ fn what_a_worker_could_not_save_is_closed_before_it_takes_another_job() {
 /// The table that knows it is gone.
 #[test]
 fn a_verdict_is_told_though_the_store_does_not_say_whether_the_plant_has_it() {
-    let (server, mut plant) = shared(1);
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    let (server, ..) = with_a_job();
     let folder = folder();
     let settings = Settings::load_plant(&settings(&server, folder.path(), "12")).unwrap();
     let work = at_work(&settings, program().to_owned());

@@ -55,6 +55,14 @@ fn shared(count: usize) -> (Server, Plant) {
     (server, plant)
 }
 
+/// A plant with one board and one job for it, whose id is the last.
+fn with_a_job() -> (Server, Plant, String) {
+    let (server, mut plant) = shared(1);
+    let (plan, any) = (plan(), any());
+    let id = plant.add_jobs(&job(&plan, &any), 1).unwrap().remove(0);
+    (server, plant, id)
+}
+
 pub(crate) fn any() -> Wanted {
     Wanted::Kind("mock".to_owned())
 }

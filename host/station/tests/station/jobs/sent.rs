@@ -10,15 +10,13 @@ use halfrow_station::said::{Said, Saying};
 use halfrow_station::settings::Settings;
 use halfrow_station::store::{Parcel, SINK_OF_PLANT};
 
-use super::{any, at_work, job, judged, plan, settings, shared};
+use super::{at_work, judged, settings, with_a_job};
 use crate::common::{folder, program};
 
 /// Whether the plant has the run of a job, and whether the run counts there, if the outbox `sends` and a person cancels the job
 /// while the result is being saved.
 fn became(sends: bool, is_cancelled: bool) -> (bool, Option<bool>) {
-    let (server, mut plant) = shared(1);
-    let (plan, any) = (plan(), any());
-    let id = plant.add_jobs(&job(&plan, &any), 1).unwrap().remove(0);
+    let (server, mut plant, id) = with_a_job();
     let folder = folder();
     let settings = Settings::load_plant(&settings(&server, folder.path(), "12")).unwrap();
     let work = at_work(&settings, program().to_owned());
@@ -63,9 +61,7 @@ impl Sink for Refusing {
 
 #[test]
 fn what_the_plant_does_not_take_holds_no_board_and_says_why() {
-    let (server, mut plant) = shared(1);
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    let (server, ..) = with_a_job();
     let folder = folder();
     let settings = Settings::load_plant(&settings(&server, folder.path(), "12")).unwrap();
     let work = at_work(&settings, program().to_owned());
