@@ -35,27 +35,65 @@ fn answered(page: &mut Chromium, all: usize) {
     page.wait(&format!("document.getElementById('counter').textContent === '{all} / {all}'"));
 }
 
-/// So many scans at each speed: what the station was sent is what was scanned, each for its lane and in its order.
+/// Whether the page says that the last scan did not come in time, as happens on a busy computer: nothing was done, and whoever
+/// scanned is told to scan again.
+fn was_late(page: &mut Chromium) -> bool {
+    let said = "document.getElementById('answer').textContent";
+    let unsent = "document.getElementById('station').dataset.unsent";
+    page.evaluate(&format!("{said}.includes('this came too late') || {said} === {unsent}")) == true
+}
+
+/// Somebody who scans, and who looks up behind each scan.
+struct Operator {
+    page: Chromium,
+    scans: usize,
+}
+
+impl Operator {
+    /// Whether the scan came in time.
+    fn scan(&mut self, text: &str, end: &str, apart: Duration) -> bool {
+        self.page.scan(text, end, apart);
+        self.scans += 1;
+        answered(&mut self.page, self.scans);
+        !was_late(&mut self.page)
+    }
+
+    /// Chooses a lane, again if that came late.
+    fn choose(&mut self, lane: usize, apart: Duration) {
+        let is_chosen = (0..5).any(|_| self.scan(&format!("HR:LANE:{lane}"), "Enter", apart));
+        assert!(is_chosen, "five scans of a lane came late");
+        let armed = self.page.evaluate("document.getElementById('armed').textContent");
+        assert!(armed.as_str().unwrap().ends_with(&format!(" {lane}")), "{armed} instead of {lane}");
+    }
+}
+
+/// So many scans at each speed: what the station was sent is what was scanned, each for its lane and in its order. Only what the
+/// page said to be late may be missing.
 fn scanned(counts: [usize; 4], first: usize) {
     let station = Station::private(LANES);
     let serving = station.serve();
-    let mut page = Chromium::live(&serving);
-    let mut expected = Vec::new();
+    let mut operator = Operator { page: Chromium::live(&serving), scans: 0 };
+    let (mut scans, mut late) = (Vec::new(), Vec::new());
     for (milliseconds, count) in SPEEDS.into_iter().zip(counts) {
         let apart = Duration::from_millis(milliseconds);
         for _ in 0..count {
-            let number = first + expected.len();
+            let number = first + scans.len();
             let (serial, lane) = (serial(number), number % LANES + 1);
-            page.evaluate(FOCUS[number % FOCUS.len()]);
-            page.scan(&format!("HR:LANE:{lane}"), "Enter", apart);
-            page.scan(&serial, if number.is_multiple_of(2) { "Enter" } else { "Tab" }, apart);
-            expected.push(format!("{lane} {serial}"));
-            // Whoever scans looks up; what is late, as on a busy computer, is refused.
-            answered(&mut page, 2 * expected.len());
+            operator.page.evaluate(FOCUS[number % FOCUS.len()]);
+            operator.choose(lane, apart);
+            let end = if number.is_multiple_of(2) { "Enter" } else { "Tab" };
+            let scan = format!("{lane} {serial}");
+            if !operator.scan(&serial, end, apart) {
+                late.push(scan.clone());
+            }
+            scans.push(scan);
         }
     }
     let sent = station.query("SELECT subject || ' ' || detail FROM audit WHERE act = 'scan' ORDER BY id");
-    assert_eq!(sent, expected);
+    // What the page did not hear of in time may have been sent all the same.
+    scans.retain(|scan| sent.contains(scan) || !late.contains(scan));
+    assert_eq!(sent, scans);
+    assert!(late.len() * 4 <= sent.len(), "{late:?} came late");
     let others = station.query("SELECT act FROM audit WHERE act <> 'scan'");
     assert_eq!(others, Vec::<String>::new(), "no key pressed a button");
 }
