@@ -6,8 +6,9 @@ use std::{env, fs, io};
 use crate::sources::{Sources, Type, Words};
 
 /// Where types with codes are, from the folder of this package.
-const FOLDERS: [&str; 11] = [
+const FOLDERS: [&str; 12] = [
     "src",
+    "../files/src",
     "../frames/src",
     "../judge/src",
     "../lab/src",

@@ -14,7 +14,7 @@ use signal_hook::iterator::Signals;
 
 use crate::console;
 use crate::exit::Exit;
-use halfrow_frames::written_aside;
+use halfrow_files::written_aside;
 use halfrow_program::signals::is_ignored;
 
 /// How long the last words may take.

@@ -9,7 +9,7 @@ use super::RawLayout;
 use super::format::Format;
 use super::photograph::MAX_PIXELS;
 use super::size::{MAX_FILE_BYTES, MAX_SIDE};
-use crate::written_aside::WriteAsideError;
+use halfrow_files::written_aside::WriteAsideError;
 
 /// A file that could not be read as a frame.
 #[derive(Debug, thiserror::Error)]
@@ -25,12 +25,6 @@ pub enum ReadError {
     /// More bytes than any frame has.
     #[error("{} is longer than {MAX_FILE_BYTES} bytes; give a file that holds one frame", path.display())]
     TooLong {
-        /// The file.
-        path: PathBuf,
-    },
-    /// It is no regular file, where a file is read more than once.
-    #[error("{} is a pipe or a device, which cannot be read twice; write it to a file, and name that", path.display())]
-    NotRegular {
         /// The file.
         path: PathBuf,
     },

@@ -13,7 +13,7 @@ use super::{
     DecodeError, Decoded, FrameShape, Orientation, PictureSize, ReadError, ReadOptions, WriteError,
     photograph, png,
 };
-use crate::written_aside::{BUFFER, write_aside};
+use halfrow_files::written_aside::{BUFFER, write_aside};
 
 /// The frame in the file `path`. The bytes tell the format, not the name; without a header, `how.raw` must.
 ///
@@ -113,20 +113,6 @@ pub fn read_shown(path: &Path) -> Result<RgbImage, ReadError> {
             remedy: "give one of these, or export it again",
         })),
         None => file.decode_rgb(),
-    }
-}
-
-/// Refuses what cannot be read twice: a pipe, which may also never begin, or a device. Nobody could compare its hash with what
-/// was read. What is not there is left to be said by who reads it, and so is a folder.
-///
-/// # Errors
-/// [`ReadError::NotRegular`].
-pub fn check_regular(path: &Path) -> Result<(), ReadError> {
-    match std::fs::metadata(path) {
-        Ok(about) if !about.is_file() && !about.is_dir() => {
-            Err(ReadError::NotRegular { path: path.to_owned() })
-        }
-        _ => Ok(()),
     }
 }
 

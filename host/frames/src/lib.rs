@@ -5,9 +5,6 @@
 
 #![warn(missing_debug_implementations)]
 
-#[cfg(not(target_os = "linux"))]
-compile_error!("halfrow-frames is for Linux alone; docs/portable.md says what works elsewhere");
-
 mod builtin;
 pub mod dng;
 mod error;
@@ -35,15 +32,13 @@ pub mod tiff;
 mod tiff_bytes;
 mod tiff_directory;
 mod turned;
-pub mod written_aside;
 
 use halfrow_model::{BitDepth, Frame, Phase};
 
 pub use builtin::{Builtin, UnknownBuiltin};
 pub use error::{DecodeError, EncodeError, PackingError, ReadError, WriteError};
 pub use file::{
-    FrameFile, check_png, check_regular, read, read_rgb, read_shown, write, write_oriented, write_rgb,
-    write_rows,
+    FrameFile, check_png, read, read_rgb, read_shown, write, write_oriented, write_rgb, write_rows,
 };
 pub use fitting::{Fitting, PictureSize};
 pub use format::{Format, UnknownFormat};

@@ -54,6 +54,7 @@ pub mod tables;
 pub mod verdict;
 pub mod words;
 
+pub use halfrow_files as files;
 pub use halfrow_frames as frames;
 pub use halfrow_link as link;
 pub use halfrow_link::target;

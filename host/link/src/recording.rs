@@ -18,8 +18,8 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::{LineErrors, Link, LinkError};
-use halfrow_frames::written_aside::{Aside, Unfinished, WriteAsideError};
-use halfrow_frames::{ReadError, check_regular};
+use halfrow_files::written_aside::{Aside, Unfinished, WriteAsideError};
+use halfrow_files::{NotRegular, check_regular};
 
 const MAGIC: &[u8] = b"halfrow recording 1\n";
 
@@ -31,7 +31,7 @@ pub enum RecordingError {
     Create(#[from] WriteAsideError),
     /// It is a pipe, which may never begin, or a device, which may never end.
     #[error(transparent)]
-    NotRegular(#[from] ReadError),
+    NotRegular(#[from] NotRegular),
     /// It cannot be read.
     #[error("the recording {path} cannot be read; check the path in replay:FILE")]
     Read {

@@ -5,7 +5,7 @@ use std::io::{self, Write as _};
 use std::os::unix::fs::{MetadataExt as _, OpenOptionsExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
-use halfrow::frames::written_aside::{folder_of, sync_folder};
+use halfrow::files::written_aside::{folder_of, sync_folder};
 use halfrow::tables::text::{MAX_BYTES, read as read_text};
 use nix::unistd::{getegid, geteuid};
 use serde::Serialize;

@@ -191,8 +191,7 @@ fn a_pipe_is_no_frame_to_judge_with() {
     let folder = Folder::new();
     let pipe = folder.path().join("pipe.pgm");
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
-    let sentence =
-        "pipe.pgm is a pipe or a device, which cannot be read twice; write it to a file, and name that";
+    let sentence = "pipe.pgm is a pipe or a device, and its bytes could not be looked at again; write it to a file, and name that";
     refused(&folder, &small("verify", &["--frame", "pipe.pgm"]), sentence);
     refused(&folder, &["verify", "--tables", "pipe.pgm"], sentence);
     refused(&folder, &["verify", "--lens", "pipe.pgm"], sentence);

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const LIBRARIES: [&str; 3] = ["host/frames/src", "host/link/src", "host/judge/src"];
+const LIBRARIES: [&str; 4] = ["host/files/src", "host/frames/src", "host/link/src", "host/judge/src"];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")

@@ -18,7 +18,7 @@ use crate::pool::PoolError;
 use crate::settings::Settings;
 use crate::{console, flags, text};
 use halfrow::call::{self, Files, FilesError, Input};
-use halfrow::frames::check_regular;
+use halfrow::files::check_regular;
 use halfrow::link::RecordingFile;
 use halfrow::optics::Chosen;
 use halfrow::report::{self, ReportFolder};

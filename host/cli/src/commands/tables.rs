@@ -17,7 +17,7 @@ use halfrow::call::Files;
 use halfrow::optics::outside_circle;
 use halfrow::tables::{TableFile, mem};
 use halfrow::words::count;
-use halfrow_frames::written_aside::WriteAsideError;
+use halfrow_files::written_aside::WriteAsideError;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

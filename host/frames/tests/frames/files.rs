@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fs;
 
-use halfrow_frames::written_aside::WriteAsideError;
+use halfrow_files::written_aside::WriteAsideError;
 use halfrow_frames::{
     DecodeError, EncodeError, FrameShape, Orientation, RawGeometry, RawLayout, ReadError, ReadOptions,
     WriteError, read, read_shown, write, write_rows,

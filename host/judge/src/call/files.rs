@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use crate::kernels::NamedKernel;
 use crate::report::{self, ReportError};
-use halfrow_frames::written_aside::{self, Place, WriteAsideError, folder_of};
+use halfrow_files::written_aside::{self, Place, WriteAsideError, folder_of};
 
 /// A file or folder that a call must not write, or cannot.
 #[derive(Debug, Error)]

@@ -11,7 +11,7 @@ use serde::de::IgnoredAny;
 use super::{VIEWS, json};
 use crate::result::{Evidence, Report};
 use crate::verdict::Verdict;
-use halfrow_frames::written_aside::{AsideFolder, Claim, Misplaced, WriteAsideError};
+use halfrow_files::written_aside::{AsideFolder, Claim, Misplaced, WriteAsideError};
 
 const JSON: &str = "report.json";
 

@@ -13,7 +13,7 @@ use serde_json::{Map, Value};
 use super::members::{Members, list, number};
 use super::{ContentError, Place, TableFileError, layout, mem, text};
 use crate::call::Input;
-use halfrow_frames::written_aside::{WriteAsideError, write_aside};
+use halfrow_files::written_aside::{WriteAsideError, write_aside};
 
 /// A table file: everything that a board is given before frames.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,7 +13,7 @@ use halfrow_protocol::message::Datapath;
 use super::text::{self, quoted};
 use super::{DATAPATH, MemError, Place, TableFileError, WrongDatapath, datapath_of};
 use crate::call::Input;
-use halfrow_frames::written_aside::{Aside, Claim, WriteAsideError};
+use halfrow_files::written_aside::{Aside, Claim, WriteAsideError};
 
 /// Hexadecimal digits of a row factor, and of an entry of a grid.
 const ENTRY_DIGITS: usize = 7;

@@ -3,7 +3,7 @@
 use std::fs;
 
 use halfrow::tables::{ContentError, KernelFile, TableFile, TableFileError};
-use halfrow_frames::written_aside::WriteAsideError;
+use halfrow_files::written_aside::WriteAsideError;
 use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, Kernel, TableSet};
 use serde_json::{Value, json};
 

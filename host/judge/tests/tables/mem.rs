@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use halfrow::tables::mem::{self, kernel_text, parse_kernel, parse_row_factors, row_factors_text};
 use halfrow::tables::{MemError, Place, TableFileError};
-use halfrow_frames::written_aside::WriteAsideError;
+use halfrow_files::written_aside::WriteAsideError;
 use halfrow_model::{
     BitDepth, Geometry, Interpolant, Kernel, KernelError, RowFactorError, TableError, TableSet,
 };

@@ -10,7 +10,7 @@ use super::exhibit::{Drawing, Exhibit, Picture};
 use super::{Item, page};
 use halfrow::frames::preview;
 use halfrow::result::SCHEMA;
-use halfrow_frames::written_aside::{Claim, WriteAsideError, check, write_aside};
+use halfrow_files::written_aside::{Claim, WriteAsideError, check, write_aside};
 
 /// The page's name.
 const PAGE: &str = "paper.html";

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use halfrow::frames::written_aside::write_aside;
+use halfrow::files::written_aside::write_aside;
 use halfrow::words::count;
 
 use super::export::{NoFolder, unwritten};

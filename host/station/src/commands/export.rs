@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 use clap::Args;
-use halfrow::frames::written_aside::{Aside, WriteAsideError, write_aside};
+use halfrow::files::written_aside::{Aside, WriteAsideError, write_aside};
 
 use super::looking::{Filtered, Results};
 use super::{Failure, print};

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 use clap::{Args, CommandFactory as _};
-use halfrow::frames::written_aside::write_aside;
+use halfrow::files::written_aside::write_aside;
 use halfrow_program::man_pages::{self, Shell};
 
 use super::{Cli, Failure, print};

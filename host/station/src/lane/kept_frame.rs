@@ -4,8 +4,8 @@ use std::fs::{self, File};
 use std::io::{self, Write as _};
 use std::path::Path;
 
+use halfrow::files::written_aside::{WriteAsideError, write_aside};
 use halfrow::frames::png;
-use halfrow::frames::written_aside::{WriteAsideError, write_aside};
 use halfrow::model::{BitDepth, Frame, Phase};
 use halfrow::result::Evidence;
 

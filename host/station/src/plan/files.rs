@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use halfrow::call::Input;
-use halfrow::frames::check_regular;
+use halfrow::files::check_regular;
 use halfrow::result::{FileHash, sha256};
 use toml::Spanned;
 

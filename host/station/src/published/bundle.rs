@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use halfrow::frames::written_aside::{WriteAsideError, write_aside};
+use halfrow::files::written_aside::{WriteAsideError, write_aside};
 use halfrow::result::{FileHash, sha256};
 use serde::{Deserialize, Serialize};
 

@@ -4,7 +4,7 @@ use std::fs::{self, FileType};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use halfrow::frames::written_aside::{AsideFolder, Misplaced, write_aside};
+use halfrow::files::written_aside::{AsideFolder, Misplaced, write_aside};
 use halfrow::result::sha256;
 use serde::{Deserialize, Serialize};
 

@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use halfrow::frames::written_aside::{self, Aside, WriteAsideError};
+use halfrow::files::written_aside::{self, Aside, WriteAsideError};
 use halfrow::result::sha256;
 
 /// Evidence that cannot be written or read.

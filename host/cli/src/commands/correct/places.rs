@@ -10,7 +10,7 @@ use crate::call_error::CallError;
 use crate::files::{make_folder, refuse_stdout};
 use halfrow::call::Files;
 use halfrow::frames::{Format, check_png};
-use halfrow_frames::written_aside::Place;
+use halfrow_files::written_aside::Place;
 
 /// The files of a call, one for each input, in the order of the inputs.
 pub(super) struct Places {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::LoadError;
 use crate::call_error::CallError;
-use halfrow::frames::check_regular;
+use halfrow::files::check_regular;
 use halfrow::result::sha256;
 use halfrow::tables::text;
 

@@ -16,13 +16,13 @@ use crate::lenses::{LensContentError, LensFileError, WrongShape};
 use crate::optics::OpticsError;
 use crate::report::ReportError;
 use crate::tables::{ContentError, MemError, TableFileError, WrongDatapath};
-use halfrow_frames::written_aside::{Unfinished, WriteAsideError};
+use halfrow_files::NotRegular;
+use halfrow_files::written_aside::{Unfinished, WriteAsideError};
 
 codes! {
     ReadError {
         Io [path] => "frame-file-unreadable",
         TooLong [path] => "frame-file-too-long",
-        NotRegular [path] => "frame-file-is-no-regular-one",
         Decode [path] => "frame-file-not-understood",
     }
     DecodeError {
@@ -197,6 +197,8 @@ codes! {
     DamagedKernel => "kernel-damaged"
     ;
     GeometryError => "geometry-impossible"
+    ;
+    NotRegular [path] => "frame-file-is-no-regular-one"
     ;
     TableError => "row-factors-impossible"
     ;

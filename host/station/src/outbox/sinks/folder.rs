@@ -5,7 +5,7 @@ use std::io;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 
-use halfrow::frames::written_aside::{WriteAsideError, write_aside};
+use halfrow::files::written_aside::{WriteAsideError, write_aside};
 
 use super::SinkError;
 use super::letter::letter;

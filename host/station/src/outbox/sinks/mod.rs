@@ -8,7 +8,7 @@ mod post;
 use std::io;
 use std::path::PathBuf;
 
-use halfrow::frames::written_aside::WriteAsideError;
+use halfrow::files::written_aside::WriteAsideError;
 
 use super::{Sink, Undelivered};
 use crate::export::ExportError;

@@ -25,8 +25,8 @@ pub use place::{Place, check, check_folder, clear};
 use rights::Rights;
 pub use under_way::abandon_all;
 
-/// Bytes that are written at once.
-pub(crate) const BUFFER: usize = 1 << 17;
+/// Bytes that are written at once: writes of whole multiples of it are handed on as they are.
+pub const BUFFER: usize = 1 << 17;
 
 /// The same for streams.
 const STREAM_BUFFER: usize = 1 << 13;

@@ -1,0 +1,11 @@
+//! Files on disk, whatever is in them: outputs that are whole or as they were, and inputs whose bytes can be looked at again.
+
+#![warn(missing_debug_implementations)]
+
+#[cfg(not(target_os = "linux"))]
+compile_error!("halfrow-files is for Linux alone; docs/portable.md says what works elsewhere");
+
+mod regular;
+pub mod written_aside;
+
+pub use regular::{NotRegular, check_regular};
