@@ -9,7 +9,7 @@ use super::BoardError;
 use super::asked::Asking;
 use super::conversation::Conversation;
 
-/// How long it is listened behind an echo for what else comes.
+/// How long to listen after an echo for whatever else comes.
 const MORE: Duration = Duration::from_millis(200);
 
 /// A packet that was kept.
@@ -23,7 +23,8 @@ impl OwnedPacket {
         Packet { header: self.header, payload: &self.payload }
     }
 
-    /// Whether it is what was asked under the header `sent`, and no answer: a board's window is ahead of the host's.
+    /// Whether it is the request itself, sent under the header `sent`, and not an answer to it. The header tells: a board's
+    /// window is ahead of the host's.
     pub(super) fn is_echo_of(&self, sent: &Header, asking: &Asking<'_>) -> bool {
         let asked = || {
             let mut payload = Vec::new();
@@ -35,8 +36,8 @@ impl OwnedPacket {
 }
 
 impl Conversation {
-    /// What echoes: a line, or a device that has more to say, which may come later. Packets of a board beside an echo would not
-    /// make it one.
+    /// What echoes: a plain line, or a device that has more to say, which may come later. If packets of a board come as well, it
+    /// is an echo only.
     pub(super) fn echoed(&mut self) -> Result<BoardError, BoardError> {
         if self.session.number != 0 {
             return Ok(BoardError::Echoed);

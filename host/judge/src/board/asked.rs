@@ -1,19 +1,19 @@
-//! What was asked of late, and how often it was answered: by that a late answer is told from a lost one.
+//! The latest requests, and how often each was answered. This tells a late answer from a lost one.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
 use halfrow_protocol::{Kind, Packet, Reply, Request};
 
-/// Requests that are remembered. Only copies of the last few can still be under way over a link that keeps their order.
+/// Requests that are remembered. On a link that keeps the order, only copies of the last few can still be under way.
 const KEPT: usize = 16;
 
 /// A request to be sent.
 #[derive(Clone, Copy)]
 pub(super) enum Asking<'a> {
-    /// One as the protocol has it.
+    /// A request that the protocol knows.
     Request(&'a Request<'a>),
-    /// Any payload of a kind.
+    /// Any payload under the given kind.
     Bytes(Kind, &'a [u8]),
 }
 
@@ -33,7 +33,7 @@ impl Asking<'_> {
         }
     }
 
-    /// Whether a second copy that comes late, behind others, may leave the board other than it was.
+    /// Whether a second copy, arriving late and after other requests, may change the state of the board.
     fn changes(&self) -> bool {
         match self {
             Self::Request(Request::Status { clear }) => *clear,
@@ -49,19 +49,19 @@ struct Asked {
     kind: Kind,
     changes: bool,
     begun: Duration,
-    /// How long the first answer took; none before it came.
+    /// How long the first answer took; none until it came.
     took: Option<Duration>,
-    /// How often it was sent again and no answer to that has come.
+    /// How often it was sent again without an answer to that copy so far.
     again: u32,
 }
 
-/// An answer that nobody waits for.
+/// An answer that nobody is waiting for.
 pub(super) struct Stray {
-    /// How long the first answer took to a request that was sent again although nothing was lost.
+    /// If the request was sent again although nothing was lost: how long its first answer took.
     pub(super) needless: Option<Duration>,
-    /// Whether the board may have been changed by a request that came twice.
+    /// Whether the board may have been changed by a request that reached it twice.
     pub(super) changed: bool,
-    /// Whether it is one more answer to a request that was not sent again.
+    /// Whether it is a further answer to a request that was sent only once.
     pub(super) is_second: bool,
 }
 
@@ -76,7 +76,7 @@ impl LastAsked {
         self.0.push_front(Asked { sequence, kind, changes, begun: now, took: None, again: 0 });
     }
 
-    /// The last request is sent once more. Says whether that may change the board.
+    /// Notes that the last request is sent once more. Returns whether that may change the board.
     pub(super) fn asked_again(&mut self) -> bool {
         self.0.front_mut().is_some_and(|asked| {
             asked.again += 1;
@@ -84,19 +84,19 @@ impl LastAsked {
         })
     }
 
-    /// Takes a packet; returns what it tells when it is no row, and not the first answer to a request.
+    /// Takes a packet. Returns what it shows if it is neither a row nor the first answer to a request.
     pub(super) fn answered(&mut self, packet: &Packet<'_>, now: Duration) -> Option<Stray> {
         let kind = Kind::from_code(packet.header.kind);
         if kind == Some(Kind::RowOut) {
             return None;
         }
-        // A row that is refused may have the number of a request long before it.
+        // The refusal of a row may carry the number of a much earlier request.
         let refused = refused(packet);
         let known = self.0.iter_mut().find(|asked| {
             asked.sequence == packet.header.sequence && refused.is_none_or(|kind| kind == asked.kind.code())
         });
         let Some(asked) = known else {
-            // A row may be refused.
+            // A refusal may be that of a row.
             let changed = kind.is_some_and(may_change);
             return (kind != Some(Kind::Refusal)).then_some(Stray {
                 needless: None,
@@ -142,14 +142,14 @@ mod tests {
 
     use super::*;
 
-    /// What `last` makes of an answer under this number.
+    /// What `last` makes of an answer with this number.
     fn stray(last: &mut LastAsked, sequence: u16, kind: Kind, payload: &[u8]) -> Option<bool> {
         let header = Header { kind: kind.code(), sequence, reply: true, session: 1, window: 0 };
         let packet = Packet { header, payload };
         last.answered(&packet, Duration::ZERO).map(|stray| stray.changed)
     }
 
-    /// WIRE.md numbers packets by 16 bits, so that the 65,536th row behind a request has its number.
+    /// WIRE.md numbers packets with 16 bits, so the 65,536th row after a request has that request's number.
     #[test]
     fn a_refused_row_is_no_second_answer_to_a_request_of_its_number() {
         let mut last = LastAsked::default();

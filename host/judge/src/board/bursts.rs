@@ -1,4 +1,4 @@
-//! Bursts: frames that the board makes and signs on its own (AT-SPEED.md).
+//! Bursts: frames that the board makes and signs by itself (AT-SPEED.md).
 
 use std::time::Duration;
 
@@ -11,9 +11,9 @@ use super::{Board, BoardError, Tally};
 /// Records that a board had ready.
 #[derive(Clone, Debug)]
 pub(crate) struct Fetched {
-    /// How far the burst is.
+    /// The state of the burst.
     pub(crate) state: BurstState,
-    /// One a frame, from the one on that was asked for.
+    /// One for each frame, from the requested one on.
     pub(crate) records: Vec<FrameRecord>,
 }
 
@@ -22,14 +22,14 @@ pub(crate) struct Fetched {
 pub(crate) struct Trapped {
     /// The row of the frame.
     pub(crate) row: usize,
-    /// Its signature by the board's count.
+    /// Its signature, as computed by the board.
     pub(crate) signature: u32,
     /// Its samples.
     pub(crate) samples: Vec<u16>,
 }
 
 impl Board {
-    /// Starts `burst`, or sets how many frames the one of its name has.
+    /// Starts `burst`, or changes the number of frames of the running burst with the same number.
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
@@ -39,7 +39,7 @@ impl Board {
             .request(&request, Step::Request, |reply| matches!(reply, Reply::Burst).then_some(()))
     }
 
-    /// The records of `burst` from the frame `from` on that are made. The board may forget those before.
+    /// The records of `burst` that are ready, from the frame `from` on. The board may forget earlier ones.
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer, or answers for another burst.
@@ -52,8 +52,8 @@ impl Board {
         })
     }
 
-    /// What `error` means that stands where records of the last burst should: the late copy of a request, which the link
-    /// brought twice, may have begun the one before it again.
+    /// What `error` means if it came in place of the records of the last burst. If the link delivered a request twice, the late
+    /// copy may have restarted an earlier burst.
     pub(crate) fn of_last_burst(&self, error: BoardError) -> BoardError {
         match error {
             BoardError::Unexpected { kind: Kind::Records } if self.repeated_changes() > 0 => {
@@ -63,7 +63,7 @@ impl Board {
         }
     }
 
-    /// Says what signatures the rows of a repeating frame must have, from its row 0 on.
+    /// Uploads the signatures that the rows of a repeating frame must have, from its row 0 on.
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
@@ -93,7 +93,7 @@ impl Board {
         })
     }
 
-    /// Lets `time` pass on the link's clock, whatever comes meanwhile, or less when the link ends a wait early.
+    /// Lets `time` pass on the link's clock, whatever comes meanwhile. Returns earlier if the link ends a wait early.
     ///
     /// # Errors
     /// [`BoardError`] when the link breaks, or the run was stopped.
@@ -108,7 +108,7 @@ impl Board {
         Ok(())
     }
 
-    /// Waits for `time` at most until a byte has moved, and says whether one has.
+    /// Waits until a byte has moved, at most for `time`. Returns whether one has.
     fn moves_within(&mut self, time: Duration) -> Result<bool, BoardError> {
         let moved = |Tally { bytes_in, bytes_out, .. }| (bytes_in, bytes_out);
         let before = moved(self.tally());

@@ -1,4 +1,4 @@
-//! What a board did over rows that no link can do to it: every packet has a CRC, a session and a number of its own.
+//! What a board did with rows that no link can have caused: every packet has a CRC, a session and a number of its own.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -7,20 +7,20 @@ use halfrow_protocol::{Header, Kind, Packet, Reply};
 
 use super::Said;
 
-/// ROW_OUT packets that are remembered. One that a link held back for longer is not compared with the others.
+/// ROW_OUT packets that are remembered. One that a link held back for longer is not compared with others.
 const PACKETS: usize = 256;
-/// Rows of which the first copy is remembered.
+/// Rows whose first copy is remembered.
 const ROWS: usize = 4096;
 
-/// The board broke the wire's rules, beyond what any link does.
+/// The board broke the protocol in a way that no link can cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Misconduct {
-    /// A row came twice, and not the same both times.
+    /// A row came twice, and the copies differ.
     CopyDiffers {
         /// The row.
         place: RowPlace,
     },
-    /// A row came that the board was never given.
+    /// A row came that was never sent to the board.
     NeverSent {
         /// The row.
         place: RowPlace,
@@ -32,21 +32,21 @@ pub(crate) enum Misconduct {
         /// The number in both headers.
         number: u16,
     },
-    /// A row was sent twice, by the board's own numbering of its packets, and says both times that it was sent as often before.
+    /// A row was sent twice, by the board's own numbering of its packets, with the same count of repeats both times.
     RepeatsStand {
         /// The row.
         place: RowPlace,
-        /// What it says.
+        /// The count of repeats in both.
         repeats: u16,
     },
-    /// A row left the board behind a later one, by the board's own numbering of its packets.
+    /// A row left the board after a later one, by the board's own numbering of its packets.
     OutOfOrder {
         /// The row that came too late.
         place: RowPlace,
     },
 }
 
-/// A ROW_OUT packet that came.
+/// A received ROW_OUT packet.
 struct Came {
     number: u16,
     place: RowPlace,
@@ -54,31 +54,31 @@ struct Came {
     digest: u32,
 }
 
-/// The row of the greatest number that came, of those that left for the first time.
+/// Of the rows sent for the first time, the one with the greatest row sequence number.
 struct Furthest {
     row_sequence: u32,
-    /// The board's count of its packet, which does not wrap as the header's does.
+    /// The board's count of its packet. Unlike the number in the header it does not wrap.
     count: i64,
 }
 
 impl Furthest {
-    /// The next one, whose packet is numbered less than half the numbers behind this one's.
+    /// The next one. Its packet's number is less than half the number range after this one's.
     fn then(&self, came: &Came) -> Self {
         let step = came.number.wrapping_sub(self.count as u16) as i16;
         Self { row_sequence: came.place.row_sequence, count: self.count + i64::from(step) }
     }
 }
 
-/// What a session's rows have shown.
+/// What the rows of a session have shown.
 #[derive(Default)]
 pub(super) struct Conduct {
     packets: VecDeque<Came>,
-    /// The digest of each of the last rows, by the row's number, what may differ from copy to copy left out.
+    /// A digest of each of the last rows, by row sequence number, without what may differ from copy to copy.
     rows: BTreeMap<u32, u32>,
     furthest: Option<Furthest>,
     came: u32,
     doubled: u32,
-    /// The number of packets that must not be answered, and what they were answered with.
+    /// The number of packets that must not be answered.
     damaged: Option<u16>,
     answer_to_damaged: Option<Said>,
     /// The last row that was refused, by the number of its packet.
@@ -87,12 +87,12 @@ pub(super) struct Conduct {
 }
 
 impl Conduct {
-    /// The first rule that was broken.
+    /// The first rule that the board broke.
     pub(super) fn misconduct(&self) -> Option<Misconduct> {
         self.misconduct
     }
 
-    /// The fewest ROW_OUT packets that the board has sent in this session, by its own numbers.
+    /// A lower bound on the ROW_OUT packets that the board has sent in this session, by its own numbering.
     pub(super) fn packets_numbered(&self) -> u32 {
         let count = self.furthest.as_ref().map_or(0, |furthest| furthest.count + 1);
         u32::try_from(count.max(0)).unwrap_or(u32::MAX)
@@ -103,7 +103,7 @@ impl Conduct {
         (self.damaged, self.answer_to_damaged) = (Some(number), None);
     }
 
-    /// What they were answered with, if they were.
+    /// The answer to them, if there was one.
     pub(super) fn answer_to_damaged(&self) -> Option<&Said> {
         self.answer_to_damaged.as_ref()
     }
@@ -113,17 +113,18 @@ impl Conduct {
         self.doubled
     }
 
-    /// The ROW_OUT packets that came, copies that a link makes left out.
+    /// The ROW_OUT packets that came, without copies made by a link.
     pub(super) fn came(&self) -> u32 {
         self.came
     }
 
-    /// What the last row was refused with, if it was sent in the packet `number`.
+    /// The refusal of the last refused row, if that row was sent in the packet `number`.
     pub(super) fn refused_row(&self, number: u16) -> Option<Refusal> {
         self.refused_row.filter(|refused| refused.0 == number).map(|refused| refused.1)
     }
 
-    /// Takes note of a row that is further than all before. A copy that a link held back for long has a number that has come round.
+    /// Notes a row that is further than all before it. A copy that a link held back for long is not: its number may have wrapped
+    /// since.
     fn go_further(&mut self, came: &Came) {
         let row_sequence = came.place.row_sequence;
         let is_further = self.furthest.as_ref().is_none_or(|furthest| furthest.row_sequence < row_sequence);
@@ -137,7 +138,7 @@ impl Conduct {
         self.misconduct.get_or_insert(misconduct);
     }
 
-    /// Takes what is a row or refuses one, when rows before `sent` were sent.
+    /// Takes a row or the refusal of one; rows before `sent` have been sent.
     pub(super) fn packet(&mut self, packet: &Packet<'_>, sent: u32) {
         let Header { kind, sequence, .. } = packet.header;
         if kind != Kind::RowOut.code() && self.damaged == Some(sequence) {
@@ -155,7 +156,7 @@ impl Conduct {
         }
     }
 
-    /// Takes a row in the packet `number` of the board's count, when rows before `sent` were sent.
+    /// Takes a row from the packet that the board numbered `number`; rows before `sent` have been sent.
     fn row(&mut self, number: u16, row: &RowOut<'_>, sent: u32) {
         let place = row.place;
         if place.row_sequence >= sent {
@@ -190,14 +191,14 @@ impl Conduct {
 }
 
 impl Came {
-    /// Whether two packets have one number and are not the same packet, delivered twice.
+    /// Whether two packets have the same number but are not one packet delivered twice.
     fn is_another(&self, other: &Self) -> bool {
         let same = (self.place.row_sequence, self.repeats, self.digest)
             == (other.place.row_sequence, other.repeats, other.digest);
         self.number == other.number && !same
     }
 
-    /// Whether two packets of one row say that it was sent as often before.
+    /// Whether two packets of one row have the same count of repeats.
     fn repeats_as(&self, other: &Self) -> bool {
         self.place.row_sequence == other.place.row_sequence
             && self.number != other.number
@@ -205,13 +206,13 @@ impl Came {
             && self.repeats < u16::MAX
     }
 
-    /// Of two rows that left for the first time, the one whose packet was numbered behind that of a later row.
+    /// Of two rows that left for the first time in the wrong order, the place of the earlier row.
     fn misordered(&self, other: &Self) -> Option<RowPlace> {
         let [own, others] = [self, other].map(|came| came.place.row_sequence);
         if self.repeats > 0 || other.repeats > 0 || own == others {
             return None;
         }
-        // Numbers wrap, and all that is compared lies close together.
+        // Numbers wrap, but all packets that are compared lie close together.
         let numbered_before = other.number.wrapping_sub(self.number) < 1 << 15;
         let is_before = own < others;
         let earlier = if is_before { self.place } else { other.place };
@@ -219,7 +220,7 @@ impl Came {
     }
 }
 
-/// Of all that must be the same in every copy of a row.
+/// Digest of everything that must be equal in every copy of a row.
 fn digest(row: &RowOut<'_>) -> u32 {
     let mut hasher = crc32fast::Hasher::new();
     let RowPlace { frame, row: index, width, last, .. } = row.place;
@@ -298,7 +299,7 @@ mod tests {
 
     #[test]
     fn what_links_do_is_no_misconduct() {
-        // Lost, twice, overtaken, asked for again, and past the end of the numbers.
+        // Lost, doubled, overtaken, sent again, and with numbers that wrap.
         assert_eq!(found(&[(0, 0, 0, 1), (2, 2, 0, 3), (2, 2, 0, 3), (1, 1, 0, 2), (3, 0, 1, 1)]), None);
         assert_eq!(found(&[(3, 1, u16::MAX, 1), (2, 0, 1, 1)]), None);
         assert_eq!(found(&[(65_535, 7, 0, 1), (0, 8, 0, 1), (1, 7, 1, 1), (65_535, 7, 0, 1)]), None);
@@ -309,9 +310,9 @@ mod tests {
         let count = |rows: &[_]| conduct(rows).packets_numbered();
         assert_eq!(count(&[]), 0);
         assert_eq!(count(&[(0, 0, 0, 1), (1, 1, 0, 1)]), 2);
-        // Lost, twice, late, and asked for again.
+        // Lost, doubled, late, and sent again.
         assert_eq!(count(&[(2, 2, 0, 1), (2, 2, 0, 1), (0, 0, 0, 1), (7, 3, 1, 1)]), 3);
-        // Past the end of the numbers, with one that was held back since.
+        // Past the wrap of the numbers, with one packet held back from before it.
         let rows: Vec<_> =
             (0..70_000).map(|row| (row as u16, row, 0, 1)).chain([(65_000, 65_000, 0, 1)]).collect();
         assert_eq!(count(&rows), 70_000);

@@ -1,4 +1,4 @@
-//! Packets over a link: numbered, answered, asked again, counted.
+//! Packets over a link: numbered, answered, repeated, counted.
 
 mod answered;
 mod damaged;
@@ -17,35 +17,36 @@ use super::tally::Tally;
 use super::{BoardError, Heard, OpenOptions, Stop};
 use crate::link::{Link, LinkError, Severed};
 
-/// What an exchange that moved bytes adds to the time waited, at most. It returns as soon as a byte has moved: if it took
-/// longer, the host may have been kept from running, and what it has not read yet says nothing against the board.
+/// The most that an exchange which moved bytes adds to the time waited. An exchange returns as soon as a byte has moved. If it
+/// took longer, the host may have been kept from running, and what it has not read yet is not held against the board.
 const BRIEF: Duration = Duration::from_millis(50);
 
-/// How far a board's window can be ahead of the rows that came back: the most banks each way, and two rows in the core.
+/// How far a board's window can be ahead of the rows that came back: the most banks in each direction, and two rows in the core.
 const MOST_AHEAD: u32 = 2 * u8::MAX as u32 + 2;
 
-/// What belongs to a session, and is forgotten with it.
+/// What belongs to a session and is forgotten with it.
 #[derive(Default)]
 pub(super) struct Session {
     /// 0 until a board has answered HELLO.
     pub(super) number: u8,
-    /// The board's, the greatest of all packets.
+    /// The board's window, the greatest of all packets.
     pub(super) window: u32,
     /// The row sequence number before which every row has come back.
     pub(super) acknowledged: u32,
-    /// The same as packets tell it, where that is not all that came back.
+    /// What packets acknowledge instead, if that is not all rows that came back.
     pub(super) acknowledges_to: Option<u32>,
-    /// What its rows have shown of the board.
+    /// What its rows have shown about the board.
     pub(super) conduct: Conduct,
-    /// Requests that change the board and came to it more than once, as far as can be seen.
+    /// Requests that change the board and reached it more than once, as far as can be seen.
     pub(super) repeated_changes: u64,
-    /// Requests that change the board and were answered twice though sent once, of which the next count tells whether they came twice.
+    /// Requests that change the board and were answered twice though sent once. The next count tells whether the request itself
+    /// came twice.
     pub(super) doubled_changes: u64,
     /// All requests that were answered twice though sent once.
     pub(super) second_answers: u64,
-    /// The row sequence number behind all rows that were sent.
+    /// The row sequence number after that of the last row sent.
     rows_sent: u32,
-    /// Rows that may come back although nobody takes them.
+    /// Rows that may still come back although nobody takes them.
     pub(super) unwanted: u32,
     asked: LastAsked,
 }
@@ -56,17 +57,17 @@ pub(super) struct Conversation {
     decoder: Decoder,
     outgoing: Vec<u8>,
     incoming: Vec<u8>,
-    /// The last packet's.
+    /// Number of the last packet.
     pub(super) sequence: u16,
     pub(super) session: Session,
     pub(super) tally: Tally,
     pub(super) limit: RetryLimit,
-    /// The time that was spent waiting at the link, by which deadlines go: a host that is kept from running, or has something
-    /// else to do, cannot say that a board is late.
+    /// The time spent waiting for the link, by which deadlines are measured. While the host is kept from running, or is busy
+    /// elsewhere, it cannot tell that a board is late.
     pub(super) waited: Duration,
-    /// What the board counts of what was sent.
+    /// What the board counts of the packets sent.
     pub(super) counted: Counted,
-    /// Whether it is asked for that wherever a packet may have been lost unseen.
+    /// Whether to ask for that count wherever a packet may have been lost unnoticed.
     pub(super) counts: bool,
     lateness: Lateness,
     /// When the last packet came in.
@@ -95,17 +96,17 @@ impl Conversation {
         }
     }
 
-    /// Forgets the session, and what belongs to it.
+    /// Forgets the session and what belongs to it.
     pub(super) fn leave_session(&mut self) {
         self.session = Session::default();
     }
 
-    /// The row sequence number before which rows may be sent: the board's window, as far as it can be true.
+    /// The row sequence number before which rows may be sent: the board's window, limited to what is possible.
     pub(super) fn credit(&self) -> u32 {
         self.session.window.min(self.session.acknowledged.saturating_add(MOST_AHEAD))
     }
 
-    /// Closes the link and forgets what it did.
+    /// Closes the link and forgets its tally.
     pub(super) fn hang_up(&mut self) {
         self.link = Box::new(Severed);
         self.tally = Tally::default();
@@ -123,7 +124,7 @@ impl Conversation {
         self.link.name()
     }
 
-    /// What came by now, and what may have kept more from coming.
+    /// What came so far, and what may have kept more from coming.
     fn heard(&self) -> Heard {
         let Tally { bytes_in: bytes, packets_in: packets, damaged_in: damaged, .. } = self.tally;
         Heard { bytes, packets, damaged, waits_for_cts: self.link.waits_for_cts() }
@@ -133,7 +134,7 @@ impl Conversation {
         self.link.is_exclusive()
     }
 
-    /// Does `act`, in which nothing but a deadline ends a wait.
+    /// Runs `act`, during which only a deadline ends a wait.
     pub(super) fn disregarding_stop<T>(&mut self, act: impl FnOnce(&mut Self) -> T) -> T {
         let stop = std::mem::take(&mut self.stop);
         let done = act(self);
@@ -141,7 +142,7 @@ impl Conversation {
         done
     }
 
-    /// Does `act` under the number of another session, or under none with 0, and goes on in the open one.
+    /// Runs `act` under the number of another session, or under none if it is 0, then returns to the open one.
     pub(super) fn under_session<T>(&mut self, session: u8, act: impl FnOnce(&mut Self) -> T) -> T {
         let own = std::mem::replace(&mut self.session.number, session);
         let done = act(self);
@@ -149,22 +150,22 @@ impl Conversation {
         done
     }
 
-    /// The time since `then`; none if the link's clock went back, as that of a spoilt recording does.
+    /// The time since `then`; zero if the link's clock went back, as that of a damaged recording may.
     pub(super) fn since(&self, then: Duration) -> Duration {
         self.now().saturating_sub(then)
     }
 
-    /// How long to wait at the try `attempt`, from 0, for what takes `bytes` both ways together.
+    /// How long to wait at the try `attempt`, from 0, if `bytes` have to travel, both ways together.
     pub(super) fn wait_for(&self, step: Step, attempt: u32, bytes: usize) -> Duration {
         step.wait(attempt, bytes, self.link.bytes_per_second(), self.lateness.longest())
     }
 
-    /// Bytes that wait to be written.
+    /// Bytes that are waiting to be written.
     pub(super) fn queued(&self) -> usize {
         self.outgoing.len()
     }
 
-    /// So many bytes without meaning, behind which the board's decoder is at a packet's beginning.
+    /// Queues this many zeros. They carry no meaning, and after them the board's decoder is at the beginning of a packet.
     pub(super) fn queue_zeros(&mut self, zeros: usize) {
         self.outgoing.resize(self.outgoing.len() + zeros, 0);
     }
@@ -179,7 +180,7 @@ impl Conversation {
         self.queue_packet(request.kind(), sequence, |payload| request.write(payload));
     }
 
-    /// Sends `asking` and waits for nothing: its answer means nothing when it comes.
+    /// Sends `asking` without waiting: its answer will be ignored.
     pub(super) fn tell(&mut self, asking: &Asking<'_>) {
         let sequence = self.next_sequence();
         self.counted.is_blind = true;
@@ -187,7 +188,7 @@ impl Conversation {
         self.queue_packet(asking.kind(), sequence, |payload| asking.write(payload));
     }
 
-    /// Queues a row under the next number, its samples packed where they go.
+    /// Queues a row under the next number, packing its samples in place.
     pub(super) fn queue_row(&mut self, place: &RowPlace, samples: &[u16]) {
         let sequence = self.next_sequence();
         self.session.rows_sent = self.session.rows_sent.max(place.row_sequence.saturating_add(1));
@@ -208,7 +209,7 @@ impl Conversation {
         Header { kind: kind.code(), sequence, reply: false, session, window }
     }
 
-    /// Counts a retry. Those after which nothing turned out to be lost are no sign of a poor link.
+    /// Counts a retry. Retries after which nothing proved to be lost are no sign of a poor link.
     pub(super) fn count_retry(&mut self) -> Result<(), BoardError> {
         self.tally.retries += 1;
         let limit = self.limit.of(self.tally.packets_out);
@@ -220,13 +221,13 @@ impl Conversation {
         Ok(())
     }
 
-    /// Takes note of a retry that was needless, since the first answer came `took` after its request.
+    /// Notes a retry that was needless: the first answer came `took` after its request.
     pub(super) fn was_late(&mut self, took: Duration) {
         self.tally.late += 1;
         self.lateness.is_known(took);
     }
 
-    /// Moves bytes both ways, for `wait` at most, and counts them and the time.
+    /// Moves bytes both ways, at most for `wait`, and counts them and the time.
     fn move_bytes(&mut self, wait: Duration) -> Result<(), LinkError> {
         self.incoming.clear();
         let begun = self.link.now();
@@ -242,7 +243,7 @@ impl Conversation {
         Ok(())
     }
 
-    /// Moves bytes both ways, for `wait` at most, and hands every whole packet of this session to `take`.
+    /// Moves bytes both ways, at most for `wait`, and hands every whole packet of this session to `take`.
     pub(super) fn exchange(
         &mut self,
         wait: Duration,

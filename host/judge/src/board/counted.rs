@@ -1,4 +1,4 @@
-//! The packets that a board counts beside those that were sent: by that one that came twice is told from one that was lost.
+//! Compares the packets that a board counts with those sent. This tells a packet that came twice from one that was lost.
 
 use std::mem;
 
@@ -8,57 +8,59 @@ use super::conversation::Conversation;
 use super::deadlines::Step;
 use super::{BoardError, Tally};
 
-/// How often the board is asked once more since the request before was sent twice: over a link that holds every answer back each is.
+/// How often the board is asked at most. A request that had to be repeated is followed by another one, and on a link that holds back
+/// every answer each of them is repeated.
 const COUNTS: usize = 3;
 
-/// A count of packets that no link brings about which only loses some.
+/// A count of packets that a link which only loses some cannot cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Miscount {
     /// What the board counts.
     pub(crate) counted: u64,
-    /// The packets that were sent, without those that were known to be lost.
+    /// The packets sent, without those known to be lost.
     pub(crate) sent: u64,
 }
 
-/// What is known of the packets that were sent since a board's counters were set back.
+/// What is known of the packets sent since a board's counters were cleared.
 #[derive(Default)]
 pub(super) struct Counted {
-    /// What the link had done by then.
+    /// The link's tally at that time.
     pub(super) from: Tally,
-    /// Greetings that may be counted although they were sent before.
+    /// Greetings that the board may count although they were sent before that.
     greetings: u64,
-    /// Packets that were lost. The board never has them later.
+    /// Packets that were lost. The board never receives them later.
     lost: u64,
-    /// Packets that the board had, since something came back for each.
+    /// Packets that the board must have received, since an answer came back for each.
     had: u64,
-    /// Whether something else came to it meanwhile.
+    /// Whether something else reached it meanwhile.
     is_disturbed: bool,
-    /// Whether a packet was sent since the last count of which nobody would miss the answer.
+    /// Whether, since the last count, a packet was sent whose answer nobody would miss.
     pub(super) is_blind: bool,
-    /// What had been sent again at the last count.
+    /// The retries at the last count.
     retries: u64,
-    /// The first count in this session that shows that something else came to the board, or that somebody else set it back.
+    /// The first count in this session which shows that something else reached the board, or that somebody else cleared its
+    /// counters.
     pub(super) wrong: Option<Miscount>,
 }
 
 impl Counted {
-    /// In a session that was just opened by so many packets.
+    /// For a session that was just opened with this many greetings.
     pub(super) fn in_new_session(from: Tally, greetings: u64) -> Self {
         let greetings = greetings.saturating_sub(1);
         Self { from, greetings, retries: from.retries, ..Self::default() }
     }
 
-    /// So many packets more had an effect.
+    /// This many more packets are known to have had an effect.
     pub(super) fn came(&mut self, packets: u64) {
         self.had += packets;
     }
 
-    /// Takes what a board counts that had `least` to `most` packets sent to it, on this link.
+    /// Takes what a board counted when between `least` and `most` packets had been sent on this link.
     fn take(&mut self, status: &Status, least: u64, most: u64) {
         let counted = u64::from(status.packets);
         let sent = |packets: u64| packets.saturating_sub(self.from.packets_out);
         let (least, most) = (sent(least), sent(most) + self.greetings);
-        // Losses only add up: where fewer packets are missing than before, one came that was not sent meanwhile.
+        // Losses only add up. If fewer packets are missing than before, one arrived that was not sent meanwhile.
         let is_possible = counted + self.lost <= most && counted >= self.had;
         if !is_possible {
             self.is_disturbed = true;
@@ -67,7 +69,7 @@ impl Counted {
         self.lost = self.lost.max(least.saturating_sub(counted));
     }
 
-    /// Whether nothing was lost and nothing came twice, by all counts since they were set back.
+    /// Whether nothing was lost and nothing came twice, by all counts since the counters were cleared.
     pub(super) fn is_calm(&self) -> bool {
         self.lost == 0 && !self.is_disturbed
     }
@@ -78,7 +80,7 @@ impl Counted {
 }
 
 impl Conversation {
-    /// The board's counters, which `clear` sets back.
+    /// The board's counters; `clear` clears them.
     pub(super) fn status(&mut self, clear: bool, step: Step) -> Result<Status, BoardError> {
         let retries = self.tally.retries;
         let status = self.ask_for_status(clear, step)?;
@@ -95,7 +97,7 @@ impl Conversation {
             _ => None,
         })?;
         let retried = self.tally.retries > retries;
-        // What is set back twice counts little at the second time.
+        // If the request that clears was repeated, the second copy returns counters that are already cleared.
         if self.counts && !(clear && retried) {
             self.take_count(&status, sent + 1);
         }
@@ -105,8 +107,8 @@ impl Conversation {
         Ok(status)
     }
 
-    /// Takes what a board counts that had `least` packets sent to it or more. Where none can have been lost unseen since the count
-    /// before, and as many came as were sent, what was answered twice came once.
+    /// Takes a count that the board made after at least `least` packets had been sent. If none can have been lost unnoticed since
+    /// the count before, and as many arrived as were sent, then a request that was answered twice came once.
     fn take_count(&mut self, status: &Status, least: u64) {
         let (was_blind, lost) = (self.counted.is_blind, self.counted.lost);
         let is_calm = self.tally.retries == self.counted.retries;
@@ -117,22 +119,22 @@ impl Conversation {
         (self.counted.is_blind, self.counted.retries) = (false, self.tally.retries);
     }
 
-    /// Asks for a count where something was answered twice.
+    /// Asks for a count if something was answered twice.
     pub(super) fn count_doubled(&mut self) {
         if self.session.doubled_changes > 0 {
             self.count();
         }
     }
 
-    /// The same behind a board that answers twice, so that a second answer that is still under way is settled as well.
+    /// The same after a board has answered twice, so that a second answer which is still under way is settled too.
     pub(super) fn count_second_answers(&mut self) {
         if self.session.second_answers > 0 {
             self.count();
         }
     }
 
-    /// Asks how many packets came to the board, where one may have been lost and nobody would ask for it again. Whatever keeps
-    /// the answer away keeps the next one away as well, and must not stand in front of what came before.
+    /// Asks how many packets reached the board, where one may have been lost and nobody would ask for it again. A failure is
+    /// ignored: whatever keeps this answer away keeps the next one away too, and must not hide what came before.
     pub(super) fn count(&mut self) {
         let most = if self.counts { COUNTS } else { 0 };
         for _ in 0..most {
@@ -147,7 +149,7 @@ impl Conversation {
         }
     }
 
-    /// The same if something was asked again behind so many `retries`: a loss that is known by then hides no copy that comes later.
+    /// The same if something was repeated since there were `retries`: a loss that is known by then cannot hide a later copy.
     pub(super) fn count_behind(&mut self, retries: u64) {
         if self.tally.retries > retries {
             self.count();
@@ -159,8 +161,7 @@ impl Conversation {
 mod tests {
     use super::*;
 
-    /// What is thought of a board that says so in one STATUS after the other: the packets that it counts, of so many that
-    /// were sent.
+    /// The verdict on a board that gives one STATUS after the other: in each pair the packets that it counts, and those sent.
     fn wrong(said: &[(u32, u64)]) -> Option<Miscount> {
         let mut counted = Counted::default();
         for &(packets, sent) in said {
@@ -173,13 +174,13 @@ mod tests {
     fn packets_that_are_lost_are_no_doubt_and_one_that_comes_twice_is_one() {
         assert_eq!(wrong(&[(5, 5), (8, 9), (20, 22), (30, 32)]), None);
         assert_eq!(wrong(&[(6, 5)]), Some(Miscount { counted: 6, sent: 5 }));
-        // One lost, and then another one twice: as many as were sent.
+        // One lost, and then another one doubled: the totals are equal.
         assert_eq!(wrong(&[(8, 9), (20, 20)]), Some(Miscount { counted: 20, sent: 19 }));
-        // What was seen once stays.
+        // The first finding stays.
         assert_eq!(wrong(&[(6, 5), (8, 9)]), Some(Miscount { counted: 6, sent: 5 }));
     }
 
-    /// The answer may be that to the first of two requests, and then the second one is still under way.
+    /// The answer may be to the first of two requests, while the second one is still under way.
     #[test]
     fn a_request_that_is_under_way_is_not_lost() {
         let mut counted = Counted::default();
@@ -199,7 +200,7 @@ mod tests {
         assert_eq!(counted.wrong, Some(Miscount { counted: 4, sent: 5 }));
     }
 
-    /// A greeting that was asked again is counted in the session that the first one opened.
+    /// A repeated greeting is counted in the session that the first one opened.
     #[test]
     fn a_greeting_that_came_twice_is_no_doubt() {
         let mut counted = Counted::in_new_session(Tally { packets_out: 2, ..Tally::default() }, 2);

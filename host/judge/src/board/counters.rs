@@ -1,4 +1,4 @@
-//! What a board counts, and what the host counts beside it.
+//! What a board counts, and what the host counts for comparison.
 
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{ResetLevel, Status};
@@ -9,7 +9,7 @@ use super::said::Said;
 use super::{Board, BoardError};
 
 impl Board {
-    /// The board's counters, which `clear` sets back.
+    /// The board's counters; `clear` clears them.
     ///
     /// # Errors
     /// [`BoardError`] when no answer comes.
@@ -17,19 +17,19 @@ impl Board {
         self.conversation.status(clear, Step::Request)
     }
 
-    /// Has the board set its counters back by `clear`, any number but 0, and returns what it says.
+    /// Has the board clear its counters by `clear`, any number but 0, and returns its answer.
     ///
     /// # Errors
     /// [`BoardError`] when no answer comes.
     pub(crate) fn clear_by(&mut self, clear: u8) -> Result<Said, BoardError> {
-        // What came before is counted before it is forgotten.
+        // Counts what came before it is forgotten.
         self.status(false)?;
         let said = self.ask(Kind::Status, &[clear])?;
         self.conversation.counted.set_back(self.conversation.tally);
         Ok(said)
     }
 
-    /// The board's counters, although the run was stopped: then they are waited for as the end of a session is.
+    /// The board's counters, even if the run was stopped. Then the wait is as short as at the end of a session.
     ///
     /// # Errors
     /// [`BoardError`] when no answer comes.
@@ -42,38 +42,38 @@ impl Board {
         }
     }
 
-    /// The packets that were sent since the board's counters were set back, all tries counted.
+    /// The packets sent since the board's counters were cleared, counting every try.
     #[must_use]
     pub(crate) fn packets_since_clear(&self) -> u64 {
         self.tally().packets_out.saturating_sub(self.conversation.counted.from.packets_out)
     }
 
-    /// The requests that were answered since the board's counters were set back.
+    /// The requests that were answered since the board's counters were cleared.
     #[must_use]
     pub(crate) fn answered_since_clear(&self) -> u64 {
         self.tally().answered.saturating_sub(self.conversation.counted.from.answered)
     }
 
-    /// Whether every packet that was sent since the board's counters were set back came to it whole, and once.
+    /// Whether every packet sent since the board's counters were cleared reached it whole, and once.
     #[must_use]
     pub(crate) fn had_each_packet_once(&self, status: &Status) -> bool {
         u64::from(status.packets) == self.packets_since_clear() && self.conversation.counted.is_calm()
     }
 
-    /// Whether no packet was sent once more since the board's counters were set back.
+    /// Whether no packet was repeated since the board's counters were cleared.
     #[must_use]
     pub(crate) fn sent_nothing_again(&self) -> bool {
         self.tally().retries == self.conversation.counted.from.retries
     }
 
-    /// The first count of packets in this session that no link brings about which only loses some.
+    /// The first count of packets in this session that a link which only loses some cannot cause.
     #[must_use]
     pub(crate) fn miscounted(&self) -> Option<Miscount> {
         self.conversation.counted.wrong
     }
 
-    /// Sets the counters back, and drops tables that an earlier session left: a board takes a generation that is active
-    /// already for a repeated packet, and would go on using the old tables under it. Says whether there were any.
+    /// Clears the counters, and drops tables that an earlier session left. A board takes a COMMIT of the active generation for a
+    /// repeated packet, and would go on using the old tables under it. Returns whether there were any.
     ///
     /// # Errors
     /// [`BoardError`] when no answer comes.
@@ -85,7 +85,7 @@ impl Board {
         Ok(had_tables)
     }
 
-    /// The fewest ROW_OUT packets that the board has sent in this session, by its own numbers.
+    /// A lower bound on the ROW_OUT packets that the board has sent in this session, by its own numbering.
     #[must_use]
     pub(crate) fn packets_numbered(&self) -> u32 {
         self.conversation.session.conduct.packets_numbered()

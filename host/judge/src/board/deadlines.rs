@@ -5,33 +5,34 @@ use std::time::Duration;
 /// What a host waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// The reply to HELLO: the peer may be a chip that has just been powered, with stale bytes in its buffers, or no board.
+    /// The reply to HELLO: the peer may be a chip that was just powered, with stale bytes in its buffers, or no board.
     Hello,
-    /// The reply to any other request. Reading a table back takes a board some 2,000 clocks.
+    /// The reply to any other request. Reading a table back takes a board about 2,000 clocks.
     Request,
-    /// The next row: the board plays it in some 3,000 clocks.
+    /// The next row: the board plays it in about 3,000 clocks.
     Row,
-    /// The reply to the RESET that ends a session: somebody waits for the program to end.
+    /// The reply to the RESET that ends a session: somebody is waiting for the program to end.
     Close,
 }
 
-/// How long a step may take beyond the time that its bytes need, and how often it is tried.
+/// How long a step may take in addition to the time that its bytes need, and how often it is tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Deadline {
-    /// For the board and the chips in between: a USB serial chip holds short packets for 16 ms, a hub may take as long.
+    /// For the board and the chips in between: a USB serial chip holds short packets for 16 ms, and a hub may take as long.
     pub fixed: Duration,
-    /// It doubles from try to try, up to this: what is not answered may be lost, or stand in a queue that stands still.
+    /// The wait doubles from try to try up to this: what is not answered may be lost, or wait in a queue that does not move.
     pub longest: Duration,
     /// Tries in all, the first included.
     pub attempts: u32,
 }
 
-/// The most that is waited for an answer that a link is known to hold back: a third try comes before a board takes a host that is
-/// silent for 10 s for gone.
+/// The longest wait for an answer that a link is known to hold back. With it the third try comes before a board gives up a host
+/// that is silent for 10 s.
 const LONGEST: Duration = Duration::from_millis(4800);
 
 impl Step {
-    /// The table. A link that stands still for 10 s, after which the board may be another host's, is waited for.
+    /// The table. Except for HELLO and closing, the tries outlast a link that stands still for 10 s, after which another host may
+    /// have the board.
     #[must_use]
     pub const fn deadline(self) -> Deadline {
         let (fixed, longest, attempts) = match self {
@@ -44,8 +45,8 @@ impl Step {
     }
 
     /// How long to wait at the try `attempt`, from 0, when `bytes` have to travel, both ways together, over a link of
-    /// `bytes_per_second` that has held an answer back for `slowest`. Twice the time on the wire is given, since chips and
-    /// kernels queue. A link that does not know its rate is taken for a slow one.
+    /// `bytes_per_second` that has held an answer back for `slowest`. The time on the wire is doubled, since chips and kernels
+    /// queue. A link with an unknown rate is taken for a slow one.
     #[must_use]
     pub fn wait(
         self,
@@ -66,9 +67,9 @@ impl Step {
 /// How many packets may be sent again before a link is too poor to judge a board over.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RetryLimit {
-    /// Retries that any run may have, for the noise of plugging in.
+    /// Retries that any run may use, for the noise of plugging in.
     pub fixed: u64,
-    /// And of the packets sent, this share.
+    /// In addition, this share of the packets sent.
     pub share: f64,
 }
 
@@ -80,10 +81,10 @@ impl Default for RetryLimit {
 }
 
 impl RetryLimit {
-    /// As many as it takes, where nothing is judged.
+    /// No limit, for when nothing is judged.
     pub const NONE: Self = Self { fixed: u64::MAX, share: 0.0 };
 
-    /// The most retries among `packets` packets.
+    /// The most retries allowed among `packets` packets.
     #[must_use]
     pub fn of(self, packets: u64) -> u64 {
         self.fixed.saturating_add((packets as f64 * self.share) as u64)
@@ -98,7 +99,7 @@ mod tests {
 
     #[test]
     fn a_deadline_grows_with_its_bytes() {
-        // 2,922 bytes both ways at 1.2 MB/s are 4.87 ms, twice that is 9.74 ms.
+        // 2,922 bytes each way at 1.2 MB/s take 4.87 ms; twice that is 9.74 ms.
         let wait = Step::Row.wait(0, 5844, Some(1.2e6), NEVER);
         assert_eq!(wait.as_micros(), 250_000 + 9_740);
         assert_eq!(Step::Request.wait(0, 5000, None, NEVER).as_millis(), 200 + 100);

@@ -3,14 +3,14 @@
 use super::deadlines::RetryLimit;
 use super::{OpenOptions, Stop};
 
-/// Numbers that a session draws at random, and its packets are told from another session's by. The default draws them.
+/// Numbers drawn at random, which tell a session's packets from those of another one. The default draws them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Draws {
     /// The session's nonce.
     pub nonce: u32,
-    /// This host.
+    /// The number of this host.
     pub host: u32,
-    /// The number in front of the first packet's. A recording that does not say so begins with 1.
+    /// The sequence number before that of the first packet. 0 in a recording that does not say, so that its packets begin with 1.
     #[serde(default)]
     pub sequence: u16,
 }

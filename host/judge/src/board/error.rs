@@ -224,13 +224,13 @@ pub struct Heard {
     pub bytes: u64,
     /// Whole packets.
     pub packets: u64,
-    /// Packets that came damaged, since the board was greeted.
+    /// Packets that came damaged since the session began.
     pub damaged: u64,
     /// Whether nothing is sent unless the board's end drives CTS.
     pub waits_for_cts: bool,
 }
 
-/// Who is to blame for silence: the board if nothing was ever heard of it, and the way to it otherwise.
+/// What silence suggests: the board if nothing was ever heard from it, otherwise the connection to it.
 fn suspect(heard: Heard) -> String {
     match heard {
         Heard { bytes: 0, waits_for_cts: true, .. } => {
@@ -259,20 +259,20 @@ fn suspect(heard: Heard) -> String {
     }
 }
 
-/// Whether a request is refused for what it says and for what the board can do, whatever the board did before. Then it is the board that
-/// does not do what it says that it can: this program asks for nothing else.
+/// Whether a request is refused only for its content and the board's abilities, whatever the board did before. Then the board
+/// does not do what its capabilities say, since this program asks for nothing else.
 fn is_own(refusal: &Refusal) -> bool {
     use Kind::{Configure, Expect, TableCrc, TableRead, TableWrite};
     let kind = Kind::from_code(refusal.kind);
     match refusal.code {
         RefusalCode::Kind | RefusalCode::Payload | RefusalCode::Taps => true,
-        // A range of COMMIT, RECORDS and rows depends on what was set and played.
+        // A range of COMMIT, RECORDS and rows depends on what was set and played before.
         RefusalCode::Range => matches!(kind, Some(Configure | Expect | TableCrc | TableRead | TableWrite)),
         _ => false,
     }
 }
 
-/// Whether no capability is needed for a request of `kind`.
+/// Whether a request of `kind` needs no capability.
 fn is_of_every_board(kind: Kind) -> bool {
     use Kind::{Burst, Expect, Records, RowOut, Trap};
     !matches!(kind, Burst | Records | Expect | Trap | RowOut)
@@ -292,10 +292,10 @@ fn advice(refusal: &Refusal) -> &'static str {
     }
 }
 
-/// From which silence on a run is not merely slow.
+/// After this silence a run is not merely slow.
 const SILENT: Duration = Duration::from_secs(1);
 
-/// What a run wants that did not end in time.
+/// What to do about a run that did not end in time.
 fn slow_or_silent(silent: Duration) -> String {
     if silent < SILENT {
         return "; give it more time, or use a faster link".to_owned();
@@ -307,7 +307,7 @@ fn slow_or_silent(silent: Duration) -> String {
 }
 
 impl BoardError {
-    /// Whether the board is gone, as one is that was unplugged or lost power, and may come back.
+    /// Whether the board is gone, as when it was unplugged or lost power, and may come back.
     #[must_use]
     pub(crate) fn is_outage(&self) -> bool {
         use LinkError::{Closed, Failed, Unplugged};
@@ -320,7 +320,7 @@ impl BoardError {
         }
     }
 
-    /// Whether the board said what no sound board says behind what it was asked.
+    /// Whether the board's answer is one that no sound board gives to that request.
     #[must_use]
     pub(crate) fn is_answer(&self) -> bool {
         matches!(
@@ -333,7 +333,7 @@ impl BoardError {
         )
     }
 
-    /// Whether it shows that something is there that is no board for this run now, and no silence.
+    /// Whether something answers or holds the port, but is no board for this run at present.
     #[must_use]
     pub(crate) fn is_of_somebody(&self) -> bool {
         match self {
@@ -349,7 +349,7 @@ impl BoardError {
         }
     }
 
-    /// Why a run ends as it does that ends with this error.
+    /// The cause of a run that ends with this error.
     #[must_use]
     pub fn cause(&self) -> Cause {
         match self {

@@ -4,29 +4,29 @@ use std::time::Duration;
 
 use super::deadlines::Step;
 
-/// So often an answer was waited for in vain before it is taken for late rather than lost: three in a row are seldom lost.
+/// After so many tries in vain an answer that comes is taken for late rather than lost: three losses in a row are rare.
 const SELDOM_LOST: u32 = 3;
-/// So many answers in a row that came at once refute that: the copies of what is late would have come as well.
+/// So many prompt answers in a row refute that: copies of late requests would have been answered too.
 const PROMPT: u32 = 16;
 
-/// The longest that an answer was held back that had been asked for again.
+/// The longest that an answer was held back which had to be asked for again.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Lateness {
-    /// Where all that was asked for was answered.
+    /// If every copy of the request was answered.
     known: Duration,
-    /// Where it may have been lost.
+    /// If some copies may have been lost.
     guessed: Duration,
-    /// Answers in a row that came at once.
+    /// Prompt answers in a row.
     prompt: u32,
 }
 
 impl Lateness {
-    /// The first answer came `took` after its request, and another one behind it: nothing was lost.
+    /// The first answer came `took` after its request, and another one followed: nothing was lost.
     pub(super) fn is_known(&mut self, took: Duration) {
         self.known = self.known.max(took);
     }
 
-    /// What was asked for `again` times more took so long.
+    /// An answer came after `time`; its request had been repeated `again` times.
     pub(super) fn took(&mut self, again: u32, time: Duration) {
         let is_prompt = again == 0 && time < Step::Request.deadline().fixed;
         self.prompt = if is_prompt { self.prompt.saturating_add(1) } else { 0 };

@@ -1,4 +1,4 @@
-//! What a board may say of itself: `protocol/WIRE.md` section 3 and `fpga/DATAPATH.md`.
+//! The capabilities that a board may have: `protocol/WIRE.md` section 3 and `fpga/DATAPATH.md`.
 
 use std::ops::RangeInclusive;
 
@@ -7,7 +7,7 @@ use halfrow_protocol::message::Grids;
 
 use super::{BoardError, Capabilities, Datapath};
 
-/// What a capability may be.
+/// The legal values of a capability.
 struct Limit {
     /// Its name in WIRE.md.
     name: &'static str,
@@ -31,12 +31,12 @@ const TWO: u16 = 2;
 /// The fewest entries of a bank that takes grids.
 pub(crate) const LEAST_ENTRIES: u16 = 2048;
 
-/// The grids that a board takes; none of a datapath that is not known.
+/// The grids that a board takes; none if they are of an unknown datapath.
 pub(crate) fn grids(board: &Capabilities) -> Option<Grids> {
     board.grids.filter(|grids| grids.further_datapath == Datapath::Grids.id())
 }
 
-/// Of datapath 1, and of 2 beside it.
+/// Of datapath 1, and of datapath 2 in addition.
 const LIMITS: [Limit; 14] = [
     Limit {
         name: "max_width",
@@ -126,7 +126,7 @@ const LIMITS: [Limit; 14] = [
     },
 ];
 
-/// Whether a board of a known datapath can have these capabilities. Of one that is not known nothing can be said.
+/// Whether a board of a known datapath can have these capabilities. For an unknown one nothing can be said.
 ///
 /// # Errors
 /// [`BoardError::Impossible`] for the first that none can have.

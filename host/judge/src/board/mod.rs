@@ -1,4 +1,4 @@
-//! A board: whatever answers the protocol behind a link. The only module that speaks the protocol.
+//! A board: whatever answers the protocol behind a link. This is the only module that speaks the protocol.
 
 mod answer;
 mod asked;
@@ -52,22 +52,22 @@ pub use halfrow_protocol::message::{
     Bank, BoardNature, Bursts, Capabilities, Datapath, RefusalCode, Status, Table, UnknownDatapath, Welcome,
 };
 
-/// How a session is opened. The default draws a nonce, a host and a sequence number, so that it is a session of its own.
+/// How a session is opened. The default draws a nonce, a host number and a sequence number, so that sessions differ.
 #[derive(Clone, Debug)]
 pub struct OpenOptions {
-    /// Drawn at random for the session.
+    /// The session's nonce, drawn at random.
     pub nonce: u32,
-    /// Drawn at random for this program's run.
+    /// The number of this host, drawn at random once per run of the program.
     pub host: u32,
-    /// The number in front of its first packet's, drawn as well: a refusal that an earlier program was told, and did not wait for,
-    /// names no nonce.
+    /// The sequence number before that of the first packet, drawn at random too. A refusal names no nonce, so one that is still
+    /// under way to an earlier program must not match by its number.
     pub sequence: u16,
     /// Take the board from whoever holds it.
     pub take_over: bool,
-    /// Leave it to its holder even over a link that is this program's alone: a board can have two links.
+    /// Leave the board to its holder even if this program is the only one on the link: a board can have two links.
     pub polite: bool,
-    /// Have the board say how many packets came to it, behind every stream and behind whatever was asked again: one that comes
-    /// twice is told from one that is lost by that.
+    /// After every stream, and after every request that was repeated, ask the board how many packets it received. This tells a
+    /// packet that came twice from a lost one.
     pub counts: bool,
     /// How many packets may be sent again.
     pub retry_limit: RetryLimit,
@@ -75,24 +75,24 @@ pub struct OpenOptions {
     pub stop: Stop,
 }
 
-/// When the core is fed a sample. By default as soon as the board can take it.
+/// When the core is fed samples. The default is as soon as the board can take them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RowTiming {
-    /// Pixel clocks between two rows; a board that needs more takes its least.
+    /// Pixel clocks between two rows. A board that needs more uses its minimum.
     pub blanking: u16,
-    /// Seed of the gaps in and between rows; 0 for none.
+    /// Seed of the gaps in rows and between them; 0 for none.
     pub gap_seed: u32,
 }
 
-/// An open session with a board. One that is dropped without [`Board::close`] holds the board for 10 s: [`Board::with`] closes it.
+/// An open session with a board. If dropped without [`Board::close`] it holds the board for 10 s; [`Board::with`] closes it.
 #[must_use = "a board whose session is not closed is held for 10 s"]
 pub struct Board {
     conversation: Conversation,
     pub(crate) welcome: Welcome,
     pub(crate) capabilities: Capabilities,
-    /// How the session was opened, and the next one is.
+    /// How the session was opened, and how the next one will be.
     options: OpenOptions,
-    /// The shapes of the tables of the last commit, and of the other bank.
+    /// The table shape of the last commit, and that of the other bank.
     shapes: [Option<GridShape>; 2],
 }
 
@@ -107,11 +107,11 @@ impl fmt::Debug for Board {
 }
 
 impl Board {
-    /// Opens a session over `link`, does `act` in it, and closes it whatever came of that, so that the next host finds the board
+    /// Opens a session over `link`, runs `act` in it, and closes it whatever the outcome, so that the next host finds the board
     /// free.
     ///
     /// # Errors
-    /// As [`Self::open`].
+    /// Like [`Self::open`].
     pub fn with<T>(
         link: Box<dyn Link>,
         options: &OpenOptions,
@@ -123,10 +123,11 @@ impl Board {
         Ok(done)
     }
 
-    /// Opens a session over `link`, which is open until [`Self::close`].
+    /// Opens a session over `link`. It stays open until [`Self::close`].
     ///
     /// # Errors
-    /// [`OpenFailed`]: nobody answers, no halfrow board, one that cannot be, another version, held by another host.
+    /// [`OpenFailed`]: nothing answers, it is no halfrow board, it claims impossible capabilities, it speaks another version, or
+    /// another host holds it.
     pub fn open(link: Box<dyn Link>, options: &OpenOptions) -> Result<Self, OpenFailed> {
         let mut board = Self::open_any(link, options)?;
         possible(&board.capabilities).map_err(|error| {
@@ -137,7 +138,7 @@ impl Board {
         Ok(board)
     }
 
-    /// As [`Self::open`], whatever the board says that it can do.
+    /// Like [`Self::open`], whatever capabilities the board claims.
     pub(crate) fn open_any(link: Box<dyn Link>, options: &OpenOptions) -> Result<Self, OpenFailed> {
         let mut conversation = Conversation::new(link, options);
         let welcome = match greet_or_take_over(&mut conversation, options) {
@@ -161,26 +162,26 @@ impl Board {
         }
     }
 
-    /// Its answer to the greeting.
+    /// The board's reply to HELLO.
     #[must_use]
     pub fn welcome(&self) -> &Welcome {
         &self.welcome
     }
 
-    /// What it can do.
+    /// The board's capabilities.
     #[must_use]
     pub fn capabilities(&self) -> &Capabilities {
         &self.capabilities
     }
 
-    /// What the board did with rows in this session that no link can do.
+    /// What the board did with rows in this session that no link can have caused.
     #[must_use]
     pub(crate) fn misconduct(&self) -> Option<Misconduct> {
         self.conversation.session.conduct.misconduct()
     }
 
-    /// How many requests that change the board came to it more than once in this session, as far as can be seen. The second
-    /// copy of one may have come late, behind others, and then the board is not as the host thinks that it is.
+    /// How many requests that change the board reached it more than once in this session, as far as can be seen. A second copy
+    /// may have arrived late, after other requests; then the board is not in the state that the host assumes.
     #[must_use]
     pub(crate) fn repeated_changes(&self) -> u64 {
         self.conversation.session.repeated_changes + self.conversation.session.doubled_changes
@@ -192,13 +193,13 @@ impl Board {
         self.conversation.session.acknowledged
     }
 
-    /// What the link did so far.
+    /// What went over the link so far.
     #[must_use]
     pub fn tally(&self) -> Tally {
         self.conversation.tally
     }
 
-    /// The retries that the run may have at its present length.
+    /// The retries that the run may use at its present length.
     #[must_use]
     pub fn retry_limit(&self) -> u64 {
         self.conversation.limit.of(self.conversation.tally.packets_out)
@@ -216,24 +217,24 @@ impl Board {
         self.conversation.heard_at
     }
 
-    /// The bytes a second that the link carries, when that is known.
+    /// The bytes a second that the link carries, if known.
     #[must_use]
     pub fn bytes_per_second(&self) -> Option<f64> {
         self.conversation.bytes_per_second()
     }
 
-    /// The link, for people.
+    /// The link's name, for people.
     #[must_use]
     pub(crate) fn link_name(&self) -> String {
         self.conversation.link_name()
     }
 
-    /// Closes the link without a word, as when the board is gone. All that follows fails.
+    /// Closes the link without telling the board, as if the board were gone. Everything after that fails.
     pub(crate) fn hang_up(&mut self) {
         self.conversation.hang_up();
     }
 
-    /// Sends `bytes`, and says whether they came back as they went and how long that took on the link's clock.
+    /// Sends `bytes`. Returns whether they came back unchanged, and how long that took on the link's clock.
     ///
     /// # Errors
     /// [`BoardError`] when no answer comes.
@@ -263,19 +264,18 @@ impl Board {
             .request(&configure, Step::Request, |reply| matches!(reply, Reply::Configure).then_some(()))
     }
 
-    /// Streams frames, and hands back every row.
+    /// Streams frames, and hands over every row that comes back.
     ///
     /// # Errors
-    /// [`BoardError`]; rows that came back before it were handed over.
+    /// [`BoardError`]; rows that came back before it have been handed over.
     pub fn stream(&mut self, traffic: &mut dyn RowTraffic) -> Result<(), BoardError> {
         rows::stream(&mut self.conversation, traffic, Given::default())
     }
 
-    /// Streams frames without ever asking for a row again, and returns the first row that does not come back within its
-    /// deadline.
+    /// Streams frames without ever asking for a row again. Returns the first row that does not come back within its deadline.
     ///
     /// # Errors
-    /// [`BoardError`] of any other kind.
+    /// Any other [`BoardError`].
     pub(crate) fn stream_once(
         &mut self,
         traffic: &mut dyn RowTraffic,
@@ -291,14 +291,14 @@ impl Board {
         self.reset(ResetLevel::Rows, Step::Request)
     }
 
-    /// Closes the session, so that another host finds the board free, also when the run was stopped. Waits for the board's
-    /// answer, but not for ever: one that does not answer is free after 10 s of silence.
+    /// Closes the session, also when the run was stopped, so that another host finds the board free. Waits a limited time for the
+    /// board's answer: a board that does not answer is free after 10 s of silence.
     pub fn close(&mut self) {
         close(&mut self.conversation);
     }
 
     fn reset(&mut self, level: ResetLevel, step: Step) -> Result<(), BoardError> {
-        // Beyond every row that can be under way: credit is never further ahead than a board has banks.
+        // Beyond every row that can be under way: credit is never further ahead than the board has banks.
         let next_row = self.conversation.credit();
         self.reset_to(Reset { level, next_row }, step)
     }
@@ -324,13 +324,14 @@ fn reset_to(conversation: &mut Conversation, reset: Reset, step: Step) -> Result
 fn close(conversation: &mut Conversation) {
     let reset = Reset { level: ResetLevel::Session, next_row: conversation.credit() };
     match conversation.disregarding_stop(|conversation| reset_to(conversation, reset, Step::Close)) {
-        // A session that is lost is closed: what a board says when the reply to its RESET was lost.
+        // The board answers a repeated RESET so when the reply to the first was lost: the session is closed.
         Ok(()) | Err(BoardError::SessionLost) => {}
         Err(error) => tracing::debug!("the session was not closed: {error}"),
     }
 }
 
-/// Opens a session. Over a link that is this program's alone nobody can be cut off: whoever holds the board was killed.
+/// Opens a session. If this program is the only one on the link, nobody is cut off by taking over: the run that holds the board
+/// was killed.
 fn greet_or_take_over(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welcome, BoardError> {
     let sent = conversation.tally.packets_out;
     let greeted = match greet(conversation, options) {
@@ -370,17 +371,17 @@ fn greet(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welco
     }
 }
 
-/// Whether `packet`, which has the number of a HELLO with this nonce, answers that one: what is of an earlier session may have its
-/// number as well.
+/// Whether `packet`, whose sequence number is that of a HELLO with this nonce, answers that HELLO. A packet of an earlier session
+/// may have the same number.
 fn is_for(packet: &Packet<'_>, nonce: u32) -> bool {
     match Reply::read(packet) {
         Ok(Reply::Refusal(refusal)) => refusal.kind == Kind::Hello.code(),
-        // The nonce comes first, also where the rest makes no sense.
+        // The nonce comes first, even if the rest makes no sense.
         _ => packet.header.kind == Kind::Hello.code() && packet.payload.starts_with(&nonce.to_le_bytes()),
     }
 }
 
-/// What an error that takes the place of a greeting means.
+/// What an error means that came in place of the reply to HELLO.
 fn not_greeted(error: BoardError) -> BoardError {
     match error {
         BoardError::Refused { refusal, .. } if refusal.code == RefusalCode::Held => {

@@ -1,4 +1,4 @@
-//! Requests of any form, and what a board says to them: for whoever wants to know what it refuses.
+//! Requests of any form, and the board's answers, for tests of what it refuses.
 
 use std::iter;
 
@@ -10,7 +10,7 @@ use super::asked::Asking;
 use super::deadlines::Step;
 use super::{Board, BoardError, Given, ReturnedRow, RowTraffic, rows};
 
-/// What a board said to a request.
+/// The board's answer to a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Said {
     /// It refused.
@@ -20,7 +20,7 @@ pub(crate) enum Said {
 }
 
 impl Said {
-    /// What a packet says that is no row.
+    /// The content of a packet that is not a row.
     pub(super) fn of(packet: &Packet<'_>) -> Self {
         match Reply::read(packet) {
             Ok(Reply::Refusal(refusal)) => Self::Refused(refusal),
@@ -29,23 +29,23 @@ impl Said {
     }
 }
 
-/// A row that came once more.
+/// A row that came again.
 #[derive(Clone, Debug)]
 pub(crate) struct CameAgain {
-    /// How often it was sent before, as the board counts.
+    /// How often it was sent before, by the board's count.
     pub(crate) repeats: u16,
-    /// Of the tables that made it.
+    /// The generation of the tables that made it.
     pub(crate) generation: u8,
     /// Its samples.
     pub(crate) samples: Vec<u16>,
     /// Its latencies and pauses.
     pub(crate) clocks: [u16; 3],
-    /// The CRC-32 of it as it entered, where the board is one that tells it.
+    /// The CRC-32 of the row as it entered the core, if the board reports it.
     pub(crate) entered: Option<u32>,
 }
 
 impl CameAgain {
-    /// It as a row that was at `place`.
+    /// The same as a row that belongs at `place`.
     pub(crate) fn row(&self, place: &RowPlace) -> ReturnedRow<'_> {
         let [first_latency, last_latency, pauses] = self.clocks;
         ReturnedRow {
@@ -62,7 +62,7 @@ impl CameAgain {
     }
 }
 
-/// What `packet` says of the row at `place`, if it is one that was sent so many times before.
+/// The row in `packet`, if it is the one at `place` and was sent before at least `repeats` times.
 fn came_again(packet: &Packet<'_>, place: &RowPlace, repeats: u16) -> Option<CameAgain> {
     let Ok(Reply::RowOut(row)) = Reply::read(packet) else { return None };
     let mut samples = vec![0; row.place.width.into()];
@@ -82,10 +82,10 @@ fn is_of_no_session(packet: &Packet<'_>) -> bool {
     matches!(Reply::read(packet), Ok(Reply::Refusal(refusal)) if refusal.code == RefusalCode::Session)
 }
 
-/// What `answer` says to a request of `kind`.
+/// The meaning of `answer` to a request of `kind`.
 pub(super) fn said(kind: Kind, answer: &OwnedPacket) -> Result<Said, BoardError> {
     let packet = answer.packet();
-    // What a reply says is looked at byte by byte by whoever asks.
+    // The caller compares the payload byte by byte.
     if packet.header.kind == kind.code() && kind != Kind::Refusal {
         return Ok(Said::Replied(packet.payload.to_vec()));
     }
@@ -96,24 +96,24 @@ pub(super) fn said(kind: Kind, answer: &OwnedPacket) -> Result<Said, BoardError>
 }
 
 impl Board {
-    /// Sends a request of `kind` with any payload, and returns what the board says to it.
+    /// Sends a request of `kind` with any payload, and returns the board's answer.
     ///
     /// # Errors
-    /// [`BoardError`] when it says nothing, or nothing that its kind can say.
+    /// [`BoardError`] when it does not answer, or its answer does not fit the kind.
     pub(crate) fn ask(&mut self, kind: Kind, payload: &[u8]) -> Result<Said, BoardError> {
         let answer = self.conversation.ask(&Asking::Bytes(kind, payload), Step::Request, |_| true)?;
         said(kind, &answer)
     }
 
-    /// Sends a row, waits for nothing, and returns the number of its packet.
+    /// Sends a row without waiting, and returns the number of its packet.
     pub(crate) fn give(&mut self, place: &RowPlace, samples: &[u16]) -> u16 {
         self.conversation.queue_row(place, samples);
         self.conversation.sequence
     }
 
-    /// Sends `request` so that it is none, and waits for nothing: damaged, in each way in which a link can flip a bit of one byte,
-    /// and of another version or length. All of them have a number that no packet has. Returns how many of them have a wrong CRC,
-    /// and how many are broken otherwise.
+    /// Sends `request` damaged so that it is no longer a packet, without waiting: once per byte with a flipped bit in it, and
+    /// once with every wrong version and length that differs in one bit. All copies have a number that no valid packet has.
+    /// Returns how many of them have a wrong CRC, and how many are broken otherwise.
     pub(crate) fn give_damaged(&mut self, request: &Request<'_>) -> [u32; 2] {
         let number = self.conversation.next_sequence();
         self.conversation.session.conduct.await_answer(number);
@@ -123,7 +123,7 @@ impl Board {
         self.conversation.damage_behind(from)
     }
 
-    /// The same with ROW_ACKs of all rows before `row_sequence`.
+    /// The same with ROW_ACKs that acknowledge all rows before `row_sequence`.
     pub(crate) fn acknowledge_damaged(&mut self, row_sequence: u32) -> [u32; 2] {
         let before = self.conversation.session.acknowledges_to.replace(row_sequence);
         let damaged = self.give_damaged(&Request::RowAck);
@@ -131,23 +131,24 @@ impl Board {
         damaged
     }
 
-    /// Sends a request of `kind` with any payload, and waits for nothing.
+    /// Sends a request of `kind` with any payload, without waiting.
     pub(crate) fn give_bytes(&mut self, kind: Kind, payload: &[u8]) {
         self.conversation.tell(&Asking::Bytes(kind, payload));
     }
 
-    /// Of the requests that changed the board and came to it more than once, those beyond so many cast no doubt on what was found.
+    /// Declares the requests that changed the board and reached it more than once to be `changes` in number: further ones cast no
+    /// doubt on what was found.
     pub(crate) fn excuse_changes(&mut self, changes: u64) {
         self.conversation.session.repeated_changes =
             changes.saturating_sub(self.conversation.session.doubled_changes);
     }
 
-    /// What the board answered those packets with, if it did.
+    /// The board's answer to the damaged packets, if it gave one.
     pub(crate) fn answer_to_damaged(&self) -> Option<Said> {
         self.conversation.session.conduct.answer_to_damaged().cloned()
     }
 
-    /// Requests that were answered, and those that were answered once more though sent once.
+    /// The requests that were answered, and the further answers to requests sent once.
     pub(crate) fn answers(&self) -> [u64; 2] {
         [self.conversation.tally.answered, self.conversation.session.second_answers]
     }
@@ -157,10 +158,11 @@ impl Board {
         self.conversation.session.conduct.doubled()
     }
 
-    /// What came to the board and back more often than it was sent has its reason by now, and casts no doubt on what was found.
+    /// Forgets what reached the board or came back more often than it was sent: it is explained by now, and casts no doubt on
+    /// what was found.
     ///
     /// # Errors
-    /// [`BoardError`] when the board does not set its counters back.
+    /// [`BoardError`] when the board does not clear its counters.
     pub(crate) fn excuse_repeats(&mut self) -> Result<(), BoardError> {
         self.status(true)?;
         (self.conversation.session.repeated_changes, self.conversation.session.doubled_changes) = (0, 0);
@@ -168,10 +170,10 @@ impl Board {
         Ok(())
     }
 
-    /// Streams frames of which the first rows were `given`, and hands back every row.
+    /// Streams frames whose first rows were already `given`, and hands over every row that comes back.
     ///
     /// # Errors
-    /// [`BoardError`]; rows that came back before it were handed over.
+    /// [`BoardError`]; rows that came back before it have been handed over.
     pub(crate) fn stream_given(
         &mut self,
         given: Given,
@@ -186,7 +188,7 @@ impl Board {
         self.conversation.credit()
     }
 
-    /// Drops the rows inside the board, and returns for how many rows beyond the one that it waits for then it gives credit.
+    /// Drops the rows inside the board. Returns for how many rows the board then gives credit, from the one that it waits for on.
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
@@ -199,7 +201,7 @@ impl Board {
         Ok(answer.header.window.saturating_sub(reset.next_row))
     }
 
-    /// Drops the rows inside the board, which then waits for row sequence number `next_row`, one that was not sent yet.
+    /// Drops the rows inside the board, which then waits for row sequence number `next_row`, a number not sent yet.
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
@@ -207,8 +209,9 @@ impl Board {
         self.reset_to(Reset { level: ResetLevel::Rows, next_row }, Step::Request)
     }
 
-    /// Waits for `row`, which was given and is not acknowledged, as it comes when it was sent `repeats` times before or more often. It
-    /// is asked for again, first of all if that is not the first time, and then with the one `behind` it that pushes it out.
+    /// Waits until `row`, which was given and is not acknowledged, comes with a count of at least `repeats`. It is asked for
+    /// first if `repeats` is not 0. Each retry asks for it again, together with the row `behind` it, which pushes it out of the
+    /// core.
     ///
     /// # Errors
     /// [`BoardError`] when it does not come.
@@ -246,12 +249,12 @@ impl Board {
         Err(BoardError::RowMissing { place: *place, attempts })
     }
 
-    /// From now on packets acknowledge the rows before `row_sequence` alone, or all that came back if it is none.
+    /// From now on packets acknowledge only the rows before `row_sequence`; with none, all that came back.
     pub(crate) fn acknowledge_to(&mut self, row_sequence: Option<u32>) {
         self.conversation.session.acknowledges_to = row_sequence;
     }
 
-    /// Sends a ROW_ACK of all rows before `row_sequence`, which no other packet acknowledges thereby.
+    /// Sends a ROW_ACK of all rows before `row_sequence`. Other packets acknowledge as before.
     pub(crate) fn acknowledge_alone(&mut self, row_sequence: u32) {
         let before = self.conversation.session.acknowledges_to.replace(row_sequence);
         let sequence = self.conversation.next_sequence();
@@ -259,32 +262,32 @@ impl Board {
         self.conversation.session.acknowledges_to = before;
     }
 
-    /// So many rows may come while something else is waited for.
+    /// Allows this many rows to come while something else is waited for.
     pub(crate) fn disregard_rows(&mut self, rows: u32) {
         self.conversation.session.unwanted = rows;
     }
 
-    /// The ROW_OUT packets that came in this session, each counted once however often the link delivers it.
+    /// The ROW_OUT packets that came in this session. Each counts once, however often the link delivers it.
     pub(crate) fn rows_came(&self) -> u32 {
         self.conversation.session.conduct.came()
     }
 
-    /// What the board refused the row with that was sent in the packet `number`, if that was the last that it refused.
+    /// The refusal of the row that was sent in the packet `number`, if that row is the last that was refused.
     pub(crate) fn refusal_of_row(&self, number: u16) -> Option<Refusal> {
         self.conversation.session.conduct.refused_row(number)
     }
 
-    /// The row sequence number before which the board lets rows be sent, the greatest that it said.
+    /// The row sequence number before which the board allows rows to be sent: the greatest that it named.
     pub(crate) fn window(&self) -> u32 {
         self.conversation.session.window
     }
 
-    /// Counts all rows before `row_sequence` as come back.
+    /// Counts all rows before `row_sequence` as returned.
     pub(crate) fn acknowledge(&mut self, row_sequence: u32) {
         self.conversation.session.acknowledged = row_sequence;
     }
 
-    /// Starts `burst`, and drops it and all rows as soon as so many bytes without meaning have gone to the board behind it.
+    /// Starts `burst`. Drops it and all rows as soon as `bytes` bytes without meaning have followed it to the board.
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses to drop it, or does not answer.
@@ -293,8 +296,8 @@ impl Board {
         self.drop_rows_behind(bytes, 0)
     }
 
-    /// Drops all rows as soon as so many bytes without meaning have gone to the board. So many of those that it was given may come
-    /// back before.
+    /// Drops all rows as soon as `bytes` bytes without meaning have gone to the board. Before that, up to `given` rows may come
+    /// back.
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses, or does not answer.

@@ -1,5 +1,5 @@
-//! What a recorded host sent: the frames, put together from their rows. Of what was sent under one number the first counts: a run
-//! streams its frames before all else.
+//! What a recorded host sent: the frames, assembled from their rows. Of several rows under one number the first counts, since a
+//! run streams its frames before anything else.
 
 use std::collections::BTreeMap;
 
@@ -15,8 +15,7 @@ pub(crate) struct Sent {
 }
 
 impl Sent {
-    /// Finds them in all bytes that a host sent, which come in `pieces`. Rows of frames that are not `wanted` are left
-    /// out.
+    /// Finds them in all bytes that a host sent, given in `pieces`. Rows of frames that are not `wanted` are left out.
     #[must_use]
     pub(crate) fn find<'a>(pieces: impl Iterator<Item = &'a [u8]>, wanted: impl Fn(u16) -> bool) -> Self {
         let mut sent = Self::default();

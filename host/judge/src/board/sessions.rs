@@ -1,4 +1,4 @@
-//! Sessions: another one, the open one's greeting once more, and what is said in one that is not open.
+//! Sessions: opening another one, greeting the board again in the open one, and requests in one that is not open.
 
 use std::mem;
 
@@ -17,11 +17,11 @@ impl Board {
         self.conversation.session.number
     }
 
-    /// Opens another session over the same link, by a nonce that none before had. Whatever is still under way of the one before means
-    /// nothing in it.
+    /// Opens another session over the same link, with a nonce that no earlier one had. Whatever is still under way from the
+    /// earlier session is ignored.
     ///
     /// # Errors
-    /// [`BoardError`] as of [`Self::open`].
+    /// [`BoardError`] like [`Self::open`].
     pub(crate) fn open_another_session(&mut self, nonce: u32) -> Result<(), BoardError> {
         self.options.nonce = nonce;
         self.conversation.leave_session();
@@ -29,10 +29,10 @@ impl Board {
         Ok(())
     }
 
-    /// The same of a board that may be another host's by now, which keeps it then.
+    /// The same if another host may have the board by now. Then that host keeps it.
     ///
     /// # Errors
-    /// As [`Self::open_another_session`].
+    /// Like [`Self::open_another_session`].
     pub(crate) fn open_free_session(&mut self, nonce: u32) -> Result<(), BoardError> {
         let given = self.options.clone();
         self.options = OpenOptions { take_over: false, polite: true, ..given.clone() };
@@ -41,15 +41,15 @@ impl Board {
         opened
     }
 
-    /// Sends the greeting of the open session once more, and goes on in the session that the board names then.
+    /// Sends the greeting of the open session once more, and continues in the session that the board names in its reply.
     ///
     /// # Errors
-    /// As [`Self::open_another_session`].
+    /// Like [`Self::open_another_session`].
     pub(crate) fn greet_again(&mut self) -> Result<Welcome, BoardError> {
         let options = OpenOptions { take_over: false, ..self.options.clone() };
         let conversation = &mut self.conversation;
         let before = conversation.tally;
-        // What is answered in another session must be heard as well.
+        // An answer in another session must be heard too.
         let welcome = conversation.under_session(0, |conversation| greet(conversation, &options))?;
         if welcome.session == conversation.session.number {
             conversation.count_behind(before.retries);
@@ -62,11 +62,11 @@ impl Board {
         Ok(welcome)
     }
 
-    /// Greets the board as another host does, which leaves it to its holder, and returns what it says. Were it to open a session, that is
-    /// closed.
+    /// Greets the board as another host that does not take over, and returns the board's answer. If the board opens a session for
+    /// it, that session is closed.
     ///
     /// # Errors
-    /// As [`Self::ask`].
+    /// Like [`Self::ask`].
     pub(crate) fn greet_as_another_host(&mut self) -> Result<Said, BoardError> {
         let hello = Hello {
             nonce: !self.options.nonce,
@@ -94,22 +94,22 @@ impl Board {
         }
     }
 
-    /// Closes the session, and goes on as if it was open.
+    /// Closes the session, and continues as if it were open.
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
     pub(crate) fn close_session(&mut self) -> Result<(), BoardError> {
         match self.reset(ResetLevel::Session, Step::Request) {
-            // What is said when the reply to the first try was lost.
+            // The board's answer to a repeated RESET when the reply to the first was lost.
             Err(BoardError::SessionLost) => Ok(()),
             closed => closed,
         }
     }
 
-    /// Sends a request of `kind` under the number of the session `session`, which is not open, and returns what the board says to it.
+    /// Sends a request of `kind` under the number of a `session` that is not open, and returns the board's answer.
     ///
     /// # Errors
-    /// As [`Self::ask`].
+    /// Like [`Self::ask`].
     pub(crate) fn ask_in_session(
         &mut self,
         session: u8,
@@ -117,7 +117,7 @@ impl Board {
         payload: &[u8],
     ) -> Result<Said, BoardError> {
         let answer = self.conversation.under_session(session, |conversation| {
-            // A session that is not open has nobody to ask.
+            // In a session that is not open the board's counters cannot be read.
             let counts = mem::take(&mut conversation.counts);
             let answer = conversation.ask(&Asking::Bytes(kind, payload), Step::Request, |_| true);
             conversation.counts = counts;
@@ -131,8 +131,7 @@ impl Board {
         }
     }
 
-    /// Says under the number of the session `session`, which is not open, that all rows before `row_sequence` have come back. That is
-    /// not answered.
+    /// Acknowledges all rows before `row_sequence` under the number of a `session` that is not open. This is not answered.
     pub(crate) fn acknowledge_in_session(&mut self, session: u8, row_sequence: u32) {
         self.conversation.under_session(session, |conversation| {
             let acknowledged = mem::replace(&mut conversation.session.acknowledged, row_sequence);

@@ -1,4 +1,4 @@
-//! What ends a run early: whoever began it, or the run's own time limit.
+//! What ends a run early: a request to stop, or the run's own time limit.
 
 use std::fmt;
 use std::sync::Arc;
@@ -12,29 +12,29 @@ use crate::verdict::StoppedBy;
 pub struct Stop {
     asked: Option<Arc<Asked>>,
     limit: Option<Duration>,
-    /// Of the limit, what had passed when the link's clock began.
+    /// How much of the limit had passed when the link's clock began.
     spent: Duration,
-    /// The limit on this computer's clock, and since when it counts.
+    /// The start and length of the limit on this computer's clock.
     wall: Option<(Instant, Duration)>,
 }
 
 type Asked = dyn Fn() -> Option<StoppedBy> + Send + Sync;
 
 impl Stop {
-    /// Stops as soon as `asked` says who wants it to. It is asked often, and so must be quick, as a look at an atomic is.
+    /// Stops as soon as `asked` says who wants it to. It is called often and must be quick, such as a read of an atomic.
     #[must_use]
     pub fn when(asked: impl Fn() -> Option<StoppedBy> + Send + Sync + 'static) -> Self {
         Self { asked: Some(Arc::new(asked)), ..Self::default() }
     }
 
-    /// Stops as well when the link's clock has passed `limit`, if there is one.
+    /// Also stops when the link's clock has passed `limit`, if there is one.
     #[must_use]
     pub fn link_limit(self, limit: Option<Duration>) -> Self {
         Self { limit, ..self }
     }
 
-    /// Stops also when `limit` from here on has passed on this computer's clock, which a board in this program or a
-    /// recording does not keep to.
+    /// Also stops when `limit` from now on has passed on this computer's clock. The link's clock may run otherwise, as with a
+    /// board in this process or a recording.
     #[must_use]
     pub fn wall_limit(self, limit: Option<Duration>) -> Self {
         Self { wall: limit.map(|limit| (Instant::now(), limit)), ..self }
@@ -45,7 +45,7 @@ impl Stop {
         Self { spent, ..self.clone() }
     }
 
-    /// Whether to go on at `now`, when nothing has come for `silent`.
+    /// Whether to go on at `now`, when nothing has come for the time `silent`.
     pub(crate) fn check(&self, now: Duration, silent: Duration) -> Result<(), BoardError> {
         if let Some(by) = self.asked.as_ref().and_then(|asked| asked()) {
             return Err(BoardError::Stopped(by));

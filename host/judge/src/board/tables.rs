@@ -7,7 +7,7 @@ use halfrow_protocol::message::{Bank, Commit, Entries, NODES, Reply, Request, Sh
 use super::deadlines::Step;
 use super::{Board, BoardError};
 
-/// One of the ports by which the datapath reads its tables.
+/// One of the ports through which the datapath reads its tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct TablePort {
     /// The table.
@@ -16,7 +16,7 @@ pub(crate) struct TablePort {
     pub(crate) port: u8,
 }
 
-/// The CRC of a table as one port reads it, beside what it should be.
+/// The CRC of a table as one port reads it, and the one that it should be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ReadBack {
     /// The port.
@@ -36,7 +36,7 @@ impl ReadBack {
 }
 
 impl Board {
-    /// Every port that the datapath reads tables by, its rows' as those of `rows`: row factors or a grid.
+    /// Every port through which the datapath reads tables. `rows` says what the row table holds: row factors or a grid.
     pub(crate) fn table_ports(&self, rows: Table) -> Vec<TablePort> {
         let ports = |table, count| (0..count).map(move |port| TablePort { table, port });
         ports(rows, self.capabilities.step_ports)
@@ -62,7 +62,7 @@ impl Board {
         (MAX_PAYLOAD - Span::BYTES) / table.entry_bytes()
     }
 
-    /// Writes entries, as on the wire, into the shadow bank from its first on.
+    /// Writes entries, in wire format, into the shadow bank from its first entry on.
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
@@ -83,7 +83,7 @@ impl Board {
         Ok(())
     }
 
-    /// The CRCs of both tables through every port.
+    /// The CRCs of both tables through every port, up to the first that disagrees.
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
@@ -117,7 +117,7 @@ impl Board {
         Ok(read)
     }
 
-    /// The bytes of entries as a port reads them.
+    /// The bytes of the first entries of a table as a port reads them.
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
@@ -146,7 +146,7 @@ impl Board {
     /// Makes the shadow tables the active ones from row 0 of `first_frame` on, under `generation`.
     ///
     /// # Errors
-    /// [`BoardError`] when the board refuses, since a port reads something else, or does not answer.
+    /// [`BoardError`] when the board refuses because a port reads something else, or does not answer.
     pub fn commit(
         &mut self,
         tables: &TableSet,
@@ -169,15 +169,15 @@ impl Board {
         Ok(())
     }
 
-    /// Whether rows can be made with `tables` of the bank that was not committed last, once they are written into it: a grid has
-    /// its shape from a commit alone.
+    /// Whether rows can be made with `tables` once they are written into the bank that was not committed last: a grid gets its
+    /// shape only from a commit.
     #[must_use]
     pub(crate) fn knows_shape_of(&self, tables: &TableSet) -> bool {
         tables.shape().is_none_or(|shape| self.shapes[1] == Some(shape))
     }
 }
 
-/// The table that these tables are beside the kernel.
+/// Which table these tables are, apart from the kernel.
 fn table_of(tables: &TableSet) -> Table {
     if tables.shape().is_some() { Table::Grid } else { Table::RowFactors }
 }

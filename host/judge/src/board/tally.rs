@@ -1,10 +1,10 @@
-//! What goes over a link, counted.
+//! Counts of what goes over a link.
 
 use std::ops::AddAssign;
 
 use crate::link::LineErrors;
 
-/// What a link did.
+/// What went over a link.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Bytes written.
@@ -15,17 +15,17 @@ pub struct Tally {
     pub packets_out: u64,
     /// Packets read whole.
     pub packets_in: u64,
-    /// Requests that were answered by what they ask for.
+    /// Requests that were answered with what they asked for.
     pub answered: u64,
     /// Packets that came damaged since the session began.
     pub damaged_in: u64,
     /// Packets sent again.
     pub retries: u64,
-    /// Of those, the ones to which an answer came as well: nothing had been lost, and the first answer was late.
+    /// Of those, the ones that were answered as well: nothing had been lost, the first answer was late.
     pub late: u64,
-    /// Packets that nobody waited for: second answers, rows that were there already, and what is of another session.
+    /// Packets that nobody waited for: second answers, rows that had already come, and packets of other sessions.
     pub strays: u64,
-    /// What the link's chip has seen go wrong on the line.
+    /// Errors on the line that the link's chip has seen.
     pub line_errors: LineErrors,
 }
 

@@ -12,7 +12,7 @@ use crate::board::asked::Asking;
 use crate::board::deadlines::Step;
 
 impl Conversation {
-    /// Asks until a reply that `accept` takes has come.
+    /// Asks until a reply comes that `accept` takes.
     pub(in crate::board) fn ask(
         &mut self,
         asking: &Asking<'_>,
@@ -48,7 +48,7 @@ impl Conversation {
             if attempt == 0 || self.queued() == 0 {
                 self.queue_packet(kind, sequence, |payload| asking.write(payload));
             }
-            // The reply may be as long as the longest packet, or stand behind one of a session before.
+            // The reply may be as long as the longest packet, or follow one of an earlier session.
             let bytes = self.outgoing.len() + halfrow_protocol::MAX_PACKET;
             let mut deadline = self.waited + self.wait_for(step, attempt, bytes);
             while let Some(wait) = deadline.checked_sub(self.waited).filter(|wait| !wait.is_zero()) {
@@ -59,7 +59,7 @@ impl Conversation {
                     return Ok(answer);
                 }
                 if self.tally.late > late {
-                    // What was asked before still arrives, and this stands in the queue behind it.
+                    // An earlier request is still being answered, and this one waits in the queue after it.
                     (attempt, deadline) = (0, self.waited + self.wait_for(step, 0, bytes));
                 }
             }
@@ -80,7 +80,7 @@ impl Conversation {
         let doing = || format!("waiting for the answer to {}", asking.kind());
         self.exchange(wait, doing, |packet| {
             let header = packet.header;
-            // Rows are numbered by the board.
+            // Rows carry the board's own numbers.
             let is_row = header.kind == Kind::RowOut.code();
             rows += u64::from(is_row);
             if !is_row && header.sequence == sequence && accept(packet) {
@@ -97,7 +97,7 @@ impl Conversation {
         }
     }
 
-    /// Takes note of how long it took until something came that was asked for `again` times more.
+    /// Notes how long something took to come that was asked for `again` more times.
     pub(in crate::board) fn took(&mut self, again: u32, time: Duration) {
         self.lateness.took(again, time);
     }

@@ -1,15 +1,15 @@
-//! Packets that are none: a board must not carry them out.
+//! Damaged packets, which a board must not carry out.
 
 use halfrow_protocol::message::Request;
 use halfrow_protocol::{Damage, Decoder};
 
 use super::Conversation;
 
-/// Where a header has its version and its length (WIRE.md, 1).
+/// The bytes of version and length in a header (WIRE.md, 1).
 const MISNAMED: [usize; 3] = [0, 4, 5];
 
 impl Conversation {
-    /// How many packets with a wrong CRC, and how many that are broken otherwise, are queued behind so many bytes.
+    /// How many packets with a wrong CRC, and how many broken otherwise, are queued after the first `bytes` bytes.
     pub(in crate::board) fn damage_behind(&self, bytes: usize) -> [u32; 2] {
         let (mut decoder, [mut crc, mut framing]) = (Decoder::new(), [0; 2]);
         let mut queued = &self.outgoing[bytes..];
@@ -23,11 +23,12 @@ impl Conversation {
         [crc, framing]
     }
 
-    /// Queues `request` once for each byte that its packet has on the wire between two zeros, with a bit of that byte flipped.
+    /// Queues `request` once for each byte of its packet on the wire, without the zeros around it, with one bit of that byte
+    /// flipped.
     pub(in crate::board) fn queue_damaged(&mut self, request: &Request<'_>) {
         let from = self.outgoing.len();
         self.queue(request, self.sequence);
-        // What is damaged is no packet.
+        // A damaged packet does not count as a packet.
         self.tally.packets_out -= 1;
         let whole = self.outgoing.split_off(from);
         for place in 1..whole.len().saturating_sub(1) {
@@ -37,7 +38,7 @@ impl Conversation {
         }
     }
 
-    /// Queues `request` with a CRC that is right, once for each bit of its version and of its length, of which that one is wrong.
+    /// Queues `request` with a right CRC once for each bit of its version and its length, with that bit wrong.
     pub(in crate::board) fn queue_misnamed(&mut self, request: &Request<'_>) {
         let header = self.header(request.kind(), self.sequence);
         for (byte, bit) in MISNAMED.into_iter().flat_map(|byte| (0..u8::BITS).map(move |bit| (byte, bit))) {

@@ -16,13 +16,13 @@ pub(super) struct Arrivals<'a> {
     pub(super) in_flight: InFlight,
     /// The oldest row that has not come back.
     pub(super) missing: u32,
-    /// Rows that came back although an earlier one has not.
+    /// Rows that came back before an earlier one.
     ahead: BTreeSet<u32>,
-    /// A row came, and the oldest that is missing is before one that is there.
+    /// Whether a row came while an earlier one is still missing.
     pub(super) gap: bool,
-    /// Rows that came although they were there already.
+    /// Rows that came although they had come before.
     pub(super) copies: Vec<u32>,
-    /// Refusals of rows that are none of the stream's.
+    /// Refusals of rows that do not belong to the stream.
     pub(super) old_refusals: u64,
     pub(super) numbers: Numbers,
     unpacked: Vec<u16>,
@@ -45,12 +45,12 @@ impl<'a> Arrivals<'a> {
         }
     }
 
-    /// How many rows came although an earlier one has not.
+    /// How many rows came back before an earlier one.
     pub(super) fn ahead(&self) -> u32 {
         self.ahead.len() as u32
     }
 
-    /// Takes what is a row.
+    /// Takes rows and refusals of rows; ignores other packets.
     pub(super) fn take(&mut self, packet: &Packet<'_>) -> Result<(), BoardError> {
         if ![Kind::RowOut.code(), Kind::Refusal.code()].contains(&packet.header.kind) {
             return Ok(());

@@ -1,4 +1,4 @@
-//! The frames of a stream of which some row has not come back, and where a row of the stream belongs.
+//! The frames of a stream that still have rows under way, and where a row of the stream belongs.
 
 use std::collections::VecDeque;
 
@@ -10,10 +10,10 @@ use super::NumberedFrame;
 pub(super) struct InFlight {
     /// The row sequence number of the stream's first row.
     first_row: u32,
-    /// Rows of a frame; 0 before there is one.
+    /// Rows of a frame; 0 before the first frame.
     height: u32,
     frames: VecDeque<NumberedFrame>,
-    /// Frames before those that are kept.
+    /// Frames of the stream that are no longer kept.
     frames_done: u32,
 }
 
@@ -34,7 +34,7 @@ impl InFlight {
         self.frames.push_back(frame);
     }
 
-    /// The row sequence number behind the last row of the frames that were added.
+    /// The row sequence number after the last row of the frames that were added.
     pub(super) fn end(&self) -> u32 {
         self.first_row + (self.frames_done + self.frames.len() as u32) * self.height
     }
@@ -44,7 +44,7 @@ impl InFlight {
         self.frames.front().map_or(0, |frame| frame.frame.width())
     }
 
-    /// The row with this number, unless it came back long ago.
+    /// The row with this number, unless its frame is no longer kept.
     pub(super) fn row(&self, row_sequence: u32) -> Option<Row<'_>> {
         let row = row_sequence.checked_sub(self.first_row)?;
         let frame = row.checked_div(self.height)?.checked_sub(self.frames_done)?;
@@ -60,7 +60,7 @@ impl InFlight {
         Some(Row { frame, index, place })
     }
 
-    /// Lets the frames go of which every row lies before `missing`. The last one stays, since the next rows are as wide.
+    /// Drops the frames whose rows all lie before `missing`. The last frame stays, since it gives the width of the next rows.
     pub(super) fn forget_before(&mut self, missing: u32) {
         while self.frames.len() > 1 && missing - self.first_row >= (self.frames_done + 1) * self.height {
             self.frames.pop_front();

@@ -21,10 +21,10 @@ use numbers::Numbers;
 pub(crate) use traffic::Unjudged;
 pub use traffic::{NumberedFrame, ReturnedRow, RowTraffic};
 
-/// Bytes that may wait to be written before another row is packed. Two rows keep a link busy.
+/// Bytes that may be waiting to be written when another row is packed. Two rows keep a link busy.
 const QUEUE: usize = 8 * 1024;
 
-/// Where a row is never asked for again, it is waited for as long as at this try: by then most rows that are late have come.
+/// When a row is never asked for again, it is waited for as long as at this try: by then most late rows have come.
 const PATIENT: u32 = 3;
 
 /// A row that did not come back although it was asked for only once.
@@ -34,13 +34,13 @@ pub(crate) struct Unreturned {
     pub place: RowPlace,
     /// Its samples.
     pub samples: Vec<u16>,
-    /// Rows that were sent in this stream, this one and those behind it included.
+    /// Rows sent in this stream, including this one and those after it.
     pub sent: u32,
-    /// Rows that came back, those behind this one included.
+    /// Rows that came back, including those after this one.
     pub returned: u32,
 }
 
-/// Rows of the next stream that the board was given in front of it.
+/// Rows of the next stream that the board was given before it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Given {
     /// How many of its first rows.
@@ -49,8 +49,8 @@ pub(crate) struct Given {
     pub numbers: Vec<u16>,
 }
 
-/// Streams all frames of `traffic` through the board, of which rows may have been `given` already. Rows are numbered from
-/// `conversation.session.acknowledged` on.
+/// Streams all frames of `traffic` through the board; the board may have been `given` their first rows already. Rows are numbered
+/// from `conversation.session.acknowledged` on.
 pub(super) fn stream(
     conversation: &mut Conversation,
     traffic: &mut dyn RowTraffic,
@@ -63,7 +63,7 @@ pub(super) fn stream(
     stream.run()
 }
 
-/// The same, up to the first row that does not come back at once.
+/// The same, up to the first row that does not come back without being asked for again.
 pub(super) fn stream_once(
     conversation: &mut Conversation,
     traffic: &mut dyn RowTraffic,
@@ -94,9 +94,9 @@ struct Stream<'a> {
     sent: u32,
     /// How often the oldest missing row was asked for.
     attempts: u32,
-    /// How often it may be.
+    /// The most times that it may be asked for.
     most: u32,
-    /// When the oldest missing row was first, and last, waited for.
+    /// When the wait for the oldest missing row began.
     missing_since: Duration,
     progress_at: Duration,
     late: LateRows,
@@ -135,7 +135,7 @@ impl<'a> Stream<'a> {
                 self.ask_again()?;
             }
         }
-        // The last acknowledgement frees the board's banks; nobody waits for it, nor for those before.
+        // The last acknowledgement frees the board's banks; neither it nor earlier ones are answered.
         self.acknowledge();
         self.conversation.count();
         Ok(())
@@ -147,7 +147,7 @@ impl<'a> Stream<'a> {
         self.missing_since = self.progress_at;
     }
 
-    /// Whether a row has still to come back; what the last frame was is known only when another is fetched.
+    /// Whether a row has still to come back. That a frame was the last is known only when the next one is fetched.
     fn has_more(&mut self) -> bool {
         if self.missing() == self.arrivals.in_flight.end() && !self.exhausted {
             self.fetch();
@@ -172,7 +172,7 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// Queues rows as far as credit and queue allow, or an acknowledgement when there is none to send.
+    /// Queues rows as far as credit and queue allow, or an acknowledgement if there is no row to send.
     fn fill(&mut self) {
         while self.conversation.queued() < QUEUE && self.sent < self.conversation.credit() {
             if self.sent == self.arrivals.in_flight.end() {
@@ -227,7 +227,7 @@ impl<'a> Stream<'a> {
             self.conversation.took(self.attempts - 1, took);
             self.late.came(missing, self.attempts - 1, took);
             self.attempts = 1;
-            // One that is asked for again is sent without credit, and may come back all the same.
+            // A row that is asked for again is sent even without credit, so `missing` may pass `sent`.
             self.sent = self.sent.max(self.missing());
             self.go_on();
         }
@@ -235,13 +235,13 @@ impl<'a> Stream<'a> {
             self.conversation.tally.strays += 1;
             if let Some(took) = self.late.came_again(row) {
                 self.conversation.was_late(took);
-                // What was asked for before still arrives, and the missing row stands in the queue behind it.
+                // An earlier copy is still being answered, and the missing row waits in the queue after it.
                 self.progress_at = self.conversation.waited;
                 self.attempts = self.attempts.min(2);
             }
         }
         if self.arrivals.gap && self.attempts == 1 && self.most > 1 {
-            // Rows come in order, so the missing one was made and got lost on the way.
+            // Rows come in order, so the missing one was made and got lost on the way back.
             return self.ask_again();
         }
         Ok(())

@@ -1,14 +1,15 @@
-//! The numbers of the packets in which the rows of a stream were sent. What refuses a row in another one is an answer to an old packet.
+//! The numbers of the packets in which the rows of a stream were sent. A refusal of a row under another number answers an old
+//! packet.
 
 use super::Given;
 
-/// How many packets back a number means the last packet that had it: numbers have 16 bits.
+/// How many packets back a number is unique: numbers have 16 bits.
 const RECENT: u64 = 1 << 15;
 
 pub(super) struct Numbers {
-    /// Of rows that were sent in front of the stream.
+    /// Numbers of rows that were sent before the stream.
     given: Vec<u16>,
-    /// Packets that were sent in front of it.
+    /// Packets that were sent before it.
     before: u64,
     /// Packets of the stream, and the last one's number.
     packets: u64,
@@ -16,12 +17,12 @@ pub(super) struct Numbers {
 }
 
 impl Numbers {
-    /// None of the stream yet, behind so many packets.
+    /// Before the stream's first packet; `before` packets were sent earlier.
     pub(super) fn new(given: Given, before: u64) -> Self {
         Self { given: given.numbers, before, packets: 0, last: 0 }
     }
 
-    /// So many packets were sent in all, the last one under `last`.
+    /// Now `packets` packets have been sent in all, the last one under the number `last`.
     pub(super) fn go_on(&mut self, packets: u64, last: u16) {
         (self.packets, self.last) = (packets.saturating_sub(self.before), last);
     }

@@ -23,15 +23,15 @@ pub struct ReturnedRow<'a> {
     pub row: usize,
     /// The generation of the tables that made it.
     pub generation: u8,
-    /// Pixel clocks from first in to first out.
+    /// Pixel clocks from the first sample in to the first output.
     pub first_latency: u16,
-    /// Pixel clocks from last in to last out.
+    /// Pixel clocks from the last sample in to the last output.
     pub last_latency: u16,
-    /// Board clocks for which gaps kept the enable off while it entered.
+    /// Board clocks for which gaps kept the enable off, from before its first sample to its last.
     pub pauses: u16,
     /// How often it was sent before.
     pub repeats: u16,
-    /// The CRC-32 of its samples as they entered the core; without meaning where the board does not advertise it.
+    /// The CRC-32 of its samples as they entered the core; meaningless if the board does not advertise it.
     pub entered: Option<u32>,
     /// Its samples.
     pub samples: &'a [u16],
@@ -42,12 +42,12 @@ pub trait RowTraffic {
     /// The next frame to send, all of one size; none at the end.
     fn next_frame(&mut self) -> Option<NumberedFrame>;
 
-    /// Takes a row that came back, each row once; rows of a frame come in order unless the link lost one. Breaking
-    /// ends the stream.
+    /// Takes a row that came back, each row once. Rows of a frame come in order unless the link lost one. Breaking ends the
+    /// stream.
     fn returned(&mut self, row: &ReturnedRow<'_>) -> ControlFlow<()>;
 }
 
-/// Frames of which only the return matters.
+/// Frames that only have to come back; their rows are not looked at.
 #[derive(Clone, Debug)]
 pub(crate) struct Unjudged<I>(pub(crate) I);
 
