@@ -1,9 +1,9 @@
-//! The datapath with one part out of order.
+//! The datapath with one part broken.
 //!
-//! Other samples, factors and weights go through the reference itself, [`RowTables::corrected`]. What it has no input for
-//! is here, and here alone: a sum that is not rounded or not clamped, taps that carry other samples, memory that changes
-//! between two reads, a factor above 1, and a grid that leads out of the row. It reads the row as a board does, by a window
-//! of eight samples and one read a pixel clock (DATAPATH.md, "Ring").
+//! Other samples, factors and weights go through the reference itself, [`RowTables::corrected`]. Only what the reference has no
+//! input for is computed here: a sum that is not rounded or not clamped, taps that carry other samples, memory that changes
+//! between two reads, a factor above 1, and a grid that leads out of the row. Here a row is read as a board reads it, through a
+//! window of eight samples with one read a pixel clock (DATAPATH.md, "Ring").
 
 use std::ops::Range;
 use std::rc::Rc;
@@ -18,24 +18,24 @@ const WINDOW: usize = 8;
 /// Columns of the window left and right of n.
 const LEFT: i64 = 3;
 const RIGHT: i64 = 4;
-/// Columns that the newest sample is ahead of the middle of the row when the first output is read.
+/// How many columns past the middle of the row the newest sample is when the first output is read.
 pub(super) const LOOK_AHEAD: usize = 3;
-/// The column n has 12 bits; a factor above 1 makes it wrap.
+/// The column n has 12 bits. A factor above 1 makes it wrap.
 const COLUMNS: i64 = 1 << 12;
-/// A position has 13 fractional bits; the next one says that the base is left of n.
+/// A position has 13 fractional bits. The bit above them says that the base is left of n.
 const LEFT_OF_N: usize = 1 << 13;
 
 /// How far a row is stretched.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Stretch {
-    /// By its entry of the table as the board reads it: a row factor when the board is sound, else any word.
+    /// By the table entry as the board reads it: a row factor if the board is sound, otherwise any word.
     Factor(u32),
-    /// By what the board finds of a grid.
+    /// By the values of the row that the board finds in a grid.
     Grid(Rc<RowValues>),
 }
 
 impl Stretch {
-    /// That of a row by the tables, if they have the row.
+    /// The stretch of a row by the tables, if they have the row.
     pub(super) fn of(tables: &TableSet, row: usize) -> Option<Self> {
         match tables.shape() {
             None => tables.row_factor(row).map(|factor| Self::Factor(factor.get())),
@@ -60,11 +60,11 @@ pub(super) struct RowTables<'a> {
 pub(super) struct DeadTap {
     /// The tap, 0 for G0 to 6 for G6.
     pub(super) tap: usize,
-    /// The tap whose sample it carries; none for zero.
+    /// The tap whose sample it carries instead; none for zero.
     pub(super) reads: Option<usize>,
 }
 
-/// How the arithmetic is wired; by default as specified.
+/// How the arithmetic is wired. The default is as specified.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wiring {
     /// Added to the weighted sum before its 14 fractional bits are dropped.
@@ -73,11 +73,11 @@ pub(super) struct Wiring {
     pub(super) weight_rounding: i32,
     /// Whether outputs below 0 become 0; otherwise they wrap.
     pub(super) clamps_low: bool,
-    /// Whether outputs above 2^B − 1 become that; otherwise they wrap.
+    /// Whether outputs above 2^B − 1 become 2^B − 1; otherwise they wrap.
     pub(super) clamps_high: bool,
     /// A tap that does not carry its own sample.
     pub(super) dead_tap: Option<DeadTap>,
-    /// Whether the base column has the row's other colour.
+    /// Whether the base column has the colour that is not the output's own.
     pub(super) other_colour: bool,
 }
 
@@ -95,7 +95,7 @@ impl Default for Wiring {
 }
 
 impl RowTables<'_> {
-    /// What a board without defect makes of `input`, a row of the geometry's width, with these tables.
+    /// What a sound board makes of `input`, a row of the geometry's width, with these tables.
     pub(super) fn corrected(&self, input: &[u16]) -> Vec<u16> {
         let mut output = vec![0; self.geometry.width()];
         match &self.stretch {
@@ -111,20 +111,20 @@ impl RowTables<'_> {
         output
     }
 
-    /// The same by the window, which follows tables that are not legal as well.
+    /// The same through the window, which also works with illegal tables.
     fn read(&self, input: &[u16]) -> Vec<u16> {
         self.run(&Wiring::default(), |column, _| self.sample_of(input, column))
     }
 
-    /// Whether every output comes from within the row: n never falls but where it wraps.
+    /// Whether every output comes from within the row. The first and the last one decide: n never falls, except where it wraps.
     fn lies_in_row(&self) -> bool {
         let last = self.geometry.width() - 1;
         let [first, end] = [0, last].map(|column| self.source(column).column);
         (first..=last as i64).contains(&end)
     }
 
-    /// The columns for which a board with a ring of `ring` samples has every sample that it reads, the widest stretch of
-    /// them: all, but of tables that are not legal.
+    /// The longest range of columns for which a board with a ring of `ring` samples has every sample that it reads. With legal
+    /// tables these are all columns.
     pub(super) fn foretold(&self, ring: usize) -> Range<usize> {
         let in_ring = |output: usize, column: i64| {
             let newest = output + self.geometry.width() / 2 + LOOK_AHEAD;
@@ -146,8 +146,8 @@ impl RowTables<'_> {
         widest(&sound)
     }
 
-    /// What a board wired like this makes of a row. `read` gives the sample that the window gets for a column, which may
-    /// lie outside the row, at the time of an output.
+    /// What a board with this wiring makes of a row. `read` gives the sample that the window gets for a column, which may lie
+    /// outside the row, at the time of an output.
     pub(super) fn run(&self, wiring: &Wiring, read: impl Fn(i64, usize) -> u16) -> Vec<u16> {
         let mut window: Option<Window> = None;
         (0..self.geometry.width())
@@ -164,7 +164,7 @@ impl RowTables<'_> {
             .collect()
     }
 
-    /// Where the output of a column is taken from.
+    /// Where the output at a column comes from.
     pub(super) fn source(&self, column: usize) -> Source {
         match &self.stretch {
             Stretch::Factor(entry) => source_by_entry(self.geometry, *entry, column),
@@ -180,14 +180,14 @@ impl RowTables<'_> {
         Wiring::default().output(self.kernel, position, taps, self.geometry.depth().max())
     }
 
-    /// P(m): the row's sample at a column, or outside the row the one that stands in for it.
+    /// P(m): the row's sample at a column, or the sample that stands in for a column outside the row.
     pub(super) fn sample_of(&self, row: &[u16], column: i64) -> u16 {
         row.get(self.geometry.sample_column(column)).copied().unwrap_or_default()
     }
 }
 
 impl Wiring {
-    /// One output: the taps G0 to G6 weighed at `position`, in units of 2^-13 column right of the base.
+    /// One output: the taps G0 to G6 weighted at `position`, in units of 2^-13 column right of the base.
     fn output(&self, kernel: &Kernel, position: usize, taps: [u16; 7], max: u16) -> u16 {
         let [g0, r1, g4, r5, g6] = self.weights(kernel, position);
         let [s0, s1, s2, s3, s4, s5, s6] = self.carried(taps).map(i32::from);
@@ -215,14 +215,14 @@ impl Wiring {
         carried
     }
 
-    /// Two's complement and a maximum of 2^B − 1 make a mask of what would have been clamped.
+    /// An output that is not clamped wraps. In two's complement, and as the maximum is 2^B − 1, that is a mask.
     fn limited(&self, value: i32, max: i32) -> u16 {
         let clamps = if value < 0 { self.clamps_low } else { self.clamps_high };
         (if clamps { value.clamp(0, max) } else { value & max }) as u16
     }
 }
 
-/// The longest range in which all are true, the first of several.
+/// The longest range in which all marks are true; the first of several.
 fn widest(marks: &[bool]) -> Range<usize> {
     let mut widest = 0..0;
     let mut start = 0;
@@ -247,7 +247,7 @@ impl Window {
         Self { samples: std::array::from_fn(|place| read(column - LEFT + place as i64)), column }
     }
 
-    /// Moves on when n does. There is time for one read, even if n jumps.
+    /// Moves to `column`. There is time for only one read, even if n jumps.
     fn follow(&mut self, column: i64, read: impl Fn(i64) -> u16) {
         if column != self.column {
             self.column = column;

@@ -1,16 +1,16 @@
-//! A single defect, and how much of what was seen it explains.
+//! A single defect, and how much of the observed differences it explains.
 
 use std::ops::Range;
 
 use super::witnesses::Witness;
 use crate::result::Defect;
 
-/// Rows that must speak for or against a defect before it can be given up.
+/// How many rows must speak for or against a defect before it can be given up.
 const PATIENCE: usize = 8;
-/// The share below which it is given up then.
+/// The share below which a defect is then given up.
 const HOPELESS: f64 = 0.1;
 
-/// What a board with a defect would have given for a row.
+/// The row that a board with a defect would have given.
 #[derive(Clone, Debug)]
 pub(super) struct Prediction {
     samples: Vec<u16>,
@@ -23,7 +23,7 @@ impl Prediction {
         Self { samples, known }
     }
 
-    /// A row that the defect leaves open.
+    /// A row about which the defect says nothing.
     pub(super) fn unknown() -> Self {
         Self { samples: Vec::new(), known: 0..0 }
     }
@@ -36,23 +36,23 @@ impl From<Vec<u16>> for Prediction {
     }
 }
 
-/// What a defect makes of a row; none where the row stays as it should be.
+/// What a defect makes of a row; none if the row stays as it should be.
 type Predict<'a> = dyn Fn(&Witness<'_>) -> Option<Prediction> + 'a;
 
-/// A single defect that may be the board's.
+/// A single defect that the board may have.
 pub(super) struct Hypothesis<'a> {
-    /// Which.
+    /// The defect.
     pub(super) defect: Defect,
     predict: Box<Predict<'a>>,
 }
 
 impl<'a> Hypothesis<'a> {
-    /// The defect, which makes of a row what `predict` gives, or leaves it as it should be.
+    /// A defect that turns a row into what `predict` gives, or leaves it as it should be.
     pub(super) fn new(defect: Defect, predict: impl Fn(&Witness<'_>) -> Option<Prediction> + 'a) -> Self {
         Self { defect, predict: Box::new(predict) }
     }
 
-    /// How much of `rows` it explains. One that explains next to nothing of the rows that it touches is not tried on all.
+    /// How much of `rows` it explains. A defect that explains next to nothing of the rows that it touches is given up early.
     pub(super) fn score<'w, 'r: 'w>(&self, rows: impl Iterator<Item = &'w Witness<'r>>) -> Score {
         let mut score = Score::default();
         let mut touched = Score::default();
@@ -79,9 +79,9 @@ impl<'a> Hypothesis<'a> {
 pub(super) struct Score {
     /// Samples that differ from the reference.
     pub(super) differing: usize,
-    /// Those of them that the defect gives, to the bit.
+    /// How many of those the defect predicts exactly.
     pub(super) explained: usize,
-    /// Samples that the defect would change and that are right.
+    /// Samples that the defect would change but that are right.
     pub(super) contradicted: usize,
 }
 
@@ -106,7 +106,7 @@ impl Score {
         self.contradicted += other.contradicted;
     }
 
-    /// The share that is explained, 0 to 1; what is contradicted counts against it.
+    /// The share that is explained, 0 to 1. Contradicted samples count against it.
     pub(super) fn share(&self) -> f64 {
         match self.differing + self.contradicted {
             0 => 0.0,

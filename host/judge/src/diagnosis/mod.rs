@@ -1,4 +1,4 @@
-//! From the pattern of differences to the part that is broken.
+//! From the pattern of differences to the broken part.
 //!
 //! ```text
 //! Case ─► witnesses ─► families ─► ranking ─► Suspect
@@ -6,8 +6,8 @@
 //!         explain      defects     sample by sample, and keeps the best
 //! ```
 //!
-//! Every suspect is a single defect that was simulated exactly. Its share says how many of the differing samples it
-//! gives to the bit; where nothing explains them, [`diagnose`] describes where they lie and names no part.
+//! Every suspect is a single defect that was simulated exactly. Its share says how many of the differing samples it predicts to
+//! the bit. Where nothing explains them, [`diagnose`] describes where they lie and names no part.
 
 mod datapath;
 mod families;
@@ -24,7 +24,7 @@ use witnesses::Witnesses;
 
 pub use read_back::read_back;
 
-/// Tables and kernel that a frame may have been corrected by.
+/// Tables and kernel that a frame may have been corrected with.
 #[derive(Clone, Copy, Debug)]
 pub struct Uploaded<'a> {
     /// Their generation.
@@ -35,23 +35,23 @@ pub struct Uploaded<'a> {
     pub kernel: &'a Kernel,
 }
 
-/// Everything that is known of a board that computes wrongly.
+/// Everything that is known about a board that computes wrongly.
 #[derive(Clone, Copy, Debug)]
 pub struct Case<'a> {
     /// All that was uploaded, in order.
     pub uploaded: &'a [Uploaded<'a>],
     /// M, the samples of line memory.
     pub ring: usize,
-    /// Every frame, in the order in which they were streamed.
+    /// Every frame, in streaming order.
     pub frames: &'a [FrameReport],
-    /// Frames that were kept, those that differ among them.
+    /// Frames that were kept, including those that differ.
     pub evidence: &'a [Evidence],
 }
 
-/// The defects that explain the differences best, the likeliest first and at most three; none when nothing differs.
+/// The defects that explain the differences best, at most three, the likeliest first; none if nothing differs.
 ///
-/// Several that explain all of them say so in their evidence. Where no defect explains most of them, the first suspect is
-/// `unknown` and says in words where they lie.
+/// If several explain all of them, their evidence says so. Where no defect explains most of them, the first suspect is `unknown`
+/// and describes where they lie.
 #[must_use]
 pub fn diagnose(case: &Case<'_>) -> Vec<Suspect> {
     let witnesses = Witnesses::of(case);

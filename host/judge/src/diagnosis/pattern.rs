@@ -37,7 +37,7 @@ fn columns(frames: &[&FrameReport]) -> Option<Extent> {
     extent(&columns, width)
 }
 
-/// Which of `total` rows or columns: `places` ascend.
+/// Which of `total` rows or columns the ascending `places` are.
 fn extent(places: &[usize], total: usize) -> Option<Extent> {
     let (&first, &last) = (places.first()?, places.last()?);
     let parity = |parity| places.iter().all(|place| place % 2 == parity);
@@ -57,7 +57,7 @@ fn bits(frames: &[&FrameReport]) -> Vec<u32> {
     bits_in(frames.iter().fold(0, |all, frame| all | frame.comparison.bits).into())
 }
 
-/// Whether only the bright samples of the reference differ, or only the dark ones; none for both.
+/// Whether only samples that are bright in the reference differ, or only dark ones; none if both do.
 fn brightness(differing: &[Witness<'_>]) -> Option<bool> {
     let half = differing.first()?.geometry().depth().max() / 2;
     let bright = |row: &Witness<'_>, bright: bool| {

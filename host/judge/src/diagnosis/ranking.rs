@@ -7,33 +7,34 @@ use super::hypothesis::{Hypothesis, Score};
 use super::witnesses::Witnesses;
 use crate::result::{Account, Defect, Suspect, wording};
 
-/// Differing rows that every hypothesis is tried on.
+/// Differing rows on which every hypothesis is tried.
 const SCREENED: usize = 48;
-/// Hypotheses that are tried on more when none explains all of these.
+/// Hypotheses that go on to the final test if none explains all of these rows.
 const FINALISTS: usize = 6;
-/// Hypotheses that are tried on more when they explain all of these.
+/// Hypotheses that go on, at most, if they explain all of these rows.
 const MOST_FINALISTS: usize = 128;
-/// Differing rows that these are tried on.
+/// Differing rows of the final test.
 const EXAMINED: usize = 192;
-/// Suspects that are named.
+/// The most suspects that are named.
 const NAMED: usize = 3;
-/// The least share of a suspect.
+/// The least share that a suspect must explain.
 const LEAST_SHARE: f64 = 0.2;
-/// The least share of a suspect that may be named first.
+/// The least share that the first suspect must explain.
 const CONVINCING: f64 = 0.5;
 
-/// A defect and how well it does.
+/// A defect and its score.
 #[derive(Clone)]
 pub(super) struct Ranked {
     /// The defect.
     pub(super) defect: Defect,
-    /// How well it does from the first difference of the run on.
+    /// Its score on the rows from the first difference of the run on.
     pub(super) score: Score,
-    /// Samples before that which it would have changed: if there are any, it set in during the run.
+    /// Samples before that which the defect would have changed. If there are any, it can only have set in during the run.
     before: usize,
 }
 
-/// The hypotheses that explain something, the best first. Of those that explain as much, the one proposed earlier leads.
+/// The hypotheses that explain something, the best first. Of those that explain equally much, the one proposed earlier comes
+/// first.
 pub(super) fn rank(witnesses: &Witnesses<'_>, hypotheses: Vec<Hypothesis<'_>>) -> Vec<Ranked> {
     let mut screened: Vec<_> = hypotheses
         .into_iter()
@@ -41,7 +42,8 @@ pub(super) fn rank(witnesses: &Witnesses<'_>, hypotheses: Vec<Hypothesis<'_>>) -
         .filter(|(score, _)| score.share() >= LEAST_SHARE)
         .collect();
     screened.sort_by(|(a, _), (b, _)| by_share(a, b));
-    // What contradicts a few rows contradicts more, so beside one that explains them all nothing else can win.
+    // A hypothesis that contradicts a few of these rows contradicts more of all rows. So if any explains them all, the others
+    // cannot win.
     let exact = screened.iter().take_while(|(score, _)| score.is_exact()).count();
     let finalists = if exact > 0 { exact.min(MOST_FINALISTS) } else { FINALISTS };
     let finals = screened.into_iter().take(finalists).map(|(_, hypothesis)| {
@@ -52,7 +54,7 @@ pub(super) fn rank(witnesses: &Witnesses<'_>, hypotheses: Vec<Hypothesis<'_>>) -
     merge(finals.collect(), Vec::new())
 }
 
-/// Both lists as one, the best first, each place once.
+/// Both lists as one, the best first, each part once.
 pub(super) fn merge(mut ranked: Vec<Ranked>, more: Vec<Ranked>) -> Vec<Ranked> {
     ranked.extend(more);
     ranked.sort_by(|a, b| by_share(&a.score, &b.score).then((a.before > 0).cmp(&(b.before > 0))));
@@ -65,7 +67,7 @@ fn by_share(a: &Score, b: &Score) -> Ordering {
     b.share().total_cmp(&a.share())
 }
 
-/// The suspects to name. `summary` stands first when nothing explains most of the differences.
+/// The suspects to name. `summary` comes first if nothing explains most of the differences.
 pub(super) fn suspects(ranked: &[Ranked], summary: impl FnOnce() -> Suspect) -> Vec<Suspect> {
     let alike = ranked.iter().take_while(|candidate| candidate.is_as_good_as(ranked.first())).count();
     let named = if alike > 0 { alike } else { ranked.len() };
@@ -82,8 +84,8 @@ pub(super) fn suspects(ranked: &[Ranked], summary: impl FnOnce() -> Suspect) -> 
     suspects
 }
 
-/// The candidates of which the first `alike` explain everything, and how many of these there are beside the first. Those that
-/// are bits of one word are one.
+/// The candidates, with those that are bits of one word merged into one. The first `alike` candidates explain everything. Also
+/// returns how many explain everything in addition to the first.
 fn entries<'r>(ranked: impl Iterator<Item = &'r Ranked>, alike: usize) -> (Vec<Ranked>, usize) {
     let mut words: Vec<Ranked> = Vec::new();
     for (place, candidate) in ranked.enumerate() {
@@ -97,7 +99,7 @@ fn entries<'r>(ranked: impl Iterator<Item = &'r Ranked>, alike: usize) -> (Vec<R
 }
 
 impl Ranked {
-    /// Takes the bit of another candidate that breaks the same word.
+    /// Takes over the bit of another candidate if that breaks the same word.
     fn takes(&mut self, other: &Self) -> bool {
         let (own, of_other) = (&mut self.defect, &other.defect);
         let (reading, bit) = match (own, of_other) {
@@ -119,7 +121,8 @@ impl Ranked {
         true
     }
 
-    /// Whether both explain everything, and both from the run's beginning on if the best does.
+    /// Whether it explains everything, as the best does, and agrees with the best on whether the defect was there from the run's
+    /// beginning on.
     fn is_as_good_as(&self, best: Option<&Self>) -> bool {
         self.score.is_exact() && best.is_some_and(|best| (best.before > 0) == (self.before > 0))
     }

@@ -9,7 +9,7 @@ use crate::board::Table;
 use crate::compare::bits_in;
 use crate::result::{Account, Defect, Memory, Suspect};
 
-/// A table as words: row factors, the entries of a grid, or the weights of nodes one after the other.
+/// A table as words: row factors, grid entries, or the weights of one node after the other.
 #[derive(Clone, Copy, Debug)]
 struct Words<'a> {
     table: Table,
@@ -18,7 +18,7 @@ struct Words<'a> {
     bytes: &'a [u8],
 }
 
-/// A word that reads back as another.
+/// A word that reads back with another value.
 #[derive(Clone, Copy, Debug)]
 struct WrongWord {
     index: usize,
@@ -26,11 +26,11 @@ struct WrongWord {
     found: u32,
 }
 
-/// The parts that explain why `found`, as on the wire, was read of `table` where it was uploaded otherwise: at most three,
-/// the likeliest first, none when they are equal.
+/// The parts that explain why `found`, in wire format, was read back from `table` instead of what was uploaded: at most three,
+/// the likeliest first; none if they are equal.
 ///
-/// One wrong entry is named with the bits that differ. Several are named by the line that would make them, if a single
-/// one would, and else by their number and the first.
+/// A single wrong entry is named with the bits that differ. Several are named by the line that would cause them, if a single line
+/// would, otherwise by their number and the first of them.
 #[must_use]
 pub fn read_back(uploaded: &Uploaded<'_>, table: Table, found: &[u8]) -> Vec<Suspect> {
     let Uploaded { tables, kernel, .. } = uploaded;
@@ -84,14 +84,14 @@ impl<'a> Words<'a> {
         self.bytes.len() / self.word_bytes()
     }
 
-    /// The word at `index`, unsigned.
+    /// The word at `index`, as an unsigned number.
     fn word(self, index: usize) -> Option<u32> {
         let length = self.word_bytes();
         let bytes: &'a [u8] = self.bytes.get(index * length..)?.get(..length)?;
         Some(bytes.iter().rev().fold(0, |word, &byte| word << 8 | u32::from(byte)))
     }
 
-    /// A word as people write it.
+    /// The value of a word as people write it.
     fn value(self, word: u32) -> i64 {
         match self.table {
             Table::RowFactors | Table::Grid => i64::from(word),
@@ -106,7 +106,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The tap that the word at `index` weighs, in a kernel.
+    /// In a kernel, the name of the weight at `index`.
     fn weight(self, index: usize) -> Option<String> {
         match self.table {
             Table::RowFactors | Table::Grid => None,
@@ -122,7 +122,7 @@ fn wrong_length(expected: Words<'_>, found: Words<'_>) -> Suspect {
     Suspect { defect, account: Account::Nothing, explained: 0.0 }
 }
 
-/// The word `word`, the first of `count` that are wrong.
+/// The suspect for `word`, the first of `count` wrong words.
 fn one_word(words: Words<'_>, word: WrongWord, count: usize) -> Suspect {
     let bits = bits_in(word.expected ^ word.found);
     let [uploaded, read] = [word.expected, word.found].map(|word| words.value(word));

@@ -8,25 +8,25 @@ use super::datapath::{RowTables, Stretch};
 use super::{Case, Uploaded};
 use crate::result::Evidence;
 
-/// 2^64 / golden ratio: its multiples, taken modulo 2^64, fall evenly everywhere.
+/// 2^64 divided by the golden ratio. Its multiples modulo 2^64 are spread evenly.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// A row that was kept: what went in, what came out, what should have.
+/// A row that was kept: its input, the output, and the output of the reference.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Witness<'a> {
-    /// Its frame's place in the order of streaming.
+    /// The place of its frame in streaming order.
     pub(super) frame: usize,
-    /// Its row.
+    /// The row of the frame.
     pub(super) row: usize,
-    /// What its frame must be made with.
+    /// The tables and kernel that its frame must be made with.
     pub(super) uploaded: Uploaded<'a>,
-    /// The whole frame that went in.
+    /// The whole input frame.
     pub(super) input: &'a Frame,
-    /// The row that went in behind it, of this frame or the next, if it was kept.
+    /// The row that went in after it, of this frame or the next, if it was kept.
     pub(super) next: Option<&'a [u16]>,
-    /// What the board gave.
+    /// The board's output.
     pub(super) found: &'a [u16],
-    /// What the reference gives.
+    /// The reference's output.
     pub(super) expected: &'a [u16],
     /// Samples that differ.
     pub(super) differences: usize,
@@ -38,12 +38,12 @@ impl<'a> Witness<'a> {
         self.uploaded.tables.geometry()
     }
 
-    /// The samples that went in.
+    /// The row's input samples.
     pub(super) fn samples(&self) -> &'a [u16] {
         self.input.row(self.row)
     }
 
-    /// The samples that went in `distance` rows below, if the frame has such a row.
+    /// The input samples of the row that is `distance` rows further down, if the frame has it.
     pub(super) fn samples_at(&self, distance: isize) -> Option<&'a [u16]> {
         let row = self.row.checked_add_signed(distance).filter(|&row| row < self.input.height())?;
         Some(self.input.row(row))
@@ -56,7 +56,7 @@ impl<'a> Witness<'a> {
         RowTables { geometry: tables.geometry(), stretch, kernel }
     }
 
-    /// Where it stands in the run.
+    /// Its position in the run.
     pub(super) fn place(&self) -> (usize, usize) {
         (self.frame, self.row)
     }
@@ -71,23 +71,23 @@ impl<'a> Witness<'a> {
     }
 }
 
-/// All rows that were kept, in an order of which every beginning is spread over frames and rows.
+/// All rows that were kept, ordered so that the first ones of any number are spread over frames and rows.
 #[derive(Debug)]
 pub(super) struct Witnesses<'a> {
     /// What is known.
     pub(super) case: Case<'a>,
     /// Rows with differences.
     pub(super) differing: Vec<Witness<'a>>,
-    /// Rows without, from the first difference of the run on.
+    /// Rows without differences, from the first difference of the run on.
     equal: Vec<Witness<'a>>,
-    /// Rows without, before it.
+    /// Rows without differences before it.
     before: Vec<Witness<'a>>,
-    /// The rows that differ in any frame, kept or not, from the top.
+    /// The rows that differ in any frame, kept or not, in ascending order.
     pub(super) rows: Vec<usize>,
 }
 
 impl<'a> Witnesses<'a> {
-    /// The rows of the frames that were kept and whose tables are known.
+    /// The rows of those kept frames whose tables are known.
     pub(super) fn of(case: &Case<'a>) -> Self {
         let all: Vec<_> = case.evidence.iter().flat_map(|evidence| rows(case, evidence)).collect();
         let (differing, equal): (Vec<_>, Vec<_>) = all.into_iter().partition(|row| row.differences > 0);
@@ -104,22 +104,22 @@ impl<'a> Witnesses<'a> {
         }
     }
 
-    /// At most `count` rows that differ, and as many that do not although an earlier one does.
+    /// At most `count` differing rows, and as many equal rows that come after the first difference.
     pub(super) fn sample(&self, count: usize) -> impl Iterator<Item = &Witness<'a>> {
         self.differing.iter().take(count).chain(self.equal.iter().take(count))
     }
 
-    /// At most `count` rows that came before anything differed.
+    /// At most `count` rows from before the first difference.
     pub(super) fn sample_before(&self, count: usize) -> impl Iterator<Item = &Witness<'a>> {
         self.before.iter().take(count)
     }
 
-    /// The size, depth and centre of all frames; none without rows to explain.
+    /// The size, depth and centre of all frames; none if there are no rows to explain.
     pub(super) fn geometry(&self) -> Option<&'a Geometry> {
         self.differing.first().map(Witness::geometry)
     }
 
-    /// What was uploaded for any of the frames that were kept, each generation once.
+    /// What was uploaded for any of the kept frames, each generation once.
     pub(super) fn generations(&self) -> Vec<Uploaded<'a>> {
         let used: BTreeSet<_> = self
             .case
@@ -135,7 +135,7 @@ fn uploaded<'a>(case: &Case<'a>, generation: u8) -> Option<Uploaded<'a>> {
     case.uploaded.iter().rfind(|uploaded| uploaded.generation == generation).copied()
 }
 
-/// The rows of one frame, whole or the first ones. A frame of another size than its tables bears no witness.
+/// The rows of one frame, which may have only its first rows. A frame that does not fit its tables gives none.
 fn rows<'a>(case: &Case<'a>, evidence: &'a Evidence) -> Vec<Witness<'a>> {
     let uploaded = case.frames.get(evidence.index).and_then(|frame| uploaded(case, frame.generation));
     let Some(uploaded) = uploaded.filter(|uploaded| fits(evidence, uploaded.tables.geometry())) else {
@@ -155,7 +155,7 @@ fn rows<'a>(case: &Case<'a>, evidence: &'a Evidence) -> Vec<Witness<'a>> {
     evidence.found.rows().zip(evidence.expected.rows()).enumerate().map(witness).collect()
 }
 
-/// Rows without differences: by turns one that differs in another frame and one that differs in none, both kinds spread.
+/// Rows without differences, alternately one that differs in another frame and one that differs in none. Both kinds are spread.
 fn telling<'a>(equal: Vec<Witness<'a>>, differ: &BTreeSet<usize>) -> Vec<Witness<'a>> {
     let (here, everywhere): (Vec<_>, Vec<_>) = equal.into_iter().partition(|row| differ.contains(&row.row));
     let (mut here, mut everywhere) = (spread(here).into_iter(), spread(everywhere).into_iter());
@@ -176,7 +176,7 @@ fn fits(evidence: &Evidence, geometry: &Geometry) -> bool {
         .all(|frame| frame.width() == geometry.width() && frame.height() == rows && rows <= geometry.height())
 }
 
-/// The rows in an order of which every beginning is spread evenly over the whole, with no period.
+/// The rows ordered so that the first ones of any number are spread evenly over the whole, without a period.
 fn spread(rows: Vec<Witness<'_>>) -> Vec<Witness<'_>> {
     let mut ordered: Vec<_> = rows.into_iter().enumerate().collect();
     ordered.sort_unstable_by_key(|(index, _)| (*index as u64).wrapping_mul(GOLDEN));

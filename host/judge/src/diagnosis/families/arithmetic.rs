@@ -1,4 +1,4 @@
-//! Rounding and clamping that are missing.
+//! Missing rounding and clamping.
 
 use super::taps::wired;
 use crate::diagnosis::datapath::Wiring;
@@ -6,7 +6,7 @@ use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::Witnesses;
 use crate::result::{ClampEnd, Defect};
 
-/// The sum or the weights not rounded, the outputs not clamped at either end or at one.
+/// The sum, the weights or both not rounded; the outputs not clamped at one end or both.
 pub(super) fn propose<'a>(_: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let sound = Wiring::default();
     vec![

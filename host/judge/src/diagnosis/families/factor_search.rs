@@ -1,4 +1,4 @@
-//! A row's table entry with any value: found from the row itself.
+//! A row's table entry with any value, found from the row itself.
 
 use std::cmp::Reverse;
 use std::ops::RangeInclusive;
@@ -16,17 +16,17 @@ use crate::result::Defect;
 
 /// Outputs that may be simulated for one row before the search is given up.
 const BUDGET: usize = 1_000_000;
-/// Frames whose row must agree.
+/// Frames in which the row must agree.
 const FRAMES: usize = 32;
 
-/// The factors that rows were really made with, when few rows differ, those of each generation for themselves: a cell that
-/// lost several bits holds another value in each. Those that are one bit off were tried before.
+/// The factors that rows were really made with, if few rows differ. Each generation is searched separately: a cell that lost
+/// several bits holds another value in each. Entries that are one bit off were tried before.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let rows = if witnesses.rows.len() <= FEW_ROWS { &witnesses.rows[..] } else { &[] };
     rows.iter().filter_map(|&row| any_value(witnesses, row)).collect()
 }
 
-/// What a row was made with instead of its entry in the tables of a generation.
+/// What a row was made with instead of its entry in the tables of one generation.
 struct Found {
     generation: u8,
     uploaded: u32,
@@ -57,7 +57,7 @@ fn any_value<'a>(witnesses: &Witnesses<'a>, row: usize) -> Option<Hypothesis<'a>
     }))
 }
 
-/// The row in frames made with these tables, those first that differ most; none if it differs in none.
+/// The row in the frames made with these tables, those that differ most first; none if it differs in none.
 fn seen<'w, 'a>(
     witnesses: &'w Witnesses<'a>,
     uploaded: &Uploaded<'_>,
@@ -84,10 +84,11 @@ impl Found {
     }
 }
 
-/// The factors that give every sample of the row, in ascending ranges; none if there is none or too many are possible.
+/// The factors that give every sample of the row, as ascending ranges; none if the search exceeds its budget.
 ///
-/// The farther an output is from the optical centre, the finer its source depends on the factor. So ranges of factors that
-/// give the samples next to the centre are divided, output by output, and those that give another sample are dropped.
+/// The farther an output is from the optical centre, the more finely its source depends on the factor. So the search starts with
+/// the ranges of factors that give the samples next to the centre, divides them output by output, and drops those that give
+/// another sample.
 fn matching_factors(seen: &[&Witness<'_>], budget: &mut usize) -> Option<Vec<RangeInclusive<u32>>> {
     let first = seen.first()?;
     let geometry = first.geometry();
@@ -113,8 +114,8 @@ fn matching_factors(seen: &[&Witness<'_>], budget: &mut usize) -> Option<Vec<Ran
     Some(ranges)
 }
 
-/// The largest factor up to `limit` that takes `column` from the same source as `factor`: the source moves one way with the
-/// factor.
+/// The largest factor up to `limit` that takes `column` from the same source as `factor` does. The source moves in one direction
+/// as the factor grows.
 fn last_alike(row: &Witness<'_>, factor: u32, column: usize, limit: u32) -> u32 {
     let source = |factor| source_by_entry(row.geometry(), factor, column);
     let here = source(factor);
@@ -126,7 +127,7 @@ fn gives(row: &Witness<'_>, entry: u32, column: usize) -> bool {
     row.found.get(column) == Some(&tables.output(row.samples(), column))
 }
 
-/// Adds a range behind the others, joined with the last if it touches it.
+/// Appends a range, joined with the last one if it touches that.
 fn join(ranges: &mut Vec<RangeInclusive<u32>>, range: RangeInclusive<u32>) {
     match ranges.last_mut() {
         Some(last) if last.end() + 1 == *range.start() => *last = *last.start()..=*range.end(),

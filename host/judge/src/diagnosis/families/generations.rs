@@ -1,4 +1,4 @@
-//! Rows made with the tables of another generation, or with those of power-up.
+//! Rows made with the tables of another generation, or with those at power-up.
 
 use std::collections::BTreeMap;
 
@@ -11,10 +11,10 @@ use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::{Witness, Witnesses};
 use crate::result::{Defect, MadeWith, StaleFrames};
 
-/// Rows that are tried to find what frames were made with.
+/// Rows that are tried to find out what frames were made with.
 const ROWS: usize = 96;
 
-/// The tables that rows really were made with, when those are not what was committed for them.
+/// The tables that rows were really made with, where these are not the ones committed for them.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let case = witnesses.case;
     let Ok(blank) = Kernel::from_nodes(vec![[0; 5]; NODES]) else { return Vec::new() };
@@ -31,11 +31,11 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
         return Vec::new();
     }
     let defect = defect(witnesses, frames);
-    // A row is explained whole or not at all, so what explains it predicts what was found.
+    // A row is explained as a whole or not at all, so its explanation predicts what was found.
     vec![Hypothesis::new(defect, move |row| explain(&case, &blank, row).map(|_| row.found.to_vec().into()))]
 }
 
-/// What the row was made with, if that is known and not what it should be made with.
+/// What the row was made with, if that can be told and is not what it should be made with.
 fn explain(case: &Case<'_>, blank: &Kernel, row: &Witness<'_>) -> Option<MadeWith> {
     candidates(case, row.uploaded.generation).into_iter().find(|made| {
         let tables = tables(*made, case, blank, row);
@@ -43,7 +43,7 @@ fn explain(case: &Case<'_>, blank: &Kernel, row: &Witness<'_>) -> Option<MadeWit
     })
 }
 
-/// All that rows of `own` may wrongly be made with, whole generations first.
+/// Everything that rows of generation `own` may wrongly be made with, combinations of a single generation first.
 fn candidates(case: &Case<'_>, own: u8) -> Vec<MadeWith> {
     let mut sources: Vec<_> = case.uploaded.iter().rev().map(|uploaded| Some(uploaded.generation)).collect();
     sources.push(None);

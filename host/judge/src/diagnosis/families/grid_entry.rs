@@ -11,12 +11,11 @@ use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::{Witness, Witnesses};
 use crate::result::Defect;
 
-/// Rows on which a bit is tried before it is simulated whole, and samples of each.
+/// How many rows a bit is tried on before it is simulated as a whole, and how many samples of each.
 const ROWS: usize = 6;
 const SAMPLES: usize = 16;
 
-/// Every bit of the entries that the differing rows and the first differing column leave possible, if it gives most of a
-/// few samples.
+/// Every bit of the entries that the differing rows and the first differing column allow, if it predicts most of a few samples.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let mut rows: Vec<_> = witnesses.differing.iter().collect();
     rows.sort_by_key(|row| std::cmp::Reverse(row.differences));
@@ -26,10 +25,9 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     bits.filter(possible).flat_map(|bit| bit.hypotheses(witnesses)).collect()
 }
 
-/// The entries (c, b) that reach every differing row and not beyond the first differing column.
+/// The entries (c, b) that influence every differing row, and do so from the first differing column on or further left.
 ///
-/// An entry reaches the rows of three blocks of 2^v. A node reaches right from the node in front of it, an offset
-/// everywhere.
+/// An entry influences the rows of three blocks of 2^v. A node does so from the node left of it on, an offset everywhere.
 fn entries(witnesses: &Witnesses<'_>) -> Vec<(usize, usize)> {
     let Some(first) = witnesses.differing.first() else { return Vec::new() };
     let (Some(shape), geometry) = (first.uploaded.tables.shape(), first.geometry()) else {
@@ -59,7 +57,7 @@ impl EntryBit {
         (0..RowFactor::BITS).map(move |bit| Self { column, row, bit })
     }
 
-    /// Where the entry lies in a bank; none in another table than a grid.
+    /// The index of the entry in a bank; none if the table is not a grid.
     fn index(self, tables: &TableSet) -> Option<usize> {
         let rows = tables.shape()?.rows(tables.geometry());
         (self.row < rows).then_some(self.column * rows + self.row)
@@ -69,14 +67,14 @@ impl EntryBit {
         tables.entries().nth(self.index(tables)?)
     }
 
-    /// The grid with another word at this place.
+    /// The grid with `word` at this place.
     fn replaced(self, tables: &TableSet, word: u32) -> Option<TableSet> {
         let mut entries: Vec<_> = tables.entries().collect();
         *entries.get_mut(self.index(tables)?)? = word;
         TableSet::from_grid(*tables.geometry(), tables.shape()?, &entries).ok()
     }
 
-    /// Whether the inverted bit gives most of a few samples of the row that differ, as far as they can be foretold.
+    /// Whether inverting the bit predicts most of a few differing samples of the row, as far as they can be predicted.
     fn gives_most(self, row: &Witness<'_>, ring: usize) -> bool {
         let own = row.uploaded.tables;
         let grid = self.word(own).and_then(|word| self.replaced(own, word ^ 1 << self.bit));
@@ -98,7 +96,7 @@ impl EntryBit {
         inversions(&words, self.bit).into_iter().map(broken).collect()
     }
 
-    /// The words `read` in place of `words`.
+    /// The defect that makes the board read `read` instead of `words`.
     fn hypothesis<'a>(
         self,
         generations: &[Uploaded<'_>],

@@ -1,4 +1,4 @@
-//! A line of the memory that holds a grid stuck, or its address off, so that many entries are read wrong.
+//! A stuck line in the memory that holds a grid, or its address off by one, so that many entries are read wrong.
 
 use halfrow_model::{RowFactor, TableSet};
 
@@ -8,7 +8,7 @@ use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::Witnesses;
 use crate::result::Defect;
 
-/// Every data and address line, and entries that are read one too early or too late.
+/// Every data and address line, and entries read from one place too early or too late.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let mut generations = witnesses.generations();
     generations.retain(|uploaded| uploaded.tables.shape().is_some());
@@ -23,7 +23,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
         .collect()
 }
 
-/// The grids that a line may spoil.
+/// The grids that a line may affect.
 struct Lines<'a> {
     generations: Vec<Uploaded<'a>>,
     ring: usize,
@@ -45,8 +45,7 @@ impl Lines<'_> {
         self.read(defect, |entries, index| entries.get(index.checked_add_signed(distance)?).copied())
     }
 
-    /// Rows made with grids of which `read` gives each entry. What lies beyond a grid is taken for what a bank holds when the
-    /// board was switched on.
+    /// Rows made with grids whose entries `read` gives. Entries beyond a grid are assumed to have the value at power-up.
     fn read<'a>(&self, defect: Defect, read: impl Fn(&[u32], usize) -> Option<u32>) -> Hypothesis<'a> {
         let grid = |uploaded: &Uploaded<'_>| {
             let tables = uploaded.tables;

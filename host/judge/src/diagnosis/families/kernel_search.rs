@@ -1,4 +1,4 @@
-//! A word of the kernel with any value: found from the samples themselves.
+//! A word of the kernel with any value, found from the samples themselves.
 
 use std::ops::Range;
 
@@ -12,11 +12,11 @@ use crate::result::Defect;
 
 /// Differing rows that must agree, and as many that do not differ.
 const ROWS: usize = 192;
-/// All values of a word, and one.
+/// All values of a word.
 const VALUES: Range<i64> = i16::MIN as i64..i16::MAX as i64 + 1;
 
-/// The weights that outputs were really made with, those of each generation for themselves, at the nodes that all
-/// differing samples need.
+/// The weights that outputs were really made with, at the nodes that all differing samples need. Each generation is searched
+/// separately.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     common_words(witnesses).into_iter().filter_map(|word| any_value(witnesses, word)).collect()
 }
@@ -43,8 +43,8 @@ fn any_value<'a>(witnesses: &Witnesses<'a>, word: KernelWord) -> Option<Hypothes
     Some(super::with_kernels(defect, found.iter().filter_map(kernel).collect()))
 }
 
-/// The values of the word that give every sample made with it by the tables of a generation; none if none does, or if none
-/// of them differs.
+/// The values of the word that give every sample made with it under the tables of a generation; none if no value does, or if none
+/// of these samples differs.
 fn values(witnesses: &Witnesses<'_>, generation: u8, word: KernelWord) -> Option<Range<i64>> {
     let mut values = VALUES;
     let mut differ = false;
@@ -61,7 +61,8 @@ fn values(witnesses: &Witnesses<'_>, generation: u8, word: KernelWord) -> Option
     differ.then_some(values)
 }
 
-/// Those of the values that give the sample that was found; none if none does. An output moves one way with a weight.
+/// Those of `values` that give the sample that was found; none if none does. The output moves in one direction as the weight
+/// grows.
 fn narrowed(
     values: Range<i64>,
     row: &Witness<'_>,

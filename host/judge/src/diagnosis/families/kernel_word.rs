@@ -1,4 +1,4 @@
-//! One word of the kernel with a bit inverted.
+//! One word of the kernel with an inverted bit.
 
 use halfrow_model::{Kernel, NODES, WEIGHT_NAMES};
 
@@ -10,10 +10,10 @@ use crate::result::Defect;
 
 /// Bits of a word.
 const BITS: u32 = 16;
-/// Differing rows that must point at the node.
+/// Differing rows by which the nodes are found.
 const ROWS: usize = 48;
 
-/// Every bit of every weight of the nodes that all differing samples interpolate with.
+/// Every bit of every weight of the nodes that all differing samples are interpolated from.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     common_words(witnesses).into_iter().flat_map(|word| word.inverted(&witnesses.generations())).collect()
 }
@@ -64,7 +64,7 @@ impl KernelWord {
         Kernel::from_nodes(nodes).ok()
     }
 
-    /// The name of the tap that it weighs.
+    /// The name of the weight.
     pub(super) fn weight(self) -> String {
         WEIGHT_NAMES.get(self.tap).copied().unwrap_or_default().to_owned()
     }

@@ -1,7 +1,7 @@
-//! An address line of the line memory stuck, for writing and for reading.
+//! A stuck address line of the line memory, for writing and for reading.
 //!
-//! Two addresses that differ in the line share a cell, and a read gives what came last. Which of the two that is depends
-//! on when the sample is read, so the row is read output by output. At which level the line is stuck makes no
+//! Two addresses that differ only in this line share a cell, and a read gives what was written last. Which of the two that is
+//! depends on when the sample is read, so the row is read output by output. The level at which the line is stuck makes no
 //! difference: either way the same addresses share a cell.
 
 use std::ops::Range;
@@ -11,14 +11,14 @@ use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
 use crate::diagnosis::witnesses::{Witness, Witnesses};
 use crate::result::{Counting, Defect};
 
-/// From where the ring's addresses are counted.
+/// Where the count of the ring's addresses begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Origin {
-    /// From a count at the first sample of the run, modulo M.
+    /// With this count at the first sample of the run, modulo M.
     Run(usize),
-    /// From the first sample of each frame.
+    /// At the first sample of each frame.
     Frame,
-    /// From the first sample of each row.
+    /// At the first sample of each row.
     Row,
 }
 
@@ -43,7 +43,7 @@ pub(super) struct BrokenRing {
     pub(super) bit: u32,
 }
 
-/// Every address line, for each way to count addresses that a board may have.
+/// Every address line, for each way in which a board may count addresses.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let origins =
         [(Origin::Run(0), Counting::Run), (Origin::Frame, Counting::Frame), (Origin::Row, Counting::Row)];
@@ -59,19 +59,19 @@ pub(super) fn rings(witnesses: &Witnesses<'_>) -> impl Iterator<Item = BrokenRin
     (0..lines).map(move |bit| BrokenRing { size, bit })
 }
 
-/// Line `ring.bit` as a suspect; `counting` says on what condition.
+/// Line `ring.bit` as a suspect; `counting` says under which condition.
 pub(super) fn hypothesis<'a>(ring: BrokenRing, origin: Origin, counting: Counting) -> Hypothesis<'a> {
     let defect = Defect::LineMemoryAddressStuck { bit: ring.bit, counting };
     Hypothesis::new(defect, move |witness| Some(ring.corrected(witness, origin.base(witness))))
 }
 
 impl BrokenRing {
-    /// The row at address `base` as the board gives it.
+    /// The row as the board gives it if its first sample has the address `base`.
     ///
-    /// How many clocks lie before the next row, whose samples may replace this one's, is not known, and with gaps it is
-    /// another number for every row: the fitting one is taken. Nor is it known whether another frame follows at once; if
-    /// one seems to and was not kept, only what does not depend on it is predicted. A row whose sure half is wrong is past
-    /// fitting.
+    /// It is unknown how many clocks pass before the next row, whose samples may replace this one's, and with gaps that number
+    /// differs from row to row. So the number that fits is taken. It is also unknown whether another frame follows at once. If
+    /// one seems to follow but was not kept, only the outputs that do not depend on it are predicted. If the half that depends on
+    /// the row alone is wrong already, no number is searched for.
     fn corrected(self, witness: &Witness<'_>, base: usize) -> Prediction {
         let undisturbed = self.read_row(witness, base, None);
         let sure = sure(undisturbed.len());
@@ -84,7 +84,7 @@ impl BrokenRing {
         }
     }
 
-    /// The row with the blanking behind it that fits best. The longer it is, the fewer samples are replaced in time.
+    /// The row with the blanking after it that fits best. The longer the blanking, the fewer samples are replaced in time.
     fn followed_by(self, next: &[u16], witness: &Witness<'_>, base: usize, undisturbed: &[u16]) -> Vec<u16> {
         let with = |blanking| self.read_row(witness, base, Some((next, blanking)));
         let at_once = with(0);
@@ -97,12 +97,12 @@ impl BrokenRing {
         with(super::first_where(0..longest, enough) as usize)
     }
 
-    /// The outputs that depend on nothing but the row itself.
+    /// The outputs that depend only on the row itself.
     pub(super) fn before_next_row(self, witness: &Witness<'_>, base: usize) -> Prediction {
         before_next_row(self.read_row(witness, base, None))
     }
 
-    /// The row, with the samples of the next row and the clocks before it.
+    /// The row if the given next row follows it, after the given number of clocks.
     fn read_row(self, witness: &Witness<'_>, base: usize, next: Option<(&[u16], usize)>) -> Vec<u16> {
         let tables = witness.tables();
         let samples = witness.samples();
@@ -116,21 +116,21 @@ impl BrokenRing {
         })
     }
 
-    /// The next sample that goes to the cell of `column`, counted in columns from the row's start.
+    /// The sample that next overwrites the cell of `column`, counted in columns from the row's start.
     fn replaced_by(self, base: usize, column: usize) -> usize {
         let distance = 1 << self.bit;
         if (base + column) & distance == 0 { column + distance } else { column + self.size - distance }
     }
 }
 
-/// The newest sample when an output is read, counted in columns from the row's start.
+/// The newest sample at the time an output is read, counted in columns from the row's start.
 fn newest(width: usize, output: usize, next: Option<(&[u16], usize)>) -> usize {
     let clock = output + width / 2 + LOOK_AHEAD;
     let beyond = next.map_or(0, |(_, blanking)| (clock + 1).saturating_sub(width + blanking));
     clock.min(width - 1) + beyond
 }
 
-/// Whether `row` has samples of the next row where the board has its own.
+/// Whether `row` has samples of the next row where the board still has its own.
 fn is_too_short(row: &[u16], found: &[u16], at_once: &[u16], undisturbed: &[u16]) -> bool {
     let (mut own, mut next) = (0, 0);
     for (((row, found), at_once), undisturbed) in row.iter().zip(found).zip(at_once).zip(undisturbed) {

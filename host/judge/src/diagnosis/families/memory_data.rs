@@ -1,4 +1,4 @@
-//! A data line stuck: of the line memory, or behind the datapath.
+//! A stuck data line, of the line memory or at the output of the datapath.
 
 use super::StuckLine;
 use crate::diagnosis::hypothesis::Hypothesis;
@@ -8,7 +8,7 @@ use crate::result::Defect;
 /// Data lines of the line memory, whatever the depth.
 const LINES: u32 = 12;
 
-/// Every data line stuck at either level, before the datapath and behind it.
+/// Every data line stuck at either level, before and after the datapath.
 pub(super) fn propose<'a>(_: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     StuckLine::all(LINES).map(memory).chain(StuckLine::all(LINES).map(output)).collect()
 }

@@ -1,4 +1,4 @@
-//! The defects that are known, each kind in its own file.
+//! The known defects, each kind in its own file.
 
 mod arithmetic;
 mod factor_search;
@@ -28,7 +28,7 @@ use super::hypothesis::{Hypothesis, Prediction};
 use super::witnesses::{Witness, Witnesses};
 use crate::result::Defect;
 
-/// The defects that the pattern of differences leaves possible, those of the smallest parts first.
+/// The defects that the pattern of differences allows, those of the smallest parts first.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     [
         row_factor::propose,
@@ -49,7 +49,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     .collect()
 }
 
-/// Defects whose figures must be searched for, for when nothing else explains everything.
+/// Defects whose parameters must be searched for, tried if nothing else explains everything.
 pub(super) fn search<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     [factor_search::propose, kernel_search::propose, origin_search::propose]
         .into_iter()
@@ -57,7 +57,7 @@ pub(super) fn search<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
         .collect()
 }
 
-/// The kernels of the generations in which `change` changes something, by generation.
+/// The kernels that `change` gives, by generation; generations for which it gives none are left out.
 fn kernels(
     generations: &[Uploaded<'_>],
     change: impl Fn(&Uploaded<'_>) -> Option<Kernel>,
@@ -65,7 +65,7 @@ fn kernels(
     generations.iter().filter_map(|uploaded| Some((uploaded.generation, change(uploaded)?))).collect()
 }
 
-/// Rows made with these kernels, by generation; other generations are as they should be.
+/// Rows made with these kernels, by generation. Other generations are as they should be.
 fn with_kernels<'a>(defect: Defect, kernels: BTreeMap<u8, Kernel>) -> Hypothesis<'a> {
     Hypothesis::new(defect, move |witness| {
         let kernel = kernels.get(&witness.uploaded.generation)?;
@@ -73,8 +73,7 @@ fn with_kernels<'a>(defect: Defect, kernels: BTreeMap<u8, Kernel>) -> Hypothesis
     })
 }
 
-/// Rows made with these grids on a board with a ring of `ring` samples, by generation; other generations are as they should
-/// be.
+/// Rows made with these grids, by generation, on a board with a ring of `ring` samples. Other generations are as they should be.
 fn with_grids<'a>(defect: Defect, grids: BTreeMap<u8, TableSet>, ring: usize) -> Hypothesis<'a> {
     Hypothesis::new(defect, move |witness| {
         let tables = with_grid(witness, grids.get(&witness.uploaded.generation)?)?;
@@ -83,18 +82,18 @@ fn with_grids<'a>(defect: Defect, grids: BTreeMap<u8, TableSet>, ring: usize) ->
     })
 }
 
-/// What a row is made with by another grid; none where that leaves it as it should be.
+/// What a row is made with under another grid; none if that leaves the row as it should be.
 fn with_grid<'a>(witness: &Witness<'a>, grid: &TableSet) -> Option<RowTables<'a>> {
     let own = witness.tables();
     let stretch = Stretch::of(grid, witness.row).filter(|stretch| *stretch != own.stretch)?;
     Some(RowTables { stretch, ..own })
 }
 
-/// The first number of a range from which on `holds` is true, found by bisection; the range's end if it never is.
+/// The first number of a range from which on `holds` is true, found by bisection; the end of the range if it never is.
 fn first_where(range: Range<i64>, holds: impl Fn(i64) -> bool) -> i64 {
     let Range { start: mut low, end: mut high } = range;
     while low < high {
-        // Downwards, also between negative numbers, which `midpoint` would round towards 0.
+        // Rounds down, also for negative numbers, which `midpoint` would round towards 0.
         let middle = low + (high - low) / 2;
         if holds(middle) { high = middle } else { low = middle + 1 }
     }
@@ -114,13 +113,13 @@ impl StuckLine {
         (0..bits).flat_map(|bit| [false, true].map(|high| Self { bit, high }))
     }
 
-    /// What arrives at the far end of the bus.
+    /// What arrives at the far end of the bus if `word` is sent.
     fn carry(self, word: u32) -> u32 {
         let line = 1 << self.bit;
         if self.high { word | line } else { word & !line }
     }
 
-    /// The level that it is stuck at.
+    /// The level at which it is stuck.
     fn value(self) -> u8 {
         self.high.into()
     }

@@ -1,4 +1,4 @@
-//! An address line stuck in a ring whose count is not known to have begun with the run.
+//! A stuck address line in a ring whose count is not known to have begun with the run.
 
 use super::memory_address::{self, BrokenRing, Origin};
 use crate::diagnosis::hypothesis::{Hypothesis, Score};
@@ -7,10 +7,11 @@ use crate::result::Counting;
 
 /// The share of a row that the right count must explain.
 const ENOUGH: f64 = 0.95;
-/// Rows that a count is weighed by: many counts give a row alike that is stretched much and so reads few columns.
+/// Rows by which a count is weighed. A single row may not do: one that is stretched much reads few columns, so many counts give
+/// it equally.
 const ROWS: usize = 8;
 
-/// Each address line with the count that explains the rows best that differ most, when there is such a count.
+/// Each address line with the count that best explains the rows that differ most, if there is such a count.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let rows = rows_that_differ_most(witnesses);
     memory_address::rings(witnesses)
@@ -21,7 +22,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
         .collect()
 }
 
-/// The rows that differ most where nothing but the row itself matters, the foremost first.
+/// The rows that differ most in the outputs that depend only on the row itself, in descending order.
 fn rows_that_differ_most<'w, 'a>(witnesses: &'w Witnesses<'a>) -> Vec<&'w Witness<'a>> {
     let differences = |row: &Witness<'_>| {
         let sure = memory_address::sure(row.found.len());
@@ -32,8 +33,8 @@ fn rows_that_differ_most<'w, 'a>(witnesses: &'w Witnesses<'a>) -> Vec<&'w Witnes
     rows.into_iter().take(ROWS).map(|(_, row)| row).collect()
 }
 
-/// The count at the run's first sample that explains the first of `rows` and, of those that do, all of them best. Which
-/// addresses share a cell repeats with twice the distance of the two.
+/// The count at the run's first sample that explains the first of `rows` and, of those that do, explains all of them best. Which
+/// addresses share a cell repeats with twice the distance between the two.
 fn best_count(ring: BrokenRing, rows: &[&Witness<'_>]) -> Option<usize> {
     let share = |first, row: &Witness<'_>| {
         let base = Origin::Run(first).base(row);

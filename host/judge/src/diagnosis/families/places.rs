@@ -7,12 +7,12 @@ use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
 use crate::diagnosis::witnesses::{Witness, Witnesses};
 use crate::result::{Defect, RowSource};
 
-/// Rows that are searched for.
+/// Rows whose source is searched for.
 const ROWS: usize = 96;
-/// Row banks that a board may plausibly confuse, and columns that a row may plausibly be shifted by.
+/// How many row banks a board may plausibly confuse, and by how many columns a row may plausibly be shifted.
 const NEAR: isize = 8;
 
-/// Rows exchanged, shifted along themselves, or lost.
+/// Rows exchanged, shifted sideways, or lost.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let shifts = (1..=NEAR).flat_map(|columns| [shifted(-columns), shifted(columns)]);
     shifts.chain([pairs_exchanged()]).chain(lost(witnesses)).chain(exchanged(witnesses)).collect()
@@ -28,11 +28,12 @@ fn exchanged<'a>(witnesses: &Witnesses<'a>) -> Option<Hypothesis<'a>> {
     }
     let (&commonest, _) = places.iter().max_by_key(|(_, count)| **count)?;
     let defect = Defect::RowsExchanged { source: commonest, mostly: places.len() > 1 };
-    // A row is found whole or not at all, so its place predicts what was found.
+    // A row is found as a whole or not at all, so its place predicts what was found.
     Some(Hypothesis::new(defect, move |row| place(&case, row).map(|_| row.found.to_vec().into())))
 }
 
-/// Where the samples of a row that differs come from, the nearest place first. A uniform row may come from anywhere.
+/// Where the samples of a differing row come from, the nearest place first. A uniform row may come from anywhere, so it has no
+/// place.
 fn place(case: &Case<'_>, row: &Witness<'_>) -> Option<RowSource> {
     let uniform = row.found.windows(2).all(|pair| pair.first() == pair.last());
     if row.differences == 0 || uniform {
@@ -47,7 +48,7 @@ fn place(case: &Case<'_>, row: &Witness<'_>) -> Option<RowSource> {
     )
 }
 
-/// The row of the reference's frame that the board gave instead.
+/// The nearest row of the reference's frame that the board gave instead.
 fn in_frame(case: &Case<'_>, row: &Witness<'_>, frame: usize) -> Option<RowSource> {
     let evidence = case.evidence.iter().find(|evidence| evidence.index == frame)?;
     let rows = evidence.expected.rows().enumerate();
@@ -61,7 +62,7 @@ fn of_input(row: &Witness<'_>, rows: isize) -> Option<RowSource> {
     (row.tables().corrected(row.samples_at(rows)?) == row.found).then_some(RowSource::Input { rows })
 }
 
-/// Every row moved along itself. What comes in at its end is not known.
+/// Every row shifted sideways. What comes in at its end is not known.
 fn shifted<'a>(columns: isize) -> Hypothesis<'a> {
     Hypothesis::new(Defect::RowShifted { columns }, move |row| {
         let width = row.expected.len();
@@ -81,7 +82,7 @@ fn pairs_exchanged<'a>() -> Hypothesis<'a> {
     })
 }
 
-/// Rows that came back black or not at all. Which rows those are does not follow from the defect.
+/// Rows that came back black or not at all. Which rows are lost does not follow from the defect.
 fn lost<'a>(witnesses: &Witnesses<'a>) -> Option<Hypothesis<'a>> {
     let black: BTreeSet<_> =
         witnesses.differing.iter().filter(|row| is_lost(row)).map(|row| row.row).collect();

@@ -1,4 +1,4 @@
-//! One row's table entry with a bit inverted.
+//! One row's table entry with an inverted bit.
 
 use halfrow_model::RowFactor;
 
@@ -8,10 +8,10 @@ use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
 use crate::diagnosis::witnesses::{Witness, Witnesses};
 use crate::result::Defect;
 
-/// More rows than this are not one table entry each.
+/// If more rows than this differ, they are not explained entry by entry.
 pub(super) const FEW_ROWS: usize = 8;
 
-/// Every bit of the entry of every row that differs, when few do.
+/// Every bit of the entry of every differing row, if few rows differ.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let rows = if witnesses.rows.len() <= FEW_ROWS { &witnesses.rows[..] } else { &[] };
     rows.iter().flat_map(|&row| entry(witnesses, row)).collect()
@@ -36,12 +36,12 @@ fn entry<'a>(witnesses: &Witnesses<'a>, row: usize) -> Vec<Hypothesis<'a>> {
     .collect()
 }
 
-/// A factor above 1 reads ahead of what the ring holds, where the simulation ends.
+/// A factor above 1 reads ahead of what the ring holds. There the simulation ends.
 fn is_illegal(read: &[Word]) -> bool {
     read.iter().any(|word| word.1 > RowFactor::ONE.get())
 }
 
-/// The witness's row made with another entry of the table, on a board with a ring of `ring` samples.
+/// The witness's row made with another table entry, on a board with a ring of `ring` samples.
 pub(super) fn with_entry(witness: &Witness<'_>, entry: u32, ring: usize) -> Prediction {
     let tables = RowTables { stretch: Stretch::Factor(entry), ..witness.tables() };
     Prediction::partly(tables.corrected(witness.samples()), tables.foretold(ring))

@@ -1,4 +1,4 @@
-//! A setting of CONFIGURE that the board does not take.
+//! A setting of CONFIGURE that the board does not apply.
 
 use halfrow_model::{BitDepth, Geometry};
 
@@ -8,7 +8,7 @@ use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
 use crate::diagnosis::witnesses::{Witness, Witnesses};
 use crate::result::{Defect, Instead};
 
-/// The optical centre and the depth, each with what may stand in its place.
+/// The optical centre and the depth, each with the values that the board may use instead.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let case = witnesses.case;
     [Instead::Usual, Instead::FirstFrame, Instead::FrameBefore]
@@ -17,7 +17,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
         .collect()
 }
 
-/// A grid leads to columns of its own, whatever the centre.
+/// The centre does not matter to a row of a grid, which leads to columns of its own.
 fn centre(case: Case<'_>, instead: Instead) -> Hypothesis<'_> {
     Hypothesis::new(Defect::CentreIgnored { instead }, move |witness| {
         let own = witness.geometry();
@@ -49,7 +49,7 @@ fn made_for<'a>(case: &Case<'a>, index: usize) -> Option<&'a Geometry> {
     Some(uploaded.tables.geometry())
 }
 
-/// The row with these settings; none where they are its own.
+/// The row with these settings; none if they are its own.
 fn made_by(case: &Case<'_>, witness: &Witness<'_>, depth: BitDepth, centre2: u32) -> Option<Prediction> {
     let own = witness.geometry();
     let geometry = Geometry::new(own.width(), own.height(), depth, centre2).ok()?;

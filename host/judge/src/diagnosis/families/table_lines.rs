@@ -1,4 +1,4 @@
-//! A line of a table's memory stuck, so that many entries are read wrong.
+//! A stuck line in a table's memory, so that many entries are read wrong.
 
 use halfrow_model::{Kernel, NODES, RowFactor, WEIGHT_NAMES};
 
@@ -13,7 +13,7 @@ use crate::result::Defect;
 const WEIGHT_BITS: u32 = 16;
 const NODE_BITS: u32 = 7;
 
-/// Every data and address line of both tables, and row tables that are read one entry too early or too late.
+/// Every data and address line of both tables, and row tables read from one entry too early or too late.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let Some(geometry) = witnesses.geometry() else { return Vec::new() };
     let ring = witnesses.case.ring;
@@ -86,7 +86,7 @@ fn weight_data<'a>(generations: &[Uploaded<'_>], tap: usize, line: StuckLine) ->
     })
 }
 
-/// All rows made with other nodes.
+/// All rows made with the nodes that `read` makes of the uploaded ones.
 fn with_nodes<'a>(
     generations: &[Uploaded<'_>],
     defect: Defect,

@@ -1,13 +1,13 @@
-//! A word of a table, as each generation has it, and what one broken cell makes of it.
+//! A word of a table in each generation, and what one broken cell makes of it.
 
 use crate::diagnosis::Uploaded;
 use crate::result::Reading;
 
-/// A word under the number of its generation.
+/// The generation, and the word in its tables.
 pub(super) type Word = (u8, u32);
 
-/// The words that change when `bit` is broken. It may be inverted in every bank, in the bank of one generation, or stuck,
-/// so that only the words of the other level change; what comes out the same is given once.
+/// The possible sets of words that change when `bit` is broken. It may be inverted in every bank or in the bank of one
+/// generation, or it may be stuck, so that only the words with the other level change. Equal sets are given once.
 pub(super) fn inversions(words: &[Word], bit: u32) -> Vec<Vec<Word>> {
     let is_set = |word: u32| word >> bit & 1 == 1;
     let changed = |broken: &dyn Fn(&Word) -> bool| -> Vec<Word> {
@@ -26,12 +26,12 @@ pub(super) fn inversions(words: &[Word], bit: u32) -> Vec<Vec<Word>> {
     distinct
 }
 
-/// The word of `generation`, if it changed.
+/// The word of the generation of `uploaded`, if it changed.
 pub(super) fn changed(words: &[Word], uploaded: &Uploaded<'_>) -> Option<u32> {
     words.iter().find(|word| word.0 == uploaded.generation).map(|word| word.1)
 }
 
-/// What is read where. `value` gives a word as people write it.
+/// What is read, and in which generation. `value` gives a word as people write it.
 pub(super) fn reading(before: &[Word], after: &[Word], value: impl Fn(u32) -> i64) -> Reading {
     let (generation, read) = after.last().copied().unwrap_or_default();
     let uploaded = before.iter().find(|word| word.0 == generation).map_or(read, |word| word.1);

@@ -1,4 +1,4 @@
-//! Taps that carry other samples than their own.
+//! Taps that carry samples other than their own.
 
 use halfrow_model::TAP_NAMES;
 
@@ -34,7 +34,7 @@ fn other_colour<'a>() -> Hypothesis<'a> {
     wired(Wiring { other_colour: true, ..Wiring::default() }, Defect::BaseColourWrong {})
 }
 
-/// The defect of a datapath that is wired like this.
+/// The defect of a datapath with this wiring.
 pub(super) fn wired<'a>(wiring: Wiring, defect: Defect) -> Hypothesis<'a> {
     Hypothesis::new(defect, move |witness| {
         let (tables, samples) = (witness.tables(), witness.samples());

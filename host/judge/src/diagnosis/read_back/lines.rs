@@ -6,19 +6,19 @@ use super::Words;
 use crate::board::Table;
 use crate::result::{Account, Defect, Suspect};
 
-/// Suspects that are named.
+/// The most suspects that are named.
 const NAMED: usize = 3;
-/// Fewer words that a line explains are chance.
+/// Fewer explained words than this are a coincidence.
 const LEAST_EXPLAINED: usize = 2;
 
-/// A line out of order.
+/// A broken line.
 struct Line<'a> {
     defect: Defect,
-    /// The word read at an index; none where that cannot be known.
+    /// The word read at an index; none if it cannot be known.
     read: Box<dyn Fn(usize) -> Option<u32> + 'a>,
 }
 
-/// The lines that explain all `wrong` words and change no other.
+/// The lines that make all `wrong` words read as found, and change no other.
 pub(super) fn suspects(expected: Words<'_>, found: Words<'_>, wrong: usize) -> Vec<Suspect> {
     let explaining = |lines: &mut dyn Iterator<Item = Line<'_>>| {
         let explaining = lines.filter_map(|line| Some((explained(&line, expected, found)?, line.defect)));
@@ -40,7 +40,7 @@ pub(super) fn suspects(expected: Words<'_>, found: Words<'_>, wrong: usize) -> V
         .collect()
 }
 
-/// How many wrong words the line reads as they were found; none if it reads any word otherwise.
+/// How many of the wrong words the line explains; none if it contradicts any word.
 fn explained(line: &Line<'_>, expected: Words<'_>, found: Words<'_>) -> Option<usize> {
     let mut explained = 0;
     for index in 0..expected.count() {
@@ -53,7 +53,7 @@ fn explained(line: &Line<'_>, expected: Words<'_>, found: Words<'_>) -> Option<u
     Some(explained)
 }
 
-/// The lines of which it is known what every word reads as.
+/// The lines for which it is known what every word reads as.
 fn lines(words: Words<'_>) -> impl Iterator<Item = Line<'_>> {
     let address_bits = address_bits(words);
     let levels = [0, 1];
@@ -65,8 +65,7 @@ fn lines(words: Words<'_>) -> impl Iterator<Item = Line<'_>> {
         .chain(levels.map(move |level| all(words, level)))
 }
 
-/// The address lines stuck for writing alone, at 0. One that is stuck at 1 leaves right entries and cells that were never
-/// written.
+/// The address lines stuck at 0 for writing alone. One stuck at 1 shows only right entries, and cells that were never written.
 fn write_lines(words: Words<'_>) -> impl Iterator<Item = Line<'_>> {
     (0..address_bits(words)).map(move |bit| write_address_line(words, bit))
 }
@@ -98,7 +97,8 @@ fn data_lines(words: Words<'_>, bit: u32, value: u8) -> Vec<Line<'_>> {
     weights.iter().enumerate().map(of_weight).chain([whole]).collect()
 }
 
-/// An address line stuck for reading or, at either level, for writing as well: then the later entry stays.
+/// An address line stuck for reading. If it is stuck for writing too, at either level, the later of two entries stays in their
+/// cell, which reads as if it were stuck at 1.
 fn address_line(words: Words<'_>, bit: u32, value: u8) -> Line<'_> {
     let read = move |entry: usize| if value == 1 { entry | 1 << bit } else { entry & !(1 << bit) };
     Line {
@@ -107,7 +107,7 @@ fn address_line(words: Words<'_>, bit: u32, value: u8) -> Line<'_> {
     }
 }
 
-/// An address line stuck at 0 for writing alone: of two entries for one cell the later stays, and the other cell is never
+/// An address line stuck at 0 for writing alone. Of two entries for one cell the later stays, and the other cell is never
 /// written.
 fn write_address_line(words: Words<'_>, bit: u32) -> Line<'_> {
     Line {
@@ -121,7 +121,7 @@ fn write_address_line(words: Words<'_>, bit: u32) -> Line<'_> {
     }
 }
 
-/// Entries read one place off.
+/// Entries read from one place off.
 fn shifted(words: Words<'_>, distance: isize) -> Line<'_> {
     Line {
         defect: Defect::TableAddressOff { table: words.memory(), entries: distance },
@@ -132,7 +132,7 @@ fn shifted(words: Words<'_>, distance: isize) -> Line<'_> {
     }
 }
 
-/// Nothing but one level.
+/// Every word reads as all zeros or all ones.
 fn all(words: Words<'_>, value: u8) -> Line<'_> {
     let mask = u32::MAX >> (u32::BITS - 8 * words.word_bytes() as u32);
     let word = if value == 1 { mask } else { 0 };
@@ -142,7 +142,7 @@ fn all(words: Words<'_>, value: u8) -> Line<'_> {
     }
 }
 
-/// The word at the place of `index` in another entry.
+/// The word of another entry at the same place within the entry as `index`.
 fn word_of(words: Words<'_>, entry: usize, index: usize) -> Option<u32> {
     words.word(entry * words.per_entry() + index % words.per_entry())
 }
