@@ -1,4 +1,4 @@
-//! What a call reads and what it writes, looked at before anything is done.
+//! What a call reads and writes, checked before anything is done.
 
 use std::collections::{BTreeSet, HashMap};
 use std::ffi::OsStr;
@@ -83,7 +83,7 @@ pub enum FilesError {
 }
 
 impl FilesError {
-    /// The option that names the place, where it is one alone.
+    /// The option that names the place, if it is a single one.
     #[must_use]
     pub fn option(&self) -> Option<&'static str> {
         match self {
@@ -105,7 +105,7 @@ pub struct Files {
     outputs: Vec<Output>,
 }
 
-/// What is written, and by which option it is named.
+/// Something that is written, and the option that names it.
 #[derive(Debug)]
 struct Output {
     option: &'static str,
@@ -113,34 +113,34 @@ struct Output {
     shape: Shape,
 }
 
-/// How an output lies in its folder.
+/// What kind of file or folder an output is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Shape {
     /// A file that the call names.
     File,
-    /// A file that the call names and that is claimed before the board is opened, which is when one that is there is refused.
+    /// A file that the call names and that is claimed later, before the board is opened. An existing file is refused then.
     Claimed,
-    /// A file in a folder that the call names, which is made if need be.
+    /// A file in a folder that the call names. The folder is made if need be.
     InFolder,
     /// A folder that is replaced as a whole.
     Report,
 }
 
 impl Files {
-    /// Those of a call that may overwrite its outputs, or not.
+    /// Starts an empty list. `overwrite` says whether the call may overwrite its outputs.
     #[must_use]
     pub fn new(overwrite: bool) -> Self {
         Self { overwrite, ..Self::default() }
     }
 
-    /// Adds what is read.
+    /// Adds inputs.
     #[must_use]
     pub fn reads<P: Into<PathBuf>>(mut self, paths: impl IntoIterator<Item = P>) -> Self {
         self.inputs.extend(paths.into_iter().map(Into::into));
         self
     }
 
-    /// Adds a kernel that is read if it is not one with a name.
+    /// Adds a kernel file as an input; a named kernel is no file.
     #[must_use]
     pub fn reads_kernel(self, kernel: Option<&OsStr>) -> Self {
         self.reads(
@@ -154,7 +154,7 @@ impl Files {
         self.adds(option, Shape::File, paths)
     }
 
-    /// Adds a file that `option` names and that is claimed behind this.
+    /// Adds a file that `option` names and that is claimed after this check.
     #[must_use]
     pub fn writes_claimed(self, option: &'static str, path: Option<&Path>) -> Self {
         self.adds(option, Shape::Claimed, path)
@@ -187,7 +187,8 @@ impl Files {
         self
     }
 
-    /// Whether everything can be written as far as can be told, no input is written to, and no two outputs are one. Changes nothing.
+    /// Checks that everything can be written, as far as can be told, that no input is written to, and that no two outputs are the
+    /// same. Changes nothing.
     ///
     /// # Errors
     /// [`FilesError`]
@@ -199,8 +200,8 @@ impl Files {
         self.check_folders()
     }
 
-    /// Clears what runs that were killed left in the outputs' folders, once [`Self::check`] has passed. Where they had recorded
-    /// something, it is kept, and returned under which name.
+    /// Removes what killed runs left in the outputs' folders, once [`Self::check`] has passed. Recordings among it are kept, and
+    /// the names under which they are kept are returned.
     #[must_use = "somebody is to be told where a recording is kept"]
     pub fn clear_leftovers(&self) -> Vec<PathBuf> {
         let folders: BTreeSet<_> = self.outputs.iter().map(|output| folder_of(&output.path)).collect();

@@ -7,14 +7,14 @@ use crate::result::{FileHash, sha256};
 /// A file that was read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Input {
-    /// Its path, which need not be text, as that of a [`FileHash`] is.
+    /// Its path. Unlike that of a [`FileHash`] it need not be text.
     pub path: PathBuf,
-    /// SHA-256 of the bytes that were taken from it.
+    /// SHA-256 of the bytes that were read from it.
     pub sha256: String,
 }
 
 impl Input {
-    /// The file `path`, of which `bytes` were taken. It may hold others by now, so it is not read again.
+    /// The file `path`, from which `bytes` were read. It may have changed since, so it is not read again.
     #[must_use]
     pub fn of_bytes(path: &Path, bytes: &[u8]) -> Self {
         Self { path: path.to_owned(), sha256: sha256([bytes]) }

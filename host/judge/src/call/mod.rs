@@ -1,6 +1,7 @@
-//! A call that judges boards or makes files, whoever makes it: what it reads and writes, and which of its options say something.
+//! What every caller that judges boards or makes files needs: what a call reads and writes, and which of its options have an
+//! effect.
 //!
-//! Options go by the names that the caller gives them.
+//! Options have the names that the caller gives them.
 
 mod files;
 mod input;

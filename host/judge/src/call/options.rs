@@ -1,4 +1,4 @@
-//! Options that are times, and options that do nothing beside another thing.
+//! Options that are times, and options without effect because of another one.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -8,12 +8,12 @@ use thiserror::Error;
 /// How often a call can have its frames streamed.
 pub const REPEATS: RangeInclusive<u32> = 1..=1000;
 
-/// The longest time that a run can be asked to keep within, and what to give that [`within`] takes.
+/// The longest time that a run can be asked to keep within, and the advice on what [`within`] takes.
 macro_rules! longest {
     ($seconds:literal) => {
         /// The longest time that a run can be asked to keep within, in seconds.
         const LONGEST: u32 = $seconds;
-        /// What to give that [`within`] takes.
+        /// Advice on what [`within`] takes.
         pub const WITHIN_TAKES: &str =
             concat!("give a number of seconds, more than 0 and at most ", $seconds);
     };
@@ -38,19 +38,19 @@ pub struct NoTime {
     pub option: &'static str,
 }
 
-/// Options that do nothing beside what decides in their place.
+/// Options that have no effect because something else decides in their place.
 #[derive(Clone, Copy, Debug)]
 pub struct Voided {
     /// The options, in small letters with `_` between words.
     pub options: &'static [&'static str],
-    /// Why, behind an option's name, and what to do.
+    /// The words that follow the option's name: why, and what to do.
     pub reason: &'static str,
 }
 
-/// The frames that are streamed: what a call of `verify` names several of.
+/// The frames to stream. A call of `verify` may name several.
 pub const FRAMES: &str = "frame";
 
-/// A recording that is judged again. Its time limit is on the board's clock, which leaves `timeout` that of this computer.
+/// For a recording that is judged again. Its time limit is on the board's clock, so `timeout` remains for this computer's.
 pub const BESIDE_RECORDING: Voided = Voided {
     options: &[
         FRAMES,
@@ -71,20 +71,21 @@ pub const BESIDE_RECORDING: Voided = Voided {
     reason: "does nothing beside a recording, which holds what was streamed, and how; leave it out, or judge a board",
 };
 
-/// A recording that is made.
+/// For a recording that is being made.
 pub const WHILE_RECORDED: Voided = Voided {
     options: &["reconnect"],
     reason: "does nothing beside a recording to make, which is of one link; give one of them",
 };
 
-/// A time, for which the frames are chosen.
+/// For a time to judge within, for which the frames are chosen.
 pub const WITHIN: Voided = Voided {
     options: &[FRAMES, "repeat"],
     reason: "does nothing beside a time to judge within, for which the frames are chosen; give one of them",
 };
 
 impl Voided {
-    /// Refuses the first of the options that the call gives, as `is_given` says, and which it calls `named`.
+    /// Refuses the first of these options that the call gives. `is_given` says which it gives, and `named` what it calls an
+    /// option.
     ///
     /// # Errors
     /// [`VoidOption`]
@@ -108,7 +109,7 @@ pub fn seconds(option: &'static str, seconds: Option<f64>) -> Result<Option<Dura
     seconds.map(Duration::try_from_secs_f64).transpose().map_err(|_| NoTime { option })
 }
 
-/// The time to judge within that `seconds` are; none if that is no such time as [`WITHIN_TAKES`] says.
+/// `seconds` as a time to judge within; none if it is not what [`WITHIN_TAKES`] asks for.
 #[must_use]
 pub fn within(seconds: f64) -> Option<Duration> {
     let is_time = seconds > 0.0 && seconds <= f64::from(LONGEST);

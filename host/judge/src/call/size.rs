@@ -1,4 +1,4 @@
-//! Frames that are as large as the tables that they are for.
+//! Checks that a frame has the size of the tables that it is for.
 
 use std::path::{Path, PathBuf};
 
@@ -25,7 +25,8 @@ pub struct FrameOfOtherSize {
     pub remedy: String,
 }
 
-/// Refuses a frame of `width` x `height`, called `path` and read as `how` says, that does not fit `geometry`.
+/// Refuses a frame of `width` x `height` that does not fit `geometry`. It is called `path` in the error, and was read as `how`
+/// says.
 ///
 /// # Errors
 /// [`FrameOfOtherSize`]

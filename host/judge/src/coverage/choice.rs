@@ -1,4 +1,4 @@
-//! What to take of a run for a time.
+//! Which parts of a run to take for a given time.
 
 use std::collections::BTreeMap;
 
@@ -10,14 +10,14 @@ use crate::run::{FrameSource, Part, Plan, Prices, Selection};
 /// What is taken of a run.
 #[derive(Clone, Debug)]
 pub struct Choice {
-    /// It.
+    /// What is taken.
     pub selection: Selection,
-    /// What it costs from the link test on, in seconds.
+    /// Its price in seconds, from the link test on.
     pub seconds: f64,
 }
 
-/// Of the run that `prices` are of what finds most of `faults` a second, `from` on, until `seconds` are spent; and when
-/// nothing finds any more, the rest of the run in its order.
+/// Starts at `from` and adds what finds most of `faults` a second, out of the run that `prices` describe, until `seconds` are
+/// spent. When nothing finds any more faults, adds the rest of the run in its order.
 #[must_use]
 pub fn choose(prices: &Prices<'_>, faults: &Faults, from: &Selection, seconds: f64) -> Choice {
     let steps = steps(prices, faults, from, seconds);
@@ -26,7 +26,7 @@ pub fn choose(prices: &Prices<'_>, faults: &Faults, from: &Selection, seconds: f
     Choice { seconds: prices.seconds(&selection), selection }
 }
 
-/// The steps of such a choice, the first of them `from`, each with its price.
+/// The steps of such a choice, each with its price. The first is `from`.
 #[must_use]
 pub fn steps(prices: &Prices<'_>, faults: &Faults, from: &Selection, seconds: f64) -> Vec<(Selection, f64)> {
     let faults = faults.scaled(prices.most(Part::Judged(0)));
@@ -40,7 +40,7 @@ pub fn steps(prices: &Prices<'_>, faults: &Faults, from: &Selection, seconds: f6
     steps
 }
 
-/// What finds most a second that `selection` does not find.
+/// The selection with the part added that finds most faults a second beyond those that `selection` finds.
 fn step(
     prices: &Prices<'_>,
     faults: &Faults,
@@ -57,7 +57,7 @@ fn step(
     best.map(|(_, more, price)| (more, price))
 }
 
-/// How many faults more each amount of a part finds, by itself.
+/// How many more faults each amount of a part finds, taken by itself.
 fn gains(prices: &Prices<'_>, faults: &Faults, selection: &Selection) -> BTreeMap<(Part, usize), usize> {
     let parts: Vec<_> =
         prices.parts().into_iter().filter(|&part| is_as_measured(prices.plan(), part)).collect();
@@ -71,7 +71,7 @@ fn gains(prices: &Prices<'_>, faults: &Faults, selection: &Selection) -> BTreeMa
             *gains.entry(place).or_default() += count;
         }
     }
-    // More rows find what fewer find.
+    // More rows also find what fewer rows find.
     let (mut last, mut sum) = (None, 0);
     for (&(part, _), gain) in &mut gains {
         sum = if last == Some(part) { sum + *gain } else { *gain };
@@ -81,14 +81,14 @@ fn gains(prices: &Prices<'_>, faults: &Faults, selection: &Selection) -> BTreeMa
     gains
 }
 
-/// Whether `part` of `plan` is what faults were measured with.
+/// Whether `part` of `plan` is the one that faults were measured with.
 fn is_as_measured(plan: &Plan, part: Part) -> bool {
     let Part::Judged(place) = part else { return true };
     let usual = Builtin::ALL.get(place);
     matches!((plan.frames.get(place), usual), (Some(FrameSource::Builtin(own)), Some(usual)) if own == usual)
 }
 
-/// The same with what else there is time for, the first part of the run first.
+/// The selection with everything added that there is time for, in the order of the run.
 fn fill(prices: &Prices<'_>, selection: Selection, seconds: f64) -> Selection {
     prices.parts().into_iter().fold(selection, |selection, part| {
         let fits = |amount: usize| {
@@ -97,7 +97,7 @@ fn fill(prices: &Prices<'_>, selection: Selection, seconds: f64) -> Selection {
         };
         let (mut had, mut too_much) = (selection.amount(part), prices.most(part) + 1);
         let mut filled = None;
-        // A price never goes down with the amount.
+        // A price never falls as the amount rises.
         while had + 1 < too_much {
             let amount = usize::midpoint(had, too_much).max(had + 1);
             match fits(amount) {

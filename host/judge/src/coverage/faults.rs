@@ -1,4 +1,4 @@
-//! The table of faults by parts.
+//! The table of faults and the parts of a run that find them.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -10,13 +10,13 @@ use crate::frames::Builtin;
 use crate::result::CoverageReport;
 use crate::run::{AtSpeed, Build, FEW_AT_SPEED, FrameSource, Part, Plan, Selection, Vary};
 
-/// Frames at speed that faults were looked for with.
+/// Frames at speed that the faults were measured with.
 pub(super) const FRAMES: usize = FEW_AT_SPEED as usize;
-/// The widest rows of the board that faults were put into.
+/// The widest rows of the board that the faults were put into.
 const BOARD_WIDTH: usize = 2048;
-/// It, as it was measured.
+/// The table as it was measured.
 const TABLE: &str = include_str!("faults.json");
-/// All of it, which is long and read once.
+/// All of the table, which is long and so is read once.
 static ALL: LazyLock<Result<Faults, FaultsError>> = LazyLock::new(|| Faults::measured(Which::All));
 
 /// A table of faults that cannot be used.
@@ -55,7 +55,8 @@ struct Table {
     faults: Vec<Line>,
 }
 
-/// A fault in it that is not proven to make no difference. A frame is its number in the whole schedule, and the first row of it that differs.
+/// A fault that is not proven to make no difference. `frames` has, for each frame that finds it, the frame's number in the whole
+/// schedule and its first row that differs.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Line {
@@ -68,18 +69,18 @@ struct Line {
     whole: bool,
 }
 
-/// What finds a fault: all of that which is known to.
+/// What is known to find a fault.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Fault {
     /// Any run.
     pub(super) always: bool,
-    /// So many rows of a part that is streamed.
+    /// This many rows of a part that is streamed.
     pub(super) rows: Vec<(Part, usize)>,
     /// Frames at speed.
     pub(super) at_speed: bool,
     /// The corners.
     pub(super) corners: bool,
-    /// The wire's rules.
+    /// The rules of the wire.
     pub(super) rules: bool,
     /// A whole run.
     pub(super) whole: bool,
@@ -96,16 +97,16 @@ impl Fault {
     }
 }
 
-/// Which faults there are, alike ones together.
+/// The faults, equal ones grouped.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Faults {
     /// What they were measured with.
     given: Given,
     /// The build that they were put into.
     build: String,
-    /// How many more there are that are proven to make no difference.
+    /// How many further faults are proven to make no difference.
     equivalent: usize,
-    /// How many there are of each.
+    /// How many faults there are of each kind.
     pub(super) groups: BTreeMap<Fault, usize>,
 }
 
@@ -123,7 +124,7 @@ struct Given {
 }
 
 impl Given {
-    /// The usual run with these tables; none if there are no such tables.
+    /// The usual run with these tables; none if such tables cannot be made.
     fn plan(&self) -> Option<Plan> {
         let Self { width, height, radius, seed } = *self;
         let lens = Equidistant::from_radius(radius).ok()?;
@@ -147,7 +148,7 @@ impl Given {
             })
     }
 
-    /// The parts of its frames, by number, on a board that has everything.
+    /// The part that each frame belongs to, by frame number, on a board that has all capabilities.
     fn parts(&self) -> BTreeMap<usize, Part> {
         let schedule = self.plan().map(|plan| plan.schedule(&Build::full(BOARD_WIDTH)));
         let frames = schedule.into_iter().flatten().flat_map(|segment| segment.frames);
@@ -155,14 +156,14 @@ impl Given {
     }
 }
 
-/// Which faults of a table to take.
+/// Which faults of a table to take, by their place from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Which {
-    /// All.
+    /// All of them.
     All,
     /// Those at even places.
     Even,
-    /// Those at odd ones.
+    /// Those at odd places.
     Odd,
 }
 
@@ -175,7 +176,7 @@ impl Faults {
         ALL.as_ref().map_err(Clone::clone)
     }
 
-    /// These of the faults that were measured.
+    /// The chosen part of the faults that were measured.
     ///
     /// # Errors
     /// [`FaultsError`] when their table cannot be used.
@@ -205,13 +206,13 @@ impl Faults {
         Ok(Self { given, build, equivalent, groups })
     }
 
-    /// Whether they were measured with what `plan` streams, in a board of this build.
+    /// Whether they were measured with what `plan` streams, on a board of this build.
     #[must_use]
     pub fn are_of(&self, plan: &Plan, build: &str) -> bool {
         self.build == build && self.given.is_of(plan)
     }
 
-    /// What a whole run by `plan` on a board of this build finds; none when that was not measured.
+    /// What a whole run by `plan` finds on a board of this build; none if that was not measured.
     #[must_use]
     pub fn whole(&self, plan: &Plan, build: &str) -> Option<CoverageReport> {
         let is_whole = plan.parts.is_none() && plan.within.is_none() && plan.at_speed == AtSpeed::Usual;
@@ -228,13 +229,13 @@ impl Faults {
         (self.given.width, self.given.height)
     }
 
-    /// How many there are.
+    /// How many faults there are.
     #[must_use]
     pub fn count(&self) -> usize {
         self.groups.values().sum()
     }
 
-    /// How many of them a whole run finds: also those of which no part is known that does by itself.
+    /// How many of them a whole run finds, including those that no single part is known to find.
     #[must_use]
     pub fn found_by_whole(&self) -> usize {
         self.groups.iter().filter(|(fault, _)| fault.whole).map(|(_, count)| count).sum()
@@ -246,8 +247,8 @@ impl Faults {
         self.groups.iter().filter(|(fault, _)| fault.is_found(selection)).map(|(_, count)| count).sum()
     }
 
-    /// The same for frames of `height` rows, in proportion: what the first tenth of the rows finds there is taken to be
-    /// found by the first tenth here.
+    /// The same for frames of `height` rows, in proportion: faults that the first tenth of the rows finds in the measured frames
+    /// count as found by the first tenth here.
     #[must_use]
     pub fn scaled(&self, height: usize) -> Self {
         let of = |rows: usize| (rows * height).div_ceil(self.given.height.max(1)).clamp(1, height.max(1));
@@ -261,7 +262,7 @@ impl Faults {
 }
 
 impl Line {
-    /// What finds it, in frames of `height` rows and with these numbers, or what is wrong with it.
+    /// What finds it, or what is wrong with the line. `height` is the rows of a frame, `parts` the part of each frame.
     fn fault(&self, height: usize, parts: &BTreeMap<usize, Part>) -> Result<Fault, String> {
         let Self { block, frames, at_speed, corners, rules, always, whole } = self;
         if block.is_empty() {

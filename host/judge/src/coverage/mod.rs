@@ -1,4 +1,4 @@
-//! Which single faults of the Verilog each part of a run finds, as measured, and what to take of a run for the time that there is.
+//! Which single faults of the Verilog each part of a run finds, as measured, and which parts to take for a given time.
 
 mod choice;
 mod faults;

@@ -6,20 +6,20 @@ use serde::Serialize;
 
 use crate::board::Tally;
 
-/// All that a link test measured.
+/// Everything that a link test measured.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figures {
-    /// The link, for people.
+    /// The link's name, for people.
     pub link: String,
-    /// The bytes a second that the link itself carries each way; none if it does not know.
+    /// The bytes a second that the link itself carries each way, if known.
     pub limit: Option<f64>,
-    /// What went wrong, in all parts together.
+    /// The errors of all parts together.
     pub errors: Errors,
     /// Empty requests and their answers.
     pub round_trips: RoundTrips,
-    /// Full packets to the board, answered by short ones.
+    /// Full packets to the board, answered with short ones.
     pub to_board: Throughput,
-    /// Full packets to the host, asked for by short ones.
+    /// Full packets to the host, requested with short ones.
     pub to_host: Throughput,
     /// Rows, both ways at once.
     pub together: Throughput,
@@ -32,17 +32,17 @@ pub struct Errors {
     pub packets: u64,
     /// Bytes, both ways.
     pub bytes: u64,
-    /// Packets that the board got damaged.
+    /// Packets that reached the board damaged.
     pub damaged_out: u64,
-    /// Packets that the host got damaged.
+    /// Packets that reached the host damaged.
     pub damaged_in: u64,
     /// Packets sent again.
     pub retries: u64,
-    /// Answers that hold something else than was sent, under a CRC that is right: not the link's fault.
+    /// Answers that differ from what was sent although their CRC is right, which is not the link's fault.
     pub wrong: u64,
-    /// Damaged packets by packets.
+    /// Damaged packets as a share of all packets.
     pub rate: f64,
-    /// The rate is below this at 95 % confidence.
+    /// The upper bound of the rate at 95 % confidence.
     pub bound: f64,
 }
 
@@ -60,13 +60,13 @@ impl Errors {
             retries: after.retries - before.retries,
             wrong,
             rate: damaged / all,
-            // Never below the exact Poisson bound, which is 3.0 for none, 4.7 for one, 17.0 for ten.
+            // Never below the exact Poisson bound, which is 3.0 for no error, 4.7 for one and 17.0 for ten.
             bound: ((damaged + 3.0 + 1.645 * damaged.sqrt()) / all).min(1.0),
         }
     }
 }
 
-/// Times of round trips, in microseconds of the link's clock.
+/// Round-trip times in microseconds of the link's clock.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RoundTrips {
     /// How many.
@@ -83,7 +83,7 @@ pub struct RoundTrips {
     pub most_us: f64,
 }
 
-/// Bytes on the wire, stuffing and headers included.
+/// Bytes on the wire, including stuffing and headers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Throughput {
     /// To the board.
@@ -91,18 +91,18 @@ pub struct Throughput {
     /// To the host.
     #[serde(rename = "in")]
     pub back: Rate,
-    /// In this time by the link's clock, in seconds.
+    /// Duration by the link's clock, in seconds.
     pub seconds: f64,
 }
 
-/// How much went one way.
+/// How much went in one direction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Rate {
     /// Bytes.
     pub bytes: u64,
     /// Bytes a second; none if the link's clock stood still.
     pub bytes_per_second: Option<f64>,
-    /// That as a share of what the link itself carries, if it knows.
+    /// The rate as a share of what the link itself carries, if that is known.
     pub share: Option<f64>,
 }
 

@@ -1,7 +1,7 @@
-//! What a link can do, whatever the board behind it computes: errors, round trips, throughput.
+//! What a link can do, whatever the board at its other end computes: errors, round trips, throughput.
 //!
-//! A board answers one request at a time, so each way alone is measured with full packets and short answers, turnaround
-//! included. Both ways together are measured as a run uses them, by rows as far as the board gives credit.
+//! A board answers one request at a time. So each direction alone is measured with full packets and short answers, including the
+//! turnaround. Both directions together are measured as a run uses them: with rows, as far as the board gives credit.
 
 mod figures;
 mod rows;
@@ -30,12 +30,12 @@ pub enum LinkTestError {
     NoFrame(#[source] Box<dyn std::error::Error + Send + Sync>),
 }
 
-/// Tests the link to `board`. Each of the five parts takes `seconds`, by the link's clock or the wall's, whichever is
-/// first, but the last no more than 1000 frames of 64 rows; what is sent is drawn by `seed`. Tables and configuration of
-/// the board are lost.
+/// Tests the link to `board`. Each of the five parts takes `seconds`, by the link's clock or the wall's, whichever ends first;
+/// the last part streams no more than 1000 frames of 64 rows in that time. What is sent is drawn with `seed`. The board loses its
+/// tables and configuration.
 ///
 /// # Errors
-/// [`LinkTestError`] when the board stops to answer, or the link is too poor.
+/// [`LinkTestError`] when the board stops answering, or the link is too poor.
 pub fn run(board: &mut Board, seconds: Duration, seed: u64) -> Result<Figures, LinkTestError> {
     let random = Pcg64Mcg::new(u128::from(seed) | 1 << 64);
     let mut test = Test { board, seconds, random };
@@ -45,7 +45,7 @@ pub fn run(board: &mut Board, seconds: Duration, seed: u64) -> Result<Figures, L
     let wrong_echoes = test.echoes()?;
     let to_board = test.outward()?;
     let damaged_before = test.damaged_out()?;
-    // A late copy of what was written would make a sound board's tables wrong from then on.
+    // A late copy of what was written would make the tables of a sound board wrong from then on.
     test.board.open_another_session(test.board.welcome.nonce.wrapping_add(1))?;
     let (to_host, wrong_reads) = test.inward()?;
     let together = test.together()?;
@@ -73,12 +73,12 @@ impl Test<'_> {
         Begun { on_link: self.board.now(), on_wall: Instant::now(), tally: self.board.tally() }
     }
 
-    /// The time on the link's clock; none if that went back.
+    /// The time on the link's clock; zero if that went back.
     fn since(&self, begun: &Begun) -> Duration {
         self.board.now().saturating_sub(begun.on_link)
     }
 
-    /// A virtual clock may stand still, and then the wall's counts.
+    /// Whether the part's time is over, by either clock: a virtual clock may stand still.
     fn is_over(&self, begun: &Begun) -> bool {
         self.since(begun) >= self.seconds || begun.on_wall.elapsed() >= self.seconds
     }
@@ -87,7 +87,7 @@ impl Test<'_> {
         Throughput::between(begun.tally, self.board.tally(), self.since(begun), self.board.bytes_per_second())
     }
 
-    /// Packets that the board got damaged in this session.
+    /// Packets that reached the board damaged in this session.
     fn damaged_out(&mut self) -> Result<u64, BoardError> {
         let status = self.board.status(false)?;
         Ok(u64::from(status.crc_errors) + u64::from(status.framing_errors))
@@ -102,7 +102,7 @@ impl Test<'_> {
         Ok(times.round_trips())
     }
 
-    /// Random bytes of random length there and back. Returns the number of echoes that came back otherwise.
+    /// Sends random bytes of random length there and back. Returns how many echoes differed.
     fn echoes(&mut self) -> Result<u64, BoardError> {
         let begun = self.begin();
         let mut wrong = 0;
@@ -114,7 +114,7 @@ impl Test<'_> {
         Ok(wrong)
     }
 
-    /// Row factors, which are random: no frame is streamed with them.
+    /// Writes random row factors; no frame is streamed with them.
     fn outward(&mut self) -> Result<Throughput, BoardError> {
         let begun = self.begin();
         while !self.is_over(&begun) {
@@ -124,7 +124,7 @@ impl Test<'_> {
         Ok(self.throughput(&begun))
     }
 
-    /// The same read back. Returns the number of packets that hold something else as well.
+    /// Reads row factors back. Also returns how many packets differed from what was written.
     fn inward(&mut self) -> Result<(Throughput, u64), BoardError> {
         let entries = self.entries();
         self.board.write(Table::RowFactors, &entries)?;
@@ -140,7 +140,8 @@ impl Test<'_> {
 
     /// A packet of row factors, 1 to 2^24, as many as fit into packet and table.
     fn entries(&mut self) -> Vec<u8> {
-        // A packet without entries would be no test, and what a board of an unknown datapath says is not looked at.
+        // A packet without entries would test nothing. The capabilities of a board of an unknown datapath are not checked, so its
+        // height may be 0.
         let rows = self.board.capabilities.max_height.max(1);
         let count = Board::entries_at_once(Table::RowFactors).min(rows.into());
         (0..count).flat_map(|_| (1 + (self.random.next_u32() >> 8)).to_le_bytes()).collect()

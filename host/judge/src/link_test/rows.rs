@@ -1,4 +1,4 @@
-//! Both ways together: rows, which nobody judges.
+//! Both directions together: rows, which nobody judges.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -9,9 +9,9 @@ use rand_core::Rng;
 use super::{LinkTestError, Test, Throughput};
 use crate::board::{Board, BoardError, NumberedFrame, RowTiming, Unjudged};
 
-/// Rows of a frame. The core runs empty behind its last one, which costs half a row.
+/// Rows of a frame. After the last one the core runs empty, which costs half a row.
 const HEIGHT: u16 = 64;
-/// Frames that are streamed without a look at the clock, at most.
+/// The most frames that are streamed without checking the clock.
 const MOST_FRAMES: f64 = 1000.0;
 
 impl Test<'_> {
@@ -20,7 +20,7 @@ impl Test<'_> {
         let tables = straight_tables(&frame).map_err(LinkTestError::NoFrame)?;
         self.set(&tables)?;
         let mut number = 0;
-        // The pipe is filled once, so the first frame tells how many there is time for.
+        // The first frame also fills the pipe, so its time shows how many frames there is time for.
         let first = self.stream(&frame, &mut number, 1)?;
         let frames = self.seconds.as_secs_f64() / first.as_secs_f64().max(1e-6);
         let begun = self.begin();
@@ -28,7 +28,7 @@ impl Test<'_> {
         Ok(self.throughput(&begun))
     }
 
-    /// Random samples, as wide as the board takes them.
+    /// Random samples, as wide and deep as the board takes them.
     fn frame(&mut self) -> Result<Frame, Box<dyn std::error::Error + Send + Sync>> {
         let (width, height) = size(self.board);
         let depths = self.board.capabilities.sample_depths();
@@ -45,7 +45,7 @@ impl Test<'_> {
         self.board.commit(tables, &kernel, 0, 1)
     }
 
-    /// Streams `frame` so many times, and returns the time by the slower of the two clocks.
+    /// Streams `frame` as often as `times` says. Returns the time by the slower of the two clocks.
     fn stream(&mut self, frame: &Arc<Frame>, number: &mut u16, times: u16) -> Result<Duration, BoardError> {
         let begun = self.begin();
         let numbers = (0..times).map(|index| number.wrapping_add(index));

@@ -1,4 +1,4 @@
-//! Times of round trips in a memory that does not grow with their number.
+//! Round-trip times, in memory that does not grow with their number.
 
 use std::time::Duration;
 
@@ -7,10 +7,10 @@ use rand_pcg::Pcg64Mcg;
 
 use super::RoundTrips;
 
-/// Times that are kept. A percentile of a sample of so many is off by less than 0.4 % of the times in 99 of 100 samples.
+/// Times that are kept. A percentile of such a sample is off by less than 0.5 % of the times in 99 of 100 samples.
 const KEPT: usize = 100_000;
 
-/// The least, the most, and a sample of times to which each belongs with the same chance (Vitter 1985, algorithm R).
+/// The least, the most, and a random sample of the times, each with the same chance of being in it (Vitter 1985, algorithm R).
 pub(super) struct Times {
     kept: Vec<Duration>,
     count: usize,
@@ -20,9 +20,9 @@ pub(super) struct Times {
 }
 
 impl Times {
-    /// The first of them.
+    /// Starts with the first time.
     pub(super) fn beginning(first: Duration) -> Self {
-        // Any generator does: what it draws decides nothing but which times are kept.
+        // Any generator will do: it only decides which times are kept.
         Self { kept: vec![first], count: 1, least: first, most: first, random: Pcg64Mcg::new(1) }
     }
 
@@ -86,7 +86,7 @@ mod tests {
 
     #[test]
     fn of_many_times_a_sample_is_kept_and_the_ends_are_those_of_all() {
-        // Ten times as many as are kept, and sorted: what is kept first or last would be nothing like all of them.
+        // Ten times as many as are kept, and sorted: keeping the first or the last ones would give a poor sample.
         let times = of(0..10 * KEPT as u64);
         assert_eq!((times.kept.len(), times.count), (KEPT, 10 * KEPT));
         let all = 10.0 * KEPT as f64;
