@@ -1,9 +1,9 @@
-//! Sample by sample: what the board gave against what the reference gives.
+//! Compares the board's samples with the reference's, one by one.
 
 use halfrow_model::Frame;
 use serde::{Deserialize, Serialize};
 
-/// A sample that is not the reference's.
+/// A sample that differs from the reference's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Difference {
     /// Its row.
@@ -23,13 +23,13 @@ pub struct Comparison {
     pub samples: usize,
     /// Samples that differ.
     pub differences: usize,
-    /// The first that differs, in reading order.
+    /// The first sample that differs, in reading order.
     pub first: Option<Difference>,
     /// The largest absolute difference.
     pub largest: u16,
-    /// The most negative and the most positive difference, found − expected; none without differences.
+    /// The most negative and the most positive difference, found − expected; none if nothing differs.
     pub extremes: Option<(i32, i32)>,
-    /// The bits in which any sample differs, each where it stands in a sample.
+    /// The bits in which any sample differs, at their places in a sample.
     #[serde(default)]
     pub bits: u16,
     /// Differences in each row.
@@ -41,7 +41,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Nothing compared yet of a frame of `width` × `height`.
+    /// An empty comparison of a frame of `width` × `height`.
     #[must_use]
     pub fn new(width: usize, height: usize) -> Self {
         Self {
@@ -98,7 +98,7 @@ impl Comparison {
         }
     }
 
-    /// The rows that have differences, from the top.
+    /// The rows that have differences, in ascending order.
     #[must_use]
     pub(crate) fn differing_rows(&self) -> Vec<usize> {
         (0..self.by_row.len()).filter(|&row| self.by_row[row] > 0).collect()

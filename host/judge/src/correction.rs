@@ -9,7 +9,7 @@ use halfrow_model::{Frame, Kernel, TableSet};
 use crate::board::{Board, BoardError, NumberedFrame, ReturnedRow, RowTiming, RowTraffic};
 use crate::progress::Progress;
 
-/// What a board is to correct with.
+/// What a board corrects frames with.
 #[derive(Clone, Copy, Debug)]
 pub struct Correction<'a> {
     /// Row factors or a grid.
@@ -18,17 +18,17 @@ pub struct Correction<'a> {
     pub kernel: &'a Kernel,
     /// Their generation, 1 to 255.
     pub generation: u8,
-    /// The number of the first frame on the wire; higher than that of any frame that the session streamed before.
+    /// The number of the first frame on the wire, higher than that of any frame streamed in this session before.
     pub first_frame: u16,
 }
 
 impl Correction<'_> {
-    /// Uploads tables and kernel, streams `inputs` with the least blanking that the board can do, and hands the samples of
-    /// each corrected frame, row after row, to `take`, in the order of the inputs, until that breaks. A broken board's
-    /// samples can exceed the depth. Returns the least and the most pixel clocks that a row's first and last sample took.
+    /// Uploads tables and kernel, then streams `inputs` with the board's least blanking. Hands the samples of each corrected
+    /// frame, row after row, to `take`, in the order of the inputs, until `take` breaks. The samples of a broken board can exceed
+    /// the depth. Returns the least and the most pixel clocks that a row's first and last samples took.
     ///
     /// # Errors
-    /// [`BoardError`] when the board refuses, does not answer, or keeps a row.
+    /// [`BoardError`] when the board refuses, does not answer, or does not return a row.
     pub fn run(
         &self,
         board: &mut Board,
@@ -53,14 +53,14 @@ impl Correction<'_> {
     }
 }
 
-/// A frame that has not come back whole.
+/// A frame that has not come back completely.
 struct UnderWay {
     number: u16,
     samples: Vec<u16>,
     rows_left: usize,
 }
 
-/// Keeps what comes back until a frame is whole.
+/// Collects returned rows until a frame is complete.
 struct Collect<'a, I, T> {
     /// The number of the next frame.
     next: u16,

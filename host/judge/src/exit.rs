@@ -1,4 +1,4 @@
-//! Exit codes, which scripts rely on: the one place where the classes of errors and the causes of results become numbers.
+//! Exit codes, which scripts rely on. Only here do classes of errors and causes of results become numbers.
 
 use serde::Serialize;
 
@@ -23,7 +23,7 @@ pub enum Exit {
     NothingJudged = 5,
     /// ERROR: the board's identity, datapath or protocol version was refused.
     Refused = 6,
-    /// ERROR: stopped since the terminal or connection was gone (SIGHUP).
+    /// ERROR: stopped because the terminal or connection was gone (SIGHUP).
     HungUp = 129,
     /// ERROR: stopped by Ctrl-C.
     Interrupted = 130,
@@ -49,7 +49,7 @@ impl Exit {
         }
     }
 
-    /// Whom a signal with this exit code stands for, if it is one.
+    /// Who stopped the program, if this exit code is that of a signal.
     #[must_use]
     pub fn stopped_by(code: usize) -> Option<StoppedBy> {
         let all = [StoppedBy::Person, StoppedBy::System, StoppedBy::Disconnection];

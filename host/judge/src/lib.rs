@@ -1,4 +1,4 @@
-//! Tells whether a board that straightens fisheye Bayer video computes what it should, and if not, what is broken.
+//! Judges whether a board that straightens fisheye Bayer video computes what it should, and if not, what is broken.
 //!
 //! ```text
 //!  target ──► link ──► board ──┐                  ┌─► verdict
@@ -6,15 +6,15 @@
 //!  halfrow_model ──────────────┘                  └─► diagnosis
 //! ```
 //!
-//! A program says what is to be judged in a [`Plan`], opens a link to a board or brings a [`Candidate`] with one of its own,
-//! and calls [`verify`] with [`RunOptions`]. What comes back, [`Finished`], holds a [`Report`] with a [`Verdict`] and its
-//! [`Cause`]; [`Finished::commit`] writes it down. A run takes one thread, and tells what it does to a [`Progress`] on the
-//! way. What it keeps of the frames has a budget, [`RunOptions::evidence_bytes`], so that its memory does not grow with
-//! their number but for some hundred bytes each in the report.
+//! A program describes what to judge in a [`Plan`], opens a link to a board or brings a [`Candidate`] with a link of its own, and
+//! calls [`verify`] with [`RunOptions`]. This returns [`Finished`], which holds a [`Report`] with a [`Verdict`] and its
+//! [`Cause`]; [`Finished::commit`] writes it to disk. A run takes one thread, and reports what it does to a [`Progress`]. The
+//! frames that it keeps have a budget, [`RunOptions::evidence_bytes`], so its memory does not grow with the number of frames,
+//! except for some hundred bytes each in the report.
 //!
-//! This library prints nothing, knows no option of a command line, and ends no process: whoever calls it does. It knows
-//! which [`exit`] code goes with a result, since that stands in every document. Its log goes to `tracing`;
-//! every line of a run stands in a span `run` with the target as `board`.
+//! This library prints nothing, knows no command-line options, and ends no process: its caller does. It knows which [`exit`] code
+//! belongs to a result, since every document contains it. It logs to `tracing`; every line of a run is in a span `run` with the
+//! target as `board`.
 //!
 //! # Two boards at once
 //!
@@ -24,12 +24,12 @@
 //!
 //! # Inside
 //!
-//! Only [`link`] touches a device, only [`board`] speaks the protocol, and [`run`] is the one that knows the order of
-//! things. [`probe`] asks a device whether it is a board, [`link_test`] measures what a link can do, [`correction`] uses a
-//! board to correct frames, [`lenses`] reads what calibrations leave, [`optics`] makes a plan of it, and [`call`] looks at what
-//! a call names before anything is done.
+//! Only [`link`] touches a device, only [`board`] speaks the protocol, and [`run`] alone knows the order of things. [`probe`]
+//! asks a device whether it is a board, [`link_test`] measures what a link can do, [`correction`] uses a board to correct frames,
+//! [`lenses`] reads the files of calibration programs, [`optics`] makes plans of them, and [`call`] checks the files and options
+//! of a call before anything is done.
 //! [`compare`], [`diagnosis`], [`result`] and [`report`] see samples and counts, never a link.
-//! [`words`] has numbers and names as all of them tell them.
+//! [`words`] has the numbers and names in the form in which all of them are reported.
 
 #![warn(missing_debug_implementations)]
 
@@ -69,7 +69,7 @@ pub use result::Report;
 pub use run::{Finished, FrameSource, Misfit, Plan, RunOptions, verify};
 pub use verdict::{Cause, StoppedBy, Verdict};
 
-/// The commit that this library was built from, abbreviated; `unknown` without git, and in builds that are not optimised.
+/// The abbreviated commit that this library was built from; `unknown` without git, and in builds that are not optimised.
 pub const COMMIT: &str = env!("HALFROW_COMMIT");
 
 /// The version and, in brackets, the commit.

@@ -1,4 +1,4 @@
-//! From a lens, or a file of tables, to what a board is judged with.
+//! From a lens or a table file to what a board is judged with.
 //!
 //! ```text
 //!  lens file ──► Optics ──► tables ──────┐
@@ -32,15 +32,15 @@ pub const PAPER_SIZE: (usize, usize) = (1920, 1080);
 /// The paper's image circle, in degrees.
 pub const PAPER_FIELD: f64 = 180.0;
 
-/// What stands before R, in pixels, where an equidistant lens is named in place of a lens file.
+/// The prefix that names an equidistant lens in place of a lens file. R in pixels follows.
 pub const EQUIDISTANT: &str = "equidistant:";
 
-/// How tables are found.
+/// How tables are computed from a lens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TablesBy {
-    /// For every row the factor with the smallest largest error.
+    /// For each row the factor whose largest error is smallest.
     Fitting,
-    /// For every row the paper's formula.
+    /// For each row the factor of the paper's formula.
     Equation9,
     /// A grid of factors that follows the exact projection (DATAPATH.md, *Datapath 2*).
     Exact {
@@ -63,7 +63,7 @@ impl TablesBy {
         }
     }
 
-    /// How tables were found, for people; `shape` is that of a grid.
+    /// How tables were found, for people; `shape` is the shape of a grid.
     #[must_use]
     pub fn how(self, shape: Option<GridShape>) -> String {
         let how = match self {
@@ -75,8 +75,8 @@ impl TablesBy {
     }
 }
 
-/// What `tables` of a lens do with rows outside of its image circle, behind the subject of a sentence. A grid goes on beyond
-/// 90 degrees, where the exact projection ends.
+/// What `tables` of a lens do with rows outside its image circle, to follow the subject of a sentence. A grid goes on beyond 90
+/// degrees, where the exact projection ends.
 #[must_use]
 pub fn outside_circle(tables: &TableSet) -> &'static str {
     match tables.shape() {
@@ -85,14 +85,14 @@ pub fn outside_circle(tables: &TableSet) -> &'static str {
     }
 }
 
-/// A frame and the lens before it.
+/// A lens and the frames that it images.
 #[derive(Clone, Debug)]
 pub struct Optics {
-    /// Both, with where the axis is.
+    /// Both of them, and where the axis is.
     pub camera: Camera,
-    /// The equidistant lens of the same R, which built-in frames are rendered through.
+    /// The equidistant lens of the same R, through which built-in frames are rendered.
     pub lens: Equidistant,
-    /// Whether the lens is not that one itself.
+    /// Whether the real lens is another one.
     is_calibrated: bool,
     /// The row of the axis; none for the middle.
     pub centre_y: Option<f64>,
@@ -105,17 +105,17 @@ pub struct Optics {
 }
 
 impl Optics {
-    /// An equidistant lens, with its axis in row `centre_y`, or the middle, of the frames of `camera`.
+    /// An equidistant lens, with its axis in row `centre_y` of the frames of `camera`, or in their middle.
     #[must_use]
     pub fn equidistant(camera: Camera, lens: Equidistant, centre_y: Option<f64>, by: TablesBy) -> Self {
         let name = "equidistant lens".to_owned();
         Self { camera, lens, is_calibrated: false, centre_y, by, name, file: None }
     }
 
-    /// The lens of `camera`, of a `model` that was calibrated and is described by `file`.
+    /// The calibrated lens of `camera`, of the kind `model`, as `file` describes it.
     ///
     /// # Errors
-    /// [`LensError`] when its radius is none that built-in frames can be rendered through.
+    /// [`LensError`] when built-in frames cannot be rendered through a lens of its radius.
     pub fn calibrated(
         camera: Camera,
         model: LensModel,
@@ -133,37 +133,37 @@ impl Optics {
         })
     }
 
-    /// What built-in frames are made for.
+    /// What built-in frames are rendered for.
     #[must_use]
     pub fn scene(&self, phase: Phase, seed: u64) -> Scene {
         let (geometry, centre_y, lens) = (*self.camera.geometry(), self.centre_y, self.lens);
         Scene { geometry, centre_y, phase, lens, seed }
     }
 
-    /// The tables that are asked for.
+    /// The tables, found as `by` of this lens says.
     ///
     /// # Errors
-    /// [`OpticsError`] as of [`Self::tables_by`].
+    /// [`OpticsError`] like [`Self::tables_by`].
     pub fn tables(&self) -> Result<TableSet, OpticsError> {
         self.tables_by(self.by)
     }
 
-    /// The tables that are found so.
+    /// The tables, found as `by` says.
     ///
     /// # Errors
-    /// [`OpticsError`] when a factor is none that a board can have, or a grid needs more entries.
+    /// [`OpticsError`] when no board can have one of the factors, or a grid needs more entries than allowed.
     pub fn tables_by(&self, by: TablesBy) -> Result<TableSet, OpticsError> {
         Ok(match by {
             TablesBy::Exact { entries } => self.camera.best_grid(entries)?,
             TablesBy::Fitting => self.camera.fitted(),
             TablesBy::Equation9 if self.is_calibrated => self.camera.equation_9(),
-            // From R as it was given, which the camera has from f.
+            // From R as it was given. The camera would compute it from f.
             TablesBy::Equation9 => TableSet::from_lens(*self.camera.geometry(), &self.lens, self.centre_y)?,
         })
     }
 
-    /// Refuses `tables` of this lens that stretch nothing, or nothing that the lens sees, as its image circle misses the rows,
-    /// and warns when it misses most.
+    /// Refuses `tables` of this lens that stretch nothing, or nothing that the lens images, since its image circle misses the
+    /// rows. Warns if it misses most of them.
     ///
     /// # Errors
     /// [`OpticsError::OutsideCircle`]
@@ -184,23 +184,23 @@ impl Optics {
         Ok(())
     }
 
-    /// A sentence on where `tables` come from, which were asked for.
+    /// A sentence on where `tables`, made for this lens, come from.
     #[must_use]
     pub fn source_of(&self, tables: &TableSet) -> String {
         format!("{} ({})", self.source(), self.by.how(tables.shape()))
     }
 
-    /// What the lens is, in a sentence.
+    /// A sentence on what the lens is.
     #[must_use]
     pub fn source(&self) -> String {
         let degrees = self.camera.field_of_view().to_degrees() / 2.0;
-        // 90 is what R is of in Eq. 9, and on every page.
+        // 90 degrees is the angle that R means in Eq. 9, and on every page.
         let of_angle = if degrees == 90.0 { String::new() } else { format!(" at {degrees} degrees") };
         format!("{}, R = {:.3} pixels{of_angle}", self.name, self.camera.radius())
     }
 }
 
-/// A kernel by name, or from a kernel file.
+/// A kernel by its name, or from a kernel file.
 ///
 /// # Errors
 /// [`OpticsError`] when it is neither, or a file that cannot be used.
@@ -208,11 +208,10 @@ pub fn kernel(name: &OsStr) -> Result<Kernel, OpticsError> {
     kernel_file(name).map(|(file, _)| file.kernel)
 }
 
-/// The kernel file of this name, and what it was read from; or that of a kernel by name, which has no notes and was read from
-/// nothing.
+/// The kernel file of this name, and what it was read from. For a named kernel it has no notes, and nothing was read.
 ///
 /// # Errors
-/// As [`kernel`].
+/// Like [`kernel`].
 pub fn kernel_file(name: &OsStr) -> Result<(KernelFile, Option<Input>), OpticsError> {
     match name.to_string_lossy().parse::<NamedKernel>() {
         Ok(named) => Ok((KernelFile { kernel: named.kernel()?, about: None }, None)),
@@ -226,10 +225,10 @@ pub fn kernel_file(name: &OsStr) -> Result<(KernelFile, Option<Input>), OpticsEr
     }
 }
 
-/// Tables, kernel, and where they come from.
+/// Tables and kernel, and where they come from.
 #[derive(Clone, Debug)]
 pub struct Chosen {
-    /// The lens that built-in frames are rendered through, whether the tables are its own or not.
+    /// The lens through which built-in frames are rendered, whether or not the tables are its own.
     pub optics: Optics,
     /// The row factors, or the grid.
     pub tables: TableSet,
@@ -239,12 +238,12 @@ pub struct Chosen {
     pub kernel_file: Option<Input>,
     /// Where both come from, for people.
     pub source: String,
-    /// Rows outside of the lens's image circle; none for a file, which does not say.
+    /// Rows outside the lens's image circle; none for a table file, which does not name them.
     pub rows_outside_circle: Option<usize>,
 }
 
 impl Chosen {
-    /// To judge with these, once each, the built-in frames of Bayer `phase` as the lens sees them.
+    /// A plan that judges with these, once each, the built-in frames of Bayer `phase` as the lens images them.
     #[must_use]
     pub fn plan(self, phase: Phase) -> Plan {
         Plan {
@@ -258,11 +257,11 @@ impl Chosen {
     }
 }
 
-/// Takes the tables of `file` if there is one, and those of the lens otherwise; `kernel_name` replaces the file's kernel, or
-/// Hermite's.
+/// Takes the tables from `file` if there is one, otherwise those of the lens. `kernel_name` replaces the file's kernel, or the
+/// default, Hermite.
 ///
 /// # Errors
-/// [`OpticsError`] when a kernel or row factors cannot be had, or no board takes them.
+/// [`OpticsError`] when the kernel or the tables cannot be made, or no board takes them.
 pub fn choose(
     file: Option<(&Path, TableFile)>,
     optics: Optics,
@@ -270,13 +269,13 @@ pub fn choose(
 ) -> Result<Chosen, OpticsError> {
     let path = file.as_ref().map(|(path, _)| *path);
     let chosen = unchecked(file, optics, kernel_name)?;
-    // The model, too: its paths agree on what a board takes, and on nothing else.
+    // The model needs legal tables too: its paths agree only on tables that a board takes.
     let served = chosen.tables.check_ring(chosen.tables.geometry().width().next_power_of_two());
     served.map_err(|source| whose(source, path, &chosen.optics))?;
     Ok(chosen)
 }
 
-/// `source` as an error of the file of tables or of the lens, if there is one.
+/// `source` as an error of the table file or the lens file, if there is one.
 fn whose(source: TableError, tables: Option<&Path>, optics: &Optics) -> OpticsError {
     match (tables, &optics.file) {
         (Some(path), _) => TableFileError::Content { path: path.to_owned(), source: source.into() }.into(),

@@ -1,4 +1,4 @@
-//! Asks a device whether it is a board. That writes a greeting to it, whatever it is.
+//! Asks a device whether it is a board. This sends a greeting to it, whatever the device is.
 
 use crate::board::{Board, BoardError, Capabilities, Heard, OpenOptions};
 use crate::link::discovery::Answer;
@@ -7,8 +7,8 @@ use crate::result::Problem;
 use crate::target::Target;
 use crate::verdict::Cause;
 
-/// Opens `target` and greets what is there, as often as a run does. Takes some two seconds if nothing answers, a minute
-/// over a line of 9600 baud, beside the time to connect.
+/// Opens `target` and greets the device there, as often as a run does. If nothing answers this takes about two seconds, or a
+/// minute at 9600 baud, in addition to the time to connect.
 #[must_use]
 pub fn probe(target: &Target) -> Answer {
     let candidate = match link::open(target) {

@@ -1,14 +1,14 @@
-//! Progress of a long run, for whoever watches.
+//! Progress of a long run, for whoever watches it.
 //!
-//! A run tells its [`Event`]s to a [`Progress`], on the thread that it runs on. Any closure that takes an event is one, so
-//! that another thread watches by a channel:
+//! A run reports its [`Event`]s to a [`Progress`], on the run's own thread. Any closure that takes an event is one, so another
+//! thread can watch through a channel:
 //!
 //! ```
 //! use halfrow::progress::{Event, Progress};
 //!
 //! let (sender, events) = std::sync::mpsc::channel();
 //! let watched = move |event: Event| {
-//!     // Nobody needs to listen to the end.
+//!     // It is no error if nobody listens to the end.
 //!     let _ = sender.send(event);
 //! };
 //! watched.row();
@@ -20,16 +20,16 @@ use std::time::Duration;
 
 use crate::result::SoakLength;
 
-/// What a run does, as it does it.
+/// What a run reports while it works.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
-    /// A step begins that moves no rows.
+    /// A step that moves no rows begins.
     Step(Step),
-    /// So many further rows will come back.
+    /// This many more rows will come back.
     RowsExpected(u64),
     /// The frame with this name is being sent.
     Frame(String),
-    /// As many rows came back, or were computed, since the last event of this kind.
+    /// This many rows came back, or were computed, since the last event of this kind.
     Rows(u64),
     /// Frames of a soak were judged.
     Soaked(Soaked),
@@ -37,21 +37,21 @@ pub enum Event {
     Done,
 }
 
-/// How far a soak is.
+/// How far a soak has come.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Soaked {
-    /// Since it began, on the link's clock.
+    /// Time since it began, on the link's clock.
     pub time: Duration,
     /// Frames judged.
     pub frames: u64,
-    /// Those that differ.
+    /// The frames among them that differ.
     pub wrong: u64,
-    /// How long it is to be.
+    /// The planned length.
     pub of: SoakLength,
 }
 
 impl Soaked {
-    /// The share of it that is done, 0 to 1.
+    /// The share that is done, 0 to 1.
     #[must_use]
     pub fn share(&self) -> f64 {
         let (done, all) = match self.of {
@@ -65,17 +65,17 @@ impl Soaked {
 /// A step of a run that moves no rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// The reference computes what another program has computed before.
+    /// The reference computes results that another program has computed before.
     JudgeTheJudge,
     /// The session with the board is opened.
     OpenTheBoard,
     /// Bytes go to the board and come back.
     TestTheLink,
-    /// The board makes frames on its own.
+    /// The board makes frames by itself.
     AtSpeed,
-    /// What must be refused is tried.
+    /// Requests that must be refused are tried.
     Rules,
-    /// Everything is done again, since an old copy of a request may have spoilt it.
+    /// Everything is done again, since a late copy of a request may have spoilt it.
     LookAgain,
     /// The board went away, and the run waits for it.
     WaitForTheBoard,
@@ -95,17 +95,17 @@ impl fmt::Display for Step {
     }
 }
 
-/// Told what a run does. It must not block, for the board waits meanwhile.
+/// Receives what a run reports. It must not block, since the board waits meanwhile.
 pub trait Progress: Sync {
     /// Something happened.
     fn event(&self, event: Event);
 
-    /// A step begins that moves no rows.
+    /// A step that moves no rows begins.
     fn step(&self, step: Step) {
         self.event(Event::Step(step));
     }
 
-    /// So many further rows will come back.
+    /// This many more rows will come back.
     fn rows_expected(&self, rows: u64) {
         self.event(Event::RowsExpected(rows));
     }
@@ -120,7 +120,7 @@ pub trait Progress: Sync {
         self.rows(1);
     }
 
-    /// As many rows came back, or were computed, at once.
+    /// This many rows came back, or were computed, at once.
     fn rows(&self, count: u64) {
         self.event(Event::Rows(count));
     }
@@ -137,7 +137,7 @@ impl<F: Fn(Event) + Sync> Progress for F {
     }
 }
 
-/// Says nothing.
+/// Ignores every event.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 

@@ -1,4 +1,4 @@
-//! The reference model as this process runs it: by one path for all frames, which the golden values hold to account.
+//! The reference model in this process: the same path for all frames, verified by the golden values.
 
 use std::sync::{Mutex, OnceLock, PoisonError};
 
@@ -6,10 +6,10 @@ use halfrow_model::{CorrectError, Corrector, Frame, Kernel, ModelPath, TableSet,
 
 static CHOSEN: OnceLock<ModelPath> = OnceLock::new();
 
-/// Makes the process take `path`, unless it has taken one already; without a wish, the fastest of this processor.
+/// Makes the process use `path`, unless it uses one already; with none, the fastest path of this processor.
 ///
 /// # Errors
-/// [`UnavailablePath`] when this processor cannot take it.
+/// [`UnavailablePath`] when this processor does not support it.
 pub fn choose(path: Option<ModelPath>) -> Result<ModelPath, UnavailablePath> {
     match path {
         Some(path) if !path.is_available() => Err(UnavailablePath(path)),
@@ -17,20 +17,21 @@ pub fn choose(path: Option<ModelPath>) -> Result<ModelPath, UnavailablePath> {
     }
 }
 
-/// The path that the process takes: what was chosen, or else the fastest of this processor.
+/// The path that the process uses: the chosen one, or else the fastest of this processor.
 #[must_use]
 pub fn path() -> ModelPath {
     *CHOSEN.get_or_init(ModelPath::best)
 }
 
-/// Kernels whose correctors are kept: those of a run's own tables and of its decoys, and as many of another run beside it.
+/// How many kernels' correctors are kept: those of a run's own tables and of its decoys, and as many for a second run at the same
+/// time.
 const KEPT: usize = 4;
 
-/// The correctors that were asked for last, the newest first. What a path makes of a kernel takes plain Rust as long as
-/// correcting three quarters of a million samples, and a run corrects many small frames.
+/// The correctors used last, the newest first. For plain Rust, preparing a kernel takes as long as correcting three quarters of a
+/// million samples, and a run corrects many small frames.
 static MADE: Mutex<Vec<(Kernel, Corrector)>> = Mutex::new(Vec::new());
 
-/// A corrector of the process's path.
+/// A corrector for `kernel`, by the process's path.
 #[must_use]
 pub fn corrector(kernel: &Kernel) -> Corrector {
     let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
@@ -69,7 +70,7 @@ mod tests {
             corrector.correct_row(&geometry, row_factor, &row, &mut output);
             output
         };
-        // More than are kept, so that some go and come again.
+        // More than are kept, so that some are dropped and made again.
         let kernels: Vec<_> = (0..KEPT as i16 + 2)
             .map(|change| {
                 let mut nodes = Kernel::from(Interpolant::Hermite).nodes().to_vec();

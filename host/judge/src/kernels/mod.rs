@@ -10,7 +10,7 @@ use crate::tables::{ContentError, KernelFile};
 /// The distance between two nodes, in pixels.
 const NODE_DISTANCE: f64 = 1.0 / 32.0;
 
-/// A kernel that has a name.
+/// A kernel with a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NamedKernel {
     /// The nodes of an interpolant of the paper.
@@ -38,7 +38,7 @@ pub struct DamagedKernel {
     source: ContentError,
 }
 
-/// The names of all named kernels, with commas between them and `last` in front of the last one.
+/// The names of all named kernels, separated by commas, with `last` before the last one.
 #[must_use]
 pub fn names(last: &str) -> String {
     let names = NamedKernel::ALL.map(NamedKernel::name);
@@ -71,10 +71,10 @@ impl NamedKernel {
         }
     }
 
-    /// The weights.
+    /// The kernel's weights.
     ///
     /// # Errors
-    /// [`DamagedKernel`] when the numbers that the program was built with are no kernel, which no sound build's are.
+    /// [`DamagedKernel`] when the numbers that the program was built with are no kernel. That cannot happen in a sound build.
     pub fn kernel(self) -> Result<Kernel, DamagedKernel> {
         let made = match self {
             Self::Interpolant(interpolant) => Ok(Kernel::from(interpolant)),
@@ -90,7 +90,8 @@ fn shipped(text: &str) -> Result<Kernel, ContentError> {
     KernelFile::parse(text).map(|file| file.kernel)
 }
 
-/// The nodes of a smooth interpolant less a sixteenth of their second difference, which is f″/32² (DATAPATH.md, "Accuracy").
+/// The nodes of a smooth interpolant, each less a sixteenth of the second difference there, which is f″/32² (DATAPATH.md,
+/// "Accuracy").
 fn balanced(interpolant: Interpolant) -> Result<Kernel, KernelError> {
     let node = |node: i32| {
         let x = f64::from(node) * NODE_DISTANCE;
@@ -102,7 +103,7 @@ fn balanced(interpolant: Interpolant) -> Result<Kernel, KernelError> {
     Kernel::from_weights(&nodes)
 }
 
-/// Those of seven weights that a kernel stores.
+/// The five weights that a kernel stores, out of seven.
 pub fn stored([g0, r1, _, _, g4, r5, g6]: [f64; 7]) -> [f64; 5] {
     [g0, r1, g4, r5, g6]
 }

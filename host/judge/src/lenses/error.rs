@@ -228,7 +228,7 @@ pub enum LensContentError {
     Tables(TableError),
 }
 
-/// A lens has no offsets that its reader could lower.
+/// The advice of these errors, to lower the offsets, does not fit a lens file, which has none.
 impl From<TableError> for LensContentError {
     fn from(error: TableError) -> Self {
         match error {
@@ -240,7 +240,7 @@ impl From<TableError> for LensContentError {
     }
 }
 
-/// A radius that a file leads to is not for its reader to give.
+/// Whoever reads a lens file cannot choose its radius, so the advice of that error would not fit.
 impl From<CameraError> for LensContentError {
     fn from(error: CameraError) -> Self {
         match error {

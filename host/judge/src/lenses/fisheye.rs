@@ -1,7 +1,7 @@
 //! OpenCV's fisheye model as OpenCV, ROS and Kalibr write it.
 //!
-//! OpenCV's own files do not name the model. There four coefficients are taken as this one's, since OpenCV's plain model has
-//! five or more unless a program cuts them.
+//! OpenCV's own files do not name the model. Four coefficients in them are taken for this model's, since OpenCV's plain model has
+//! five or more unless a program cuts them off.
 
 use halfrow_model::{CalibratedLens, Profile};
 
@@ -11,7 +11,7 @@ use super::tree::{Keys, documents, number, numbers, without_header};
 use super::{LensContentError, LensFile, LensModel, picture_size};
 use crate::tables::text::quoted;
 
-/// The keys that each part goes by. Case and punctuation do not count.
+/// The keys under which each part may stand. Case and punctuation do not count.
 const MATRIX: [&str; 3] = ["camera_matrix", "K", "intrinsic_matrix"];
 const FOUR_INTRINSICS: [&str; 1] = ["intrinsics"];
 const DISTORTION: [&str; 5] =
@@ -21,25 +21,25 @@ const SIZE: [&str; 3] = ["image_size", "resolution", "img_size"];
 const WIDTH: [&str; 2] = ["image_width", "width"];
 const HEIGHT: [&str; 2] = ["image_height", "height"];
 
-/// Names that are this model, or leave it open.
+/// Names that mean this model, or leave the model open.
 const OUR_NAMES: [&str; 7] =
     ["equidistant", "equi", "fisheye", "kannala_brandt", "kannala_brandt4", "opencv_fisheye", "pinhole"];
 
 pub(super) fn parse(text: &str) -> Result<LensFile, LensContentError> {
     let text = without_header(text);
     let documents = documents(&text)?;
-    // A line `---` at the end begins a document of nothing.
+    // A line `---` at the end begins an empty document.
     let documents: Vec<_> = documents.iter().filter(|document| !document.is_null()).collect();
     let lenses = documents.iter().map(|document| lens(document)).collect::<Result<Vec<_>, _>>()?;
     let first = lenses.first().ok_or(LensContentError::NoKeys)?;
-    // A camera that tells its calibration again and again has one lens.
+    // A camera that publishes its calibration repeatedly still has one lens.
     if lenses.iter().any(|lens| lens != first) {
         return Err(LensContentError::Cameras(format!("{} documents", lenses.len())));
     }
     Ok(first.clone())
 }
 
-/// The one lens that a document describes.
+/// The single lens that a document describes.
 fn lens(document: &Yaml<'_>) -> Result<LensFile, LensContentError> {
     let root = Keys::of(document).ok_or(LensContentError::NoKeys)?;
     let cameras = root.cameras();
@@ -67,7 +67,7 @@ fn camera(keys: &Keys<'_>) -> Result<LensFile, LensContentError> {
     LensFile { model: LensModel::OpenCvFisheye, lens, centre: (cx, cy), size }.with_centre_inside()
 }
 
-/// Refuses what says that it is another model.
+/// Refuses a file that says that it has another model.
 fn check_model(keys: &Keys<'_>) -> Result<(), LensContentError> {
     let named = |name: &str| LensContentError::Model { name: quoted(name) };
     if keys.find(&["xi"]).is_some() {
@@ -120,7 +120,7 @@ fn coefficients(keys: &Keys<'_>) -> Result<[f64; 4], LensContentError> {
     })
 }
 
-/// Columns and rows of the pictures. ROS's drivers write 0 x 0 for what they do not know.
+/// Columns and rows of the pictures. ROS's drivers write 0 x 0 if they do not know them.
 fn size(keys: &Keys<'_>) -> Result<Option<(usize, usize)>, LensContentError> {
     let sides = if let Some((key, value)) = keys.find(&SIZE) {
         numbers(key, value)?

@@ -1,7 +1,7 @@
-//! Lens files: what calibration programs write, read into the model's lens.
+//! Lens files: what calibration programs write, converted into the model's lens.
 //!
 //! OpenCV's fisheye model comes as OpenCV's own FileStorage (YAML or JSON), as ROS's `camera_info` or as Kalibr's camchain;
-//! OCamCalib has a text file of its own. What is in them but is no fisheye lens of these kinds is refused by its name.
+//! OCamCalib has a text file of its own. A file with another model is refused, and the error names the model.
 
 mod error;
 mod fisheye;
@@ -21,18 +21,18 @@ use crate::tables::text;
 /// The most columns and rows that pictures of a calibration may have.
 const MAX_SIDE: usize = 65_535;
 
-/// The most coefficients of a polynomial: programs fit under twenty, and each is computed with at every sample.
+/// The most coefficients of a polynomial. Programs fit fewer than twenty, and every sample is computed with all of them.
 const MAX_COEFFICIENTS: usize = 64;
 
-/// The longest lens file that is read: OpenCV's programs put every corner of every picture into theirs.
+/// The longest lens file that is read. OpenCV's programs store every corner of every picture in theirs.
 const MAX_BYTES: u64 = 16 << 20;
 
-/// Which model a lens file holds.
+/// The model of a lens file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LensModel {
-    /// Kannala and Brandt's, as OpenCV's `fisheye` functions have it.
+    /// Kannala and Brandt's, as in OpenCV's `fisheye` functions.
     OpenCvFisheye,
-    /// Scaramuzza's, as OCamCalib has it.
+    /// Scaramuzza's, as in OCamCalib.
     OCamCalib,
 }
 
@@ -54,12 +54,12 @@ pub struct LensFile {
     pub lens: CalibratedLens,
     /// Column and row of the axis in those pictures, 0 being the middle of the first pixel.
     pub centre: (f64, f64),
-    /// Columns and rows of those pictures, if the file says them.
+    /// Columns and rows of those pictures, if the file names them.
     pub size: Option<(usize, usize)>,
 }
 
 impl LensFile {
-    /// The lens in the file `path`, and what it was read from.
+    /// Reads the lens from the file `path`. Also returns the path and hash of what was read.
     ///
     /// # Errors
     /// [`LensFileError`] when the file cannot be read or holds no lens that can be used.
@@ -72,10 +72,10 @@ impl LensFile {
         }
     }
 
-    /// The lens that `text` describes, in whichever of the formats it is.
+    /// The lens that `text` describes, in any of the formats.
     ///
     /// # Errors
-    /// [`LensContentError`] when it describes none that can be used.
+    /// [`LensContentError`] when it describes no lens that can be used.
     pub fn parse(text: &str) -> Result<Self, LensContentError> {
         let text = text::without_mark(text);
         let mut lines = text.lines().map(str::trim);
@@ -87,7 +87,7 @@ impl LensFile {
         }
     }
 
-    /// The file itself, if its axis is inside its pictures.
+    /// The file unchanged, if its axis lies inside its pictures.
     fn with_centre_inside(self) -> Result<Self, LensContentError> {
         let (column, row) = self.centre;
         let inside = |place: f64, side: usize| (0.0..=(side - 1) as f64).contains(&place);
@@ -99,11 +99,11 @@ impl LensFile {
         }
     }
 
-    /// The lens and its centre in frames of `width` x `height`: as calibrated if they have the size of the pictures or the
-    /// file does not say it, and scaled if they have the same shape.
+    /// The lens and its centre in frames of `width` x `height`: as calibrated if the frames have the size of the pictures or the
+    /// file names no size, and scaled if they have the same shape.
     ///
     /// # Errors
-    /// [`WrongShape`] when they have another, and what [`CalibratedLens::scaled`] refuses.
+    /// [`WrongShape`] when the frames have another shape, and what [`CalibratedLens::scaled`] refuses.
     pub fn for_frame(
         &self,
         width: usize,
@@ -123,7 +123,7 @@ impl LensFile {
     }
 }
 
-/// Whether `line` is a comment of YAML or of MATLAB, and not the header of YAML.
+/// Whether `line` is a comment in YAML or MATLAB, and not the header of YAML.
 fn is_comment(line: &str) -> bool {
     line.starts_with('#') || line.starts_with('%') && !line.starts_with("%YAML")
 }
@@ -132,7 +132,7 @@ fn begins_with_number(line: &str) -> bool {
     line.trim_start_matches(['+', '-', '.']).starts_with(|first: char| first.is_ascii_digit())
 }
 
-/// Columns and rows of a picture, if they can be.
+/// Columns and rows of a picture, if both are possible.
 fn picture_size(width: f64, height: f64) -> Result<(usize, usize), LensContentError> {
     let side = |side: f64| {
         let whole = side.fract() == 0.0 && (1.0..=MAX_SIDE as f64).contains(&side);

@@ -1,14 +1,14 @@
-//! OCamCalib's text file: lines of numbers, comments between them.
+//! OCamCalib's text file: lines of numbers with comments between them.
 //!
-//! Its x counts rows and its y columns, and row comes before column and height before width; its z points away from the
-//! scene. The centre counts from 0, as the toolbox exports it, though MATLAB counts from 1.
+//! Its x counts rows and its y columns. Row comes before column, and height before width. Its z points away from the scene. The
+//! centre counts from 0, as the toolbox exports it, although MATLAB counts from 1.
 
 use halfrow_model::{CalibratedLens, Profile};
 
 use super::{LensContentError, LensFile, LensModel, MAX_COEFFICIENTS, picture_size};
 use crate::tables::text::quoted;
 
-/// The most pixels by which the inverse polynomial, which is a fit, may be off the direct one.
+/// The most pixels by which the inverse polynomial, which is a fit, may differ from the direct one.
 const MAX_DISTANCE: f64 = 2.0;
 
 /// Degrees from the axis at which the two are compared.
@@ -45,7 +45,7 @@ pub(super) fn parse(text: &str) -> Result<LensFile, LensContentError> {
     file.with_centre_inside()
 }
 
-/// The lines that hold numbers.
+/// The lines that contain numbers.
 fn lines(text: &str) -> Result<Vec<Line>, LensContentError> {
     let mut lines = Vec::new();
     for (index, text) in text.lines().enumerate() {
@@ -68,7 +68,7 @@ impl Line {
         <[f64; N]>::try_from(self.numbers.as_slice()).map_err(|_| self.wrong(N, what))
     }
 
-    /// The coefficients that follow their own number.
+    /// The coefficients, which follow their count.
     fn polynomial(&self, what: &'static str) -> Result<&[f64], LensContentError> {
         let (&count, coefficients) = self.numbers.split_first().unwrap_or((&0.0, &[]));
         if count.fract() != 0.0 || !(1.0..=MAX_COEFFICIENTS as f64).contains(&count) {
@@ -85,8 +85,8 @@ impl Line {
     }
 }
 
-/// Whether the inverse polynomial, r of the angle above the plane of the sensor, belongs to the direct one. It is a fit that
-/// only holds inside the pictures and is not used otherwise.
+/// Checks that the inverse polynomial belongs to the direct one; it gives r for the angle above the plane of the sensor. As a fit
+/// it holds only inside the pictures, and it is used for nothing else.
 fn check_inverse(
     lens: &CalibratedLens,
     inverse: &[f64],

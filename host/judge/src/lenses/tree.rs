@@ -1,4 +1,4 @@
-//! YAML, of which JSON is a part, as calibration programs write it: keys in every spelling, and numbers in every grouping.
+//! YAML, which includes JSON, as calibration programs write it: keys in any spelling, and numbers in any grouping.
 
 use std::borrow::Cow;
 
@@ -11,14 +11,14 @@ use crate::tables::text::quoted;
 /// The keys of a file or of a part of it.
 pub(super) struct Keys<'a>(Vec<(&'a str, &'a Yaml<'a>)>);
 
-/// `text` with OpenCV's own header, `%YAML:1.0`, as a comment: it is no directive of YAML, and older files go on without the
-/// line `---` that has to follow one.
+/// `text` with OpenCV's own header, `%YAML:1.0`, turned into a comment. It is no valid directive of YAML, and older files lack
+/// the line `---` that must follow one.
 pub(super) fn without_header(text: &str) -> Cow<'_, str> {
     if text.starts_with("%YAML:") { Cow::Owned(text.replacen('%', "#", 1)) } else { Cow::Borrowed(text) }
 }
 
-/// The most lists and groups in each other that a file may have. Lens files have four at most, and what loads them calls
-/// itself for each.
+/// The deepest nesting of lists and groups that a file may have. Lens files have four levels at most, and the loader recurses at
+/// each level.
 const DEEPEST: usize = 32;
 
 /// The documents of `text`.
@@ -53,20 +53,20 @@ fn syntax(place: Marker, reason: String) -> LensContentError {
 }
 
 impl<'a> Keys<'a> {
-    /// The keys of `node`, if it is a group of some.
+    /// The keys of `node`, if it is a group of keys.
     pub(super) fn of(node: &'a Yaml<'a>) -> Option<Self> {
         let members = node.as_mapping()?.iter();
         Some(Self(members.filter_map(|(key, value)| Some((key.as_str()?, value))).collect()))
     }
 
-    /// The first of `names` that is there, as it is spelt there, and its value. Case and punctuation do not count, so
+    /// The first of `names` that exists, as it is spelt there, and its value. Case and punctuation do not count, so
     /// `camera_matrix` is also `Camera_Matrix` and `cameraMatrix`.
     pub(super) fn find(&self, names: &[&str]) -> Option<(&'a str, &'a Yaml<'a>)> {
         let found = |name: &&str| self.0.iter().copied().find(|(key, _)| bare(key) == bare(name));
         names.iter().find_map(found)
     }
 
-    /// Refuses two keys that are `name`, of which nobody could tell which one is meant.
+    /// Refuses a second key for `name`: it would be unclear which of the two is meant.
     pub(super) fn check_once(&self, name: &str) -> Result<(), LensContentError> {
         let mut found = self.0.iter().map(|(key, _)| *key).filter(|key| bare(key) == bare(name));
         match (found.next(), found.next()) {
@@ -77,7 +77,7 @@ impl<'a> Keys<'a> {
         }
     }
 
-    /// As [`Self::find`], for `what` that must be there.
+    /// Like [`Self::find`], for `what` that must exist.
     pub(super) fn get(
         &self,
         what: &'static str,
@@ -86,7 +86,7 @@ impl<'a> Keys<'a> {
         self.find(names).ok_or_else(|| LensContentError::Missing { what, keys: names.join(", ") })
     }
 
-    /// The keys that are groups of keys themselves and have a name such as cam0.
+    /// The keys that are groups of keys themselves and are named like cam0.
     pub(super) fn cameras(&self) -> Vec<(&'a str, &'a Yaml<'a>)> {
         let numbered = |key: &str| {
             key.strip_prefix("cam")
@@ -100,7 +100,7 @@ fn bare(key: &str) -> String {
     key.chars().filter(char::is_ascii_alphanumeric).map(|letter| letter.to_ascii_lowercase()).collect()
 }
 
-/// The numbers of `value`: of a list, of a list of lists, or of a matrix with `data`.
+/// The numbers in `value`, which may be a list, a list of lists, or a matrix with `data`.
 pub(super) fn numbers(key: &str, value: &Yaml<'_>) -> Result<Vec<f64>, LensContentError> {
     if let Some(data) = Keys::of(value).and_then(|keys| keys.find(&["data"])) {
         return numbers(key, data.1);
@@ -119,7 +119,7 @@ pub(super) fn numbers(key: &str, value: &Yaml<'_>) -> Result<Vec<f64>, LensConte
     Ok(found)
 }
 
-/// The finite number that `value` is.
+/// `value` as a finite number.
 pub(super) fn number(key: &str, value: &Yaml<'_>) -> Result<f64, LensContentError> {
     let plain = value.as_floating_point().or_else(|| value.as_integer().map(|integer| integer as f64));
     let number = plain.or_else(|| value.as_str().and_then(|word| word.parse().ok()));

@@ -1,4 +1,4 @@
-//! Why a lens, tables or a kernel cannot be had.
+//! Why a lens, tables or a kernel cannot be used.
 
 use std::path::PathBuf;
 
@@ -79,14 +79,14 @@ pub enum OpticsError {
 }
 
 impl OpticsError {
-    /// Whether it is a file of another datapath, which is refused like a board of one.
+    /// Whether a file is for another datapath. It is refused in the same way as a board with another datapath.
     #[must_use]
     pub fn is_other_datapath(&self) -> bool {
         matches!(self, Self::File(TableFileError::Datapath { .. }))
     }
 }
 
-/// How many rows lie outside of the image circle, and where that is.
+/// How many rows lie outside the image circle, and where the circle is.
 pub(super) fn circle(outside: usize, rows: usize, radius: f64, centre: f64) -> String {
     format!(
         "{outside} of {rows} rows lie outside the image circle, whose radius is {radius:.3} pixels around row {centre:.1}"

@@ -1,4 +1,4 @@
-//! What a caller says of the frames that a lens is seen by.
+//! What a caller says about the frames that a lens images.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use super::{Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, TablesBy};
 use crate::call::Input;
 use crate::lenses::LensFile;
 
-/// Frames behind a lens. What is left out, the lens file says, and otherwise it is that of the paper.
+/// The frames that a lens images. What is left out comes from the lens file, or else from the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// Columns, even, 64 to 2592.
@@ -21,7 +21,7 @@ pub struct View {
     pub centre_x: Option<f64>,
     /// The row of the lens's axis.
     pub centre_y: Option<f64>,
-    /// The angle across what counts as image circle, in degrees, above 0 and at most 360.
+    /// The angle across the image circle, in degrees, above 0 and at most 360.
     pub field_of_view: f64,
 }
 
@@ -39,7 +39,7 @@ impl Default for View {
 }
 
 impl View {
-    /// Frames of `(width, height)`, unless another size is said.
+    /// Frames of `(width, height)`, unless this view gives another size.
     ///
     /// # Errors
     /// [`OpticsError::Geometry`] when no board takes them.
@@ -47,7 +47,7 @@ impl View {
         Ok(Geometry::centred(self.width.unwrap_or(width), self.height.unwrap_or(height), self.depth)?)
     }
 
-    /// The lens with its axis at `centre`, unless another place is said.
+    /// The lens with its axis at `centre`, unless this view gives another place.
     ///
     /// # Errors
     /// [`OpticsError::Camera`] when frames of `geometry` cannot have it.
@@ -65,7 +65,7 @@ impl View {
         self.width.is_some() || self.height.is_some()
     }
 
-    /// Whether `error` is of the lens and not of what is said here.
+    /// Whether `error` is caused by the lens rather than by this view.
     fn is_innocent_of(&self, error: &CameraError) -> bool {
         match error {
             CameraError::Lens(LensError::FieldOfView(_)) => false,
@@ -77,21 +77,21 @@ impl View {
 }
 
 impl Optics {
-    /// The lens in the file `path`, before frames of the size and the axis that it was calibrated with, or else of the
-    /// paper's size, as far as `view` does not say it.
+    /// The lens in the file `path`. What `view` leaves out of the frames' size and axis is as in its calibration, or else the
+    /// paper's.
     ///
     /// # Errors
-    /// [`OpticsError`] when the file cannot be read, holds no lens, or one that such frames cannot have.
+    /// [`OpticsError`] when the file cannot be read, holds no lens, or its lens does not fit such frames.
     pub fn of_file(path: &Path, view: &View, by: TablesBy) -> Result<Self, OpticsError> {
         let (file, input) = LensFile::read(path)?;
         Self::of_lens_file(input, &file, None, view, by)
     }
 
-    /// The lens of `file`, which was read from `input`, as [`Self::of_file`] has it. With `scale`, the pixels of the frame for each of
-    /// its own, it is the lens alone, before frames of the paper's size with the axis in their middle.
+    /// The lens of `file`, which was read from `input`, like [`Self::of_file`]. With `scale`, the frame's pixels for each pixel
+    /// of the calibration, only the lens is taken: the frames have the paper's size and the axis in their middle.
     ///
     /// # Errors
-    /// [`OpticsError`] when such frames cannot have it.
+    /// [`OpticsError`] when it does not fit such frames.
     pub fn of_lens_file(
         input: Input,
         file: &LensFile,
@@ -118,20 +118,20 @@ impl Optics {
         Ok(Self::calibrated(camera, file.model, input, by)?)
     }
 
-    /// An equidistant lens before frames of the paper's size with the axis in their middle, as far as `view` does not say it.
+    /// An equidistant lens. What `view` leaves out is as in frames of the paper's size with the axis in their middle.
     ///
     /// # Errors
-    /// [`OpticsError`] when such frames cannot have it.
+    /// [`OpticsError`] when it does not fit such frames.
     pub fn of_equidistant(lens: Equidistant, view: &View, by: TablesBy) -> Result<Self, OpticsError> {
         let geometry = view.geometry(PAPER_SIZE)?;
         let camera = view.camera(geometry, lens.into(), geometry.middle())?;
         Ok(Self::equidistant(camera, lens, view.centre_y, by))
     }
 
-    /// The paper's lens before frames of `geometry`'s size and depth, for tables that say no lens.
+    /// The paper's lens for frames of `geometry`'s size and depth, for tables that name no lens.
     ///
     /// # Errors
-    /// As [`Self::of_equidistant`].
+    /// Like [`Self::of_equidistant`].
     pub fn before(geometry: &Geometry) -> Result<Self, OpticsError> {
         let (width, height) = (Some(geometry.width()), Some(geometry.height()));
         let view = View { width, height, depth: geometry.depth(), ..View::default() };
