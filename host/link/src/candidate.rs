@@ -6,30 +6,31 @@ use std::fmt;
 use super::Link;
 use crate::target::BoardKind;
 
-/// Opens the link to a board once more: called after an outage, as often as it fails. What it had before is closed by then.
+/// Opens the link to a board again after an outage. Called repeatedly until it succeeds; the earlier link is closed by then.
 pub type Reopener = Box<dyn FnMut() -> Result<Box<dyn Link>, Box<dyn Error + Send + Sync>> + Send>;
 
 /// A board that is about to be opened. [`open`](crate::open) makes one of a target; a program with a link of its own
 /// makes one itself.
 pub struct Candidate {
-    /// What the board is called in results and logs: the target string, for one that has a target.
+    /// The board's name in results and logs: the target string, if it has a target.
     pub target: String,
-    /// What the target's kind says that it is. A link to the outside may still lead to a mock, and then the board says so.
+    /// The kind of board that the target promises. A link that leaves this process may still lead to a mock; then the board says
+    /// so.
     pub kind: BoardKind,
     /// The link to it.
     pub link: Box<dyn Link>,
-    /// How to open the link again when the board went away; none if it cannot be, and then an outage ends the run.
+    /// How to open the link again after the board went away. If none, an outage ends the run.
     pub reopen: Option<Reopener>,
 }
 
 impl Candidate {
-    /// A board of `kind` behind `link`, called `target`, that cannot be opened again.
+    /// A board of `kind` behind `link`, called `target`. Its link cannot be opened again.
     #[must_use]
     pub fn new(target: impl Into<String>, kind: BoardKind, link: impl Link + 'static) -> Self {
         Self { target: target.into(), kind, link: Box::new(link), reopen: None }
     }
 
-    /// The same, to be opened again by `reopen`.
+    /// The same, but `reopen` opens the link again.
     #[must_use]
     pub fn reopened_by<L, E, F>(self, mut reopen: F) -> Self
     where

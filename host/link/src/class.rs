@@ -1,12 +1,12 @@
-//! What an error means to whoever called: three classes, whatever the kind of link.
+//! What an error means to the caller: three classes, whatever the kind of link.
 
-/// Whose an error is.
+/// Who can do something about an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Class {
     /// The call was wrong: another target or another option is needed.
     Call,
-    /// The station: a cable, a port, a right, a program.
+    /// Something at the station is wrong: a cable, a port, a permission, a program.
     Station,
-    /// Somebody else has what is needed.
+    /// Another program or host has what is needed.
     Busy,
 }

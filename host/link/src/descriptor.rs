@@ -1,4 +1,4 @@
-//! A file descriptor that never blocks, both ways in one call: what a serial port and a socket have in common.
+//! A file descriptor that never blocks and is read and written in one call: what a serial port and a socket have in common.
 
 use std::io;
 use std::os::fd::RawFd;
@@ -9,7 +9,7 @@ use nix::fcntl::{FcntlArg, OFlag, fcntl};
 use nix::poll::{PollFd, PollFlags, poll};
 use nix::unistd::{read, write};
 
-/// Bytes taken in one read. A serial port hands out 4 KiB at most, a socket as much as fits.
+/// Bytes taken in one read. A serial port returns 4 KiB at most, a socket as much as fits.
 const CHUNK: usize = 64 * 1024;
 
 /// Why nothing can be exchanged any more.
@@ -17,11 +17,11 @@ const CHUNK: usize = 64 * 1024;
 pub enum Gone {
     /// The other end has hung up.
     HungUp,
-    /// The system says no.
+    /// The system reports an error.
     Failed(io::Error),
 }
 
-/// Lets reads and writes return at once.
+/// Makes reads and writes return at once.
 ///
 /// # Errors
 /// The system's reason.
@@ -44,10 +44,10 @@ impl Default for Pump {
 }
 
 impl Pump {
-    /// As [`Link::exchange`](super::Link::exchange). A signal ends the wait early, so that whoever asked for it is heard.
+    /// Like [`Link::exchange`](super::Link::exchange). A signal ends the wait early, so that a request to stop is noticed.
     ///
     /// # Errors
-    /// [`Gone`] when the other end is, or the system refuses.
+    /// [`Gone`] when the other end is gone, or the system refuses.
     pub fn exchange(
         &mut self,
         fd: RawFd,
@@ -55,12 +55,12 @@ impl Pump {
         incoming: &mut Vec<u8>,
         wait: Duration,
     ) -> Result<usize, Gone> {
-        // None is for ever.
+        // None means no limit.
         let deadline = Instant::now().checked_add(wait);
         loop {
             let received = self.receive(fd, incoming)?;
             let taken = match send(fd, outgoing) {
-                // What was received counts; the next call meets the failure again.
+                // What was received counts; the next call will fail again.
                 Err(_) if received > 0 => 0,
                 taken => taken?,
             };
@@ -74,10 +74,10 @@ impl Pump {
         }
     }
 
-    /// Appends what is there, and returns its length.
+    /// Appends the bytes that have arrived, and returns their number.
     ///
     /// # Errors
-    /// [`Gone`] when the other end is, or the system refuses.
+    /// [`Gone`] when the other end is gone, or the system refuses.
     pub fn receive(&mut self, fd: RawFd, incoming: &mut Vec<u8>) -> Result<usize, Gone> {
         match read(fd, &mut self.chunk) {
             Ok(0) => Err(Gone::HungUp),
@@ -90,10 +90,10 @@ impl Pump {
     }
 }
 
-/// Writes what the descriptor takes, and returns its length.
+/// Writes as many bytes as the descriptor takes, and returns their number.
 ///
 /// # Errors
-/// [`Gone`] when the other end is, or the system refuses.
+/// [`Gone`] when the other end is gone, or the system refuses.
 pub fn send(fd: RawFd, outgoing: &[u8]) -> Result<usize, Gone> {
     if outgoing.is_empty() { Ok(0) } else { write(fd, outgoing).or_else(nothing_yet) }
 }
@@ -101,17 +101,16 @@ pub fn send(fd: RawFd, outgoing: &[u8]) -> Result<usize, Gone> {
 fn nothing_yet(error: Errno) -> Result<usize, Gone> {
     match error {
         Errno::EAGAIN | Errno::EINTR => Ok(0),
-        // A terminal that hung up answers EIO, one whose device was pulled out ENXIO or ENODEV.
+        // A terminal that hung up returns EIO, and one whose device was pulled out ENXIO or ENODEV.
         Errno::EIO | Errno::EPIPE | Errno::ENXIO | Errno::ENODEV | Errno::ECONNRESET => Err(Gone::HungUp),
         error => Err(Gone::Failed(error.into())),
     }
 }
 
-/// Waits until there is something to read, or to write if that is wanted. Returns false when the time is over or a
-/// signal came.
+/// Waits until there is something to read or, if `to_write`, room to write. Returns false when the time is over or a signal came.
 ///
 /// # Errors
-/// [`Gone`] when the other end is, or the system refuses.
+/// [`Gone`] when the other end is gone, or the system refuses.
 pub fn is_ready(fd: RawFd, to_write: bool, wait: Duration) -> Result<bool, Gone> {
     let mut events = PollFlags::POLLIN;
     events.set(PollFlags::POLLOUT, to_write);

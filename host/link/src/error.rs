@@ -111,7 +111,7 @@ impl OpenError {
         Self::AddressMissing { form: forms.join(" or "), kind }
     }
 
-    /// Whether what the target names is there, and is kept from this program: by its rights, by another program, or by how it is
+    /// Whether the target's device exists but this program cannot use it, because of permissions, another program, or how it is
     /// set up.
     #[must_use]
     pub fn is_kept_from_us(&self) -> bool {
@@ -130,7 +130,7 @@ impl OpenError {
         }
     }
 
-    /// Whose error it is.
+    /// Who can do something about it.
     #[must_use]
     pub fn class(&self) -> Class {
         match self {
@@ -143,7 +143,7 @@ impl OpenError {
     }
 }
 
-/// What to write in place of a kind that there is not: a device's path is taken for a kind where nothing stands in front of it.
+/// What to write instead of an unknown kind. A device's path ends up as the kind when no kind stands before it.
 fn instead_of(kind: &str) -> String {
     if kind.starts_with("/dev/") {
         return format!("for a serial port write serial:{kind}");

@@ -1,11 +1,11 @@
-//! What FTDI's chips have in common, whether the system's driver drives them or this program: a vendor id, and baud
-//! generators that divide a clock by eighths. The driver takes the nearest rate without a word, however far it is.
+//! What FTDI's chips have in common, whether the system's driver uses them or this program: a vendor id, and baud generators that
+//! divide a clock in steps of an eighth. The driver silently takes the nearest rate, however far off it is.
 
 /// FTDI's vendor id.
 pub(crate) const VENDOR: u16 = 0x0403;
 
-/// How far a rate may be from the one that is asked for. A receiver samples the last of ten bits half a bit from its edge,
-/// so 5 % lose it; either side may spend a share of that.
+/// How far a rate may be from the one that was asked for. A receiver samples the last of ten bits half a bit from its edge, so 5
+/// % would miss it. Each side may use up a part of that.
 pub(crate) const TOLERANCE: f64 = 0.02;
 
 /// The two families of chips, by the clock of their baud generators.
@@ -26,7 +26,7 @@ impl Speed {
         }
     }
 
-    /// The fastest serial rate.
+    /// The fastest serial rate, in baud.
     pub(crate) fn fastest(self) -> u32 {
         match self {
             Self::High => 12_000_000,
@@ -34,18 +34,18 @@ impl Speed {
         }
     }
 
-    /// The divisor for `baud`, as the request wants it: eighths in bits 14 to 16, bit 17 for the 12 MHz clock.
+    /// The divisor for `baud` as the request encodes it: eighths in bits 14 to 16, bit 17 for the 12 MHz clock.
     ///
-    /// Next to the fastest rate there are two more without eighths, 2/3 and 1/2 of it. What a high-speed chip makes
-    /// between the fastest and a half jitters and collapses to 2/3, so those rates are refused, 2/3 included.
+    /// Below the fastest rate there are two special ones without eighths, 2/3 and 1/2 of it. Between the fastest rate and half of
+    /// it a high-speed chip's output jitters and collapses to 2/3, so those rates are refused, including 2/3.
     ///
     /// # Errors
-    /// The nearest rates that the chip makes, the lower first, when none is close enough.
+    /// The nearest rates that the chip makes, the lower first, when none is close enough to `baud`.
     pub(crate) fn divisor(self, baud: u32) -> Result<u32, Vec<u32>> {
         const EIGHTHS: [u32; 8] = [0, 3, 2, 4, 1, 5, 6, 7];
         let fastest = f64::from(self.fastest());
         let wanted = f64::from(baud).max(1.0);
-        // The slowest divisor is 2^14 - 1 and seven eighths.
+        // The largest divisor is 2^14 - 1 and seven eighths.
         let near = (8.0 * fastest / wanted).clamp(8.0, 131_071.0);
         let mut rates: Vec<(f64, u32)> = [near.floor(), near.ceil(), 8.0, 12.0, 16.0]
             .into_iter()
@@ -69,7 +69,7 @@ impl Speed {
     }
 }
 
-/// Rates as an error names them.
+/// The rates as an error lists them.
 pub(crate) fn list(rates: &[u32]) -> String {
     let rates: Vec<String> = rates.iter().map(ToString::to_string).collect();
     rates.join(" and ")
@@ -116,7 +116,7 @@ mod tests {
             assert_eq!(Speed::High.divisor(baud), Err(vec![6_000_000, 12_000_000]), "{baud}");
         }
         assert_eq!(Speed::High.divisor(20_000_000), Err(vec![6_000_000, 12_000_000]));
-        // 96 MHz / 5.82 MHz is 16.5: 2.9 % away on either side.
+        // 96 MHz / 5.82 MHz is 16.5, so both neighbours are 2.9 % away.
         assert_eq!(Speed::High.divisor(5_820_000), Err(vec![5_647_059, 6_000_000]));
         assert_eq!(Speed::Full.divisor(12_000_000), Err(vec![2_000_000, 3_000_000]));
         assert!(Speed::High.divisor(0).is_err());

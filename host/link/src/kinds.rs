@@ -1,14 +1,14 @@
-//! Every kind of board that a target can name, once: how it is written, what it is, how it is opened, where such boards
-//! are found. A new kind is a line here and a module beside.
+//! Every kind of board that a target can name: how it is written, what it is, how it is opened, and where such boards are found.
+//! A new kind is a line here and a module.
 
 use crate::discovery::{Found, serial_ports, usb_chips};
 use crate::open::{check_replay, check_simulated, open_mock, open_replay, open_simulated};
 use crate::{BoardKind, Link, OpenError, SerialLink, Target, TcpLink, UsbLink};
 
-/// A way to write a target of a kind.
+/// A way to write a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Form {
-    /// The target; capitals stand for what is to be filled in.
+    /// The target; words in capitals are to be filled in.
     pub target: &'static str,
     /// What it leads to, for people.
     pub summary: &'static str,
@@ -17,17 +17,17 @@ pub struct Form {
 /// A kind of board.
 #[derive(Debug)]
 pub struct Kind {
-    /// What a target begins with.
+    /// The word that a target begins with.
     pub name: &'static str,
     /// Every way to write one, the usual one first.
     pub forms: &'static [Form],
-    /// What stands behind it, as far as the kind tells.
+    /// What is at the other end, as far as the kind tells.
     pub board: BoardKind,
-    /// Whether a target's address and options are those of the kind; no device, host or file is looked at.
+    /// Checks that a target's address and options suit the kind, without looking for a device, host or file.
     pub(crate) check: fn(&Target) -> Result<(), OpenError>,
-    /// Opens the link; nothing is said over it yet.
+    /// Opens the link without sending anything over it.
     pub(crate) open: fn(&Target) -> Result<Box<dyn Link>, OpenError>,
-    /// Lists what could be such a board on this computer; what cannot be listed at all is not there.
+    /// Lists what could be such a board on this computer. What cannot be listed at all is left out.
     pub find: fn() -> Vec<Found>,
 }
 
@@ -111,7 +111,7 @@ impl Kind {
     }
 }
 
-/// The kind that a target names, if it is one.
+/// The kind of `target`, if it exists.
 #[must_use]
 pub fn of(target: &Target) -> Option<&'static Kind> {
     KINDS.iter().find(|kind| kind.name == target.kind)

@@ -52,18 +52,18 @@ pub use wire::WireLink;
 #[cfg(feature = "sim")]
 pub use halfrow_sim::TraceError;
 
-/// A byte pipe to a board. It can be sent to another thread, so that each of several boards can be judged on its own.
+/// A byte pipe to a board. It can be sent to another thread, so several boards can be judged at the same time.
 ///
-/// Both directions move in one call, so a host that uses it cannot deadlock with a board that waits to be read: whatever
-/// the board sends is taken while the host sends.
+/// Both directions move in one call, so a host cannot deadlock with a board that waits to be read: what the board sends is taken
+/// while the host sends.
 pub trait Link: Send {
-    /// Writes what the pipe takes of `outgoing`, appends to `incoming` what has arrived, and returns the number of bytes
-    /// taken. Returns as soon as a byte has moved either way, and without one when `wait` has passed, or earlier: when a signal
-    /// came, or so that whoever was asked to stop looks at that. So 0 does not say that `wait` is over; [`Self::now`] does. It may
-    /// also look some milliseconds longer, whatever `wait` is.
+    /// Writes what the pipe takes of `outgoing`, appends to `incoming` what has arrived, and returns the number of bytes taken.
+    /// Returns as soon as a byte has moved in either direction. Without one it returns when `wait` has passed, or earlier: after
+    /// a signal, or so that the caller can check whether it was asked to stop. So 0 does not mean that `wait` is over; see
+    /// [`Self::now`]. It may also take some milliseconds longer than `wait`.
     ///
     /// # Errors
-    /// [`LinkError`] when the pipe is broken; bytes that had moved before are accounted for in earlier calls.
+    /// [`LinkError`] when the pipe is broken. Bytes that moved before were returned by earlier calls.
     fn exchange(
         &mut self,
         outgoing: &[u8],
@@ -71,27 +71,28 @@ pub trait Link: Send {
         wait: Duration,
     ) -> Result<usize, LinkError>;
 
-    /// The link's own clock, from its opening. Deadlines are kept by it, so that a link on a virtual clock times out in
+    /// The link's own clock, which starts when the link opens. Deadlines follow it, so a link on a virtual clock times out in
     /// virtual time.
     fn now(&self) -> Duration;
 
-    /// The bytes a second that the slower direction carries, when that is known.
+    /// The bytes a second that the slower direction carries, if known.
     fn bytes_per_second(&self) -> Option<f64>;
 
-    /// Whether nobody else can reach the board while the link is open. Then a session of another host is one that was killed.
+    /// Whether nobody else can reach the board while the link is open. Then a session of another host must be that of a killed
+    /// program.
     fn is_exclusive(&self) -> bool {
         false
     }
 
-    /// Whether nothing leaves it unless the board's end drives CTS.
+    /// Whether nothing is sent unless the board's end drives CTS.
     fn waits_for_cts(&self) -> bool {
         false
     }
 
-    /// What it is, for people.
+    /// Its name, for people.
     fn name(&self) -> String;
 
-    /// What the chip at its near end has seen go wrong on the line; none for a link that cannot tell.
+    /// What the chip at the near end has seen go wrong on the line; all zero for a link that cannot tell.
     fn line_errors(&self) -> LineErrors {
         LineErrors::default()
     }

@@ -1,13 +1,13 @@
-//! What the chip at a link's near end sees go wrong on its line.
+//! Errors that the chip at a link's near end sees on its line.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// What the chip says went wrong on its pins, counted in packets.
+/// Errors on the chip's pins, counted in packets that report them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LineErrors {
-    /// Bytes got lost, since the host did not fetch them in time.
+    /// Bytes were lost because the host did not fetch them in time.
     pub overrun: u64,
     /// A parity bit was wrong.
     pub parity: u64,
@@ -27,13 +27,13 @@ impl std::ops::AddAssign for LineErrors {
 }
 
 impl LineErrors {
-    /// How many there are in all.
+    /// Their total.
     #[must_use]
     pub fn sum(self) -> u64 {
         self.overrun + self.parity + self.framing + self.breaks
     }
 
-    /// What to do about them when nothing could be judged.
+    /// What to do about them if nothing could be judged.
     #[must_use]
     pub fn advice(self) -> Option<&'static str> {
         match self {
@@ -53,10 +53,10 @@ impl LineErrors {
         }
     }
 
-    /// Counts what a chip's line status names.
+    /// Counts the errors that a chip's line status names.
     pub(crate) fn count(&mut self, line_status: u8) {
         let bit = |mask: u8| u64::from(line_status & mask != 0);
-        // Bit 7 is set while any error lies in the receive FIFO, and names none.
+        // Bit 7 only says that some error is in the receive FIFO.
         self.overrun += bit(0x02);
         self.parity += bit(0x04);
         self.framing += bit(0x08);

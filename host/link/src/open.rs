@@ -13,10 +13,10 @@ use crate::target::{BoardKind, Target};
 
 const MOCK: &str = "the mock board";
 
-/// Whether `target` is written as one of ours, which can be told before its board is plugged in or powered.
+/// Checks that `target` is written correctly. This is possible before its board is plugged in or powered.
 ///
 /// # Errors
-/// [`OpenError`] when it is of no kind that there is, or its address or options are not of that kind.
+/// [`OpenError`] when its kind does not exist, or its address or options do not suit the kind.
 pub fn check(target: &Target) -> Result<(), OpenError> {
     (kind(target)?.check)(target)
 }
@@ -25,24 +25,24 @@ fn kind(target: &Target) -> Result<&'static Kind, OpenError> {
     kinds::of(target).ok_or_else(|| OpenError::UnknownKind(target.kind.clone()))
 }
 
-/// Opens the link that `target` names; nothing is said over it yet.
+/// Opens the link that `target` names, without sending anything over it.
 ///
 /// # Errors
-/// [`OpenError`] when the target is none of ours, or its options are not.
+/// [`OpenError`] when the target's kind, address or options are wrong, or its link cannot be opened.
 pub fn open(target: &Target) -> Result<Candidate, OpenError> {
     let kind = kind(target)?;
     let link = (kind.open)(target)?;
     let again = target.clone();
-    // What a recording says once it would say from its beginning again.
+    // A recording would start again from its beginning.
     let is_there_again = kind.board != BoardKind::Replay;
     let reopen = is_there_again.then(|| Box::new(move || Ok(open(&again)?.link)) as Reopener);
     Ok(Candidate { target: target.to_string(), kind: kind.board, link, reopen })
 }
 
-/// What is broken in the board of a `mock` target, on purpose; none when nothing is, or the target is another.
+/// The fault that a `mock` target asks for; none if it asks for none, or for another kind of target.
 ///
 /// # Errors
-/// [`OpenError`] when the mock board has no such options.
+/// [`OpenError`] when the mock board does not have these options.
 pub fn fault(target: &Target) -> Result<Option<BoardFault>, OpenError> {
     if target.kind != "mock" {
         return Ok(None);
@@ -70,10 +70,10 @@ pub(crate) fn open_simulated(target: &Target) -> Result<Box<dyn Link>, OpenError
     Err(OpenError::NoSimulation(target.to_string()))
 }
 
-/// Options of a target, each with its value.
+/// The options of a target, as pairs of key and value.
 pub(super) type Options<'a> = Vec<(&'a str, &'a str)>;
 
-/// Whether the pipe of a board in this process is paced, and the other options.
+/// Whether the pipe of a board in this process is paced, and the remaining options.
 pub(super) fn pace(target: &Target) -> Result<(bool, Options<'_>), OpenError> {
     let mut paced = false;
     let mut options = Options::new();
@@ -100,7 +100,7 @@ pub(crate) fn open_replay(target: &Target) -> Result<Box<dyn Link>, OpenError> {
     Ok(Box::new(ReplayLink::new(read_replay(target)?)?))
 }
 
-/// The recording that `target` names, if it names one.
+/// The recording that `target` names; none for another kind of target.
 ///
 /// # Errors
 /// [`OpenError`] when it has options or no file, or the file is no recording.
@@ -108,7 +108,7 @@ pub fn recording(target: &Target) -> Result<Option<Recording>, OpenError> {
     if target.kind == "replay" { read_replay(target).map(Some) } else { Ok(None) }
 }
 
-/// The file of the recording that `target` names, if it names one.
+/// The file of the recording that `target` names; none for another kind of target.
 #[must_use]
 pub fn recording_file(target: &Target) -> Option<&Path> {
     target.address.as_deref().filter(|_| target.kind == "replay").map(Path::new)

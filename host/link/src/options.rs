@@ -1,13 +1,13 @@
-//! The options of a target, KEY=VALUE: one reader for every kind of board.
+//! The options of a target, KEY=VALUE, read in the same way for every kind of board.
 
 use std::str::FromStr;
 
 use crate::{OpenError, Target};
 
-/// Hands every option to `take`, which says whether there is such an option with such a value; `known` names those that there are.
+/// Passes every option to `take`, which returns whether an option with this key and value exists. `known` lists those that exist.
 ///
 /// # Errors
-/// [`OpenError::Option`] for the first that is not taken.
+/// [`OpenError::Option`] for the first option that `take` does not accept.
 pub(crate) fn read(
     target: &Target,
     known: &'static str,
@@ -21,7 +21,7 @@ pub(crate) fn read(
     }
 }
 
-/// Puts what `read` makes of a value into its place, and tells whether it made anything.
+/// Stores the value if `read` has one, and returns whether it has.
 pub(crate) fn set<T>(place: &mut T, read: Option<T>) -> bool {
     let is_read = read.is_some();
     if let Some(value) = read {
@@ -30,7 +30,7 @@ pub(crate) fn set<T>(place: &mut T, read: Option<T>) -> bool {
     is_read
 }
 
-/// A number from 1 on.
+/// A number greater than 0.
 pub(crate) fn positive<T: FromStr + Default + PartialOrd>(value: &str) -> Option<T> {
     value.parse().ok().filter(|number| *number > T::default())
 }

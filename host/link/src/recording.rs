@@ -1,11 +1,11 @@
-//! Recordings: every byte of a run with its time, in a file that can be judged again without a board.
+//! Recordings: every byte of a run with its time, in a file from which the run can be judged again without a board.
 //!
 //! ```text
 //! "halfrow recording 1\n"
 //! one line of JSON                     the link, and what the host needs to hold the conversation again
 //! then for every exchange: u64 time in nanoseconds, u32 taken, u32 received, the bytes taken, the bytes received
 //! ```
-//! Integers are little endian. A recording that ends early is one of an interrupted run.
+//! Integers are little endian. A recording that ends early is that of an interrupted run.
 
 use std::fmt;
 use std::fs::File;
@@ -94,29 +94,30 @@ impl<'a> Exchange<'a> {
     }
 }
 
-/// The file of a recording to come. It is written aside until the recorder is dropped.
+/// The file of a recording that is to be made. It is written aside until the recorder is dropped.
 #[derive(Debug)]
 pub struct RecordingFile(Aside);
 
 impl RecordingFile {
-    /// Makes sure that a recording can be written to `path`, before a board is opened for it.
+    /// Makes sure, before a board is opened, that a recording can be written to `path`.
     ///
     /// # Errors
-    /// [`RecordingError::Create`] when the file is there and `overwrite` is not given, is being recorded by another run, or
-    /// cannot be written.
+    /// [`RecordingError::Create`] when the file exists and `overwrite` is false, another run is recording to it, or it cannot be
+    /// written.
     pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, RecordingError> {
         Ok(Self(Aside::stream(path, overwrite)?))
     }
 }
 
-/// A link that writes down what another one carries.
+/// A link that records what another link carries.
 pub struct Recorder {
     link: Box<dyn Link>,
     file: Option<RecordingFile>,
     lost: Lost,
 }
 
-/// Why a recording could not be written or finished, once its recorder is gone; empty when it is whole.
+/// Why a recording could not be written or finished. Set at the latest when its recorder is dropped; empty if the recording is
+/// complete.
 pub type Lost = Arc<OnceLock<Unfinished>>;
 
 impl fmt::Debug for Recorder {
@@ -126,7 +127,7 @@ impl fmt::Debug for Recorder {
 }
 
 impl Recorder {
-    /// Records what `link` carries to `file`, with `run` in front.
+    /// Records to `file` what `link` carries, after a head that contains `run`.
     ///
     /// # Errors
     /// [`LinkError::Record`] when the file cannot be written.
@@ -151,7 +152,7 @@ impl Recorder {
         Ok(Self { link, file: Some(file), lost: Lost::default() })
     }
 
-    /// Where it will be said if the recording cannot be finished.
+    /// Where a failure to finish the recording will be reported.
     #[must_use]
     pub fn lost(&self) -> Lost {
         Arc::clone(&self.lost)
@@ -213,13 +214,13 @@ impl Link for Recorder {
     }
 }
 
-/// A recording, read into memory.
+/// A recording that was read into memory.
 #[derive(Debug)]
 pub struct Recording {
     path: PathBuf,
     head: String,
     bytes: Vec<u8>,
-    /// Where the exchanges begin.
+    /// Offset of the first exchange.
     start: usize,
 }
 
@@ -242,15 +243,15 @@ impl Recording {
         Some(Self { path: path.to_owned(), head, start: MAGIC.len() + end + 1, bytes })
     }
 
-    /// What the host wrote in front of the bytes.
+    /// What the host stored in the head.
     ///
     /// # Errors
-    /// [`RecordingError::Head`] when it is not a `T`.
+    /// [`RecordingError::Head`] when that is not a `T`.
     pub fn run<T: DeserializeOwned>(&self) -> Result<T, RecordingError> {
         self.head().map(|head| head.run)
     }
 
-    /// The rate that the recorded link said it had.
+    /// The rate of the recorded link, if it knew one.
     ///
     /// # Errors
     /// [`RecordingError::Head`] when the head does not parse.
@@ -258,7 +259,7 @@ impl Recording {
         self.head::<serde::de::IgnoredAny>().map(|head| head.bytes_per_second)
     }
 
-    /// Whether the recorded link was its program's alone.
+    /// Whether only its program could reach the board over the recorded link.
     ///
     /// # Errors
     /// [`RecordingError::Head`] when the head does not parse.
@@ -271,13 +272,13 @@ impl Recording {
             .map_err(|source| RecordingError::Head { path: self.path.clone(), source })
     }
 
-    /// The file.
+    /// The file's path.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// All bytes that the host sent, in order, piece by piece.
+    /// All bytes that the host sent, in order, exchange by exchange.
     pub fn sent(&self) -> impl Iterator<Item = &[u8]> {
         let mut place = self.start;
         std::iter::from_fn(move || self.next(&mut place)).map(|exchange| exchange.taken)
@@ -288,12 +289,12 @@ impl Recording {
         std::iter::from_fn(|| self.next(&mut place).map(|exchange| exchange.taken.len())).sum()
     }
 
-    /// Where the first exchange is, for [`Self::next`].
+    /// The offset of the first exchange, for [`Self::next`].
     pub(super) fn start(&self) -> usize {
         self.start
     }
 
-    /// The exchange at `place`, which becomes that of the one behind it.
+    /// The exchange at `place`. Moves `place` to the following one.
     pub(super) fn next(&self, place: &mut usize) -> Option<Exchange<'_>> {
         let mut rest = self.bytes.get(*place..)?;
         let exchange = Exchange::read(&mut rest)?;
@@ -302,7 +303,7 @@ impl Recording {
     }
 }
 
-/// All bytes of a recording; of another file, however long it is, only the first ones.
+/// All bytes of a recording. Of any other file, which may be long, only the first ones.
 fn read_ours(path: &Path) -> io::Result<Vec<u8>> {
     let file = File::open(path)?;
     let mut bytes = Vec::new();

@@ -1,24 +1,24 @@
-//! A recording as a link: it answers, byte for byte and at the same times, as the board did.
+//! A recording as a link: it answers as the board did, byte for byte and at the same times.
 
 use std::time::Duration;
 
 use super::{Link, LinkError, Recording, RecordingError};
 
-/// The most bytes with which a host that is stopped takes leave of its board: a RESET that is sent more than once.
+/// The most bytes that a stopped host sends to close its session: a RESET, sent more than once.
 const PARTING: usize = 128;
 
-/// A pipe to a board that answered once.
+/// A pipe to a recorded board.
 #[derive(Debug)]
 pub(crate) struct ReplayLink {
     name: String,
     bytes_per_second: Option<f64>,
     exclusive: bool,
     recording: Recording,
-    /// Where its next exchange is.
+    /// The offset of the next exchange.
     place: usize,
     now: Duration,
     sent: u64,
-    /// Whether the host waited where the recorded one sent.
+    /// Whether the host already waited once where the recorded one sent.
     waited: bool,
 }
 
@@ -62,7 +62,8 @@ impl Link for ReplayLink {
         let Some(exchange) = self.recording.next(&mut behind) else {
             return Err(self.ended());
         };
-        // Whoever waits by the clock ends sooner or later than it did, since a recording has none between its exchanges.
+        // A host that waits by the clock stops at another time than the recorded one did, since a recording has no clock between
+        // its exchanges.
         let waits = outgoing.is_empty() && !exchange.taken.is_empty();
         if waits && !std::mem::replace(&mut self.waited, waits) {
             return Ok(0);
@@ -85,7 +86,7 @@ impl Link for ReplayLink {
         self.now
     }
 
-    // The deadlines are sized by it, so it is part of the conversation.
+    // Deadlines are computed from it, so it is part of the conversation.
     fn bytes_per_second(&self) -> Option<f64> {
         self.bytes_per_second
     }

@@ -1,4 +1,4 @@
-//! What is left of a link that was closed.
+//! What remains of a link that was closed.
 
 use std::time::Duration;
 

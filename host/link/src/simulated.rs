@@ -12,7 +12,7 @@ use crate::target::Target;
 
 const SIMULATED: &str = "the simulated board";
 
-/// What memories and registers hold when the board is switched on is drawn by this number.
+/// The seed for the contents of memories and registers at power-up.
 const SEED: u32 = 1;
 
 /// What a target asks for.

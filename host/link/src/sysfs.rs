@@ -1,4 +1,4 @@
-//! What the kernel says of the USB device behind a serial port.
+//! What the kernel knows about the USB device behind a serial port.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ pub struct UsbDevice {
     pub vendor_id: u16,
     /// Product id.
     pub product_id: u16,
-    /// The device's version, as `bcdDevice`: FTDI's chips tell their kind by it.
+    /// The device's version, `bcdDevice`, which tells FTDI's chips apart.
     pub device_version: u16,
     /// The manufacturer's name.
     pub manufacturer: Option<String>,
@@ -18,18 +18,18 @@ pub struct UsbDevice {
     pub product: Option<String>,
     /// The serial number.
     pub serial: Option<String>,
-    /// The interface that is this port.
+    /// The USB interface of this port.
     pub interface: Option<u8>,
 }
 
-/// The USB device behind the serial port `port`, a path that may be a link; none if there is none.
+/// The USB device behind the serial port `port`, a path that may be a link; none if the port is not on USB.
 #[must_use]
 pub(crate) fn usb_device(port: &Path) -> Option<UsbDevice> {
     let device = fs::canonicalize(port).ok()?;
     usb_device_in(&Path::new("/sys/class/tty").join(device.file_name()?))
 }
 
-/// The same for `class`, the port's folder in sysfs.
+/// The same, given the port's folder in sysfs, `class`.
 fn usb_device_in(class: &Path) -> Option<UsbDevice> {
     let mut interface = None;
     let mut folder: PathBuf = fs::canonicalize(class.join("device")).ok()?;

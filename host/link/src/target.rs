@@ -1,5 +1,5 @@
-//! Target strings: `KIND[:ADDRESS][,KEY=VALUE]…` names a board, with nothing in it that a shell would touch. Blanks behind a comma
-//! count for nothing.
+//! Target strings: `KIND[:ADDRESS][,KEY=VALUE]…` names a board, without characters that a shell would interpret. Blanks after a
+//! comma are ignored.
 
 use std::fmt;
 use std::str::FromStr;
@@ -7,7 +7,7 @@ use std::str::FromStr;
 use halfrow_protocol::message::BoardNature;
 use serde::{Deserialize, Serialize};
 
-/// A board's name, taken apart but not yet looked up.
+/// A target string split into its parts, which are not looked up yet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Target {
     /// `mock`, `replay`, ….
@@ -18,7 +18,7 @@ pub struct Target {
     pub options: Vec<(String, String)>,
 }
 
-/// What stands behind a target.
+/// What is at the other end of a target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BoardKind {
@@ -28,12 +28,13 @@ pub enum BoardKind {
     Sim,
     /// A recording.
     Replay,
-    /// A board that one can touch.
+    /// A physical board.
     Hardware,
 }
 
 impl BoardKind {
-    /// What the board turns out to be: behind a link to the outside there may be a mock or a simulation, and it says so.
+    /// The kind that the board turns out to be: a link that leaves this process may lead to a mock or a simulation, which says
+    /// so.
     #[must_use]
     pub fn confirmed_by(self, nature: BoardNature) -> Self {
         match (self, nature) {
@@ -72,7 +73,7 @@ pub enum TargetError {
 }
 
 impl Target {
-    /// The mock board as it is by default.
+    /// The mock board with default options.
     #[must_use]
     pub fn mock() -> Self {
         Self { kind: "mock".to_owned(), address: None, options: Vec::new() }

@@ -1,4 +1,4 @@
-//! A TCP connection as a link, to a board that another computer exports as raw bytes, as ser2net does.
+//! A TCP connection as a link to a board that another computer exports as raw bytes, for example with ser2net.
 
 use std::io;
 use std::net::{SocketAddr, TcpStream, ToSocketAddrs};
@@ -11,10 +11,11 @@ use crate::Class;
 use crate::options::{positive, read, set};
 use crate::target::Target;
 
-/// For each address of the host. Within a laboratory a connection takes a millisecond, around the world a third of a second.
+/// The limit for each address of the host. In a laboratory a connection takes a millisecond, around the world a third of a
+/// second.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// The longest text that a server says instead of passing on bytes.
+/// The longest text that is kept of a server that sends words instead of a board's bytes.
 const LONGEST_TEXT: usize = 200;
 
 /// A connection that did not come about.
@@ -61,7 +62,7 @@ pub enum TcpError {
 }
 
 impl TcpError {
-    /// Whose error it is.
+    /// Who can do something about it.
     #[must_use]
     pub fn class(&self) -> Class {
         if matches!(self, Self::Address(_)) { Class::Call } else { Class::Station }
@@ -76,13 +77,13 @@ pub(crate) struct TcpLink {
     address: String,
     baud: Option<u32>,
     opened: Instant,
-    /// What came before the first zero byte, with which every packet of a board begins.
+    /// The bytes before the first zero byte. Every packet of a board begins with a zero.
     text: Vec<u8>,
     zero_seen: bool,
 }
 
 impl TcpLink {
-    /// Whether `target` names a host and a port, with options of this kind.
+    /// Checks that `target` names a host and a port, with options of this kind.
     pub(crate) fn check(target: &Target) -> Result<(), OpenError> {
         asked(target).map(drop)
     }
@@ -90,7 +91,7 @@ impl TcpLink {
     /// Connects to the host and port of a `tcp:HOST:PORT` target.
     ///
     /// # Errors
-    /// [`OpenError`] when the target is none, or no connection comes about.
+    /// [`OpenError`] when the target is no such target, or no connection can be made.
     pub(crate) fn open(target: &Target) -> Result<Self, OpenError> {
         let (address, baud) = asked(target)?;
         let stream = connect(&address)?;
@@ -100,7 +101,7 @@ impl TcpLink {
         Ok(Self { stream, pump, address, baud, opened, text: Vec::new(), zero_seen: false })
     }
 
-    /// Keeps text that comes where a packet should.
+    /// Keeps text that comes in place of packets.
     fn listen(&mut self, received: &[u8]) {
         if self.zero_seen || self.text.len() >= LONGEST_TEXT {
             return;
@@ -114,7 +115,7 @@ impl TcpLink {
     fn closed(&self) -> LinkError {
         let (link, at) = (self.name(), self.now());
         match words(&self.text).map(str::to_owned) {
-            // ser2net's `Port already in use` for its port, and `Object was already in use` for its device.
+            // ser2net says `Port already in use` of its own port, and `Object was already in use` of its device.
             Some(text) if !self.zero_seen && text.contains("in use") => LinkError::InUse { link, text },
             Some(text) if !self.zero_seen => LinkError::NoBoardThere { link, text },
             _ => LinkError::Closed { link, at },
@@ -151,7 +152,7 @@ impl Link for TcpLink {
     }
 }
 
-/// The words that `bytes` are, which may have been cut within the last character.
+/// `bytes` as text. They may have been cut off inside the last character.
 fn words(bytes: &[u8]) -> Option<&str> {
     let whole = match str::from_utf8(bytes) {
         Err(error) if error.error_len().is_none() => &bytes[..error.valid_up_to()],
@@ -160,7 +161,7 @@ fn words(bytes: &[u8]) -> Option<&str> {
     str::from_utf8(whole).ok().map(str::trim).filter(|words| !words.is_empty())
 }
 
-/// Host and port, and the rate at the far end.
+/// The host and port, and the rate at the far end.
 fn asked(target: &Target) -> Result<(String, Option<u32>), OpenError> {
     let address = target.address.clone().ok_or_else(|| OpenError::address_missing(target))?;
     let mut baud = None;

@@ -1,4 +1,4 @@
-//! A board in this process as a link: on its pipe's virtual clock, or paced as a real one would be.
+//! A board in this process as a link, on its pipe's virtual clock or paced like a real one.
 
 use std::time::{Duration, Instant};
 
@@ -11,15 +11,15 @@ use super::{Link, LinkError};
 pub struct WireLink<B: Endpoint> {
     pipe: Pipe<B>,
     board: &'static str,
-    /// When what was exchanged is over on a wire in real time; none where nobody waits for that.
+    /// When the exchanged bytes would have passed over a real wire; none if the link is not paced.
     due: Option<Instant>,
 }
 
-/// How far a host may be late and the wire be busy all the same: what chips and kernels hold for it.
+/// How late a host may be while the wire stays busy: what chips and kernels buffer for it.
 const BUFFERED: Duration = Duration::from_millis(10);
 
 impl<B: Endpoint> WireLink<B> {
-    /// A link over `pipe` to what is called `board`; `paced` lets its clock run as fast as the wall's and no faster.
+    /// A link over `pipe` to the board called `board`. If `paced`, its clock never runs faster than the wall's.
     #[must_use]
     pub fn new(pipe: Pipe<B>, board: &'static str, paced: bool) -> Self {
         Self { pipe, board, due: paced.then(Instant::now) }
@@ -74,7 +74,7 @@ mod tests {
     use super::*;
     use crate::open;
 
-    /// Whatever the computer does meanwhile: a wire that were ahead would judge boards in less time than they take.
+    /// Whatever else the computer does: on a wire that ran ahead, boards would be judged in less time than they take.
     #[test]
     fn a_paced_wire_is_never_ahead_of_the_wall() {
         let mut link = open(&"mock,pace=real,speed=20000".parse().unwrap()).unwrap().link;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// What came of asking.
+/// The outcome of asking.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(tag = "state", rename_all = "lowercase")]
 pub enum Answer {
@@ -13,21 +13,21 @@ pub enum Answer {
         /// The datapath that it computes.
         datapath: u16,
     },
-    /// A halfrow board answered that another host holds it.
+    /// A halfrow board answered, but another host holds it.
     Held,
-    /// Something answered, and not as this program's boards do.
+    /// Something answered, but not like a board of this program.
     Foreign {
         /// Why it is none.
         reason: String,
     },
     /// Nothing answered, and nothing came.
     Silent,
-    /// Bytes came, and no answer among them: another device, or a board at another rate.
+    /// Bytes came, but no answer among them: another device, or a board at another rate.
     Babble {
         /// How many.
         bytes: u64,
     },
-    /// It is open elsewhere.
+    /// It is open in another program.
     Busy,
     /// It could not be opened.
     Failed {

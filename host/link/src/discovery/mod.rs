@@ -1,4 +1,4 @@
-//! Everything on this computer that could be a board, without touching any of it unless asked.
+//! Everything on this computer that could be a board. Nothing is touched unless that is asked for.
 
 mod answer;
 pub(crate) mod serial_ports;
@@ -23,15 +23,15 @@ pub fn find() -> Vec<Found> {
 /// Something that could be a board.
 #[derive(Clone, Debug, Serialize)]
 pub struct Found {
-    /// The target that leads to it, by the most stable name that it has.
+    /// The target that leads to it, with the most stable name that it has.
     pub target: String,
-    /// What a target of this kind is.
+    /// The kind of board that such a target promises.
     pub kind: BoardKind,
     /// What it is, for people.
     pub summary: String,
-    /// Its device file as the kernel names it now.
+    /// Its device file, as the kernel names it now.
     pub device: Option<PathBuf>,
-    /// Further names, which stay: by serial number, by the socket that it is plugged into.
+    /// Further names, which stay the same: by serial number, or by the socket that it is plugged into.
     pub names: Vec<PathBuf>,
     /// The USB device that it belongs to.
     pub usb: Option<UsbDevice>,
@@ -45,7 +45,7 @@ pub struct Found {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(tag = "state", rename_all = "lowercase")]
 pub enum Access {
-    /// As far as it can be told without opening it.
+    /// Yes, as far as can be told without opening it.
     Free,
     /// Others have it open.
     Busy {
@@ -59,12 +59,12 @@ pub enum Access {
     },
     /// It is not there.
     Missing,
-    /// It cannot be told without connecting.
+    /// This cannot be told without connecting.
     Unknown,
 }
 
 impl Found {
-    /// What `target` leads to, which need not be among what the sources find.
+    /// What `target` leads to, even if it is not among what is found.
     #[must_use]
     pub fn named(target: &Target) -> Self {
         match (&target.address, target.kind.as_str()) {
@@ -84,8 +84,8 @@ impl Found {
         }
     }
 
-    /// The target to ask it by, if no board answers [`Self::target`]: behind a chip that cannot make a serial port's usual rate, the
-    /// fastest that it makes, without RTS and CTS, as a ULX3S wants it.
+    /// A second target to ask if no board answers at [`Self::target`]: behind a chip that cannot make the usual rate of a serial
+    /// port, the fastest rate that it makes, without RTS and CTS, as a ULX3S needs it.
     #[must_use]
     pub fn further_target(&self) -> Option<String> {
         let chip = self.usb.as_ref().filter(|usb| usb.vendor_id == ftdi::VENDOR)?;
@@ -95,7 +95,7 @@ impl Found {
             .then(|| format!("{},baud={},flow=none", self.target, speed.fastest()))
     }
 
-    /// Whether it makes sense to ask it.
+    /// Whether it is worth asking.
     #[must_use]
     pub fn is_open_to_us(&self) -> bool {
         matches!(self.access, Access::Free | Access::Unknown)
@@ -106,7 +106,7 @@ impl Found {
 mod tests {
     use super::*;
 
-    /// A serial port behind a chip of FTDI's.
+    /// A serial port with a chip of FTDI's.
     fn behind(device_version: u16, target: &str) -> Found {
         let usb = UsbDevice {
             vendor_id: ftdi::VENDOR,
@@ -127,7 +127,7 @@ mod tests {
         let port = "serial:/dev/ttyUSB99";
         assert_eq!(asked(ft231x, port).unwrap(), "serial:/dev/ttyUSB99,baud=3000000,flow=none");
         assert_eq!(asked(ft2232h, port), None);
-        // Whoever says how it is to be asked is obeyed.
+        // A target that names its own options is asked only as it says.
         assert_eq!(asked(ft231x, "serial:/dev/ttyUSB99,baud=115200"), None);
         assert_eq!(Found::named(&port.parse().unwrap()).further_target(), None);
     }

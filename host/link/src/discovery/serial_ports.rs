@@ -1,4 +1,4 @@
-//! Serial ports, by the names that stay when another board is plugged in first.
+//! Serial ports, by names that stay the same when another board is plugged in first.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,12 +9,12 @@ use super::{Access, Found};
 use crate::target::BoardKind;
 use crate::{UsbDevice, holders, how_to_get_access, usb_device};
 
-/// Where udev keeps names that stay, the better ones first: a serial number goes with the board, a path with the socket.
+/// Where udev keeps stable names, the better ones first: a serial number goes with the board, a path with the socket.
 const NAMES: [&str; 2] = ["/dev/serial/by-id", "/dev/serial/by-path"];
 
 /// The serial ports of this computer.
 pub(crate) fn find() -> Vec<Found> {
-    // Without this folder serialport's list panics.
+    // The list of serialport panics without this folder.
     if !Path::new("/sys/class/tty").is_dir() {
         return Vec::new();
     }
@@ -27,7 +27,7 @@ pub(crate) fn find() -> Vec<Found> {
     found
 }
 
-/// The port `path`, looked at from outside: opening it would raise its modem lines, which resets some boards.
+/// Describes the port `path` without opening it: that would raise its modem lines, which resets some boards.
 pub(super) fn look_at(path: &Path) -> Found {
     let names: Vec<_> = NAMES.iter().flat_map(|folder| names_in(Path::new(folder), path)).collect();
     let usb = usb_device(path);

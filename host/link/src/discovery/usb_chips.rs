@@ -4,7 +4,7 @@ use super::{Access, Found};
 use crate::target::BoardKind;
 use crate::{UsbBoard, how_to_get_access, usb_boards};
 
-/// The USB of this computer.
+/// The FTDI chips on the USB of this computer.
 pub(crate) fn find() -> Vec<Found> {
     let boards = usb_boards().unwrap_or_else(|error| {
         tracing::info!("{error}");

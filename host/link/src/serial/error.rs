@@ -77,7 +77,7 @@ pub enum SerialError {
 }
 
 impl SerialError {
-    /// Whose error it is.
+    /// Who can do something about it.
     #[must_use]
     pub fn class(&self) -> Class {
         match self {
@@ -88,7 +88,7 @@ impl SerialError {
     }
 }
 
-/// The remedy for a port that was named as other programs let one, without its folder.
+/// The remedy for a port that was named without its folder, as other programs allow.
 fn below_dev(port: &Path) -> String {
     let device = Path::new("/dev").join(port);
     let is_meant = port.is_relative() && device.exists();

@@ -1,4 +1,4 @@
-//! Who has a device open.
+//! The processes that have a device open.
 
 use std::fmt;
 use std::fs;
@@ -14,7 +14,7 @@ pub struct Holder {
 }
 
 impl Holder {
-    /// Whether it is this very process.
+    /// Whether it is this process.
     fn is_own(&self) -> bool {
         self.process == std::process::id()
     }
@@ -26,7 +26,7 @@ impl fmt::Display for Holder {
     }
 }
 
-/// By whom a device is held, as an error says it, and what to do.
+/// Who holds a device, in the words of an error, and what to do.
 pub(crate) fn by(holders: &[Holder]) -> String {
     match holders {
         [] => "another program; close that program, then run again".to_owned(),
@@ -40,7 +40,7 @@ pub(crate) fn by(holders: &[Holder]) -> String {
     }
 }
 
-/// Other processes that have `device` open, as far as this user may know: root sees all, others their own.
+/// Other processes that have `device` open, as far as this user may see: root sees all, others their own.
 #[must_use]
 pub fn holders(device: &Path) -> Vec<Holder> {
     let mut all = all_holders(device);
@@ -48,7 +48,8 @@ pub fn holders(device: &Path) -> Vec<Holder> {
     all
 }
 
-/// Those who keep `device` from this call: as [`holders`], or this very process where it alone is known to have it open.
+/// The processes that keep `device` from this call: those of [`holders`], or this process if only it is known to have the device
+/// open.
 pub(crate) fn keepers(device: &Path) -> Vec<Holder> {
     let (own, others): (Vec<_>, Vec<_>) = all_holders(device).into_iter().partition(Holder::is_own);
     if others.is_empty() { own } else { others }

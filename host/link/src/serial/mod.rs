@@ -1,4 +1,4 @@
-//! A serial port as a link: locked for this program alone, and never waited for beyond a deadline.
+//! A serial port as a link: locked for this program, and never waited for longer than a deadline.
 
 mod error;
 mod holder;
@@ -23,9 +23,9 @@ pub use error::SerialError;
 pub use holder::{Holder, holders};
 pub(crate) use holder::{by, keepers};
 
-/// Silence after which nothing stale is on its way any more: a USB chip holds bytes back for 16 ms.
+/// After this silence no stale byte is under way any more: a USB chip holds bytes back for 16 ms.
 const QUIET: Duration = Duration::from_millis(20);
-/// A board that goes on talking all the same will be told apart by the protocol.
+/// Then draining stops, even if the board goes on talking; the protocol recognises what is stale.
 const LONGEST_DRAIN: Duration = Duration::from_millis(200);
 
 /// A pipe to a board behind a serial port.
@@ -39,15 +39,15 @@ pub(crate) struct SerialLink {
 }
 
 impl SerialLink {
-    /// Whether `target` names a path, with options of this kind.
+    /// Checks that `target` names a path, with options of this kind.
     pub(crate) fn check(target: &Target) -> Result<(), OpenError> {
         asked(target).map(drop)
     }
 
-    /// Opens the port of a `serial:PATH` target for this program alone, sets it and drops what lies in its buffers.
+    /// Opens the port of a `serial:PATH` target, locked for this program, configures it, and drops what is in its buffers.
     ///
     /// # Errors
-    /// [`OpenError`] when there is no such port, or it is another's, or cannot be set as the target says.
+    /// [`OpenError`] when the port does not exist, another program has it, or it cannot be set as the target says.
     pub(crate) fn open(target: &Target) -> Result<Self, OpenError> {
         let (path, options) = asked(target)?;
         Ok(Self::open_port(path, options)?)
@@ -68,14 +68,14 @@ impl SerialLink {
         Ok(link)
     }
 
-    /// Drops what is in the buffers and what still comes out of the chip behind them.
+    /// Drops what is in the buffers, and what still comes out of the chip after that.
     fn drain(&mut self) {
         let _ = self.port.clear(ClearBuffer::All);
         let begun = Instant::now();
         let mut stale = Vec::new();
         loop {
             let before = stale.len();
-            // A port that is gone says so to whoever uses it next.
+            // If the port is gone, the next use of it will fail.
             let moved = self.pump.exchange(self.port.as_raw_fd(), &[], &mut stale, QUIET);
             if moved.is_err() || stale.len() == before || begun.elapsed() > LONGEST_DRAIN {
                 break;
@@ -88,7 +88,7 @@ impl SerialLink {
 }
 
 impl Drop for SerialLink {
-    /// Closing waits for half a minute until what was written has left, unless there is nothing.
+    /// Without this, closing waits up to half a minute until everything written has left.
     fn drop(&mut self) {
         let _ = self.port.clear(ClearBuffer::Output);
     }
@@ -130,7 +130,7 @@ impl Link for SerialLink {
     }
 }
 
-/// The port and how it is to be set.
+/// The port and its settings.
 fn asked(target: &Target) -> Result<(PathBuf, SerialOptions), OpenError> {
     let options = SerialOptions::parse(target)?;
     let path = target.address.as_ref().filter(|path| !path.is_empty());
@@ -143,7 +143,7 @@ fn lock(path: &Path, options: SerialOptions) -> Result<TTYPort, SerialError> {
     builder.open_native().map_err(|error| match error.kind {
         ErrorKind::NoDevice => SerialError::InUse { path: path.to_owned(), holders: keepers(path) },
         ErrorKind::Io(kind) => failed(path, io::Error::new(kind, error.description)),
-        // What a system answers to a question for terminals when it is asked of something else.
+        // What a system answers if a terminal's call is made on something else.
         _ if error.description.contains("typewriter") || error.description.contains("ioctl") => {
             SerialError::NotAPort(path.to_owned())
         }
@@ -151,7 +151,7 @@ fn lock(path: &Path, options: SerialOptions) -> Result<TTYPort, SerialError> {
     })
 }
 
-/// Sets DTR, and RTS where it is not flow control's. A port without such lines has none to set.
+/// Sets DTR, and RTS unless flow control uses it. A port without these lines has nothing to set.
 fn set_lines(port: &mut TTYPort, options: SerialOptions) {
     let set = port.write_data_terminal_ready(options.dtr);
     let set =
@@ -174,7 +174,7 @@ fn check_rate(path: &Path, baud: u32) -> Result<(), SerialError> {
     speed.divisor(baud).map(|_| ()).map_err(refused)
 }
 
-/// Other drivers take the nearest rate as well, and some say so.
+/// Other drivers take the nearest rate too, but some report which one.
 fn check_taken_rate(port: &TTYPort, path: &Path, baud: u32) -> Result<(), SerialError> {
     match port.baud_rate() {
         Ok(taken) if taken > 0 && f64::from(taken.abs_diff(baud)) > ftdi::TOLERANCE * f64::from(baud) => {

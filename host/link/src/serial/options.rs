@@ -10,16 +10,16 @@ const KNOWN: &str =
 /// The rate of an FT2232H's UART, as on the miniSpartan6+.
 const DEFAULT_BAUD: u32 = 12_000_000;
 
-/// How a serial port is set.
+/// The settings of a serial port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct SerialOptions {
     /// Bits a second, of which ten make a byte.
     pub(super) baud: u32,
-    /// RTS and CTS hold either side.
+    /// Whether RTS and CTS stop either side.
     pub(super) rts_cts: bool,
     /// The level of DTR while the port is open.
     pub(super) dtr: bool,
-    /// The level of RTS where it holds nobody.
+    /// The level of RTS if it is not used for flow control.
     pub(super) rts: bool,
 }
 
@@ -33,7 +33,7 @@ impl SerialOptions {
             "rts" => set(&mut options.rts, choice(value, "on", "off")),
             _ => false,
         })?;
-        // RTS is flow control's.
+        // RTS can be set only without flow control.
         let allowed = |key: &str, _: &str| key != "rts" || !options.rts_cts;
         read(target, KNOWN, allowed)?;
         Ok(options)

@@ -55,17 +55,17 @@ impl Chip {
         }
     }
 
-    /// The channel where boards have their FPGA: A is their JTAG.
+    /// The channel to which boards connect their FPGA; A is their JTAG.
     pub(super) fn usual_channel(self) -> Channel {
         Channel(u8::from(self.channels() > 1))
     }
 
-    /// The endpoints of a channel, to the host and to the board.
+    /// The endpoints of a channel: to the host, and to the board.
     pub(super) fn endpoints(self, channel: Channel) -> (u8, u8) {
         (0x81 + 2 * channel.0, 0x02 + 2 * channel.0)
     }
 
-    /// What stands for a channel in a request's index.
+    /// How a request's index names a channel.
     pub(super) fn index(self, channel: Channel) -> u16 {
         if self.channels() > 1 { u16::from(channel.0) + 1 } else { 0 }
     }
@@ -79,7 +79,7 @@ impl Chip {
         self.speed() == Speed::High
     }
 
-    /// The family that its baud generator is of.
+    /// The family of its baud generator.
     pub(super) fn speed(self) -> Speed {
         if self == Self::FullSpeed { Speed::Full } else { Speed::High }
     }

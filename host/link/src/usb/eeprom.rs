@@ -1,13 +1,13 @@
-//! The EEPROM beside a chip, which says what its channels are. It is read, and never written.
+//! The EEPROM next to a chip, which says what its channels are for. It is read, and never written.
 
 use std::fmt;
 
 use super::chip::{Channel, Chip};
 
-/// Words that are read: an FT2232H has 64, 128 or 256, and their checksum comes last of the first 64 or 128.
+/// Words that are read. An FT2232H's EEPROM has 64, 128 or 256, and the checksum is the last of the first 64 or 128.
 pub(super) const WORDS: u16 = 128;
 
-/// What a channel's pins are.
+/// What a channel's pins are for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ChannelMode {
     Uart,
@@ -29,19 +29,19 @@ impl fmt::Display for ChannelMode {
     }
 }
 
-/// What an EEPROM says of a channel, and on what ground.
+/// What an EEPROM says about a channel, and how that is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum StoredMode {
     /// Its words say so.
     Stored(ChannelMode),
-    /// The chip ignores it, since it is blank, missing or its checksum is wrong, and takes its channels for UARTs.
+    /// The chip ignores the EEPROM because it is blank, missing or has a wrong checksum, and treats its channels as UARTs.
     Ignored,
     /// It cannot be read.
     Unknown,
 }
 
 impl StoredMode {
-    /// What the pins are, if that is known.
+    /// What the pins are for, if that is known.
     pub(super) fn mode(self) -> Option<ChannelMode> {
         match self {
             Self::Stored(mode) => Some(mode),
@@ -61,9 +61,9 @@ impl fmt::Display for StoredMode {
     }
 }
 
-/// What `words` say of `channel`; fewer than [`WORDS`] are an EEPROM that cannot be read.
+/// What `words` say about `channel`. Fewer than [`WORDS`] mean that the EEPROM cannot be read.
 pub(super) fn channel_mode(chip: Chip, channel: Channel, words: &[u16]) -> StoredMode {
-    // These are serial lines whatever their EEPROM says.
+    // Always serial lines, whatever the EEPROM says.
     if matches!(chip, Chip::Ft4232h | Chip::FullSpeed) {
         return StoredMode::Stored(ChannelMode::Uart);
     }
@@ -85,7 +85,7 @@ pub(super) fn channel_mode(chip: Chip, channel: Channel, words: &[u16]) -> Store
     }
 }
 
-/// Whether the checksum fits an EEPROM of 64 words, which repeat, or of 128 and more.
+/// Whether the checksum matches, either of an EEPROM of 64 words, whose contents repeat, or of one with 128 or more.
 fn is_valid(words: &[u16]) -> bool {
     [64, 128].into_iter().any(|length| {
         let (content, last) = words[..length].split_at(length - 1);
@@ -99,7 +99,7 @@ mod tests {
 
     const B: Channel = Channel(1);
 
-    /// An EEPROM of `length` words that repeats up to 128, with `first` in front.
+    /// An EEPROM of `length` words, repeated up to 128 words. The first word is `first`.
     fn words(first: u16, length: usize) -> Vec<u16> {
         let mut words = vec![0x0403; length];
         words[0] = first;

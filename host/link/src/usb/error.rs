@@ -128,7 +128,7 @@ pub enum UsbError {
 }
 
 impl UsbError {
-    /// Whose error it is.
+    /// Who can do something about it.
     #[must_use]
     pub fn class(&self) -> Class {
         match self {

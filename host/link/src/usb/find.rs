@@ -14,16 +14,16 @@ use crate::ftdi::VENDOR;
 use crate::sysfs::UsbDevice;
 use crate::{Holder, holders};
 
-/// An FTDI chip that could be a board's.
+/// An FTDI chip that could belong to a board.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct UsbBoard {
-    /// What it says of itself, as far as it can be read, and the interface that boards have their FPGA at.
+    /// Its own description, as far as it can be read, and the interface to which boards connect their FPGA.
     pub device: UsbDevice,
-    /// The chip, as `FT2232H`.
+    /// The chip, such as `FT2232H`.
     pub chip: &'static str,
     /// Its device file.
     pub file: PathBuf,
-    /// Where it is plugged in, as `1-2.3`: the name that Linux gives it, which a port keeps.
+    /// Where it is plugged in, such as `1-2.3`: Linux's name, which stays the same for a socket.
     pub place: String,
     /// Whether this user may open it.
     pub is_permitted: bool,
@@ -36,7 +36,7 @@ impl UsbBoard {
         format!("usb:{}", self.device.serial.as_deref().unwrap_or(&self.place))
     }
 
-    /// Other programs that have the serial port open that the system's driver made of the board's channel.
+    /// Other programs that have opened the serial port that the system's driver made of the board's channel.
     #[must_use]
     pub fn holders(&self) -> Vec<Holder> {
         let channel = Channel(self.device.interface.unwrap_or_default());
@@ -55,14 +55,14 @@ impl fmt::Display for UsbBoard {
     }
 }
 
-/// A chip with what libusb knows it by.
+/// A chip, and the device by which libusb knows it.
 pub(super) struct FtdiDevice {
     pub(super) board: UsbBoard,
     pub(super) chip: Chip,
     pub(super) device: Device<Context>,
 }
 
-/// All of FTDI's chips that are plugged in, in the order of their places.
+/// All FTDI chips that are plugged in, ordered by place.
 ///
 /// # Errors
 /// [`UsbError::NoUsb`]
@@ -85,7 +85,7 @@ fn look_at(device: Device<Context>) -> Option<FtdiDevice> {
     let chip = (descriptor.vendor_id() == VENDOR).then(|| Chip::of(descriptor.product_id(), version))??;
     let place = place(&device);
     let handle = device.open().ok();
-    // Linux tells the strings to those as well who may not open the device.
+    // Linux gives the strings even to users who may not open the device.
     let string = |file: &str, index: Option<u8>| {
         let told = fs::read_to_string(sysfs(&place).join(file)).ok().map(|text| text.trim().to_owned());
         let asked = || handle.as_ref()?.read_string_descriptor_ascii(index?).ok();
@@ -111,13 +111,13 @@ fn look_at(device: Device<Context>) -> Option<FtdiDevice> {
     Some(FtdiDevice { board, chip, device })
 }
 
-/// A version as it stands in the descriptor: four decimal digits, of which the first two are one number here.
+/// A version as in the descriptor: four decimal digits. The first two come as one number here.
 fn bcd(Version(major, minor, sub_minor): Version) -> u16 {
     let digits = [major / 10, major % 10, minor, sub_minor];
     digits.into_iter().fold(0, |version, digit| version << 4 | u16::from(digit))
 }
 
-/// The folder in which Linux tells of the device at `place`.
+/// Linux's folder for the device at `place`.
 pub(super) fn sysfs(place: &str) -> PathBuf {
     PathBuf::from("/sys/bus/usb/devices").join(place)
 }
@@ -128,7 +128,7 @@ fn place(device: &Device<Context>) -> String {
     format!("{}-{}", device.bus_number(), ports.join("."))
 }
 
-/// The one chip that `name` stands for: a serial number, a place, or nothing when there is one high-speed chip only.
+/// The chip that `name` stands for: a serial number, a place, or nothing if there is only one high-speed chip.
 pub(super) fn choose(name: Option<&str>) -> Result<FtdiDevice, UsbError> {
     let all = all()?;
     let boards = |found: &[FtdiDevice]| found.iter().map(|found| found.board.clone()).collect();
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn a_version_is_the_descriptor_s_own() {
-        // An FT2232H's, an FT230X's, and one of four digits.
+        // Those of an FT2232H and an FT230X, and one with four different digits.
         for version in [0x0700, 0x1000, 0x1234] {
             assert_eq!(bcd(Version::from_bcd(version)), version);
         }

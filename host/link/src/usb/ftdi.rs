@@ -15,11 +15,11 @@ const LATENCY: u8 = 9;
 const BIT_MODE: u8 = 11;
 const READ_EEPROM: u8 = 0x90;
 
-/// Values of [`RESET`]: the channel, the bytes to the board, the bytes to the host. Old libraries had the last two the
-/// other way round, and both are wanted anyway.
+/// Values of [`RESET`]: the channel, the bytes to the board, the bytes to the host. Old libraries swapped the last two, which
+/// does not matter, since all are reset.
 const RESETS: [u16; 3] = [0, 1, 2];
 
-/// Both modem lines on, with the bits that say that they are meant.
+/// Both modem lines on, and the bits that select them.
 const DTR_AND_RTS_ON: u16 = 0x0303;
 
 const RTS_CTS: u16 = 0x0100;
@@ -42,7 +42,7 @@ pub(super) struct Ftdi<'a> {
 }
 
 impl Ftdi<'_> {
-    /// Makes the channel ready, and throws away what was on its way.
+    /// Makes the channel ready, and drops the bytes that were under way.
     pub(super) fn make_ready(&self, options: &UsbOptions) -> Result<Ready, UsbError> {
         let ready = self.decide(options)?;
         let index = self.chip.index(self.channel);
@@ -57,7 +57,7 @@ impl Ftdi<'_> {
         Ok(ready)
     }
 
-    /// What the pins are for: by the EEPROM, which must not contradict the target.
+    /// What the pins are for. The EEPROM decides, and the target must not contradict it.
     fn decide(&self, options: &UsbOptions) -> Result<Ready, UsbError> {
         let found = channel_mode(self.chip, self.channel, &self.read_eeprom()?);
         let (name, channel) = (self.name.to_owned(), self.channel.letter());
@@ -85,7 +85,7 @@ impl Ftdi<'_> {
         }
     }
 
-    /// The EEPROM's words; none when the chip refuses to read them.
+    /// The EEPROM's words; none if the chip refuses to read them.
     fn read_eeprom(&self) -> Result<Vec<u16>, UsbError> {
         let words: Result<Vec<u16>, UsbFailure> =
             (0..WORDS).map(|address| self.transport.request_word(READ_EEPROM, 0, address)).collect();
@@ -95,7 +95,7 @@ impl Ftdi<'_> {
         }
     }
 
-    /// Whoever had the channel before may have left it bit-banging. A chip that has no such modes refuses.
+    /// A previous program may have left the channel in bit-bang mode. A chip without such modes refuses the request.
     fn leave_special_modes(&self, index: u16) -> Result<(), UsbError> {
         match self.transport.request(BIT_MODE, 0, index) {
             Err(UsbFailure::Refused) if !self.chip.is_high_speed() => Ok(()),
@@ -135,7 +135,7 @@ mod tests {
 
     use super::*;
 
-    /// A chip that notes requests, has a blank EEPROM, and refuses one request.
+    /// A chip that records requests, has a blank EEPROM, and refuses one request.
     #[derive(Default)]
     struct Noting {
         requests: Mutex<Vec<(u8, u16, u16)>>,
@@ -171,7 +171,7 @@ mod tests {
         let chip = Noting::default();
         let ready = make_ready(&chip, Chip::Ft2232h, "usb,baud=3000000").unwrap();
         assert_eq!(ready, Ready::Uart { baud: 3_000_000 });
-        // Request, wValue, wIndex, as AN232B-04 and libftdi's ftdi.h have them: channel B is index 2.
+        // Request, wValue and wIndex as in AN232B-04 and libftdi's ftdi.h: channel B is index 2.
         let expected = [
             (0, 0, 2),
             (0, 1, 2),

@@ -1,11 +1,11 @@
-//! Boards behind one of FTDI's USB chips, without the system's serial driver.
+//! Boards with one of FTDI's USB chips, without the system's serial driver.
 //!
 //! ```text
 //! UsbLink ─ Threads: one reads, one writes ─► Transport: libusb ─► chip ─ FIFO or UART ─► board
 //! ```
 //!
-//! The driver makes serial ports of both channels, moves 512 bytes at a time, and knows no FIFO. Here one interface is claimed,
-//! the other one stays with whoever has it, and a read is always under way.
+//! The driver makes serial ports of both channels, moves 512 bytes at a time, and knows no FIFO. Here only one interface is
+//! claimed, the other one stays with whoever has it, and a read is always under way.
 
 mod chip;
 mod eeprom;
@@ -39,13 +39,13 @@ pub use find::UsbBoard;
 pub(crate) use find::usb_boards;
 pub use transport::UsbFailure;
 
-/// What an FPGA with two synchronisers gets through a FIFO that is not synchronous: some 5 MB/s; its data sheet says 8.
+/// What an FPGA with two synchronisers gets through an asynchronous FIFO: about 5 MB/s. The data sheet says 8.
 const FIFO_BYTES_PER_SECOND: f64 = 5e6;
 
-/// Bits of a byte on a line: a start bit, eight, a stop bit.
+/// Bits of a byte on a line: a start bit, eight data bits, a stop bit.
 const BITS_PER_BYTE: f64 = 10.0;
 
-/// The longest wait, so that whoever was asked to stop looks at that. A run's waits for a board that makes frames are no longer.
+/// The longest wait, so that a request to stop is noticed. The waits of a run for frames made by the board are no longer either.
 const HEED: Duration = Duration::from_millis(250);
 
 /// A pipe through a channel of a chip.
@@ -57,15 +57,15 @@ pub(crate) struct UsbLink {
 }
 
 impl UsbLink {
-    /// Whether `target` has options of this kind.
+    /// Checks that `target` has options of this kind.
     pub(crate) fn check(target: &Target) -> Result<(), OpenError> {
         asked(target).map(drop)
     }
 
-    /// Opens the channel that `target` names, and makes it ready; nothing is said over it yet.
+    /// Opens the channel that `target` names and makes it ready, without sending anything over it.
     ///
     /// # Errors
-    /// [`OpenError`] when the target is none, or no such chip can be had.
+    /// [`OpenError`] when the target is no such target, or its chip cannot be opened.
     pub(crate) fn open(target: &Target) -> Result<Self, OpenError> {
         let options = asked(target)?;
         let found = choose(target.address.as_deref())?;
@@ -96,7 +96,7 @@ impl UsbLink {
     }
 }
 
-/// Claims the channel's interface, unless a program has it or its serial port open.
+/// Claims the channel's interface, unless another program has opened it or its serial port.
 fn claim(found: &FtdiDevice, channel: Channel) -> Result<Libusb, UsbError> {
     let (chip, name) = (found.chip, found.board.target());
     for port in serial_ports(&found.board.place, channel) {
@@ -119,7 +119,7 @@ fn claim(found: &FtdiDevice, channel: Channel) -> Result<Libusb, UsbError> {
     Libusb::claim(handle, channel.0, chip.endpoints(channel)).map_err(failed)
 }
 
-/// The options of a target whose address, if it has one, is a name: an empty one is one that somebody left out.
+/// The options of a target. Its address, if it has one, is a name; an empty one was forgotten.
 fn asked(target: &Target) -> Result<UsbOptions, OpenError> {
     if target.address.as_deref() == Some("") {
         return Err(OpenError::address_missing(target));
@@ -127,7 +127,7 @@ fn asked(target: &Target) -> Result<UsbOptions, OpenError> {
     UsbOptions::of(target)
 }
 
-/// The serial ports that the system's driver has made of the channel.
+/// The serial ports that the system's driver made of the channel.
 fn serial_ports(place: &str, channel: Channel) -> Vec<PathBuf> {
     let interface = sysfs(place).join(format!("{place}:1.{}", channel.0));
     let entries = fs::read_dir(interface).into_iter().flatten().flatten();
@@ -135,20 +135,21 @@ fn serial_ports(place: &str, channel: Channel) -> Vec<PathBuf> {
     names.filter(|name| name.starts_with("ttyUSB")).map(|name| Path::new("/dev").join(name)).collect()
 }
 
-/// Who has a serial port open, if anybody has; they may be unknown. The driver would give the port up whoever reads it.
+/// Who has a serial port open, if anybody has. The list may be empty even then. The driver would give the port up even while
+/// somebody reads it.
 fn held(port: &Path) -> Option<Vec<Holder>> {
     let holders = keepers(port);
     (!holders.is_empty() || is_locked(port)).then_some(holders)
 }
 
-/// Whether another user's program, which cannot be seen, has said that it wants the port for itself.
+/// Whether the program of another user, which cannot be seen, has locked the port.
 fn is_locked(port: &Path) -> bool {
     use std::io::ErrorKind::ResourceBusy;
     use std::os::unix::fs::OpenOptionsExt as _;
 
     use nix::fcntl::OFlag;
 
-    // Neither wait for a carrier nor become the terminal of this process.
+    // Do not wait for a carrier, and do not make the port this process's terminal.
     let flags = OFlag::O_NONBLOCK | OFlag::O_NOCTTY;
     match fs::OpenOptions::new().read(true).write(true).custom_flags(flags.bits()).open(port) {
         Ok(file) => matches!(file.try_lock(), Err(fs::TryLockError::WouldBlock)),

@@ -22,17 +22,17 @@ impl Mode {
     }
 }
 
-/// What a target asks for, as far as it says.
+/// What a target asks for; none where it does not say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct UsbOptions {
-    /// From 0 for A.
+    /// Counted from 0 for A.
     pub(super) channel: Option<u8>,
     pub(super) mode: Option<Mode>,
     pub(super) baud: Option<u32>,
     /// Whether RTS and CTS stop the other side.
     pub(super) handshake: bool,
-    /// Milliseconds that the chip waits before it sends a packet that is not full. One is too few for some FIFOs
-    /// in FPGAs, which lose bytes then.
+    /// Milliseconds that the chip waits before it sends a packet that is not full. 1 is too short for some FIFOs in FPGAs, which
+    /// then lose bytes.
     pub(super) latency: u8,
 }
 

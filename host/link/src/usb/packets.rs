@@ -1,11 +1,11 @@
-//! Packets to the host: two status bytes in front of every one, whatever the transfer's length.
+//! Packets to the host. Each has two status bytes in front, whatever the transfer's length.
 
 use crate::LineErrors;
 
 const STATUS: usize = 2;
 
-/// Appends the data of `transfer`, which is made of packets of `packet` bytes and at most one shorter at its end, and counts
-/// the line errors of each packet if it `is_line`.
+/// Appends the data of `transfer`, which consists of packets of `packet` bytes, the last of which may be shorter. Counts the line
+/// errors of each packet if it `is_line`.
 pub(super) fn strip(
     transfer: &[u8],
     packet: usize,
@@ -69,7 +69,8 @@ mod tests {
         );
     }
 
-    /// Bits 1 to 4 of the line status of a 16550 (Texas Instruments' TL16C550C, "Line status register"), which FTDI's chips pass on.
+    /// Bits 1 to 4 of the line status of a 16550 (Texas Instruments' TL16C550C, "Line status register"), which FTDI's chips pass
+    /// on.
     #[test]
     fn each_bit_of_the_line_status_is_an_error_of_its_own() {
         let none = LineErrors::default();

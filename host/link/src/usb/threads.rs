@@ -11,35 +11,36 @@ use std::time::{Duration, Instant};
 use super::transport::{Transport, UsbFailure};
 use crate::LineErrors;
 
-/// Bytes of a read: a multiple of every packet's size, since a packet that does not fit is lost.
+/// Bytes of a read: a multiple of every packet size, since a packet that does not fit is lost.
 const READ: usize = 64 * 1024;
 
-/// Bytes of a write. FPGAs were seen to lose bytes of larger ones.
+/// Bytes of a write. FPGAs have been seen to lose bytes of longer ones.
 const WRITE: usize = 16 * 1024;
 
-/// Bytes that may wait to be written. Whoever sends counts them as sent.
+/// Bytes that may be waiting to be written. The caller counts them as sent.
 const OUTGOING: usize = 2 * WRITE;
 
-/// Bytes that may wait to be fetched; beyond, the device waits. A board sends what it has credit for, noise has no end.
+/// Bytes that may be waiting to be fetched. With more, the device has to wait. A board sends only what it has credit for, but
+/// noise never ends.
 const INCOMING: usize = 1 << 20;
 
-/// How often the threads look whether they are still wanted.
+/// How often the threads check whether they are still wanted.
 const BREATH: Duration = Duration::from_millis(100);
 
-/// The shortest look for what has come: the reading thread may have been kept from running as long as its caller was.
+/// The shortest wait for incoming bytes: the reading thread may have been kept from running for as long as its caller.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Writes in a row of which a device took nothing, before it is taken for one that never will.
+/// After so many writes in a row of which the device took nothing, it is assumed that it never will.
 const VAIN: u32 = 2;
 
-/// Takes a transfer apart and appends the data in it.
+/// Takes a transfer apart and appends its data.
 pub(super) type Unpack = dyn Fn(&[u8], &mut Vec<u8>, &mut LineErrors) + Send + Sync;
 
 #[derive(Default)]
 struct Queues {
     incoming: Vec<u8>,
     outgoing: VecDeque<u8>,
-    /// Bytes that have left that queue and are not written yet.
+    /// Bytes that have left `outgoing` but are not written yet.
     in_flight: usize,
     /// Writes in a row of which the device took nothing.
     in_vain: u32,
@@ -75,7 +76,7 @@ impl Shared {
         self.changed.notify_all();
     }
 
-    /// Always has a read under way, and does nothing between two of them that could wait.
+    /// Keeps a read under way at all times, and does nothing in between that could wait.
     fn keep_reading(&self) {
         let mut buffer = vec![0; READ];
         let mut data = Vec::new();
@@ -151,7 +152,7 @@ impl Threads {
     fn spawn(&mut self, work: fn(&Shared)) -> io::Result<()> {
         let shared = Arc::clone(&self.shared);
         let run = move || {
-            // Without a word, a thread that is gone would look like a board that is silent.
+            // Otherwise a thread that ended would look like a silent board.
             if let Err(panic) = catch_unwind(AssertUnwindSafe(|| work(&shared))) {
                 shared.fail(UsbFailure::Other(fault(panic.as_ref())));
             }
@@ -160,7 +161,7 @@ impl Threads {
         Ok(())
     }
 
-    /// As [`Link::exchange`](crate::Link::exchange). What has arrived before a failure is handed over first.
+    /// Like [`Link::exchange`](crate::Link::exchange). What arrived before a failure is handed over first.
     pub(super) fn exchange(
         &self,
         outgoing: &[u8],
@@ -197,8 +198,8 @@ impl Threads {
 }
 
 impl Drop for Threads {
-    /// Waits for what is still to be written, since the last words of a session free the board, but not for a device that
-    /// takes nothing.
+    /// Waits until everything is written, since the last packets of a session free the board, but not for a device that takes
+    /// nothing.
     fn drop(&mut self) {
         let mut queues = self.shared.queues();
         while queues.outgoing.len() + queues.in_flight > 0 && !queues.is_over && queues.in_vain < VAIN {
@@ -208,13 +209,13 @@ impl Drop for Threads {
         drop(queues);
         self.shared.changed.notify_all();
         for thread in self.handles.drain(..) {
-            // One that panicked has made the link fail.
+            // A thread that panicked has already made the link fail.
             let _ = thread.join();
         }
     }
 }
 
-/// What is told of a panic.
+/// The text of a panic.
 fn fault(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().copied();
     let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
@@ -226,16 +227,16 @@ fn fault(panic: &(dyn Any + Send)) -> String {
 mod tests {
     use super::*;
 
-    /// Only a hang takes so long.
+    /// Only a hang takes this long.
     const LONG: Duration = Duration::from_secs(300);
 
-    /// A device that says what is put in it, in pieces, and then fails or is silent. It takes bytes until it is `stuck`.
+    /// A device that sends what is put into it, in pieces, and then fails or is silent. It takes bytes unless it is `stuck`.
     #[derive(Default)]
     struct Device {
         says: Mutex<VecDeque<Result<Vec<u8>, UsbFailure>>>,
         heard: Arc<Mutex<Vec<u8>>>,
         stuck: bool,
-        /// The program's own fault.
+        /// Whether reading panics.
         panics: bool,
     }
 
@@ -268,7 +269,7 @@ mod tests {
                 thread::sleep(wait);
                 return Ok(0);
             }
-            // A device takes what it has room for.
+            // A device takes only what it has room for.
             let taken = bytes.len().min(1000);
             self.heard.lock().unwrap().extend_from_slice(&bytes[..taken]);
             Ok(taken)
@@ -293,7 +294,7 @@ mod tests {
         };
         assert!(matches!(failure, UsbFailure::Gone));
         assert_eq!(incoming, [1, 2, 3]);
-        // It stays so, and takes nothing more.
+        // It keeps failing, and takes nothing more.
         assert!(threads.exchange(&[7], &mut incoming, LONG).is_err());
     }
 
@@ -331,7 +332,7 @@ mod tests {
         for _ in 0..6 {
             taken += threads.exchange(&[0; 10_000], &mut Vec::new(), Duration::from_millis(50)).unwrap();
         }
-        // What waits to be written, and what the writing thread holds.
+        // What is waiting to be written, and what the writing thread holds.
         assert!(taken <= OUTGOING + WRITE, "{taken}");
         drop(threads);
         assert!(begun.elapsed() < LONG, "{:?}", begun.elapsed());

@@ -1,5 +1,5 @@
-//! Transfers to one interface of a USB device, however they are made. Another way to make them than libusb's blocking
-//! calls, and other chips than FTDI's, come in here.
+//! Transfers to one interface of a USB device. Ways of transfer other than libusb's blocking calls, and chips other than FTDI's,
+//! would be added here.
 
 use std::time::Duration;
 
@@ -22,35 +22,35 @@ pub enum UsbFailure {
     Other(String),
 }
 
-/// What the bytes go through. Several threads may call it at once.
+/// What the bytes go through. Several threads may call it at the same time.
 pub(crate) trait Transport: Send + Sync {
-    /// A vendor's request to the device.
+    /// A vendor request to the device.
     ///
     /// # Errors
     /// [`UsbFailure`]
     fn request(&self, request: u8, value: u16, index: u16) -> Result<(), UsbFailure>;
 
-    /// A vendor's request for two bytes, little endian.
+    /// A vendor request for two bytes, little endian.
     ///
     /// # Errors
-    /// [`UsbFailure`]; fewer bytes are one as well.
+    /// [`UsbFailure`], also when fewer bytes come.
     fn request_word(&self, request: u8, value: u16, index: u16) -> Result<u16, UsbFailure>;
 
-    /// Reads a transfer that ends with a packet that is not full, or with the buffer, whose length is a multiple of 512.
-    /// Nothing within `wait` is 0 bytes.
+    /// Reads a transfer, which ends with a packet that is not full or with the buffer, whose length is a multiple of 512. If
+    /// nothing comes within `wait` it returns 0.
     ///
     /// # Errors
     /// [`UsbFailure`]
     fn read(&self, buffer: &mut [u8], wait: Duration) -> Result<usize, UsbFailure>;
 
-    /// Writes what goes out within `wait`, and returns its length.
+    /// Writes what goes out within `wait`, and returns the number of bytes.
     ///
     /// # Errors
     /// [`UsbFailure`]
     fn write(&self, bytes: &[u8], wait: Duration) -> Result<usize, UsbFailure>;
 }
 
-/// How long the chip may take for a request; it answers within a frame.
+/// The limit for a request. The chip answers within a frame.
 const REQUEST: Duration = Duration::from_millis(500);
 
 const VENDOR_OUT: u8 = 0x40;
@@ -65,14 +65,14 @@ pub(super) struct Libusb {
 }
 
 impl Libusb {
-    /// Claims `interface` alone. The kernel's driver is detached from it, and comes back when this is dropped.
+    /// Claims only `interface`. The kernel's driver is detached from it, and reattached when this is dropped.
     pub(super) fn claim(
         handle: DeviceHandle<Context>,
         interface: u8,
         (endpoint_in, endpoint_out): (u8, u8),
     ) -> Result<Self, rusb::Error> {
         match handle.set_auto_detach_kernel_driver(true) {
-            // Systems without such drivers.
+            // NotSupported: a system without such drivers.
             Ok(()) | Err(rusb::Error::NotSupported) => {}
             Err(error) => return Err(error),
         }
@@ -111,7 +111,7 @@ impl Transport for Libusb {
     }
 }
 
-/// libusb counts in milliseconds, and takes none for ever.
+/// libusb counts in milliseconds, and takes 0 for no limit.
 fn whole_milliseconds(wait: Duration) -> Duration {
     wait.max(Duration::from_millis(1))
 }
@@ -129,7 +129,7 @@ pub(super) fn failure(error: rusb::Error) -> UsbFailure {
         rusb::Error::NoDevice | rusb::Error::NotFound => UsbFailure::Gone,
         rusb::Error::Pipe => UsbFailure::Refused,
         rusb::Error::Timeout => UsbFailure::Late,
-        // A device that is pulled out in the middle of a transfer.
+        // A device that was pulled out in the middle of a transfer.
         rusb::Error::Io => UsbFailure::Gone,
         other => UsbFailure::Other(other.to_string()),
     }
