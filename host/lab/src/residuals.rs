@@ -6,7 +6,7 @@ use serde::Serialize;
 /// Mean and largest amount, in pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Amounts {
-    /// The mean; 0 of nothing.
+    /// The mean; 0 if there are none.
     pub mean: f64,
     /// The largest.
     pub max: f64,
@@ -18,13 +18,13 @@ impl From<GridResidual> for Amounts {
     }
 }
 
-/// The amounts in columns of one part of the picture.
+/// The amounts, in columns, in one part of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Part {
     /// Mean and largest.
     #[serde(flatten)]
     pub amounts: Amounts,
-    /// The share of its samples for which the amount is above 0.05 and can be seen, 0 to 1.
+    /// The share of its samples whose amount is above 0.05, which can be seen: 0 to 1.
     #[serde(rename = "share_above_0.05")]
     pub visible: f64,
 }
@@ -35,25 +35,24 @@ impl From<GridResidual> for Part {
     }
 }
 
-/// How far the samples of a frame are from where the exact projection of the lens puts them, in pixels of the corrected
-/// frame.
+/// How far the samples of a frame are from where the exact projection of the lens puts them, in pixels of the corrected frame.
 ///
-/// Like Fig. 5 it is taken at every sample of the fisheye frame that lies in the image circle; samples that the exact
-/// projection puts outside the corrected frame count for nothing.
+/// As in Fig. 5, this is measured at every sample of the fisheye frame inside the image circle. Samples that the exact projection
+/// puts outside the corrected frame do not count.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Residuals {
-    /// The samples that count.
+    /// How many samples count.
     pub samples: usize,
-    /// The amounts in columns: what the tables leave.
+    /// The amounts in columns, which is what the tables leave.
     pub circle: Part,
-    /// Those of the inner part: up to 85 degrees off the axis, and within 0.9 of the height of the circle of 180 degrees.
+    /// The same for the inner part: up to 85 degrees off the axis, and within 0.9 of the height of the circle of 180 degrees.
     pub inner: Part,
-    /// Those of the rest: the rim and what is next to the poles.
+    /// The same for the rest: the rim and what is next to the poles.
     pub rim: Part,
-    /// The amounts in rows, which no table changes: how far each sample is from the row at which the lens images its
-    /// latitude above or below the axis.
+    /// The amounts in rows, which no table can change: how far each sample is from the row at which the lens images its latitude
+    /// above or below the axis.
     pub vertical: Amounts,
-    /// The amount in columns at every sample, row after row; 0 where none counts.
+    /// The amount in columns at every sample, row after row; 0 where the sample does not count.
     pub map: Vec<Vec<f64>>,
 }
 

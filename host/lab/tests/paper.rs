@@ -1,11 +1,11 @@
-//! The mathematics of the paper's figures, held to values that other programs found.
+//! The mathematics of the paper's figures, compared with values from other programs.
 
 use halfrow::frames::preview::RgbImage;
 use halfrow_lab::paper::{View, distorted, ray};
 use halfrow_model::Equidistant;
 
-/// Every byte (37 · its place) mod 251, distorted with R = 4 by NumPy 2.4: `floor(interp(k·x_d + 3.5, arange(8), row))`
-/// for each row and colour.
+/// The picture whose bytes are (37 · index) mod 251, distorted with R = 4 by NumPy 2.4: `floor(interp(k·x_d + 3.5, arange(8),
+/// row))` for each row and colour.
 const DISTORTED: [[u8; 24]; 4] = [
     [
         0, 37, 74, 89, 126, 163, 208, 24, 61, 87, 114, 151, 187, 224, 20, 66, 103, 140, 136, 173, 210, 24,
@@ -33,9 +33,9 @@ fn distortion_is_added_as_numpy_adds_it() {
     assert_eq!(distorted(&image, &lens).data, DISTORTED.as_flattened());
 }
 
-/// Where three points of each view come from, R = 320. Perspective and Mercator: `cv2.fisheye.distortPoints` of OpenCV 5.0
-/// with no coefficients and f = 2R/π. Exact: Eq. 6 as printed, over two million x_d, interpolated with NumPy. Simplified:
-/// Eqs. 8 and 9 in NumPy.
+/// The sources of three points of each view, R = 320. Perspective and Mercator: `cv2.fisheye.distortPoints` of OpenCV 5.0 with no
+/// coefficients and f = 2R/π. Exact: Eq. 6 as printed, over two million x_d, interpolated with NumPy. Simplified: Eqs. 8 and 9 in
+/// NumPy.
 #[test]
 fn views_come_from_where_other_programs_find_them() {
     let lens = Equidistant::from_radius(320.0).unwrap();

@@ -1,4 +1,4 @@
-//! Fitting kernels: the equations, held to systems whose solution is known from outside.
+//! Fitting kernels: the equations, checked with systems whose solution is known from elsewhere.
 
 use halfrow::frames::preview::RgbImage;
 use halfrow::kernels::NamedKernel;
@@ -6,7 +6,7 @@ use halfrow::progress::Silent;
 use halfrow_lab::training::{Equations, TrainingError, measure, train};
 use halfrow_model::{Interpolant, Kernel, NODES, Taps};
 
-/// Outputs that a known kernel makes of made-up taps: the equations give that kernel back, but for the ridge.
+/// Outputs that a known kernel makes of invented taps: the equations give that kernel back, except for the ridge's effect.
 #[test]
 fn the_kernel_that_made_the_outputs_is_found_again() {
     for (named, taps) in [
@@ -48,7 +48,7 @@ fn a_photograph_without_detail_determines_no_kernel() {
     assert!(matches!(train(&[none], Taps::Five, &Silent), Err(TrainingError::Geometry(_))));
 }
 
-/// Samples between nodes 20 and 23 that no kernel makes exactly.
+/// Samples between nodes 20 and 23 that no kernel reproduces exactly.
 fn noisy_equations() -> Equations {
     let drawn = |place: u32, bits: u32| f64::from(place.wrapping_mul(2_654_435_761) >> (32 - bits));
     let mut equations = Equations::new();
@@ -62,8 +62,8 @@ fn noisy_equations() -> Equations {
     equations
 }
 
-/// Nodes 20 to 23, and the sum of squares that they leave, by NumPy 2.4 (`numpy.linalg.lstsq` over the samples and a row for each
-/// weight that holds it to Hermite's by the ridge).
+/// Nodes 20 to 23, and the sum of squares that remains, by NumPy 2.4 (`numpy.linalg.lstsq` over the samples and one row for each
+/// weight, which holds it to Hermite's by the ridge).
 #[test]
 fn the_fit_is_numpy_s() {
     let equations = noisy_equations();
@@ -93,7 +93,7 @@ fn the_fit_is_numpy_s() {
     for (taps, nodes, left) in found {
         let kernel = equations.kernel(taps).unwrap();
         assert_eq!(kernel.nodes()[20..24], nodes);
-        // No sample comes near the others, which stay Hermite's but for how a half is rounded.
+        // No sample is near the other nodes, which stay Hermite's except for the rounding of halves.
         let others =
             |kernel: &Kernel| [&kernel.nodes()[..20], &kernel.nodes()[24..]].concat().into_flattened();
         let pairs = others(&kernel).into_iter().zip(others(&hermite));
@@ -102,20 +102,20 @@ fn the_fit_is_numpy_s() {
     }
 }
 
-/// A picture of this size whose brightness at each place is `value`.
+/// A picture of this size; `value` gives the brightness at each place.
 fn grey(width: usize, height: usize, value: impl Fn(usize, usize) -> u32) -> RgbImage {
     let value = &value;
     let places = (0..height).flat_map(|row| (0..width).flat_map(move |column| [value(row, column); 3]));
     RgbImage { width, height, data: places.map(|value| (value % 256) as u8).collect() }
 }
 
-/// Saw teeth, which rise slowly to the right and fall at once.
+/// A sawtooth, which rises slowly to the right and falls at once.
 fn saw_teeth(row: usize, column: usize) -> u32 {
     (20 + 19 * ((column + row / 3) % 11) + 3 * (row % 5)) as u32
 }
 
-/// Light has no preferred direction. Seen from the other side, s0 changes places with s6, s1 with s5, and s2, which weighs
-/// 1 - g0 - g4 - g6, with s4, at the node as far from the end as this one is from the beginning.
+/// Light has no preferred direction. Mirrored, s0 changes places with s6, s1 with s5, and s2, whose weight is 1 - g0 - g4 - g6,
+/// with s4, at the node that is as far from the end as this one is from the beginning.
 #[test]
 fn a_fitted_kernel_is_the_same_from_both_sides_although_the_picture_is_not() {
     let kernel = train(&[grey(96, 64, saw_teeth)], Taps::Seven, &Silent).unwrap().kernel;
@@ -129,14 +129,14 @@ fn a_fitted_kernel_is_the_same_from_both_sides_although_the_picture_is_not() {
     assert!(farthest < 300, "{farthest}");
 }
 
-/// Noise: whatever the size of a picture of it, its samples tell the same of a kernel.
+/// Noise, so that a picture of any size says the same about a kernel.
 fn noise(width: usize, height: usize) -> RgbImage {
     grey(width, height, |row, column| {
         90 + (((row * 4096 + column) as u32).wrapping_mul(2_654_435_761) >> 8) % 20
     })
 }
 
-/// A picture of four times the pixels moves the kernel by far less than four that tell what it tells do.
+/// A picture with four times the pixels moves the kernel far less than four pictures with the same content.
 #[test]
 fn a_photograph_weighs_the_same_whatever_its_size() {
     let nodes = |photographs: &[RgbImage]| -> Vec<i32> {
@@ -151,8 +151,8 @@ fn a_photograph_weighs_the_same_whatever_its_size() {
     assert!(4 * by_size < by_number, "{by_size}, {by_number}");
 }
 
-/// A step of one level in the middle, which no lens moves and Hermite's nodes keep, and which two outer taps of a whole picture's
-/// weight smear.
+/// A step of one level in the middle. No lens moves it, Hermite's nodes keep it, and two outer taps with nearly the full weight
+/// smear it.
 #[test]
 fn what_comes_back_exactly_by_hermite_alone_has_no_figure() {
     let step = grey(96, 64, |_, column| 90 + u32::from(column >= 48));

@@ -1,4 +1,4 @@
-//! The lenses before sensors that corrections are compared on.
+//! The lenses and sensors on which corrections are compared.
 
 use halfrow_model::{
     BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, LensError, Profile,
@@ -7,27 +7,27 @@ use halfrow_model::{
 /// The paper's frame.
 pub(super) const FULL_HD: (usize, usize) = (1920, 1080);
 
-/// The paper's sensor, whole.
+/// The paper's whole sensor.
 pub(super) const SENSOR: (usize, usize) = (2592, 1944);
 
-/// The sensor that the DSL215 was measured on.
+/// The sensor with which the DSL215 was measured.
 pub(super) const MEASURED: (usize, usize) = (752, 480);
 
-/// Pixels of the paper's sensor for one of that: 6.0 µm and 2.2 µm.
+/// Pixels of the paper's sensor for one pixel of that sensor: 6.0 µm and 2.2 µm.
 const FINER: f64 = 6.0 / 2.2;
 
-/// Column and row of the axis of the DSL215 where it was measured.
+/// Column and row of the DSL215's axis in its measurement.
 const MEASURED_CENTRE: (f64, f64) = (364.430_465, 229.581_672);
 
 /// The image circle, in degrees across.
 const FIELD: f64 = 180.0;
 
-/// What the lenses are called.
+/// Names of the lenses.
 pub(super) const PAPER: &str = "the paper's lens";
 pub(super) const DSL215: &str = "a measured DSL215";
 pub(super) const FISHEYE_MODEL: &str = "OpenCV's fisheye model";
 
-/// An equidistant lens whose image of 180° has this radius, with its axis at `centre`.
+/// An equidistant lens with this radius of the image at 90° from the axis, and its axis at `centre`.
 pub(super) fn equidistant(
     size: (usize, usize),
     radius: f64,
@@ -41,17 +41,17 @@ pub(super) fn paper(size: (usize, usize)) -> Result<Camera, CameraError> {
     equidistant(size, Equidistant::default().radius(), middle(size))
 }
 
-/// The DSL215 where it was measured.
+/// The DSL215 on the sensor of its measurement.
 pub(super) fn measured() -> Result<Camera, CameraError> {
     camera(MEASURED, dsl215()?, MEASURED_CENTRE)
 }
 
-/// The DSL215 before the paper's pixels, with its axis in the middle.
+/// The DSL215 on the paper's pixels, with its axis in the middle.
 pub(super) fn dsl215_before(size: (usize, usize)) -> Result<Camera, CameraError> {
     camera(size, dsl215()?.scaled(FINER)?, middle(size))
 }
 
-/// The same with its axis as far from the middle as it was measured.
+/// The same with its axis off the middle by as much as was measured.
 pub(super) fn dsl215_aside(size: (usize, usize)) -> Result<Camera, CameraError> {
     let (was, is) = (middle(MEASURED), middle(size));
     let aside = |is: f64, measured: f64, was: f64| is + FINER * (measured - was);
@@ -59,7 +59,7 @@ pub(super) fn dsl215_aside(size: (usize, usize)) -> Result<Camera, CameraError> 
     camera(size, dsl215()?.scaled(FINER)?, centre)
 }
 
-/// A camera of 1280 x 720 with oblong, slanted pixels, as OpenCV's fisheye model (Kannala, Brandt) has it.
+/// A camera of 1280 x 720 with oblong, slanted pixels, in OpenCV's fisheye model (Kannala, Brandt).
 pub(super) fn fisheye_model() -> Result<Camera, CameraError> {
     let profile = Profile::KannalaBrandt([-0.0125, 0.0031, -0.0042, 0.0007]);
     let lens = CalibratedLens::new(profile, [[552.25, 0.75], [0.0, 549.125]])?;
@@ -71,7 +71,7 @@ pub(super) fn middle((width, height): (usize, usize)) -> (f64, f64) {
     ((width - 1) as f64 / 2.0, (height - 1) as f64 / 2.0)
 }
 
-/// A Sunex DSL215 as OCamCalib measured it, published in ctu-mrs/uvdar_core under the BSD licence of three clauses.
+/// A Sunex DSL215, measured with OCamCalib and published in ctu-mrs/uvdar_core under the 3-clause BSD licence.
 fn dsl215() -> Result<CalibratedLens, LensError> {
     let coefficients = vec![-2.595395e+02, 0.0, 1.626945e-03, -2.328091e-06, 6.601777e-09];
     CalibratedLens::new(Profile::Polynomial(coefficients), [[1.0, -0.000_158], [-0.000_012, 1.000_314]])

@@ -1,4 +1,4 @@
-//! The delay claim of Sect. 4.2: half a row, measured on a board.
+//! The delay claimed in Sect. 4.2, half a row, measured on a board.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use super::{Item, PaperError};
 use halfrow::frames::{Builtin, Scene};
 use halfrow::progress::Progress;
 
-/// Pixel clocks beyond half a row that a board may take (DATAPATH.md, "Time").
+/// Pixel clocks that a board may add to half a row (DATAPATH.md, "Time").
 const MOST_OWN: u16 = 32;
 
 /// Pixel clocks a second, and where they come from.
@@ -21,7 +21,7 @@ const CLOCKS: [(f64, &str); 2] = [
     (96e6, "MT9P031 at its fastest"),
 ];
 
-/// Streams one frame of 1080p and holds the delay that the board measured to the paper's.
+/// Streams one frame of 1080p and compares the delay that the board measured with the paper's.
 pub(super) fn exhibit(board: &mut TestedBoard, progress: &dyn Progress) -> Result<Exhibit, PaperError> {
     let geometry = Geometry::default();
     let tables = TableSet::from_lens(geometry, &Equidistant::default(), None)?;
@@ -45,7 +45,7 @@ pub(super) fn exhibit(board: &mut TestedBoard, progress: &dyn Progress) -> Resul
     Ok(exhibit)
 }
 
-/// What the measured pixel clocks are held to.
+/// The limits for the measured pixel clocks.
 fn claims(latency: &RangeInclusive<u16>, half_row: u16, advertised: u16) -> [Claim; 3] {
     let judged = |what: &str, unit, found, accepted| Claim {
         what: what.to_owned(),

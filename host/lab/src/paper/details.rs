@@ -17,13 +17,13 @@ const PHOTOGRAPH: usize = 7;
 /// Columns and rows of a detail.
 const SIZE: (usize, usize) = (96, 72);
 
-/// Places of details are multiples of this, so that they begin on a whole cell of the filter array.
+/// Details begin at multiples of this, so that they start on a whole cell of the filter array.
 const GRID: usize = 24;
 
 /// The frames around the details: yellow and blue, as in the paper.
 const FRAMES: [([u8; 3], &str); 2] = [([255, 220, 0], "yellow"), ([40, 90, 255], "blue")];
 
-/// How large a detail's pixels are shown.
+/// How many times a detail is enlarged.
 const ZOOM: usize = 4;
 
 /// The upper left corner of a detail.
@@ -33,7 +33,7 @@ struct Corner {
     column: usize,
 }
 
-/// The whole photograph and two details of it by each method, beside the photograph as it was.
+/// The whole photograph and two details of it by each method, and the original.
 pub(super) fn exhibit(photographs: &[RgbImage]) -> Result<Exhibit, PaperError> {
     let photograph = &photographs[PHOTOGRAPH];
     let experiment = Experiment::new()?;
@@ -50,7 +50,7 @@ pub(super) fn exhibit(photographs: &[RgbImage]) -> Result<Exhibit, PaperError> {
     ));
     let developed = corrected.each_ref().map(demosaic_coded);
     let reference = demosaic_coded(&mosaic(photograph, Phase::Grbg)?);
-    // A row for each method: the whole picture, and its details.
+    // One row for each method: the whole picture and its details.
     exhibit.in_threes = true;
     let pictures = METHODS.map(name).into_iter().zip(&developed).chain([("original", &reference)]);
     for (name, image) in pictures {
@@ -60,7 +60,7 @@ pub(super) fn exhibit(photographs: &[RgbImage]) -> Result<Exhibit, PaperError> {
     Ok(exhibit)
 }
 
-/// The two details, apart from each other, where `found` is farthest from `reference`.
+/// The two details, not overlapping, in which `found` is farthest from `reference`.
 fn worst(reference: &Frame, found: &Frame) -> [Corner; 2] {
     let (width, height) = SIZE;
     let rows = (0..=reference.height() - height).step_by(GRID);

@@ -1,20 +1,20 @@
-//! Adding the distortion that the correction takes away: the reciprocal of Eqs. 8 and 9 (Sect. 4.1, Fig. 11).
+//! Adds the distortion that the correction removes: the reciprocal of Eqs. 8 and 9 (Sect. 4.1, Fig. 11).
 
 use halfrow_model::{Equidistant, stretch_factor};
 
 use halfrow::frames::preview::RgbImage;
 
-/// `image` as a lens with the image circle of `lens` would distort its rows: distorted(x_d, y) = image(k · x_d, y), in
-/// pixels from the middle of the picture, k of Eq. 9.
+/// `image` with its rows distorted as by a lens with the image circle of `lens`: distorted(x_d, y) = image(k · x_d, y), in pixels
+/// from the middle of the picture, with k of Eq. 9.
 ///
-/// Between two pixels each colour runs in a straight line, beyond the ends of a row the last pixel goes on, and the result is
-/// truncated to 8 bits. The paper leaves all three open; these come nearest to its Table 1.
+/// Each colour is interpolated linearly between two pixels, the last pixel of a row continues beyond its end, and the result is
+/// truncated to 8 bits. The paper leaves all three open; these choices come nearest to its Table 1.
 #[must_use]
 pub fn distorted(image: &RgbImage, lens: &Equidistant) -> RgbImage {
     distorted_by(image, lens, between)
 }
 
-/// As [`distorted`], with what `sample` finds in a row of bytes at a place, 0 to its last column.
+/// Like [`distorted`], with the colour that `sample` computes for a position in a row of bytes, 0 to its last column.
 #[must_use]
 pub(crate) fn distorted_by(
     image: &RgbImage,
@@ -35,7 +35,7 @@ pub(crate) fn distorted_by(
     RgbImage { width, height, data }
 }
 
-/// Red, green and blue at the place `x` of a row, 0 to its last column, truncated.
+/// Red, green and blue at the position `x` of a row, 0 to its last column, truncated.
 fn between(row: &[u8], x: f64) -> [u8; 3] {
     let left = x as usize;
     let right = (left + 1).min(row.len() / 3 - 1);

@@ -1,4 +1,4 @@
-//! Fig. 5: how far the simplified projection is from the exact one (Sect. 3.2).
+//! Fig. 5: the difference between the simplified projection and the exact one (Sect. 3.2).
 
 use halfrow_model::{Equidistant, exact, simplified};
 
@@ -10,7 +10,7 @@ use halfrow::frames::HeatMap;
 /// R in pixels.
 const RADIUS: i32 = 100;
 
-/// The rows |y| up to this one are the middle part of 16 : 9, 113 of 201.
+/// The rows |y| up to this one are the middle 16 : 9 part, 113 of 201.
 const MIDDLE: i32 = 56;
 
 /// The map and its two means.
@@ -44,7 +44,7 @@ pub(super) fn exhibit() -> Result<Exhibit, PaperError> {
     Ok(exhibit)
 }
 
-/// The error at the fisheye point (`x`, `y`) in pixels, 0 where one of the projections has no value.
+/// The error at the fisheye point (`x`, `y`) in pixels; 0 where one of the projections has no value.
 fn error(lens: &Equidistant, x: f64, y: f64) -> f64 {
     let radius = lens.radius();
     if x * x + y * y > radius * radius || y.abs() >= radius {
@@ -86,8 +86,8 @@ fn table(rows: &[Vec<f64>]) -> Table {
 mod tests {
     use super::*;
 
-    /// By hand, R = 100: on the row y = 0 both projections are x_u = x_d. At (60, 60), r/f = 1.332865 rad and the
-    /// longitude is atan(0.707107 · tan 1.332865) = 1.240387 rad, so Eq. 6 gives 78.9655 and Eq. 8 60 / 0.8 = 75.
+    /// By hand, R = 100: on the row y = 0 both projections have x_u = x_d. At (60, 60), r/f = 1.332865 rad and the longitude is
+    /// atan(0.707107 · tan 1.332865) = 1.240387 rad, so Eq. 6 gives 78.9655 and Eq. 8 60 / 0.8 = 75.
     #[test]
     fn the_error_is_that_of_eqs_6_and_8() {
         let lens = Equidistant::from_radius(100.0).unwrap();
@@ -96,7 +96,7 @@ mod tests {
         assert_eq!((error(&lens, 80.0, 80.0), error(&lens, 0.0, 100.0)), (0.0, 0.0));
     }
 
-    /// An independent calculation in NumPy with the same grid found 2.3853 and 0.8021.
+    /// An independent calculation in NumPy with the same grid gave 2.3853 and 0.8021.
     #[test]
     fn the_means_are_the_paper_s() {
         let claims = exhibit().unwrap().claims;

@@ -1,31 +1,31 @@
-//! What one item of the paper comes to: claims held against what was found, tables of numbers, and pictures.
+//! The result for one item of the paper: claims compared with what was found, tables of numbers, and pictures.
 
 use serde_json::{Value, json};
 
 use super::Item;
 use halfrow::frames::preview::RgbImage;
 
-/// One item, reproduced.
+/// A reproduced item.
 #[derive(Clone, Debug)]
 pub struct Exhibit {
-    /// Which.
+    /// The item.
     pub item: Item,
     /// How it was made, in sentences.
     pub remarks: Vec<String>,
-    /// What could not be tried, and how it can be.
+    /// What could not be tried, and how to try it.
     pub open: Vec<String>,
-    /// The paper's numbers beside ours.
+    /// The paper's numbers next to ours.
     pub claims: Vec<Claim>,
     /// All numbers.
     pub tables: Vec<Table>,
-    /// What there is to see.
+    /// The pictures.
     pub pictures: Vec<Picture>,
-    /// Whether three pictures at a time belong side by side.
+    /// Whether the pictures belong side by side in groups of three.
     pub in_threes: bool,
 }
 
 impl Exhibit {
-    /// An exhibit that is still empty.
+    /// An empty exhibit.
     pub(super) fn new(item: Item) -> Self {
         Self {
             item,
@@ -43,31 +43,31 @@ impl Exhibit {
     }
 }
 
-/// A number that must come out as it should.
+/// A number that must be as expected.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Claim {
     /// What it is, in a few words.
     pub what: String,
     /// Its unit; empty for a count.
     pub unit: &'static str,
-    /// What the paper prints, if it does.
+    /// The paper's number, if it has one.
     pub paper: Option<f64>,
     /// What was found.
     pub found: f64,
     /// When it is accepted.
     pub accepted: Accepted,
-    /// Whether it judges the board. What fails otherwise is the reproduction's.
+    /// Whether a miss is the board's fault. Otherwise it is a fault of the reproduction.
     pub judges_board: bool,
 }
 
 /// When a number is accepted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Accepted {
-    /// It is no further than this from the paper's.
+    /// No further than this from the paper's.
     Within(f64),
-    /// It is no more than this.
+    /// No more than this.
     UpTo(f64),
-    /// It is less than this.
+    /// Less than this.
     Below(f64),
 }
 
@@ -90,7 +90,7 @@ impl Claim {
         }
     }
 
-    /// The number, a count without decimals.
+    /// The number as text; a count has no decimals.
     #[must_use]
     pub fn printed(&self) -> String {
         if self.unit.is_empty() { self.found.to_string() } else { format!("{:.4}", self.found) }
@@ -117,32 +117,32 @@ impl Claim {
     }
 }
 
-/// Numbers in rows and columns: one CSV file.
+/// Numbers in rows and columns, one CSV file.
 #[derive(Clone, Debug)]
 pub struct Table {
     /// The file's name without its extension.
     pub name: &'static str,
-    /// What it holds, in one sentence.
+    /// What it contains, in one sentence.
     pub caption: String,
     /// The columns' names, with units.
     pub columns: Vec<String>,
     /// The rows.
     pub rows: Vec<Vec<Cell>>,
-    /// Whether it is short enough for the page.
+    /// Whether it is short enough to be shown on the page.
     pub on_page: bool,
 }
 
-/// One place of a [`Table`].
+/// One cell of a [`Table`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
-    /// A word.
+    /// Text.
     Text(String),
-    /// A number, and the decimals that it is given with.
+    /// A number, and how many decimals are printed.
     Number(f64, usize),
 }
 
 impl Cell {
-    /// The place as it is printed.
+    /// The cell as it is printed.
     #[must_use]
     pub fn text(&self) -> String {
         match self {
@@ -160,7 +160,7 @@ impl Cell {
 }
 
 impl Table {
-    /// The table as comma-separated values, the names of its columns first (RFC 4180).
+    /// The table as comma-separated values, with the column names first (RFC 4180).
     #[must_use]
     pub fn csv(&self) -> String {
         let quoted = |text: &str| match text.contains([',', '"', '\n']) {
@@ -180,7 +180,7 @@ impl Table {
     }
 }
 
-/// Something to see: one file.
+/// A picture, one file.
 #[derive(Clone, Debug)]
 pub struct Picture {
     /// The file's name without its extension.
@@ -194,7 +194,7 @@ pub struct Picture {
 /// A picture of pixels or of lines.
 #[derive(Clone, Debug)]
 pub(crate) enum Drawing {
-    /// Pixels; each is shown as a square of so many.
+    /// Pixels; each is shown as a square with this many pixels on a side.
     Pixels(RgbImage, usize),
     /// An SVG document.
     Lines(String),

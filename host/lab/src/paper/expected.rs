@@ -1,11 +1,11 @@
-//! The numbers that the paper prints, to hold ours against.
+//! The numbers that the paper prints, with which ours are compared.
 
 use halfrow_model::Interpolant;
 
 /// The photographs of Table 1.
 pub(super) const PHOTOGRAPHS: usize = 24;
 
-/// The methods of Table 1 in its order.
+/// The methods of Table 1, in its order.
 pub(super) const METHODS: [Interpolant; 3] = [Interpolant::Linear, Interpolant::Keys, Interpolant::Hermite];
 
 /// Table 1: the PSNR of each photograph by each of [`METHODS`], in dB.
@@ -36,22 +36,23 @@ pub(super) const TABLE_1: [[f64; 3]; PHOTOGRAPHS] = [
     [27.9189, 28.2316, 30.5792],
 ];
 
-/// Table 1's last row: the averages, in dB.
+/// The last row of Table 1: the averages, in dB.
 pub(super) const TABLE_1_AVERAGES: [f64; 3] = [32.1324, 32.5833, 34.9660];
 
-/// How far a photograph's PSNR may be from Table 1, in dB. The paper leaves rounding and edges of its experiment open.
+/// How far a photograph's PSNR may be from Table 1, in dB. The paper leaves rounding and edges open.
 pub(super) const PSNR_TOLERANCE: f64 = 0.2;
 
 /// How far an average may be from Table 1, in dB.
 pub(super) const AVERAGE_TOLERANCE: f64 = 0.05;
 
-/// How far an average in integers may be from double precision, in dB.
+/// How far an average in integers may be from the one in double precision, in dB.
 pub(super) const INTEGER_TOLERANCE: f64 = 0.01;
 
-/// Sect. 3.2: the mean error of the simplified projection at R = 100, in pixels: of the whole image, and of its middle 16 : 9.
+/// Sect. 3.2: the mean error of the simplified projection at R = 100, in pixels, of the whole image and of its middle 16 : 9
+/// part.
 pub(super) const MEAN_ERRORS: [f64; 2] = [2.38, 0.80];
 
-/// How far a mean error may be from the paper, in pixels: it prints two decimals.
+/// How far a mean error may be from the paper's, in pixels. The paper prints two decimals.
 pub(super) const MEAN_ERROR_TOLERANCE: f64 = 0.01;
 
 /// Sect. 4.2: the longest delay of half a row of 1080p30, in milliseconds.
@@ -64,7 +65,7 @@ pub(super) const RESOURCES_PERCENT: f64 = 10.0;
 mod tests {
     use super::*;
 
-    /// The table's own averages tell whether it was copied right.
+    /// The table's own averages show whether it was copied correctly.
     #[test]
     fn the_columns_of_table_1_have_its_averages() {
         for (method, average) in TABLE_1_AVERAGES.into_iter().enumerate() {

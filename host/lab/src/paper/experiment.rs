@@ -1,4 +1,5 @@
-//! The experiment of Sect. 4.1 (Fig. 11): distort a photograph, mosaic it, correct it, and compare with the photograph mosaicked.
+//! The experiment of Sect. 4.1 (Fig. 11): distort a photograph, mosaic it, correct it, and compare it with the mosaicked
+//! original.
 
 use std::sync::Arc;
 
@@ -14,7 +15,7 @@ use halfrow::frames::mosaic;
 use halfrow::frames::preview::RgbImage;
 use halfrow::reference;
 
-/// What all photographs share: the lens whose image circle is as wide as the picture, R = W/2 = 384, its axis in the middle.
+/// What all photographs share: a lens whose image circle is as wide as the picture, R = W/2 = 384, with its axis in the middle.
 #[derive(Clone, Debug)]
 pub(crate) struct Experiment {
     geometry: Geometry,
@@ -22,7 +23,7 @@ pub(crate) struct Experiment {
     tables: TableSet,
 }
 
-/// One photograph, ready to be corrected.
+/// One photograph, ready for correction.
 #[derive(Clone, Debug)]
 pub(crate) struct Trial {
     /// What a sensor would see without distortion.
@@ -32,10 +33,10 @@ pub(crate) struct Trial {
 }
 
 impl Experiment {
-    /// The paper's.
+    /// The paper's experiment.
     ///
     /// # Errors
-    /// None: its figures are legal.
+    /// Never, since its parameters are legal.
     pub(crate) fn new() -> Result<Self, PaperError> {
         let geometry = Geometry::centred(WIDTH, HEIGHT, BitDepth::Eight)?;
         let lens = Equidistant::from_radius(WIDTH as f64 / 2.0)?;
@@ -68,7 +69,7 @@ impl Experiment {
         Ok(round_to_frame(&samples, &trial.distorted)?)
     }
 
-    /// The distorted frame corrected by the integer datapath.
+    /// The distorted frame, corrected by the integer datapath.
     ///
     /// # Errors
     /// [`PaperError::Correct`] when the trial has another size.
@@ -78,7 +79,7 @@ impl Experiment {
 }
 
 impl Trial {
-    /// The PSNR of corrected samples against the reference, in dB: the whole frame, no border left out.
+    /// The PSNR of corrected samples against the reference, in dB, over the whole frame without leaving out a border.
     #[must_use]
     pub(crate) fn score(&self, corrected: &[u16]) -> f64 {
         psnr(self.reference.samples(), corrected)

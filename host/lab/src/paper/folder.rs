@@ -1,4 +1,4 @@
-//! The folder of the exhibits: the page, each picture and each table as a file, and all numbers as JSON.
+//! The folder of the exhibits: the page, a file for each picture and table, and all numbers as JSON.
 
 use std::fs;
 use std::io;
@@ -12,9 +12,9 @@ use halfrow::frames::preview;
 use halfrow::result::SCHEMA;
 use halfrow_files::written_aside::{Claim, WriteAsideError, check, write_aside};
 
-/// The page's name.
+/// Name of the page.
 const PAGE: &str = "paper.html";
-/// The name of the file that holds every number.
+/// Name of the file with all numbers.
 const NUMBERS: &str = "paper.json";
 
 /// Exhibits that could not be written.
@@ -36,20 +36,20 @@ pub enum FolderError {
     Picture(#[from] png::EncodingError),
 }
 
-/// A place for exhibits. Files in it that they do not name stay as they are.
+/// A folder for exhibits. Other files in it stay as they are.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
     overwrite: bool,
-    /// Until all is written, so that two that may not overwrite cannot both begin.
+    /// Kept until everything is written, so that two runs that may not overwrite cannot both begin.
     _claim: Option<Claim>,
 }
 
 impl Folder {
-    /// Makes the folder unless it is there, and makes sure that it holds no earlier page unless that may be replaced.
+    /// Makes the folder unless it exists. Makes sure that it contains no earlier page, unless that may be replaced.
     ///
     /// # Errors
-    /// [`FolderError`] when it cannot be made or holds one, or when another run is about to put one there.
+    /// [`FolderError`] when it cannot be made, contains a page, or another run is about to put one there.
     pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, FolderError> {
         fs::create_dir_all(path).map_err(|source| FolderError::Make { path: path.to_owned(), source })?;
         let page = path.join(PAGE);
@@ -64,12 +64,12 @@ impl Folder {
         [PAGE, NUMBERS].iter().chain(of_items).map(|name| folder.join(name))
     }
 
-    /// Writes everything, the page last, and returns where that is.
+    /// Writes everything, the page last, and returns the page's path.
     ///
     /// # Errors
     /// [`FolderError`] for the first file that cannot be written.
     pub fn write(&self, exhibits: &[Exhibit]) -> Result<PathBuf, FolderError> {
-        // Of two that overwrite each other, the files are those of the one or of the other.
+        // If two runs overwrite each other, all files are those of one of them.
         let _turn = if self.overwrite { Some(Claim::wait(&self.path.join(PAGE))?) } else { None };
         for exhibit in exhibits {
             for table in &exhibit.tables {
@@ -89,7 +89,7 @@ impl Folder {
     }
 }
 
-/// The numbers under the head that all documents of the program have in common.
+/// The numbers, under the head that all documents of the program share.
 fn document(exhibits: &[Exhibit]) -> Value {
     let mut document = json!({ "schema": SCHEMA, "command": "paper" });
     if let (Some(head), Value::Object(numbers)) = (document.as_object_mut(), numbers(exhibits)) {
@@ -143,7 +143,7 @@ mod tests {
     use halfrow::frames::preview::RgbImage;
     use halfrow::progress::Silent;
 
-    /// What takes photographs; tests of the program hold all other items to their lists.
+    /// Items that need photographs. Tests of the program check the lists of all other items.
     #[test]
     fn items_of_photographs_write_the_files_on_their_lists() {
         let (width, height) = (768, 512);

@@ -1,4 +1,4 @@
-//! Figs. 3 and 6(a): longitudes and latitudes every 10° of the hemisphere in front of the lens.
+//! Figs. 3 and 6(a): longitudes and latitudes every 10° in the hemisphere in front of the lens.
 
 use halfrow_model::Equidistant;
 
@@ -10,16 +10,16 @@ use super::{Item, PaperError};
 /// R in pixels.
 const RADIUS: f64 = 100.0;
 
-/// The poles themselves have no longitude, so lines end this close to them, in degrees.
+/// The poles themselves have no longitude, so lines end at this latitude, in degrees.
 const NEAR_POLE: f64 = 89.9;
 
 /// The colours of longitudes and of latitudes.
 const COLOURS: [&str; 2] = ["#a8326f", "#1f5f8b"];
 
-/// How far a longitude may be from a straight column in the exact projection, in pixels: rounding alone.
+/// How far a longitude may be from a straight column in the exact projection, in pixels: only rounding.
 const STRAIGHT: f64 = 1e-9;
 
-/// A line of the sphere.
+/// A line on the sphere.
 struct Line {
     kind: usize,
     degrees: i32,
@@ -48,7 +48,7 @@ pub(super) fn figure_3() -> Result<Exhibit, PaperError> {
     Ok(exhibit)
 }
 
-/// Adds Fig. 6(a), the simplified projection, and how far its longitudes are from straight.
+/// Adds Fig. 6(a), the simplified projection, with the table of its points.
 pub(super) fn figure_6a(exhibit: &mut Exhibit) -> Result<(), PaperError> {
     let lens = Equidistant::from_radius(RADIUS)?;
     let caption = "Fig. 6(a): the simplified projection (Eqs. 8, 9).";

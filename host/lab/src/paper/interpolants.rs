@@ -1,4 +1,4 @@
-//! Fig. 8: what each interpolant makes of the samples of a row.
+//! Fig. 8: the curves of each interpolant through the samples of a row.
 
 use halfrow_model::{Interpolant, TAP_NAMES};
 
@@ -7,13 +7,13 @@ use super::exhibit::{Cell, Drawing, Exhibit, Picture, Table};
 use super::svg::Canvas;
 use super::table_1::name;
 
-/// Points of a curve over 0 ≤ x ≤ 2.
+/// Points of a curve in 0 ≤ x ≤ 2.
 const POINTS: u32 = 129;
 
-/// By how much the other colour is darker, as a grey edge in coloured light would be.
+/// By how much the other colour is darker, as on a grey edge in coloured light.
 const OTHER_COLOUR: f64 = 40.0;
 
-/// The figure's parts, and the interpolants in each.
+/// The parts of the figure, and the interpolants in each.
 const PARTS: [(&str, &str, &[Interpolant]); 3] = [
     ("fig-8a", "Fig. 8(a): nearest and linear interpolation.", &[Interpolant::Nearest, Interpolant::Linear]),
     ("fig-8b", "Fig. 8(b): cubic interpolation.", &[Interpolant::Keys]),
@@ -24,7 +24,7 @@ const GREEN: &str = "#1d7a46";
 const RED: &str = "#b3283a";
 const CURVES: [&str; 2] = ["#1f5f8b", "#a8326f"];
 
-/// The brightness of green at `x` pixels right of G2: the edge that is sampled.
+/// The brightness of green at `x` pixels right of G2, which is sampled: an edge.
 fn edge(x: f64) -> f64 {
     128.0 + 70.0 * (1.1 * x - 1.4).tanh()
 }
@@ -59,7 +59,7 @@ pub(super) fn exhibit() -> Exhibit {
 }
 
 fn drawn(interpolants: &[Interpolant]) -> String {
-    // 80 units a pixel across, one a level up.
+    // 80 units across for a pixel, and one up for a level.
     let place = |x: f64, level: f64| (80.0 * x, 255.0 - level);
     let curve = |from: f64, to: f64, f: &dyn Fn(f64) -> f64| -> Vec<(f64, f64)> {
         let at = |point: u32| from + (to - from) * f64::from(point) / f64::from(POINTS - 1);

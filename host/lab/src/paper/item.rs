@@ -29,14 +29,14 @@ pub enum Item {
     Resources,
 }
 
-/// A name that is no item's.
+/// A name that no item has.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{0}` is no item of the paper; it has fig3, fig4, fig5, fig6, fig8, fig12, verticals, residuals, table1, delay and resources"
 )]
 pub struct UnknownItem(pub String);
 
-/// What is said of an item.
+/// The words for an item.
 struct Words {
     name: &'static str,
     title: &'static str,
@@ -175,7 +175,7 @@ impl Item {
         self.words().name
     }
 
-    /// What it is called on the page.
+    /// Its title on the page.
     #[must_use]
     pub fn title(self) -> &'static str {
         self.words().title
@@ -187,13 +187,13 @@ impl Item {
         self.words().summary
     }
 
-    /// The files that it may write: one for each of its tables and pictures.
+    /// The files that it may write, one for each of its tables and pictures.
     #[must_use]
     pub fn files(self) -> &'static [&'static str] {
         self.words().files
     }
 
-    /// Whether it goes through a board, or does when one is named.
+    /// Whether it is tried on a board, always or when a board is named.
     #[must_use]
     pub fn goes_through_boards(self) -> bool {
         matches!(self, Self::Table1 | Self::Delay)

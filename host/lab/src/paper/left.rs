@@ -1,4 +1,4 @@
-//! What each way to make tables leaves of the exact projection, per lens, frame and optical centre.
+//! What each way of making tables leaves of the exact projection, by lens, frame and optical centre.
 
 use halfrow::frames::parallel;
 use halfrow_model::{Camera, CameraError, Equidistant, GridResidual, GridResiduals};
@@ -8,17 +8,18 @@ use super::exhibit::{Accepted, Cell, Claim, Exhibit, Table};
 use super::ways::Way;
 use super::{Item, PaperError};
 
-/// Entries of the smallest bank that a board with grids may have, and of the one for the full sensor.
+/// Entries of the smallest bank that a board with grids may have, and of the bank for the full sensor.
 const BANK: usize = 2048;
 const LARGE_BANK: usize = 4096;
 
-/// A lens before a frame.
+/// A lens and a frame.
 struct Case {
     lens: &'static str,
     camera: fn() -> Result<Camera, CameraError>,
     /// The most entries of its grid.
     entries: usize,
-    /// The largest error in the inner picture of a grid that was made by formula, not fitted; computed apart, in Python.
+    /// The largest error in the inner picture of a grid made by formula instead of being fitted. It was computed separately, in
+    /// Python.
     by_formula: f64,
 }
 
@@ -50,7 +51,7 @@ fn aside(size: (usize, usize), centre: (f64, f64)) -> Result<Camera, CameraError
     cameras::equidistant(size, Equidistant::default().radius(), centre)
 }
 
-/// The table, and the largest errors of the exact projection held to what was computed elsewhere.
+/// The table, and the largest errors of the exact projection compared with values computed elsewhere.
 pub(super) fn exhibit() -> Result<Exhibit, PaperError> {
     let mut exhibit = Exhibit::new(Item::Residuals);
     exhibit.remark(
@@ -103,14 +104,14 @@ const PARTS: [&str; 10] = [
     "beyond 90°",
 ];
 
-/// What each way leaves of one case.
+/// What each way leaves in one case.
 struct Left {
     /// Lens, frame and axis.
     what: [String; 3],
     equation_9: GridResiduals,
     fitted: GridResiduals,
     exact: GridResiduals,
-    /// v and k of the grid, and its entries.
+    /// v and k of the grid.
     shape: String,
     entries: usize,
 }

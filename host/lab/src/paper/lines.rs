@@ -1,24 +1,24 @@
-//! Straight lines of a scene, as directions from the camera: what an optimised projection keeps, and what tells how straight
-//! any projection is.
+//! Straight lines of a scene, as directions from the camera. An optimised projection keeps them, and they show how straight any
+//! projection is.
 
 use halfrow::frames::street;
 use serde::Deserialize;
 
-/// How far from the horizon and from the middle a line counts, in degrees.
+/// How far from the middle and from the horizon a line counts, in degrees of longitude and latitude.
 const REACH: (f64, f64) = (75.0, 65.0);
 
-/// Directions along a whole line.
+/// Steps along a whole line.
 const SAMPLES: usize = 48;
 
-/// What is known of a straight line in the picture that is to be made.
+/// What a straight line must be in the picture that is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum Held {
-    /// It must be a column.
+    /// A column.
     Upright,
-    /// It must be a row.
+    /// A row.
     Level,
-    /// It must be straight.
+    /// Straight, in any direction.
     Straight,
 }
 
@@ -32,7 +32,8 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// The line between two rays of any length, u right, v down, w ahead, as far as it counts; none if too little does, or both are one.
+    /// The line between two rays of any length, u right, v down, w ahead, as far as it counts; none if too little of it counts,
+    /// or if both rays are the same.
     #[must_use]
     pub(super) fn between(ends: [[f64; 3]; 2], held: Held) -> Option<Self> {
         let [from, to] = ends.map(unit);
@@ -47,7 +48,7 @@ impl Line {
     }
 }
 
-/// The street's: its upright edges, the roofs that cross it, and those along it.
+/// The lines of the street: its upright edges, the roofs across it, and those along it.
 #[must_use]
 pub(super) fn of_the_street() -> Vec<Line> {
     let line = |line: street::SceneLine| {

@@ -5,8 +5,8 @@
 //!  "lines": [{"from": [700, 200], "to": [690, 820], "is": "upright"}, …]}
 //! ```
 //!
-//! Points are columns and rows of the photograph from 0. The circle is where the lens, which is taken for an equidistant one,
-//! images 90° from its axis.
+//! Points are columns and rows of the photograph, counted from 0. The circle is where the lens, which is assumed to be
+//! equidistant, images 90° from its axis.
 
 use std::error::Error;
 use std::io;
@@ -20,7 +20,7 @@ use serde::Deserialize;
 
 use super::lines::{Held, Line};
 
-/// The radius of the lens that directions are found by; the photograph's own is a scale.
+/// The radius of the lens by which directions are computed. The photograph's own radius only scales its points.
 const RADIUS: f64 = 1000.0;
 
 /// A photograph, its image circle and its lines.
@@ -103,7 +103,7 @@ struct Marked {
     is: Held,
 }
 
-/// `error` with its place behind no more of it than can be read.
+/// `error` shortened to what can be read, followed by its place.
 fn short(error: &serde_json::Error) -> Box<dyn Error + Send + Sync> {
     let (whole, place) = (error.to_string(), format!(" at line {} column {}", error.line(), error.column()));
     let said = whole.strip_suffix(&place).unwrap_or(&whole);

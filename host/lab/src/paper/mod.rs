@@ -1,8 +1,8 @@
-//! The paper's figures and tables, reproduced: one module an item.
+//! The paper's figures and tables, reproduced, with one module for each item.
 //!
-//! An item becomes an [`Exhibit`] of claims, tables and pictures, and a [`Folder`] takes exhibits as one page, pictures, CSV and
-//! JSON. Equations, sections, figures and tables are those of Lai et al., *Real-time distortion correction of fish-eye lens
-//! based on Bayer image signal*, Optical Review 2014.
+//! An item becomes an [`Exhibit`] of claims, tables and pictures. A [`Folder`] takes exhibits as one page, pictures, CSV and
+//! JSON. Equations, sections, figures and tables are those of Lai et al., *Real-time distortion correction of fish-eye lens based
+//! on Bayer image signal*, Optical Review 2014.
 
 mod cameras;
 mod carroll;
@@ -56,15 +56,15 @@ use halfrow::progress::Progress;
 /// What items are made from.
 #[derive(Debug)]
 pub struct Material<'a> {
-    /// The 24 photographs; empty when no item needs them.
+    /// The 24 photographs; empty if no item needs them.
     pub photographs: &'a [RgbImage],
-    /// What Fig. 4 shows instead of the street.
+    /// The photograph that Fig. 4 shows instead of the street.
     pub marked: Option<&'a MarkedPhotograph>,
     /// The board, if one was opened.
     pub board: Option<TestedBoard>,
     /// Whether Table 1 goes through the board too.
     pub through_board: bool,
-    /// What `scripts/hardware resources` wrote.
+    /// The file that `scripts/hardware resources` wrote.
     pub synthesis: &'a Path,
 }
 
@@ -72,7 +72,7 @@ impl Material<'_> {
     /// Makes one item.
     ///
     /// # Errors
-    /// [`PaperError`] when the board or a file lets it down.
+    /// [`PaperError`] when the board or a file fails.
     pub fn exhibit(&mut self, item: Item, progress: &dyn Progress) -> Result<Exhibit, PaperError> {
         match item {
             Item::Fig3 => graticule::figure_3(),

@@ -1,4 +1,4 @@
-//! The exhibits as one page that stands alone, in the style of the reports.
+//! The exhibits as one self-contained page, in the style of the reports.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -22,7 +22,7 @@ pub(super) fn render(exhibits: &[Exhibit]) -> Result<String, EncodingError> {
     Ok(report::document("The paper, reproduced by halfrow", &body).into_string())
 }
 
-/// The result, and what could not be tried.
+/// The overall result, and what could not be tried.
 fn banner(exhibits: &[Exhibit]) -> Markup {
     let claims: Vec<&Claim> = exhibits.iter().flat_map(|exhibit| &exhibit.claims).collect();
     let missed = || claims.iter().filter(|claim| !claim.holds());

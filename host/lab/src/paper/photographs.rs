@@ -1,4 +1,4 @@
-//! The 24 photographs of Table 1, as the experiment of Sect. 4.1 takes them: all lying, 768 x 512.
+//! The 24 photographs of Table 1, as the experiment of Sect. 4.1 takes them: all in landscape format, 768 x 512.
 
 use std::path::{Path, PathBuf};
 
@@ -6,10 +6,10 @@ use super::expected::PHOTOGRAPHS;
 use halfrow::frames::preview::RgbImage;
 use halfrow::frames::{self, ReadError, lying};
 
-/// Columns of a photograph that lies.
+/// Columns of a photograph in landscape format.
 pub(super) const WIDTH: usize = 768;
 
-/// Rows of a photograph that lies.
+/// Rows of a photograph in landscape format.
 pub(super) const HEIGHT: usize = 512;
 
 /// A folder that does not hold the photographs.
@@ -42,7 +42,7 @@ pub enum PhotographError {
     },
 }
 
-/// The photographs in `folder`, in the order of their numbers. Those that stand are turned a quarter clockwise.
+/// The photographs in `folder`, in the order of their numbers. Those in portrait format are turned a quarter clockwise.
 ///
 /// # Errors
 /// [`PhotographError`] for the first that is missing or is not what it should be.

@@ -1,6 +1,6 @@
-//! How near two pictures of 8 bits are to each other.
+//! How close two 8-bit pictures are.
 
-/// PSNR = 10 log10(255² / MSE) in dB (Eq. 19), over all samples of two frames of one size; infinite when they are equal.
+/// PSNR = 10 log10(255² / MSE) in dB (Eq. 19), over all samples of two frames of the same size; infinite if they are equal.
 #[must_use]
 pub(crate) fn psnr(reference: &[u16], found: &[u16]) -> f64 {
     let squared = |(a, b): (&u16, &u16)| u64::from(a.abs_diff(*b)).pow(2);
@@ -13,7 +13,7 @@ pub(crate) fn psnr(reference: &[u16], found: &[u16]) -> f64 {
 mod tests {
     use super::psnr;
 
-    /// By hand: errors of 0, 3, 4 and 0 have the mean square 25/4, and 10 log10(65025 / 6.25) = 40.1720; an error of 255
+    /// By hand: errors of 0, 3, 4 and 0 have a mean square of 25/4, and 10 log10(65025 / 6.25) = 40.1720; an error of 255
     /// everywhere is 0 dB.
     #[test]
     fn the_ratio_is_that_of_eq_19() {

@@ -1,17 +1,17 @@
-//! How well a projection keeps what people look for: straight lines and shapes.
+//! How well a projection keeps what people notice: straight lines and shapes.
 
 use super::lines::Line;
 
-/// The directions whose shapes count, from the middle, in degrees of longitude and latitude: what every view shows.
+/// How far from the middle shapes are measured, in degrees of longitude and latitude: as far as every view shows them.
 const SHOWN: (f64, f64) = (60.0, 45.0);
 
-/// Degrees from one of these directions to the next; a view's derivatives are found over half of it to either side.
+/// Degrees between two of these directions. A view's derivatives are computed over half of it to either side.
 const STEP: f64 = 2.5;
 
-/// Where a direction, longitude and latitude in radians, is shown, in pixels.
+/// The position at which a direction, longitude and latitude in radians, is shown, in pixels.
 pub(super) type Place<'a> = &'a dyn Fn(f64, f64) -> (f64, f64);
 
-/// The largest distance of a line from its chord, in pixels.
+/// The largest distance of a point of a line from the line's chord, in pixels.
 pub(super) fn straightness(place: Place<'_>, lines: &[Line]) -> f64 {
     lines.iter().map(|line| from_chord(place, line)).fold(0.0, f64::max)
 }
@@ -26,8 +26,8 @@ fn from_chord(place: Place<'_>, line: &Line) -> f64 {
     points.iter().map(away).fold(0.0, f64::max)
 }
 
-/// The mean of |ln(σ1/σ2)| over what is shown, with the singular values of the view's derivative on the sphere: 0 where every
-/// small shape stays what it is.
+/// The mean of |ln(σ1/σ2)| over the directions that are measured; σ1 and σ2 are the singular values of the view's derivative on
+/// the sphere. 0 means that every small shape keeps its form.
 pub(super) fn conformality(place: Place<'_>) -> f64 {
     let steps = |reach: f64| {
         let count = (reach / STEP) as i32;
@@ -55,7 +55,7 @@ fn shear(place: Place<'_>, longitude: f64, latitude: f64) -> f64 {
     let (a, c) = difference(along, 2.0 * half * latitude.cos());
     let (b, d) = difference(down, 2.0 * half);
     let (square, determinant) = (a * a + b * b + c * c + d * d, (a * d - b * c).abs());
-    // σ1² and σ2² have this sum and this product.
+    // σ1² and σ2² have this sum, and the square of this product.
     let root = (square * square - 4.0 * determinant * determinant).max(0.0).sqrt();
     0.5 * ((square + root) / (square - root).max(f64::MIN_POSITIVE)).ln()
 }
@@ -68,7 +68,7 @@ mod tests {
     fn shapes_are_kept_by_mercator_and_stretched_by_a_plane() {
         let mercator = |longitude: f64, latitude: f64| (longitude, latitude.tan().asinh());
         assert!(conformality(&mercator) < 1e-3);
-        // Of a gnomonic view σ1/σ2 = 1/cos θ: the mean of −ln cos θ over the same directions.
+        // For a gnomonic view σ1/σ2 = 1/cos θ, so the mean is that of −ln cos θ over the same directions.
         let gnomonic = |longitude: f64, latitude: f64| (longitude.tan(), latitude.tan() / longitude.cos());
         assert!((shear(&gnomonic, 1.0, 0.0) + 1.0_f64.cos().ln()).abs() < 1e-2);
         assert!((0.2..0.4).contains(&conformality(&gnomonic)));

@@ -1,4 +1,4 @@
-//! The resource claim of Sect. 4.2: on average less than a tenth of a Spartan-6 LX25.
+//! The resources claimed in Sect. 4.2: on average less than a tenth of a Spartan-6 LX25.
 
 use std::io;
 use std::path::Path;
@@ -10,10 +10,10 @@ use super::exhibit::{Accepted, Cell, Claim, Exhibit, Table};
 use super::expected::RESOURCES_PERCENT;
 use super::{Item, PaperError};
 
-/// What `scripts/hardware resources` writes.
+/// The document that `scripts/hardware resources` writes.
 #[derive(Debug, Deserialize)]
 struct Report {
-    /// The program that synthesised.
+    /// The synthesis program.
     tool: String,
     device: String,
     builds: Vec<Build>,
@@ -31,14 +31,14 @@ struct Build {
     mean: f64,
 }
 
-/// How many, and what share of the device's.
+/// The number used, and its share of the device.
 #[derive(Debug, Deserialize)]
 struct Share {
     used: f64,
     percent: f64,
 }
 
-/// The build that holds what the paper's algorithm needs: Hermite takes five taps.
+/// The build that has just what the paper's algorithm needs: Hermite takes five taps.
 const PAPER_BUILD: &str = "core, 5 taps, 1 bank";
 
 /// The claim, if there is a report at `path`; otherwise how to make one.

@@ -1,4 +1,4 @@
-//! Figs. 4 and 6(b): one fisheye picture, shown in each projection.
+//! Figs. 4 and 6(b): one fisheye picture in each projection.
 
 use halfrow_model::{BitDepth, Equidistant, Geometry, Phase};
 
@@ -11,22 +11,22 @@ use super::{Item, PaperError, graticule, quality};
 use halfrow::frames::preview::{RgbImage, demosaic};
 use halfrow::frames::{Builtin, Scene};
 
-/// Columns and rows of the pictures: the whole image circle, 2R.
+/// Columns and rows of the pictures, which show the whole image circle: 2R.
 const SIDE: usize = 640;
 
-/// The column, and the row, of their middle.
+/// The column and the row of their middle.
 const MIDDLE: f64 = (SIDE as f64 - 1.0) / 2.0;
 
-/// What the projection of Fig. 4(d) is called.
+/// Name of the projection of Fig. 4(d).
 const OPTIMISED: &str = "Carroll et al.";
 
-/// The scene's vertical lines of the table, in degrees of longitude.
+/// The vertical lines of the scene in the table, in degrees of longitude.
 const LONGITUDES: [i32; 5] = [15, 30, 45, 60, 75];
 
-/// They reach from −60° to 60° of latitude.
+/// The lines reach from −60° to 60° of latitude.
 const REACH: i32 = 60;
 
-/// Fig. 4: all projections but the simplified one, of the street or of a photograph with lines of its own.
+/// Fig. 4: all projections but the simplified one, of the street or of a photograph with its own lines.
 pub(super) fn figure_4(marked: Option<&MarkedPhotograph>) -> Result<Exhibit, PaperError> {
     let subject = marked.map_or_else(Subject::street, Subject::photograph)?;
     let mut exhibit = Exhibit::new(Item::Fig4);
@@ -71,14 +71,14 @@ pub(super) fn figure_6() -> Result<Exhibit, PaperError> {
     Ok(exhibit)
 }
 
-/// What is shown.
+/// The picture that is shown.
 struct Subject {
-    /// Its image circle fills the pictures that are made.
+    /// A lens whose image circle fills the pictures that are made.
     lens: Equidistant,
     fisheye: RgbImage,
-    /// The middle of the image circle in it.
+    /// The middle of the image circle in `fisheye`.
     centre: (f64, f64),
-    /// Its pixels for one of the pictures.
+    /// Pixels of `fisheye` for one pixel of the pictures.
     scale: f64,
     lines: Vec<Line>,
 }
@@ -104,7 +104,7 @@ impl Subject {
         sampled(&self.fisheye, self.centre.0 + self.scale * x, self.centre.1 + self.scale * y)
     }
 
-    /// It in a projection, black where the lens sees nothing.
+    /// The subject in a projection, black where the lens sees nothing.
     fn picture(&self, view: View, name: &str, caption: &str) -> Picture {
         let places = (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| (row, column)));
         let data = places.flat_map(|(row, column)| {
@@ -115,7 +115,7 @@ impl Subject {
         pixels(name, caption, image)
     }
 
-    /// Fig. 4(d): it in the projection that was made for its lines.
+    /// Fig. 4(d): the subject in the projection that was made for its lines.
     fn optimised(&self, net: &Net) -> Picture {
         let colour = |longitude, latitude| self.colour(self.lens.image_point(ray(longitude, latitude)));
         let caption = "Fig. 4(d): the projection of Carroll et al., made for these lines.";
@@ -127,7 +127,7 @@ fn pixels(name: &str, caption: &str, image: RgbImage) -> Picture {
     Picture { name: name.to_owned(), caption: caption.to_owned(), drawing: Drawing::Pixels(image, 1) }
 }
 
-/// What a projection keeps of lines and shapes.
+/// How well a projection keeps lines and shapes.
 struct Kept {
     name: &'static str,
     /// See [`quality::straightness`].
@@ -136,7 +136,7 @@ struct Kept {
     conformality: f64,
 }
 
-/// What each projection of Fig. 4 keeps, in its order.
+/// The same for each projection of Fig. 4, in its order.
 fn kept(subject: &Subject, net: &Net) -> Vec<Kept> {
     let kept = |name, place: quality::Place<'_>| Kept {
         name,
@@ -151,7 +151,7 @@ fn kept(subject: &Subject, net: &Net) -> Vec<Kept> {
     all
 }
 
-/// The optimised projection is what it is for.
+/// The claims that the optimised projection does what it is made for.
 fn optimised_for(kept: &[Kept]) -> Vec<Claim> {
     let named = |name: &str| kept.iter().find(|kept| kept.name == name);
     let views = [View::Mercator, View::Perspective].map(|view| named(view.name()));
@@ -201,7 +201,7 @@ fn table_of(kept: &[Kept], lines: usize) -> Table {
     }
 }
 
-/// The colour at column `x`, row `y` of `image`, bilinear between four pixels.
+/// The colour of `image` at column `x`, row `y`, by bilinear interpolation.
 fn sampled(image: &RgbImage, x: f64, y: f64) -> [u8; 3] {
     let x = x.clamp(0.0, image.width as f64 - 1.0);
     let y = y.clamp(0.0, image.height as f64 - 1.0);
@@ -216,7 +216,7 @@ fn sampled(image: &RgbImage, x: f64, y: f64) -> [u8; 3] {
     })
 }
 
-/// How crooked vertical lines of the scene are, in percent of R.
+/// The table of how crooked vertical lines of the scene are, in percent of R.
 fn straightness(lens: &Equidistant, name: &'static str, views: &[View]) -> Table {
     let heads = views.iter().map(|view| format!("{}, % of R", view.name()));
     let row = |longitude: i32| {
@@ -236,7 +236,7 @@ fn straightness(lens: &Equidistant, name: &'static str, views: &[View]) -> Table
     }
 }
 
-/// The largest less the least x of the line at `longitude`, in pixels.
+/// The largest x minus the least x of the line at `longitude`, in pixels.
 fn spread(lens: &Equidistant, view: View, longitude: i32) -> f64 {
     let column = |latitude: i32| {
         view.place(lens, ray(f64::from(longitude).to_radians(), f64::from(latitude).to_radians())).0

@@ -11,28 +11,28 @@ use halfrow::frames::HeatMap;
 use halfrow::frames::preview::{RgbImage, demosaic};
 use halfrow::frames::street::{FoundEdge, found_edges, seen_by};
 
-/// R of Fig. 5 in pixels, and a frame that holds its circle: an even number of columns, with the axis on a whole one.
+/// R of Fig. 5 in pixels, and a frame that contains its circle: an even number of columns, with the axis on a whole one.
 const RADIUS: f64 = 100.0;
 const MAP: (usize, usize) = (202, 201);
 
-/// Entries of the grids: what every board with datapath 2 has room for.
+/// Entries of the grids: as many as every board with datapath 2 has room for.
 const ENTRIES: usize = 2048;
 
-/// Columns and rows of a façade's picture, from its upper left corner: the houses to the left, between −63° and −23° through the
-/// paper's lens.
+/// The upper left corner of a façade's picture, column and row, and its size in columns and rows: the houses to the left, between
+/// −63° and −23° through the paper's lens.
 const CORNER: (usize, usize) = (180, 180);
 const SIZE: (usize, usize) = (500, 720);
 
-/// What shows where an edge would be straight.
+/// The colour of the line where an edge would be straight.
 const UPRIGHT: [u8; 3] = [255, 40, 160];
 
-/// Rows of an edge of which the median counts: of a single one the strongest step may be a window's.
+/// Rows of an edge over which the median is taken: in a single row the strongest step may be that of a window.
 const ROWS: usize = 15;
 
-/// The most that an edge may bend in the exact projection, in pixels: the filter array and the noise move a straight one so far.
+/// The most that an edge may bend in the exact projection, in pixels: the filter array and noise move a straight one by as much.
 const STRAIGHT: f64 = 0.5;
 
-/// The three ways, each a column.
+/// The three ways, a column for each.
 pub(super) fn exhibit() -> Result<Exhibit, PaperError> {
     let mut exhibit = Exhibit::new(Item::Verticals);
     exhibit.in_threes = true;
@@ -72,7 +72,7 @@ fn maps(exhibit: &mut Exhibit) -> Result<(), PaperError> {
     let mut rows = Vec::new();
     for (way, left) in &left {
         let map = HeatMap::up_to(&left.map, most);
-        // Fig. 5's means count the zeros outside of the circle.
+        // The means of Fig. 5 count the zeros outside the circle.
         let mean = left.map.iter().flatten().sum::<f64>() / samples;
         exhibit.pictures.push(Picture {
             name: format!("map-{}", way.file()),
@@ -96,13 +96,13 @@ fn maps(exhibit: &mut Exhibit) -> Result<(), PaperError> {
     Ok(())
 }
 
-/// The street through one lens, before and after.
+/// The street through one lens, before and after correction.
 struct Facades {
     lens: &'static str,
-    /// What its files are named after.
+    /// The stem of its file names.
     file: &'static str,
     fisheye: Vec<FoundEdge>,
-    /// By each of [`Way::ALL`].
+    /// Corrected by each of [`Way::ALL`].
     corrected: Vec<(Way, Frame, Vec<FoundEdge>)>,
 }
 
@@ -133,7 +133,7 @@ impl Facades {
     }
 
     fn claim(&self) -> Claim {
-        // An edge that is not found any more may have bent out of sight.
+        // An edge that is no longer found may have bent out of sight.
         let found = self.corrected.iter().find(|(way, ..)| *way == Way::Exact);
         let found = found.filter(|(.., edges)| edges.len() == self.fisheye.len());
         Claim {
@@ -146,20 +146,20 @@ impl Facades {
         }
     }
 
-    /// Before and behind the correction, with what it is called.
+    /// The edges before and after each correction, with its name.
     fn all(&self) -> impl Iterator<Item = (&'static str, &[FoundEdge])> {
         let corrected = self.corrected.iter().map(|(way, _, edges)| (way.name(), &edges[..]));
         std::iter::once(("fisheye", &self.fisheye[..])).chain(corrected)
     }
 }
 
-/// How far edges are from their mean columns, in pixels, by medians of [`ROWS`] rows; no numbers if there is no such edge.
+/// How far edges are from their mean columns, in pixels, by medians of [`ROWS`] rows; NaN if there is no such edge.
 struct Bend {
     mean: f64,
     max: f64,
 }
 
-/// The distances from the mean column of an edge that is not shorter than [`ROWS`].
+/// The distances of an edge from its mean column; none if the edge has fewer than [`ROWS`] rows.
 fn distances(edge: &FoundEdge) -> Vec<f64> {
     let middle = edge.mean_column();
     let mut places = edge.places.clone();
@@ -182,7 +182,7 @@ impl Bend {
     }
 }
 
-/// The left façades, with a line where each edge would be straight.
+/// The façades to the left, with a line where each edge would be straight.
 fn facade(frame: &Frame, edges: &[FoundEdge]) -> RgbImage {
     let mut image = cut(&demosaic(frame));
     for edge in edges {
@@ -227,7 +227,7 @@ fn bends(facades: &[Facades]) -> Table {
     }
 }
 
-/// Every edge by itself.
+/// The table of all single edges.
 fn edges(facades: &[Facades]) -> Table {
     let mut rows = Vec::new();
     for facades in facades {

@@ -1,4 +1,4 @@
-//! Drawings of lines, as SVG.
+//! Line drawings, as SVG.
 
 use std::fmt::Write as _;
 
@@ -41,7 +41,7 @@ impl Canvas {
         let _ = writeln!(self.body, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius}\" fill=\"{colour}\"/>");
     }
 
-    /// A few words, starting at a place. They hold no character that XML reserves.
+    /// A few words that start at a position. They must not contain characters that XML reserves.
     pub(super) fn words(&mut self, (x, y): (f64, f64), words: &str, colour: &str) {
         let size = 9.0 * self.thin();
         let _ = writeln!(
@@ -50,12 +50,12 @@ impl Canvas {
         );
     }
 
-    /// The width of a line: one four-hundredth of the drawing's.
+    /// The width of a line: a four-hundredth of the drawing's width.
     fn thin(&self) -> f64 {
         self.view[2] / 400.0
     }
 
-    /// The document.
+    /// The complete SVG document.
     pub(super) fn document(&self) -> String {
         let [left, top, width, height] = self.view;
         format!(

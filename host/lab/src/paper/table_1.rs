@@ -1,4 +1,4 @@
-//! Table 1: the PSNR of 24 photographs by each interpolation, in double precision, in integers, and through a board.
+//! Table 1: the PSNR of 24 photographs for each interpolation, in double precision, in integers, and through a board.
 
 use std::sync::Arc;
 
@@ -14,10 +14,10 @@ use super::{Item, PaperError};
 use halfrow::frames::preview::RgbImage;
 use halfrow::progress::Progress;
 
-/// Nearest among them, which the paper's table leaves out.
+/// All interpolants, including nearest, which the paper's table leaves out.
 pub(super) const ALL: [Interpolant; 4] = Interpolant::ALL;
 
-/// What an interpolation is called in the paper.
+/// The paper's name of an interpolation.
 pub(super) fn name(interpolant: Interpolant) -> &'static str {
     match interpolant {
         Interpolant::Nearest => "nearest",
@@ -30,15 +30,15 @@ pub(super) fn name(interpolant: Interpolant) -> &'static str {
 /// PSNR in dB of each photograph by each of [`ALL`].
 type Scores = Vec<[f64; 4]>;
 
-/// What the board made of the photographs.
+/// The result of the photographs through the board.
 struct ThroughBoard {
     scores: Scores,
-    /// Samples unlike the integer model's, by interpolation.
+    /// Samples that differ from the integer model's, by interpolation.
     differences: [u64; 4],
     samples: u64,
 }
 
-/// The table. With a board, every photograph goes through it with every kernel as well.
+/// The table. With a board, every photograph also goes through the board with every kernel.
 pub(super) fn exhibit(
     photographs: &[RgbImage],
     board: Option<&mut TestedBoard>,
@@ -108,7 +108,7 @@ fn averages(scores: &Scores) -> [f64; 4] {
     std::array::from_fn(|method| scores.iter().map(|row| row[method]).sum::<f64>() / scores.len() as f64)
 }
 
-/// The place of an interpolation in [`ALL`] for each of [`METHODS`].
+/// The place in [`ALL`] of the method with this place in [`METHODS`].
 fn place(method: usize) -> usize {
     ALL.iter().position(|&interpolant| interpolant == METHODS[method]).unwrap_or_default()
 }
@@ -124,7 +124,7 @@ fn remarks(exhibit: &mut Exhibit) {
     );
 }
 
-/// The averages, the photograph that is farthest off, and what integers cost.
+/// The averages, the photograph that is farthest off, and the loss by integers.
 fn claims(exhibit: &mut Exhibit, real: &Scores, integer: &Scores) {
     let (real_averages, integer_averages) = (averages(real), averages(integer));
     for (method, paper) in TABLE_1_AVERAGES.into_iter().enumerate() {
@@ -184,8 +184,8 @@ fn judge(exhibit: &mut Exhibit, board: &TestedBoard, through: &ThroughBoard, rea
     });
 }
 
-/// The largest difference between two averages of one of [`METHODS`]. Nearest is left out: its jump is a ramp in the table of
-/// a kernel, from one node to the next.
+/// The largest difference between two averages of one of [`METHODS`]. Nearest is left out: its jump becomes a ramp between two
+/// nodes of a kernel table.
 fn farthest(found: &[f64; 4], real: &[f64; 4]) -> f64 {
     let difference = |method| (found[place(method)] - real[place(method)]).abs();
     (0..METHODS.len()).map(difference).fold(0.0, f64::max)
@@ -196,7 +196,7 @@ fn at_most(what: &str, found: f64, most: f64) -> Claim {
     Claim { what, unit: "dB", paper: None, found, accepted: Accepted::UpTo(most), judges_board: false }
 }
 
-/// The paper's methods in double precision, the paper's figures, and the deviation; then nearest.
+/// For each of the paper's methods the paper's figures, those in double precision, and the deviation; then nearest.
 fn beside_the_paper(real: &Scores) -> Table {
     let heads = METHODS.into_iter().flat_map(|method| {
         let name = name(method);

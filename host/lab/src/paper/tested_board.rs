@@ -1,4 +1,4 @@
-//! A board that the paper's claims are tried on.
+//! A board on which the paper's claims are tried.
 
 use std::ops::{ControlFlow, RangeInclusive};
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use halfrow::progress::Progress;
 use halfrow::run::misfit;
 use halfrow::target::BoardKind;
 
-/// An open session, and what it has streamed so far.
+/// An open session, with counts of what it has streamed.
 #[derive(Debug)]
 pub struct TestedBoard {
     board: Board,
@@ -21,24 +21,24 @@ pub struct TestedBoard {
     generation: u8,
 }
 
-/// What came back.
+/// The frames that came back.
 #[derive(Clone, Debug)]
 pub(crate) struct Corrected {
-    /// The samples of each frame, row after row, in the order of the inputs. A broken board can exceed the depth.
+    /// The samples of each frame, row after row, in the order of the inputs. Those of a broken board can exceed the depth.
     pub(crate) samples: Vec<Vec<u16>>,
-    /// The least and the most pixel clocks that a row's first and last sample took.
+    /// The least and the most pixel clocks that a row's first and last samples took.
     pub(crate) latency: RangeInclusive<u16>,
 }
 
 impl TestedBoard {
-    /// Takes a session over whose link leads to a board of this kind.
+    /// Takes over an open session. The target of its link promises a board of this kind.
     #[must_use]
     pub fn new(board: Board, kind: BoardKind) -> Self {
         let kind = kind.confirmed_by(board.capabilities().nature);
         Self { board, kind, frames: 0, generation: 0 }
     }
 
-    /// The board, for people.
+    /// The board's name, for people.
     #[must_use]
     pub fn name(&self) -> String {
         match self.kind {
@@ -47,13 +47,13 @@ impl TestedBoard {
         }
     }
 
-    /// L: the pixel clocks beyond half a row that the board says it takes.
+    /// L: the pixel clocks that the board says it adds to half a row.
     #[must_use]
     pub(crate) fn advertised_latency(&self) -> u16 {
         self.board.capabilities().latency.into()
     }
 
-    /// Whether the board takes frames of this size and this kernel.
+    /// Checks that the board takes frames of this size and this kernel.
     ///
     /// # Errors
     /// [`PaperError::Misfit`] when it does not.
@@ -61,7 +61,7 @@ impl TestedBoard {
         misfit(tables, kernel, self.board.capabilities()).map_or(Ok(()), |misfit| Err(misfit.into()))
     }
 
-    /// Corrects `inputs` with tables and kernel of their own.
+    /// Corrects `inputs` with these tables and this kernel, under a new generation.
     ///
     /// # Errors
     /// [`PaperError::Misfit`] when the board cannot take them, [`PaperError::Board`] when it refuses or does not answer.

@@ -1,20 +1,20 @@
-//! Flat views of what a fisheye lens sees: the projections of Fig. 4, both ways.
+//! Flat views of what a fisheye lens sees: the projections of Fig. 4 and their inverses.
 //!
-//! Points are in pixels from the optical centre, x to the right and y down; rays are u right, v down, w ahead.
+//! Points are in pixels from the optical centre, x to the right and y down. Rays are u right, v down, w ahead.
 
 use halfrow_model::{Equidistant, exact, exact_inverse, simplified, simplified_inverse};
 
 /// Half the field of view of the perspective, from the axis to the middle of a side: 60°.
 const PERSPECTIVE_HALF_FIELD: f64 = std::f64::consts::FRAC_PI_3;
 
-/// A way to show the sphere on a square of 2R x 2R.
+/// A way of showing the sphere on a square of 2R x 2R.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum View {
     /// The lens's own image.
     Fisheye,
-    /// Straight lines stay straight; 120° across, since 180° would be infinite.
+    /// Straight lines stay straight. It is 120° across, since 180° would be infinite.
     Perspective,
-    /// Columns are longitudes, and angles stay as they are.
+    /// Columns are longitudes, and angles are kept.
     Mercator,
     /// The paper's projection (Eqs. 6, 7).
     Exact,
@@ -27,7 +27,7 @@ impl View {
     pub const ALL: [Self; 5] =
         [Self::Fisheye, Self::Perspective, Self::Mercator, Self::Exact, Self::Simplified];
 
-    /// What it is called.
+    /// Its name.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -39,7 +39,7 @@ impl View {
         }
     }
 
-    /// Where the direction `ray` is shown; meaningful ahead of the lens (w > 0).
+    /// The position at which the direction `ray` is shown. It is meaningful only ahead of the lens (w > 0).
     #[must_use]
     pub fn place(self, lens: &Equidistant, ray: [f64; 3]) -> (f64, f64) {
         let [u, v, w] = ray;
@@ -57,7 +57,7 @@ impl View {
         }
     }
 
-    /// The fisheye point that is shown at (`x`, `y`); none where it would lie outside the image circle.
+    /// The fisheye point that is shown at (`x`, `y`); none if it would lie outside the image circle.
     #[must_use]
     pub fn source(self, lens: &Equidistant, x: f64, y: f64) -> Option<(f64, f64)> {
         let f = lens.focal_length();
@@ -72,14 +72,14 @@ impl View {
     }
 }
 
-/// The direction of a longitude and a latitude in radians, a unit vector (Eq. 3).
+/// The direction with this longitude and latitude in radians, as a unit vector (Eq. 3).
 #[must_use]
 pub fn ray(longitude: f64, latitude: f64) -> [f64; 3] {
     let across = latitude.cos();
     [across * longitude.sin(), latitude.sin(), across * longitude.cos()]
 }
 
-/// The distance from the eye to the picture in pixels.
+/// The distance from the eye to the picture, in pixels.
 fn perspective_focal_length(lens: &Equidistant) -> f64 {
     lens.radius() / PERSPECTIVE_HALF_FIELD.tan()
 }

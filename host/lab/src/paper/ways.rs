@@ -1,13 +1,13 @@
-//! The ways to make tables, which are compared side by side.
+//! The ways of making tables, which are compared side by side.
 
 use halfrow_model::{Camera, GridRoomError, TableSet};
 
-/// A way to make tables for a lens.
+/// A way of making tables for a lens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Way {
     /// The paper's formula.
     Equation9,
-    /// One factor a row, with the least largest error.
+    /// One factor a row, whose largest error is smallest.
     Fitted,
     /// A grid of factors for the exact projection (DATAPATH.md, *Datapath 2*).
     Exact,
@@ -17,7 +17,7 @@ impl Way {
     /// All of them, the paper's first.
     pub(super) const ALL: [Self; 3] = [Self::Equation9, Self::Fitted, Self::Exact];
 
-    /// What it is called on pages.
+    /// Its name on pages.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Equation9 => "Eq. 9",
@@ -26,7 +26,7 @@ impl Way {
         }
     }
 
-    /// What captions begin with.
+    /// The beginning of its captions.
     pub(super) fn caption(self) -> &'static str {
         match self {
             Self::Equation9 => "By Eq. 9",
@@ -35,7 +35,7 @@ impl Way {
         }
     }
 
-    /// What files that show it are named after.
+    /// The stem of the file names for it.
     pub(super) fn file(self) -> &'static str {
         match self {
             Self::Equation9 => "equation-9",
@@ -44,10 +44,10 @@ impl Way {
         }
     }
 
-    /// The tables for `camera`, a grid of at most `entries` entries.
+    /// The tables for `camera`. A grid has at most `entries` entries.
     ///
     /// # Errors
-    /// [`GridRoomError`] when every grid has more.
+    /// [`GridRoomError`] when every grid would have more.
     pub(super) fn tables(self, camera: &Camera, entries: usize) -> Result<TableSet, GridRoomError> {
         match self {
             Self::Equation9 => Ok(camera.equation_9()),

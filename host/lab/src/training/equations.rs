@@ -1,27 +1,27 @@
-//! The normal equations of a kernel's nodes: 65 times the five stored weights.
+//! The normal equations of a kernel's nodes: 65 nodes with the five stored weights each.
 
 use halfrow_model::{Interpolant, Kernel, NODES, Taps, WEIGHT_ONE};
 use nalgebra::{DMatrix, DVector};
 
 use super::{TrainingError, Warped};
 
-/// Weights that a node stores.
+/// Weights stored in a node.
 const STORED: usize = 5;
 
-/// All unknowns.
+/// Number of unknowns.
 const SIZE: usize = NODES * STORED;
 
-/// How strongly the nodes are held to Hermite's, as a share of the mean of the matrix's diagonal: enough for nodes that no
-/// sample comes near, too little to move the others.
+/// How strongly the nodes are held to Hermite's, as a share of the mean of the matrix's diagonal: enough for nodes that no sample
+/// is near, too little to move the others.
 pub const RIDGE: f64 = 1e-5;
 
-/// A weighted sum of squares of what a kernel misses, as a function of its nodes.
+/// A weighted sum of the squared errors of a kernel, as a function of its nodes.
 #[derive(Clone, Debug)]
 pub struct Equations {
     /// Row after row, symmetric.
     matrix: Vec<f64>,
     right: Vec<f64>,
-    /// The sum for a kernel of zeros, which gives G2.
+    /// The sum for a kernel of zeros, whose outputs are G2.
     constant: f64,
     samples: f64,
 }
@@ -33,13 +33,13 @@ impl Default for Equations {
 }
 
 impl Equations {
-    /// Of no sample.
+    /// The sum over no samples.
     #[must_use]
     pub fn new() -> Self {
         Self { matrix: vec![0.0; SIZE * SIZE], right: vec![0.0; SIZE], constant: 0.0, samples: 0.0 }
     }
 
-    /// Adds every sample of a frame, and the same seen from the other side: light has no preferred direction.
+    /// Adds every sample of a frame, and its mirror image: light has no preferred direction.
     pub(crate) fn observe(&mut self, warped: &Warped) {
         let geometry = warped.tables.geometry();
         let rows = warped.distorted.rows().zip(warped.reference.rows()).enumerate();
@@ -58,10 +58,10 @@ impl Equations {
         }
     }
 
-    /// Adds a sample that ought to be `wanted`, the share `toward` of the way from `node` to the next.
+    /// Adds a sample that should be `wanted`. It lies between `node` and the next one, at the share `toward` of the way.
     ///
     /// # Panics
-    /// When `node` is none that has a next one, which are those from 0 to [`NODES`] − 2.
+    /// When `node` has no next one: only 0 to [`NODES`] − 2 have.
     pub fn sample(&mut self, node: usize, toward: f64, taps: [f64; 7], wanted: f64) {
         let [g0, r1, g2, r3, g4, r5, g6] = taps;
         let differences = [g0 - g2, r1 - r3, g4 - g2, r5 - r3, g6 - g2];
@@ -83,7 +83,7 @@ impl Equations {
         self.samples += 1.0;
     }
 
-    /// Divided by the number of samples.
+    /// The sum divided by the number of samples.
     #[must_use]
     pub(crate) fn per_sample(&self) -> Self {
         let mut scaled = Self::new();
@@ -91,7 +91,7 @@ impl Equations {
         scaled
     }
 
-    /// Adds `other`, times `weight`.
+    /// Adds `other` times `weight`.
     pub fn add(&mut self, other: &Self, weight: f64) {
         for (sum, value) in self.matrix.iter_mut().zip(&other.matrix) {
             *sum += weight * value;
@@ -103,7 +103,7 @@ impl Equations {
         self.samples += weight * other.samples;
     }
 
-    /// What `kernel` misses, squared and summed, before its outputs are rounded.
+    /// The sum of the squared errors of `kernel`, before its outputs are rounded.
     #[must_use]
     pub fn error(&self, kernel: &Kernel) -> f64 {
         let stored = kernel.nodes().iter().flatten();
@@ -114,11 +114,10 @@ impl Equations {
             + lines.map(|((line, right), weight)| weight * (product(line) - 2.0 * right)).sum::<f64>()
     }
 
-    /// The kernel of the least error, with g0 = g6 = 0 for five taps.
+    /// The kernel with the least error; for five taps g0 = g6 = 0.
     ///
     /// # Errors
-    /// [`TrainingError::Singular`] when there were no samples with detail, [`TrainingError::Kernel`] when a weight is larger
-    /// than 16 bits hold.
+    /// [`TrainingError::Singular`] when no sample had detail, [`TrainingError::Kernel`] when a weight does not fit into 16 bits.
     pub fn kernel(&self, taps: Taps) -> Result<Kernel, TrainingError> {
         let tap_is_free = |place: &usize| taps == Taps::Seven || !matches!(place % STORED, 0 | 4);
         let free: Vec<usize> = (0..SIZE).filter(tap_is_free).collect();

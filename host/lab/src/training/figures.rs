@@ -2,8 +2,8 @@
 
 use halfrow_model::{Kernel, WEIGHT_ONE};
 
-/// The variance of an output, as a multiple of the variance of independent noise in the samples: the sum of the squared
-/// weights of all seven taps, at each node.
+/// For each node the variance of an output, as a multiple of the variance of independent noise in the samples: the sum of the
+/// squared weights of all seven taps.
 #[must_use]
 pub fn noise_gain(kernel: &Kernel) -> Vec<f64> {
     let node = |node: &[i16; 5]| -> f64 {

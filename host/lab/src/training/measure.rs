@@ -1,4 +1,4 @@
-//! How much nearer to the truth a kernel comes than Hermite.
+//! How much closer to the truth a kernel comes than Hermite.
 
 use halfrow_model::{Frame, Interpolant, Kernel, TableSet};
 use rand_core::Rng;
@@ -11,19 +11,19 @@ use halfrow::frames::preview::{RgbImage, demosaic_coded};
 use halfrow::progress::Progress;
 use halfrow::reference;
 
-/// R as a multiple of half the picture's height: that of Table 1.
+/// R as a multiple of half the picture's height, as in Table 1.
 const RADIUS: f64 = 1.5;
 
-/// Standard deviations of the noise that is added, in levels of 255.
+/// Standard deviations of the added noise, in levels of 255.
 const NOISES: [u8; 3] = [2, 5, 10];
 
-/// Of the noise's random numbers: any number will do.
+/// Seed of the noise; any number will do.
 const SEED: u64 = 5;
 
-/// A photograph distorted, with what ought to come of it.
+/// A distorted photograph, and what its correction should give.
 #[derive(Clone, Debug)]
 pub(crate) struct Warped {
-    /// The row factors that take the distortion away.
+    /// The row factors that remove the distortion.
     pub tables: TableSet,
     /// What a sensor would see without distortion.
     pub reference: Frame,
@@ -47,16 +47,16 @@ pub struct Spread {
 pub struct Gains {
     /// The condition, in words.
     pub condition: String,
-    /// PSNR by Hermite in dB, the mean of the photographs that do not come back exactly; none without such.
+    /// PSNR by Hermite in dB: the mean over the photographs that do not come back exactly; none if all do.
     pub hermite: Option<f64>,
-    /// By how many dB the kernel is better on those.
+    /// By how many dB the kernel is better on these photographs.
     pub gain: Option<Spread>,
-    /// The photographs that come back exactly by one of the two, which no figure in dB tells.
+    /// The number of photographs that either kernel brings back exactly. For these no figure in dB exists.
     pub exact: usize,
 }
 
 impl Spread {
-    /// Of `gains`, if there are any.
+    /// The spread of `gains`, if there are any.
     #[must_use]
     pub fn of(gains: &[f64]) -> Option<Self> {
         (!gains.is_empty()).then(|| Self {
@@ -94,10 +94,10 @@ impl Condition {
     }
 }
 
-/// The gains of `kernel` by the integer datapath, R as in Table 1, the whole frame compared.
+/// The gains of `kernel` in the integer datapath, with R as in Table 1, over whole frames.
 ///
 /// # Errors
-/// [`TrainingError`] when a photograph has a size that no frame has.
+/// [`TrainingError`] when no frame can have the size of a photograph.
 pub fn measure(
     photographs: &[RgbImage],
     kernel: &Kernel,
@@ -126,7 +126,7 @@ pub fn measure(
     Ok(gains.collect())
 }
 
-/// PSNR in dB under each of [`Condition::ALL`], by either kernel.
+/// PSNR in dB by either kernel, under each of [`Condition::ALL`].
 fn scores(photograph: &RgbImage, kernels: &[Kernel; 2]) -> Result<Vec<[f64; 2]>, TrainingError> {
     let [linear, band_limited] = Warp::ALL.map(|warp| Model { radius: RADIUS, warp }.warped(photograph));
     let (linear, band_limited) = (linear?, band_limited?);
@@ -156,18 +156,18 @@ fn score(condition: Condition, photograph: &RgbImage, reference: &Frame, correct
     psnr(&wanted, &found)
 }
 
-/// Red, green and blue of every pixel but those of an odd last column.
+/// Red, green and blue of every pixel; an odd last column is left out.
 fn colours(image: &RgbImage) -> Vec<u16> {
     let rows = image.data.chunks_exact(3 * image.width);
     rows.flat_map(|row| &row[..3 * (image.width & !1)]).copied().map(u16::from).collect()
 }
 
-/// `frame` with noise of the standard deviation `deviation`, the same each time.
+/// `frame` with noise of the standard deviation `deviation`, the same noise in every call.
 fn noisy(frame: &Frame, deviation: u8) -> Result<Frame, TrainingError> {
     let mut random = Pcg32::new(SEED, SEED);
     let max = f64::from(frame.depth().max());
     let samples = frame.samples().iter().map(|&sample| {
-        // Twelve evenly distributed numbers have the variance 1 together, and their sum is as good as normal.
+        // Twelve uniformly distributed numbers together have a variance of 1, and their sum is nearly normal.
         let normal = (0..12).map(|_| f64::from(random.next_u32()) / 4_294_967_296.0).sum::<f64>() - 6.0;
         (f64::from(sample) + normal * f64::from(deviation) + 0.5).floor().clamp(0.0, max) as u16
     });

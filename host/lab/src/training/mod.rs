@@ -1,8 +1,8 @@
 //! Fitting a kernel to photographs by least squares under the constraints of the datapath (DATAPATH.md, "Kernel").
 //!
-//! An output is linear in the weights of the two nodes around it, so the nodes that bring corrected photographs nearest to the
-//! photographs themselves solve one system of linear equations. G2 and R3 are never unknowns: what they take up of the others
-//! is built into the equations as it is into the datapath, so a fitted kernel keeps a flat field whatever the photographs are.
+//! An output is linear in the weights of the two nodes around it. So the nodes that bring corrected photographs closest to the
+//! originals solve one system of linear equations. G2 and R3 are never unknowns: their weights follow from the others, in the
+//! equations as in the datapath. So a fitted kernel keeps a flat field, whatever the photographs are.
 
 mod equations;
 mod figures;
@@ -23,15 +23,15 @@ use halfrow::frames::preview::RgbImage;
 use halfrow::link::Class;
 use halfrow::progress::Progress;
 
-/// A kernel and how good it is.
+/// A kernel and its gains.
 #[derive(Clone, Debug)]
 pub struct Trained {
     /// The weights.
     pub kernel: Kernel,
-    /// The gain over Hermite on each photograph by the kernel of all the others, in dB; none where they determine no kernel, or
-    /// where it has no detail to gain on.
+    /// The gain over Hermite on each photograph of a kernel fitted to all the others, in dB; none if the others determine no
+    /// kernel, or if the photograph has no detail to gain on.
     pub held_out: Vec<Option<f64>>,
-    /// The gain over Hermite on the photographs it was fitted to, in dB.
+    /// The gain over Hermite on the photographs that it was fitted to, in dB.
     pub gain: f64,
 }
 
@@ -62,7 +62,7 @@ pub enum TrainingError {
 }
 
 impl TrainingError {
-    /// Whose error it is: photographs are the caller's, and the rest is this program's.
+    /// Who can do something about it: photographs are the caller's, everything else is this program's.
     #[must_use]
     pub fn class(&self) -> Class {
         match self {
@@ -72,13 +72,13 @@ impl TrainingError {
     }
 }
 
-/// The square of an error, in levels of 255, that is none: what is left of it is the rounding of the equations.
+/// A squared error, in levels of 255, up to which there is none: what remains is rounding in the equations.
 const EXACT: f64 = 1e-6;
 
-/// The kernel that fits `photographs` best under all of [`Model::ALL`], each photograph weighing the same whatever its size.
+/// The kernel that fits `photographs` best under all of [`Model::ALL`]. Each photograph has the same weight, whatever its size.
 ///
 /// # Errors
-/// [`TrainingError`] when a photograph has no frame's size or they determine no kernel.
+/// [`TrainingError`] when no frame can have the size of a photograph, or the photographs determine no kernel.
 pub fn train(
     photographs: &[RgbImage],
     taps: Taps,
@@ -105,15 +105,15 @@ pub fn train(
     Ok(Trained { gain: gain(&all, &kernel), kernel, held_out })
 }
 
-/// Whether `photograph` has a size that the experiments can use.
+/// Checks that the experiments can use the size of `photograph`.
 ///
 /// # Errors
-/// [`TrainingError`] when it has not.
+/// [`TrainingError`] when they cannot.
 pub fn check(photograph: &RgbImage) -> Result<(), TrainingError> {
     Model::ALL.iter().try_for_each(|model| model.tables(photograph.width & !1, photograph.height).map(drop))
 }
 
-/// The equations of a photograph under every model, per sample.
+/// The equations of a photograph under all models, per sample.
 fn equations_of(photograph: &RgbImage) -> Result<Equations, TrainingError> {
     let mut equations = Equations::new();
     for model in Model::ALL {
@@ -122,7 +122,7 @@ fn equations_of(photograph: &RgbImage) -> Result<Equations, TrainingError> {
     Ok(equations.per_sample())
 }
 
-/// How much nearer to the photographs than Hermite, in dB.
+/// How much closer to the photographs the kernel comes than Hermite, in dB.
 fn gain(equations: &Equations, kernel: &Kernel) -> f64 {
     let hermite = Kernel::from(Interpolant::Hermite);
     let [hermite, own] = [&hermite, kernel].map(|kernel| equations.error(kernel).max(f64::MIN_POSITIVE));

@@ -7,16 +7,16 @@ use crate::paper;
 use halfrow::frames::mosaic;
 use halfrow::frames::preview::RgbImage;
 
-/// Pixels on each side that the band-limited warp sees.
+/// Pixels that the band-limited warp uses on each side.
 const REACH: i32 = 8;
 
-/// How the brightness between two pixels of a photograph is found.
+/// How the brightness between two pixels of a photograph is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Warp {
-    /// Straight lines, truncated: the experiment of the paper. It blurs what it distorts.
+    /// Linear interpolation, truncated, as in the paper's experiment. It blurs what it distorts.
     Linear,
-    /// A sine cardinal under Lanczos' window, eight pixels to each side, rounded half up: the photograph as the band-limited
-    /// picture that its pixels are samples of.
+    /// A sinc under Lanczos' window, eight pixels to each side, rounded half up. It treats the pixels as samples of a
+    /// band-limited picture.
     BandLimited,
 }
 
@@ -33,7 +33,7 @@ impl Warp {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Linear, Self::BandLimited];
 
-    /// What it is called in reports.
+    /// Its name in reports.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -51,7 +51,7 @@ impl Warp {
 }
 
 impl Model {
-    /// What kernels are fitted to. In the paper's experiment R is 1.5 times half the height.
+    /// The models that kernels are fitted to. In the paper's experiment R is 1.5 times half the height.
     pub const ALL: [Self; 4] = [
         Self { radius: 1.5, warp: Warp::Linear },
         Self { radius: 2.0, warp: Warp::Linear },
@@ -66,18 +66,18 @@ impl Model {
     /// The row factors for photographs of this size.
     ///
     /// # Errors
-    /// [`TrainingError`] when it is the size of no frame.
+    /// [`TrainingError`] when no frame can have this size.
     pub fn tables(self, width: usize, height: usize) -> Result<TableSet, TrainingError> {
         let geometry = Geometry::centred(width, height, BitDepth::Eight)?;
         Ok(TableSet::from_lens(geometry, &self.lens(height)?, None)?)
     }
 
-    /// `image` under this model; an odd last column is left out.
+    /// `image` under this model. An odd last column is left out.
     ///
     /// # Errors
-    /// [`TrainingError`] when it has a size that no frame has.
+    /// [`TrainingError`] when no frame can have its size.
     pub(crate) fn warped(self, image: &RgbImage) -> Result<Warped, TrainingError> {
-        // No picture without a pixel comes behind them.
+        // This also refuses a picture without pixels, so it comes first.
         let tables = self.tables(image.width & !1, image.height)?;
         let image = &even(image);
         let lens = self.lens(image.height)?;
@@ -96,7 +96,7 @@ fn even(image: &RgbImage) -> RgbImage {
     RgbImage { width, height: image.height, data }
 }
 
-/// Red, green and blue at the place `x` of a row whose brightness is band-limited.
+/// Red, green and blue at the position `x` of a row whose brightness is band-limited.
 fn lanczos(row: &[u8], x: f64) -> [u8; 3] {
     let left = x.floor();
     let last = row.len() as i64 / 3 - 1;
@@ -113,7 +113,7 @@ fn lanczos(row: &[u8], x: f64) -> [u8; 3] {
     sums.map(|sum| (sum / total + 0.5).clamp(0.0, 255.0) as u8)
 }
 
-/// The sine cardinal: 1 at 0, and 0 at every other whole number.
+/// The sinc function: 1 at 0, and 0 at every other whole number.
 fn sinc(x: f64) -> f64 {
     let angle = std::f64::consts::PI * x;
     if angle == 0.0 { 1.0 } else { angle.sin() / angle }

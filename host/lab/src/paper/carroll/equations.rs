@@ -1,12 +1,12 @@
-//! Linear equations that are to hold as well as they can together.
+//! Linear equations that are to be fulfilled as well as possible together.
 
 use nalgebra::DVector;
 use nalgebra_sparse::{CooMatrix, CscMatrix};
 
-/// An unknown and what it is multiplied by.
+/// The number of an unknown, and its factor.
 pub(super) type Unknown = (usize, f64);
 
-/// Equations, each with what its error counts.
+/// Equations, each with the weight of its error.
 pub(super) struct Equations {
     unknowns: usize,
     places: Vec<(usize, usize, f64)>,
@@ -14,19 +14,19 @@ pub(super) struct Equations {
 }
 
 impl Equations {
-    /// None yet, of so many unknowns.
+    /// No equations yet, with this many unknowns.
     pub(super) fn new(unknowns: usize) -> Self {
         Self { unknowns, places: Vec::new(), right: Vec::new() }
     }
 
-    /// The sum of `terms` is to be `value`; the square of its error counts `weight` times.
+    /// Adds the equation that the sum of `terms` is `value`. The square of its error counts `weight` times.
     pub(super) fn add(&mut self, weight: f64, terms: &[Unknown], value: f64) {
         let (row, scale) = (self.right.len(), weight.sqrt());
         self.places.extend(terms.iter().map(|&(unknown, factor)| (row, unknown, scale * factor)));
         self.right.push(scale * value);
     }
 
-    /// The normal equations, whose solution has the least squares.
+    /// The normal equations. Their solution has the least sum of squares.
     pub(super) fn normal(self) -> (CscMatrix<f64>, DVector<f64>) {
         let mut all = CooMatrix::new(self.right.len(), self.unknowns);
         for (row, unknown, factor) in self.places {

@@ -1,6 +1,6 @@
 //! The projection of Carroll, Agrawala and Agarwala, *Optimizing content-preserving projections for wide-angle images*, ACM
-//! Transactions on Graphics 28 (2009): a net over the sphere that is laid into the plane so that shapes stay what they are, lines
-//! stay straight, and neighbours are treated alike, by sparse least squares.
+//! Transactions on Graphics 28 (2009). A net over the sphere is laid into the plane by sparse least squares so that shapes are
+//! kept, lines stay straight, and neighbours are treated alike.
 
 mod equations;
 mod raster;
@@ -13,37 +13,37 @@ use equations::{Equations, Unknown};
 
 pub(super) use raster::shown;
 
-/// Degrees from a knot of the net to the next.
+/// Degrees between two knots of the net.
 const STEP: f64 = 4.0;
-/// Knots on either side of the middle one, across and down: 80°.
+/// Knots on either side of the middle one, across and down: up to 80°.
 const HALF: usize = 20;
-/// Knots of a row or a column.
+/// Knots in a row or a column.
 const KNOTS: usize = 2 * HALF + 1;
 
-/// Knots from the middle to where the horizon's ends are held: 60°.
+/// Knots from the middle to where the ends of the horizon are held: 60°.
 const WIDE: usize = 15;
 
-/// How often lines of no known direction are given that which they have.
+/// How many times lines of unknown direction are given the direction that they have so far.
 const ROUNDS: usize = 5;
 
-/// What an error counts: of shapes, of lines, of neighbours; and what holds the middle in its place.
+/// The weights of errors in shapes, in lines and between neighbours, and of what holds the middle in place.
 const SHAPE: f64 = 1.0;
 const STRAIGHT: f64 = 1000.0;
 const SMOOTH: f64 = 0.5;
 const PINNED: f64 = 1000.0;
 
-/// A net over the sphere, laid into the plane: its knots are every 4° of longitude and latitude, up to 80°.
+/// A net over the sphere, laid into the plane. Its knots are every 4° of longitude and latitude, up to 80°.
 #[derive(Clone, Debug)]
 pub(super) struct Net {
-    /// x and y of each knot in pixels, row after row from the highest latitude above.
+    /// x and y of each knot in pixels, row after row from the top.
     knots: Vec<(f64, f64)>,
 }
 
 impl Net {
-    /// The projection that keeps `lines`, with so many pixels a radian along the horizon.
+    /// The projection that keeps `lines`, with `scale` pixels a radian along the horizon.
     ///
     /// # Errors
-    /// [`PaperError::Lines`] when the equations have no single solution.
+    /// [`PaperError::Lines`] when the equations have no unique solution.
     pub(super) fn optimised(lines: &[Line], scale: f64) -> Result<Self, PaperError> {
         let mut net = Self::solved(lines, scale, None)?;
         for _ in 0..ROUNDS {
@@ -52,7 +52,7 @@ impl Net {
         Ok(net)
     }
 
-    /// One round: lines of no known direction have that which they have in `before`, and none without it.
+    /// One round. Lines of unknown direction are held to the direction that they have in `before`, or not at all without it.
     fn solved(lines: &[Line], scale: f64, before: Option<&Self>) -> Result<Self, PaperError> {
         let mut equations = Equations::new(2 * KNOTS * KNOTS + lines.len());
         keep_shapes(&mut equations);
@@ -73,7 +73,7 @@ impl Net {
         Ok(Self { knots: knots.collect() })
     }
 
-    /// Where a direction, longitude and latitude in radians, is shown, in pixels from the middle.
+    /// The position at which a direction, longitude and latitude in radians, is shown, in pixels from the middle.
     #[must_use]
     pub(super) fn place(&self, longitude: f64, latitude: f64) -> (f64, f64) {
         let parts = around(longitude, latitude).map(|(knot, share)| {
@@ -83,7 +83,7 @@ impl Net {
         parts.into_iter().fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1))
     }
 
-    /// The unit vector across a line as it is shown.
+    /// The unit vector perpendicular to a line as it is shown.
     fn normal(&self, line: &Line) -> (f64, f64) {
         let points: Vec<_> = line.directions.iter().map(|&(across, down)| self.place(across, down)).collect();
         let count = points.len() as f64;
@@ -94,13 +94,13 @@ impl Net {
             let (x, y) = (x - middle.0, y - middle.1);
             (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
         }
-        // The axis of least spread is square to that of the greatest.
+        // The axis of the least spread is perpendicular to that of the greatest.
         let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
         (-angle.sin(), angle.cos())
     }
 }
 
-/// The knot in this row and column, from 0.
+/// The index of the knot in this row and column, both from 0.
 const fn knot(row: usize, column: usize) -> usize {
     row * KNOTS + column
 }
@@ -110,7 +110,7 @@ fn angle(place: usize) -> f64 {
     ((place as f64 - HALF as f64) * STEP).to_radians()
 }
 
-/// The four knots around a direction, each with its share of it.
+/// The four knots around a direction, each with its weight.
 fn around(longitude: f64, latitude: f64) -> [(usize, f64); 4] {
     let place = |angle: f64| {
         let place = (angle.to_degrees() / STEP + HALF as f64).clamp(0.0, (KNOTS - 1) as f64);
@@ -134,7 +134,7 @@ const fn y(knot: usize) -> usize {
     2 * knot + 1
 }
 
-/// Every small square stays one (their Eqs. 5 and 6): what lies below is what lies beside, turned by a quarter.
+/// Every small square stays a square (their Eqs. 5 and 6): the step down is the step across, turned by a right angle.
 fn keep_shapes(to: &mut Equations) {
     for row in 0..KNOTS - 1 {
         let cosine = f64::midpoint(angle(row), angle(row + 1)).cos();
@@ -150,7 +150,7 @@ fn keep_shapes(to: &mut Equations) {
     }
 }
 
-/// Neighbours are alike: no knot is far from the middle of those beside it (their Eqs. 9 to 12, in the net's own steps).
+/// Neighbours are alike: no knot is far from the middle of its two neighbours (their Eqs. 9 to 12, in the net's own steps).
 fn keep_smooth(to: &mut Equations) {
     for row in 0..KNOTS {
         let cosine = angle(row).cos();
@@ -172,8 +172,8 @@ fn keep_smooth(to: &mut Equations) {
     }
 }
 
-/// The middle is in the middle, and the horizon as wide as in a view whose columns are longitudes: a net that shrinks has
-/// small errors, too.
+/// The middle's column is in the middle, and the horizon is as wide as in a view whose columns are longitudes. Otherwise the net
+/// would shrink, since a smaller net has smaller errors.
 fn pin(to: &mut Equations, scale: f64) {
     let middle = knot(HALF, HALF);
     to.add(PINNED, &[(x(middle), 1.0)], 0.0);
@@ -184,10 +184,11 @@ fn pin(to: &mut Equations, scale: f64) {
     }
 }
 
-/// All of a line has one distance from the middle, square to it, which is the unknown `distance` (their Eq. 3).
+/// All points of a line have the same distance from the middle along the line's normal, which is the unknown `distance` (their
+/// Eq. 3).
 fn keep_line(to: &mut Equations, line: &Line, normal: Option<(f64, f64)>, distance: usize) {
     let Some((across, down)) = normal else {
-        // Nothing else says what it is.
+        // No other equation contains this unknown.
         to.add(1.0, &[(distance, 1.0)], 0.0);
         return;
     };

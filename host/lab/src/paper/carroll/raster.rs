@@ -1,13 +1,13 @@
-//! A net drawn: each of its meshes as two triangles.
+//! Draws a net: each of its meshes as two triangles.
 
 use halfrow::frames::preview::RgbImage;
 
 use super::{KNOTS, Net, angle, knot};
 
-/// A corner of a triangle: where it is shown, and its direction.
+/// A corner of a triangle: the position at which it is shown, and its direction.
 type Corner = ((f64, f64), (f64, f64));
 
-/// A picture of `side` pixels across and down, with the colour of each direction; black where the net does not reach.
+/// A picture of `side` x `side` pixels with the colour of each direction, black where the net does not reach.
 pub(in super::super) fn shown(net: &Net, side: usize, colour: &dyn Fn(f64, f64) -> [u8; 3]) -> RgbImage {
     let mut image = RgbImage { width: side, height: side, data: vec![0; 3 * side * side] };
     for row in 0..KNOTS - 1 {
@@ -24,7 +24,7 @@ pub(in super::super) fn shown(net: &Net, side: usize, colour: &dyn Fn(f64, f64) 
     image
 }
 
-/// Fills the pixels whose middles are in a triangle.
+/// Fills the pixels whose middles lie in a triangle.
 fn fill(image: &mut RgbImage, corners: [Corner; 3], colour: &dyn Fn(f64, f64) -> [u8; 3]) {
     let [(a, at_a), (b, at_b), (c, at_c)] = corners;
     let area = (b.0 - a.0) * (c.1 - a.1) - (c.0 - a.0) * (b.1 - a.1);
@@ -39,7 +39,7 @@ fn fill(image: &mut RgbImage, corners: [Corner; 3], colour: &dyn Fn(f64, f64) ->
             let (across, down) = (x as f64 - a.0, y as f64 - a.1);
             let to_b = (across * (c.1 - a.1) - (c.0 - a.0) * down) / area;
             let to_c = ((b.0 - a.0) * down - across * (b.1 - a.1)) / area;
-            // A triangle without an area has no such pixel.
+            // A triangle without an area contains no such pixel.
             if !(to_b >= 0.0 && to_c >= 0.0 && to_b + to_c <= 1.0) {
                 continue;
             }
