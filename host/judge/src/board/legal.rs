@@ -22,7 +22,7 @@ const WIDTHS: RangeInclusive<usize> = MIN_WIDTH..=MAX_WIDTH;
 const HEIGHTS: RangeInclusive<usize> = 1..=MAX_HEIGHT;
 /// The depths of samples, in bits.
 const DEPTHS: [u8; 3] = [8, 10, 12];
-/// L = 3 + p: what an output may need beside its column, and the pipeline.
+/// L = 3 + p: three samples of look-ahead, and the pipeline.
 const MIN_LATENCY: u8 = 3;
 /// The largest L that a board may have.
 pub(crate) const MAX_LATENCY: u8 = 32;

@@ -101,7 +101,7 @@ pub enum LensContentError {
     Coefficients {
         /// How many.
         found: usize,
-        /// The model that has so many, in parentheses.
+        /// The model that has this many, in parentheses.
         name: &'static str,
     },
     /// A matrix that is none of a camera.

@@ -25,7 +25,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     bits.filter(possible).flat_map(|bit| bit.hypotheses(witnesses)).collect()
 }
 
-/// The entries (c, b) that influence every differing row, and do so from the first differing column on or further left.
+/// The entries (c, b) that influence every differing row, from the first differing column or one left of it on.
 ///
 /// An entry influences the rows of three blocks of 2^v. A node does so from the node left of it on, an offset everywhere.
 fn entries(witnesses: &Witnesses<'_>) -> Vec<(usize, usize)> {

@@ -17,7 +17,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
         .collect()
 }
 
-/// The centre does not matter to a row of a grid, which leads to columns of its own.
+/// Rows of a grid are left out, since their values were computed for their own centre.
 fn centre(case: Case<'_>, instead: Instead) -> Hypothesis<'_> {
     Hypothesis::new(Defect::CentreIgnored { instead }, move |witness| {
         let own = witness.geometry();
