@@ -8,8 +8,8 @@ use super::conversation::Conversation;
 use super::deadlines::Step;
 use super::{BoardError, Tally};
 
-/// How often the board is asked at most. A request that had to be repeated is followed by another one, and on a link that holds back
-/// every answer each of them is repeated.
+/// How often the board is asked at most. A request that had to be repeated is followed by another one, and on a link that holds
+/// back every answer each of them is repeated.
 const COUNTS: usize = 3;
 
 /// A count of packets that a link which only loses some cannot cause.
