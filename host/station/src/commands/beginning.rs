@@ -1,4 +1,5 @@
-//! What all commands begin with that keep new results: the disk is asked, the store opened, what was left open closed.
+//! How every command that keeps new results begins: the disk is checked, the store is opened, and what was left open
+//! is closed.
 
 use std::path::{self, Path, PathBuf};
 use std::sync::Arc;
@@ -20,7 +21,7 @@ use crate::run::{self as runs, Saved};
 use crate::settings::Settings;
 use crate::store::{Folder, Store};
 
-/// How often it is looked whether a signal came.
+/// How often signals are checked for.
 const LOOK: Duration = Duration::from_millis(100);
 
 /// Which disks are taken for new results.
@@ -37,12 +38,12 @@ impl Disk {
         if self.any_disk { Ok(()) } else { disk::keeps(folder).map_err(Failure::call) }
     }
 
-    /// The same, which takes any disk when what is kept there `goes` with the program.
+    /// The same, but taking any disk if what is kept there `goes` with the program.
     pub(super) fn unless(&self, goes: bool) -> Self {
         Self { any_disk: self.any_disk || goes }
     }
 
-    /// The store in `folder`, which is made if the disk is taken.
+    /// Opens the store in `folder`, which is created if the disk is taken.
     pub(super) fn opens(&self, folder: &Path) -> Result<Store, Failure> {
         self.takes(folder)?;
         Ok(Store::open(&Folder::new(folder))?)
@@ -64,12 +65,12 @@ pub(super) struct SettingsFile {
 }
 
 impl SettingsFile {
-    /// Where they are.
+    /// Their absolute path.
     pub(super) fn path(&self) -> Result<PathBuf, Failure> {
         path::absolute(&self.settings).map_err(Failure::call)
     }
 
-    /// [`load_plant`] of them.
+    /// Loads them by [`load_plant`].
     pub(super) fn load_plant(&self) -> Result<Settings, Failure> {
         load_plant(&self.settings)
     }
@@ -81,28 +82,29 @@ pub(super) fn settings(path: &Path) -> Result<Settings, Failure> {
     Settings::load(&path).map_err(Failure::call)
 }
 
-/// What the file `path` says to whoever needs no lanes: a plant has none, nor has a station that takes jobs alone.
+/// The settings in the file `path` for a command that needs no lanes: a plant has none, nor has a station that only
+/// takes jobs.
 pub(super) fn load_plant(path: &Path) -> Result<Settings, Failure> {
     let path = path::absolute(path).map_err(Failure::call)?;
     Settings::load_plant(&path).map_err(Failure::call)
 }
 
-/// The last signal, which ends what is under way.
+/// The last signal received, which ends what is under way.
 #[derive(Clone, Debug)]
 pub(super) struct Signal(Arc<AtomicUsize>);
 
 impl Signal {
-    /// Those from now on.
+    /// Heeds the signals from now on.
     pub(super) fn heed() -> Result<Self, Failure> {
         signals::last().map(Self).map_err(Failure::error)
     }
 
-    /// Who wants the program to end.
+    /// Who wants the program to end, if anybody does.
     pub(super) fn by(&self) -> Option<StoppedBy> {
         Exit::stopped_by(self.0.load(Ordering::Relaxed))
     }
 
-    /// Waits for whoever wants that, and calls `meanwhile` ten times a second.
+    /// Waits until somebody wants the program to end, and calls `meanwhile` ten times a second.
     pub(super) fn wait(&self, mut meanwhile: impl FnMut()) -> StoppedBy {
         loop {
             if let Some(by) = self.by() {
@@ -114,7 +116,7 @@ impl Signal {
     }
 }
 
-/// A station that can go to work: signals are heeded, and nobody else has its store.
+/// A station that is ready to work: signals are heeded, and no other program has its store.
 #[derive(Debug)]
 pub(super) struct Ready<'a> {
     settings: &'a Settings,
@@ -123,27 +125,27 @@ pub(super) struct Ready<'a> {
 }
 
 impl<'a> Ready<'a> {
-    /// The station of these settings, if `disk` takes its folder.
+    /// The station with these settings, if `disk` takes its folder.
     pub(super) fn of(settings: &'a Settings, disk: &Disk) -> Result<Self, Failure> {
         let signal = Signal::heed()?;
         Ok(Self { store: disk.opens(&settings.data)?, settings, signal })
     }
 
-    /// At work, with nothing left open.
+    /// Starts the engine, with nothing left open.
     pub(super) fn start(mut self) -> Result<Engine, Failure> {
         recovered(&mut self.store)?;
         Engine::start(self.settings.clone(), self.store, OWN_PROGRAM.into()).map_err(Failure::error)
     }
 }
 
-/// The threads that send on what the station keeps.
+/// Starts the threads that send on what the station keeps.
 pub(super) fn outbox(settings: &Settings, engine: &Engine) -> Result<Outbox, Failure> {
     let store = engine.store();
     let sinks = store.with(|store| sinks(settings, store))?;
     Ok(Outbox::start(&store, sinks)?)
 }
 
-/// Everybody who is sent what the station keeps.
+/// All sinks to which the station sends what it keeps.
 pub(super) fn sinks(settings: &Settings, store: &mut Store) -> Result<Vec<Box<dyn Sink>>, Failure> {
     let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
     if let Some(plant) = &settings.plant {
@@ -156,7 +158,7 @@ pub(super) fn sinks(settings: &Settings, store: &mut Store) -> Result<Vec<Box<dy
     Ok(sinks)
 }
 
-/// Closes what was under way when the station ended, says so, and returns it.
+/// Closes the runs that were under way when the station ended, prints them, and returns them.
 pub(super) fn recovered(store: &mut Store) -> Result<Vec<Saved>, Failure> {
     let recovered = runs::recover(store)?;
     for Saved { record, .. } in &recovered {

@@ -24,9 +24,9 @@ use crate::store::{
 };
 use crate::work::{Held, Holding, sleep_unless};
 
-/// How often somebody who waits asks again.
+/// How often a waiting caller asks again.
 const ASKED: Duration = Duration::from_secs(1);
-/// How often it is looked whether anything happened.
+/// How often to check whether anything happened.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// Share boards among several computers: each is used by one at a time
@@ -178,7 +178,7 @@ impl Share {
     }
 }
 
-/// Shares a board, or says which other one is this unit.
+/// Shares a board, or says as which other board this unit is shared already.
 fn shared(plant: &mut Plant, share: &Share) -> Result<Exit, Failure> {
     let board = share.board();
     let is_shared = plant.share(&board, &share.operator)?;
@@ -233,7 +233,7 @@ fn hold(address: &PlantAddress, kind: &str, station: &str) -> Result<Exit, Failu
     Ok(Exit::Pass)
 }
 
-/// Waits for its turn, and says how many are in front.
+/// Waits for a turn, and prints how many are in front. `None` if the wait is over without one.
 fn wait(
     plant: &PlantLink,
     waiter: &Waiter,
@@ -255,14 +255,14 @@ fn wait(
     }
 }
 
-/// Leaves the queue; who says nothing any more is forgotten anyway.
+/// Leaves the queue. A waiter that no longer asks is dropped anyway.
 fn left(plant: &PlantLink, waiter: &Waiter) {
     if let Err(StoreError::Plant { source, .. }) = plant.ask(|plant| plant.leave(waiter)) {
         console::error(&format_args!("the place in the queue is forgotten in some seconds: {source}"));
     }
 }
 
-/// Becomes true when stdin ends.
+/// A flag that becomes true when stdin ends.
 fn end_of_stdin() -> Result<Arc<AtomicBool>, Failure> {
     let over = Arc::new(AtomicBool::new(false));
     let noted = Arc::clone(&over);

@@ -31,7 +31,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     tell(&checked, arguments.json)
 }
 
-/// Says what was found, and whether all is as it was written.
+/// Prints what was found; the exit code says whether all is as it was written.
 pub(super) fn tell(checked: &Checked, is_json: bool) -> Result<Exit, Failure> {
     let exit = if checked.faults.is_empty() { Exit::Pass } else { Exit::Error };
     console::tell(&if is_json { document(checked, exit)? } else { text(checked) });

@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let aside = tempfile::tempdir().map_err(Failure::error)?;
     let folder = arguments.folder.clone().unwrap_or_else(|| aside.path().to_owned());
     let folder = path::absolute(folder).map_err(Failure::call)?;
-    // What goes with the program has nothing to lose, wherever it lies.
+    // A folder that goes with the program has nothing to lose, wherever it lies.
     let disk = arguments.disk.unless(arguments.folder.is_none());
     disk.takes(&folder)?;
     let demo =
@@ -51,7 +51,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         })?;
     let settings = settings(&demo.settings)?;
     console::tell("A demonstration: no board is real. Ctrl-C ends it.");
-    // Whoever looks at it may do all that there is to do.
+    // Whoever opens the pages may do everything.
     let everybody = User { name: "visitor".to_owned(), who: Who::Engineer };
     let hints = serials(&settings);
     let served = Served { settings: &settings, disk: &disk, everybody, hints };

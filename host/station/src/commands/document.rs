@@ -1,4 +1,4 @@
-//! Results of commands as JSON documents, which begin as those of `halfrow` do, and why there are none.
+//! Results of commands as JSON documents, which begin like those of `halfrow`, or the reason why there is no result.
 
 use halfrow::Verdict;
 use halfrow::result::{Document, Schema};
@@ -21,14 +21,14 @@ pub(super) fn text(
     json::document(&document).map_err(Failure::error)
 }
 
-/// The document of a command that failed. It has no verdict, for none is saved.
+/// The document of a command that failed. It has no verdict, because none was saved.
 #[must_use]
 pub fn failure(command: &str, failure: &Failure) -> String {
     let Failure { exit, error } = failure;
     json::without_result(command, *exit, None, &codes::problem(*exit, error))
 }
 
-/// The code of what a command failed by, if `halfrow explain` has more to say of it.
+/// The code of a command's failure, if `halfrow explain` has more to say about it.
 #[must_use]
 pub fn code(failure: &Failure) -> Option<String> {
     halfrow_program::codes::explained(codes::problem(failure.exit, &failure.error))

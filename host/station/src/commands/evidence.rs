@@ -91,7 +91,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     print(&format!("{files} of evidence in {}", to.display()))
 }
 
-/// Writes a file, unless it is there already.
+/// Writes a file, unless the very same one is there already.
 fn copied(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     if fs::read(path).is_ok_and(|there| there == bytes) {
         return Ok(());
@@ -99,7 +99,7 @@ fn copied(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     write_aside(path, false, |file| file.write_all(bytes)).map_err(unwritten)
 }
 
-/// Its name, which may not lead out of the folder.
+/// The name of its file, which must not lead out of the folder.
 fn file_name(one: &Attachment) -> &str {
     let is_plain = Path::new(&one.name).file_name() == Some(OsStr::new(&one.name));
     if is_plain { &one.name } else { &one.sha256 }

@@ -60,7 +60,7 @@ fn one(of: &Snapshot, run: &str, format: Format, to: Option<&Path>) -> Result<Ex
     Ok(Exit::Pass)
 }
 
-/// Writes all runs of the filter, and says how many they were.
+/// Writes all runs that pass the filter, and prints how many there are.
 fn all(of: &Snapshot, filter: &Filter, format: Format, to: &Path) -> Result<Exit, Failure> {
     let count = if format == Format::Csv {
         let aside = Aside::written(to, false, |_| Ok(())).map_err(unwritten)?;
@@ -79,7 +79,8 @@ fn all(of: &Snapshot, filter: &Filter, format: Format, to: &Path) -> Result<Exit
     print(&format!("{count} runs are in {}", to.display()))
 }
 
-/// Has each run of the filter written, the newest first, by its id and its record's hash; returns how many they were.
+/// Calls `write` for each run that passes the filter, newest first, with its id and its record's hash; returns how
+/// many there are.
 fn each(
     of: &Snapshot,
     filter: &Filter,

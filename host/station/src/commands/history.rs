@@ -7,7 +7,7 @@ use super::looking::{Filtered, Results, either, table, time};
 use crate::exit::Exit;
 use crate::history::runs::{MOST, Page, Place, RunLine, page};
 
-/// Characters of a result.
+/// The most characters of a result that are shown.
 const MOST_RESULT: usize = 80;
 
 /// List runs, the newest first
@@ -34,7 +34,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     either(&page, arguments.json, text)
 }
 
-/// Why the run was no PASS, as long as a line has room for it.
+/// Why the run was no PASS, cut to what fits on a line.
 fn why(run: &RunLine) -> String {
     let headline = run.headline.as_deref().filter(|_| run.verdict.as_deref() != Some("PASS"));
     let headline = headline.unwrap_or_default();

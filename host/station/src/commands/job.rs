@@ -14,7 +14,7 @@ use crate::plan::Plan;
 use crate::settings::is_word;
 use crate::store::{Job, NewJob, Plant, PlantPool, STATES, Wanted, jobs};
 
-/// How many jobs are listed.
+/// How many jobs are listed unless the command says otherwise.
 const LISTED: u32 = 100;
 
 /// Add jobs to the plant, see them, cancel them

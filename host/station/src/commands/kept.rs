@@ -65,7 +65,7 @@ pub(super) fn restore(arguments: &Restore) -> Result<Exit, Failure> {
     ))
 }
 
-/// What is in a copy beside what its rows name.
+/// What a copy has beyond what its rows name.
 fn with_unknown(Copied { unknown, .. }: Copied) -> String {
     if unknown == 0 {
         return String::new();
@@ -115,7 +115,7 @@ pub(super) fn prune(arguments: &Prune) -> Result<Exit, Failure> {
     ))
 }
 
-/// Milliseconds since 1970, UTC, so many days ago.
+/// The time `days` days ago, in milliseconds since 1970, UTC.
 pub(super) fn days_ago_ms(days: u32) -> i64 {
     clock::now_ms().saturating_sub(86_400_000 * i64::from(days))
 }

@@ -1,4 +1,4 @@
-//! `halfrow-station lane`: what the station starts for every run.
+//! `halfrow-station lane`, which the station starts for every run.
 
 use std::fs;
 use std::io::{self, BufRead as _};
@@ -34,7 +34,7 @@ pub(super) fn run(_: &Arguments) -> Result<Exit, Failure> {
     let (orders, heeded) = orders();
     thread::Builder::new().name("stdin".to_owned()).spawn(move || heed(&orders)).map_err(Failure::error)?;
     carry_out(&job, &heeded, &|message: &Message| {
-        // A station that hears nothing more is gone, and then stdin ends this process.
+        // A station that no longer listens is gone, and the end of stdin then ends this process.
         if let Ok(line) = serde_json::to_string(message) {
             let _ = console::print(&line);
         }
@@ -42,22 +42,22 @@ pub(super) fn run(_: &Arguments) -> Result<Exit, Failure> {
     Ok(Exit::Pass)
 }
 
-/// Calls the process as the station's: the system has its name from the path that it was started by.
+/// Names the process after the station; otherwise the system names it after the path that it was started by.
 fn name() {
     if let Err(error) = fs::write("/proc/self/comm", PROGRAM) {
         tracing::debug!("the process has no name: {error}");
     }
 }
 
-/// Lets the process have no more than so many MiB of addresses, or what it was allowed before if that is less. What needs more
-/// ends it, and not the station or another lane.
+/// Limits the process to `mib` MiB of addresses, or to what it was allowed before if that is less. If more is needed,
+/// this process ends, and not the station or another lane.
 fn limit(mib: u64) -> nix::Result<()> {
     let (_, most) = getrlimit(Resource::RLIMIT_AS)?;
     let bytes = mib.saturating_mul(1 << 20).min(most);
     setrlimit(Resource::RLIMIT_AS, bytes, bytes)
 }
 
-/// Heeds what the station says until it is gone, and the lane with it.
+/// Heeds what the station says until the station is gone, and then ends the process.
 fn heed(orders: &Orders) {
     for line in io::stdin().lock().lines().map_while(Result::ok) {
         if let Ok(control) = serde_json::from_str::<Control>(&line) {

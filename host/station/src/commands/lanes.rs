@@ -16,7 +16,7 @@ use crate::engine::News;
 use crate::exit::Exit;
 use crate::store::Store;
 
-/// How often it is looked whether a signal came.
+/// How often signals are checked for.
 const LOOK: Duration = Duration::from_millis(100);
 
 /// Judge the boards in all lanes of a station, with scans from stdin
@@ -70,14 +70,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 #[error("the station has stopped working, by a fault of its own that the log describes; start it again")]
 pub(super) struct EngineEnded;
 
-/// The lines of stdin, counted, until its end.
+/// The lines of stdin, numbered, until its end.
 fn scans() -> io::Result<Receiver<(u64, String)>> {
     let (sender, scans) = mpsc::channel();
     thread::Builder::new().name("scans".to_owned()).spawn(move || {
-        // What is no UTF-8 is refused as a label that nobody prints.
+        // What is not UTF-8 gets characters that no label has, so it is refused.
         let text = |line: Vec<u8>| String::from_utf8_lossy(&line).trim_end_matches('\r').to_owned();
         let lines = io::stdin().lock().split(b'\n').map_while(Result::ok).map(text);
-        // Nobody takes scans any more when the station closes.
+        // Once the station closes, nobody takes scans any more.
         (1..).zip(lines).take_while(|scan| sender.send(scan.clone()).is_ok()).for_each(drop);
     })?;
     Ok(scans)

@@ -1,4 +1,4 @@
-//! What the commands that look at results have in common.
+//! What the commands that show results have in common.
 
 use std::path::{Path, PathBuf};
 
@@ -45,7 +45,7 @@ pub(super) struct Results {
 }
 
 impl Results {
-    /// The results at this moment.
+    /// The results as they are now.
     pub(super) fn snapshot(&self) -> Result<Snapshot, Failure> {
         if let Some(path) = &self.plant {
             let address = plant(&load_plant(path)?)?.address()?.patient();
@@ -68,7 +68,7 @@ struct Range {
 }
 
 impl Range {
-    /// As a period.
+    /// The range as a period.
     fn period(self) -> Period {
         let all = Period::default();
         Period { from_ms: self.from.unwrap_or(all.from_ms), until_ms: self.until.unwrap_or(all.until_ms) }
@@ -92,7 +92,7 @@ pub(super) struct Counted {
 }
 
 impl Counted {
-    /// As the counting functions take it.
+    /// In the form that the counting functions take.
     pub(super) fn wanted(&self) -> Wanted {
         let Self { plan, station, lane, range } = self;
         Wanted { plan: plan.clone(), station: station.clone(), lane: lane.clone(), period: range.period() }
@@ -132,7 +132,8 @@ pub(super) struct Filtered {
 }
 
 impl Filtered {
-    /// The groups of its arguments, for what goes with none of them: Clap's group of a structure has nothing that is flattened into it.
+    /// The groups of its arguments, for arguments that conflict with all of them: Clap's group of a structure does not
+    /// include what is flattened into it.
     pub(super) const GROUPS: [&str; 2] = ["Said", "Range"];
 
     /// As a filter.
@@ -171,12 +172,12 @@ impl From<Word> for Verdict {
     }
 }
 
-/// The first moment that is meant, in milliseconds since 1970.
+/// The first moment that `text` means, in milliseconds since 1970.
 fn from(text: &str) -> Result<i64, String> {
     given(text, 0)
 }
 
-/// The first moment after all that is meant; a day is meant to its end.
+/// The first moment after what `text` means, which of a day is all of it.
 fn until(text: &str) -> Result<i64, String> {
     given(text, 1)
 }
@@ -186,13 +187,13 @@ fn given(text: &str, days: i64) -> Result<i64, String> {
     moment(text, days).ok_or_else(wrong)
 }
 
-/// A moment for people: to the second, UTC.
+/// A moment for people: UTC, to the second.
 pub(super) fn time(ms: i64) -> String {
     let moment = Timestamp::from_millisecond(ms).ok();
     moment.map_or_else(|| ms.to_string(), |moment| format!("{moment:.0}"))
 }
 
-/// Prints a result as JSON, or as `text` says it.
+/// Prints a result as JSON, or in the words of `text`.
 pub(super) fn either<T: Serialize>(
     result: &T,
     is_json: bool,
@@ -204,7 +205,8 @@ pub(super) fn either<T: Serialize>(
     print(&text(result))
 }
 
-/// A table for people. The columns `numbers` stand to the right. What a board or a scanner said has no control characters.
+/// A table for people, with the columns `numbers` aligned right. Control characters in what a board or a scanner said
+/// are not printed.
 pub(super) fn table(
     header: &[&str],
     numbers: &[usize],

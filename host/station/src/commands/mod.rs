@@ -1,4 +1,4 @@
-//! The command line: one file a command.
+//! The command line: one file per command.
 
 mod beginning;
 mod board;
@@ -92,7 +92,7 @@ enum Command {
     Lane(lane::Arguments),
 }
 
-/// A command that did not come to a result.
+/// A command that came to no result.
 #[derive(Debug)]
 pub struct Failure {
     /// The exit code.
@@ -114,13 +114,13 @@ impl Failure {
 }
 
 impl Cli {
-    /// How much to log: 0 for errors and warnings alone.
+    /// How much to log: 0 for errors and warnings only.
     #[must_use]
     pub fn verbosity(&self) -> u8 {
         self.verbose
     }
 
-    /// The command, if it was asked for a document.
+    /// The command's name, if it was asked for a document.
     #[must_use]
     pub fn documented(&self) -> Option<&'static str> {
         match &self.command {
@@ -133,7 +133,7 @@ impl Cli {
         }
     }
 
-    /// Carries the command out.
+    /// Runs the command.
     ///
     /// # Errors
     /// [`Failure`] with its exit code, when there is no result.

@@ -1,4 +1,4 @@
-//! What systemd is told of a service (`sd_notify(3)`): that it is ready, and that it works.
+//! What a service tells systemd (`sd_notify(3)`): that it is ready, and that it works.
 
 use std::os::linux::net::SocketAddrExt as _;
 use std::os::unix::net::{SocketAddr, UnixDatagram};
@@ -6,11 +6,11 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-/// As much time as the unit gives a start by `TimeoutStartSec`, and how often it is asked for.
+/// The time that `TimeoutStartSec` of the unit gives a start, and how often it is asked for again.
 const MORE_TIME: &str = "EXTEND_TIMEOUT_USEC=300000000";
 const ASK: Duration = Duration::from_secs(10);
 
-/// Where systemd listens, if it does.
+/// systemd's socket, if there is one.
 #[derive(Debug, Default)]
 pub(super) struct Notify(Option<(UnixDatagram, SocketAddr)>);
 
@@ -26,7 +26,8 @@ impl Notify {
         }))
     }
 
-    /// What `open` returns, which may have to read or to copy a database of any size: systemd gives the start time from its end on.
+    /// Calls `open`, which may have to read or copy a database of any size, and asks systemd for more time to start
+    /// meanwhile.
     pub(super) fn while_opening<T>(&self, open: impl FnOnce() -> T) -> T {
         if self.0.is_none() {
             return open();
@@ -45,12 +46,12 @@ impl Notify {
         })
     }
 
-    /// The station takes scans.
+    /// Says that the station takes scans.
     pub(super) fn ready(&self) {
         self.tell("READY=1");
     }
 
-    /// The engine works. What systemd does not hear for a while it starts again.
+    /// Says that the engine works. systemd restarts a service that it does not hear from for a while.
     pub(super) fn works(&self) {
         self.tell("WATCHDOG=1");
     }

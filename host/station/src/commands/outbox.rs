@@ -123,7 +123,7 @@ fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result
     print(&format!("{forgotten} of {sink} are forgotten"))
 }
 
-/// Sends to everybody what they do not have, and tells what is left.
+/// Sends to every sink what it does not have yet, and prints what is left.
 fn send(settings: &Settings, mut store: Store) -> Result<Exit, Failure> {
     let mut sinks = sinks(settings, &mut store)?;
     if sinks.is_empty() {
@@ -136,7 +136,7 @@ fn send(settings: &Settings, mut store: Store) -> Result<Exit, Failure> {
         sent += all(&store, &mut **sink)?.sent;
     }
     let mut left = store.with(|store| Snapshot::take(store.folder())?.unsent())?;
-    // What others had is not sent to them any more.
+    // What was for former sinks is not sent to them any more.
     left.retain(|unsent| sinks.iter().any(|sink| sink.name() == unsent.sink));
     let entries: u32 = left.iter().map(|unsent| unsent.entries).sum();
     print(&format!("{sent} sent, {entries} not"))?;

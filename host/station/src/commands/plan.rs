@@ -94,7 +94,7 @@ fn head(plan: &Plan) -> String {
     in_lines(lines)
 }
 
-/// Each in a line of its own, whatever names a plan gives.
+/// One line each, whatever characters the names in a plan have.
 pub(super) fn in_lines(lines: impl IntoIterator<Item = String>) -> String {
     lines.into_iter().map(|line| plain(&line).into_owned()).collect::<Vec<_>>().join("\n")
 }

@@ -16,7 +16,7 @@ use crate::settings::{PlantSettings, PlantSettingsError, Settings};
 use crate::store::{Plant, PlantError, Snapshot};
 use crate::web::{Access, App, Server, User, Who};
 
-/// How often it is said how far something long is.
+/// How often the progress of something long is printed.
 const TELL: Duration = Duration::from_secs(5);
 
 /// Keep the results of all stations in one PostgreSQL database
@@ -71,7 +71,7 @@ impl Arguments {
 }
 
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
-    // No plan is looked at, for those of the plant are fetched when it has tables.
+    // The plans are not loaded, because those of the plant can be fetched only once it has tables.
     let address = || address(&published(settings)?);
     match what {
         What::Prepare => {
@@ -101,7 +101,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     }
 }
 
-/// Says now and then how many are done by now, to whoever watches.
+/// Prints from time to time how many are done, if somebody watches.
 fn progress(done: &'static str) -> impl FnMut(u64) {
     let mut told = Instant::now();
     move |count| {

@@ -28,7 +28,7 @@ use crate::said::Said;
 use crate::settings::{Published, Settings};
 use crate::store::{Plant, PlantAddress, PlantPool, publications};
 
-/// How long the plant may take to say what holds when a station begins its work that has all plans already.
+/// How long the plant may take to say which plans hold, when a station that has them all begins its work.
 const IN_TIME: Duration = Duration::from_secs(20);
 
 /// Publish a plan with its files at the plant: every station that names it takes it when it starts next
@@ -116,7 +116,7 @@ pub(super) fn publish(Publish { settings, file, signed }: &Publish) -> Result<Ex
     let bundle = Bundle::of(file, &plan)?;
     let name = PlanName::from(&plan);
     let mut desk = signed.desk(settings)?;
-    // Whoever signed it: runs were judged by it.
+    // Whoever signed it, runs may have been judged by it.
     let before = desk.at.published_version(&name, &plan.version)?;
     let is_other = |(text, _): &(String, String)| {
         serde_json::from_str(text).map_or(true, |before: Statement| before.sha256 != plan.sha256)
@@ -143,7 +143,7 @@ pub(super) fn back(Back { settings, plan, earlier: version, signed }: &Back) -> 
 }
 
 impl Signed {
-    /// Where it is published that the settings name.
+    /// The desk at the plant that the settings name.
     fn desk(&self, settings: &SettingsFile) -> Result<Desk<'_>, Failure> {
         let published = published(settings)?;
         let key = SigningKey::load(&self.key)?;
@@ -152,17 +152,17 @@ impl Signed {
     }
 }
 
-/// The plant, before which an engineer sits with a key. What its database says counts only as it was signed.
+/// The plant, with an engineer in front of it who has a key. What its database says counts only as far as it is signed.
 struct Desk<'a> {
     at: Plant,
     key: SigningKey,
-    /// Whose statements are taken: the engineer's own, and those of whom the settings trust.
+    /// Whose statements are accepted: the engineer's own, and those of the people whom the settings trust.
     trusted: Vec<PublicKey>,
     why: &'a Why,
 }
 
 impl Desk<'_> {
-    /// What was said of this plan, if somebody has signed it who is trusted.
+    /// What was stated about this plan, if somebody who is trusted signed it.
     fn trusted(&self, name: &PlanName, (text, signature): &(String, String)) -> Result<Statement, Failure> {
         Statement::signed(text, signature, &self.trusted)
             .filter(|statement| statement.plan() == *name)
@@ -176,7 +176,7 @@ impl Desk<'_> {
         last.checked_add(1).ok_or_else(|| Failure::error(PublishError::NoNumber { plan: name.to_string() }))
     }
 
-    /// Signs that this plan holds from now on.
+    /// Signs and publishes that this plan holds from now on.
     fn state(
         &mut self,
         name: &PlanName,
@@ -210,7 +210,7 @@ pub(super) fn list(List { settings, json }: &List) -> Result<Exit, Failure> {
     either(&found, *json, |found| text(found))
 }
 
-/// A plan that holds.
+/// A plan that holds, and since when.
 #[derive(Debug, Serialize)]
 struct Holds {
     #[serde(flatten)]
@@ -229,7 +229,7 @@ fn text(found: &[Holds]) -> String {
     table(&["plan", "version", "number", "since", "by", "why"], &[2], found.iter().map(row))
 }
 
-/// Fetches every plan that the settings have of the plant, and says which were new.
+/// Fetches every plan that the settings take from the plant, and prints which ones are new.
 pub(super) fn fetch_all(settings: &SettingsFile) -> Result<Exit, Failure> {
     let published = published(settings)?;
     let mut said = Vec::new();
@@ -241,7 +241,8 @@ pub(super) fn fetch_all(settings: &SettingsFile) -> Result<Exit, Failure> {
     print(&in_lines(named))
 }
 
-/// Fetches them at the beginning of a station's work, which goes on with what it has where that fails.
+/// Fetches them when a station begins its work. If that fails, the station goes on with the copies that it has, unless
+/// one is missing.
 pub(super) fn fetch_at_start(path: &Path) -> Result<(), Failure> {
     let path = path::absolute(path).map_err(Failure::call)?;
     let Ok(published) = Settings::published(&path) else { return Ok(()) };
@@ -270,7 +271,7 @@ pub(super) fn fetch_at_start(path: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What the plant says of each plan.
+/// What the plant offers for each plan.
 type Offers = Result<Vec<Result<Offer, FetchError>>, Failure>;
 
 fn offers(published: &Published) -> Offers {
@@ -279,12 +280,13 @@ fn offers(published: &Published) -> Offers {
     Ok(published.plans.iter().map(|plan| offered(&mut at, &kept, plan, trusted)).collect())
 }
 
-/// The same within [`IN_TIME`]: a plant may take a connection and say nothing for ever. Who asks it is left behind then, and keeps nothing.
+/// The same within [`IN_TIME`], because a plant may accept a connection and never say anything. The thread that asks
+/// is then abandoned, and keeps nothing.
 fn offers_in_time(published: Published) -> Option<Offers> {
     let (answer, answered) = mpsc::channel();
     let ask = move || {
         let offers = guarded(|| offers(&published)).map_err(Failure::error).flatten();
-        // Nobody may wait for it any more.
+        // Perhaps nobody waits for it any more.
         let _ = answer.send(offers);
     };
     match thread::Builder::new().name("plans".to_owned()).spawn(ask) {
@@ -296,17 +298,17 @@ fn offers_in_time(published: Published) -> Option<Offers> {
     }
 }
 
-/// Keeps every plan that can be kept; what became of each.
+/// Keeps every plan that can be kept, and returns the outcome for each.
 fn fetched(kept: &Kept, offers: Offers) -> Result<Vec<Result<Fetched, FetchError>>, Failure> {
     Ok(offers?.into_iter().map(|offer| offer?.keep(kept)).collect())
 }
 
-/// The same; the first error, if there is one.
+/// The same, but returns only the first error, if there is one.
 fn all_fetched(kept: &Kept, offers: Offers) -> Result<(), Failure> {
     fetched(kept, offers)?.into_iter().try_for_each(|fetched| Ok(fetched.map(drop)?))
 }
 
-/// What the settings have of the plant.
+/// What the settings take from the plant.
 pub(super) fn published(settings: &SettingsFile) -> Result<Published, Failure> {
     Settings::published(&settings.path()?).map_err(Failure::call)
 }

@@ -1,4 +1,4 @@
-//! The codes of what commands refuse, whatever is behind them.
+//! The codes of what commands refuse, whatever the cause.
 
 use halfrow::result::codes;
 

@@ -124,7 +124,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 impl Arguments {
-    /// The serial number and the board, which the plan takes, or those of the mock.
+    /// The serial number and the board, which the plan accepts, or those of the mock.
     fn subject(&self, plan: &Plan) -> Result<(String, Target), Failure> {
         let is_checked_by_mock = plan.production.shift.as_ref().is_some_and(|shift| shift.bad == Bad::Mock);
         match (&self.serial, &self.board) {
@@ -166,7 +166,7 @@ impl From<RunError> for Failure {
     }
 }
 
-/// A run that signals end, and whose log is for those who want to know.
+/// Watches a run: signals end it, and what happens is logged.
 struct Watched {
     signal: Signal,
 }
@@ -259,7 +259,7 @@ fn why_no_production(plan: &Plan, record: &Record) -> &'static str {
     }
 }
 
-/// The exit code of what was read back.
+/// The exit code that was read back.
 fn exit(saved: &Saved) -> Exit {
     let all = [
         Exit::Pass,

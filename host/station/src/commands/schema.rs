@@ -7,12 +7,12 @@ use super::{Failure, print};
 use crate::codes;
 use crate::exit::Exit;
 
-/// What the program prints as JSON, which is written by hand; the codes alone come from the program.
+/// The schema of what the program prints as JSON. It is written by hand; only the codes come from the program.
 const SCHEMA: &str = include_str!("../../schema/station-1.json");
-/// What is kept of a run.
+/// The schema of a run's record.
 const RECORD: &str = include_str!("../../schema/record-1.json");
 
-/// What the commands print that look at results; each is a definition of its own name.
+/// The schemas of what the commands that show results print; each is a definition of its own name.
 const RESULTS: &str = include_str!("../../schema/results-1.json");
 
 /// Print the JSON Schema of what `run`, `check`, `prune` and `codes` print with `--json`, or of a record, or of what was judged
@@ -50,7 +50,7 @@ fn of_documents() -> Result<Value, serde_json::Error> {
     Ok(schema)
 }
 
-/// That of one command, in place of any of them.
+/// The schema for one command, instead of for any of them.
 fn of_results(command: &str) -> Result<Value, serde_json::Error> {
     let Value::Object(mut schema) = serde_json::from_str(RESULTS)? else { return Ok(Value::Null) };
     schema.retain(|key, _| key != "oneOf");

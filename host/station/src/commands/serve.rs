@@ -49,13 +49,13 @@ pub(super) struct Served<'a> {
     pub(super) settings: &'a Settings,
     /// Which disks are taken for its folder.
     pub(super) disk: &'a Disk,
-    /// Who everybody at the computer itself is where nobody logs in.
+    /// Who anybody at the computer itself is, where nobody logs in.
     pub(super) everybody: User,
     /// Serial numbers that a visitor of a demonstration may type.
     pub(super) hints: Vec<String>,
 }
 
-/// Serves the station until a signal comes; `begin` is called when it is at work.
+/// Serves the station until a signal comes; `begin` is called once it is at work.
 pub(super) fn serve(
     served: Served<'_>,
     begin: impl FnOnce(&Arc<Engine>) -> io::Result<()>,

@@ -10,7 +10,7 @@ use signal_hook::flag;
 
 use crate::exit::Exit;
 
-/// Holds the exit code of the last signal, and 0 before.
+/// The exit code of the last signal, or 0 before the first one.
 pub(super) fn last() -> io::Result<Arc<AtomicUsize>> {
     let last = Arc::new(AtomicUsize::new(0));
     for (signal, exit) in [(SIGINT, Exit::Interrupted), (SIGTERM, Exit::Terminated), (SIGHUP, Exit::HungUp)] {

@@ -77,7 +77,7 @@ fn word(role: Role) -> &'static str {
     }
 }
 
-/// A line of stdin. A terminal is asked for it, and does not show it.
+/// Reads a line of stdin. A terminal shows a prompt, and hides what is typed.
 fn asked(what: &str) -> Result<String, Failure> {
     let stdin = io::stdin();
     let hidden = if stdin.is_terminal() {
@@ -89,7 +89,7 @@ fn asked(what: &str) -> Result<String, Failure> {
     let show = |is_shown: bool| {
         if let Some(mut settings) = hidden.clone() {
             settings.local_flags.set(LocalFlags::ECHO, is_shown);
-            // A terminal that cannot hide it is read all the same.
+            // If a terminal cannot hide it, the line is read all the same.
             let _ = termios::tcsetattr(stdin.as_raw_fd(), SetArg::TCSANOW, &settings);
         }
     };

@@ -1,4 +1,4 @@
-//! Who does something, and why, which the audit keeps.
+//! Who does something, and why. The audit keeps both.
 
 use clap::Args;
 

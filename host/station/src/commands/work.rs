@@ -72,10 +72,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(signal.by().map_or(Exit::Pass, |by| halfrow::Cause::Stopped(by).into()))
 }
 
-/// What tells that a run is to end, to every hand.
+/// Tells every hand whether its run is to end.
 type Stop<'a> = &'a (dyn Fn() -> Option<StoppedBy> + Sync);
 
-/// Judges so many jobs at once. When one hand cannot go on, the others end the boards that they have, and take no more.
+/// Judges `at_once` jobs at a time. When one hand cannot go on, the others finish the boards that they have, and take
+/// no more.
 fn take_jobs(work: &Work<'_>, arguments: &Arguments, at_once: u32, stop: Stop<'_>) -> Result<(), Failure> {
     let is_over = AtomicBool::new(false);
     let next_stop = || stop().or_else(|| is_over.load(Ordering::Relaxed).then_some(StoppedBy::Caller));
@@ -98,7 +99,7 @@ fn take_jobs(work: &Work<'_>, arguments: &Arguments, at_once: u32, stop: Stop<'_
     })
 }
 
-/// Judges one job after the other, until `next_stop` says that no other one is to be begun; `stop` ends the one under way.
+/// Judges one job after another until `next_stop` says that no more are to be begun; `stop` ends the one under way.
 fn one_by_one(
     work: &Work<'_>,
     arguments: &Arguments,
@@ -125,9 +126,9 @@ fn one_by_one(
                 console::error(&Said::of(&error));
                 work.until_taken(&saved.record.run.id, next_stop);
             }
-            // It would be asked again for ever.
+            // Otherwise the store would be asked again for ever.
             Err(error) if arguments.once && error.is_of_store() => return Err(Failure::error(error)),
-            // The next one may come to something.
+            // The next job may come to something.
             Err(error) => {
                 let said = Said::of(&error);
                 console::error(&format_args!("the job {job} came to no run: {said}"));

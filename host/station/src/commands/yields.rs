@@ -11,7 +11,7 @@ use super::looking::{Counted, Results, either, table, time};
 use crate::exit::Exit;
 use crate::history::yields::{By, Flip, Yield, Yields, yields};
 
-/// Units that failed first which are listed.
+/// How many of the units that failed first are listed.
 const MOST_FLIPS: usize = 20;
 
 /// Count how many units are judged good, at first and in the end
@@ -83,7 +83,7 @@ fn text(Yields { lines, flips }: &Yields) -> String {
     text
 }
 
-/// Those that passed last, the last of them first, as many as one reads.
+/// The [`MOST_FLIPS`] that passed last, the latest first.
 fn newest(flips: &[Flip]) -> Vec<&Flip> {
     let mut newest: Vec<_> = flips.iter().collect();
     newest.sort_by_key(|flip| Reverse(flip.passed_ms));
