@@ -1,11 +1,11 @@
-//! Compares a table with the one that was made anew.
+//! Compares a table with its rebuilt copy.
 
 use std::cmp::Ordering;
 
 use super::Fault;
 use crate::store::{Key, Row, Rows, StoreError};
 
-/// Adds to `faults` what is different in the two, which are in the order of their keys.
+/// Adds the differences between the two, which are sorted by key, to `faults`.
 pub(super) fn compare(
     table: &'static str,
     mut stored: Rows<'_>,
@@ -37,7 +37,7 @@ pub(super) fn compare(
     }
 }
 
-/// The columns in which a row is otherwise than it should be.
+/// Adds a fault for each column in which the two rows differ.
 fn differing(table: &'static str, key: &Key, stored: Row, rebuilt: Row, faults: &mut Vec<Fault>) {
     let differing = stored.into_iter().zip(rebuilt).filter(|(stored, rebuilt)| stored != rebuilt);
     faults.extend(differing.map(|((column, stored), (_, rebuilt))| {

@@ -1,4 +1,4 @@
-//! What may be wrong.
+//! What can be wrong.
 
 use std::path::PathBuf;
 

@@ -1,5 +1,5 @@
-//! Whether everything is as it was written: every hash anew, and the index made anew from the records beside the one
-//! that is there.
+//! Whether everything is as it was written: every hash is computed again, and the index is rebuilt from the records
+//! and compared with the existing one.
 
 mod compare;
 mod fault;
@@ -16,7 +16,7 @@ use crate::published::Kept;
 use crate::record::{Blobs, PlanRecord, Record, UnnamedRecord};
 use crate::store::{Folder, OpenRun, Rebinding, Rebuilt, Removed, Snapshot, StoreError, TABLES};
 
-/// What was looked at, and what is wrong.
+/// What was checked, and what is wrong.
 #[derive(Debug)]
 pub struct Checked {
     /// Runs that are over.
@@ -25,15 +25,15 @@ pub struct Checked {
     pub open: usize,
     /// Records and attachments.
     pub evidence: usize,
-    /// Attachments that were removed since they were old.
+    /// Attachments that were removed because they were old.
     pub pruned: usize,
-    /// Records that say otherwise of a run than the database does, which may be right.
+    /// Records that contradict the database about a run, which may be right.
     pub superseded: Vec<Superseded>,
     /// What is not as it was written.
     pub faults: Vec<Fault>,
 }
 
-/// Looks at all that the station in `folder` has kept. Nothing is changed; runs may go on meanwhile.
+/// Checks everything that the station in `folder` has kept. Nothing is changed; runs may go on meanwhile.
 ///
 /// # Errors
 /// [`StoreError`] when the database cannot be read at all.
@@ -64,7 +64,7 @@ pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
     Ok(Checked { runs: finals.len(), open: open.len(), evidence, pruned, superseded, faults })
 }
 
-/// What is among the plans in `folder` and may lead out of it, whatever version its database has.
+/// What is among the plans in `folder` and may lead out of it, whatever the version of its database.
 ///
 /// # Errors
 /// [`StoreError`] when a folder cannot be read.
@@ -73,13 +73,13 @@ pub(crate) fn foreign(folder: &Folder) -> Result<Vec<Fault>, StoreError> {
     Ok(found.into_iter().map(|path| Fault::Foreign { path }).collect())
 }
 
-/// The records, of those that no row names, whose runs have no row.
+/// Of the records that no row names, those whose runs have no row.
 fn without_row(unnamed: Vec<UnnamedRecord>, snapshot: &Snapshot) -> Result<Vec<Fault>, StoreError> {
     let lost = snapshot.without_row(unnamed)?.into_iter();
     Ok(lost.map(|UnnamedRecord { run, sha256, .. }| Fault::Unnamed { run, sha256 }).collect())
 }
 
-/// Something that the tables follow from.
+/// Something that the tables are derived from.
 enum Entry<'a> {
     Final { run: &'a str, hash: &'a str },
     Open(&'a OpenRun),
@@ -96,7 +96,7 @@ struct Look {
 }
 
 impl Look {
-    /// Goes through runs and changes of bindings in the order in which they began, which is that of their ids.
+    /// Goes through runs and changed bindings in the order in which they began, which is that of their ids.
     fn at_all(&mut self, finals: &[(String, String)], open: &[OpenRun], rebindings: &[Rebinding]) {
         let finals = finals.iter().map(|(run, hash)| (run, Entry::Final { run, hash }));
         let open = open.iter().map(|open| (&open.run.id, Entry::Open(open)));
@@ -148,7 +148,7 @@ impl Look {
     }
 }
 
-/// Whether a plan is what its hash says, if the record says which files belong to it.
+/// Whether a plan matches its hash; true if the record does not say which files belong to the plan.
 fn is_as_hashed(PlanRecord { sha256, text, files, .. }: &PlanRecord) -> bool {
     files.as_ref().is_none_or(|files| plan_hash(text, files) == *sha256)
 }

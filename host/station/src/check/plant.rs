@@ -1,4 +1,4 @@
-//! A plant: its tables follow from the records that it keeps, in whatever order they came.
+//! A plant: its tables follow from the records that it keeps, in whatever order they arrived.
 
 use std::collections::BTreeSet;
 
@@ -10,14 +10,14 @@ use super::{Checked, Fault, is_as_hashed};
 use crate::record::Record;
 use crate::store::{Kept, Rebinding, Rebuilt, Snapshot, StoreError, TABLES};
 
-/// Tables of a station that have no row at a plant, each with its key.
+/// Tables of a station that are empty at a plant, each with its key.
 const EMPTY: [(&str, &str); 2] = [("outbox", "sink, kind, subject"), ("origin", "id")];
 
-/// The table of which a plant has what came first.
+/// The table in which a plant keeps whatever arrived first.
 const BINDING: &str = "binding";
 
-/// Looks at all that a plant keeps, as it was at the moment of `plant`; `told` hears how many runs were read by now. Nothing is
-/// changed; stations may send meanwhile.
+/// Checks everything that a plant keeps, as it was when the snapshot `plant` was taken; `told` is called with the
+/// number of runs read so far. Nothing is changed; stations may send meanwhile.
 ///
 /// # Errors
 /// [`StoreError`] when the plant cannot be read at all.
@@ -48,11 +48,11 @@ pub fn check_plant(plant: &Snapshot, told: &mut dyn FnMut(usize)) -> Result<Chec
     Ok(Checked { runs, open, evidence: runs, pruned: 0, superseded: Vec::new(), faults })
 }
 
-/// Why a plant is otherwise than its records say.
+/// Why a plant may differ from what its records say.
 struct Excuse {
-    /// When persons bound anew, in milliseconds since 1970, UTC.
+    /// When people bound a unit anew, in milliseconds since 1970, UTC.
     ended: BTreeSet<String>,
-    /// What the ids of runs stand in front of whose steps and measurements may be gone.
+    /// Steps and measurements may be gone for runs whose ids sort before this.
     pruned_before: String,
 }
 
@@ -95,7 +95,7 @@ impl Look<'_> {
     }
 
     fn at_run(&mut self, kept: &Kept, mut record: Record) -> Result<(), StoreError> {
-        // A unit has the id that the first run gave it which came, not the first which began.
+        // A unit has the id of the first run that arrived, not of the first that began.
         let known = match self.rebuilt.unit_of(&record.run)? {
             None => self.plant.unit_of(&record.run.product, &record.run.serial)?,
             known => known,
@@ -110,7 +110,7 @@ impl Look<'_> {
         Ok(())
     }
 
-    /// Whether no other run of its job counts. Of those that came to no judgement only the plant knows which had the job.
+    /// Whether no other run of its job counts. Among runs without a judgement only the plant knows which one had the job.
     fn counts(&self, kept: &Kept, record: &Record) -> Result<bool, StoreError> {
         let Some(job) = &record.run.job else { return Ok(true) };
         if record.conclusion.verdict == Verdict::Error {
@@ -128,8 +128,8 @@ impl Look<'_> {
         }
     }
 
-    /// Whether a plant may be otherwise there: rows of old runs were removed, and what was bound first when it came stands in the
-    /// way of the rest until a person binds anew.
+    /// Whether a plant may differ here: rows of old runs were removed, and the binding that arrived first stands in
+    /// the way of others until a person binds anew.
     fn excuses(&mut self, fault: &Fault, excuse: &Excuse) -> Result<bool, StoreError> {
         match fault {
             Fault::Missing { table: "step" | "measurement", key } => Ok(*key < excuse.pruned_before),
@@ -142,13 +142,13 @@ impl Look<'_> {
         }
     }
 
-    /// When all other bindings begin that the plant has of the device or the unit of the binding `key`.
+    /// When the plant's other bindings of the same device or unit as the binding `key` begin.
     fn others_begin(&mut self, key: &str) -> Result<Vec<i64>, StoreError> {
         let Some((device, unit)) = self.rebuilt.bound(key)? else { return Ok(Vec::new()) };
         self.plant.others_begin(key, &device, &unit)
     }
 
-    /// Records, jobs and mismatches against the runs that they are of.
+    /// Checks records, jobs and mismatches against the runs that they name.
     fn at_what_names_runs(&mut self) -> Result<(), StoreError> {
         let surplus = |table| move |key| Fault::Surplus { table, key };
         self.faults.extend(self.plant.unnamed_records()?.into_iter().map(surplus("record")));

@@ -1,4 +1,4 @@
-//! Records whose runs are open in the database, or came to something else there.
+//! Records whose runs are open in the database, or ended differently there.
 
 use std::collections::BTreeSet;
 
@@ -25,7 +25,8 @@ pub struct Superseded {
     pub verdict: String,
 }
 
-/// Those of the records that no row names which are whole and say otherwise than the row of their run. An open run will be ERROR.
+/// Of the records that no row names, those that are whole and contradict the row of their run. An open run counts as
+/// ERROR, which it will become.
 pub(super) fn superseded(
     blobs: &Blobs,
     unnamed: &[UnnamedRecord],
