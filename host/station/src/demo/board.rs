@@ -1,4 +1,4 @@
-//! Mock boards behind sockets: the lanes of the demonstration reach them as they would a fixture.
+//! Mock boards behind sockets, which the lanes of the demonstration reach like a fixture.
 
 use std::io::{self, Read as _, Write as _};
 use std::net::{SocketAddr, TcpListener, TcpStream};
@@ -10,13 +10,14 @@ use halfrow::link::{self, Link};
 use rand::TryRng as _;
 use rand::rngs::SysRng;
 
-/// How long it is waited for bytes from either end.
+/// How long to wait for bytes from either end.
 const WAIT: Duration = Duration::from_millis(2);
 /// The most bytes that are read at once.
 const MOST: usize = 64 * 1024;
 
-/// What is broken in the boards that are not right: one part of each kind that a technician may see, each told by the suspect or, of a row
-/// that never comes and of a cable, by the finding. A new fault of the mock belongs here only if it shows a page that none of these does.
+/// The faults of the boards that are not right: one part of each kind that a technician may see. The suspect names it,
+/// or the finding if a row never comes or the cable fails. A new fault of the mock belongs here only if it shows a
+/// page that none of these does.
 const FAULTS: [&str; 8] = [
     "fault=stuck-data,bit=7",
     "fault=dead-tap,tap=4",
@@ -25,10 +26,10 @@ const FAULTS: [&str; 8] = [
     "fault=kernel-word",
     "fault=lost-row,row=17",
     "fault=no-rounding",
-    // A cable: no board's fault, so the run is ERROR.
+    // A cable is no fault of the board, so the run is ERROR.
     "fault=disconnect,packet=60",
 ];
-/// One of so many boards is not right.
+/// One in this many boards is not right.
 const ONE_OF: u8 = 4;
 
 /// The place of one board, into which another one can be put.
@@ -39,19 +40,19 @@ pub(super) struct Fixture {
 }
 
 impl Fixture {
-    /// A fixture with a board that is right. It is there as long as the program.
+    /// Starts a fixture with a board that is right. It lasts as long as the program.
     pub(super) fn start() -> io::Result<Self> {
         let listener = TcpListener::bind("127.0.0.1:0")?;
         let fixture = Self { address: listener.local_addr()?, board: Arc::new(Mutex::new(target(""))) };
         let board = Arc::clone(&fixture.board);
         thread::Builder::new().name("fixture".to_owned()).spawn(move || {
-            // A connection that breaks is the next one's chance.
+            // After a connection that breaks, the next one is served.
             listener.incoming().flatten().for_each(|stream| drop(served(stream, &board)));
         })?;
         Ok(fixture)
     }
 
-    /// Puts another board in, most likely a good one.
+    /// Puts another board in, most often a good one.
     pub(super) fn exchange(&self) {
         let [which, fault] = drawn();
         let fault = if which % ONE_OF == 0 { FAULTS.get(usize::from(fault) % FAULTS.len()) } else { None };
@@ -64,7 +65,7 @@ fn target(fault: &str) -> String {
     if fault.is_empty() { build.to_owned() } else { format!("{build},{fault}") }
 }
 
-/// Drawn bytes; the same ones every time where the system has none.
+/// Random bytes; always the same ones if the system has no randomness.
 pub(super) fn drawn<const N: usize>() -> [u8; N] {
     let mut drawn = [1; N];
     let _ = SysRng.try_fill_bytes(&mut drawn);
@@ -90,7 +91,7 @@ fn served(mut stream: TcpStream, board: &Mutex<String>) -> anyhow::Result<()> {
     }
 }
 
-/// Gives the board all of `bytes`, and the connection what the board answers meanwhile.
+/// Sends all of `bytes` to the board, and to the connection whatever the board answers meanwhile.
 fn put(link: &mut dyn Link, mut bytes: &[u8], stream: &mut TcpStream) -> anyhow::Result<()> {
     loop {
         let mut answer = Vec::new();

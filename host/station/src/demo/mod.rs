@@ -1,4 +1,4 @@
-//! A station to look at: mock boards with drawn faults, and a line that works by itself.
+//! A station for show: mock boards with drawn faults, and a line that works by itself.
 
 mod board;
 
@@ -17,14 +17,14 @@ use board::{Fixture, drawn};
 
 /// The most lanes.
 pub const MOST_LANES: usize = 16;
-/// Who scans.
+/// The name under which the line scans.
 const OPERATOR: &str = "demonstration";
-/// How often the line looks at its lanes.
+/// How often the line checks its lanes.
 const LOOK: Duration = Duration::from_millis(250);
-/// The least that a verdict stays, and what is drawn beyond it.
+/// How long a verdict stays at least, and the unit of the time that is drawn beyond it.
 const REST: Duration = Duration::from_secs(3);
 const DRAWN_REST: Duration = Duration::from_millis(25);
-/// Serial numbers that a visitor is shown.
+/// How many serial numbers a visitor is shown.
 const SHOWN: usize = 3;
 
 const PLAN: &str = include_str!("../../assets/demo-plan.toml");
@@ -38,10 +38,11 @@ pub struct Demo {
 }
 
 impl Demo {
-    /// A station of `lanes` lanes, 1 to [`MOST_LANES`], whose files are made in `folder`, listening on `port`.
+    /// A station with `lanes` lanes, 1 to [`MOST_LANES`], whose files are created in `folder`, and whose pages listen
+    /// on `port`.
     ///
     /// # Errors
-    /// When the folder has files of these names, or the system no room.
+    /// When the folder already has files of these names, or the system has no room.
     pub fn new(folder: &Path, lanes: usize, port: u16) -> io::Result<Self> {
         let fixtures: Vec<_> = (0..lanes).map(|_| Fixture::start()).collect::<io::Result<_>>()?;
         let lane = |(fixture, name): (&Fixture, usize)| {
@@ -62,7 +63,7 @@ impl Demo {
         Ok(Self { settings, fixtures })
     }
 
-    /// Lets the line work by itself. The last lane of several is the visitor's.
+    /// Starts the line. The last of several lanes is the visitor's.
     ///
     /// # Errors
     /// When the system has no thread for it.

@@ -21,21 +21,21 @@ use crate::said::{Said, Saying};
 use crate::settings::{PlanFile, Settings};
 use crate::store::{AgainError, Folder, InLane, Owed};
 
-/// How often boards are looked for.
+/// How often to check which boards are there.
 const LOOK: Duration = Duration::from_millis(500);
 
-/// How long what a lane owes is not asked for when it could not be told: a store that is not well takes its time to say so, and
-/// other lanes wait for it.
+/// How long to wait before asking again what a lane owes when that could not be found out: a store in trouble takes
+/// its time to say so, and other lanes wait for it.
 const REST: Duration = Duration::from_secs(1);
 
-/// What is known of what a lane owes its shift.
+/// What is known about what a lane owes its shift.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Known {
     /// It was not asked for yet.
     Nothing,
-    /// It is so between these moments, in milliseconds since 1970; a clock that was set back tells nothing.
+    /// Known to hold between these moments, in milliseconds since 1970; a clock that was set back is outside them.
     Between(i64, i64),
-    /// It could not be told at this moment.
+    /// It could not be found out at this moment.
     Untold(Instant),
 }
 
@@ -50,18 +50,18 @@ impl Known {
     }
 }
 
-/// What the thread has to itself.
+/// What only the engine's thread has.
 pub(super) struct AtWork {
     floor: Floor,
     shared: Arc<Shared>,
     board: Arc<Mutex<Board>>,
     presence: Vec<Presence>,
     stops: Vec<StopAsked>,
-    /// The unit of each lane that passed already, of which somebody was asked whether it is meant.
+    /// For each lane, the unit that passed already and for which somebody was asked whether it is meant.
     asked: Vec<Option<String>>,
     /// What is known of what each lane owes its shift.
     known: Vec<Known>,
-    /// The run of each lane that no thread could be had for to save it.
+    /// For each lane, the run that there was no thread to save.
     unrecovered: Vec<Option<String>>,
     hooks: Vec<InTurn>,
     threads: Vec<JoinHandle<()>>,
@@ -96,7 +96,7 @@ impl AtWork {
                 self.look();
             }
             let Ok(input) = inbox.recv_timeout(LOOK) else { continue };
-            // A shift whose hours ended a moment ago takes no board any more.
+            // A shift whose hours have just ended takes no more boards.
             self.check_due();
             match input {
                 Input::Scan { .. } | Input::Label { .. } | Input::Act { .. } if is_closing => {}
@@ -119,7 +119,7 @@ impl AtWork {
         self.end(inbox);
     }
 
-    /// Waits for hooks, recoveries and what labgrid lent, and hears what is left.
+    /// Waits for hooks, recoveries and what labgrid lent, and publishes what hooks still report.
     fn end(mut self, inbox: &Receiver<Input>) {
         let hooks = std::mem::take(&mut self.hooks).into_iter().flat_map(InTurn::into_threads);
         for thread in std::mem::take(&mut self.threads).into_iter().chain(hooks) {
@@ -135,7 +135,7 @@ impl AtWork {
         }
     }
 
-    /// Whether no run is under way. What could not be saved is found open by the next start.
+    /// Whether no run is under way. A run that could not be saved is found open at the next start.
     fn is_idle(&self) -> bool {
         !self.floor.lanes().iter().any(|lane| matches!(lane.word(), Word::Running | Word::Saving))
     }
@@ -144,7 +144,7 @@ impl AtWork {
         self.begun.elapsed()
     }
 
-    /// Looks which boards are there, and tries again what there was no thread for.
+    /// Checks which boards are there, and tries again to save the runs that there was no thread for.
     fn look(&mut self) {
         self.check_due();
         for lane in 0..self.unrecovered.len() {
@@ -162,7 +162,7 @@ impl AtWork {
         }
     }
 
-    /// What a lane owes to its shift, as the store says; it is out of service while that cannot be told.
+    /// What a lane owes its shift, as the store says. While that cannot be found out, the lane is out of service.
     fn owed(&self, lane: usize) -> (Option<Owes>, Known) {
         let Settings { name, data, lanes, plans, .. } = &self.shared.settings;
         let (now_ms, mut until_ms) = (clock::now_ms(), i64::MAX);
@@ -194,8 +194,8 @@ impl AtWork {
         self.happened(lane, Event::Owes(owed));
     }
 
-    /// Asks what lanes owe of which it is not known any more. Runs of this station alone change it meanwhile, and each is
-    /// followed by a look.
+    /// Asks what lanes owe, where that is no longer known. In between only runs of this station change it, and each of
+    /// them is followed by a check.
     fn check_due(&mut self) {
         let (now_ms, now) = (clock::now_ms(), Instant::now());
         for lane in 0..self.known.len() {
@@ -222,7 +222,7 @@ impl AtWork {
         }
     }
 
-    /// Tells what became of a scan, and does what it asks for.
+    /// Publishes what became of a scan, and carries out its effect.
     fn answer(&mut self, number: u64, scanned: String, answer: Result<Answer, ScanError>) {
         let (is_taken, lane, effect, said) = match answer {
             Ok(Answer { lane: Some(lane), effect, said }) => match self.unless_refused(lane, effect) {
@@ -244,7 +244,7 @@ impl AtWork {
         let name = || self.floor.lanes().get(lane).map_or_else(String::new, |lane| lane.name().to_owned());
         match heard {
             Heard::Happened(event) => {
-                // A verdict is told together with what the lane owes behind it.
+                // A verdict is published together with what the lane owes after it.
                 if matches!(event, Event::Ended(_)) {
                     self.check(lane);
                 }
@@ -257,14 +257,14 @@ impl AtWork {
 
     fn happened(&mut self, lane: usize, event: Event) {
         let effect = self.floor.happened(lane, event, self.now());
-        // A run that a plug has started says in its lane why it was not begun.
+        // When plugging a board in started the run, it is the lane that says why it was not begun.
         let effect = self.unless_refused(lane, effect).ok().flatten();
         self.publish(lane);
         self.effect(lane, effect);
     }
 
-    /// What is to be done, unless it is to test a unit again that passed already, or too much is not at the plant: then why not,
-    /// which the lane says too.
+    /// The effect, unless it would test a unit again that passed already, or too much is not at the plant yet. Then
+    /// the error says why, and so does the lane.
     fn unless_refused(&mut self, lane: usize, effect: Option<Effect>) -> Result<Option<Effect>, Said> {
         let Some(Effect::Begin(of)) = &effect else { return Ok(effect) };
         let Some(PlanFile { plan, .. }) = self.shared.settings.plans.get(of.plan) else { return Ok(effect) };
@@ -292,7 +292,7 @@ impl AtWork {
         Err(why)
     }
 
-    /// Does what is to be done. The state is told before: a lamp says nothing that the screen does not.
+    /// Carries out an effect. The state is published first, so that a lamp says nothing that the screen does not.
     fn effect(&mut self, lane: usize, effect: Option<Effect>) {
         let Some(effect) = effect else { return };
         let started = match effect.clone() {
@@ -308,7 +308,7 @@ impl AtWork {
         }
     }
 
-    /// What becomes of that which the system has no thread for.
+    /// Deals with an effect that the system has no thread for.
     fn without_thread(&mut self, lane: usize, effect: Effect, error: &std::io::Error) {
         let why = Said::from(Saying::NoThread { error: error.to_string() });
         match effect {
@@ -323,7 +323,7 @@ impl AtWork {
         }
     }
 
-    /// Starts the hooks for what is shown, or tells why not.
+    /// Starts the hooks for what is shown, or reports why not.
     fn hook(&mut self, lane: usize, shown: Shown) {
         let Some(turns) = self.hooks.get_mut(lane).filter(|_| self.shared.has_hook(shown.verdict)) else {
             return;
@@ -348,12 +348,12 @@ impl AtWork {
 
     fn stop(&mut self, lane: usize, by: Option<StoppedBy>) {
         if let Some((stop, by)) = self.stops.get(lane).zip(by) {
-            // Whoever asked first counts.
+            // Only the first request counts.
             let _ = stop.set(by);
         }
     }
 
-    /// Tells the state of a lane if it is another one.
+    /// Publishes the state of a lane if it has changed.
     fn publish(&mut self, lane: usize) {
         let Some(state) = self.floor.lanes().get(lane).map(LaneState::from) else { return };
         let mut board = self.board.lock().unwrap_or_else(PoisonError::into_inner);

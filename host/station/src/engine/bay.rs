@@ -1,5 +1,5 @@
-//! What works for one lane: a thread for its run, one for the hooks of a verdict, one to save what was not saved. Each tells the
-//! engine how it went; none waits for another lane.
+//! What works for one lane: a thread for its run, one for the hooks of a verdict, one to save a result that could not
+//! be saved. Each reports to the engine how it went; none waits for another lane.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -25,10 +25,10 @@ use crate::said::{Said, Saying};
 use crate::settings::Settings;
 use crate::store::{Folder, SINK_OF_PLANT, SharedStore};
 
-/// How long after a result could not be saved it is tried again.
+/// How long to wait before trying again to save a result.
 const AGAIN: Duration = Duration::from_secs(2);
 
-/// How long a verdict waits for a plant that must have it, and how often it is looked.
+/// How long a verdict waits for a plant that must have it, and how often that is checked.
 const PLANT: Duration = Duration::from_secs(10);
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -44,18 +44,18 @@ pub(super) struct Shared {
 }
 
 impl Shared {
-    /// Whether anything is started for such a verdict.
+    /// Whether anything is started for this verdict.
     pub(super) fn has_hook(&self, verdict: Verdict) -> bool {
         self.settings.hooks.iter().any(|hook| hook.on == verdict)
     }
 
     fn tell(&self, lane: usize, heard: Heard) {
-        // An engine that has ended has seen all runs end before.
+        // An engine that has ended saw all runs end first.
         let _ = self.inbox.send(Input::Heard { lane, heard });
     }
 }
 
-/// Who wants a run to end.
+/// Who wants a run to end, once somebody does.
 pub(super) type StopAsked = Arc<OnceLock<StoppedBy>>;
 
 /// Begins the run of what was accepted in `lane`.
@@ -73,7 +73,7 @@ pub(super) fn begin(
     })
 }
 
-/// What came of the run.
+/// Carries out the run, and returns what came of it.
 fn carried_out(shared: &Shared, lane: usize, accepted: &Accepted, stop: StopAsked) -> Event {
     let Settings { name, lanes, plans, silence, memory_mib, .. } = &shared.settings;
     let (Some(of), Some(file)) = (lanes.get(lane), plans.get(accepted.plan)) else {
@@ -105,7 +105,7 @@ fn carried_out(shared: &Shared, lane: usize, accepted: &Accepted, stop: StopAske
     }
 }
 
-/// Tries in a while to save what became of `run`.
+/// Waits a while, and then tries to save the result of `run`.
 pub(super) fn recover(shared: &Arc<Shared>, lane: usize, run: String) -> std::io::Result<JoinHandle<()>> {
     let shared = Arc::clone(shared);
     thread::Builder::new().name(format!("recovery in lane {lane}")).spawn(move || {
@@ -131,8 +131,8 @@ pub(super) fn hook(shared: &Shared, lane: usize, shown: &Shown) {
     }
 }
 
-/// The verdict of a run that is saved; where the plant must have it, too, only once it has it, or that it has not within
-/// `patience`.
+/// The verdict of a run that is saved. If the plant must have it, too, this waits until it does, or reports after
+/// `patience` that it does not.
 fn at_plant(shared: &Shared, saved: Saved, patience: Duration) -> Event {
     let Settings { data, plant, .. } = &shared.settings;
     if !plant.as_ref().is_some_and(|plant| plant.is_green_at_plant) {
@@ -149,7 +149,7 @@ fn at_plant(shared: &Shared, saved: Saved, patience: Duration) -> Event {
     }
 }
 
-/// Nothing is known of a run but what is in the store, which the recovery looks at.
+/// All that is known of the run is what is in the store, where the recovery looks.
 fn unsaved(error: &(dyn Error + 'static)) -> Event {
     Event::Unsaved { why: Said::of(error) }
 }
@@ -168,7 +168,7 @@ fn shown(saved: Saved) -> Shown {
     }
 }
 
-/// A run whose way the engine hears of.
+/// A run whose progress is reported to the engine.
 struct Watched<'a> {
     shared: &'a Shared,
     lane: usize,
@@ -186,7 +186,7 @@ impl Watched<'_> {
             figures.saved(ended.elapsed());
         }
         let Record { seconds, run, .. } = &saved.record;
-        // As in yields.
+        // Yields leave the mock out, too.
         if let Some(seconds) = seconds.filter(|_| !is_mock(&run.serial)) {
             figures.ran(PlanName::from(plan), &run.lane, seconds);
         }
@@ -214,7 +214,7 @@ impl Watch for Watched<'_> {
                     self.shared.figures.killed(self.name());
                 }
                 if is_stuck {
-                    // Whatever comes of the result.
+                    // Whatever becomes of the result.
                     self.shared.tell(self.lane, Heard::Happened(Event::Stuck));
                 }
                 Heard::Happened(Event::Saving)
@@ -228,7 +228,7 @@ impl Watch for Watched<'_> {
     }
 }
 
-/// What a lane does, for people, and its rows.
+/// What a lane does, in words for people, and its rows: done and expected.
 fn doing(message: &Message) -> Option<(String, Option<(u64, u64)>)> {
     match message {
         Message::Step { name, .. } => Some((name.clone(), None)),

@@ -1,4 +1,4 @@
-//! What is counted since the engine began, for whoever watches stations from afar.
+//! What is counted since the engine began, for whoever monitors stations from afar.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -7,16 +7,16 @@ use std::time::Duration;
 use crate::history::PlanName;
 use crate::settings::{LaneSettings, Settings};
 
-/// Up to how many seconds runs take that are counted together: a frame by a fast link, a soak by a slow one.
+/// The bounds by which the times of runs are counted, in seconds: from a frame over a fast link to a soak over a slow one.
 const RUNS: [f64; 11] = [1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0];
-/// The same of what saving takes: a disk that is well needs some milliseconds.
+/// The same for the times of saving: a healthy disk needs some milliseconds.
 const COMMITS: [f64; 11] = [0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0];
 
-/// How many took how long.
+/// A histogram of times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Histogram {
     bounds: [f64; 11],
-    /// Of each bound those that are not beyond it, and beyond the one before; those beyond all of them last.
+    /// For each bound, how many are within it and beyond the one before; the last count is of those beyond all bounds.
     counts: [u64; 12],
     sum: f64,
 }
@@ -68,7 +68,7 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// Nothing yet, of all that these settings have.
+    /// Zeros for every plan and lane of these settings.
     fn of(settings: &Settings) -> Self {
         let plans = |lane: &LaneSettings| {
             let name = lane.name.clone();
@@ -83,7 +83,7 @@ impl Figures {
     }
 }
 
-/// Figures that several lanes count in.
+/// Figures that several lanes add to.
 #[derive(Debug)]
 pub(super) struct Counter(Mutex<Figures>);
 
@@ -96,17 +96,17 @@ impl Counter {
         self.with(|figures| figures.clone())
     }
 
-    /// The process of `lane` had to be killed.
+    /// Counts that the process of `lane` had to be killed.
     pub(super) fn killed(&self, lane: &str) {
         self.with(|figures| *figures.kills.entry(lane.to_owned()).or_default() += 1);
     }
 
-    /// A result was saved within `took`.
+    /// Counts a result that was saved within `took`.
     pub(super) fn saved(&self, took: Duration) {
         self.with(|figures| figures.commits.add(took.as_secs_f64()));
     }
 
-    /// A run of `plan` in `lane` took so long.
+    /// Counts a run of `plan` in `lane` that took `seconds`.
     pub(super) fn ran(&self, plan: PlanName, lane: &str, seconds: f64) {
         let of = (plan, lane.to_owned());
         self.with(|figures| figures.runs.entry(of).or_insert(Histogram::new(RUNS)).add(seconds));

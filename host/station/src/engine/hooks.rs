@@ -11,9 +11,9 @@ use crate::floor::Shown;
 use crate::process_group::{kill, killed, waited, without_secrets};
 use crate::settings::{Hook, WORDS};
 
-/// The most that is kept of what a hook complains of, in bytes.
+/// The most that is kept of what a hook writes to stderr, in bytes.
 const MOST_SAID: usize = 1000;
-/// How long it is listened to a hook that has ended: what it left behind may hold its complaints open for ever.
+/// How long a hook that has ended is still listened to: what it left running may hold its stderr open for ever.
 const LISTENED: Duration = Duration::from_secs(5);
 
 /// A hook that did not do what it should have done.
@@ -34,7 +34,7 @@ pub enum HookError {
         program: String,
         /// How it ended.
         status: String,
-        /// What it complained of, one line.
+        /// What it wrote to stderr, as one line.
         said: String,
     },
     /// It took too long.
@@ -42,17 +42,17 @@ pub enum HookError {
     Late {
         /// The program.
         program: String,
-        /// How long it might take.
+        /// How long it was allowed to take.
         deadline: Duration,
     },
 }
 
-/// What a hook complains of, behind a colon; nothing of one that says nothing.
+/// What a hook complained of, after a colon; empty if it said nothing.
 fn of(said: &str) -> String {
     if said.is_empty() { String::new() } else { format!(": {said}") }
 }
 
-/// Runs `hook` for the verdict that is shown on `lane`, until it ends or its deadline.
+/// Runs `hook` for the verdict that is shown on `lane`, until it ends or its deadline passes.
 ///
 /// # Errors
 /// [`HookError`] when it did not end well.
@@ -92,7 +92,8 @@ pub(super) fn run(hook: &Hook, lane: &str, shown: &Shown) -> Result<(), HookErro
     }
 }
 
-/// Tells the beginning of what a hook complains of. All of it is read: a hook to which nobody listens dies before its work is done.
+/// Passes on the beginning of what a hook writes to stderr. All of it is read: a hook that nobody reads dies before
+/// its work is done.
 fn hear(mut complaints: impl Read, tell: Sender<Vec<u8>>) {
     let (mut piece, mut left) = ([0; MOST_SAID], MOST_SAID);
     while let Ok(read @ 1..) = complaints.read(&mut piece[..left]) {
@@ -100,11 +101,11 @@ fn hear(mut complaints: impl Read, tell: Sender<Vec<u8>>) {
         let _ = tell.send(piece[..read].to_vec());
     }
     drop(tell);
-    // What there is no more to be heard of has been said.
+    // The rest is read, but not passed on.
     let _ = io::copy(&mut complaints, &mut io::sink());
 }
 
-/// What was told.
+/// What was passed on.
 fn heard(told: &Receiver<Vec<u8>>) -> Vec<u8> {
     let (begun, mut said) = (Instant::now(), Vec::new());
     while let Ok(piece) = told.recv_timeout(LISTENED.saturating_sub(begun.elapsed())) {
@@ -113,13 +114,13 @@ fn heard(told: &Receiver<Vec<u8>>) -> Vec<u8> {
     said
 }
 
-/// An argument with what its braces stand for.
+/// An argument with its placeholders filled in.
 fn filled(argument: &str, lane: &str, shown: &Shown) -> String {
     let verdict = shown.verdict.to_string();
     let values = [lane, &shown.serial, &verdict, &shown.run, &shown.record_sha256, &shown.headline];
     let mut filled = String::new();
     let mut rest = argument;
-    // Once through, so that a value that holds braces stays as it is.
+    // In a single pass, so that braces within a value stay as they are.
     while let Some((before, value, after)) = first_word(rest, &values) {
         filled = filled + before + value;
         rest = after;
@@ -127,7 +128,7 @@ fn filled(argument: &str, lane: &str, shown: &Shown) -> String {
     filled + rest
 }
 
-/// What is before the first word between braces, its value, and what is behind.
+/// The text before the first placeholder, the placeholder's value, and the text after it.
 fn first_word<'a>(text: &'a str, values: &[&'a str; 6]) -> Option<(&'a str, &'a str, &'a str)> {
     let places = WORDS.into_iter().zip(values).filter_map(|(word, value)| {
         let (before, after) = text.split_once(&format!("{{{word}}}"))?;
@@ -180,7 +181,7 @@ mod tests {
         assert!(matches!(run(&missing, "1", &shown("x")), Err(HookError::Start { .. })));
     }
 
-    /// What it leaves in a session of its own is not killed with it.
+    /// What it leaves in another session is not killed with it.
     #[test]
     fn a_hook_that_fails_is_over_though_it_leaves_something_behind() {
         let folder = tempfile::tempdir().unwrap();
@@ -201,7 +202,7 @@ mod tests {
     fn a_hook_that_hangs_is_killed_with_all_that_it_started() {
         let folder = tempfile::tempdir().unwrap();
         let id = folder.path().join("id");
-        // A busy machine may take longer to start it than it may take in all.
+        // A busy machine may need longer to start it than the first deadlines allow.
         let begun = [1, 8, 64].into_iter().any(|deadline| {
             let hangs = hook(&format!("sleep 1000 & echo $! > {}; wait", id.display()), deadline);
             assert!(matches!(run(&hangs, "1", &shown("x")), Err(HookError::Late { .. })));

@@ -1,23 +1,23 @@
-//! The hooks of a lane, those of one verdict behind those of the one before.
+//! The hooks of a lane, in the order of their verdicts.
 
 use std::io;
 use std::sync::mpsc::{self, Receiver};
 use std::thread::{self, JoinHandle};
 
-/// So many verdicts whose hooks are not done are the last for a while: what hangs is killed at its deadline, and lamps and
-/// labels are not to tell of boards that are long gone.
+/// The most verdicts whose hooks may be unfinished; those of further ones are not started. A hook that hangs is killed
+/// at its deadline, and lamps and labels should not tell of boards that are long gone.
 const MOST: usize = 4;
 
 /// Why hooks are not started.
 #[derive(Debug)]
 pub(super) enum NotStarted {
-    /// The hooks of so many verdicts before are not done.
+    /// The hooks of this many earlier verdicts are not done.
     Behind(usize),
     /// The system has no thread for it.
     NoThread(io::Error),
 }
 
-/// What the hooks of one lane do.
+/// The hooks of one lane.
 #[derive(Debug)]
 pub(super) struct InTurn {
     threads: Vec<JoinHandle<()>>,
@@ -30,7 +30,7 @@ impl InTurn {
         Self { threads: Vec::new(), last: mpsc::channel().1 }
     }
 
-    /// Does `work` in a thread of this name once all that was begun before is done.
+    /// Does `work` in a thread of this name, once all that was begun before is done.
     ///
     /// # Errors
     /// [`NotStarted`]
@@ -43,11 +43,11 @@ impl InTurn {
         if self.threads.len() >= MOST {
             return Err(NotStarted::Behind(self.threads.len()));
         }
-        // A turn is taken once there is a thread for it.
+        // The turn is taken only once there is a thread for it.
         let (give, turn) = mpsc::channel::<(Receiver<()>, mpsc::Sender<()>)>();
         let in_turn = move || {
             let Ok((before, done)) = turn.recv() else { return };
-            // Nothing is ever sent: it ends.
+            // Nothing is ever sent; the channel just closes.
             let _ = before.recv();
             work();
             drop(done);

@@ -4,7 +4,7 @@
 //!  scans, buttons ──► ┌────────┐ ──► news
 //!  presence ────────► │ engine │ ──► a thread a run ──► a process a run
 //!  what runs tell ──► └────────┘ ──► hooks, recovery
-//!                     one thread, which owns the floor; it waits for its inbox, and for short looks at the store
+//!                     one thread, which owns the floor; it waits for its inbox, and for short queries of the store
 //! ```
 
 mod at_work;
@@ -38,10 +38,10 @@ use bay::Shared;
 use figures::Counter;
 use news::Listeners;
 
-/// How long its thread may say nothing of itself. It works twice a second, and may wait for a slow disk.
+/// How long its thread may show no sign of life. It shows one twice a second, and may have to wait for a slow disk.
 const SILENT: Duration = Duration::from_secs(5);
 
-/// Something for the engine.
+/// Input for the engine.
 #[derive(Debug)]
 enum Input {
     Scan { number: u64, text: String, operator: String },
@@ -51,7 +51,7 @@ enum Input {
     Close(Option<StoppedBy>),
 }
 
-/// What comes from a lane.
+/// What a lane reports.
 #[derive(Debug)]
 enum Heard {
     Happened(Event),
@@ -69,7 +69,7 @@ pub struct Engine {
     thread: Mutex<Option<JoinHandle<()>>>,
 }
 
-/// What everybody may look at: the lanes as they are, and who listens to what changes.
+/// What everybody may see: the lanes as they are, and who listens to changes.
 #[derive(Debug, Default)]
 struct Board {
     lanes: Vec<LaneState>,
@@ -79,8 +79,8 @@ struct Board {
 }
 
 impl Engine {
-    /// Starts the station of these settings with its store, in which nothing is open, and `program`, whose `lane` is
-    /// started for every run.
+    /// Starts the station of these settings with its store, in which nothing may be open, and with `program`, whose
+    /// `lane` is started for every run.
     ///
     /// # Errors
     /// When the system has no thread for it.
@@ -105,14 +105,14 @@ impl Engine {
         Ok(Self { inbox, board, figures, store, thread: Mutex::new(Some(thread)) })
     }
 
-    /// Takes what `operator` scanned. What becomes of it is news with the same `number`.
+    /// Takes what `operator` scanned. What becomes of it is reported as news with the same `number`.
     pub fn scan(&self, number: u64, text: &str, operator: &str) {
         let (text, operator) = (text.to_owned(), operator.to_owned());
         self.put(Input::Scan { number, text, operator });
     }
 
-    /// As [`Self::scan`], of a label that the scanner added nothing to, or nothing any more. It is for `lane` if there is one,
-    /// and refused behind `until`.
+    /// Like [`Self::scan`], for a label without what the scanner adds. It is for `lane` if there is one, and refused
+    /// after `until`.
     pub fn label(
         &self,
         number: u64,
@@ -125,13 +125,13 @@ impl Engine {
         self.put(Input::Label { number, lane, label, operator, until });
     }
 
-    /// Does with the lane at this place what `operator` wants, unless that is behind `until`. What becomes of it is news as
-    /// that of a scan is.
+    /// Does with the lane at this index what `operator` wants, unless it is after `until`. What becomes of it is news,
+    /// as for a scan.
     pub fn act(&self, number: u64, lane: usize, act: Act, operator: &str, until: Option<Instant>) {
         self.put(Input::Act { number, lane, act, operator: operator.to_owned(), until });
     }
 
-    /// All news from now on, behind the state of every lane as it is. A listener that is too far behind hears no more.
+    /// All news from now on, after the present state of every lane. A listener that is too far behind hears no more.
     #[must_use]
     pub fn listen(&self) -> Receiver<News> {
         let mut board = self.board.lock().unwrap_or_else(PoisonError::into_inner);
@@ -151,14 +151,15 @@ impl Engine {
         self.figures.now()
     }
 
-    /// Whether its thread works: it was seen to within the last seconds.
+    /// Whether its thread works, as seen within the last seconds.
     #[must_use]
     pub fn is_well(&self) -> bool {
         let board = self.board.lock().unwrap_or_else(PoisonError::into_inner);
         board.worked.is_some_and(|worked| worked.elapsed() < SILENT)
     }
 
-    /// Whether its thread has ended, which it does unasked only by a fault. It may live and be silent, as while a disk is slow.
+    /// Whether its thread has ended, which it does unasked only because of a fault. It may also be alive and silent,
+    /// as while a disk is slow.
     #[must_use]
     pub fn has_ended(&self) -> bool {
         let thread = self.thread.lock().unwrap_or_else(PoisonError::into_inner);
@@ -171,7 +172,7 @@ impl Engine {
         self.store.clone()
     }
 
-    /// Ends the engine once all runs that are under way are over, and their results saved. `by` ends the runs, too;
+    /// Ends the engine once all runs under way are over, and their results saved. With `by` the runs are ended, too;
     /// without it they come to their own end.
     pub fn close(&self, by: Option<StoppedBy>) {
         let Some(thread) = self.thread.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
@@ -179,7 +180,7 @@ impl Engine {
         if thread.join().is_err() {
             tracing::error!("the engine ended early; look at what it said before");
         }
-        // There is no more news, which ends whoever listens.
+        // There is no more news, which ends the listeners.
         self.board.lock().unwrap_or_else(PoisonError::into_inner).listeners = Listeners::default();
     }
 
@@ -193,7 +194,7 @@ impl Engine {
 /// Whether what was asked for may still be done.
 ///
 /// # Errors
-/// [`ScanError::Late`] behind `until`.
+/// [`ScanError::Late`] after `until`.
 pub(crate) fn in_time(until: Option<Instant>) -> Result<(), ScanError> {
     if until.is_some_and(|until| Instant::now() > until) { Err(ScanError::Late) } else { Ok(()) }
 }

@@ -1,4 +1,4 @@
-//! What the engine tells those who listen: the state of every lane, what became of each scan, hooks that failed.
+//! What the engine reports to its listeners: the state of every lane, what became of each scan, hooks that failed.
 
 use std::sync::mpsc::{self, Receiver, SyncSender, TrySendError};
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::floor::{Act, Lane, Shown, Word};
 use crate::said::{self, Said};
 
-/// How many pieces of news a listener may be behind. One that is further behind hears no more, and looks anew.
+/// How many pieces of news a listener may be behind. One that is further behind hears no more, and has to begin anew.
 const BACKLOG: usize = 1024;
 
 /// A piece of news.
@@ -68,10 +68,10 @@ pub struct LaneState {
     pub run: Option<String>,
     /// The last verdict, which is saved.
     pub shown: Option<Shown>,
-    /// Why it is out of service, what it is to test first, why nothing was saved, why no run was begun.
+    /// Why it is out of service, what it is to test first, why nothing was saved, or why no run was begun.
     #[serde(serialize_with = "said::as_text_if_any")]
     pub note: Option<Said>,
-    /// Whether its result is saved, and not at the plant yet, which must have it.
+    /// Whether its result is saved, but not yet at the plant, which must have it.
     #[serde(skip)]
     pub awaits_plant: bool,
     /// What a button can do with it now.
@@ -95,12 +95,12 @@ impl From<&Lane> for LaneState {
     }
 }
 
-/// Those who listen.
+/// The listeners.
 #[derive(Debug, Default)]
 pub(super) struct Listeners(Vec<SyncSender<News>>);
 
 impl Listeners {
-    /// Another one, who hears `first` before all else.
+    /// Adds a listener, who hears `first` before all else.
     pub(super) fn add(&mut self, first: impl Iterator<Item = News>) -> Receiver<News> {
         let (sender, receiver) = mpsc::sync_channel(BACKLOG);
         first.for_each(|news| drop(sender.try_send(news)));
@@ -108,7 +108,7 @@ impl Listeners {
         receiver
     }
 
-    /// Tells everybody. Nobody is waited for: who is too far behind is let go.
+    /// Sends to every listener. None is waited for: one that is too far behind is dropped.
     pub(super) fn tell(&mut self, news: &News) {
         self.0.retain(|listener| match listener.try_send(news.clone()) {
             Ok(()) => true,

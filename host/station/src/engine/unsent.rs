@@ -1,4 +1,4 @@
-//! Whether too much is kept here alone for another board to be judged.
+//! Whether too much is kept only here for another board to be judged.
 
 use nix::sys::statvfs::statvfs;
 
@@ -11,7 +11,7 @@ pub(super) fn refuses(settings: &Settings, folder: &Folder) -> Option<Said> {
     let plant = settings.plant.as_ref()?;
     let most = plant.most_unsent;
     let results = match Snapshot::take(folder).and_then(|now| now.unsent()) {
-        // What others are sent is kept by the plant, too.
+        // What other sinks are sent is kept by the plant, too.
         Ok(unsent) => {
             unsent.iter().find(|unsent| unsent.sink == SINK_OF_PLANT).map_or(0, |plant| plant.results)
         }
@@ -24,10 +24,10 @@ pub(super) fn refuses(settings: &Settings, folder: &Folder) -> Option<Said> {
     (percent >= plant.most_filled.into()).then(|| Saying::DiskTooFull { percent }.into())
 }
 
-/// How full the folder's disk is, in per cent, as `df` says it, if the system says so.
+/// How full the folder's disk is, in per cent, as `df` counts it, if the system says so.
 fn filled(folder: &Folder) -> Option<u64> {
     let disk = statvfs(folder.path()).ok()?;
-    // What is kept for the superuser counts neither as used nor as free.
+    // What is reserved for the superuser counts as neither used nor free.
     let used = disk.blocks().saturating_sub(disk.blocks_free());
     let all = used + disk.blocks_available();
     (all > 0).then(|| (100 * used).div_ceil(all))
