@@ -72,12 +72,12 @@ fn step_case(step: &StepRecord, took: Option<Duration>) -> TestCase {
         StepOutcome::Failed => status(Some(NonSuccessKind::Failure), &step.detail, ""),
         StepOutcome::Error => status(Some(NonSuccessKind::Error), &step.detail, ""),
     };
-    // The number keeps apart two steps of one name.
+    // The number tells two steps of the same name apart.
     let name = format!("{} (step {}, try {})", step.name, step.seq, step.attempt);
     case("step", &name, took, status)
 }
 
-/// A case for each measurement that has a limit; one that blames nobody fails nothing.
+/// A case for each measurement that has a limit; a limit that blames nobody fails nothing.
 fn limits(step: &str, measured: &[Measured]) -> Vec<TestCase> {
     let limited = measured.iter().filter(|one| one.outcome != MeasuredOutcome::NotJudged);
     let one = |one: &Measured| {
@@ -116,7 +116,7 @@ mod tests {
     use crate::record::judged;
     use crate::record::tests::{pass, step, steps};
 
-    /// The element of this tag whose head holds `name`, to its end.
+    /// The element of this tag whose head contains `name`, up to its end.
     fn element(document: &str, tag: &str, name: &str) -> String {
         let head = format!("<{tag} ");
         let heads = document.match_indices(&head).map(|(at, _)| &document[at..]);

@@ -60,7 +60,7 @@ impl Format {
     }
 }
 
-/// A run that is not exported.
+/// A run that cannot be exported.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// The store.
@@ -77,7 +77,7 @@ pub enum ExportError {
     Write(#[source] io::Error),
 }
 
-/// The record of this hash, with its bytes.
+/// The record with this hash, and its bytes.
 ///
 /// # Errors
 /// [`ExportError::Store`] when it is not there, or not as it was written.
@@ -89,7 +89,7 @@ pub fn record(of: &Snapshot, hash: &str) -> Result<(Record, Vec<u8>), ExportErro
     Ok(read()?)
 }
 
-/// The run whose record has this hash, in this format. It ends with a line's end.
+/// The run whose record has this hash, in this format. It ends with a newline.
 ///
 /// # Errors
 /// [`ExportError`]
@@ -101,7 +101,7 @@ pub fn run(of: &Snapshot, hash: &str, format: Format) -> Result<Vec<u8>, ExportE
 /// The run of this record in this format; `bytes` are the record's own.
 ///
 /// # Errors
-/// [`ExportError`], but for the store.
+/// [`ExportError`], but none of the store.
 pub fn written(record: &Record, bytes: Vec<u8>, format: Format) -> Result<Vec<u8>, ExportError> {
     match format {
         Format::Record => Ok(bytes),

@@ -9,7 +9,7 @@ use crate::record::{Measured, MeasuredOutcome, Record, RunCause, StepOutcome, St
 
 pub(super) fn of(record: &Record) -> Value {
     let Record { run, plan, conclusion: ended, .. } = record;
-    // A person's wish has an outcome of its own there.
+    // OpenHTF has an outcome of its own for what the operator caused.
     let outcome = match ended.cause {
         RunCause::Operator => "ABORTED".to_owned(),
         _ => ended.verdict.to_string(),
@@ -47,12 +47,13 @@ pub(super) fn of(record: &Record) -> Value {
     })
 }
 
-/// The end of what began then, which stands behind it although the clock was set back: what reads this takes times of the two.
+/// The end of what began at `started_ms`, never before it even if the clock was set back: readers of the format
+/// subtract the two.
 fn ended_ms(started_ms: i64, took: Option<Duration>) -> i64 {
     started_ms.saturating_add_unsigned(took.map_or(0, |took| took.as_millis() as u64))
 }
 
-/// What the limits of the run as a whole make of it; those of a step are in its outcome.
+/// The outcome by the limits of the run as a whole; those of a step are in the step's outcome.
 fn worst(measured: &[Measured]) -> &'static str {
     let faults: Vec<_> = measured.iter().filter_map(Measured::fault).collect();
     match faults.iter().find(|cause| **cause != RunCause::Board).or(faults.first()) {
@@ -105,7 +106,7 @@ fn code_info(name: &str, source: &str) -> Value {
     json!({ "name": name, "docstring": null, "sourcecode": source })
 }
 
-/// OpenHTF knows no limit that blames nobody: the measurement has passed there, and its limit is in words.
+/// OpenHTF has no limit that blames nobody: such a measurement passes there, and its limit is in words.
 fn measurement(one: &Measured) -> Value {
     let outcome = match one.outcome {
         MeasuredOutcome::Unset => "UNSET",
@@ -145,7 +146,7 @@ mod tests {
     use crate::record::judged;
     use crate::record::tests::{pass, steps};
 
-    /// As `test_record.Outcome` and `PhaseOutcome` of OpenHTF 1.6 are called.
+    /// The names are those of `test_record.Outcome` and `PhaseOutcome` of OpenHTF 1.6.
     #[test]
     fn a_run_and_its_tries_end_as_openhtf_calls_it() {
         let mut record =
@@ -182,11 +183,11 @@ mod tests {
             assert_eq!((&one["outcome"], &one["validators"]), (&json!(outcome), &json!([told])));
             assert_eq!(one.get("measured_value"), value.map(|value| json!(value)).as_ref());
         }
-        // What was not measured has not passed, either where nobody is blamed or asks.
+        // What was not measured has not passed, even if nobody is blamed or nobody asks.
         assert_eq!(measurement(&measured(None, Some(1.0), None, Blame::Nobody))["outcome"], "UNSET");
         let unlimited = judged(Maker::Run, &[], &[]).remove(0);
         assert_eq!(measurement(&unlimited)["outcome"], "UNSET");
-        // No FAIL of a station's.
+        // A station's fault is never FAIL.
         let of = |blames| measured(Some(1.5), Some(2.0), None, blames);
         assert_eq!(worst(&[of(Blame::Board), of(Blame::Station)]), "ERROR");
         assert_eq!(worst(&[of(Blame::Nobody), of(Blame::Board)]), "FAIL");

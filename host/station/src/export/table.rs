@@ -6,7 +6,7 @@ use std::io::Write;
 use super::ExportError;
 use crate::record::{Measured, Record, StepRecord};
 
-/// The columns: those of the run, of the step and of the measurement. What there is none of is empty.
+/// The columns: those of the run, of the step and of the measurement. A value that does not exist is empty.
 pub const COLUMNS: [&str; 37] = [
     "run",
     "product",
@@ -62,7 +62,7 @@ impl<W: Write> Table<W> {
         Ok(table)
     }
 
-    /// More of a table whose header was written already.
+    /// The continuation of a table whose header was written already.
     pub fn further(to: W) -> Self {
         Self(to)
     }
@@ -77,7 +77,7 @@ impl<W: Write> Table<W> {
             let step_columns = step_columns(step);
             self.lines(&run, &step_columns, &step.measurements)?;
         }
-        // Those of the run as a whole stand at the step 0, as in the store.
+        // Those of the run as a whole have the step 0, as in the store.
         let whole = ["0", "1", "run", "", "", "", ""].map(str::to_owned);
         if record.measurements.is_empty() && !record.steps.is_empty() {
             return Ok(());
@@ -85,7 +85,7 @@ impl<W: Write> Table<W> {
         self.lines(&run, &whole, &record.measurements)
     }
 
-    /// Returns where it was written to.
+    /// Returns what it was written to.
     pub fn end(self) -> W {
         self.0
     }
@@ -108,7 +108,7 @@ impl<W: Write> Table<W> {
     }
 }
 
-/// A cell, in quotes where it would not be one without.
+/// A cell, in quotes where it needs them.
 fn cell(text: &str) -> Cow<'_, str> {
     if text.contains(['"', ',', '\r', '\n']) {
         return Cow::Owned(format!("\"{}\"", text.replace('"', "\"\"")));
@@ -183,7 +183,7 @@ mod tests {
     use crate::record::tests::{pass, step};
     use crate::record::{RunCause, StepOutcome};
 
-    /// As of one whose lane died before its first step: it was a run all the same.
+    /// Such as a run whose lane died before its first step: it was a run all the same.
     #[test]
     fn a_run_of_which_nothing_was_measured_has_a_line() {
         let lines = |steps: Vec<StepRecord>| {

@@ -1,9 +1,10 @@
-//! A lane's states: an event in, effects out, and nothing else touched.
+//! A lane's states: events go in, effects come out, and nothing else is touched.
 //!
 //! ```text
 //!  EMPTY ─ board ─► READY ─ serial number ─► RUNNING ─► SAVING ─► PASS | FAIL | ERROR ─ next serial number ─► …
 //!    └ serial number ─► WAITING ─ board or button ─┘        └ UNSAVED ─ the disk is well ─► ERROR
-//!  OUT: taken out of service, by a person or since a process of it cannot be killed; or it owes a check, and shows no verdict
+//!  OUT: taken out of service, by a person or because its process cannot be killed; or it owes a check, and shows no
+//! verdict
 //! ```
 
 use halfrow::Verdict;
@@ -34,10 +35,10 @@ pub struct Lane {
     waiting: Option<Accepted>,
     shown: Option<Shown>,
     note: Option<Said>,
-    /// Why it did not take the serial number of the board that came.
+    /// Why it did not take the serial number that waited for the board now in it.
     missed: Option<Said>,
     owes: Option<Owes>,
-    /// Whether a process of it cannot be killed.
+    /// Whether its process cannot be killed.
     is_stuck: bool,
 }
 
@@ -73,7 +74,7 @@ impl Lane {
             (Phase::Running { .. }, _) => Word::Running,
             (Phase::Saving { .. }, _) => Word::Saving,
             (Phase::Unsaved { .. }, _) => Word::Unsaved,
-            // Whatever the lane owes by now, whoever looks acts on the board whose verdict this is.
+            // Whatever the lane owes by now, people act on the board whose verdict is shown.
             (Phase::Ended, Some(Verdict::Pass)) => Word::Pass,
             (Phase::Ended, Some(Verdict::Fail)) => Word::Fail,
             (Phase::Ended, Some(Verdict::Error)) => Word::Error,
@@ -84,7 +85,7 @@ impl Lane {
         }
     }
 
-    /// Whether its result is saved, and not at the plant yet, which must have it.
+    /// Whether its result is saved, but not yet at the plant, which must have it.
     #[must_use]
     pub fn awaits_plant(&self) -> bool {
         matches!(&self.phase, Phase::Unsaved { why, .. } if *why == Said::from(Saying::NotAtPlant))
@@ -103,7 +104,7 @@ impl Lane {
         under_test.or_else(|| self.shown.as_ref().map(|shown| shown.serial.as_str()))
     }
 
-    /// The board that it has in hand: tested, not saved yet, or waited for.
+    /// The board that it has in hand: being tested, not saved yet, or waited for.
     #[must_use]
     pub fn under_test(&self) -> Option<&Accepted> {
         match &self.phase {
@@ -112,10 +113,10 @@ impl Lane {
         }
     }
 
-    /// The plan and the serial number of the mock board, if that is what it is to test now.
+    /// The plan and the serial number of the mock board, if that is what the lane has to test now.
     ///
     /// # Errors
-    /// [`Refusal`] when it is to test something else, or anything.
+    /// [`Refusal`] when the lane is not free, or does not owe its shift a mock board.
     pub fn owed_mock(&self) -> Result<(usize, String), Refusal> {
         self.free()?;
         let lane = self.name.clone();
@@ -143,8 +144,8 @@ impl Lane {
         self.shown.as_ref()
     }
 
-    /// What else there is to say: why it did not take a number, why it is out of service, what it is to test first, why nothing was
-    /// saved, why no run was begun.
+    /// What else there is to say: why it did not take a number, why it is out of service, what it is to test first,
+    /// why nothing was saved, or why no run was begun.
     #[must_use]
     pub fn note(&self) -> Option<&Said> {
         match &self.phase {
@@ -155,7 +156,8 @@ impl Lane {
         }
     }
 
-    /// Keeps why it did not take the serial number of the board that came, as long as that board is there and has none.
+    /// Keeps the reason why it did not take the serial number of the board that came, as long as that board stays
+    /// without one.
     pub(super) fn miss(&mut self, why: Said) {
         self.missed = Some(why);
     }
@@ -184,7 +186,7 @@ impl Lane {
             }),
             Event::In => self.back(),
             Event::Owes(owes) => {
-                // What waits was accepted before, and would start without another question.
+                // What waits was accepted before, and would start without being checked again.
                 let is_owed = |of: &Accepted| owes.as_ref().is_none_or(|owes| owes.is(of));
                 self.waiting = self.waiting.take().filter(is_owed);
                 self.owes = owes;
@@ -194,7 +196,7 @@ impl Lane {
         }
     }
 
-    /// Whether it can have something new to do.
+    /// Whether it can take on something new.
     ///
     /// # Errors
     /// [`Refusal`] why not.
@@ -222,7 +224,7 @@ impl Lane {
             self.missed = None;
         }
         if !is_present && !self.starts.presence {
-            // The serial number was of the board that is gone.
+            // The serial number belonged to the board that is gone.
             self.waiting = None;
         }
         let starts = is_present && self.starts.presence && self.phase == Phase::Idle;
@@ -272,13 +274,13 @@ impl Lane {
         if !matches!(self.phase, Phase::Out { .. }) {
             return Err(Refusal::InService { lane: self.name.clone() });
         }
-        // Whoever puts it back has seen to it.
+        // Whoever puts it back has dealt with the process.
         self.is_stuck = false;
         self.phase = if self.shown.is_some() { Phase::Ended } else { Phase::Idle };
         Ok(None)
     }
 
-    /// What its run tells. What comes from no run that it has is late, and means nothing any more.
+    /// Takes what its run reports. A report that does not fit the phase is late, and changes nothing.
     fn told(&mut self, event: Event) -> Option<Effect> {
         let phase = std::mem::replace(&mut self.phase, Phase::Idle);
         let (phase, effect) = match (phase, event) {
@@ -307,7 +309,7 @@ impl Lane {
             }
             (phase, _) => (phase, None),
         };
-        // Its result is seen to first.
+        // Its result is settled first.
         let is_settled = matches!(phase, Phase::Idle | Phase::Ended);
         self.phase =
             if is_settled && self.is_stuck { Phase::Out { why: Saying::Unkillable.into() } } else { phase };

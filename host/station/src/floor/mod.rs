@@ -4,7 +4,7 @@
 //! 2. The only lane there is.
 //! 3. With the order scan-then-plug: the next lane into which a board is plugged, within a minute.
 //!
-//! Never the first free one silently.
+//! Never silently the first free one.
 
 mod lane;
 mod scan;
@@ -22,7 +22,7 @@ use crate::said::{Said, Saying};
 /// How long a serial number waits for a lane.
 const WAIT: Duration = Duration::from_secs(60);
 
-/// What a plan says of serial numbers.
+/// What a plan says about serial numbers.
 #[derive(Clone, Debug)]
 pub struct Rule {
     /// The product.
@@ -38,14 +38,14 @@ pub struct Place {
     pub name: String,
     /// How its runs are started.
     pub starts: Starts,
-    /// Its plans, by their places in the station's list.
+    /// Its plans, as indices into the station's list.
     pub plans: Vec<usize>,
 }
 
 /// What a scan led to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Answer {
-    /// The lane, by its place, if it went to one.
+    /// The lane, by its index, if it went to one.
     pub lane: Option<usize>,
     /// What is to be done there.
     pub effect: Option<Effect>,
@@ -134,7 +134,7 @@ impl Pending {
 }
 
 impl Floor {
-    /// With these lanes, and the rules of all plans. `scan_then_plug` is the third way of the head of this module.
+    /// With these lanes, and the rules of all plans. `scan_then_plug` allows the third way above.
     #[must_use]
     pub fn new(places: Vec<Place>, rules: Vec<Rule>, scan_then_plug: bool) -> Self {
         let lanes = places.iter().map(|place| Lane::new(&place.name, place.starts)).collect();
@@ -154,7 +154,7 @@ impl Floor {
         self.pending.as_ref().filter(|pending| pending.is_fresh(now)).map(|pending| pending.serial.as_str())
     }
 
-    /// Takes what `operator` scanned at the time `now`, by any clock that only goes on.
+    /// Takes what `operator` scanned at the time `now`, by any clock that only goes forward.
     ///
     /// # Errors
     /// [`ScanError`] when it is refused; nothing has changed then.
@@ -175,10 +175,10 @@ impl Floor {
         }
     }
 
-    /// Takes what `operator` scanned for this lane, whichever barcode somebody else scanned before.
+    /// Takes what `operator` scanned for this lane, whichever lane's barcode somebody else scanned before.
     ///
     /// # Errors
-    /// As [`Self::scan`].
+    /// Like [`Self::scan`].
     pub fn scan_for(
         &mut self,
         lane: usize,
@@ -192,7 +192,7 @@ impl Floor {
         answer
     }
 
-    /// Does with a lane what a barcode or a button says that `operator` scanned or pressed.
+    /// Does with a lane what `operator` asked for with a barcode or a button.
     ///
     /// # Errors
     /// [`ScanError::Lane`] when it cannot be done now.
@@ -209,8 +209,8 @@ impl Floor {
         Ok(Answer { lane: Some(lane), effect, said: said.into() })
     }
 
-    /// Takes what happened to a lane at the time `now`. A serial number that waits goes to the lane that a board came to, or to
-    /// none: it is that board's.
+    /// Takes what happened to a lane at the time `now`. A serial number that waits belongs to the next board that is
+    /// plugged in: it goes to that board's lane, or to none.
     pub fn happened(&mut self, lane: usize, event: Event, now: Duration) -> Option<Effect> {
         let came =
             event == Event::Present(true) && self.lanes.get(lane).is_some_and(|lane| !lane.is_present());
@@ -220,7 +220,7 @@ impl Floor {
         }
         let Pending { serial, operator, .. } = self.pending.take().filter(|pending| pending.is_fresh(now))?;
         match self.give(lane, &serial, &operator) {
-            // Plugging it in is what starts some lanes.
+            // Some lanes are started by plugging the board in.
             Ok(answer) => {
                 answer.effect.or_else(|| self.lanes.get_mut(lane)?.take(Event::Present(true)).ok()?)
             }
@@ -260,7 +260,7 @@ impl Floor {
         self.refuse_elsewhere(lane, &accepted)?;
         let effect = self.lane(lane)?.take(Event::Given(accepted))?;
         self.armed = None;
-        // Its board is found: the next one that is plugged in is another.
+        // Its board is found, so the next one that is plugged in is another.
         self.pending.take_if(|pending| pending.serial == serial);
         let (serial, name) = (serial.to_owned(), self.name(lane).to_owned());
         let said = match effect {
@@ -294,7 +294,7 @@ impl Floor {
         Ok(Answer { lane: None, effect: None, said: said.into() })
     }
 
-    /// The one of these plans that takes the serial number.
+    /// Reads the serial number by the one of these plans that takes it.
     fn read(&self, plans: &[usize], serial: &str, operator: &str) -> Result<Accepted, ScanError> {
         let (mut accepted, mut refused) = (None::<Accepted>, None);
         for (plan, rule) in plans.iter().filter_map(|&plan| Some((plan, self.rules.get(plan)?))) {
@@ -307,7 +307,7 @@ impl Floor {
                     let (product, operator) = (rule.product.clone(), operator.to_owned());
                     accepted = Some(Accepted { plan, product, serial: read.text, operator });
                 }
-                // A wrong check digit says more than a pattern of another product.
+                // A wrong check digit says more than the pattern of another product.
                 (Err(error @ SerialError::CheckDigit { .. }), _) => refused = Some(error),
                 (Err(error), _) => refused = refused.or(Some(error)),
             }

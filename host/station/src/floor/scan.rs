@@ -36,7 +36,7 @@ impl Act {
     pub const ALL: [(&'static str, Self); 4] =
         [("START", Self::Start), ("ABORT", Self::Abort), ("OUT", Self::Out), ("IN", Self::In)];
 
-    /// What a lane is asked when `operator` scans or presses it.
+    /// What a lane is asked to do when `operator` scans or presses it.
     pub(super) fn event(self, operator: &str) -> Event {
         match self {
             Self::Start => Event::Start { operator: operator.to_owned() },

@@ -1,4 +1,4 @@
-//! What happens to a lane, what is to be done then, and what is said of it.
+//! What happens to a lane, what is to be done then, and what is said about it.
 
 use halfrow::Verdict;
 use serde::Serialize;
@@ -19,7 +19,7 @@ pub struct Starts {
 /// A serial number that a plan of the lane takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Accepted {
-    /// The plan, by its place in the station's list.
+    /// The plan, as an index into the station's list.
     pub plan: usize,
     /// The product.
     pub product: String,
@@ -50,7 +50,7 @@ pub struct Shown {
     pub saved_ms: i64,
 }
 
-/// What a lane is called by those who look at it.
+/// A lane's state, as people see it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum Word {
@@ -77,7 +77,7 @@ pub enum Word {
 }
 
 impl Word {
-    /// Every one.
+    /// All of them.
     pub const ALL: [Self; 10] = [
         Self::Empty,
         Self::Ready,
@@ -112,11 +112,11 @@ impl Word {
 /// What happens to a lane.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// A board came, or is gone.
+    /// A board came, or went away.
     Present(bool),
     /// A serial number for it.
     Given(Accepted),
-    /// The button.
+    /// The button was pressed.
     Start {
         /// Who pressed it.
         operator: String,
@@ -158,9 +158,9 @@ pub enum Event {
 /// A unit that a lane is to test before any other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Owes {
-    /// The plan, by its place in the station's list.
+    /// The plan, as an index into the station's list.
     pub plan: usize,
-    /// The serial number of the unit; none when it cannot be told which.
+    /// The serial number of the unit; `None` when it cannot be found out.
     pub serial: Option<String>,
     /// Why.
     pub why: Said,
