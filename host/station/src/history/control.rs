@@ -1,10 +1,11 @@
-//! Whether a share is as it always was: a p-chart with exact limits.
+//! Whether a share is still what it has always been: a p-chart with exact limits.
 
 use serde::Serialize;
 
 use super::rate::Rate;
 
-/// The chance that a group lies beyond one limit though nothing has changed: that of three standard deviations on one side.
+/// The chance that a group lies beyond one limit although nothing has changed: that of three standard deviations,
+/// one-sided.
 const BEYOND: f64 = 0.001_349_898_031_630_1;
 
 /// What a share may be if nothing has changed.
@@ -12,16 +13,17 @@ const BEYOND: f64 = 0.001_349_898_031_630_1;
 pub struct Limits {
     /// The share of all groups together, 0 to 1.
     pub mean: f64,
-    /// The least and the greatest share of this group, which depend on its size.
+    /// The limits of this group's share, the lower first. They depend on the group's size.
     pub limits: [f64; 2],
     /// Whether the group's share is beyond them.
     pub is_beyond: bool,
 }
 
-/// The limits of each group among all of them; none of a group of nobody.
+/// The limits of each group, from all of them together; `None` for an empty group.
 ///
-/// They are those of the binomial distribution itself, which few units and shares close to 1 need: W. H. Woodall, Journal of Quality
-/// Technology 29 (1997), p. 172. Beyond each lies a group by chance as often as beyond three standard deviations.
+/// They are those of the binomial distribution itself, because units may be few and shares close to 1: W. H. Woodall,
+/// Journal of Quality Technology 29 (1997), p. 172. By chance a group lies beyond each of them as often as beyond
+/// three standard deviations.
 #[must_use]
 pub fn limits(groups: &[Rate]) -> Vec<Option<Limits>> {
     let (count, of) = groups.iter().fold((0, 0), |(count, of), group| (count + group.count, of + group.of));
@@ -30,7 +32,7 @@ pub fn limits(groups: &[Rate]) -> Vec<Option<Limits>> {
 }
 
 impl Limits {
-    /// Those of a group of somebody where all together have the share `mean`.
+    /// The limits of a group that is not empty, where all groups together have the share `mean`.
     #[must_use]
     pub fn of(group: &Rate, mean: f64) -> Self {
         let (low, high) = (least(group.of, mean), group.of - least(group.of, 1.0 - mean));
@@ -42,7 +44,7 @@ impl Limits {
     }
 }
 
-/// The least number of cases among `of`, each of the chance `mean`, below which there are fewer only with [`BEYOND`].
+/// The smallest number, among `of` cases with the chance `mean` each, such that fewer occur with a chance below [`BEYOND`].
 fn least(of: u64, mean: f64) -> u64 {
     if mean <= 0.0 {
         return 0;
@@ -50,7 +52,7 @@ fn least(of: u64, mean: f64) -> u64 {
     if mean >= 1.0 {
         return of;
     }
-    // The chance of none underflows for many; its logarithm does not.
+    // With many cases the chance of none underflows; its logarithm does not.
     let mut logarithm = of as f64 * (-mean).ln_1p();
     let odds = (mean / (1.0 - mean)).ln();
     let mut below = 0.0;

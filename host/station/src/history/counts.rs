@@ -1,8 +1,8 @@
-//! Runs by verdict, for whoever asks every few seconds.
+//! Runs by verdict, for callers that ask every few seconds.
 //!
-//! Runs and errors are counted when they end; FAIL is counted here, day by day, and a day anew only when it has other runs
-//! than when it was counted last. A verdict never changes, so that is when a day's FAIL may. Where even the rest takes long, it
-//! is counted less often.
+//! Runs and errors are counted when they end. FAIL is counted here, day by day; a day is counted again only when it
+//! has another number of runs than at its last count. A verdict never changes, so only then can a day's FAIL change.
+//! Where even the rest takes long, everything is counted less often.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use super::{DAY_MS, PlanName, count, plans};
 use crate::store::{DatabaseError, Snapshot, StoreError, statements, values};
 
-/// The longest rest between two counts.
+/// The longest pause between two counts.
 const LONGEST: Duration = Duration::from_secs(60);
 
 /// What is counted together.
@@ -21,7 +21,7 @@ pub struct Cell {
     pub plan: PlanName,
     /// The station.
     pub station: String,
-    /// The lane; empty where all of a station are counted together.
+    /// The lane; empty where all lanes of a station are counted together.
     pub lane: String,
 }
 
@@ -41,7 +41,7 @@ pub struct Count {
 }
 
 impl Count {
-    /// With those of another one.
+    /// Adds the counts of another one.
     pub fn add(&mut self, other: &Self) {
         self.passed += other.passed;
         self.failed += other.failed;
@@ -51,7 +51,7 @@ impl Count {
     }
 }
 
-/// What was counted before.
+/// What was counted so far.
 #[derive(Debug)]
 pub struct Tally {
     by_lane: bool,
@@ -62,11 +62,11 @@ pub struct Tally {
 #[derive(Debug, Default)]
 struct Before {
     days: BTreeMap<i64, Day>,
-    /// What was counted last, and until when it is taken for all that there is.
+    /// The last result, and until when it is returned again.
     last: Option<(Instant, BTreeMap<Cell, Count>)>,
 }
 
-/// A day as it was counted last.
+/// A day, as last counted.
 #[derive(Debug, Default)]
 struct Day {
     runs: u64,
@@ -74,14 +74,14 @@ struct Day {
 }
 
 impl Tally {
-    /// Nothing yet; the lanes of a station are told apart if it is `by_lane`. After each count it rests so many times as long as
-    /// that took, a minute at most, and tells the same meanwhile.
+    /// Nothing counted yet. With `by_lane` the lanes of a station are told apart. After each count it pauses `rests`
+    /// times as long as that took, a minute at most, and returns the same result meanwhile.
     #[must_use]
     pub fn new(by_lane: bool, rests: u32) -> Self {
         Self { by_lane, rests, before: Mutex::default() }
     }
 
-    /// Every run that is over, without those of the mock that checks a shift.
+    /// Counts every run that is over, except those of the mock that checks a shift.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
@@ -103,7 +103,7 @@ impl Tally {
         let plans = plans(of)?;
         let mut counts = BTreeMap::<Cell, Count>::new();
         for (cell, [runs, errors, units, first_passed]) in self.all(of, &plans)? {
-            // What is not known to be a FAIL yet is taken for a PASS.
+            // What is not yet known to be FAIL is taken for PASS.
             let passed = runs.saturating_sub(errors);
             counts.entry(cell).or_default().add(&Count { passed, failed: 0, errors, units, first_passed });
         }
@@ -129,7 +129,7 @@ impl Tally {
         })
     }
 
-    /// Counts every FAIL from the first day to the last that has other runs than when it was counted.
+    /// Counts FAIL anew from the first to the last day whose number of runs has changed since it was counted.
     fn count_anew(
         &self,
         days: &mut BTreeMap<i64, Day>,

@@ -1,4 +1,4 @@
-//! Whether a station judges otherwise than all others do under the same plan.
+//! Whether a station judges differently from all others under the same plan.
 
 use std::collections::BTreeMap;
 
@@ -8,12 +8,12 @@ use super::PlanName;
 use super::rate::Rate;
 use super::yields::Yield;
 
-/// The chance that any station of a plan is marked though all are alike.
+/// The chance that any station of a plan is marked although all are alike.
 const BY_CHANCE: f64 = 0.01;
-/// The least number of cases that each of the four cells is expected to have, for the test to hold.
+/// The least number of cases to be expected in each of the four cells for the test to hold.
 const LEAST: f64 = 5.0;
 
-/// A station's first pass beside that of all others.
+/// A station's first-pass yield next to that of all others.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Drift {
     /// Product and plan.
@@ -21,17 +21,17 @@ pub struct Drift {
     pub plan: PlanName,
     /// The station.
     pub station: String,
-    /// Its first pass.
+    /// Its first-pass yield.
     pub here: Rate,
     /// That of all others.
     pub elsewhere: Rate,
-    /// The chance of a difference so great if there is none; none where too few units were judged to tell.
+    /// The chance of a difference this great if there is none; `None` where too few units were judged to tell.
     pub chance: Option<f64>,
-    /// Whether it is too small to be taken for chance, as many stations as there are.
+    /// Whether that is too small to be taken for chance, given the number of stations.
     pub is_marked: bool,
 }
 
-/// Every station of every plan that more than one station has, by a yield by station.
+/// Every station of every plan that more than one station has, from yields by station.
 #[must_use]
 pub fn drifts(lines: &[Yield]) -> Vec<Drift> {
     let mut plans = BTreeMap::<&PlanName, Vec<(&String, Rate)>>::new();
@@ -55,8 +55,8 @@ fn of_plan(plan: &PlanName, stations: &[(&String, Rate)]) -> Vec<Drift> {
     stations.iter().map(drift).collect()
 }
 
-/// The chance of two shares that differ so much though what they are of does not: the two-sided test of two proportions with a
-/// pooled variance (NIST/SEMATECH e-Handbook of Statistical Methods, 7.3.3).
+/// The chance of two shares that differ this much although those of the whole populations do not: the two-sided test
+/// of two proportions with a pooled variance (NIST/SEMATECH e-Handbook of Statistical Methods, 7.3.3).
 fn chance(one: &Rate, other: &Rate) -> Option<f64> {
     let (n, m) = (one.of as f64, other.of as f64);
     let pooled = (one.count + other.count) as f64 / (n + m);

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::store::{Snapshot, StoreError, statements};
 
-/// A device and a unit that a station takes for one, and what the plant knows instead.
+/// A device and a unit that a station takes to belong together, and what the plant knows instead.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Mismatch {
     /// The station.
@@ -15,15 +15,15 @@ pub struct Mismatch {
     pub product: String,
     /// The unit's serial number.
     pub serial: String,
-    /// The last run in which the station judged the one as the other.
+    /// The last run in which the station judged this device as this unit.
     pub run: String,
-    /// When that began, in milliseconds since 1970, UTC.
+    /// When that run began, in milliseconds since 1970, UTC.
     pub last_ms: i64,
-    /// What stands against it.
+    /// The binding that contradicts it.
     pub bound: Bound,
 }
 
-/// What a plant knows to belong together.
+/// A device and a unit that belong together, as a plant knows.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Bound {
     /// The device.
@@ -34,7 +34,7 @@ pub struct Bound {
     pub serial: String,
     /// Since when, in milliseconds since 1970, UTC.
     pub from_ms: i64,
-    /// The station whose judgement bound them; none when a person did.
+    /// The station whose judgement bound them; `None` when a person did.
     pub station: Option<String>,
 }
 
@@ -47,8 +47,8 @@ impl Mismatch {
     }
 }
 
-/// All that are not settled, the last one first; none at a station, which refuses such a board. A person settles one who
-/// binds anew what belongs together.
+/// All that are not settled, the latest first; none at a station, which refuses such boards. A person settles one by
+/// binding anew what belongs together.
 ///
 /// # Errors
 /// [`StoreError`] when the database cannot be read.

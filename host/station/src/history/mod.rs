@@ -4,15 +4,15 @@
 //!  runs     pages of runs, by filters and by the last key of the page before
 //!  unit     a serial number with all that is known of it
 //!  yields   first-pass and final yield, with their intervals
-//!  control  whether a yield is as it always was
-//!  drift    whether a station judges otherwise than the others
+//!  control  whether a yield is still what it has always been
+//!  drift    whether a station judges differently from the others
 //!  pareto   what fails most, by part and by check
-//!  stations those of a plant, as it last heard of them
+//!  stations those of a plant, as it last heard from them
 //!  mismatch what two stations of a plant bound differently
-//!  counts   runs by verdict, for whoever asks every few seconds
+//!  counts   runs by verdict, for callers that ask every few seconds
 //! ```
 //!
-//! Each takes a [`Snapshot`], so that what one page shows is of one moment.
+//! Each takes a [`Snapshot`], so everything that one page shows is of the same moment.
 
 pub mod control;
 pub mod counts;
@@ -38,12 +38,12 @@ use crate::store::{DatabaseError, Found, Snapshot, StoreError, statements};
 /// Milliseconds of a day.
 const DAY_MS: i64 = 86_400_000;
 
-/// From when until when runs began, in milliseconds since 1970, UTC.
+/// The time in which runs began, in milliseconds since 1970, UTC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Period {
     /// The first moment.
     pub from_ms: i64,
-    /// The first moment after.
+    /// The first moment after it.
     pub until_ms: i64,
 }
 
@@ -59,10 +59,10 @@ impl Period {
     }
 }
 
-/// Milliseconds since 1970 of a moment, or of the midnight UTC that begins the day so many after a date.
+/// Milliseconds since 1970 of a moment or, for a date, of the midnight UTC that begins the day `days` after it.
 pub(crate) fn moment(text: &str, days: i64) -> Option<i64> {
     let midnight = |date: Date| date.checked_add(days.days()).and_then(|date| date.to_zoned(TimeZone::UTC));
-    // A time without its offset is no moment, and must not be taken for its date.
+    // A time without an offset is no moment, and must not be taken for its date.
     let date = || Date::strptime("%Y-%m-%d", text).and_then(midnight).map(|zoned| zoned.timestamp());
     let moment = text.parse::<Timestamp>().or_else(|_| date());
     moment.map(Timestamp::as_millisecond).ok().filter(|ms| *ms >= 0)
@@ -107,7 +107,7 @@ fn plans_named(of: &Snapshot, name: &str) -> Result<Vec<String>, StoreError> {
     Ok(plans(of)?.into_iter().filter(|(_, plan)| plan.plan == name).map(|(hash, _)| hash).collect())
 }
 
-/// A number of things, which is not negative.
+/// A number of things, which is never negative.
 fn count(row: &Found<'_>, column: usize) -> Result<u64, DatabaseError> {
     row.get::<i64>(column).map(i64::unsigned_abs)
 }
