@@ -1,4 +1,4 @@
-//! The wall's clock.
+//! The wall clock.
 
 use std::fs;
 use std::path::Path;
@@ -9,26 +9,26 @@ use jiff::tz::TimeZone;
 use jiff::{Timestamp, Zoned};
 use nix::time::{ClockId, clock_gettime};
 
-/// Where the system keeps its time zone, and all others.
+/// Where the system keeps its own time zone, and all time zones.
 const HERE: &str = "/etc/localtime";
 const ZONES: &str = "/usr/share/zoneinfo";
 
-/// Milliseconds since 1970, UTC; 0 for a clock that stands before.
+/// Milliseconds since 1970, UTC; 0 if the clock is set before that.
 #[must_use]
 pub(crate) fn now_ms() -> i64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     i64::try_from(since.as_millis()).unwrap_or(i64::MAX)
 }
 
-/// Another computer's clock, as it was heard.
+/// Another computer's clock, as it was last heard.
 #[derive(Clone, Copy, Debug)]
 pub struct HeardClock {
     ms: i64,
     heard_ms: i64,
 }
 
-/// For how long another computer's clock tells anything once it was heard, in milliseconds. Every clock of a virtual computer
-/// stands still while that is paused, and then the wall's alone is set right.
+/// How long another computer's clock is trusted once it was heard, in milliseconds. While a virtual computer is paused
+/// all its clocks stand still, and afterwards only its wall clock is set right.
 const TELLS_MS: i64 = 5 * 60_000;
 
 impl HeardClock {
@@ -38,27 +38,27 @@ impl HeardClock {
         Self { ms, heard_ms: since_start_ms() }
     }
 
-    /// What it shows by now, however the own clock was set since; nothing if it was heard long ago.
+    /// What it shows now, however this computer's own clock was set since; `None` if it was heard too long ago.
     pub(crate) fn now_ms(&self) -> Option<i64> {
         self.at(since_start_ms())
     }
 
-    /// What it shows at this moment since the computer was started.
+    /// What it shows `since_start_ms` milliseconds after this computer was started.
     fn at(&self, since_start_ms: i64) -> Option<i64> {
         let passed_ms = since_start_ms.saturating_sub(self.heard_ms);
         (passed_ms < TELLS_MS).then(|| self.ms.saturating_add(passed_ms))
     }
 }
 
-/// Milliseconds since the computer was started, by the clock that nobody sets and that goes on while the computer sleeps
-/// (`CLOCK_BOOTTIME` of clock_gettime(2)).
+/// Milliseconds since the computer was started, by the clock that nobody sets and that keeps running while the
+/// computer sleeps (`CLOCK_BOOTTIME` of clock_gettime(2)).
 fn since_start_ms() -> i64 {
     let now = clock_gettime(ClockId::CLOCK_BOOTTIME).map(|now| (now.tv_sec(), now.tv_nsec()));
     let (seconds, nanoseconds) = now.unwrap_or_default();
     seconds.saturating_mul(1000).saturating_add(nanoseconds / 1_000_000)
 }
 
-/// This moment as a clock on the station's wall shows it.
+/// The moment `ms` as a clock on the station's wall shows it.
 #[must_use]
 pub(crate) fn local(ms: i64) -> Zoned {
     static ZONE: LazyLock<TimeZone> = LazyLock::new(|| {
@@ -72,7 +72,7 @@ fn at(ms: i64, zone: &TimeZone) -> Zoned {
     Timestamp::from_millisecond(ms).unwrap_or_default().to_zoned(zone.clone())
 }
 
-/// The midnight by the station's clock before this moment, in milliseconds since 1970, UTC.
+/// The start of the day of `ms` by the station's clock, in milliseconds since 1970, UTC.
 #[must_use]
 pub(crate) fn midnight_ms(ms: i64) -> i64 {
     midnight(&local(ms)).unwrap_or(ms)
@@ -82,7 +82,7 @@ fn midnight(moment: &Zoned) -> Option<i64> {
     moment.start_of_day().ok().map(|midnight| midnight.timestamp().as_millisecond())
 }
 
-/// The zone of the variable `TZ`: a name, or a rule (POSIX.1-2024, 8.3).
+/// The zone that the variable `TZ` names, or describes by a rule (POSIX.1-2024, 8.3).
 fn zone(name: &str) -> Option<TimeZone> {
     let name = name.trim_start_matches(':');
     TimeZone::posix(name).ok().or_else(|| read(&Path::new(ZONES).join(name)))
@@ -120,7 +120,7 @@ mod tests {
         );
         assert_eq!(midnight(&at(DAY, &india)), Some(DAY - 11 * HOUR / 2));
         assert_eq!(midnight(&at(DAY + 23 * HOUR, &europe)), Some(DAY + 23 * HOUR));
-        // Some write a colon in front, as POSIX.1-2024, 8.3 has it of what is no rule.
+        // Some write a colon first, which POSIX.1-2024, 8.3 has only for values that are not rules.
         let with_colon = zone(":IST-5:30").unwrap();
         assert_eq!(shown(&with_colon, DAY), "22 05:30");
         assert_eq!(zone("no/such/place"), None);

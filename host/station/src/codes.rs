@@ -354,32 +354,32 @@ codes::codes! {
     NoRandomness => "no-randomness"
 }
 
-/// The code of an error of the station's, of the library's or of the system's.
+/// The code of an error of the station, of the library or of the system.
 pub(crate) fn known(error: &(dyn Error + 'static)) -> Option<Coded> {
     lookup(error).or_else(|| refusals::lookup(error)).or_else(|| program::known(error))
 }
 
-/// Why a command came to no result.
+/// Why a command has no result.
 pub(crate) fn problem(exit: Exit, error: &anyhow::Error) -> Problem {
     program::problem(exit, error, known)
 }
 
-/// What is wrong with what was kept.
+/// A fault in what was kept, as a problem with its code.
 pub(crate) fn of_fault(fault: &Fault) -> Problem {
     Problem::by(fault, known)
 }
 
-/// A record that says otherwise of its run than the database.
+/// A record that contradicts the database about its run, as a problem with its code.
 pub(crate) fn of_superseded(note: &Superseded) -> Problem {
     Problem::by(note, known)
 }
 
-/// Every list of codes that is the station's own.
+/// Every list of the station's own codes.
 pub(crate) fn lists() -> impl Iterator<Item = &'static CodeList> {
     LISTS.iter().chain(refusals::LISTS).filter(|list| !list.codes.is_empty())
 }
 
-/// Every code that a document of the station may have.
+/// Every code that a document of the station can have.
 pub(crate) fn all() -> Vec<Value> {
     let library = codes::LISTS.into_iter().flatten().chain(program::lists());
     let typed = lists().chain(library).flat_map(|list| list.codes).map(|(code, _)| *code);

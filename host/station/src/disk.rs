@@ -1,4 +1,4 @@
-//! Whether a disk keeps what it was given: what stands in memory alone, or in another computer, may not.
+//! Whether a disk keeps what is written to it. Memory and other computers may not.
 
 use std::fs;
 use std::io;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use nix::sys::statfs::statfs;
 
-/// File systems that may lose what was brought to the disk, by their numbers in statfs(2).
+/// File systems that may lose what was synced to them, by their magic numbers in statfs(2).
 const REFUSED: [(i64, &str); 12] = [
     (0x0102_1994, "tmpfs, which is memory"),
     (0x8584_58F6, "ramfs, which is memory"),
@@ -21,10 +21,10 @@ const REFUSED: [(i64, &str); 12] = [
     (0x0102_1997, "9P, which is another computer's"),
     (0x6573_5546, "FUSE, behind which anything may be"),
 ];
-/// What containers stand on. It hands on what is brought to the disk, unless it is mounted as `volatile`.
+/// What containers run on. It passes syncs on to the disk below, unless it is mounted as `volatile`.
 const OVERLAY: i64 = 0x794C_7630;
 
-/// A folder that a station cannot have.
+/// A folder that cannot be a station's.
 #[derive(Debug, thiserror::Error)]
 pub enum DiskError {
     /// It is on no disk of this computer.
@@ -43,12 +43,12 @@ pub enum DiskError {
     Untold {
         /// The folder.
         folder: PathBuf,
-        /// Its reason.
+        /// The system's reason.
         source: io::Error,
     },
 }
 
-/// Refuses the folder, which need not be there yet, if its file system may lose what was brought to the disk.
+/// Refuses the folder, which need not exist yet, if its file system may lose what was synced to it.
 ///
 /// # Errors
 /// [`DiskError`]
@@ -74,7 +74,8 @@ pub fn keeps(folder: &Path) -> Result<(), DiskError> {
     Ok(())
 }
 
-/// Whether the mount that has `place` is volatile, by proc_pid_mountinfo(5): the fifth word is where, the last one how.
+/// Whether the mount that holds `place` is volatile. By proc_pid_mountinfo(5) the fifth field is the mount point, and
+/// the last one has the options.
 fn is_volatile(mounts: &str, place: &Path) -> bool {
     let mount = |line: &str| {
         let mut words = line.split(' ');
@@ -82,12 +83,12 @@ fn is_volatile(mounts: &str, place: &Path) -> bool {
         Some((at, how))
     };
     let over = mounts.lines().filter_map(mount).filter(|(at, _)| place.starts_with(at));
-    // Of mounts in one place the last one covers the others.
+    // Of several mounts at the same point the last one covers the others.
     let nearest = over.max_by_key(|(at, _)| at.len());
     nearest.is_some_and(|(_, how)| how.split(',').any(|option| option == "volatile"))
 }
 
-/// A word of that file as it was before the kernel wrote it without blanks.
+/// A field of that file with the kernel's octal escapes undone.
 fn unescaped(word: &str) -> String {
     let escapes = [("\\040", " "), ("\\011", "\t"), ("\\012", "\n"), ("\\134", "\\")];
     escapes.iter().fold(word.to_owned(), |word, (escape, letter)| word.replace(escape, letter))
@@ -115,13 +116,13 @@ mod tests {
         {
             assert_eq!(is_volatile(mounts, place.as_ref()), volatile, "{place}");
         }
-        // What is mounted over a volatile one covers it.
+        // What is mounted over a volatile mount covers it.
         let covered =
             format!("{mounts}43 40 0:35 / /a rw - overlay overlay rw,lowerdir=/l,upperdir=/v,workdir=/w\n");
         assert!(!is_volatile(&covered, "/a/c".as_ref()));
     }
 
-    /// The numbers of Linux's own include/uapi/linux/magic.h.
+    /// The numbers are from Linux's own include/uapi/linux/magic.h.
     #[test]
     fn what_may_lose_what_was_brought_to_the_disk_is_known_by_the_kernel_s_numbers() {
         let named =
@@ -142,7 +143,7 @@ mod tests {
         ] {
             assert!(named(number).is_some_and(|what| what.starts_with(name)), "{name} {number:#x}");
         }
-        // ext4, XFS and btrfs; overlayfs is asked more.
+        // ext4, XFS and btrfs are taken; overlayfs is checked further.
         assert_eq!([0xef53, 0x5846_5342, 0x9123_683e, OVERLAY].map(named), [None; 4]);
         assert_eq!(OVERLAY, 0x794c_7630);
     }

@@ -25,14 +25,15 @@ pub(crate) fn seed(id: Uuid) -> u64 {
     (id.as_u128() & 0xffff_ffff_ffff) as u64
 }
 
-/// When a UUID of version 7 was made, in milliseconds since 1970 (RFC 9562, section 5.7); 0 of a text that is none.
+/// When a UUID of version 7 was made, in milliseconds since 1970 (RFC 9562, section 5.7); 0 for a text without
+/// hexadecimal digits.
 #[must_use]
 pub(crate) fn made_ms(id: &str) -> i64 {
     let digits: String = id.chars().filter(char::is_ascii_hexdigit).take(12).collect();
     i64::from_str_radix(&digits, 16).unwrap_or_default()
 }
 
-/// What is in front of every id of version 7 that is made at the moment `ms` or later, and behind all others.
+/// The prefix that sorts before every version 7 id made at the moment `ms` or later, and after all earlier ones.
 #[must_use]
 pub(crate) fn first_of(ms: i64) -> String {
     let ms = ms.max(0).unsigned_abs();

@@ -22,7 +22,7 @@ pub enum InputError {
     NotText {
         /// The file.
         path: PathBuf,
-        /// Where it is none.
+        /// Why it is not text.
         source: io::Error,
     },
     /// It says what it cannot say; the message names the line, and ends in what to do.
@@ -62,7 +62,7 @@ pub(crate) fn text_of(path: &Path) -> Result<String, InputError> {
     })
 }
 
-/// What is wrong at a place of the file's text, before the place has become a line.
+/// What is wrong at a place in the file's text, before the place is turned into a line number.
 #[derive(Debug)]
 pub(crate) struct Fault {
     at: usize,
@@ -77,12 +77,12 @@ enum Why {
 }
 
 impl Fault {
-    /// At byte `at` stands what cannot be said there.
+    /// What stands at byte `at` is wrong.
     pub(crate) fn wrong(at: usize, what: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self { at, what: what.into(), why: Why::Remedy(remedy.into()) }
     }
 
-    /// At byte `at` something is named that cannot be used.
+    /// Byte `at` names something that cannot be used.
     pub(crate) fn input(
         at: usize,
         what: impl Into<String>,
@@ -91,14 +91,14 @@ impl Fault {
         Self { at, what: what.into(), why: Why::Source(source.into()) }
     }
 
-    /// What TOML or the types of the values refuse; `keys` says where all keys are listed.
+    /// A syntax error of TOML, or a value of the wrong type; `keys` says where all keys are listed.
     pub(crate) fn of_toml(error: &toml::de::Error, keys: &str) -> Self {
         let at = error.span().map_or(0, |span| span.start);
         let what = text::told(&error.message().lines().collect::<Vec<_>>().join("; "));
         Self::wrong(at, what, format!("correct the line; {keys}"))
     }
 
-    /// The error, whose line is that of the fault in `text`, the content of `path`.
+    /// The error, with the line number of the fault in `text`, the content of `path`.
     pub(crate) fn in_file(self, path: &Path, text: &str) -> InputError {
         let before = text.as_bytes().iter().take(self.at);
         let line = 1 + before.filter(|&&byte| byte == b'\n').count();

@@ -1,4 +1,4 @@
-//! Whether there is a board in a lane, as far as that can be seen without touching it: not even by libusb.
+//! Whether there is a board in a lane, as far as can be seen without touching it, even through libusb.
 
 use std::fs;
 use std::path::Path;
@@ -6,23 +6,23 @@ use std::time::Duration;
 
 use halfrow::target::Target;
 
-/// Where Linux tells of USB devices.
+/// Where Linux lists USB devices.
 pub(crate) const USB: &str = "/sys/bus/usb/devices";
-/// FTDI's number among the makers of USB devices.
+/// FTDI's USB vendor id.
 const FTDI: &str = "0403";
-/// How long a board must be away to be gone.
+/// How long a board must be away before it counts as gone.
 const GONE: Duration = Duration::from_secs(1);
 
-/// A chip of FTDI's that is plugged in.
+/// An FTDI chip that is plugged in.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Chip {
-    /// Where, as `1-2.3`.
+    /// Where, such as `1-2.3`.
     pub(crate) place: String,
     /// Its serial number.
     serial: Option<String>,
 }
 
-/// The chips that the folder `devices` tells of, in the order of their places.
+/// The chips that the folder `devices` lists, sorted by place.
 pub(crate) fn chips(devices: &Path) -> Vec<Chip> {
     let chip = |entry: fs::DirEntry| {
         let read = |name| fs::read_to_string(entry.path().join(name)).ok().map(|text| text.trim().to_owned());
@@ -36,8 +36,8 @@ pub(crate) fn chips(devices: &Path) -> Vec<Chip> {
     chips
 }
 
-/// Whether something is plugged in where `board` is; of what is not plugged in anywhere, as `tcp:` and `mock`, nothing
-/// else can be said than that it is there.
+/// Whether something is plugged in at `board`. A board that is not plugged in anywhere, such as `tcp:` or `mock`,
+/// always counts as present.
 #[must_use]
 pub(crate) fn is_there(board: &Target, devices: &Path) -> bool {
     match (board.kind.as_str(), board.address.as_deref()) {
@@ -49,7 +49,7 @@ pub(crate) fn is_there(board: &Target, devices: &Path) -> bool {
     }
 }
 
-/// What is seen of a board, without what comes and goes while its system starts.
+/// Whether a board is present. Short absences while its system starts are ignored.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Presence {
     is_there: bool,
@@ -57,7 +57,7 @@ pub(crate) struct Presence {
 }
 
 impl Presence {
-    /// Whether it came, or is gone: it was seen, or not, at the time `now`.
+    /// Takes note of whether the board is seen at the time `now`. Returns whether it is now present, if that has changed.
     pub(crate) fn look(&mut self, is_seen: bool, now: Duration) -> Option<bool> {
         let away_since = if is_seen { None } else { Some(self.away_since.unwrap_or(now)) };
         self.away_since = away_since;

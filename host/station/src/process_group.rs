@@ -1,5 +1,5 @@
-//! Processes that the station starts: without its secrets, and as leaders of groups of their own, so that what they have started is
-//! killed with them.
+//! Processes that the station starts: without its secrets, and each as the leader of its own process group, so that
+//! whatever it has started is killed with it.
 
 use std::ffi::OsStr;
 use std::process::{Child, Command, ExitStatus};
@@ -11,21 +11,21 @@ use nix::unistd::Pid;
 
 use crate::settings::PASSWORD_OF_PLANT;
 
-/// How soon it is looked at first whether a process has ended, and how long no look waits longer.
+/// How soon after its start a process is first checked for its end, and the longest pause between two checks.
 const FIRST: Duration = Duration::from_millis(1);
 const LONGEST: Duration = Duration::from_millis(10);
 
-/// How long what was killed is waited for.
+/// How long a killed process is waited for.
 const KILLED: Duration = Duration::from_secs(10);
 
-/// A call of `program`, which has no need to know how the station reaches its plant.
+/// A command for `program`, which need not know how the station reaches its plant.
 pub(crate) fn without_secrets(program: impl AsRef<OsStr>) -> Command {
     let mut command = Command::new(program);
     command.env_remove(PASSWORD_OF_PLANT);
     command
 }
 
-/// How a process ended, if it does within `limit`.
+/// How a process ended, if it does so within `limit`.
 pub(crate) fn waited(child: &mut Child, limit: Duration) -> Option<ExitStatus> {
     let (begun, mut look) = (Instant::now(), FIRST);
     loop {
@@ -38,13 +38,14 @@ pub(crate) fn waited(child: &mut Child, limit: Duration) -> Option<ExitStatus> {
     }
 }
 
-/// Kills the group of `child`; how that ended, if it did. What sleeps uninterruptibly does not, and is waited for no longer.
+/// Kills the group of `child`, and returns how `child` ended, if it did. A process in uninterruptible sleep does not
+/// end, and is waited for no longer.
 pub(crate) fn killed(child: &mut Child) -> Option<ExitStatus> {
     kill(child.id());
     waited(child, KILLED)
 }
 
-/// Kills the group of the process `leader`, of which none need be left.
+/// Kills the process group of `leader`, which may be empty already.
 pub(crate) fn kill(leader: u32) {
     if let Ok(group) = i32::try_from(leader)
         && let Err(error) = killpg(Pid::from_raw(group), Signal::SIGKILL)
