@@ -38,7 +38,7 @@ pub struct Checked {
 /// # Errors
 /// [`StoreError`] when the database cannot be read at all.
 pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
-    // Listed first: a run has a row before it has a record.
+    // Listed before the snapshot, because a run has a row before it has a record.
     let pieces = folder.blobs().all()?;
     let snapshot = Snapshot::take(folder)?;
     let mut faults: Vec<_> = snapshot.damage()?.into_iter().map(|said| Fault::Database { said }).collect();

@@ -23,7 +23,7 @@ pub enum Of {
 pub struct Bar {
     /// The part, the measurement or the step; empty where no part is suspected.
     pub name: String,
-    /// Runs that failed with it, of all that failed.
+    /// Runs that failed with it, of all failed runs.
     pub runs: Rate,
     /// Units among them.
     pub units: u64,
@@ -36,7 +36,7 @@ pub struct Pareto {
     pub failed: u64,
     /// Units among them.
     pub units: u64,
-    /// The most frequent cause first; of two that are as frequent, by name.
+    /// The most frequent cause first; equally frequent ones by name.
     pub bars: Vec<Bar>,
 }
 
@@ -62,7 +62,8 @@ pub fn pareto(of: &Snapshot, wanted: &Wanted, by: Of) -> Result<Pareto, StoreErr
     Ok(counted.pareto())
 }
 
-/// The conditions for what is wanted beside its time, with plans by their hashes, behind `values`, which get theirs.
+/// The conditions for what is wanted apart from its time, with plans by their hashes. Their values are appended to
+/// `values`.
 fn filters<'a>(wanted: &'a Wanted, plans: Option<&'a [String]>, values: &mut Vec<Value<'a>>) -> String {
     let mut filters = String::new();
     if let Some(lane) = &wanted.lane {
@@ -81,14 +82,14 @@ fn filters<'a>(wanted: &'a Wanted, plans: Option<&'a [String]>, values: &mut Vec
         let named: Vec<_> =
             plans.iter().zip(values.len() + 1..).map(|(_, place)| format!("${place}")).collect();
         values.extend(plans.iter().map(Value::from));
-        // No plan of this name has no run.
+        // If there is no plan of this name, no run matches.
         let named = if named.is_empty() { "NULL".to_owned() } else { named.join(", ") };
         filters.push_str(&format!(" AND plan_sha256 IN ({named})"));
     }
     filters
 }
 
-/// What was counted so far of failures that come unit after unit, and of a unit run after run.
+/// What was counted so far. Failures come unit by unit, and within a unit run by run.
 #[derive(Default)]
 struct Counted {
     failed: u64,

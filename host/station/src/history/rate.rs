@@ -5,16 +5,16 @@ use serde::Serialize;
 /// The 97.5 % point of the normal distribution.
 const Z: f64 = 1.959_963_984_540_054;
 
-/// So many of so many.
+/// How many of a total.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Rate {
-    /// How many.
+    /// How many cases.
     pub count: u64,
-    /// Of so many.
+    /// The total.
     pub of: u64,
-    /// Their share, 0 to 1; none of none.
+    /// The share, 0 to 1; `None` if the total is 0.
     pub share: Option<f64>,
-    /// The ends of the 95 % interval.
+    /// The ends of its 95 % interval; `None` if the total is 0.
     pub interval: Option<[f64; 2]>,
 }
 
@@ -27,7 +27,7 @@ impl Rate {
         Self { count, of, share, interval: is_any.then(|| wilson(count, of)) }
     }
 
-    /// It in per cent with its interval, for people.
+    /// The share in per cent with its interval, for people.
     #[must_use]
     pub fn text(&self) -> String {
         let Some((share, [low, high])) = self.share.zip(self.interval) else { return "–".to_owned() };
@@ -41,7 +41,7 @@ fn wilson(count: u64, of: u64) -> [f64; 2] {
     let scale = 1.0 + Z * Z / n;
     let centre = (share + Z * Z / (2.0 * n)) / scale;
     let half = Z / scale * (share * (1.0 - share) / n + Z * Z / (4.0 * n * n)).sqrt();
-    // Rounding must not take the ends beyond what they are for none and for all.
+    // For no cases and for all of them, rounding must not move the ends beyond 0 and 1.
     let low = if count == 0 { 0.0 } else { centre - half };
     let high = if count == of { 1.0 } else { centre + half };
     [low, high]

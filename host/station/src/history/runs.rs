@@ -9,7 +9,7 @@ use serde::{Serialize, Serializer};
 use super::{Period, plans_named};
 use crate::store::{DatabaseError, Found, Snapshot, StoreError, Value, statements, values};
 
-/// The most runs of a page.
+/// The most runs on a page.
 pub const MOST: u32 = 1000;
 
 /// Which runs are wanted; all of them by default.
@@ -27,11 +27,11 @@ pub struct Filter {
     pub lane: Option<String>,
     /// By this operator.
     pub operator: Option<String>,
-    /// That began then.
+    /// That began in this period.
     pub period: Period,
 }
 
-/// The place of a run among all runs: a page goes on after one.
+/// The place of a run among all runs, after which a page can begin.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Place {
     /// When it began, in milliseconds since 1970, UTC.
@@ -75,7 +75,7 @@ pub struct RunLine {
     pub id: String,
     /// When it began, in milliseconds since 1970, UTC.
     pub started_ms: i64,
-    /// When it ended; none while it is open, as of all that follows from its end.
+    /// When it ended; `None` while it is open, like everything else that its end decides.
     pub ended_ms: Option<i64>,
     /// The product.
     pub product: String,
@@ -93,9 +93,9 @@ pub struct RunLine {
     pub operator: String,
     /// `PASS`, `FAIL` or `ERROR`.
     pub verdict: Option<String>,
-    /// Whom or what it is owed to.
+    /// Who or what is the cause of it.
     pub cause: Option<String>,
-    /// It in one sentence.
+    /// The result in one sentence.
     pub headline: Option<String>,
     /// Which judgement of the unit under plans of this name it is, counted from 1; an ERROR has the number of the next one.
     pub nth: i64,
@@ -138,11 +138,11 @@ impl RunLine {
 pub struct Page {
     /// The runs, the newest first.
     pub runs: Vec<RunLine>,
-    /// After which the next page begins; none after the last.
+    /// The place after which the next page begins; `None` on the last page.
     pub next: Option<Place>,
 }
 
-/// At most `limit` runs, 1 to [`MOST`], that `filter` wants, from the one after `after` on.
+/// At most `limit` runs, 1 to [`MOST`], that pass `filter`, beginning with the one after `after`.
 ///
 /// # Errors
 /// [`StoreError`] when the database cannot be read.
@@ -170,7 +170,7 @@ pub fn page(of: &Snapshot, filter: &Filter, after: Option<&Place>, limit: u32) -
     Ok(Page { runs, next })
 }
 
-/// The keys that a name stands for; one that is none when no name is asked for.
+/// The keys that a name stands for; a single `None` when no name is asked for.
 fn each(
     name: Option<&str>,
     keys: impl FnOnce(&str) -> Result<Vec<String>, StoreError>,
@@ -185,7 +185,7 @@ fn units(of: &Snapshot, serial: &str) -> Result<Vec<String>, StoreError> {
     of.rows("to tell a unit", statements::UNITS_OF_SERIAL, values![serial], |row| row.get(0))
 }
 
-/// The first runs for which these columns are as they should be.
+/// The first runs in which these columns have these values.
 fn one(
     of: &Snapshot,
     equal: &[(&str, Option<&String>)],
@@ -206,8 +206,8 @@ fn one(
     of.rows("to tell its runs", &text, &values, RunLine::of)
 }
 
-/// The statement for conditions on these columns, the most selective first. Only that one may choose the index; between two
-/// that it knows nothing of, an engine may choose the one that holds for nearly all runs.
+/// The statement for conditions on these columns, the most selective first. Only that one may choose the index:
+/// between two about which it knows nothing, an engine may choose the one that holds for nearly all runs.
 fn text(equal: &[&str], period: Period, is_next: bool, limit: u32) -> String {
     let mut used = 0;
     let mut parameter = || {
@@ -237,7 +237,7 @@ mod tests {
     use super::*;
     use crate::store::{Folder, Store};
 
-    /// How SQLite carries a statement out.
+    /// How SQLite executes a statement.
     fn explained(of: &Snapshot, text: &str, parameters: usize) -> Vec<String> {
         let values = vec![Value::Whole(1); parameters];
         of.rows("a plan", &format!("EXPLAIN QUERY PLAN {text}"), &values, |row| row.get(3)).unwrap()

@@ -1,10 +1,10 @@
-//! The stations of a plant, as it last heard of them.
+//! The stations of a plant, as it last heard from them.
 
 use serde::Serialize;
 
 use crate::store::{Snapshot, StoreError, statements};
 
-/// How long a station may say nothing, in milliseconds, until it is taken to be away: it says something each half minute.
+/// How long a station may be silent before it is taken to be away, in milliseconds: it reports every half minute.
 const SILENT_MS: i64 = 120_000;
 
 /// A station.
@@ -16,19 +16,19 @@ pub struct Station {
     pub program: String,
     /// Its plans: product, name and version of each.
     pub plans: Vec<String>,
-    /// Entries that the plant does not have yet, as it said last.
+    /// Entries that the plant does not have yet, as the station last said.
     pub unsent: u32,
     /// Those of them that wait for a person.
     pub dead: u32,
-    /// When it was last heard of, in milliseconds since 1970, UTC, by the plant's clock.
+    /// When it was last heard from, in milliseconds since 1970, UTC, by the plant's clock.
     pub seen_ms: i64,
-    /// When the last run began that came from it, by its own clock.
+    /// When the latest run that came from it began, by its own clock.
     pub last_ms: Option<i64>,
-    /// Whether it was heard of within the last two minutes.
+    /// Whether it was heard from within the last two minutes.
     pub is_there: bool,
 }
 
-/// Every station that was ever heard of, by name.
+/// Every station that was ever heard from, by name.
 ///
 /// # Errors
 /// [`StoreError`] when the plant cannot be read.

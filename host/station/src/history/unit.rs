@@ -22,9 +22,9 @@ pub struct Unit {
     pub first_seen_ms: i64,
     /// Its runs, the newest first.
     pub runs: Vec<UnitRun>,
-    /// The devices that it was bound to, the last one first.
+    /// The devices that it was bound to, the latest first.
     pub bindings: Vec<Binding>,
-    /// What stations of a plant bound differently of it; none at a station.
+    /// What stations of a plant bound differently about it; none at a station.
     pub mismatches: Vec<Mismatch>,
 }
 
@@ -35,7 +35,7 @@ pub struct Binding {
     pub device: String,
     /// Since when, in milliseconds since 1970, UTC.
     pub from_ms: i64,
-    /// Until when; none of the one that holds.
+    /// Until when; `None` for the binding that holds.
     pub to_ms: Option<i64>,
     /// Who bound them.
     pub operator: String,
@@ -46,14 +46,14 @@ pub struct Binding {
 /// A run of a unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct UnitRun {
-    /// It in one line.
+    /// The run in one line.
     #[serde(flatten)]
     pub line: RunLine,
     /// The variant; empty if the serial number names none.
     pub variant: String,
     /// The target string of the board.
     pub target: String,
-    /// `mock`, `sim`, `replay` or `hardware`; none if the board did not say who it is, as of the two that follow.
+    /// `mock`, `sim`, `replay` or `hardware`; `None`, like the next two, if the board did not say what it is.
     pub board_kind: Option<String>,
     /// The FPGA's own number, in hexadecimal.
     pub device: Option<String>,
@@ -65,7 +65,7 @@ pub struct UnitRun {
     pub steps: Vec<StepTry>,
     /// The parts that are suspected, the likeliest first.
     pub suspects: Vec<Suspect>,
-    /// Evidence beside the record.
+    /// Evidence in addition to the record.
     pub attachments: Vec<Attachment>,
     /// The waiver of its FAIL.
     pub waivers: Vec<Waiver>,
@@ -133,7 +133,7 @@ pub fn units(of: &Snapshot, serial: &str) -> Result<Vec<Unit>, StoreError> {
     Ok(units)
 }
 
-/// The run of this id, open or over; none if there is none.
+/// The run of this id, open or over; `None` if there is none.
 ///
 /// # Errors
 /// [`StoreError`] when the database cannot be read.
@@ -141,7 +141,7 @@ pub fn run_of(of: &Snapshot, id: &str) -> Result<Option<UnitRun>, StoreError> {
     Ok(runs(of, OF_RUN, id)?.into_iter().next())
 }
 
-/// The column by which the runs of a unit are found, and the one by which one run is.
+/// The columns by which the runs of a unit are found, and by which one run is found.
 const OF_UNIT: &str = "run.unit_id";
 const OF_RUN: &str = "run.id";
 
@@ -163,7 +163,7 @@ fn runs(of: &Snapshot, column: &str, value: &str) -> Result<Vec<UnitRun>, StoreE
     Ok(runs)
 }
 
-/// What `one` makes of the rows that belong to the runs that are asked for, by the run, which is their first column.
+/// What `one` makes of the rows of these runs, by the run, which is in their first column.
 fn by_run<T>(
     of: &Snapshot,
     value: &str,

@@ -5,9 +5,9 @@
 //! | run | where it counts |
 //! |---|---|
 //! | PASS, FAIL | the first one of a unit in the first pass, the last one in the final yield |
-//! | ERROR, crashes and refusals among them | in the rate of errors alone: the unit was not judged |
+//! | ERROR, crashes and refusals among them | only in the rate of errors: the unit was not judged |
 //! | open | nowhere |
-//! | FAIL with a waiver | as the FAIL that it is; a unit whose last judgement it is counts as waived besides |
+//! | FAIL with a waiver | as the FAIL that it is; if it is the unit's last judgement, the unit counts as waived, too |
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -22,7 +22,7 @@ use super::rate::Rate;
 use super::{DAY_MS, Period, PlanName, count, plans};
 use crate::store::{DatabaseError, Found, Snapshot, StoreError, statements, values};
 
-/// What the lines of a yield are about, beside product and plan.
+/// What the lines of a yield are about, in addition to product and plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum By {
     /// Nothing else.
@@ -46,7 +46,7 @@ pub struct Wanted {
     pub station: Option<String>,
     /// In this lane.
     pub lane: Option<String>,
-    /// First judged then; of errors, those that began then.
+    /// First judged in this period; for errors, begun in it.
     pub period: Period,
 }
 
@@ -78,14 +78,14 @@ pub struct Yield {
     pub lane: Option<String>,
     /// Units whose first judgement is PASS, of those that were judged.
     pub first_pass: Rate,
-    /// What the first pass of a day or a week may be if nothing has changed.
+    /// What the first-pass yield of a day or a week may be if nothing has changed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limits: Option<Limits>,
-    /// Units whose last judgement is PASS, of the same.
+    /// Units whose last judgement is PASS, of the same units.
     pub last: Rate,
     /// Units whose last judgement is a FAIL with a waiver.
     pub waived: u64,
-    /// Units that first failed and passed in the end.
+    /// Units that failed at first and passed in the end.
     pub flipped: u64,
     /// Runs that are ERROR, of all that are over.
     pub errors: Rate,
@@ -93,7 +93,7 @@ pub struct Yield {
     pub crashes: u64,
 }
 
-/// A unit that first failed and passed in the end.
+/// A unit that failed at first and passed in the end.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Flip {
     /// Product and plan.
@@ -185,7 +185,7 @@ impl Counts {
         self.flipped += other.flipped;
     }
 
-    /// A unit that was counted by its first judgement has another last one.
+    /// Corrects the counts for a unit that was counted by its first judgement, and has been judged since.
     fn adjust(&mut self, first_passed: bool, last_passed: bool) {
         match (first_passed, last_passed) {
             (false, true) => {
@@ -198,8 +198,8 @@ impl Counts {
     }
 }
 
-/// Every cell, with the units as their first judgement left them: whole days as they were counted when their runs ended,
-/// and parts of days from the runs.
+/// Every cell, with its units as of their first judgement: whole days as they were counted when their runs ended, and
+/// parts of days from the runs.
 fn cells(
     of: &Snapshot,
     wanted: &Wanted,
@@ -223,11 +223,11 @@ fn cells(
     Ok(cells)
 }
 
-/// The whole days of a period, and what it has before and behind them.
+/// The whole days of a period, and its parts before and after them.
 fn in_days(Period { from_ms, until_ms }: Period) -> (Range<i64>, [Period; 2]) {
     let first = from_ms.div_euclid(DAY_MS) + i64::from(from_ms.rem_euclid(DAY_MS) > 0);
     let end = until_ms.div_euclid(DAY_MS);
-    // What ends with the end of time has no part of a day behind it.
+    // A period without an end has no part of a day after it.
     let end = if until_ms == i64::MAX { i64::MAX } else { end };
     if first >= end {
         return (0..0, [Period { from_ms, until_ms }, Period { from_ms: 0, until_ms: 0 }]);
@@ -316,10 +316,10 @@ fn waived(
     Ok(rows.into_iter().collect())
 }
 
-/// What a line is for, beside the plan: the first day of its time, its station, and its lane there.
+/// What a line is for, in addition to the plan: the first day of its time, its station, and its lane there.
 type Place = (Option<i64>, Option<String>, Option<String>);
 
-/// The cells put together.
+/// Adds the cells up to lines.
 fn lines(cells: &BTreeMap<DayCell, Counts>, by: By) -> Vec<Yield> {
     let mut groups = BTreeMap::<(PlanName, Place), Counts>::new();
     for (cell, counts) in cells {
@@ -366,7 +366,7 @@ fn line((plan, (day, station, lane)): (PlanName, Place), counts: &Counts, by: By
     }
 }
 
-/// The date of a day that is so many after 1 January 1970.
+/// The date that is `day` days after 1 January 1970.
 fn date(day: i64) -> Option<Date> {
     let begun = Timestamp::UNIX_EPOCH.checked_add(SignedDuration::from_hours(24 * day)).ok()?;
     Some(begun.to_zoned(tz::TimeZone::UTC).date())
