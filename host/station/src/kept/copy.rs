@@ -1,5 +1,5 @@
-//! Copies of a station's folder: the index of one moment, every piece of evidence that it names, the records that it does not,
-//! and the plans of the plant.
+//! Copies of a station's folder: the index as of one moment, every piece of evidence that it names, the records that
+//! it does not name, and the plans of the plant.
 
 use std::collections::BTreeMap;
 use std::fs::{self, DirBuilder, File, Permissions};
@@ -19,11 +19,11 @@ pub struct Copied {
     pub runs: usize,
     /// Records and attachments.
     pub evidence: usize,
-    /// Records of runs that have no row; what they name is copied, too.
+    /// Records of runs that have no row; what these records name is copied, too.
     pub unknown: usize,
 }
 
-/// A folder that is not copied. Nothing is there then that looks like a copy.
+/// A folder that is not copied. Nothing that looks like a copy is left then.
 #[derive(Debug, thiserror::Error)]
 pub enum CopyError {
     /// There is something where the copy shall be.
@@ -64,8 +64,8 @@ pub enum CopyError {
     Store(#[from] StoreError),
 }
 
-/// Copies the station in `from` to the new folder `to`. Runs may go on meanwhile; the copy is of the moment at which it
-/// began. It has whatever faults the station has, which [`faults`] tells.
+/// Copies the station in `from` to the new folder `to`. Runs may go on meanwhile; the copy is of the moment at which
+/// it began. It has whatever faults the station has, which [`faults`] finds.
 ///
 /// # Errors
 /// [`CopyError`]
@@ -74,28 +74,28 @@ pub fn backup(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
     made(to, |aside| into(from, aside))
 }
 
-/// Makes a station's new folder `to` from the copy in `from`, when all of it is as it was written. A copy of an older
-/// program's is brought up to date on the way, with its database beside the new one; `from` stays as it is.
+/// Makes a station's new folder `to` from the copy in `from`, if all of it is as it was written. A copy of an older
+/// program's is brought up to date on the way, and keeps its old database beside the new one; `from` stays as it is.
 ///
 /// # Errors
 /// [`CopyError`]
 pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
     match sound(from, from) {
-        // The rest is looked at when it is up to date.
+        // The rest is checked once it is up to date.
         Err(CopyError::Store(StoreError::Older { .. })) => refuse(from, &foreign(from)?)?,
         looked_at => looked_at?,
     }
     let mut lock = None;
     made(to, |aside| {
         if to.is_dir() {
-            // Until all is there no start comes between.
+            // No station can start there before all is in place.
             lock = Some(Folder::new(to).lock()?);
         }
         let copied = into(from, aside)?;
         let new = Folder::new(aside);
         sound(&new, from)?;
         if lock.is_some() && new.lock_file().exists() {
-            // It would take the name of the one that is held.
+            // It would replace the one that is held.
             let refused = |source| CopyError::Io { path: to.to_owned(), source };
             fs::remove_file(new.lock_file()).map_err(refused)?;
         }
@@ -103,8 +103,8 @@ pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
     })
 }
 
-/// Makes the folder `to`, whole or not at all: `fill` is given its place aside. One that is there already stays the one that it is,
-/// and may be a disk of its own.
+/// Makes the folder `to`, whole or not at all: `fill` is given a place aside. A folder that exists already remains the
+/// same one, and may be a disk of its own.
 fn made(to: &Path, fill: impl FnOnce(&Path) -> Result<Copied, CopyError>) -> Result<Copied, CopyError> {
     let refused = |source| CopyError::Io { path: to.to_owned(), source };
     let to = std::path::absolute(to).map_err(refused)?;
@@ -132,24 +132,25 @@ fn made(to: &Path, fill: impl FnOnce(&Path) -> Result<Copied, CopyError>) -> Res
         Ok(copied)
     });
     if copied.is_err() {
-        // What cannot be removed is named by the next attempt.
+        // The next attempt names what cannot be removed.
         let _ = fs::remove_dir_all(&aside);
     }
     copied
 }
 
-/// Makes a folder that is for nobody else, whatever the umask: a copy has all that its station keeps from others.
+/// Makes a folder that is for nobody else, whatever the umask, because a copy has all that its station keeps from others.
 fn private_folder(path: &Path) -> io::Result<()> {
     DirBuilder::new().mode(0o700).create(path)
 }
 
-/// Whether there is anything in `folder` but what a file system is made with, and the lock that a restore leaves when it is killed.
+/// Whether `folder` has anything but what a file system is created with, and the lock that a killed restore leaves.
 fn holds_anything(folder: &Path) -> io::Result<bool> {
     let names = fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name())).collect::<io::Result<Vec<_>>>()?;
     Ok(names.iter().any(|name| name != "lost+found" && name != "station.lock"))
 }
 
-/// Moves what is in `aside` to the folder `to` around it, the database last: without it nothing is a copy. Of what fails nothing is left.
+/// Moves what is in `aside` to the folder `to` around it, the database last, because without it nothing is a copy. If
+/// a move fails, the others are undone.
 fn moved_into(aside: &Path, to: &Path) -> io::Result<()> {
     let mut entries = fs::read_dir(aside)?.collect::<io::Result<Vec<_>>>()?;
     let database = Folder::new(aside).database();
@@ -165,17 +166,18 @@ fn moved_into(aside: &Path, to: &Path) -> io::Result<()> {
     fs::remove_dir(aside)
 }
 
-/// What [`restore`] refuses the copy in `folder` for. What has lost runs is as it was written otherwise, and may be all that is left.
+/// The faults for which [`restore`] refuses the copy in `folder`. A copy that has lost runs is otherwise as it was
+/// written, and may be all that is left.
 ///
 /// # Errors
-/// [`StoreError`] when its database cannot be read at all, for which it is refused as well.
+/// [`StoreError`] when its database cannot be read at all, for which it is refused, too.
 pub fn faults(folder: &Folder) -> Result<Vec<Fault>, StoreError> {
     let mut faults = check(folder)?.faults;
     faults.retain(|fault| !matches!(fault, Fault::Unnamed { .. }));
     Ok(faults)
 }
 
-/// Refuses a folder in which anything is not as it was written, as a fault of the one that is `named`.
+/// Refuses a folder in which anything is not as it was written; the error names the folder `named`.
 fn sound(folder: &Folder, named: &Folder) -> Result<(), CopyError> {
     refuse(named, &faults(folder)?)
 }
@@ -194,7 +196,7 @@ fn refuse(named: &Folder, faults: &[Fault]) -> Result<(), CopyError> {
 fn into(from: &Folder, aside: &Path) -> Result<Copied, CopyError> {
     let to = Folder::new(aside);
     let refused = |source| CopyError::Io { path: aside.to_owned(), source };
-    // Listed first: a run has a row before it has a record.
+    // Listed before the database is copied, because a run has a row before it has a record.
     let pieces = from.blobs().all().map_err(StoreError::from)?;
     from.copy_database(&to.database())?;
     let private = |file: File| {
@@ -210,7 +212,7 @@ fn into(from: &Folder, aside: &Path) -> Result<Copied, CopyError> {
     Kept::of(from.path()).copy_to(&plans)?;
     let copy = match Snapshot::take(&to) {
         Err(StoreError::Older { .. }) => {
-            // Whoever opens it to write brings it up to date.
+            // Opening it for writing brings it up to date.
             Store::open(&to).map_err(|error| as_in(from, error))?;
             Snapshot::take(&to)?
         }
@@ -247,8 +249,8 @@ fn copy_named(
     Ok(evidence)
 }
 
-/// Copies the records among `pieces` that no row names, and what they name, and returns how many of them are of runs without a
-/// row.
+/// Copies the records among `pieces` that no row names, and what they name; returns how many of them are of runs
+/// without a row.
 fn copy_unnamed(copy: &Snapshot, pieces: &[Piece], from: &Blobs, to: &Blobs) -> Result<usize, StoreError> {
     let named = copy.named_evidence()?;
     let records = from.unnamed_records(pieces, &named)?;
@@ -264,7 +266,7 @@ fn copy_unnamed(copy: &Snapshot, pieces: &[Piece], from: &Blobs, to: &Blobs) -> 
     Ok(copy.without_row(records)?.len())
 }
 
-/// What is wrong with the database of the copy is wrong with the one that it is of.
+/// What is wrong with the copy's database is wrong with the one that was copied.
 fn as_in(from: &Folder, error: StoreError) -> StoreError {
     match error {
         StoreError::OtherSchema { version, .. } => StoreError::OtherSchema { path: from.database(), version },

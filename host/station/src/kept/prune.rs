@@ -1,4 +1,4 @@
-//! Evidence that is older than it need be kept. Records and rows are kept for ever.
+//! Evidence that is older than it has to be kept. Records and rows are kept for ever.
 
 use std::fs;
 
@@ -14,11 +14,11 @@ pub struct Pruned {
     pub bytes: u64,
 }
 
-/// Removes all evidence of which every run ended before `before_ms`, milliseconds since 1970, UTC. That it is removed is
-/// in the audit before it is, so that `check` can tell it from evidence that is lost.
+/// Removes all evidence whose runs all ended before `before_ms`, milliseconds since 1970, UTC. The removal is entered
+/// in the audit first, so that `check` can tell what was removed from what is lost.
 ///
 /// # Errors
-/// [`StoreError`]; what is removed by then is in the audit.
+/// [`StoreError`]; what was removed before is in the audit.
 pub fn prune(store: &mut Store, before_ms: i64, operator: &str) -> Result<Pruned, StoreError> {
     let blobs = store.folder().blobs();
     let old = store.old_evidence(before_ms)?;

@@ -1,4 +1,4 @@
-//! What no row names: a run wrote it down, and ended before its row did. The power went, or the disk was full.
+//! What no row names: a run wrote it, and ended before its row was written, because the power failed or the disk was full.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -9,9 +9,10 @@ use std::time::{Duration, SystemTime};
 use crate::record::{BlobError, Blobs, Piece};
 use crate::store::{Snapshot, Store, StoreError};
 
-/// How long it is kept, for somebody who asks what happened.
+/// How long it is kept, in case somebody asks what happened.
 const KEPT: Duration = Duration::from_secs(86_400);
-/// What its removal is called in the audit. `check` excuses nothing by it: a run that names such bytes later has them.
+/// What its removal is called in the audit. It is no excuse for `check`, because a run that names the same bytes later
+/// has them.
 const ACT: &str = "prune unnamed";
 
 /// What was removed.
@@ -19,18 +20,18 @@ const ACT: &str = "prune unnamed";
 pub struct Unnamed {
     /// Pieces of evidence.
     pub pieces: usize,
-    /// Folders of what runs wrote down while they were under way.
+    /// Folders that runs wrote to while they were under way.
     pub spools: usize,
     /// The bytes of both.
     pub bytes: u64,
 }
 
-/// Removes evidence and spools that are a day old and that no row names. A record is kept though no row names it, and all
-/// that it names, for it alone can tell of its run. A run that is open keeps its spool. All is in the audit before it is
-/// removed.
+/// Removes evidence and spools that are a day old and that no row names. A record that no row names is kept, with all
+/// that it names, because it alone can tell of its run. An open run keeps its spool. Everything is entered in the
+/// audit before it is removed.
 ///
 /// # Errors
-/// [`StoreError`]; what is removed by then is in the audit.
+/// [`StoreError`]; what was removed before is in the audit.
 pub fn prune_unnamed(store: &mut Store, operator: &str) -> Result<Unnamed, StoreError> {
     let blobs = store.folder().blobs();
     let pieces = old_pieces(store, &blobs)?;
@@ -65,7 +66,7 @@ fn old_pieces(store: &Store, blobs: &Blobs) -> Result<Vec<Piece>, StoreError> {
     Ok(all.into_iter().filter(may_go).collect())
 }
 
-/// What a run wrote down that is over, or that no row names.
+/// The spool of a run that is over, or that no row names.
 #[derive(Clone, Debug)]
 pub(crate) struct Spool {
     /// The run.
@@ -74,9 +75,9 @@ pub(crate) struct Spool {
     pub path: PathBuf,
     /// How many bytes are in it.
     pub bytes: u64,
-    /// Whether its run is over: all that is worth keeping of it is evidence.
+    /// Whether its run is over, so that all of it that is worth keeping is evidence.
     pub is_over: bool,
-    /// Whether it may go though no row names it.
+    /// Whether no row names it, and it is old enough to be removed.
     pub is_old: bool,
 }
 
@@ -113,7 +114,7 @@ fn size_and_age(folder: &Path) -> io::Result<(u64, SystemTime)> {
     Ok((bytes, changed))
 }
 
-/// Whether something that was last written at this moment may go. What was written in the future may not.
+/// Whether something that was last written at this moment may be removed. What was written in the future may not.
 fn is_old(written: SystemTime) -> bool {
     SystemTime::now().duration_since(written).is_ok_and(|age| age >= KEPT)
 }

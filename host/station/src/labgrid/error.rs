@@ -1,10 +1,10 @@
-//! Why a place cannot be had.
+//! Why a place cannot be acquired.
 
 use std::io;
 
 use serde::Deserialize;
 
-/// A board of labgrid's that the lane does not get.
+/// Why the lane does not get a board from labgrid.
 #[derive(Debug, thiserror::Error)]
 pub enum LabgridError {
     /// The program that reaches labgrid did not start.
@@ -23,7 +23,7 @@ pub enum LabgridError {
     Failed {
         /// The program.
         program: String,
-        /// The last that it complained of.
+        /// The last line that it wrote to stderr.
         said: String,
     },
     /// It gave no answer in time.
@@ -33,7 +33,7 @@ pub enum LabgridError {
     Late {
         /// The place.
         place: String,
-        /// How long it was waited for.
+        /// How long the answer was waited for.
         seconds: f64,
     },
     /// Nobody answers where the coordinator should be.
@@ -113,7 +113,7 @@ pub enum LabgridError {
     },
 }
 
-/// What the program that reaches labgrid says.
+/// What the program that reaches labgrid answers.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum Answer {
@@ -131,7 +131,7 @@ pub(super) struct Port {
     pub(super) speed: Option<u32>,
 }
 
-/// Why there is none.
+/// Why there is no port.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "why", rename_all = "kebab-case")]
 pub(super) enum Why {
@@ -147,7 +147,7 @@ pub(super) enum Why {
 }
 
 impl Why {
-    /// It as an error of the place.
+    /// Turns it into an error about the place.
     pub(super) fn of(self, place: String) -> LabgridError {
         match self {
             Self::CoordinatorAway { coordinator } => LabgridError::CoordinatorAway { coordinator },

@@ -1,4 +1,4 @@
-//! A place that is held, by a process that gives it back when its stdin ends.
+//! A place that is held by a process, which gives it back when its stdin ends.
 
 use std::io::{BufRead as _, BufReader, Read};
 use std::os::unix::process::CommandExt as _;
@@ -14,10 +14,10 @@ use super::error::{Answer, Port};
 use super::{LabgridError, Place};
 use crate::process_group::{killed, waited};
 
-/// How often it is looked whether anybody wants the run to end.
+/// How often to check whether anybody wants the run to end.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// A place that is ours.
+/// A place that the lane has.
 #[derive(Debug)]
 pub struct Held {
     /// Its board, as this computer reaches it.
@@ -27,7 +27,7 @@ pub struct Held {
 }
 
 impl Place {
-    /// Acquires the place; nothing if `is_stopped` comes first.
+    /// Acquires the place; `None` if `is_stopped` comes first.
     ///
     /// # Errors
     /// [`LabgridError`]
@@ -45,7 +45,7 @@ impl Place {
         }
     }
 
-    /// Gives the place back if this lane has it from a time that ended without.
+    /// Gives the place back if this lane still has it from an earlier run that did not.
     ///
     /// # Errors
     /// [`LabgridError`]
@@ -60,7 +60,7 @@ impl Place {
         }
     }
 
-    /// The process's answer; nothing if `is_stopped` comes first.
+    /// The process's answer; `None` if `is_stopped` comes first.
     fn answered(
         &self,
         holder: &mut Holder,
@@ -102,7 +102,7 @@ impl Place {
         LabgridError::Failed { program: self.program(), said }
     }
 
-    /// Has the place given back, without waiting for it; the next one to hold it does.
+    /// Has the place given back without waiting for that; whoever holds it next waits.
     fn leave(&self, mut holder: Holder) {
         drop(holder.stdin.take());
         let (name, deadline) = (self.name.clone(), self.labgrid.deadline);
@@ -114,7 +114,7 @@ impl Place {
         }
     }
 
-    /// Waits until an earlier run has given the place back, or cannot.
+    /// Waits until an earlier run has given the place back, or failed to.
     pub(super) fn wait_until_left(&self) {
         let leaving = self.leaving.lock().unwrap_or_else(PoisonError::into_inner).take();
         if leaving.is_some_and(|leaving| leaving.join().is_err()) {
@@ -124,13 +124,14 @@ impl Place {
 }
 
 impl Held {
-    /// Gives the place back. The place's next hold waits for the end of it, and nothing else does.
+    /// Gives the place back. Only the next hold of the place waits for that.
     pub fn give_back(self) {
         self.place.leave(self.holder);
     }
 }
 
-/// A raw port. What speed its exporter says that the line behind it has is what deadlines are counted from; it sets nothing.
+/// The target of a raw port. Deadlines are computed from the speed that its exporter states for the line behind it; it
+/// sets nothing.
 fn reached(port: &Port) -> Target {
     let Port { host, port, speed } = port;
     let host = if host.contains(':') && !host.starts_with('[') { format!("[{host}]") } else { host.clone() };
@@ -138,14 +139,14 @@ fn reached(port: &Port) -> Target {
     Target { kind: "tcp".to_owned(), address: Some(format!("{host}:{port}")), options }
 }
 
-/// A line of the process's.
+/// A line that the process wrote.
 #[derive(Debug)]
 enum Line {
     Said(String),
     Complained(String),
 }
 
-/// The process that has the place.
+/// The process that holds the place.
 #[derive(Debug)]
 struct Holder {
     child: Child,
@@ -172,7 +173,7 @@ impl Holder {
         Ok(holder)
     }
 
-    /// Waits for the end of the process, which has no stdin any more.
+    /// Waits for the end of the process, whose stdin is closed.
     fn left(mut self, place: &str, deadline: Duration) {
         let Some(status) = waited(&mut self.child, deadline) else {
             tracing::warn!(
@@ -187,7 +188,7 @@ impl Holder {
     }
 }
 
-/// Hands on what the process writes, to its end, so that it never waits for a reader.
+/// Passes on what the process writes, to its end, so that it never waits for a reader.
 fn read(
     from: impl Read + Send + 'static,
     line: fn(String) -> Line,
@@ -206,7 +207,7 @@ mod tests {
 
     use super::*;
 
-    /// An address of IPv6 stands between brackets in front of a port (RFC 3986, section 3.2.2).
+    /// An IPv6 address before a port is in brackets (RFC 3986, section 3.2.2).
     #[test]
     fn a_port_is_reached_where_its_exporter_says_and_its_deadlines_know_the_line_behind_it() {
         for (answer, target) in [
@@ -219,7 +220,7 @@ mod tests {
         }
     }
 
-    /// Ctrl-C goes to the whole group of the station, and the run is to end before its board is given away.
+    /// Ctrl-C goes to the whole group of the station, and the run is to end before its board is given back.
     #[test]
     fn what_has_the_place_is_in_a_group_of_its_own() {
         let holder = Holder::start(Command::new("cat")).unwrap();

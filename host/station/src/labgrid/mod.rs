@@ -1,12 +1,12 @@
-//! Boards of a laboratory that labgrid shares out: a lane has one for the time of a run.
+//! Boards that labgrid shares out in a laboratory: a lane has one for the time of a run.
 //!
 //! ```text
 //!  run ── stdin, open while it lasts ──► halfrow-labgrid ── acquire, release ──► labgrid's coordinator
 //!      ◄── the port, or why there is none ──┘ (python/halfrow-labgrid)
 //! ```
 //!
-//! A place is given back however the station ends, for its pipe ends with it. labgrid's lock is politeness towards people; what keeps two
-//! hosts off one board is the board's own session.
+//! A place is given back however the station ends, because its pipe ends with it. labgrid's lock is a courtesy towards
+//! people; what keeps two hosts off one board is the board's own session.
 
 mod error;
 mod held;
@@ -37,7 +37,7 @@ pub const PROGRAM: &str = "halfrow-labgrid";
 pub struct Labgrid {
     /// The program that reaches labgrid.
     pub program: PathBuf,
-    /// Host and port of the coordinator; without them those that labgrid itself goes to.
+    /// Host and port of the coordinator; `None` for those that labgrid itself uses.
     pub coordinator: Option<String>,
     /// How long a place may take to be acquired or given back.
     pub deadline: Duration,
@@ -53,7 +53,7 @@ pub enum LaneBoard {
 }
 
 impl LaneBoard {
-    /// Whether both are the same board, as far as their names tell.
+    /// Whether both are the same board, as far as their names say.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
@@ -65,7 +65,7 @@ impl LaneBoard {
         }
     }
 
-    /// Whether something is plugged in where the board is; one that is lent is always there.
+    /// Whether something is plugged in at the board's place; a lent board is always there.
     pub(crate) fn is_there(&self, devices: &Path) -> bool {
         match self {
             Self::Own(target) => presence::is_there(target, devices),
@@ -83,15 +83,15 @@ impl fmt::Display for LaneBoard {
     }
 }
 
-/// A place of labgrid's, of which one run at a time has the board.
+/// One of labgrid's places, whose board one run at a time has.
 #[derive(Clone, Debug)]
 pub struct Place {
     /// Its name.
     pub name: String,
-    /// Who has it, as labgrid shows it behind this computer's name.
+    /// Who has it: labgrid shows this after this computer's name.
     user: String,
     labgrid: Labgrid,
-    /// Who still waits for it to be given back.
+    /// The thread that still waits for it to be given back.
     leaving: Arc<Mutex<Option<JoinHandle<()>>>>,
 }
 
@@ -100,12 +100,12 @@ impl Place {
     #[must_use]
     pub fn new(name: String, station: &str, lane: &str, labgrid: Labgrid) -> Self {
         let user = format!("halfrow-{station}-{lane}");
-        // labgrid takes users' names apart at slashes.
+        // labgrid splits users' names at slashes.
         let user = user.chars().map(|one| if one.is_ascii_alphanumeric() { one } else { '-' }).collect();
         Self { name, user, labgrid, leaving: Arc::default() }
     }
 
-    /// The call of the program that reaches labgrid.
+    /// A command that runs the program that reaches labgrid.
     fn call(&self, act: &str) -> Command {
         let mut call = without_secrets(&self.labgrid.program);
         call.args([act, "--place", &self.name, "--user", &self.user]);
@@ -123,13 +123,14 @@ fn places<'a>(boards: impl Iterator<Item = &'a LaneBoard>) -> impl Iterator<Item
     })
 }
 
-/// Waits until what the last runs of these lanes had is given back: whoever starts the station may kill all that it leaves behind.
+/// Waits until what the last runs of these lanes had is given back, because whoever started the station may kill all
+/// that it leaves behind.
 pub fn wait_until_left<'a>(boards: impl Iterator<Item = &'a LaneBoard>) {
     places(boards).for_each(Place::wait_until_left);
 }
 
-/// Gives back what an earlier station of these lanes left acquired, of all places at once. One that cannot be asked for is told in the
-/// log: its next run says so, too.
+/// Gives back what an earlier station of these lanes left acquired, all places at once. A failure is logged; the next
+/// run in that place reports it, too.
 pub fn give_back<'a>(boards: impl Iterator<Item = &'a LaneBoard>) {
     thread::scope(|scope| {
         places(boards).for_each(|place| {
@@ -146,7 +147,7 @@ pub fn give_back<'a>(boards: impl Iterator<Item = &'a LaneBoard>) {
 mod tests {
     use super::*;
 
-    /// labgrid takes a user's name apart at its slash, and shows what stands in front of it as the computer.
+    /// labgrid splits a user's name at its slash, and shows the part before it as the computer.
     #[test]
     fn the_name_under_which_a_place_is_had_holds_nothing_that_labgrid_reads_otherwise() {
         let labgrid =
