@@ -73,12 +73,12 @@ impl Try {
         Self { cause: RunCause::Operator, ..Self::refused(why) }
     }
 
-    /// With these measurements: a PASS that misses a limit is what the limit says, and a FAIL with a limit that blames
-    /// the station is ERROR.
+    /// Adds these measurements: a PASS that misses a limit becomes what the limit says, and a FAIL that misses one
+    /// which blames the station becomes ERROR.
     fn measured(mut self, measurements: Vec<Measured>) -> Self {
         let faults: Vec<_> = measurements.iter().filter_map(|one| Some((one.fault()?, one.said()))).collect();
         self.measurements = measurements;
-        // What is not the board's fault is worse: the board was not judged rightly then.
+        // A fault that is not the board's is worse: the board was not judged correctly then.
         let worst = faults.iter().find(|(cause, _)| *cause != RunCause::Board).or(faults.first());
         let is_worse = |cause: &RunCause| match self.outcome {
             StepOutcome::Passed => true,
@@ -96,18 +96,20 @@ impl Try {
     }
 }
 
-/// What the steps of a run have in common.
+/// What all steps of a run share.
 pub(super) struct Common<'a> {
     pub(super) plan: &'a Plan,
     pub(super) target: &'a Target,
-    /// Whether it is the mock in the place of a unit that is known to be bad, of which the plan's demands on boards say nothing.
+    /// Whether this is the mock in the place of a unit that is known to be bad; the plan's demands on boards do not
+    /// apply to it.
     pub(super) is_mock: bool,
     pub(super) seed: u64,
     pub(super) stop: &'a Stop,
-    /// Asks the station whether the board may be judged under the serial number; says who wants the run to end instead.
+    /// Asks the station whether the board may be judged under the serial number; `Err` says who wants the run to end
+    /// instead.
     pub(super) rule: &'a dyn Fn(&BoardSeen) -> Result<Ruling, StoppedBy>,
     pub(super) limits: &'a [Limit],
-    /// Where frames that are wrong are kept.
+    /// Where wrong frames are kept.
     pub(super) spool: &'a Path,
     /// The board that the run began with.
     pub(super) first: Option<BoardSeen>,
@@ -124,7 +126,7 @@ impl Common<'_> {
         Try { board: Some(seen), ..result }
     }
 
-    /// Why the plan takes no such board.
+    /// Why the plan does not take such a board, if it does not.
     fn not_allowed(&self, kind: BoardKind, seen: &BoardSeen) -> Option<Try> {
         if self.is_mock {
             return None;
@@ -132,7 +134,7 @@ impl Common<'_> {
         let Plan { production, builds, device, .. } = self.plan;
         if production.require_hardware && kind != BoardKind::Hardware {
             let refused = Try::refused(Saying::HardwareAlone { kind: kind.to_string() });
-            // As `halfrow verify` ends, where hardware was required and this was none.
+            // `halfrow verify` ends like this where hardware was required and the board is none.
             Some(Try { exit: Exit::NothingJudged, ..refused })
         } else if !builds.contains(&seen.build) {
             let (build, builds) = (seen.build.clone(), builds.join(", "));
@@ -144,7 +146,7 @@ impl Common<'_> {
         }
     }
 
-    /// Whether the device may be judged under the serial number, which the station knows.
+    /// Whether the station lets the device be judged under the serial number.
     fn ruled(&self, seen: &BoardSeen) -> Try {
         let [name, kind, build] = [&seen.name, &seen.kind, &seen.build].map(String::clone);
         let of = |saying| Try::of(Cause::Equal, saying);
@@ -192,7 +194,7 @@ impl Common<'_> {
     }
 
     /// Judges the board.
-    /// Frames that are wrong are kept under the step's place and the try.
+    /// Wrong frames are kept under the step's number and the try.
     pub(super) fn verify(
         &self,
         judging: &Judging,
@@ -208,7 +210,7 @@ impl Common<'_> {
         let Finished { report, evidence } =
             match halfrow::verify(&plan, candidate, &self.run_options(within), progress) {
                 Ok(finished) => finished,
-                // The plan does not fit the board, which was not judged.
+                // The plan does not fit the board, so the board was not judged.
                 Err(misfit) => return Try::error(Cause::Refused, &misfit),
             };
         let frames =
@@ -234,7 +236,7 @@ impl Common<'_> {
             arguments: std::env::args_os().map(|one| one.to_string_lossy().into_owned()).collect(),
             files: self.plan.files.clone(),
             draws: Draws::draw(),
-            // The record has them.
+            // The record has the operator.
             operator: None,
         };
         RunOptions {
@@ -246,7 +248,7 @@ impl Common<'_> {
         }
     }
 
-    /// Another board than the run began with.
+    /// The refusal of a board that is not the one with which the run began.
     fn exchanged(&self, seen: &BoardSeen) -> Option<Try> {
         let first = self.first.as_ref().filter(|first| *first != seen)?;
         let name = |board: &BoardSeen| {
@@ -261,7 +263,7 @@ impl Common<'_> {
         link::open(self.target).map_err(|error: OpenError| Box::new(Try::error(error.class().into(), &error)))
     }
 
-    /// Does `act` in a session with the board, with what the board says of itself.
+    /// Does `act` in a session with the board, given what the board says about itself.
     fn with_board<T>(
         &self,
         within: Duration,
@@ -283,15 +285,15 @@ fn seen(kind: BoardKind, identity: &Identity) -> BoardSeen {
     let has_number = identity.serial.bytes().any(|digit| digit != b'0');
     BoardSeen {
         kind: kind.to_string(),
-        // A name that fills up a field of the board's ends with zeros.
+        // A board fills the field of its name up with zeros.
         name: plain(identity.name.trim_end_matches('\0')).into_owned(),
         device: has_number.then(|| identity.serial.clone()),
         build: identity.build.clone(),
     }
 }
 
-/// What the judge found. Where it broke off, its sentence begins with the samples that differed by then, and other languages make it
-/// of the figures.
+/// What the judge found. If it broke off, its sentence begins with the samples that differed until then, and other
+/// languages build that from the figures.
 fn found(report: &Report) -> Said {
     let mut said = Said::from(&report.finding);
     let broke_off = report.verdict() == Verdict::Error && matches!(report.finding, Finding::Problem(_));
@@ -308,7 +310,7 @@ fn found(report: &Report) -> Said {
     said
 }
 
-/// What the operator does: with a board that is wrong what a technician does, else what the finding asks for.
+/// What the operator does: for a wrong board what a technician would do, otherwise what the finding asks for.
 fn at_the_bench(report: &Report) -> Option<String> {
     report.technician().or_else(|| report.remedy())
 }

@@ -1,4 +1,4 @@
-//! The lane's own side: carries a job out and tells of it. It ends no process and prints nothing.
+//! The lane's own side: carries a job out and reports on it. It ends no process and prints nothing.
 
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, OnceLock};
@@ -16,10 +16,10 @@ use crate::plan::{Act, Plan, Step};
 use crate::record::{BoardSeen, StepOutcome, StepRecord};
 use crate::said::{Said, Saying};
 
-/// How often a lane that waits for the station looks whether it is to end.
+/// How often a lane that waits for the station checks whether it is to end.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// Hands on what the station says while the job is under way.
+/// Passes on what the station says while the job is under way.
 #[derive(Clone, Debug)]
 pub struct Orders {
     stop: Arc<OnceLock<StoppedBy>>,
@@ -33,7 +33,7 @@ pub struct Heeded {
     rulings: Receiver<Ruling>,
 }
 
-/// The two ends between whoever reads what the station says and the job.
+/// The two ends of the connection from whoever reads what the station says to the job.
 #[must_use]
 pub fn orders() -> (Orders, Heeded) {
     let (stop, (sender, rulings)) = (Arc::default(), mpsc::channel());
@@ -41,12 +41,12 @@ pub fn orders() -> (Orders, Heeded) {
 }
 
 impl Orders {
-    /// The station has said `control`.
+    /// Takes `control`, which the station has said.
     pub fn take(&self, control: Control) {
         match control {
-            // The first one counts.
+            // Only the first one counts.
             Control::Stop(stopper) => drop(self.stop.set(stopper.into())),
-            // A job that is over waits for none.
+            // A job that is over waits for no ruling.
             Control::Device(ruling) => drop(self.rulings.send(ruling)),
         }
     }
@@ -58,7 +58,7 @@ impl Heeded {
         Stop::when(move || asked.get().copied())
     }
 
-    /// The next ruling; who wants the job to end, if that comes first.
+    /// The next ruling, or who wants the job to end, if that comes first.
     fn ruling(&self) -> Result<Ruling, StoppedBy> {
         loop {
             match self.rulings.recv_timeout(LOOK) {
@@ -73,7 +73,7 @@ impl Heeded {
     }
 }
 
-/// Carries the job out, step by step, and tells of it. A step that does not pass is the last one.
+/// Carries the job out, step by step, and reports on it. A step that does not pass is the last one.
 pub fn carry_out(job: &Job, heeded: &Heeded, tell: &(dyn Fn(&Message) + Sync)) {
     tell(&Message::Begun { program: halfrow::VERSION.to_owned() });
     match prepared(job) {
@@ -85,7 +85,7 @@ pub fn carry_out(job: &Job, heeded: &Heeded, tell: &(dyn Fn(&Message) + Sync)) {
     }
 }
 
-/// The plan as the run began with it.
+/// The plan, which must be the one with which the run began, and the board's target.
 fn prepared(job: &Job) -> Result<(Plan, Target), Said> {
     let plan = Plan::parse(&job.plan, job.text.clone());
     let plan = plan.map_err(|error| Said::of(&error))?;

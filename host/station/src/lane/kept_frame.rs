@@ -1,4 +1,4 @@
-//! Frames that a board gave wrong, kept whole for whoever looks at the run.
+//! Wrong frames from a board, kept whole for whoever looks into the run.
 
 use std::fs::{self, File};
 use std::io::{self, Write as _};
@@ -9,11 +9,11 @@ use halfrow::frames::png;
 use halfrow::model::{BitDepth, Frame, Phase};
 use halfrow::result::Evidence;
 
-/// Frames that are kept of a try of a step.
+/// The most frames that are kept of a try of a step.
 const MOST_FRAMES: usize = 2;
-/// Bytes that all frames of a run may have, as PNGs.
+/// The most bytes that all frames of a run may take, as PNGs.
 const MOST_BYTES: u64 = 32 << 20;
-/// How the names of the files end, and no other file of a lane.
+/// The ending of the files' names, which no other file of a lane has.
 const ENDING: &str = ".png";
 /// The file that names what is not kept, and why.
 pub(crate) const NOT_KEPT: &str = "not-kept.txt";
@@ -52,14 +52,14 @@ impl View {
     }
 }
 
-/// Which frame a file holds. A PNG says neither depth nor phase, so its name does.
+/// Which frame a file holds. A PNG states neither depth nor phase, so its name does.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct KeptFrame {
     /// The step's place in the plan, from 1.
     pub(crate) seq: u32,
     /// Which try, from 1.
     pub(crate) attempt: u32,
-    /// Its place in the report's list of frames, from 0.
+    /// Its index in the report's list of frames, from 0.
     pub(crate) index: usize,
     /// The bits of a sample.
     pub(crate) depth: BitDepth,
@@ -68,7 +68,7 @@ pub(crate) struct KeptFrame {
 }
 
 impl KeptFrame {
-    /// Every view.
+    /// All views.
     pub(crate) const VIEWS: [View; 3] = [View::In, View::Out, View::Should];
 
     /// The file's name.
@@ -91,14 +91,14 @@ impl KeptFrame {
     }
 }
 
-/// Keeps in `folder` the first frames that differ, each of another name, as a try of a step left them: `frames` are all of the try by
-/// name and whether they differ, and `evidence` those that the judge has kept. What cannot be kept is told in the lane's log and named
-/// in [`NOT_KEPT`]: no verdict hangs on it.
+/// Keeps in `folder` the first frames that differ in a try of a step, each with another name. `frames` are all frames
+/// of the try: their names, and whether they differ; `evidence` are those that the judge has kept. What cannot be kept
+/// is logged by the lane and named in [`NOT_KEPT`]; no verdict depends on it.
 pub(super) fn keep(folder: &Path, place: (u32, u32), frames: &[(&str, bool)], evidence: &[Evidence]) {
     keep_as(folder, place, frames, evidence, &encoded);
 }
 
-/// How a frame becomes a file.
+/// Encodes a frame as the content of a file.
 type Encode<'a> = &'a dyn Fn(&Frame) -> io::Result<Vec<u8>>;
 
 fn keep_as(
@@ -132,7 +132,7 @@ fn keep_as(
     }
 }
 
-/// The first frames that differ, by place and name. The same picture again shows little more.
+/// The first frames that differ, by index and name. The same picture once more shows little else.
 fn first_that_differ<'a>(frames: &[(&'a str, bool)]) -> Vec<(usize, &'a str)> {
     let mut first: Vec<(usize, &str)> = Vec::new();
     for (index, (name, differs)) in frames.iter().enumerate() {
@@ -147,7 +147,7 @@ fn written(path: &Path, png: &[u8]) -> Result<(), NotKept> {
     Ok(write_aside(path, true, |file| file.write_all(png))?)
 }
 
-/// Tells that a picture is not kept, where those look who look for it.
+/// Reports that a picture is not kept, in the place where people look for it.
 fn tell(folder: &Path, name: &str, error: NotKept) {
     let why = format!("{name} is not kept: {:#}", anyhow::Error::from(error));
     tracing::warn!("{why}");
@@ -169,7 +169,7 @@ fn kept(folder: &Path) -> u64 {
     sizes.filter_map(|name| fs::metadata(folder.join(name)).ok()).map(|known| known.len()).sum()
 }
 
-/// The names of the files of frames in `folder`, in order.
+/// The names of the files of frames in `folder`, sorted.
 ///
 /// # Errors
 /// The system's, when the folder cannot be read.
@@ -196,7 +196,7 @@ mod tests {
         }
     }
 
-    /// A frame of which one sample is wrong, `index` in the report.
+    /// A frame with one wrong sample, at `index` in the report.
     fn wrong(index: usize) -> Evidence {
         let expected = Frame::new(8, BitDepth::Twelve, Phase::default(), vec![9; 32]).unwrap();
         let found =
@@ -228,7 +228,7 @@ mod tests {
     #[test]
     fn a_picture_that_cannot_be_kept_is_named_and_leaves_no_file() {
         let folder = tempfile::tempdir().unwrap();
-        // The one of the three with another sample finds a full disk.
+        // The disk is full for the one of the three that has another sample.
         let encode = |frame: &Frame| match frame.samples().contains(&7) {
             true => png::encode(frame, &mut [0_u8; 16].as_mut_slice())
                 .map(|()| Vec::new())

@@ -1,4 +1,4 @@
-//! What supervisor and lane tell each other: one JSON object a line.
+//! What supervisor and lane say to each other: one JSON object per line.
 
 use std::path::PathBuf;
 
@@ -26,8 +26,8 @@ pub struct Job {
     pub variant: String,
     /// The seed of the run.
     pub seed: u64,
-    /// Whether the board is the mock in the place of a unit that is known to be bad: it is neither hardware nor of a build that
-    /// was released, and limits say nothing of it.
+    /// Whether the board is the mock in the place of a unit that is known to be bad: it is neither hardware nor of a
+    /// released build, and limits do not apply to it.
     pub is_mock: bool,
     /// The folder for what is kept of the run.
     pub spool: PathBuf,
@@ -35,7 +35,7 @@ pub struct Job {
     pub memory_mib: u64,
 }
 
-/// What the lane reads after it.
+/// What the lane reads after its job.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Control {
@@ -72,7 +72,7 @@ pub enum Ruling {
         /// Why.
         why: Said,
     },
-    /// It cannot be told.
+    /// It could not be found out.
     Untold {
         /// Why.
         why: Said,
@@ -101,13 +101,13 @@ impl From<Stopper> for StoppedBy {
     }
 }
 
-/// What the lane tells.
+/// What the lane reports.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "told", rename_all = "kebab-case")]
 pub enum Message {
     /// The lane has its job: the first message.
     Begun {
-        /// The program that it is of, as records have it.
+        /// Its program, as records name it.
         program: String,
     },
     /// A try of a step begins.
@@ -124,16 +124,16 @@ pub enum Message {
         /// The board.
         board: BoardSeen,
     },
-    /// The step does something else.
+    /// The step begins to do something else.
     Doing {
-        /// What, for people.
+        /// What, in words for people.
         what: String,
     },
     /// Rows that came back so far.
     Rows {
         /// How many.
         done: u64,
-        /// Of so many.
+        /// Of how many.
         expected: u64,
     },
     /// A try of a step is over.
@@ -143,7 +143,7 @@ pub enum Message {
     },
     /// All is done: the last message.
     Done,
-    /// The job cannot be done: the last message, too.
+    /// The job cannot be done; this is the last message, too.
     Refused {
         /// Why, and what to do.
         why: Said,

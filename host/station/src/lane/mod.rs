@@ -5,7 +5,8 @@
 //!             ◄── messages, one JSON line each ── stdout    lane ─► the judge ─► board
 //! ```
 //!
-//! The lane has neither store nor verdict: it asks the station whether the device may have the serial number. It ends when its stdin does, so that it cannot outlive the station.
+//! The lane has neither store nor verdict: it asks the station whether the device may have the serial number. It ends
+//! when its stdin does, so it cannot outlive the station.
 
 mod acts;
 pub mod child;
@@ -14,10 +15,10 @@ mod message;
 mod progress;
 pub mod supervisor;
 
-/// How much memory a lane may have that nobody limits, in MiB of addresses: it takes some 60 MiB of them at work, and its threads'
-/// stacks and arenas are addresses, too.
+/// How much memory a lane may have by default, in MiB of addresses. It takes some 60 MiB at work; the stacks and
+/// arenas of its threads count as addresses, too.
 pub const MEMORY_MIB: u64 = 4096;
-/// How much it may be given.
+/// How much it may be given, in MiB.
 pub const MEMORIES_MIB: std::ops::RangeInclusive<u64> = 64..=1_048_576;
 
 pub use message::{Control, Job, Message, Ruling, Stopper};

@@ -1,4 +1,4 @@
-//! Progress of the judge as messages, not more of them than somebody can read.
+//! The judge's progress as messages, no more of them than somebody can read.
 
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -10,7 +10,7 @@ use super::Message;
 /// The least time between two messages that only count rows.
 const PACE: Duration = Duration::from_millis(250);
 
-/// Tells messages.
+/// Sends progress as messages.
 pub(super) struct Told<'a> {
     tell: &'a (dyn Fn(&Message) + Sync),
     rows: Mutex<Rows>,

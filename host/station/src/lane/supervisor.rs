@@ -1,5 +1,5 @@
-//! The station's side of a lane: starts its process, hears what it tells, and kills its group when it falls silent or
-//! takes too long.
+//! The station's side of a lane: starts its process, hears what it reports, and kills its group when it falls silent
+//! or takes too long.
 
 use std::fs::{self, File};
 use std::io::{self, BufRead as _, BufReader, Write as _};
@@ -17,34 +17,34 @@ use crate::process_group::{kill, killed, waited, without_secrets};
 use crate::record::{BoardSeen, StepRecord};
 use crate::said::{Said, Saying};
 
-/// How often the supervisor looks whether anybody wants the run to end.
+/// How often the supervisor checks whether anybody wants the run to end.
 const LOOK: Duration = Duration::from_millis(50);
 /// How long a lane may take to end once it is told to, or has nothing left to do.
 const GRACE: Duration = Duration::from_secs(10);
 
-/// What the lane tells, in the run's spool.
+/// What the lane reports, in the run's spool.
 pub const EVENTS: &str = "events.jsonl";
 /// What it logs.
 pub const LOG: &str = "lane.log";
-/// Its process id, and when it began.
+/// Its process id, and when the process began.
 const PROCESS: &str = "lane.pid";
 
-/// How many threads a lane judges with, for those who want another number than one.
+/// The variable with the number of threads that a lane judges with, for those who want more than one.
 const THREADS: &str = "RAYON_NUM_THREADS";
 
-/// This very program, though its file may be another one by now, or gone.
+/// This very program, even if its file has been replaced or removed.
 pub const OWN_PROGRAM: &str = "/proc/self/exe";
 
-/// How long a lane is waited for.
+/// How long a lane may take.
 #[derive(Clone, Copy, Debug)]
 pub struct Patience {
-    /// The longest between two messages.
+    /// The longest time between two messages.
     pub silence: Duration,
-    /// The longest in all.
+    /// The longest time in all.
     pub whole: Duration,
 }
 
-/// What a lane told, and how it ended.
+/// What a lane reported, and how it ended.
 #[derive(Debug)]
 pub struct Heard {
     /// Every try of a step that came to an end.
@@ -56,7 +56,7 @@ pub struct Heard {
 /// How a lane ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum End {
-    /// It did all that it would.
+    /// It did all that it was to do.
     Done,
     /// It could not do the job at all.
     Refused(Said),
@@ -64,23 +64,23 @@ pub enum End {
     Stopped(StoppedBy),
     /// Its process did not start, or ended before it was done.
     Died(Said),
-    /// It was killed, since it was silent or took too long.
+    /// It was killed because it was silent or took too long.
     Killed(Said),
-    /// It should have been killed, and the system could not: it may still have the board.
+    /// It should have been killed, but the system could not do it: the process may still have the board.
     Stuck(Said),
 }
 
-/// Who attends to a lane while it works.
+/// Attends to a lane while it works.
 pub trait Attendant {
-    /// Who wants it to end, as soon as somebody does.
+    /// Who wants it to end, once somebody does.
     fn stop(&self) -> Option<StoppedBy>;
-    /// The lane told something.
+    /// Takes a message of the lane.
     fn hear(&mut self, message: &Message);
     /// Whether the board may be judged under the serial number of the run.
     fn rule(&mut self, board: &BoardSeen) -> Ruling;
 }
 
-/// Has a process of `program` do `job`, with what it writes down in the folder `spool`.
+/// Has a process of `program` do `job`; what the process writes goes to the folder `spool`.
 pub fn supervise(
     program: &Path,
     job: &Job,
@@ -101,11 +101,11 @@ pub fn supervise(
 
 struct Lane {
     child: Child,
-    /// Dropped, it ends what the process reads.
+    /// Dropping it ends the process's stdin.
     orders: Option<Sender<String>>,
     lines: Receiver<String>,
     events: File,
-    /// Whether it has said that it is of this program.
+    /// Whether the lane has said that it is of this program.
     is_own: bool,
 }
 
@@ -113,7 +113,7 @@ impl Lane {
     fn start(program: &Path, job: &Job, spool: &Path) -> io::Result<Self> {
         fs::create_dir_all(spool)?;
         let events = File::create(spool.join(EVENTS))?;
-        // Lanes are many, and the board is what they wait for.
+        // There are many lanes, and the board is what they wait for.
         let threads = std::env::var_os(THREADS).unwrap_or_else(|| "1".into());
         let mut child = without_secrets(program)
             .arg0(std::env::args_os().next().unwrap_or_else(|| program.into()))
@@ -142,7 +142,7 @@ impl Lane {
         fs::write(spool.join(PROCESS), format!("{id} {}\n", started(id).unwrap_or_default()))?;
         let (orders, given) = mpsc::channel();
         give(stdin, given)?;
-        // It is read later.
+        // The lane reads it later.
         let _ = orders.send(serde_json::to_string(job)?);
         self.orders = Some(orders);
         Ok(())
@@ -163,7 +163,7 @@ impl Lane {
                     if let Some(end) = self.take(line, attendant, steps) {
                         return end;
                     }
-                    // The answer may have waited for the store, which is no silence of the lane's.
+                    // The answer may have waited for the store, which does not count as silence of the lane.
                     last = Instant::now();
                 }
                 Err(RecvTimeoutError::Disconnected) => {
@@ -183,19 +183,19 @@ impl Lane {
         }
     }
 
-    /// Takes what the lane told; how it ends, if that was the last.
+    /// Takes a line of the lane; returns how the lane ended, if that was the last one.
     fn take(
         &mut self,
         line: String,
         attendant: &mut dyn Attendant,
         steps: &mut Vec<StepRecord>,
     ) -> Option<End> {
-        // What is lost here is lost as evidence alone; the record has all that counts.
+        // What is lost here is lost only as evidence; the record has all that counts.
         let _ = writeln!(self.events, "{line}");
         match serde_json::from_str(&line) {
             Err(_) => return Some(End::Killed(Saying::LaneBabbles { line }.into())),
             Ok(Message::Begun { program }) if program == halfrow::VERSION => self.is_own = true,
-            // The record names this program, and another one may have judged otherwise.
+            // The record names this program, and another one may judge differently.
             Ok(message) if !self.is_own || matches!(message, Message::Begun { .. }) => {
                 let program = halfrow::VERSION.to_owned();
                 return Some(End::Refused(Saying::LaneOfOtherProgram { program }.into()));
@@ -207,7 +207,7 @@ impl Lane {
         None
     }
 
-    /// Takes a message that is not the last, and answers the one that asks something.
+    /// Takes a message that is not the last, and answers it if it asks something.
     fn answer(&mut self, message: &Message, attendant: &mut dyn Attendant, steps: &mut Vec<StepRecord>) {
         attendant.hear(message);
         match message {
@@ -219,17 +219,17 @@ impl Lane {
 
     fn tell(&mut self, control: &Control) {
         if let (Some(orders), Ok(line)) = (&self.orders, serde_json::to_string(control)) {
-            // A lane that is gone has no need to be told.
+            // A lane that is gone need not be told.
             let _ = orders.send(line);
         }
     }
 
-    /// Sees that the process is gone.
+    /// Makes sure that the process is gone.
     fn end(mut self, end: End) -> End {
         let is_over = matches!(end, End::Done | End::Refused(_) | End::Died(_));
         let mut status = None;
         if is_over {
-            // What is to be killed does not end by itself before, and hears no end of its orders.
+            // A process that is to be killed would not end by itself, so its stdin stays open.
             drop(self.orders.take());
             status = waited(&mut self.child, GRACE);
         }
@@ -245,21 +245,22 @@ impl Lane {
     }
 }
 
-/// Hands on what the lane tells, line by line.
+/// Passes on what the lane reports, line by line.
 fn hear(stdout: Option<ChildStdout>, to: Sender<String>) -> io::Result<()> {
     let hand_on = move || {
         let lines = stdout.into_iter().flat_map(|stdout| BufReader::new(stdout).lines());
-        // Nobody hears it any more when the run is over.
+        // Nobody listens any more once the run is over.
         lines.map_while(Result::ok).take_while(|line| to.send(line.clone()).is_ok()).for_each(drop);
     };
     in_thread(hand_on)
 }
 
-/// Hands the lane what it is told, line by line, in a thread of its own: one that reads nothing must not keep its supervisor.
+/// Passes on to the lane what it is told, line by line, in a thread of its own: a lane that reads nothing must not
+/// hold up its supervisor.
 fn give(stdin: Option<ChildStdin>, given: Receiver<String>) -> io::Result<()> {
     let hand_on = move || {
         let Some(mut stdin) = stdin else { return };
-        // One that is gone tells more by how it ended.
+        // How a lane that is gone ended says more.
         given.into_iter().take_while(|line| writeln!(stdin, "{line}").is_ok()).for_each(drop);
     };
     in_thread(hand_on)
@@ -282,8 +283,8 @@ fn impatient(patience: Patience, begun: Instant, last: Instant, asked: Option<In
     is_deaf.then(|| Saying::LaneDeaf { seconds: seconds(GRACE) }.into())
 }
 
-/// Kills the lane of a run whose station ended before it, if it is still there: by its id and by when it began, since
-/// ids are used again.
+/// Kills the lane of a run whose station ended before it, if the lane still exists. It is known by its id and by when
+/// it began, because ids are reused.
 pub fn kill_left_behind(spool: &Path) {
     let noted = fs::read_to_string(spool.join(PROCESS)).unwrap_or_default();
     let mut words = noted.split_whitespace().map(str::parse::<u64>);
@@ -295,7 +296,8 @@ pub fn kill_left_behind(spool: &Path) {
     }
 }
 
-/// When a process began, in ticks since the computer did: field 22 of proc_pid_stat(5), whose second may hold blanks.
+/// When a process began, in ticks since the computer was started: field 22 of proc_pid_stat(5), whose second field may
+/// contain blanks.
 fn started(id: u32) -> Option<u64> {
     let stat = fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
     stat.rsplit_once(')')?.1.split_whitespace().nth(19)?.parse().ok()
