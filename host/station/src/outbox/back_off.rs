@@ -1,14 +1,14 @@
-//! How long it is waited until something is tried again.
+//! How long to wait before something is tried again.
 
 use rand::{RngExt as _, rng};
 
 /// The first wait, in milliseconds.
 const FIRST_MS: i64 = 1_000;
-/// The longest.
+/// The longest wait.
 pub(super) const LONGEST_MS: i64 = 300_000;
 
-/// How long it is waited behind so many tries in vain and one more, in milliseconds: twice as long each time, and for each
-/// station a little other, so that they do not all come at once when a plant is there again.
+/// How long to wait after `vain` failed tries and one more, in milliseconds: twice as long each time, and a little
+/// different for each station, so that they do not all come at once when a plant is back.
 pub(super) fn ms(vain: u32) -> i64 {
     let wait = FIRST_MS.saturating_mul(1 << vain.min(20)).min(LONGEST_MS);
     wait - rng().random_range(0..=wait / 4)

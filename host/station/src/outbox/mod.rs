@@ -1,4 +1,5 @@
-//! Sends on what the station keeps, to every sink until it has it for certain. One thread a sink; nobody waits for it.
+//! Sends what the station keeps on to every sink, until the sink has it for certain. One thread per sink; nothing
+//! waits for it.
 //!
 //! ```text
 //!  run, waiver, audit ─► entry, in the same transaction ─► round: parcel ─► sink ─► read back there ─► done
@@ -26,30 +27,31 @@ use crate::said::Said;
 use crate::store::{Entry, Folder, Parcel, SharedStore, Snapshot, StoreError, Tried, Unsent};
 use standing::{Left, Standing};
 
-/// How often it is looked whether there is something to send.
+/// How often to check whether there is something to send.
 const LOOK: Duration = Duration::from_millis(200);
-/// How soon behind another one what became of an entry is kept, with all that came meanwhile: each time waits for the disk.
+/// The least time between two writes of what became of entries. Each write has all that came since the last one, and
+/// waits for the disk.
 const KEPT: Duration = Duration::from_millis(200);
-/// How often a sink hears how much it does not have.
+/// How often a sink is told how much it does not have.
 const BEAT: Duration = Duration::from_secs(30);
 /// How long a sink that has nothing to do stays connected.
 const IDLE: Duration = Duration::from_secs(10);
-/// How long it is waited at the end for what is under way.
+/// How long to wait at the end for what is under way.
 const LAST: Duration = Duration::from_secs(5);
 
-/// Whoever is sent what the station keeps.
+/// Something to which the station sends what it keeps.
 pub trait Sink: Send {
-    /// Its name, under which the outbox keeps what it has.
+    /// Its name, under which the outbox notes what it has.
     fn name(&self) -> &str;
 
-    /// Takes a parcel, again if it has been given it before. It has it for certain when this returns.
+    /// Takes a parcel, which it may have been given before. When this returns without an error, it has it for certain.
     ///
     /// # Errors
     /// [`Undelivered`]
     fn take(&mut self, parcel: &Parcel) -> Result<(), Undelivered>;
 
-    /// So much is to be sent to it, and so much of that waits for a person. Returns the clock by which it orders what several
-    /// stations send, if it does.
+    /// Tells it how much is to be sent to it, and how much of that waits for a person. Returns the clock by which it
+    /// orders what several stations send, if it has one.
     ///
     /// # Errors
     /// Why it is away, if that is known.
@@ -57,53 +59,54 @@ pub trait Sink: Send {
         Ok(None)
     }
 
-    /// There is nothing to do for now.
+    /// Tells it that there is nothing to do for now.
     fn rest(&mut self) {}
 }
 
 /// Why a sink has not taken something, as far as is known.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Undelivered {
-    /// It is not there: nothing else need be tried.
+    /// It is not there, so nothing else need be tried.
     Away(Said),
     /// It does not take this for now.
     NotNow(Said),
-    /// It does not have the runs that this belongs to, whatever it had.
+    /// It does not have the runs that this belongs to, whatever it had before.
     Early(Said),
-    /// It never will as it is: a person looks at it.
+    /// It will never take this as it is; a person has to look at it.
     Refused(Said),
 }
 
 /// What a round came to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Round {
-    /// Entries that the sink has for certain since.
+    /// Entries that it now has for certain.
     pub sent: usize,
-    /// Entries that it has not.
+    /// Entries that it has not taken.
     pub failed: usize,
     /// Whether the sink is away.
     pub is_away: bool,
 }
 
-/// Gives `sink` what is due for it, and keeps what became of it: what it has does not wait for all that is behind it.
+/// Gives `sink` what is due for it, and keeps what became of it: an entry that the sink has is noted without waiting
+/// for all that follow.
 ///
 /// # Errors
-/// [`StoreError`] when the store cannot be read or written. What was sent is sent again then, which changes nothing.
+/// [`StoreError`] when the store cannot be read or written. What was sent is then sent again, which changes nothing.
 pub fn round(store: &SharedStore, sink: &mut dyn Sink) -> Result<Round, StoreError> {
     let due = folder(store).due(sink.name(), clock::now_ms(), back_off::LONGEST_MS)?;
     given(store, sink, due, |_, _, _| ())
 }
 
-/// Gives `sink` all that it does not have, each once and however soon it was tried before, unless it waits for a person or the sink
-/// is away.
+/// Gives `sink` all that it does not have, each entry once, however recently it was tried, unless the entry waits for
+/// a person or the sink is away.
 ///
 /// # Errors
-/// As [`round`].
+/// Like [`round`].
 pub fn all(store: &SharedStore, sink: &mut dyn Sink) -> Result<Round, StoreError> {
     store.with(|store| store.due_at_once(sink.name()))?;
     let (mut all, begun_ms) = (Round::default(), clock::now_ms());
     loop {
-        // What is tried from here on waits for longer than until now.
+        // What is tried from here on is due again only after `begun_ms`.
         let due = folder(store).due(sink.name(), begun_ms, i64::MAX)?;
         if due.is_empty() || all.is_away {
             return Ok(all);
@@ -117,7 +120,7 @@ fn folder(store: &SharedStore) -> Folder {
     store.with(|store| store.folder().clone())
 }
 
-/// Gives `sink` what is `due`; `refused` hears of each that it has not taken.
+/// Gives `sink` what is `due`; `refused` is called for each entry that it has not taken.
 fn given(
     store: &SharedStore,
     sink: &mut dyn Sink,
@@ -169,13 +172,13 @@ fn became(entry: &Entry, taken: Result<(), Undelivered>) -> Tried {
 /// The threads that send.
 #[derive(Debug, Default)]
 pub struct Outbox {
-    /// Dropped, it ends them.
+    /// Dropping them ends the threads.
     stops: Vec<Sender<()>>,
     threads: Vec<JoinHandle<()>>,
 }
 
 impl Outbox {
-    /// Sends to these sinks, what was kept before included.
+    /// Sends to these sinks, including what was kept before.
     ///
     /// # Errors
     /// [`OutboxError`]
@@ -199,7 +202,7 @@ impl Outbox {
         Ok(outbox)
     }
 
-    /// Ends the threads. What is under way for too long is left, and sent again at the next start.
+    /// Ends the threads. What takes too long is abandoned, and sent again at the next start.
     pub fn close(mut self) {
         self.stops.clear();
         let until = Instant::now() + LAST;
@@ -211,7 +214,7 @@ impl Outbox {
     }
 }
 
-/// An outbox that does not start.
+/// An outbox that cannot start.
 #[derive(Debug, thiserror::Error)]
 pub enum OutboxError {
     /// The system has no thread for it.
@@ -240,13 +243,13 @@ fn beat(store: &SharedStore, sink: &mut dyn Sink, standing: &mut Standing) {
         Ok(None) => {}
         Err(said) => standing.away(sink.name(), said),
     }
-    // Where something waits, whether it is taken says more.
+    // If something waits, whether that is taken says more.
     if matches!(heard, Ok(Some(_))) && left.entries == left.dead {
         standing.there(sink.name(), 0, || Ok(left));
     }
 }
 
-/// What is due for `sink`, as [`round`]; the log says how it stands.
+/// Gives `sink` what is due, like [`round`], and logs how the sink is.
 fn logged_round(
     store: &SharedStore,
     sink: &mut dyn Sink,
@@ -260,7 +263,7 @@ fn logged_round(
     Ok(round)
 }
 
-/// How long it is waited behind a round; `vain` counts those before it for which the sink was away.
+/// How long to wait after a round; `vain` counts the rounds before it for which the sink was away.
 fn wait_behind(round: Round, vain: &mut u32) -> Duration {
     if round.is_away {
         let wait = back_off::ms(*vain);
@@ -315,7 +318,7 @@ mod tests {
         }
     }
 
-    /// It hears of both when it beats, and the plant shows who is to look at something.
+    /// It hears of both in a beat, and the plant shows where a person has to look at something.
     #[test]
     fn what_waits_for_a_person_is_told_from_what_is_tried_again() {
         struct Listening(Option<(u32, u32)>);

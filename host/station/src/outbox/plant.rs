@@ -13,18 +13,18 @@ pub struct PlantSink {
     /// What the station keeps, and which of it the plant has.
     kept: Folder,
     plant: Option<Plant>,
-    /// The plant's clock, once it knows that this station is who it says since the connection came about.
+    /// The plant's clock, heard when the plant was last told of this station; `None` if it has to be told first.
     clock: Option<HeardClock>,
 }
 
 impl PlantSink {
-    /// The plant at `address`, which hears of `station`, whose folder is `kept`.
+    /// The plant at `address`, which is told of `station`, whose folder is `kept`.
     #[must_use]
     pub fn new(address: PlantAddress, station: Presence, kept: Folder) -> Self {
         Self { address, station, kept, plant: None, clock: None }
     }
 
-    /// The plant, which has heard of this station, and has what it had.
+    /// The plant, which has been told of this station, and still has what it had.
     fn plant(&mut self) -> Result<&mut Plant, PlantError> {
         let plant = match self.plant.take() {
             Some(plant) if self.clock.is_some() => plant,
@@ -80,7 +80,7 @@ impl Sink for PlantSink {
 mod tests {
     use super::*;
 
-    /// The plant shows them beside the station's name, and one of the two wants a person.
+    /// The plant shows both next to the station's name, and the second one calls for a person.
     #[test]
     fn a_plant_hears_how_much_waits_and_how_much_of_that_for_a_person() {
         let presence = Presence {
@@ -91,7 +91,7 @@ mod tests {
             unsent: 0,
             dead: 0,
         };
-        // Nobody answers there.
+        // Nothing answers there.
         let address = PlantAddress::new("postgres://halfrow@127.0.0.1:1/plant", None, None).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let mut sink = PlantSink::new(address, presence, Folder::new(folder.path()));

@@ -4,7 +4,7 @@ use super::Undelivered;
 use crate::said::Said;
 use crate::store::{Entry, Kind, SINK_OF_PLANT, StoreError};
 
-/// How it stands with a sink, as far as the log has said it.
+/// The state of a sink, as far as the log has reported it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Standing {
     /// It was away.
@@ -20,12 +20,12 @@ pub(super) struct Left {
     pub(super) entries: u32,
     /// Those of them that wait for a person.
     pub(super) dead: u32,
-    /// Whether any other of them was tried in vain.
+    /// Whether any of the others was tried in vain.
     pub(super) was_tried: bool,
 }
 
 impl Standing {
-    /// The sink has not taken this.
+    /// Notes that the sink has not taken this.
     pub(super) fn refused(&mut self, sink: &str, entry: &Entry, why: &Undelivered) {
         match why {
             Undelivered::Away(said) => self.away(sink, said),
@@ -40,7 +40,7 @@ impl Standing {
         }
     }
 
-    /// The sink is not there.
+    /// Notes that the sink is not there.
     pub(super) fn away(&mut self, sink: &str, said: &Said) {
         if !self.is_away {
             self.is_away = true;
@@ -48,13 +48,13 @@ impl Standing {
         }
     }
 
-    /// The sink is there, and has taken `sent` more; `left` tells what it does not have.
-    // A log of warnings alone that has the beginning of an outage has its end, too.
+    /// Notes that the sink is there, and has taken `sent` more; `left` finds out what it does not have.
+    // The end of an outage is a warning, too, so that a log of only warnings has both its beginning and its end.
     pub(super) fn there(&mut self, sink: &str, sent: usize, left: impl FnOnce() -> Result<Left, StoreError>) {
         if !self.is_away && !self.is_behind {
             return;
         }
-        // What cannot be read now is looked at behind the next one.
+        // If that cannot be read now, it is tried after the next entry.
         let Ok(Left { entries, dead, was_tried }) = left() else { return };
         if self.is_away {
             self.is_away = false;
@@ -68,12 +68,12 @@ impl Standing {
     }
 }
 
-/// What a sink is called among people.
+/// What people call a sink.
 fn called(sink: &str) -> String {
     if sink == SINK_OF_PLANT { "the plant".to_owned() } else { format!("the sink {sink}") }
 }
 
-/// What an entry is called among people.
+/// What people call an entry.
 fn named(Entry { kind, subject, .. }: &Entry) -> String {
     match kind {
         Kind::Run => format!("the run {subject}"),

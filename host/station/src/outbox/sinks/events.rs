@@ -1,5 +1,5 @@
-//! A broker of MQTT 3.1.1 as a sink: each run and each waiver is an event, for dashboards. It is no result: what is older than
-//! an hour is not told any more.
+//! An MQTT 3.1.1 broker as a sink: each run and each waiver is an event, for dashboards. An event is not a result, so
+//! what is older than an hour is not sent any more.
 
 use std::time::{Duration, Instant};
 
@@ -20,16 +20,16 @@ use crate::trust;
 
 /// The version of an event's own document.
 const SCHEMA: u32 = 1;
-/// What is older is not told, in milliseconds.
+/// What is older is not sent, in milliseconds.
 const OLDEST_MS: i64 = 3_600_000;
-/// How long an event may go without being confirmed.
+/// How long the broker may take to confirm an event.
 const CONFIRMED: Duration = Duration::from_secs(10);
-/// The most bytes of what is told, which is what MQTT 3.1.1 has lengths for (section 2.2.3); a broker may take less.
+/// The most bytes of an event: the longest that MQTT 3.1.1 has lengths for (section 2.2.3); a broker may take less.
 const MOST: usize = 268_435_455;
-/// How often a broker is told that the station is there, in seconds.
+/// How often a broker hears that the station is there, in seconds.
 const ALIVE: u16 = 60;
 
-/// A broker, which is connected to when there is something to tell.
+/// A broker, which is connected to when there is something to send.
 pub(super) struct EventSink {
     name: String,
     station: String,
@@ -91,7 +91,7 @@ struct WaiverEvent<'a> {
 }
 
 impl EventSink {
-    /// The broker at `address`, which lets `login` in; it hears of `station`.
+    /// The broker at `address`, where the station `station` logs in by `login`.
     pub(super) fn new(
         name: String,
         station: &str,
@@ -114,7 +114,7 @@ impl EventSink {
         Ok(Self { name, station: station.to_owned(), host, prefix, options, connected: None })
     }
 
-    /// What is told of a parcel, and under which topic; nothing when it is old.
+    /// The event of a parcel and its topic; `None` for what is old or is no event.
     fn event(&self, parcel: &Parcel) -> Result<Option<(String, Vec<u8>)>, serde_json::Error> {
         let oldest_ms = clock::now_ms().saturating_sub(OLDEST_MS);
         Ok(match parcel {
@@ -130,7 +130,7 @@ impl EventSink {
         })
     }
 
-    /// The prefix, the station and these words. What parts topics or stands for several is a hyphen in a name.
+    /// The prefix, the station and these words. In names, separators of topics and wildcards become hyphens.
     fn topic(&self, words: &[&str]) -> String {
         let prefix = (!self.prefix.is_empty()).then(|| self.prefix.clone());
         let names = [self.station.as_str()].into_iter().chain(words.iter().copied());
@@ -138,7 +138,7 @@ impl EventSink {
         prefix.into_iter().chain(names).collect::<Vec<_>>().join("/")
     }
 
-    /// Tells it, and waits until the broker has confirmed it.
+    /// Publishes an event, and waits until the broker has confirmed it.
     fn tell(&mut self, topic: &str, event: Vec<u8>) -> Result<(), SinkError> {
         let (client, mut connection) = self
             .connected
@@ -154,7 +154,7 @@ impl EventSink {
             let Ok(happened) = connection.recv_timeout(left) else {
                 return Err(SinkError::Unconfirmed { host: self.host.clone(), seconds: CONFIRMED.as_secs() });
             };
-            // One is under way at a time.
+            // Only one is under way at a time.
             if let Event::Incoming(Packet::PubAck(_)) =
                 happened.map_err(|error| refused(&self.host, error))?
             {
@@ -165,7 +165,7 @@ impl EventSink {
     }
 }
 
-/// A connection that did not come about, or ended.
+/// The error of a connection that was not established, or ended.
 fn refused(host: &str, error: ConnectionError) -> SinkError {
     use ConnectReturnCode::{BadUserNamePassword, NotAuthorized};
     match error {
@@ -191,7 +191,7 @@ impl Sink for EventSink {
         if let Some((client, mut connection)) = self.connected.take()
             && client.try_disconnect_now().is_ok()
         {
-            // It goes without saying more if the broker is gone.
+            // If the broker is gone, nothing more need be said.
             let _ = connection.recv_timeout(Duration::from_millis(200));
         }
     }
@@ -212,7 +212,7 @@ mod tests {
         EventSink::new(name.to_owned(), station, &address, None).unwrap()
     }
 
-    /// What a dashboard shows of it is the board's, and of that run.
+    /// What a dashboard shows of it must be of this board and this run.
     #[test]
     fn an_event_says_of_a_run_what_its_record_says() {
         let run = RunHead { started_ms: 1_000, lane: "left".to_owned(), ..pass().run };
@@ -237,14 +237,15 @@ mod tests {
         assert_eq!(event, told);
     }
 
-    /// No topic that something is published to has a wildcard (MQTT 3.1.1, section 4.7.1), and a level more is another topic.
+    /// A topic to which something is published has no wildcard (MQTT 3.1.1, section 4.7.1), and another level makes it
+    /// another topic.
     #[test]
     fn a_name_adds_no_level_and_no_wildcard_to_a_topic() {
         assert_eq!(sink("wall", "a/b+c#", "/hall/").topic(&["1\0", "run"]), "hall/a-b-c-/1-/run");
         assert_eq!(sink("wall", "12", "/").topic(&["waiver"]), "12/waiver");
     }
 
-    /// A broker ends the earlier of two connections of one name (MQTT 3.1.1, section 3.1.4).
+    /// A broker ends the earlier of two connections with the same client id (MQTT 3.1.1, section 3.1.4).
     #[test]
     fn two_sinks_are_two_clients_of_a_broker() {
         let [one, other] = ["wall", "office"].map(|name| sink(name, "12", "/").options.client_id());

@@ -13,7 +13,7 @@ use crate::export::Format;
 use crate::outbox::{Sink, Undelivered};
 use crate::store::Parcel;
 
-/// A folder, which is there when what it lies on is mounted.
+/// A folder, which exists when what it lies on is mounted.
 #[derive(Debug)]
 pub(super) struct FolderSink {
     pub(super) name: String,
@@ -24,7 +24,7 @@ pub(super) struct FolderSink {
 impl FolderSink {
     fn put(&self, parcel: &Parcel) -> Result<(), SinkError> {
         let Some(letter) = letter(parcel, self.format)? else { return Ok(()) };
-        // A folder that was made here would hide the one that is to be mounted.
+        // A folder made here would hide the one that is to be mounted.
         if !self.folder.is_dir() {
             return Err(SinkError::NoFolder { path: self.folder.clone() });
         }
@@ -46,7 +46,7 @@ impl FolderSink {
         }
     }
 
-    /// Lets whoever may read the folder read a file in it: the service's umask is for what is the station's own.
+    /// Lets whoever may read the folder read a file in it; the service's umask is for the station's own files.
     fn open_to_readers(&self, path: &Path) {
         let mode = |path: &Path| fs::metadata(path).map(|about| about.permissions().mode() & 0o777);
         if let (Ok(folder), Ok(file)) = (mode(&self.folder), mode(path)) {
@@ -59,7 +59,7 @@ impl FolderSink {
     }
 }
 
-/// Whether the file that is there already is the same.
+/// Refuses a file that exists already with other bytes.
 fn is_as(path: &Path, bytes: &[u8]) -> Result<(), SinkError> {
     let there = fs::read(path).map_err(|source| SinkError::Unread { path: path.to_owned(), source })?;
     if there == bytes { Ok(()) } else { Err(SinkError::OtherFile { path: path.to_owned() }) }
@@ -93,7 +93,7 @@ mod tests {
         assert!(matches!(read_only.into(), Undelivered::Away(_)), "nothing else need be tried");
         let full = failed(io::ErrorKind::StorageFull);
         assert!(full.to_string().contains("has space"));
-        // A smaller one may have room, and this one has when somebody has made some.
+        // A smaller one may have room, and this one will when somebody has made some.
         assert!(matches!(full.into(), Undelivered::NotNow(_)));
     }
 }

@@ -1,4 +1,4 @@
-//! What a parcel is written as for those who are no plant.
+//! How a parcel is written for sinks that are not a plant.
 
 use serde::Serialize;
 
@@ -31,7 +31,7 @@ struct WaiverDocument<'a> {
     waiver: &'a Waiver,
 }
 
-/// The document of this parcel, its run in this format. There is none of a line of the audit, which stays in the house.
+/// The document of this parcel, with its run in this format. A line of the audit has none, because it stays in the house.
 ///
 /// # Errors
 /// [`SinkError::Export`]

@@ -1,4 +1,4 @@
-//! Sinks that are no plant: a folder, a web server, a broker of events.
+//! Sinks that are not a plant: a folder, a web server, a broker of events.
 
 mod events;
 mod folder;
@@ -127,13 +127,13 @@ pub enum SinkError {
     Unconfirmed {
         /// The other side.
         host: String,
-        /// How long it was waited.
+        /// How long it was waited for.
         seconds: u64,
     },
 }
 
 impl SinkError {
-    /// No connection to `host` came about.
+    /// The error when no connection to `host` was established.
     fn unconnected(host: &str, source: Box<dyn std::error::Error + Send + Sync>) -> Self {
         match CertificateError::of(host, &*source) {
             Some(error) => error.into(),
@@ -163,7 +163,7 @@ impl From<SinkError> for Undelivered {
     }
 }
 
-/// The sink of these settings, which hears of the station `station`.
+/// The sink of these settings, for the station `station`.
 ///
 /// # Errors
 /// [`SinkSettingsError`]

@@ -20,9 +20,9 @@ use crate::trust;
 
 /// How long a request may take, its answer included.
 const DEADLINE: Duration = Duration::from_secs(30);
-/// How many letters of an answer are told.
+/// How many characters of an answer are reported.
 const TOLD: usize = 500;
-/// By which a server knows what it has been given before (draft-ietf-httpapi-idempotency-key-header).
+/// The header by which a server knows what it has been given before (draft-ietf-httpapi-idempotency-key-header).
 const IDEMPOTENCY_KEY: &str = "Idempotency-Key";
 
 /// A web server.
@@ -38,7 +38,7 @@ pub(super) struct PostSink {
 }
 
 impl PostSink {
-    /// The server at `address`, behind `proxy` if there is one, which is told the token in the file `token`.
+    /// The server at `address`, behind `proxy` if there is one, which is given the token in the file `token`.
     pub(super) fn new(
         name: String,
         address: &SinkAddress,
@@ -52,7 +52,7 @@ impl PostSink {
             .http_status_as_error(false)
             .max_redirects(0)
             .max_redirects_will_error(false)
-            // What the environment names for all programs is not of this station's settings.
+            // A proxy that the environment names for all programs is not one of this station's settings.
             .proxy(proxy.cloned())
             .user_agent(format!("halfrow-station/{}", halfrow::VERSION));
         if address.is_protected {
@@ -82,12 +82,13 @@ impl PostSink {
         self.judged(parts.status, body)
     }
 
-    /// What an answer means: whether it has this, takes nothing for now, takes nothing at all, or does not take this.
+    /// What an answer means: the server has this, takes nothing for now, takes nothing at all, or does not take this.
     fn judged(&self, answered: StatusCode, body: Body) -> Result<(), SinkError> {
         let (host, status) = (self.host.clone(), answered.as_u16());
         match status {
             200..=299 => Ok(()),
-            // It is still at work with the same key (draft-ietf-httpapi-idempotency-key-header-07, section 2.7), as after DEADLINE.
+            // 409: it is still working on the same key (draft-ietf-httpapi-idempotency-key-header-07, section 2.7), as
+            // after DEADLINE.
             408 | 409 | 425 | 429 | 500..=599 => Err(SinkError::Busy { host, status }),
             300..=399 | 401 | 403 | 407 => Err(SinkError::Closed { host, status }),
             _ => Err(SinkError::Rejected { host, status, answer: beginning(body, self.token.as_deref()) }),
@@ -105,12 +106,13 @@ fn read(path: &Path) -> Result<String, SinkSettingsError> {
     Ok(token.to_owned())
 }
 
-/// The first words of an answer, in one line; without the token, which a server may tell that tells all it was sent.
+/// The beginning of an answer, in one line. It is without the token, because a server may repeat everything that it
+/// was sent.
 fn beginning(body: Body, token: Option<&str>) -> String {
     let (mut bytes, length) = (Vec::new(), token.map_or(0, str::len));
-    // A token that begins in what is told is read whole; a letter has four bytes at most.
+    // A token that begins in what is reported is read whole; a character has at most four bytes.
     let most = u64::try_from(4 * TOLD + length).unwrap_or(u64::MAX);
-    // What there is of it tells something.
+    // Even a part of it says something.
     let _ = body.into_reader().take(most).read_to_end(&mut bytes);
     let text = String::from_utf8_lossy(&bytes);
     let text = match token {
@@ -123,7 +125,7 @@ fn beginning(body: Body, token: Option<&str>) -> String {
         .join(" ")
 }
 
-/// The first [`TOLD`] letters of `text`, with `…` for each `token` that begins in them.
+/// The first [`TOLD`] characters of `text`, with `…` for each `token` that begins in them.
 fn without(text: &str, token: &str) -> String {
     let (mut told, mut left) = (String::new(), TOLD);
     for piece in text.split(token) {
@@ -135,7 +137,7 @@ fn without(text: &str, token: &str) -> String {
         told.push('…');
         left = left.saturating_sub(token.len());
     }
-    // Behind the last piece there is none.
+    // There is no token after the last piece.
     told.pop();
     told
 }
