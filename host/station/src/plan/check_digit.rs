@@ -4,19 +4,19 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// How a serial number guards itself. The check digits stand at the end of the number.
+/// How a serial number is protected against misreading. The check digits are at the end of the number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum CheckDigit {
-    /// By nothing.
+    /// It is not.
     None,
-    /// As ISBN-10 (ISO 2108): digits weighted from the last one, 1, 2, 3, …, sum to a multiple of 11; the last may be X
-    /// for 10. Up to ten digits, since the eleventh would weigh nothing. Whatever is no digit counts for nothing.
+    /// Like ISBN-10 (ISO 2108): the digits, weighted from the last one 1, 2, 3, …, sum to a multiple of 11; the last
+    /// may be X for 10. Up to ten digits, because the eleventh would have no weight. What is not a digit is ignored.
     Mod11,
-    /// ISO/IEC 7812-1, annex B: every second digit from the right doubled, all figures sum to a multiple of 10.
-    /// Whatever is no digit counts for nothing.
+    /// ISO/IEC 7812-1, annex B: every second digit from the right is doubled, and all figures sum to a multiple of 10.
+    /// What is not a digit is ignored.
     Luhn,
-    /// ISO 7064 MOD 97-10, as in ISO 17442: letters read as 10 to 35, the whole number leaves 1 when divided by 97.
+    /// ISO 7064 MOD 97-10, as in ISO 17442: letters are read as 10 to 35, and the whole number leaves 1 when divided by 97.
     Mod97,
     /// Code 39 (ISO/IEC 16388, annex A): the last character is the sum of the others modulo 43.
     Mod43,
@@ -41,7 +41,7 @@ impl CheckDigit {
         }
     }
 
-    /// Whether `number` is one that its check digits allow.
+    /// Whether the check digits of `number` are right.
     #[must_use]
     pub fn holds(self, number: &str) -> bool {
         match self {
@@ -101,7 +101,7 @@ mod tests {
 
     /// Published numbers: an ISBN-10 of Penguin and one with X (Wikipedia, "ISBN"), the example of "Luhn algorithm"
     /// there, a test card of Visa's, the IBANs of the registry for the United Kingdom and Germany (the first four
-    /// characters behind the others, as ISO 13616 has it), GLEIF's own LEI, and the worked examples of Code 39.
+    /// characters after the others, as ISO 13616 has it), GLEIF's own LEI, and the worked examples of Code 39.
     const WORKED: [(CheckDigit, &str); 11] = [
         (CheckDigit::Mod11, "0306406152"),
         (CheckDigit::Mod11, "080442957X"),
@@ -123,7 +123,7 @@ mod tests {
         }
     }
 
-    /// Each of these codes finds every wrong digit, by its definition.
+    /// Each of these codes finds every single wrong digit, by its definition.
     #[test]
     fn a_published_number_with_one_digit_changed_does_not() {
         for (check, number) in WORKED {
@@ -137,7 +137,7 @@ mod tests {
         }
     }
 
-    /// Weights that differ by one find neighbours that changed places; Luhn finds all but 09 and 90.
+    /// Weights that differ by one find transposed neighbours; Luhn finds all but 09 and 90.
     #[test]
     fn nor_with_two_neighbours_exchanged() {
         for (check, number) in WORKED {

@@ -18,12 +18,12 @@ pub(super) struct Files {
 }
 
 impl Files {
-    /// Of the plan in the file `plan`, to which paths are relative.
+    /// None yet, for the plan in the file `plan`, to which paths are relative.
     pub(super) fn beside(plan: &Path) -> Self {
         Self { folder: plan.parent().unwrap_or(Path::new("")).to_owned(), named: Vec::new() }
     }
 
-    /// Where the file `name` is.
+    /// Finds the file `name`.
     pub(super) fn find(&self, name: &Spanned<String>) -> Result<PathBuf, Fault> {
         let path = self.folder.join(name.get_ref());
         let at = name.span().start;
@@ -51,14 +51,14 @@ impl Files {
         Ok(())
     }
 
-    /// All of them, and the hash of the plan's `text` with them.
+    /// All of them, and the hash of the plan's `text` together with them.
     pub(super) fn hashed(self, text: &str) -> (Vec<FileHash>, String) {
         let hash = plan_hash(text, &self.named);
         (self.named, hash)
     }
 }
 
-/// SHA-256 of a plan: of its text, and of a line `path`, NUL, hash for every file that it names, in order.
+/// The SHA-256 of a plan: of its text, and of a line `path`, NUL, hash for every file that it names, in order.
 pub(crate) fn plan_hash(text: &str, files: &[FileHash]) -> String {
     let lines = files.iter().map(|FileHash { path, sha256 }| format!("\n{path}\0{sha256}"));
     sha256(std::iter::once(text.to_owned()).chain(lines))

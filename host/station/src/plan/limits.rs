@@ -47,9 +47,9 @@ pub struct Measurement {
     pub unit: &'static str,
     /// What makes it.
     pub made_by: Maker,
-    /// Whom a limit on it blames that does not say.
+    /// Whom a limit on it blames unless it says otherwise.
     pub blames: Blame,
-    /// What it is, for people.
+    /// What it is, in words for people.
     pub meaning: &'static str,
 }
 
@@ -63,7 +63,7 @@ const fn of(
     Measurement { name, unit, made_by, blames, meaning }
 }
 
-/// Samples that differ from the reference. There is no limit on them but 0, which is not the plan's to set.
+/// Samples that differ from the reference. Their only limit is 0, which a plan cannot change.
 pub const SAMPLES_DIFFERING: &str = "frames.samples_differing";
 
 /// Everything that is measured.
@@ -88,7 +88,7 @@ pub const MEASUREMENTS: [Measurement; 11] = [
 ];
 
 impl Measurement {
-    /// The one with this name.
+    /// The measurement with this name.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         MEASUREMENTS.into_iter().find(|measurement| measurement.name == name)

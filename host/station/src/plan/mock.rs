@@ -1,15 +1,18 @@
-//! The mock board with a drawn fault, in the place of a unit that is known to be bad.
+//! The mock board with a drawn fault, in place of a unit that is known to be bad.
 //!
-//! It shows that the station and its plan tell a bad board from a good one: nothing of the fixture, the cable or the lane's board.
+//! It shows that the station and its plan tell a bad board from a good one. It shows nothing about the fixture, the
+//! cable or the lane's board.
 
 use super::serial::RESERVED;
 use super::{Act, Selected};
 
-/// What stands for it in a plan, and on the barcode that has a lane judge it.
+/// What stands for it in a plan, and the barcode that has a lane judge it.
 pub const BARCODE: &str = "HR:MOCK";
 
-/// Faults of the datapath that the least frames of a plan show whatever is drawn, each with its parameters; not all that the mock has. A board that sees a flipped bit itself refuses its tables, and one that loses a
-/// row stops a link test, which both is ERROR: bits are flipped hidden, and no row is lost. The low bits of a factor may change no sample.
+/// Faults of the datapath that the fewest frames of a plan show whatever is drawn, each with its parameters; not all
+/// that the mock has. Bits are flipped hidden, because a board that notices a flipped bit refuses its tables, and no
+/// row is lost, because that stops a link test: both would be ERROR. The low bits of a factor are left out, because
+/// they may change no sample.
 const FAULTS: [(&str, &[(&str, Values)]); 6] = [
     ("stuck-data", &[("bit", Values::From(0, 7)), ("value", Values::From(0, 1))]),
     ("dead-tap", &[("tap", Values::From(0, 6))]),
@@ -43,7 +46,7 @@ pub fn serial(lane: &str) -> String {
     format!("{BARCODE}:{lane}")
 }
 
-/// The target string of a mock board with a fault that is drawn by `seed`, which steps of `selected` may find.
+/// The target string of a mock board with a fault drawn by `seed`, which steps of `selected` can find.
 #[must_use]
 pub fn target(seed: u64, selected: &Selected) -> String {
     let rows = selected.steps.iter().filter_map(|step| match &step.act {

@@ -47,7 +47,7 @@ pub enum DeviceRule {
     Required,
     /// A board without one is judged, too.
     IfPresent,
-    /// Nobody looks.
+    /// It is not checked.
     NotChecked,
 }
 
@@ -58,7 +58,7 @@ pub enum Again {
     /// It is.
     #[default]
     Allow,
-    /// When somebody says that it is meant.
+    /// Only when somebody says that it is meant.
     Ask,
     /// It never is.
     Refuse,
@@ -67,7 +67,8 @@ pub enum Again {
 /// A plan that can be carried out.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// SHA-256 of [`Self::text`] and of every file that it names: what was judged by this plan was judged by just this.
+    /// SHA-256 of [`Self::text`] and of every file that it names: whatever was judged by this plan was judged by
+    /// exactly this.
     pub sha256: String,
     /// Its text.
     pub text: String,
@@ -85,7 +86,7 @@ pub struct Plan {
     pub builds: Vec<String>,
     /// Whether a board must say which device it is.
     pub device: DeviceRule,
-    /// Whether a unit is tested again that passed.
+    /// Whether a unit that passed is tested again.
     pub again: Again,
     /// The files that it names, in order.
     pub files: Vec<FileHash>,
@@ -111,7 +112,7 @@ pub struct Step {
     pub name: String,
     /// What it does.
     pub act: Act,
-    /// How often it is tried again when the link or the station was in the way; a FAIL never is.
+    /// How often it is tried again when the link or the station was in the way; after a FAIL it never is.
     pub retries: u32,
     /// The longest that one try may take.
     pub timeout: Duration,
@@ -154,17 +155,17 @@ pub struct Judging {
     pub frames: Vec<FrameSource>,
     /// How often they are streamed.
     pub repeat: u32,
-    /// How long the board makes frames on its own at the full pixel clock behind them, on its clock, zero for none; if none is
-    /// said, as long as the judge does on its own.
+    /// How long the board then makes frames on its own at the full pixel clock, by its own clock; zero for none. With
+    /// `None` it is as long as the judge chooses.
     pub at_speed: Option<Duration>,
-    /// The seed of noise, gaps, the link test, the rules and what the board makes on its own.
+    /// The seed of noise, gaps, the link test, the rules, and what the board makes on its own.
     pub seed: Seed,
 }
 
 /// Where a seed comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Seed {
-    /// Drawn from the run's id: another one for every run, and recorded with it.
+    /// Drawn from the run's id: different for every run, and recorded with it.
     Run,
     /// Always this one.
     Fixed(u64),
@@ -179,18 +180,18 @@ impl Plan {
         Self::parse(path, text_of(path)?)
     }
 
-    /// The plan `text`, which stands or stood in the file `path`.
+    /// The plan `text`, which is or was in the file `path`.
     ///
     /// # Errors
-    /// As [`Self::load`].
+    /// Like [`Self::load`].
     pub fn parse(path: &Path, text: String) -> Result<Self, InputError> {
         read::plan(path, &text).map_err(|fault| fault.in_file(path, &text)).map(|plan| Self { text, ..plan })
     }
 
-    /// What is done with the board of this serial number, which says its variant.
+    /// What is done with the board of this serial number, which determines its variant.
     ///
     /// # Errors
-    /// [`SerialError`] when the number is none of this product's.
+    /// [`SerialError`] when the number is not one of this product's.
     pub fn select(&self, scanned: &str) -> Result<(Serial, &Selected), SerialError> {
         let serial = self.serial.read(scanned)?;
         let selected = self.variant(&serial.variant);
@@ -204,7 +205,7 @@ impl Plan {
         named.map_or(&self.base, |(_, selected)| selected)
     }
 
-    /// The variants that are named, and what is done with all others under the name of nothing.
+    /// The named variants, and what is done with all others, under an empty name.
     pub fn variants(&self) -> impl Iterator<Item = (&str, &Selected)> {
         let named = self.variants.iter().map(|(name, selected)| (name.as_str(), selected));
         std::iter::once(("", &self.base)).chain(named)

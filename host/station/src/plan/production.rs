@@ -10,7 +10,7 @@ use super::read;
 pub struct Production {
     /// Refuse anything but hardware.
     pub require_hardware: bool,
-    /// The units that check every lane in each shift; none if production counts without.
+    /// The units that check every lane in each shift; `None` if production counts without them.
     pub shift: Option<Shift>,
 }
 
@@ -21,7 +21,7 @@ pub struct Shift {
     pub good: String,
     /// What must fail.
     pub bad: Bad,
-    /// How long the two count.
+    /// How long the two results count.
     pub lasts: Duration,
 }
 
@@ -46,8 +46,8 @@ impl Bad {
 }
 
 impl Production {
-    /// What the text of a plan that was read whole once demands; nothing if this program cannot read it. The files that it names
-    /// may be others by now.
+    /// What the text of a plan that was once read whole demands; `None` if this program cannot read it. The files that
+    /// the plan names may have changed since.
     #[must_use]
     pub fn of_text(text: &str) -> Option<Self> {
         read::production_of(text).ok()
@@ -72,7 +72,7 @@ impl Production {
 mod tests {
     use super::*;
 
-    /// What checks a lane is judged again in every shift, and would be counted as a product each time.
+    /// What checks a lane is judged again in every shift, and would count as a product each time.
     #[test]
     fn a_unit_that_checks_a_shift_counts_as_no_product() {
         let counts = |require_hardware, bad| {

@@ -19,20 +19,20 @@ use crate::input_error::Fault;
 
 /// Where all keys are listed.
 const KEYS: &str = "`halfrow-station plan schema` lists every key and its values";
-/// How long a step may take that does not say.
+/// How long a step may take unless it says otherwise.
 const TIMEOUT: Duration = Duration::from_secs(120);
-/// The longest that one may say, in seconds.
+/// The longest time that it may ask for, in seconds.
 const MOST_SECONDS: f64 = 86_400.0;
 /// The longest part of a link test, in seconds.
 const MOST_LINK_SECONDS: f64 = 3600.0;
 /// The longest shift, in hours.
 const MOST_SHIFT_HOURS: f64 = 168.0;
-/// The most tries behind the first.
+/// The most tries after the first.
 const MOST_RETRIES: u32 = 10;
 /// The most repetitions of a step's frames.
 const MOST_REPEATS: u32 = 1000;
 
-/// The plan of `text` in the file `path`; its own text is left to the caller.
+/// The plan of `text` in the file `path`; its field `text` is left to the caller.
 pub(super) fn plan(path: &Path, text: &str) -> Result<Plan, Fault> {
     let read: PlanText = toml::from_str(text).map_err(|error| Fault::of_toml(&error, KEYS))?;
     check_schema(&read)?;
@@ -61,7 +61,7 @@ pub(super) fn plan(path: &Path, text: &str) -> Result<Plan, Fault> {
     })
 }
 
-/// What the plan of `text` demands of production, whatever became of its files.
+/// What the plan of `text` demands of production, whatever has become of its files.
 pub(super) fn production_of(text: &str) -> Result<Production, Fault> {
     let read: PlanText = toml::from_str(text).map_err(|error| Fault::of_toml(&error, KEYS))?;
     check_schema(&read)?;
@@ -91,7 +91,7 @@ fn check_schema(read: &PlanText) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The units that check a shift, whose serial numbers are the product's.
+/// The units that check a shift; their serial numbers must be of the product.
 fn shift(text: &ShiftText, rule: &SerialRule) -> Result<Shift, Fault> {
     let bad = match text.bad.get_ref().as_str() {
         BARCODE => Bad::Mock,
@@ -147,7 +147,7 @@ fn not_empty(word: &Spanned<String>) -> Result<String, Fault> {
     }
 }
 
-/// The builds that may be judged, which must be some.
+/// The builds that may be judged, of which there must be one at least.
 fn builds(board: &BoardText) -> Result<Vec<String>, Fault> {
     if board.builds.get_ref().is_empty() {
         let what = "no build of the board may be judged";
@@ -169,7 +169,7 @@ fn builds(board: &BoardText) -> Result<Vec<String>, Fault> {
     board.builds.get_ref().iter().map(build).collect()
 }
 
-/// Steps and limits with these tables, and with limits that take the place of the plan's.
+/// Steps and limits with these tables; the limits `instead` replace the plan's.
 fn selected(
     plan: &PlanText,
     tables: &TablesText,
@@ -251,7 +251,7 @@ fn verify(text: &StepText, tables: &TablesText, files: &mut Files) -> Result<Act
 }
 
 impl Judging {
-    /// What the judge is asked to do, with `of_run` where the plan says that the run has a seed of its own.
+    /// What the judge is asked to do, with the seed `of_run` where the plan leaves the seed to the run.
     #[must_use]
     pub fn plan(&self, of_run: u64) -> halfrow::Plan {
         let seed = match self.seed {
@@ -274,7 +274,7 @@ fn seed(text: Option<&Spanned<SeedText>>) -> Result<Seed, Fault> {
     }
 }
 
-/// Seconds of the board's own frames, which may be none.
+/// The time for which the board makes frames on its own, which may be 0.
 fn at_speed(text: &Spanned<f64>) -> Result<Duration, Fault> {
     match *text.get_ref() {
         0.0 => Ok(Duration::ZERO),
@@ -343,7 +343,7 @@ fn limit(name: &Spanned<String>, text: &LimitText, steps: &[Step]) -> Result<Lim
     Ok(Limit { measurement, least, most, blames: text.blames.unwrap_or(measurement.blames) })
 }
 
-/// The least and the most value, of which one is there at least.
+/// The least and the most value, at least one of which is given.
 fn bounds(at: usize, text: &LimitText) -> Result<(Option<f64>, Option<f64>), Fault> {
     let number = |bound: &Option<Spanned<f64>>| match bound {
         Some(bound) if !bound.get_ref().is_finite() => {

@@ -62,7 +62,7 @@ pub enum SerialError {
     /// It is misread.
     #[error("the check digit of `{serial}` is wrong ({check}); scan the board's label again")]
     CheckDigit {
-        /// What was scanned.
+        /// The kind of its check digits.
         serial: String,
         /// By what it guards itself.
         check: CheckDigit,
@@ -88,7 +88,7 @@ impl SerialRule {
                 format!("the pattern {pattern} is not anchored, and would take a part of a serial number");
             return Err((what, "begin it with ^ and end it with $"));
         }
-        // An alternative in the pattern would leave an anchor at one end only.
+        // An alternation in the pattern would leave each alternative with one anchor only.
         let regex = Regex::new(&format!(r"\A(?:{pattern})\z"))
             .map_err(|error| (one_line(&error), "write a regular expression as the crate regex reads it"))?;
         Ok(Self { pattern: regex, source: pattern.to_owned(), check })
@@ -100,9 +100,9 @@ impl SerialRule {
         self.pattern.capture_names().any(|name| name == Some("variant"))
     }
 
-    /// The serial number that was scanned: as it is, since whatever is cut off could have been a part of it.
+    /// The serial number that was scanned, unchanged, because whatever is cut off could have been a part of it.
     ///
-    /// The check digits guard what the group `number` matches; without one, the whole.
+    /// The check digits protect what the group `number` matches or, without that group, the whole.
     ///
     /// # Errors
     /// [`SerialError`] when it is none of this product's.
@@ -135,7 +135,7 @@ impl SerialRule {
     }
 }
 
-/// A message of several lines in one: its last one, which says what is wrong.
+/// The last line of a message, which says what is wrong.
 fn one_line(error: &regex::Error) -> String {
     let text = error.to_string();
     text.lines().last().unwrap_or_default().trim_start_matches("error: ").to_owned()
@@ -156,7 +156,7 @@ mod tests {
         assert_eq!((serial.text.as_str(), serial.variant.as_str()), ("CAW080442957X", "W"));
     }
 
-    /// The letters in front would count.
+    /// The letters before it would count.
     #[test]
     fn a_check_digit_guards_the_number_alone() {
         for (pattern, check, serial) in [
@@ -180,13 +180,13 @@ mod tests {
         };
         let of_check =
             |serial: &str| SerialError::CheckDigit { serial: serial.to_owned(), check: CheckDigit::Mod11 };
-        // A digit is missing, doubled; lower case; a blank before or behind; another product.
+        // A digit is missing, doubled; lower case; a blank before or after; another product.
         for scanned in
             ["CAW08044295X", "CAW0880442957X", "caw080442957X", " CAW080442957X", "CAW080442957X ", "CB1"]
         {
             assert_eq!(rule.read(scanned), Err(pattern(scanned)));
         }
-        // A digit is changed; neighbours are exchanged; the check digit is another.
+        // A digit is changed; neighbours are swapped; the check digit is another.
         for scanned in ["CAW080442947X", "CAW084042957X", "CAW0804429573"] {
             assert_eq!(rule.read(scanned), Err(of_check(scanned)));
         }

@@ -1,4 +1,4 @@
-//! From `[tables]` to what a board is judged with.
+//! Turns `[tables]` into what a board is judged with.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ use crate::input_error::Fault;
 type FromFile = (Chosen, Option<Input>);
 
 impl TablesText {
-    /// These, with what `over` says instead. A lens, a file and a radius take each other's place.
+    /// These tables, with what `over` says instead. A lens, a file and a radius replace one another.
     pub(super) fn under(&self, over: &Self) -> Self {
         let has_source = over.lens.is_some() || over.file.is_some() || over.radius.is_some();
         let below = if has_source { &Self::default() } else { self };
@@ -37,7 +37,7 @@ impl TablesText {
         }
     }
 
-    /// Where in the plan these tables stand, for errors; `otherwise` if they are the built-in ones.
+    /// Where in the plan these tables are, for errors; `otherwise` if they are the built-in ones.
     fn place(&self, otherwise: usize) -> usize {
         let named = self.file.as_ref().or(self.lens.as_ref()).map(|name| name.span().start);
         let radius = || self.radius.as_ref().map(|radius| radius.span().start);
@@ -45,7 +45,7 @@ impl TablesText {
         named.or_else(radius).or_else(size).unwrap_or(otherwise)
     }
 
-    /// Tables, kernel and lens. `step` is the place of the step that wants them.
+    /// Chooses tables, kernel and lens. `step` is the place in the plan of the step that needs them.
     pub(super) fn choose(&self, files: &mut Files, step: usize) -> Result<Chosen, Fault> {
         self.check()?;
         let kernel = self.kernel.as_ref().map(|name| kernel(name, files)).transpose()?;
@@ -71,7 +71,7 @@ impl TablesText {
         Ok(chosen)
     }
 
-    /// Refuses what contradicts each other, and depths that no sample has.
+    /// Refuses contradictions, and depths that no sample has.
     fn check(&self) -> Result<(), Fault> {
         self.depth()?;
         let named = [

@@ -1,5 +1,4 @@
-//! A plan as it stands in its file: what TOML and its types can say, each value with its place where an error may name
-//! it.
+//! A plan as it is in its file: what TOML and its types can say, each value with its place where an error may name it.
 
 use std::collections::BTreeMap;
 
@@ -66,7 +65,7 @@ pub(super) struct ShiftText {
     pub(super) hours: Spanned<f64>,
 }
 
-/// `[tables]`, and what a step or a variant has instead.
+/// `[tables]`, and what a step or a variant says instead.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct TablesText {
@@ -82,7 +81,7 @@ pub(super) struct TablesText {
     pub(super) kernel: Option<Spanned<String>>,
 }
 
-/// How row factors are found.
+/// How row factors are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(super) enum RowsText {

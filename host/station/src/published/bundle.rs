@@ -14,9 +14,9 @@ use crate::plan::{Plan, plan_hash};
 
 /// The version of the bundle's own format.
 const SCHEMA: u32 = 1;
-/// The most bytes of all files.
+/// The most bytes of all files together.
 const MOST: u64 = 64 << 20;
-/// What a plan that was unpacked is called.
+/// The name of a plan's file once it is unpacked.
 pub(super) const PLAN: &str = "plan.toml";
 
 /// A plan that cannot be published or unpacked.
@@ -119,14 +119,14 @@ impl Bundle {
         Ok(Self { schema: SCHEMA, text, files: files.into_iter().map(bundled).collect() })
     }
 
-    /// It as a text.
+    /// The bundle as text.
     #[must_use]
     pub fn text(&self) -> String {
-        // It has nothing that JSON could not have.
+        // It has nothing that JSON could not express.
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// The bundle `text`, whose plan has the hash `expected`.
+    /// Unpacks the bundle `text`, whose plan has the hash `expected`.
     ///
     /// # Errors
     /// [`BundleError`] when it is not what its hash says.
@@ -178,7 +178,7 @@ impl Unpacked {
         Ok(Self { text: plan.text.clone(), files })
     }
 
-    /// Writes it into `folder`. Returns the plan's file.
+    /// Writes it into `folder`, and returns the path of the plan's file.
     ///
     /// # Errors
     /// [`BundleError`] when it cannot be kept.
@@ -192,8 +192,8 @@ impl Unpacked {
     }
 }
 
-/// A file of a bundle lies where the plan does, or below. The plan's hash is of names between line ends and NULs, so that no name has
-/// these.
+/// A file of a bundle lies next to the plan, or below. The plan's hash separates names by newlines and NULs, so no
+/// name may have these.
 fn check_name(name: &str) -> Result<(), BundleError> {
     if name == PLAN {
         return Err(BundleError::Plan);
@@ -205,7 +205,7 @@ fn check_name(name: &str) -> Result<(), BundleError> {
     if is_below && !name.is_empty() { Ok(()) } else { Err(BundleError::Outside { name: name.to_owned() }) }
 }
 
-/// Writes the file unless it is there with just this.
+/// Writes the file, unless it has exactly this content already.
 pub(super) fn keep(path: &Path, content: &[u8]) -> Result<(), BundleError> {
     if fs::read(path).is_ok_and(|there| there == content) {
         return Ok(());
@@ -219,7 +219,7 @@ pub(super) fn keep(path: &Path, content: &[u8]) -> Result<(), BundleError> {
 mod tests {
     use super::*;
 
-    /// Its hash is right, as whoever has a key that is trusted could sign it.
+    /// The hash is right, because whoever has a trusted key could sign such a bundle.
     #[test]
     fn nothing_is_unpacked_that_would_lie_outside_of_its_folder_or_over_the_plan() {
         let unpacked = |name: &str| {

@@ -62,16 +62,16 @@ pub enum FetchError {
 pub struct Fetched {
     /// What holds.
     pub statement: Statement,
-    /// Whether it is another one than before.
+    /// Whether it differs from the one before.
     pub is_new: bool,
 }
 
-/// What a plant says of a plan, signed by somebody who is trusted, and no less than what is kept.
+/// What a plant says of a plan, signed by somebody who is trusted, and not older than what is kept.
 #[derive(Debug)]
 pub struct Offer {
     signed: Signed,
     statement: Statement,
-    /// The text of its bundle, unless it is kept just so.
+    /// The text of its bundle, unless exactly that is kept already.
     bundle: Option<String>,
     is_new: bool,
 }
@@ -93,7 +93,7 @@ pub fn offered(
     let signed = Signed { statement, signature };
     let statement = signed.by(trusted).filter(|statement| statement.plan() == *plan);
     let statement = statement.ok_or_else(|| FetchError::Untrusted { plan: name() })?;
-    // One that nobody trusts any more holds nothing back.
+    // A statement whose signer is not trusted any more does not stand in the way.
     let ours = kept.statement(plan, trusted);
     let is_new = ours.as_ref() != Some(&statement);
     if let Some(ours) = ours.filter(|ours| is_new && statement.number <= ours.number) {
@@ -119,7 +119,7 @@ impl Offer {
     }
 }
 
-/// Looks whether the plant has the plan of this statement just so, with every file that it names. Nothing is kept.
+/// Checks that the plant has exactly the plan of this statement, with every file that it names. Nothing is kept.
 ///
 /// # Errors
 /// [`FetchError`]
@@ -130,7 +130,7 @@ pub fn look_whole(plant: &mut Plant, statement: &Statement) -> Result<(), FetchE
     written(statement, &Bundle::unpacked(&text, &statement.sha256)?, folder.path())
 }
 
-/// Writes what was unpacked into `folder`, and looks whether a plan that is read there is the one of this statement.
+/// Writes what was unpacked into `folder`, and checks that the plan read from there is the one of this statement.
 fn written(statement: &Statement, unpacked: &Unpacked, folder: &Path) -> Result<(), FetchError> {
     let plan = || statement.plan().to_string();
     let file = unpacked.write(folder)?;

@@ -14,7 +14,7 @@ use crate::history::PlanName;
 use crate::plan::Plan;
 use crate::record::is_hash;
 
-/// A folder of plans: each by its hash, and for each name what holds.
+/// A folder of plans, each by its hash, and of what holds for each name.
 #[derive(Clone, Debug)]
 pub struct Kept {
     folder: PathBuf,
@@ -28,20 +28,20 @@ pub(super) struct Signed {
 }
 
 impl Signed {
-    /// What it says, if somebody of `trusted` has signed it.
+    /// What it says, if one of `trusted` has signed it.
     pub(super) fn by(&self, trusted: &[PublicKey]) -> Option<Statement> {
         Statement::signed(&self.statement, &self.signature, trusted)
     }
 }
 
 impl Kept {
-    /// Of the station whose folder is `data`.
+    /// The plans of the station whose folder is `data`.
     #[must_use]
     pub fn of(data: &Path) -> Self {
         Self { folder: data.join("plans") }
     }
 
-    /// What holds for this plan, if it was fetched and somebody of `trusted` has signed it.
+    /// What holds for this plan, if it was fetched and one of `trusted` has signed it.
     #[must_use]
     pub fn statement(&self, plan: &PlanName, trusted: &[PublicKey]) -> Option<Statement> {
         self.signed(plan)?.by(trusted).filter(|statement| statement.plan() == *plan)
@@ -53,8 +53,8 @@ impl Kept {
         self.folder.join(&statement.sha256).join(PLAN)
     }
 
-    /// Copies to `other`, which has nothing yet, what holds and the plans that are whole, of each what it names. What holds comes before the
-    /// plans, which are there before it is said that they hold.
+    /// Copies what holds and all whole plans, each with what it names, to `other`, which is empty. What holds is
+    /// copied first, because a plan is there before it is said to hold.
     ///
     /// # Errors
     /// [`BundleError`]
@@ -79,7 +79,8 @@ impl Kept {
         Ok(())
     }
 
-    /// What lies there that no program of ours has put there, nor may be followed: it is neither a file nor a folder.
+    /// What lies there that this program did not put there and that must not be followed: it is neither a file nor a
+    /// folder.
     ///
     /// # Errors
     /// The system's reason when a folder cannot be read.
@@ -98,7 +99,7 @@ impl Kept {
         Ok(found)
     }
 
-    /// The plan of this hash with every file that it names, if it is just that.
+    /// The plan of this hash with every file that it names, if it is exactly what the hash says.
     fn whole(&self, hash: &str) -> Option<Unpacked> {
         let file = self.folder.join(hash).join(PLAN);
         let plan = Plan::load(&file).ok().filter(|plan| plan.sha256 == hash)?;
@@ -119,7 +120,7 @@ impl Kept {
         &self.folder
     }
 
-    /// The plan of this statement as `fill` writes it, whole or not at all. What is there of it goes.
+    /// Puts the plan of this statement in place as `fill` writes it, whole or not at all. What was there of it is replaced.
     pub(super) fn put(
         &self,
         statement: &Statement,
@@ -137,19 +138,19 @@ impl Kept {
         Ok(())
     }
 
-    /// From now on this holds.
+    /// Notes that this holds from now on.
     pub(super) fn keep(&self, plan: &PlanName, signed: &Signed) -> Result<(), BundleError> {
         let text = serde_json::to_string(signed).unwrap_or_default();
         Ok(write_aside(&self.holds(plan), true, |file| file.write_all(text.as_bytes()))?)
     }
 
-    /// Where it is kept what holds; a product may be called what no file can be.
+    /// The file that says what holds. Its name is a hash, because a product may have a name that no file can have.
     fn holds(&self, PlanName { product, plan }: &PlanName) -> PathBuf {
         self.folder.join(sha256([format!("{product}\0{plan}")]) + ".json")
     }
 }
 
-/// Copies what an engineer has signed, if the file is of that form, and not gone by now.
+/// Copies what an engineer has signed, if the file has that form and still exists.
 fn copy_signed(from: &Path, to: &Path) -> Result<(), BundleError> {
     match fs::read(from) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
@@ -163,7 +164,8 @@ fn uncopied(path: &Path, source: io::Error) -> BundleError {
     BundleError::Uncopied { path: path.to_owned(), source }
 }
 
-/// What lies in a folder, which need not be there, and what each is, no link followed. What goes meanwhile is left out.
+/// What lies in a folder, which need not exist, and the type of each entry; links are not followed. What disappears
+/// meanwhile is left out.
 fn entries(folder: &Path) -> io::Result<Vec<(String, FileType)>> {
     let is_gone = |error: &io::Error| error.kind() == io::ErrorKind::NotFound;
     let entries = match fs::read_dir(folder) {

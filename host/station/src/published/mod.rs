@@ -6,7 +6,8 @@
 //!                                                    └► kept, by its hash; it goes on with it without the plant
 //! ```
 //!
-//! A plant's database may be anybody's: what a station judges by is what an engineer has signed, and never less than it had.
+//! A plant's database may be anybody's, so a station judges only by what an engineer has signed, and never by less
+//! than it had.
 
 mod bundle;
 mod fetched;
@@ -20,7 +21,7 @@ pub use signed::{PublicKey, SigningError, SigningKey, Statement};
 
 use crate::history::PlanName;
 
-/// What a plan's place begins with in settings when the plant publishes it.
+/// What a plan's place in settings begins with when the plant publishes the plan.
 pub(crate) const PLACE: &str = "plant:";
 
 /// The plan that a place in settings names, if the plant publishes it: `plant:PRODUCT/NAME`.

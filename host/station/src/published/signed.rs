@@ -15,7 +15,7 @@ use crate::secret::{self, SecretError};
 
 /// What public keys begin with.
 const KIND: &str = "ed25519:";
-/// What is in front of everything that is signed, so that no signature of something else is one of a plan.
+/// What stands before everything that is signed, so that no signature of something else is one of a plan.
 const PURPOSE: &str = "halfrow plan 1\n";
 /// Bytes of a public key.
 const BYTES: usize = 32;
@@ -109,7 +109,7 @@ impl PublicKey {
         }
     }
 
-    /// Whether it signed `text` by `signature`.
+    /// Whether `signature` is its signature of `text`.
     #[must_use]
     pub fn has_signed(&self, text: &str, signature: &str) -> bool {
         let decoded = BASE64_STANDARD.decode(&self.0).ok().zip(BASE64_STANDARD.decode(signature).ok());
@@ -140,7 +140,7 @@ pub struct Statement {
     pub version: String,
     /// The plan's hash.
     pub sha256: String,
-    /// Which statement about plans of this name it is, counted from 1.
+    /// The number of this statement among those about plans of this name, counted from 1.
     pub number: i64,
     /// Who says so.
     pub operator: String,
@@ -154,7 +154,7 @@ impl Statement {
     /// The version of the format.
     pub const SCHEMA: u32 = 1;
 
-    /// What `text` says, if somebody of `trusted` has signed it by `signature`.
+    /// What `text` says, if `signature` is of one of `trusted`.
     #[must_use]
     pub fn signed(text: &str, signature: &str, trusted: &[PublicKey]) -> Option<Self> {
         let statement: Self = serde_json::from_str(text).ok()?;
@@ -164,10 +164,10 @@ impl Statement {
         is_trusted.then_some(statement)
     }
 
-    /// What is signed of it.
+    /// The text that is signed.
     #[must_use]
     pub fn text(&self) -> String {
-        // It has nothing that JSON could not have.
+        // It has nothing that JSON could not express.
         serde_json::to_string(self).unwrap_or_default()
     }
 
