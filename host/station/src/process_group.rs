@@ -11,7 +11,7 @@ use nix::unistd::Pid;
 
 use crate::settings::PASSWORD_OF_PLANT;
 
-/// How soon after its start a process is first checked for its end, and the longest pause between two checks.
+/// The first pause between two checks whether a process has ended, and the longest one.
 const FIRST: Duration = Duration::from_millis(1);
 const LONGEST: Duration = Duration::from_millis(10);
 

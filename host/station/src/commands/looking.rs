@@ -172,12 +172,12 @@ impl From<Word> for Verdict {
     }
 }
 
-/// The first moment that `text` means, in milliseconds since 1970.
+/// The first moment of `text`, in milliseconds since 1970.
 fn from(text: &str) -> Result<i64, String> {
     given(text, 0)
 }
 
-/// The first moment after what `text` means, which of a day is all of it.
+/// The first moment after `text`, where a date means the whole day.
 fn until(text: &str) -> Result<i64, String> {
     given(text, 1)
 }

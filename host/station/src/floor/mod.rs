@@ -134,7 +134,7 @@ impl Pending {
 }
 
 impl Floor {
-    /// With these lanes, and the rules of all plans. `scan_then_plug` allows the third way above.
+    /// With these lanes, and the rules of all plans. `scan_then_plug` allows the third way in the head of this module.
     #[must_use]
     pub fn new(places: Vec<Place>, rules: Vec<Rule>, scan_then_plug: bool) -> Self {
         let lanes = places.iter().map(|place| Lane::new(&place.name, place.starts)).collect();

@@ -25,7 +25,7 @@ pub struct Drift {
     pub here: Rate,
     /// That of all others.
     pub elsewhere: Rate,
-    /// The chance of a difference this great if there is none; `None` where too few units were judged to tell.
+    /// The chance of so great a difference between stations that are alike; `None` where too few units were judged to tell.
     pub chance: Option<f64>,
     /// Whether that is too small to be taken for chance, given the number of stations.
     pub is_marked: bool,

@@ -89,7 +89,7 @@ pub struct Yield {
     pub flipped: u64,
     /// Runs that are ERROR, of all that are over.
     pub errors: Rate,
-    /// Those of them that the program or the computer did not outlive.
+    /// Those of them whose cause is `crash`: the lane, the program or the computer did not survive the run.
     pub crashes: u64,
 }
 

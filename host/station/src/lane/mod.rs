@@ -1,7 +1,7 @@
 //! A lane: one process that carries out the steps of one run, and the supervisor that can kill it.
 //!
 //! ```text
-//!  supervisor ── a job, then what to stop for ──► stdin
+//!  supervisor ── a job, rulings, and a stop ────► stdin
 //!             ◄── messages, one JSON line each ── stdout    lane ─► the judge ─► board
 //! ```
 //!

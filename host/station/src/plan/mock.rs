@@ -9,9 +9,9 @@ use super::{Act, Selected};
 /// What stands for it in a plan, and the barcode that has a lane judge it.
 pub const BARCODE: &str = "HR:MOCK";
 
-/// Faults of the datapath that the fewest frames of a plan show whatever is drawn, each with its parameters; not all
-/// that the mock has. Bits are flipped hidden, because a board that notices a flipped bit refuses its tables, and no
-/// row is lost, because that stops a link test: both would be ERROR. The low bits of a factor are left out, because
+/// Faults of the datapath that even the fewest frames of a plan show, whatever is drawn, each with its parameters; not
+/// all that the mock has. Bits are flipped hidden, because a board that notices a flipped bit refuses its tables, and
+/// no row is lost, because that stops a link test: both would be ERROR. The low bits of a factor are left out, because
 /// they may change no sample.
 const FAULTS: [(&str, &[(&str, Values)]); 6] = [
     ("stuck-data", &[("bit", Values::From(0, 7)), ("value", Values::From(0, 1))]),

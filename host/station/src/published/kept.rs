@@ -54,7 +54,7 @@ impl Kept {
     }
 
     /// Copies what holds and all whole plans, each with what it names, to `other`, which is empty. What holds is
-    /// copied first, because a plan is there before it is said to hold.
+    /// copied first, because a plan is written before the statement that it holds.
     ///
     /// # Errors
     /// [`BundleError`]

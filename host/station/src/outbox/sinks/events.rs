@@ -91,7 +91,7 @@ struct WaiverEvent<'a> {
 }
 
 impl EventSink {
-    /// The broker at `address`, where the station `station` logs in by `login`.
+    /// The broker at `address`, and a client of it for the station `station`, which logs in by `login`.
     pub(super) fn new(
         name: String,
         station: &str,
