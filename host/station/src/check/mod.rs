@@ -27,7 +27,7 @@ pub struct Checked {
     pub evidence: usize,
     /// Attachments that were removed because they were old.
     pub pruned: usize,
-    /// Records that contradict the database about a run, which may be right.
+    /// Records that contradict the database about a run, which need not be a fault.
     pub superseded: Vec<Superseded>,
     /// What is not as it was written.
     pub faults: Vec<Fault>,

@@ -205,8 +205,8 @@ pub(super) fn either<T: Serialize>(
     print(&text(result))
 }
 
-/// A table for people, with the columns `numbers` aligned right. Control characters in what a board or a scanner said
-/// are not printed.
+/// A table for people, with the columns `numbers` aligned right. Control characters, which a board or a scanner may
+/// have said, are escaped.
 pub(super) fn table(
     header: &[&str],
     numbers: &[usize],

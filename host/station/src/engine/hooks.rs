@@ -92,8 +92,8 @@ pub(super) fn run(hook: &Hook, lane: &str, shown: &Shown) -> Result<(), HookErro
     }
 }
 
-/// Passes on the beginning of what a hook writes to stderr. All of it is read: a hook that nobody reads dies before
-/// its work is done.
+/// Passes on the beginning of what a hook writes to stderr. All of it is read: a hook whose stderr nobody
+/// reads dies before its work is done.
 fn hear(mut complaints: impl Read, tell: Sender<Vec<u8>>) {
     let (mut piece, mut left) = ([0; MOST_SAID], MOST_SAID);
     while let Ok(read @ 1..) = complaints.read(&mut piece[..left]) {

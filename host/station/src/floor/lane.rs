@@ -3,8 +3,7 @@
 //! ```text
 //!  EMPTY ─ board ─► READY ─ serial number ─► RUNNING ─► SAVING ─► PASS | FAIL | ERROR ─ next serial number ─► …
 //!    └ serial number ─► WAITING ─ board or button ─┘        └ UNSAVED ─ the disk is well ─► ERROR
-//!  OUT: taken out of service, by a person or because its process cannot be killed; or it owes a check, and shows no
-//! verdict
+//!  OUT: taken out of service by a person, or because its process cannot be killed; or it owes a check, and shows no verdict
 //! ```
 
 use halfrow::Verdict;

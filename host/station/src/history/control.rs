@@ -44,7 +44,7 @@ impl Limits {
     }
 }
 
-/// The smallest number, among `of` cases with the chance `mean` each, such that fewer occur with a chance below [`BEYOND`].
+/// The largest number, among `of` cases with the chance `mean` each, such that fewer occur with a chance below [`BEYOND`].
 fn least(of: u64, mean: f64) -> u64 {
     if mean <= 0.0 {
         return 0;

@@ -62,9 +62,9 @@ pub enum SerialError {
     /// It is misread.
     #[error("the check digit of `{serial}` is wrong ({check}); scan the board's label again")]
     CheckDigit {
-        /// The kind of its check digits.
+        /// What was scanned.
         serial: String,
-        /// By what it guards itself.
+        /// The kind of its check digits.
         check: CheckDigit,
     },
 }

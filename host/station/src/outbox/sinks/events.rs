@@ -91,7 +91,7 @@ struct WaiverEvent<'a> {
 }
 
 impl EventSink {
-    /// The broker at `address`, and a client of it for the station `station`, which logs in by `login`.
+    /// A client of the broker at `address` for the station `station`, which logs in by `login` if there is one.
     pub(super) fn new(
         name: String,
         station: &str,
