@@ -57,7 +57,7 @@ pub(super) struct AtWork {
     board: Arc<Mutex<Board>>,
     presence: Vec<Presence>,
     stops: Vec<StopAsked>,
-    /// For each lane, the unit that passed already and for which somebody was asked whether it is meant.
+    /// For each lane, the unit that passed already and that somebody was asked to scan once more.
     asked: Vec<Option<String>>,
     /// What is known of what each lane owes its shift.
     known: Vec<Known>,

@@ -151,7 +151,7 @@ mod tests {
             let property = format!("<property name=\"{name}\" value=\"{value}\"");
             assert!(document.contains(&property), "{property}: {document}");
         }
-        // A measurement without a limit is no case.
+        // A measurement without a limit is not a case.
         let none = judged(Maker::Run, &[("run.seconds", Some(1.5))], &[]);
         assert!(!render(&Record { measurements: none, ..record }).unwrap().contains("run.seconds (run)"));
     }

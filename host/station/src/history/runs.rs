@@ -52,7 +52,7 @@ impl Serialize for Place {
     }
 }
 
-/// A text that is no place.
+/// A text that is not a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("this is no place among the runs; take the one that the page before ends with")]
 pub struct NoPlace;

@@ -1,4 +1,4 @@
-//! What is kept: copies of it, and what need not be kept for ever.
+//! What is kept: copies of it, and the removal of what need not be kept for ever.
 
 mod copy;
 mod prune;

@@ -70,7 +70,7 @@ pub fn target(seed: u64, selected: &Selected) -> String {
     format!("mock,fault={name}{parameters}")
 }
 
-/// What is left of a seed.
+/// What is left of a seed from which numbers are drawn.
 struct Drawn(u64);
 
 impl Drawn {

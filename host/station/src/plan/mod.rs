@@ -58,7 +58,7 @@ pub enum Again {
     /// It is.
     #[default]
     Allow,
-    /// Only when somebody says that it is meant.
+    /// Only when somebody confirms it.
     Ask,
     /// It never is.
     Refuse,

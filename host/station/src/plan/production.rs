@@ -53,7 +53,7 @@ impl Production {
         read::production_of(text).ok()
     }
 
-    /// Whether the unit of this serial number checks shifts, and is no product.
+    /// Whether the unit of this serial number checks shifts, and so is not a product.
     #[must_use]
     pub fn is_reference(&self, serial: &str) -> bool {
         let is_bad = |bad: &Bad| matches!(bad, Bad::Unit(bad) if bad == serial);

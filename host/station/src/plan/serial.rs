@@ -56,7 +56,7 @@ pub enum SerialError {
     Pattern {
         /// What was scanned.
         serial: String,
-        /// What is right.
+        /// The pattern that it does not match.
         pattern: String,
     },
     /// It is misread.
