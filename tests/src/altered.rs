@@ -1,5 +1,5 @@
-//! A mock board whose packets are rewritten on their way, CRC and all: boards that are wrong in what they say, and links that
-//! do to whole packets what no fault of the mock's wire does.
+//! A mock board whose packets are rewritten on their way, CRC and all: boards that make wrong statements, and links that do to
+//! whole packets what no fault of the mock's wire does.
 
 use std::convert::Infallible;
 use std::fmt;
@@ -16,12 +16,12 @@ use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet, Reply};
 
 use crate::system::{System, judge_by_plan};
 
-/// Where a packet goes.
+/// Which way a packet goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Toward {
-    /// From the host.
+    /// From the host to the board.
     Board,
-    /// From the board.
+    /// From the board to the host.
     Host,
 }
 
@@ -41,13 +41,13 @@ impl Passing {
         self.header.kind == kind.code()
     }
 
-    /// What the board says, if it does.
+    /// The reply in it, if it is one.
     #[must_use]
     pub fn reply(&self) -> Option<Reply<'_>> {
         Reply::read(&Packet { header: self.header, payload: &self.payload }).ok()
     }
 
-    /// Puts another payload into it.
+    /// The same packet with another reply in it.
     #[must_use]
     pub fn saying(&self, reply: &Reply<'_>) -> Self {
         let mut payload = Vec::new();
@@ -56,7 +56,7 @@ impl Passing {
     }
 }
 
-/// The mock board behind packets that `alter` rewrites: each becomes those that it returns.
+/// The mock board with packets that `alter` rewrites: each becomes those that `alter` returns.
 pub struct Altered<F> {
     board: Board,
     alter: F,
@@ -67,7 +67,7 @@ pub struct Altered<F> {
 }
 
 impl<F: FnMut(Toward, Passing) -> Vec<Passing>> Altered<F> {
-    /// The mock board of the build `options`, whose packets `alter` rewrites.
+    /// The mock board of the build `options`, with packets that `alter` rewrites.
     ///
     /// # Panics
     /// If there can be no such board.
@@ -82,7 +82,7 @@ impl<F: FnMut(Toward, Passing) -> Vec<Passing>> Altered<F> {
         }
     }
 
-    /// The board as one that is about to be opened.
+    /// The board as a candidate for a run.
     pub fn candidate(self) -> Candidate
     where
         F: Send + 'static,
@@ -95,7 +95,7 @@ impl<F: FnMut(Toward, Passing) -> Vec<Passing>> Altered<F> {
         let decoder = if toward == Toward::Board { &mut self.from_host } else { &mut self.from_board };
         let (mut rest, mut wire) = (bytes, Vec::new());
         while let Some(packet) = decoder.next(&mut rest) {
-            // What is damaged is nobody's.
+            // A damaged packet goes nowhere.
             let Ok(Packet { header, payload }) = packet else { continue };
             for packet in (self.alter)(toward, Passing { header, payload: payload.to_vec() }) {
                 let write = |payload: &mut Vec<u8>| payload.extend(&packet.payload);
@@ -129,13 +129,13 @@ impl<F> fmt::Debug for Altered<F> {
     }
 }
 
-/// The report on the mock board of `system` whose packets `alter` rewrites.
+/// The report on the mock board of `system` with packets that `alter` rewrites.
 #[must_use]
 pub fn judge(system: &System, alter: impl FnMut(Toward, Passing) -> Vec<Passing> + Send + 'static) -> Report {
     system.judge_candidate(Altered::new(&Options::default(), alter).candidate())
 }
 
-/// The same where every packet becomes one.
+/// Like [`judge`], where each packet becomes exactly one.
 #[must_use]
 pub fn judge_each(
     system: &System,
@@ -144,13 +144,13 @@ pub fn judge_each(
     judge(system, move |toward, packet| vec![alter(toward, packet)])
 }
 
-/// The report on a board that is sound but for what it says of itself.
+/// The report on a sound board that misstates its capabilities.
 #[must_use]
 pub fn judge_claims(system: &System, change: impl Fn(&mut Capabilities) + Send + 'static) -> Report {
     judge_claims_by(&system.plan(), change)
 }
 
-/// The same by another plan.
+/// Like [`judge_claims`], by another plan.
 #[must_use]
 pub fn judge_claims_by(plan: &Plan, change: impl Fn(&mut Capabilities) + Send + 'static) -> Report {
     let alter = move |_, packet: Passing| match packet.reply() {

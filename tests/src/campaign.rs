@@ -1,7 +1,7 @@
-//! Single faults of the board by the hundred: which are seen in the samples, and which check owns the rest.
+//! Hundreds of single faults of the board: which of them the samples show, and which check finds the rest.
 //!
-//! A fault in a table is first hidden from read-back, so that the samples alone must show it. Those that they do not
-//! show are tried once more unhidden, and then the read-back check must find them.
+//! A fault in a table is first hidden from read-back, so that the samples alone must show it. Those that they do not show are
+//! tried once more unhidden, and then the read-back check must find them.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -15,7 +15,7 @@ use halfrow::result::CheckName;
 
 use crate::system::{System, failed_check, judge_by_plan, open};
 
-/// The kinds of faults, and their share in a campaign, in tenths.
+/// The kinds of faults, and their shares of a campaign, in tenths.
 const KINDS: [(Kind, usize); 5] = [
     (Kind::RowFactor, 3),
     (Kind::KernelWord, 3),
@@ -31,15 +31,15 @@ pub enum Kind {
     RowFactor,
     /// A bit of a kernel word.
     KernelWord,
-    /// A data line of the line memory, at either level.
+    /// A data line of the line memory, stuck at either level.
     DataLine,
-    /// An address line of the line memory, at either level.
+    /// An address line of the line memory, stuck at either level.
     AddressLine,
     /// A tap that carries zero or another tap's sample.
     DeadTap,
 }
 
-/// What became of a fault.
+/// How a fault was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Found {
     /// A returned sample was wrong.
@@ -50,7 +50,7 @@ pub enum Found {
     ByNothing,
 }
 
-/// A fault with what became of it.
+/// A fault, and how it was found.
 #[derive(Clone, Debug)]
 pub struct Case {
     /// Its kind.
@@ -59,18 +59,18 @@ pub struct Case {
     pub options: String,
     /// How often it was drawn.
     pub drawn: usize,
-    /// What became of it.
+    /// How it was found.
     pub found: Found,
 }
 
-/// A campaign that is over: every fault that was drawn, once.
+/// A finished campaign: every fault that was drawn, once.
 #[derive(Clone, Debug)]
 pub struct Campaign(pub Vec<Case>);
 
 /// Draws `count` faults by `seed` from all that a board of this system can have, and judges each.
 ///
 /// # Panics
-/// When a run comes to anything but PASS or FAIL, since nothing is wrong with the link.
+/// When a run ends in anything but PASS or FAIL, since nothing is wrong with the link.
 #[must_use]
 pub fn run(system: &System, count: usize, seed: u64) -> Campaign {
     let mut dice = Dice::new(seed);
@@ -88,14 +88,14 @@ pub fn run(system: &System, count: usize, seed: u64) -> Campaign {
     }))
 }
 
-/// The kind of the fault with this number, so that any ten in a row have each kind's share.
+/// The kind of the fault of this number, such that any ten in a row have each kind's share.
 fn kind_of(index: usize) -> Kind {
     let mut tenths = KINDS.into_iter().flat_map(|(kind, share)| std::iter::repeat_n(kind, share));
     tenths.nth(index % 10).unwrap()
 }
 
 impl Kind {
-    /// A fault of this kind, drawn from all that there are.
+    /// A fault of this kind, drawn from all that exist.
     fn draw(self, system: &System, dice: &mut Dice) -> String {
         let mut below = |end| dice.below(end);
         match self {
@@ -116,11 +116,11 @@ impl Kind {
         }
     }
 
-    /// Looks for a fault of this kind by a plan of `system`, given as options of a target: in the samples alone, and then in what reads
-    /// back.
+    /// Looks for a fault of this kind, given as options of a target, by a plan of `system`: first in the samples alone, then by
+    /// read-back.
     ///
     /// # Panics
-    /// When the run comes to anything but PASS or FAIL, or a check fails that has nothing to do with the fault.
+    /// When the run ends in anything but PASS or FAIL, or a check fails that has nothing to do with the fault.
     #[must_use]
     pub fn search(self, system: &System, plan: &Plan, options: &str) -> Found {
         let is_in_table = matches!(self, Self::RowFactor | Self::KernelWord);
@@ -158,12 +158,12 @@ fn check_of(system: &System, plan: &Plan, options: &str) -> Option<CheckName> {
 }
 
 impl Campaign {
-    /// The faults with this fate.
+    /// The faults that were found this way.
     pub fn that_were(&self, found: Found) -> impl Iterator<Item = &Case> {
         self.0.iter().filter(move |case| case.found == found)
     }
 
-    /// How many draws of a kind, or of all, had this fate, or any.
+    /// How many draws of a kind were found this way; none stands for all kinds, and for any way.
     fn count(&self, kind: Option<Kind>, found: Option<Found>) -> usize {
         let of_kind = |case: &&Case| kind.is_none_or(|kind| kind == case.kind);
         let found = |case: &&Case| found.is_none_or(|found| found == case.found);

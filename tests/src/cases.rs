@@ -1,5 +1,5 @@
-//! Cases for everything that computes as DATAPATH.md says: builds, legal tables, kernels, sizes, depths, blankings and gaps,
-//! drawn by a number, with frames that follow each other under tables of their own: row factors, or a grid.
+//! Random cases for everything that computes as DATAPATH.md says: builds, legal tables, kernels, sizes, depths, blankings and
+//! gaps, with frames that follow each other under tables of their own, row factors or a grid.
 
 mod grids;
 
@@ -10,7 +10,7 @@ use crate::dice::Dice;
 
 pub use grids::GridNeeds;
 
-/// What a case is drawn for.
+/// The build that a case is drawn for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Build {
     /// L.
@@ -21,7 +21,7 @@ pub struct Build {
     pub least_blanking: u16,
     /// Whether the kernel may have outer taps.
     pub outer_taps: bool,
-    /// What it needs for grids, if it takes them.
+    /// What it needs for grids; none if it takes no grids.
     pub grids: Option<GridNeeds>,
 }
 
@@ -33,13 +33,13 @@ impl Build {
             ring: 64 << dice.below(3),
             least_blanking: dice.one_of(&[0, 1, 7]),
             outer_taps: true,
-            // Those of a mock: its rows are ready at once.
+            // A mock's needs: its rows are ready at once.
             grids: Some(GridNeeds { entries: 2048, blanking: 0, width: 0 }),
         }
     }
 }
 
-/// A build, the way its rows are played, and frames with tables of their own.
+/// A build, how its rows are played, and frames with their own tables.
 #[derive(Clone, Debug)]
 pub struct Case {
     /// The build, as the mock takes it.
@@ -50,7 +50,7 @@ pub struct Case {
     pub frames: Vec<(TableSet, Kernel, Frame)>,
 }
 
-/// What came out for a case.
+/// What came out of a case.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Played {
     /// The samples of all rows.
@@ -60,14 +60,14 @@ pub struct Played {
 }
 
 impl Case {
-    /// The case of `build` with so many frames.
+    /// A case of `build` with `frames` frames.
     ///
     /// # Panics
     /// Never: what is drawn is legal.
     pub fn draw(dice: &mut Dice, build: Build, frames: usize) -> Self {
         let width = draw_width(dice, build.ring.into());
         let mut height = 1 + dice.below(6);
-        // Each frame of a case is of one datapath or of the other, so that they change between frames.
+        // Each frame of a case has one datapath or the other, so that the datapath changes between frames.
         let grids = build.grids.filter(|_| dice.below(3) != 0);
         if grids.is_some() && dice.below(4) == 0 {
             height += dice.below(30);
@@ -110,10 +110,10 @@ impl Case {
         self.settings.width / 2 + u16::from(self.options.latency)
     }
 
-    /// What the model says that comes out.
+    /// What comes out according to the model.
     ///
     /// # Panics
-    /// Never: tables and frames are of one size.
+    /// Never: tables and frames have the same size.
     #[must_use]
     pub fn expected(&self) -> Played {
         let corrected = self.frames.iter().map(|(set, kernel, frame)| correct(set, kernel, frame).unwrap());
@@ -122,7 +122,7 @@ impl Case {
         Played { samples, latencies: vec![self.delay(); 2 * rows] }
     }
 
-    /// What comes out of the mock, one frame close behind the other.
+    /// What comes out of the mock, each frame right after the one before.
     ///
     /// # Panics
     /// If the mock refuses what is legal.
@@ -172,7 +172,7 @@ fn least_blanking(build: Build, grids: Option<GridNeeds>, width: usize) -> u16 {
     build.least_blanking.max(of_grids)
 }
 
-/// Columns of rows that the ring holds: mostly few, so that there can be many cases, and now and then the most.
+/// Columns of a row that the ring holds: mostly few, so that there can be many cases, and now and then the most.
 fn draw_width(dice: &mut Dice, ring: usize) -> usize {
     match dice.below(16) {
         0 => ring.min(2048) - 2 * dice.below(2),
@@ -184,7 +184,7 @@ fn draw_width(dice: &mut Dice, ring: usize) -> usize {
 /// A row factor of 1.
 const ONE: u32 = RowFactor::ONE.get();
 
-/// Row factors that the ring can serve: drawn from the least that is legal up to 2^24, and often at one of these ends.
+/// Row factors that the ring can serve: from the least legal one up to 2^24, and often exactly at one of these ends.
 fn draw_tables(dice: &mut Dice, geometry: Geometry, ring: usize) -> TableSet {
     let least = least_factor(geometry, ring);
     let factor = |_| match dice.below(8) {
@@ -196,7 +196,7 @@ fn draw_tables(dice: &mut Dice, geometry: Geometry, ring: usize) -> TableSet {
     TableSet::from_units(geometry, &factors).unwrap()
 }
 
-/// The least row factor that is legal. The less it is the further from its own column a row reads, so a bisection finds it.
+/// The least legal row factor. The smaller a factor, the further from its own column a row reads, so a bisection finds it.
 fn least_factor(geometry: Geometry, ring: usize) -> u32 {
     let one_row = Geometry::new(geometry.width(), 1, geometry.depth(), geometry.centre2()).unwrap();
     let legal = |factor| TableSet::from_units(one_row, &[factor]).unwrap().check_ring(ring).is_ok();
@@ -208,7 +208,7 @@ fn least_factor(geometry: Geometry, ring: usize) -> u32 {
     least
 }
 
-/// One of the four kernels, or any weights at all.
+/// One of the four named kernels, or arbitrary weights.
 fn draw_kernel(dice: &mut Dice, outer_taps: bool) -> Kernel {
     let any = dice.below(3) == 0;
     let named: Vec<_> = Interpolant::ALL.into_iter().map(Kernel::from).collect();
@@ -224,7 +224,7 @@ fn draw_kernel(dice: &mut Dice, outer_taps: bool) -> Kernel {
     Kernel::from_nodes((0..65).map(|_| node(dice)).collect()).unwrap()
 }
 
-/// Noise, or samples at both ends of the range alone.
+/// Noise, or only samples at both ends of the range.
 fn draw_frame(dice: &mut Dice, width: usize, height: usize, depth: BitDepth) -> Frame {
     let extremes = dice.below(3) == 0;
     let samples = (0..width * height)

@@ -1,4 +1,4 @@
-//! What campaigns draw from.
+//! The random numbers of campaigns.
 
 use rand_core::{Rng as _, SeedableRng as _};
 use rand_pcg::Pcg32;
@@ -14,12 +14,12 @@ impl Dice {
         Self(Pcg32::seed_from_u64(seed))
     }
 
-    /// A number below `end`, each as likely.
+    /// A number below `end`, all equally likely.
     pub fn below(&mut self, end: usize) -> usize {
         ((u128::from(self.0.next_u64()) * end as u128) >> 64) as usize
     }
 
-    /// Whether something happens that has this probability.
+    /// True with this probability.
     pub fn comes_up(&mut self, probability: f64) -> bool {
         (self.below(1 << 30) as f64) < probability * f64::from(1 << 30)
     }
@@ -29,7 +29,7 @@ impl Dice {
         choices[self.below(choices.len())]
     }
 
-    /// A number between 10^`least` and 10^`most`, each order of magnitude as likely.
+    /// A number between 10^`least` and 10^`most`, all orders of magnitude equally likely.
     pub fn magnitude(&mut self, least: f64, most: f64) -> f64 {
         let share = self.below(1 << 20) as f64 / f64::from(1 << 20);
         10_f64.powf(least + (most - least) * share)

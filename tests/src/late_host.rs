@@ -1,4 +1,4 @@
-//! A host that is kept from running: its clock goes on, and so does the board, while nobody looks at the link.
+//! A host that is kept from running: its clock and the board go on while nobody serves the link.
 
 use std::sync::{Mutex, MutexGuard};
 use std::time::Duration;
@@ -8,7 +8,8 @@ use halfrow::link::{Link, LinkError};
 /// What a kernel hands out in one read of a terminal.
 const READ: usize = 4096;
 
-/// A link whose host stands still for `pause` at every `every`-th look at the clock, which is where it may be interrupted.
+/// A link whose host stands still for `pause` each time it reads the clock for the `every`-th time: a host may be interrupted
+/// there.
 pub struct LateHost {
     every: u32,
     pause: Duration,
@@ -18,7 +19,7 @@ pub struct LateHost {
 struct State {
     link: Box<dyn Link>,
     looks: u32,
-    /// What the board said while nobody read, as a kernel keeps it.
+    /// What the board sent while nobody read, as a kernel buffers it.
     came: Vec<u8>,
     failure: Option<LinkError>,
 }
@@ -35,7 +36,7 @@ impl State {
 }
 
 impl LateHost {
-    /// `link`, which must be on a virtual clock, for such a host.
+    /// Such a host on `link`, which must have a virtual clock.
     #[must_use]
     pub fn new(link: Box<dyn Link>, every: u32, pause: Duration) -> Self {
         let state = Mutex::new(State { link, looks: 0, came: Vec::new(), failure: None });

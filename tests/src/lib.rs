@@ -1,12 +1,11 @@
-//! The same scenarios on every kind of board, the command line from outside, and campaigns of drawn faults.
+//! The same scenarios on every kind of board, the command line from outside, and campaigns of random faults.
 //!
-//! [`scenarios`] says what `halfrow verify` must find on which board; [`program`] starts the program as a user does.
-//! [`served`] puts boards behind serial ports and TCP ports that the tests make, [`proxy`] spoils a connection, and
-//! [`altered`] rewrites the packets of a board, [`through`] the exchanges of a link.
-//! [`campaign`] draws single faults of the board by the hundred, and [`poor_links`] links by the thousand; both call the
-//! library, so that a run costs no more than its samples.
+//! [`scenarios`] says what `halfrow verify` must find on which board; [`program`] starts the program as a user does. [`served`]
+//! puts boards behind serial ports and TCP ports that the tests make, [`proxy`] spoils a connection, [`altered`] rewrites the
+//! packets of a board, and [`through`] the exchanges of a link. [`campaign`] draws hundreds of single faults of the board, and
+//! [`poor_links`] thousands of links; both call the library, so that a run costs no more than its samples.
 
-// A crate of tests alone: a panic is how it says that something is wrong.
+// A crate for tests alone: it panics to say that something is wrong.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 pub mod altered;

@@ -1,8 +1,8 @@
-//! What a test could not try here, told so that it is seen.
+//! What a test could not try on this machine, reported where it is seen.
 
 use std::io::Write as _;
 
-/// Says past the harness, which keeps what passing tests print, that `what` was not tested, and why.
+/// Reports that `what` was not tested, and why, past the harness, which hides what passing tests print.
 #[allow(clippy::disallowed_methods)]
 pub fn not_tested(what: &str, why: &str) {
     let _ = writeln!(std::io::stderr(), "NOT TESTED: {what}: {why}");

@@ -1,13 +1,13 @@
-//! Work shared out to all processors, or to more workers than those.
+//! Work shared out among all processors, or among more workers than that.
 
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::JoinHandle;
 
-/// Waits for what works beside a test, if it still does, when the test needs it no more.
+/// Waits for a thread that worked alongside a test, if there is one, when the test needs it no more.
 ///
 /// # Panics
-/// When it panicked, which no test that passes would show; not while the test itself panics.
+/// When the thread panicked, which a test that passes would not show; not while the test itself panics.
 pub(crate) fn end_beside<T>(worker: Option<JoinHandle<T>>) {
     let Some(Err(panic)) = worker.map(JoinHandle::join) else { return };
     if !std::thread::panicking() {
@@ -23,7 +23,7 @@ pub fn map<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<
     map_by(std::thread::available_parallelism().map_or(1, usize::from), items, work)
 }
 
-/// The same by so many `workers`, for work that mostly waits.
+/// Like [`map`], by `workers` threads, for work that mostly waits.
 ///
 /// # Panics
 /// When `work` panics.

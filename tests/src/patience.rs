@@ -1,4 +1,4 @@
-//! Waiting for what a test needs to see. How busy the machine is decides nothing: the limit is there to end a hang.
+//! Waiting for what a test needs to see. How busy the machine is decides nothing: the limit only ends a hang.
 
 use std::panic::resume_unwind;
 use std::process::{Child, ExitStatus};
@@ -6,16 +6,16 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Far longer than anything takes that comes to an end.
+/// Far longer than anything takes that ends at all.
 pub const LIMIT: Duration = Duration::from_secs(300);
 
-/// How often it is looked.
+/// How often the condition is checked.
 const TICK: Duration = Duration::from_millis(2);
 
 /// Waits until `is_done`.
 ///
 /// # Panics
-/// When that does not come within [`LIMIT`].
+/// When that takes longer than [`LIMIT`].
 pub fn wait_until(what: &str, mut is_done: impl FnMut() -> bool) {
     let begun = Instant::now();
     while !is_done() {
@@ -27,7 +27,7 @@ pub fn wait_until(what: &str, mut is_done: impl FnMut() -> bool) {
 /// The exit status of `child`, which must end.
 ///
 /// # Panics
-/// When it does not within [`LIMIT`].
+/// When it does not end within [`LIMIT`].
 pub fn end_of(child: &mut Child) -> ExitStatus {
     let mut status = None;
     wait_until("a program to end", || {
@@ -40,12 +40,12 @@ pub fn end_of(child: &mut Child) -> ExitStatus {
 /// The result of `work`, which must come to an end.
 ///
 /// # Panics
-/// When it does not within [`LIMIT`], and when `work` panics.
+/// When it does not end within [`LIMIT`], and when `work` panics.
 pub fn come_to_an_end<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
     come_to_an_end_within(LIMIT, work).unwrap_or_else(|| panic!("it hangs: nothing came of it in {LIMIT:?}"))
 }
 
-/// The result of `work`; none if there is none within `limit`: then it is left behind.
+/// The result of `work`; none if there is none within `limit`: then its thread is left running.
 ///
 /// # Panics
 /// When `work` panics.

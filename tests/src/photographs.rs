@@ -1,4 +1,4 @@
-//! Photographs of the folder `HALFROW_IMAGES`, or of `../shared/kodak` beside the project, as frames.
+//! Photographs of the folder `HALFROW_IMAGES`, or of `../shared/kodak` next to the project, as frames.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use halfrow_model::{Frame, Geometry};
 
 use crate::not_tested::not_tested;
 
-/// The photographs in their order. Without `HALFROW_IMAGES` there may be none, which is told as not tested.
+/// The photographs, sorted by path. Without `HALFROW_IMAGES` there may be none, which is reported as not tested.
 ///
 /// # Panics
 /// When the folder that `HALFROW_IMAGES` names cannot be read or holds none.
@@ -34,7 +34,7 @@ fn photographs_in(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     Ok(paths.filter(|path| path.extension().is_some_and(|extension| extension == "png")).collect())
 }
 
-/// The photograph's mosaic, repeated until it fills the frame. Its sides are even, so the colours go on.
+/// The photograph's mosaic, repeated until it fills the frame. Its width and height are even, so the Bayer pattern goes on.
 ///
 /// # Panics
 /// When the photograph cannot be read.

@@ -1,7 +1,7 @@
-//! Poor links by the thousand: none makes a sound board fail, none lets a broken one pass, and none hangs a run.
+//! Thousands of poor links: none makes a sound board fail, none lets a broken one pass, and none hangs a run.
 //!
-//! Most runs are on the mock's virtual clock, where a second of silence costs nothing. The others are in real time, many at
-//! once: over a pseudo-terminal, and over TCP with a proxy between.
+//! Most runs have the mock's virtual clock, where a second of silence costs nothing. The others run in real time, many at once:
+//! over a pseudo-terminal, and over TCP through a proxy.
 
 mod draw;
 mod kept;
@@ -20,15 +20,15 @@ use crate::system::System;
 pub use draw::{draw, real, real_and_short, virtual_};
 pub use kept::Kept;
 
-/// Runs in real time at once: they mostly wait.
+/// How many runs in real time go on at once: they mostly wait.
 const AT_ONCE: usize = 48;
 
-/// How a run gets at its board.
+/// How a run reaches its board.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Way {
-    /// On the mock's virtual clock, its wire's fault as options of a target.
+    /// On the mock's virtual clock; the fault of its wire, as options of a target.
     Virtual(String),
-    /// In real time over a pseudo-terminal, with such a fault.
+    /// In real time over a pseudo-terminal, with a fault likewise.
     SerialPort(String),
     /// In real time over TCP, through a proxy.
     Tcp {
@@ -39,12 +39,12 @@ pub enum Way {
     },
 }
 
-/// A run that was drawn.
+/// A run as drawn.
 #[derive(Clone, Debug)]
 pub struct Case {
     /// Its number in the campaign.
     pub index: usize,
-    /// What the link does, in a word.
+    /// The kind of link, in a few words.
     pub kind: &'static str,
     /// The link.
     pub way: Way,
@@ -52,25 +52,25 @@ pub struct Case {
     pub system: System,
     /// The board's fault as options of a target; empty for a sound one.
     pub broken: String,
-    /// What the proxy draws by.
+    /// The seed of the proxy.
     pub seed: u64,
 }
 
-/// What a run came to.
+/// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Came {
-    /// An end.
+    /// With a verdict.
     To(Verdict),
-    /// None within its bound.
+    /// Not within its bound.
     Nowhere,
 }
 
-/// A run that is over.
+/// A finished run.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// What it was.
+    /// What was run.
     pub case: Case,
-    /// What it came to.
+    /// How it ended.
     pub came: Came,
     /// The result in one sentence.
     pub headline: String,
@@ -80,7 +80,7 @@ pub struct Run {
 #[derive(Clone, Debug)]
 pub struct PoorLinks(pub Vec<Run>);
 
-/// Judges the boards of all `cases`, each within `bound` of the wall's clock. Those that `kept` knows are not judged again.
+/// Judges the boards of all `cases`, each within `bound` of wall-clock time. Those that `kept` knows are not judged again.
 #[must_use]
 pub fn run(cases: &[Case], bound: Duration, kept: &Kept) -> PoorLinks {
     let judge = |case: &Case| {
@@ -99,7 +99,7 @@ pub fn run(cases: &[Case], bound: Duration, kept: &Kept) -> PoorLinks {
 }
 
 impl Case {
-    /// Judges the board on a thread of its own, which is left behind if it does not end.
+    /// Judges the board on a thread of its own, which is left running if it does not end in time.
     fn judge_within(&self, bound: Duration) -> (Came, String) {
         let case = self.clone();
         match come_to_an_end_within(bound, move || case.judge()) {
@@ -131,7 +131,7 @@ impl Run {
         !self.case.broken.is_empty()
     }
 
-    /// Whether the verdict is not the board's: PASS of a broken one, or FAIL of a sound one.
+    /// Whether the verdict is wrong: PASS for a broken board, or FAIL for a sound one.
     #[must_use]
     pub fn is_false(&self) -> bool {
         self.came == Came::To(if self.is_broken() { Verdict::Pass } else { Verdict::Fail })
@@ -139,17 +139,17 @@ impl Run {
 }
 
 impl PoorLinks {
-    /// The runs whose verdict is not the board's.
+    /// The runs whose verdict is wrong.
     pub fn false_verdicts(&self) -> impl Iterator<Item = &Run> {
         self.0.iter().filter(|run| run.is_false())
     }
 
-    /// The runs without an end.
+    /// The runs that did not end.
     pub fn hangs(&self) -> impl Iterator<Item = &Run> {
         self.0.iter().filter(|run| run.came == Came::Nowhere)
     }
 
-    /// The runs that a sound board over a link that only stands still within the patience should have passed.
+    /// The runs that should have passed: of a sound board over a link whose stalls are within the host's patience.
     pub fn needless_errors(&self) -> impl Iterator<Item = &Run> {
         self.0.iter().filter(|run| {
             run.case.kind == draw::SHORT_STALLS && !run.is_broken() && run.came != Came::To(Verdict::Pass)

@@ -33,7 +33,7 @@ impl Ended {
     /// The JSON document on stdout; null if there is none.
     ///
     /// # Panics
-    /// If it is not as the schema says, or if it is a report and not equal when it is read back.
+    /// If it does not conform to the schema, or if it is a report that differs after it is read back.
     #[must_use]
     pub fn json(&self) -> Value {
         let said = serde_json::from_str(&self.stdout).unwrap_or(Value::Null);
@@ -44,7 +44,7 @@ impl Ended {
     }
 }
 
-/// A command that will start `halfrow` with `arguments`, in the environment of a user who has set nothing for it.
+/// A command that will start `halfrow` with `arguments`, in an environment without any setting for it.
 ///
 /// # Panics
 /// If the program cannot be built.
@@ -63,7 +63,7 @@ pub fn command<'a>(arguments: impl IntoIterator<Item = &'a str>) -> Command {
 /// Runs `command` to its end.
 ///
 /// # Panics
-/// If it cannot be started or prints what is no UTF-8.
+/// If it cannot be started or prints anything but UTF-8.
 #[must_use]
 pub fn finish(command: &mut Command) -> Ended {
     let output = command.output().unwrap();
@@ -77,13 +77,13 @@ pub fn finish(command: &mut Command) -> Ended {
 /// Runs `halfrow` with `arguments` to its end.
 ///
 /// # Panics
-/// As [`command`] and [`finish`].
+/// Like [`command`] and [`finish`].
 #[must_use]
 pub fn halfrow<'a>(arguments: impl IntoIterator<Item = &'a str>) -> Ended {
     finish(&mut command(arguments))
 }
 
-/// A folder of its own that `halfrow` is started in. It goes when it is dropped.
+/// A temporary folder that `halfrow` is started in. It is deleted when dropped.
 #[derive(Debug)]
 pub struct Folder(TempDir);
 
@@ -106,7 +106,7 @@ impl Folder {
     /// A command that will start `halfrow` in this folder.
     ///
     /// # Panics
-    /// As [`command`].
+    /// Like [`command`].
     #[must_use]
     pub fn command<'a>(&self, arguments: impl IntoIterator<Item = &'a str>) -> Command {
         let mut command = command(arguments);
@@ -117,16 +117,16 @@ impl Folder {
     /// Runs `halfrow` in this folder to its end.
     ///
     /// # Panics
-    /// As [`halfrow()`].
+    /// Like [`halfrow()`].
     #[must_use]
     pub fn halfrow<'a>(&self, arguments: impl IntoIterator<Item = &'a str>) -> Ended {
         finish(&mut self.command(arguments))
     }
 
-    /// Runs `halfrow` in this folder where no file can be longer than `blocks` of 512 bytes, as on a full disk.
+    /// Runs `halfrow` to its end in this folder, where no file can be longer than `blocks` of 512 bytes, as on a full disk.
     ///
     /// # Panics
-    /// As [`halfrow()`].
+    /// Like [`halfrow()`].
     #[cfg(unix)]
     #[must_use]
     pub fn halfrow_on_a_full_disk<'a>(
@@ -138,10 +138,10 @@ impl Folder {
         finish(&mut self.by_shell(&format!("ulimit -f {blocks}; exec \"$@\""), arguments))
     }
 
-    /// A command that will start `halfrow` in this folder by this line of a shell, which has it as `"$@"`.
+    /// A command that will start `halfrow` in this folder by this line of a shell, in which it is `"$@"`.
     ///
     /// # Panics
-    /// As [`command`].
+    /// Like [`command`].
     #[cfg(unix)]
     #[must_use]
     pub fn by_shell<'a>(&self, line: &str, arguments: impl IntoIterator<Item = &'a str>) -> Command {
@@ -151,7 +151,7 @@ impl Folder {
         self.as_started_by(shell, &command)
     }
 
-    /// `other`, which starts `command`, in this folder and in the environment of that.
+    /// `other`, which starts `command`, with the folder and environment of `command`.
     #[cfg(unix)]
     fn as_started_by(&self, mut other: Command, command: &Command) -> Command {
         for (name, value) in command.get_envs() {
@@ -184,13 +184,13 @@ impl Folder {
     /// The content of a text file.
     ///
     /// # Panics
-    /// If it cannot be read or is no UTF-8.
+    /// If it cannot be read or is not UTF-8.
     #[must_use]
     pub fn text(&self, name: &str) -> String {
         String::from_utf8(self.read(name)).unwrap()
     }
 
-    /// The names of all that is in a folder inside, or in this one for `.`, in order.
+    /// The names of everything in a folder inside this one, or in this one for `.`, sorted.
     ///
     /// # Panics
     /// If it cannot be listed.

@@ -1,4 +1,4 @@
-//! A TCP proxy that does to a connection what poor links do: it stands still, loses, repeats, or delays.
+//! A TCP proxy that does to a connection what poor links do: it stalls, loses, repeats or delays.
 
 use std::io::{self, Read as _, Write as _};
 use std::net::{Shutdown, TcpListener, TcpStream};
@@ -12,36 +12,36 @@ use halfrow_protocol::{Decoder, Encoder, Kind};
 use crate::dice::Dice;
 use crate::parallel::end_beside;
 
-/// How often it is looked whether to end.
+/// How often each thread checks whether to end.
 const TICK: Duration = Duration::from_millis(20);
 
-/// What a direction of the connection suffers.
+/// What happens to one direction of the connection.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Suffers {
     /// Nothing.
     #[default]
     Nothing,
-    /// It stands still behind every so many bytes.
+    /// It stalls after every `every` bytes.
     Stalls {
         /// Bytes between two stalls.
         every: usize,
         /// How long one lasts.
         time: Duration,
-        /// Whether the other direction stands still with it.
+        /// Whether the other direction stalls with it.
         both: bool,
     },
-    /// Packets of at least so many bytes get lost at a rate.
+    /// Packets of at least `least` bytes get lost at a rate.
     Loses {
-        /// Bytes between its zeros.
+        /// Bytes between a packet's zeros.
         least: usize,
-        /// The share of those packets, 0 to 1.
+        /// The share of those packets that get lost, 0 to 1.
         rate: f64,
     },
-    /// A copy of a packet comes again behind some later ones, at a rate.
+    /// A copy of a packet follows some packets later, at a rate.
     Repeats {
         /// How many packets later.
         later: usize,
-        /// The share of packets, 0 to 1.
+        /// The share of packets that are copied, 0 to 1.
         rate: f64,
     },
     /// The last bit of every row is changed, and the CRC with it. No link does that: it is what a judge cannot see through.
@@ -57,8 +57,8 @@ pub struct Proxy {
 }
 
 impl Proxy {
-    /// A proxy before `address`, HOST:PORT, with what bytes to the board and bytes to the host suffer; `seed` draws what is
-    /// struck.
+    /// A proxy in front of `address`, HOST:PORT, and what happens to bytes to the board and to the host; `seed` draws what is
+    /// hit.
     ///
     /// # Panics
     /// If there is no free port.
@@ -73,7 +73,7 @@ impl Proxy {
             move || {
                 while !ended.load(Ordering::Relaxed) {
                     match listener.accept() {
-                        // A connection that breaks is the host's to notice.
+                        // The host is to notice that its connection broke.
                         Ok((host, _)) => _ = carry(&host, &address, [to_board, to_host], seed, &ended),
                         Err(_) => std::thread::sleep(TICK / 4),
                     }
@@ -83,7 +83,7 @@ impl Proxy {
         Self { target, ended, thread: Some(thread) }
     }
 
-    /// The target that leads through it.
+    /// The target that leads through the proxy.
     #[must_use]
     pub fn target(&self) -> &str {
         &self.target
@@ -117,7 +117,7 @@ fn carry(
             scope.spawn(move || {
                 let mut direction = Direction::new(suffers, seed.wrapping_mul(2).wrapping_add(way as u64));
                 let _ = direction.run(from, to, way, still, ended);
-                // Whoever reads at the other end learns that it is over.
+                // Tells both ends that it is over.
                 let _ = (from.shutdown(Shutdown::Both), to.shutdown(Shutdown::Both));
             });
         }
@@ -133,7 +133,7 @@ struct Direction {
     since: usize,
     /// The packet that is arriving.
     packet: Vec<u8>,
-    /// Copies that wait, with the packets that they wait for.
+    /// Copies that wait, with the number of packets until each is sent.
     copies: Vec<(usize, Vec<u8>)>,
     decoder: Decoder,
     encoder: Encoder,
@@ -204,7 +204,7 @@ impl Direction {
         }
     }
 
-    /// What becomes of bytes.
+    /// The bytes that are passed on for `bytes`.
     fn pass(&mut self, bytes: &[u8]) -> Vec<u8> {
         match self.suffers {
             Suffers::Nothing | Suffers::Stalls { .. } => bytes.to_vec(),

@@ -1,4 +1,4 @@
-//! What a run must come to.
+//! How a run must end.
 
 use std::fmt;
 
@@ -9,39 +9,39 @@ use crate::parallel;
 use crate::program::{Ended, error_sentence, halfrow};
 use crate::served::Served;
 
-/// The boards that a scenario makes sense on.
+/// The boards on which a scenario makes sense.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum On {
     /// Every kind.
     AnyBoard,
-    /// Those behind the wire in this process, which options make slow or spoil: the mock and the simulated Verilog.
+    /// Those with a wire in this process, which options can slow down or spoil: the mock and the simulated Verilog.
     OwnWire,
-    /// The mock alone: it can be built and broken by options.
+    /// The mock alone, since options can build and break it.
     MockOnly,
 }
 
-/// A board, a call, and what must come of it.
+/// A board, a call, and its expected result.
 #[derive(Clone, Copy, Debug)]
 pub struct Scenario {
-    /// What it is about, in a sentence.
+    /// What is tried, in a few words.
     pub name: &'static str,
     /// Where it runs.
     pub on: On,
-    /// What is appended to the board's target, as in `,fault=late`.
+    /// What is appended to the board's target, such as `,fault=late`.
     pub options: &'static str,
-    /// Further arguments of `verify`. Without a width it is the paper's system, which a simulated board runs smaller.
+    /// Further arguments of `verify`. Without a width it is the paper's system, which a simulated board runs at a smaller size.
     pub arguments: &'static [&'static str],
-    /// `PASS`, `FAIL` or `ERROR`; null, which is empty here, when the call itself is refused.
+    /// `PASS`, `FAIL` or `ERROR`; empty, for null, when the call itself is refused.
     pub verdict: &'static str,
     /// The exit code.
     pub exit_code: i32,
     /// What the headline or the first suspect must say.
     pub sentence: &'static str,
-    /// What it may say instead where both ends go by the wall's clock, since then it depends on which of them is late.
+    /// What it may say instead where host and board both keep real time, since then it depends on which of them is late.
     pub when_late: &'static [&'static str],
 }
 
-/// A scenario that came out otherwise.
+/// A scenario that did not end as expected.
 #[derive(Clone, Debug)]
 pub struct Surprise {
     scenario: Scenario,
@@ -63,10 +63,10 @@ impl fmt::Display for Surprise {
     }
 }
 
-/// The paper's lens on fewer pixels.
+/// The paper's lens with fewer pixels.
 pub(crate) const SMALLER: &[&str] = &["--width", "128", "--height", "72", "--radius", "73.78"];
 
-/// Whether the board that `target` names is in the program that judges it, which is then never late.
+/// Whether the board that `target` names runs in the program that judges it, and so is never late.
 fn is_in_process(target: &str) -> bool {
     ["mock", "sim"].contains(&kind(target))
 }
@@ -87,17 +87,17 @@ impl Scenario {
         }
     }
 
-    /// The same scenario, which may also end with one of these `sentences` where somebody may be late.
+    /// The same scenario, which may also end with one of these `sentences` where either end may be late.
     pub(crate) const fn or_when_late(self, sentences: &'static [&'static str]) -> Self {
         Self { when_late: sentences, ..self }
     }
 
-    /// The same scenario on other boards.
+    /// The same scenario for other boards.
     pub(crate) const fn on(self, on: On) -> Self {
         Self { on, ..self }
     }
 
-    /// Whether it says how large its frames are, and is not at the paper's size.
+    /// Whether it names the size of its frames, and so is not of the paper's size.
     #[must_use]
     pub fn has_own_size(&self) -> bool {
         self.arguments.contains(&"--width")
@@ -106,7 +106,7 @@ impl Scenario {
     /// Runs it on `board`, a target, and returns the report as JSON.
     ///
     /// # Errors
-    /// [`Surprise`] when it comes to anything else than it should.
+    /// [`Surprise`] when it does not end as expected.
     pub fn run(&self, board: &str) -> Result<Value, Box<Surprise>> {
         self.judge(&format!("{board}{}", self.options), board)
     }
@@ -114,7 +114,7 @@ impl Scenario {
     /// Runs it on the mock board behind a pseudo-terminal.
     ///
     /// # Errors
-    /// As [`Self::run`].
+    /// Like [`Self::run`].
     pub fn run_on_a_serial_port(&self) -> Result<Value, Box<Surprise>> {
         let served = Served::on_a_serial_port(&format!("mock{}", self.options));
         self.judge(&served.target(), "mock behind a serial port: ")
@@ -123,7 +123,7 @@ impl Scenario {
     /// Judges `target`, which leads to `board` with the scenario's options.
     ///
     /// # Errors
-    /// As [`Self::run`].
+    /// Like [`Self::run`].
     pub fn judge(&self, target: &str, board: &str) -> Result<Value, Box<Surprise>> {
         let smaller = if kind(target) == "sim" && !self.has_own_size() { SMALLER } else { &[] };
         let arguments = self.arguments.iter().chain(smaller).copied();
@@ -145,23 +145,23 @@ impl Scenario {
 /// Runs those of `scenarios` that suit `board`, and returns their reports.
 ///
 /// # Panics
-/// When any of them comes to anything else than it should.
+/// When any of them does not end as expected.
 #[must_use]
 pub fn run_all(scenarios: &[Scenario], board: &str) -> Vec<Value> {
     run_each(&scenarios.iter().collect::<Vec<_>>(), board)
 }
 
-/// The same for scenarios that were chosen.
+/// Like [`run_all`], for a choice of scenarios.
 ///
 /// # Panics
-/// As [`run_all`].
+/// Like [`run_all`].
 #[must_use]
 pub fn run_each(scenarios: &[&Scenario], board: &str) -> Vec<Value> {
     let suited: Vec<_> = scenarios.iter().filter(|scenario| scenario.suits(board)).collect();
     no_surprise(if is_in_process(board) {
         parallel::map(&suited, |scenario| scenario.run(board))
     } else {
-        // One device.
+        // There is only one device.
         suited.iter().map(|scenario| scenario.run(board)).collect()
     })
 }
@@ -169,7 +169,7 @@ pub fn run_each(scenarios: &[&Scenario], board: &str) -> Vec<Value> {
 /// Runs `scenarios` on mock boards behind serial ports of their own, and returns their reports.
 ///
 /// # Panics
-/// When any of them comes to anything else than it should, or there is none.
+/// When any of them does not end as expected, or there is none.
 #[must_use]
 pub fn run_all_on_serial_ports(scenarios: &[&Scenario]) -> Vec<Value> {
     assert!(!scenarios.is_empty(), "no scenario would pass for all of them");
@@ -184,11 +184,11 @@ fn no_surprise(results: Vec<Result<Value, Box<Surprise>>>) -> Vec<Value> {
     reports.into_iter().filter_map(Result::ok).collect()
 }
 
-/// Runs those of `scenarios` that suit each of the boards of `HALFROW_TEST_BOARDS`, targets with spaces between, or else the
-/// mock, and returns their reports. A board that none of them suits is told as not tested by them.
+/// Runs those of `scenarios` that suit each of the boards of `HALFROW_TEST_BOARDS`, targets separated by spaces, or else the
+/// mock, and returns their reports. A board that none of them suits is reported as not tested by them.
 ///
 /// # Panics
-/// When any of them comes to anything else than it should, or the variable names no board.
+/// When any of them does not end as expected, or the variable names no board.
 pub fn run_all_on_boards(scenarios: &[Scenario]) -> Vec<Value> {
     let named = std::env::var("HALFROW_TEST_BOARDS").unwrap_or_else(|_| "mock".to_owned());
     let boards: Vec<_> = named.split_whitespace().collect();
@@ -210,7 +210,7 @@ fn headline(said: &Value) -> String {
     said["headline"].as_str().map_or_else(|| error_sentence(said), str::to_owned)
 }
 
-/// The headline, and where and why the first suspect is suspected.
+/// The headline, and the place of the first suspect and the evidence for it.
 fn sentences(said: &Value) -> impl Iterator<Item = String> {
     let suspect = &said["suspects"][0];
     let of_suspect = ["place", "evidence"].into_iter().filter_map(|key| suspect[key].as_str());

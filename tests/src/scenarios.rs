@@ -14,16 +14,16 @@ pub use sound_boards::SOUND_BOARDS;
 
 use crate::scenario::{On, Scenario};
 
-/// Every scenario there is.
+/// Every scenario.
 pub fn all() -> impl Iterator<Item = &'static Scenario> {
     let boards = [SOUND_BOARDS, BROKEN_BOARDS, BROKEN_GRIDS, MISFITS];
     boards.into_iter().chain([REPAIRED_LINKS, SLOW_LINKS, HOPELESS_LINKS]).flatten()
 }
 
-/// What a run ends with when nothing is wrong.
+/// How a run ends when nothing is wrong.
 const ALL_EQUAL: &str = "all equal to the reference";
 
-/// A sound board behind a link that can be mended: PASS.
+/// A sound board, on a link whose errors can be repaired if it has any: PASS.
 const fn passes(name: &'static str, options: &'static str, arguments: &'static [&'static str]) -> Scenario {
     expect("PASS", 0, name, options, arguments, ALL_EQUAL)
 }
@@ -36,7 +36,7 @@ const fn expect(
     arguments: &'static [&'static str],
     sentence: &'static str,
 ) -> Scenario {
-    // Options build a board, unless the scenario says otherwise.
+    // Options describe a mock, unless the scenario says otherwise.
     let on = if options.is_empty() { On::AnyBoard } else { On::MockOnly };
     Scenario { name, on, options, arguments, verdict, exit_code, sentence, when_late: &[] }
 }

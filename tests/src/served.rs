@@ -1,4 +1,4 @@
-//! Boards behind devices that the test makes, each served by a thread of its own.
+//! Boards behind devices that the test makes, each served by its own thread.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -13,21 +13,21 @@ use halfrow_cli::serve::{Hosted, Name, Port, Pty, ServeError, Traffic};
 
 use crate::parallel::end_beside;
 
-/// How long a board is away that is plugged in again. No outcome hangs on it: what was there before is gone at once.
+/// How long a board is away before it is plugged in again. No outcome depends on it: the old device is gone at once.
 const AWAY: Duration = Duration::from_millis(50);
 
 /// How a board comes back.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Replug {
-    /// As it was: only its cable had been pulled.
+    /// As it was: only its cable was pulled.
     Powered,
-    /// As this target, switched on a moment ago.
+    /// As this target, just switched on.
     Switched(String),
-    /// As this target, behind a port that was there all the time: the board alone had lost power.
+    /// As this target, behind a port that never went away: only the board lost power.
     Reset(String),
 }
 
-/// A board that is served until this is dropped, or until its wire breaks.
+/// A board that is served until this is dropped or its wire breaks.
 #[derive(Debug)]
 pub struct Served {
     target: String,
@@ -50,8 +50,8 @@ impl Served {
         })
     }
 
-    /// The same under the name `path`, and unplugged when `byte` bytes have gone to the host. A moment later it is plugged
-    /// in again, if `replug` says how.
+    /// Like [`Self::on_a_serial_port`], under the name `path`, and unplugged when `byte` bytes have gone to the host. Shortly
+    /// after, it is plugged in again, if `replug` says how.
     ///
     /// # Panics
     /// If there is no such board or no pseudo-terminal.
@@ -80,7 +80,7 @@ impl Served {
         })
     }
 
-    /// The board `board` behind a TCP port of `host`.
+    /// The board `board` behind a TCP port on `host`.
     ///
     /// # Panics
     /// If there is no such board or no port.
@@ -122,7 +122,7 @@ impl Served {
         Self { target: heard.recv().unwrap(), ended, traffic, thread: Some(thread) }
     }
 
-    /// What it has moved for the host that it attends to.
+    /// The bytes moved for the host that it serves now.
     ///
     /// # Panics
     /// When the thread that serves it has panicked.
@@ -150,7 +150,7 @@ impl Served {
 impl Drop for Served {
     fn drop(&mut self) {
         self.ended.store(true, Ordering::Relaxed);
-        // A board whose wire broke is as good an end as any.
+        // A board whose wire broke has ended as well as any other.
         end_beside(self.thread.take());
     }
 }

@@ -1,5 +1,5 @@
-//! Cases played on the Verilog core alone, with a player that is as hard on it as a board may be: the tables of the next frame
-//! are written while this one plays, a row is announced at any time that is allowed, and the enable comes and goes.
+//! Cases played on the Verilog core alone, by a player that demands of it all that a board may demand: the tables of the next
+//! frame are written while this one plays, a row is announced at any time that is allowed, and the enable comes and goes.
 
 use std::collections::VecDeque;
 
@@ -8,7 +8,7 @@ use halfrow_sim::{Core, CoreBuild, CoreInputs, CoreOutputs};
 use crate::cases::{Build, Case, Played};
 use crate::dice::Dice;
 
-/// What cases for this core are drawn for.
+/// The build of this core, for which cases are drawn.
 #[must_use]
 pub fn build(core: CoreBuild) -> Build {
     Build {
@@ -20,27 +20,27 @@ pub fn build(core: CoreBuild) -> Build {
     }
 }
 
-/// The core with what goes in and what came out.
+/// The core, with what goes in and what has come out.
 struct Bench<'a> {
     core: &'a mut Core,
     case: &'a Case,
     dice: &'a mut Dice,
-    /// Table entries that are still to be written, one a clock.
+    /// Table entries still to be written, one a clock.
     writes: VecDeque<CoreInputs>,
     /// Frames whose tables are written or in that queue.
     tables: usize,
-    /// Rows that were announced, and whether the last of them may start.
+    /// Rows that were announced; and whether the last of them may start.
     announced: usize,
     prepared: bool,
     pixel_clock: u64,
-    /// When the first sample of each row that has not left entered.
+    /// The pixel clocks at which the rows that are inside entered.
     entered: VecDeque<u64>,
-    /// Outputs so far of the row that leaves.
+    /// Outputs so far of the row that is leaving.
     left: u64,
     played: Played,
 }
 
-/// What the core gives for `case`.
+/// What the core outputs for `case`.
 ///
 /// # Panics
 /// When it flags a row, marks a row's ends wrongly, or is not ready for a row in time.
@@ -64,7 +64,7 @@ pub fn play(core: &mut Core, case: &Case, dice: &mut Dice) -> Played {
     bench.played
 }
 
-/// Nothing but time passes, and with [`BLANK`] no pixel clock less.
+/// Only time passes; with [`BLANK`], pixel clocks pass, too.
 const STILL: CoreInputs = CoreInputs {
     rst: false,
     enable: false,
@@ -108,7 +108,7 @@ impl<'a> Bench<'a> {
         self.case.settings.height.into()
     }
 
-    /// Puts the next frame's tables in the queue once the frame that used their bank has left.
+    /// Queues the next frame's tables once the frame that used their bank has left.
     fn queue_tables(&mut self) {
         let left = self.played.latencies.len() / 2;
         let Some((set, kernel, _)) = self.case.frames.get(self.tables) else { return };
@@ -131,7 +131,7 @@ impl<'a> Bench<'a> {
         self.tables += 1;
     }
 
-    /// One clock of the core. `pixel` says what happens to its pixels.
+    /// One clock of the core. `pixel` says what happens on its pixel inputs.
     fn clock(&mut self, pixel: CoreInputs) {
         self.queue_tables();
         let write = self.writes.pop_front().unwrap_or(STILL);
@@ -176,7 +176,7 @@ impl<'a> Bench<'a> {
         self.played.samples.push(outputs.out_sample);
     }
 
-    /// Whether all that row `row` needs is written, and it has not been announced.
+    /// Whether everything that row `row` needs is written, and the row is the next to be announced.
     fn may_announce(&self, row: usize) -> bool {
         self.announced == row && self.tables > row / self.height() && self.writes.is_empty()
     }
@@ -210,7 +210,7 @@ impl<'a> Bench<'a> {
         self.clock(CoreInputs { enable: true, in_valid: true, in_start, in_sample, ..announcement });
     }
 
-    /// Takes the enable away before every eighth sample or so.
+    /// Takes the enable away, before about every eighth sample.
     fn pause(&mut self) {
         while self.case.settings.gap_seed != 0 && self.dice.below(8) == 0 {
             self.clock(STILL);

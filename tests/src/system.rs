@@ -1,4 +1,4 @@
-//! Boards judged in this process: the library's own run, without the program around it.
+//! Boards judged in this process, by the library's own run without the program around it.
 
 use std::time::Duration;
 
@@ -11,26 +11,26 @@ use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, Kernel, TableS
 
 use crate::late_host::LateHost;
 
-/// A lens, a frame behind it, and the mock board that is built for it.
+/// A lens, the size of its frames, and the mock board that is built for it.
 #[derive(Clone, Copy, Debug)]
 pub struct System {
     /// Columns.
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// Radius of the image of 180°, in pixels.
+    /// Radius at which the lens images 90° from its axis, in pixels.
     pub radius: f64,
     /// The board's target.
     pub board: &'static str,
-    /// M, the samples in that board's line memory.
+    /// M, the samples that the board's line memory holds.
     pub ring: usize,
 }
 
 impl System {
-    /// The paper's: 1920 × 1080 samples.
+    /// The paper's system: 1920 × 1080 samples.
     pub const PAPER: Self = Self { width: 1920, height: 1080, radius: 1106.697, board: "mock", ring: 2048 };
 
-    /// The same at 2/15 of the size. A row fills the line memory, so that all of its address lines matter.
+    /// The paper's lens at 2/15 of the size. A row fills the line memory, so that all of its address lines matter.
     pub const SMALL: Self = Self {
         width: 256,
         height: 144,
@@ -39,14 +39,14 @@ impl System {
         ring: 256,
     };
 
-    /// As small as rows may be, for runs by the thousand.
+    /// As small as rows may be, for thousands of runs.
     pub const TINY: Self = Self { width: 64, height: 8, radius: 10.0, board: "mock", ring: 2048 };
 
-    /// As short as a run may be, for runs at every packet of one.
+    /// As short as a run may be, for one run at each packet of a run.
     pub const TINIEST: Self = Self { height: 1, ..Self::TINY };
 
-    /// The report on the board with `options` behind its target. The run streams the built-in frames and ends with the
-    /// first that differs.
+    /// The report on the board whose target has `options` appended. The run streams the built-in frames and ends with the first
+    /// that differs.
     ///
     /// # Panics
     /// If there is no such board.
@@ -64,7 +64,7 @@ impl System {
         self.judge_patiently(target, None)
     }
 
-    /// The same, going on when the board goes away for less than `patience`.
+    /// Like [`Self::judge_at`], going on when the board goes away for less than `patience`.
     ///
     /// # Panics
     /// If there is no such board.
@@ -73,8 +73,8 @@ impl System {
         self.judge_by(patience, open(target))
     }
 
-    /// The report on this system's board with `options`, for a host that stands still for `pause` at every `every`-th look
-    /// at the clock.
+    /// The report on this system's board with `options`, for a host that stands still for `pause` each time it reads the clock
+    /// for the `every`-th time.
     ///
     /// # Panics
     /// If there is no such board.
@@ -86,7 +86,7 @@ impl System {
         self.judge_candidate(candidate)
     }
 
-    /// The report on a board whose link is there.
+    /// The report on a board whose link is already made.
     ///
     /// # Panics
     /// If the board cannot have what the plan uploads.
@@ -99,7 +99,7 @@ impl System {
         judged(&self.plan(), reconnect, candidate)
     }
 
-    /// The built-in frames, up to the first that differs.
+    /// The plan: the built-in frames, up to the first that differs.
     ///
     /// # Panics
     /// If there is no such lens.
@@ -113,7 +113,7 @@ impl System {
     }
 }
 
-/// The same plan with nothing but what is streamed: no frames that the board makes on its own, and no rules.
+/// The same plan with streamed frames only: no frames that the board makes by itself, and no rules.
 #[must_use]
 pub fn streamed(plan: Plan) -> Plan {
     let all = plan.clone().varying(Vary { centre: true, depth: true }).parts(&Build::full(2048));
@@ -132,7 +132,7 @@ pub fn judge_by_plan(plan: &Plan, candidate: Candidate) -> Report {
 }
 
 fn judged(plan: &Plan, reconnect: Option<Duration>, candidate: Candidate) -> Report {
-    // The same packets in every run.
+    // Fixed, so that every run sends the same packets.
     let draws = Draws { nonce: 0, host: 0, sequence: 0 };
     let circumstances = Circumstances { draws, ..Circumstances::default() };
     let options = RunOptions { reconnect, circumstances, ..RunOptions::default() };

@@ -1,10 +1,10 @@
-//! Links that stand before another one and change what is exchanged.
+//! Links that wrap another one and change what is exchanged.
 
 use std::time::Duration;
 
 use halfrow::link::{Link, LinkError};
 
-/// A link whose exchanges `exchange` makes, of those of `link`; in all else it is that link.
+/// A link whose exchanges `exchange` makes by means of `link`; in all else it is that link.
 pub struct Through<F> {
     link: Box<dyn Link>,
     exchange: F,
@@ -14,7 +14,7 @@ impl<F> Through<F>
 where
     F: FnMut(&mut dyn Link, &[u8], &mut Vec<u8>, Duration) -> Result<usize, LinkError> + Send + 'static,
 {
-    /// `link` behind `exchange`.
+    /// `link`, with its exchanges made by `exchange`.
     #[must_use]
     pub fn boxed(link: Box<dyn Link>, exchange: F) -> Box<dyn Link> {
         Box::new(Self { link, exchange })

@@ -1,4 +1,4 @@
-//! Mock boards behind chips on the USB of a kernel that `scripts/in-linux` boots.
+//! Mock boards behind USB chips, in a kernel that `scripts/in-linux` boots.
 
 mod qemu;
 
@@ -20,18 +20,18 @@ use crate::scenarios::{BROKEN_BOARDS, MISFITS, SOUND_BOARDS};
 
 pub use qemu::{QEMU_CHIP, QemuBoard, QemuChipOut};
 
-/// What takes ten seconds and more.
+/// Scenarios that take ten seconds and more.
 const SLOW: &[&str] = &["the highest frame", "a serial line", "a distant board"];
 
-/// How many bytes a board has said to its host.
+/// How many bytes a board has sent to its host.
 #[derive(Clone, Debug, Default)]
 pub struct Said(Arc<AtomicU64>);
 
 impl Said {
-    /// More than a small run's handshake, tables and echoes: rows flow.
+    /// More than the handshake, tables and echoes of a small run: rows flow.
     const ROWS: u64 = 100_000;
 
-    /// Waits until rows flow, in a run that is long enough.
+    /// Waits until rows flow, in a run that is long enough for that.
     ///
     /// # Panics
     /// If they never do.
@@ -40,14 +40,14 @@ impl Said {
     }
 }
 
-/// A mock board at a chip's pins. Its wire's clock is kept at the real time.
+/// A mock board at a chip's pins. Its wire's clock follows real time.
 struct MockAtChip {
     pipe: Pipe<Board>,
     said: Said,
 }
 
 impl MockAtChip {
-    /// The mock board that `options`, as of a target, describe.
+    /// The mock board that `options`, like those of a target, describe.
     fn new(options: &str) -> Self {
         let target: Target = format!("mock{options}").parse().unwrap();
         let options: Vec<_> =
@@ -67,7 +67,7 @@ impl FarEnd for MockAtChip {
         loop {
             let before = to_host.len();
             let wait = now.saturating_sub(self.pipe.now());
-            // A wire that breaks is a plug that is pulled.
+            // A wire that breaks counts as a pulled plug.
             let moved = self.pipe.exchange(&to_board[taken..], to_host, wait).map_err(|_| Unplugged)?;
             taken += moved;
             self.said.0.fetch_add((to_host.len() - before) as u64, Ordering::Relaxed);
@@ -78,7 +78,7 @@ impl FarEnd for MockAtChip {
     }
 }
 
-/// A chip with the mock board that `options`, as of a target, describe.
+/// A chip with the mock board that `options`, like those of a target, describe.
 ///
 /// # Panics
 /// If there is no such board.
@@ -87,7 +87,7 @@ pub fn chip(chip: ChipOptions, options: &str) -> Chip {
     Chip::new(chip, Box::new(MockAtChip::new(options)))
 }
 
-/// The mock board that `options` describe behind a FIFO, plugged in.
+/// A plugged-in FIFO chip with the mock board that `options` describe.
 ///
 /// # Panics
 /// If there is no such board, or no port for it.
@@ -96,10 +96,10 @@ pub fn plug(options: &str) -> Plugged {
     plug_and_watch(options).0
 }
 
-/// The same, with what it says.
+/// Like [`plug`], with the count of what it sends.
 ///
 /// # Panics
-/// As [`plug`].
+/// Like [`plug`].
 #[must_use]
 pub fn plug_and_watch(options: &str) -> (Plugged, Said) {
     let board = MockAtChip::new(options);
@@ -114,7 +114,7 @@ pub fn uart() -> ChipOptions {
     ChipOptions { eeprom: Eeprom::new(ChannelMode::Uart, ChannelMode::Uart), ..ChipOptions::default() }
 }
 
-/// The serial port that the kernel's driver makes of a channel, 0 for A, once it is there.
+/// The serial port that the kernel's driver makes of a channel, 0 for A; waits for it.
 ///
 /// # Panics
 /// If the driver makes none.
@@ -130,21 +130,21 @@ pub fn serial_port(board: &Plugged, channel: u8) -> PathBuf {
     port().unwrap()
 }
 
-/// Judges the board `target` with a small frame.
+/// Judges the board at `target` with small frames.
 #[must_use]
 pub fn verify(target: &str) -> Ended {
     halfrow(["verify", "--json", "--board", target, "--width", "128", "--height", "16"])
 }
 
-/// What the run, or the call that was refused, says.
+/// The headline of a run, or the error of a call that was refused.
 #[must_use]
 pub fn sentence(ended: &Ended) -> String {
     let said = ended.json();
     said["headline"].as_str().map_or_else(|| error_sentence(&said), str::to_owned)
 }
 
-/// Those that say something about a board, and are not at the paper's size: QEMU's chip stays plugged in whatever becomes of the
-/// link behind it.
+/// The scenarios about a board that are not of the paper's size. None is about a link: QEMU's chip stays plugged in when the link
+/// behind it breaks.
 pub fn of_boards() -> impl Iterator<Item = &'static Scenario> {
     [SOUND_BOARDS, BROKEN_BOARDS, MISFITS].into_iter().flatten().filter(|scenario| scenario.has_own_size())
 }
@@ -155,11 +155,11 @@ pub fn is_quick(scenario: &&Scenario) -> bool {
     scenario.has_own_size() && !SLOW.contains(&scenario.name)
 }
 
-/// Runs each of `scenarios` on a board of its own, which `plug` makes of its options and `target` names, and prints how
-/// long each took.
+/// Runs each of `scenarios` on its own board, which `plug` makes by its options and `target` names, and prints how long each
+/// took.
 ///
 /// # Panics
-/// When one of them comes to anything else than it should, or there is none.
+/// When one of them does not end as expected, or there is none.
 #[allow(clippy::print_stdout)]
 pub fn run_all<'a, B>(
     scenarios: impl IntoIterator<Item = &'a Scenario>,

@@ -1,4 +1,4 @@
-//! Cases played through a whole board, by its bytes: upload, commit, rows, credit, acknowledgement.
+//! Cases played through a whole board, by its packets: upload, commit, rows, credit, acknowledgement.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use halfrow_model::{Frame, Kernel, TableSet};
 
 use crate::cases::{Build, Case, GridNeeds, Played};
 
-/// An open session in which case follows case.
+/// An open session in which cases are played one after another.
 pub struct WholeBoard {
     board: Board,
     next_frame: u16,
@@ -19,14 +19,14 @@ impl WholeBoard {
     /// Opens a session over `link`.
     ///
     /// # Panics
-    /// When nobody answers.
+    /// When no board answers.
     #[must_use]
     pub fn open(link: Box<dyn Link>) -> Self {
         let board = Board::open(link, &OpenOptions::default()).unwrap();
         Self { board, next_frame: 0 }
     }
 
-    /// What cases for this board are drawn for.
+    /// The build of this board, for which cases are drawn.
     #[must_use]
     pub fn build(&self) -> Build {
         let capabilities = self.board.capabilities();
@@ -43,8 +43,8 @@ impl WholeBoard {
         }
     }
 
-    /// Plays the first frame alone; then the tables of the second are committed in advance, and the first once more with
-    /// the second close behind.
+    /// Plays the first frame alone. Then the tables of the second are committed in advance, and the first is played once more
+    /// with the second right after it.
     ///
     /// # Panics
     /// When the board refuses anything.
@@ -63,7 +63,7 @@ impl WholeBoard {
         played
     }
 
-    /// Commits tables for the frame that many behind the next one.
+    /// Commits tables for the frame that comes `behind` frames after the next one.
     fn commit(&mut self, tables: &TableSet, kernel: &Kernel, behind: u16) {
         let first_frame = self.next_frame.wrapping_add(behind);
         self.board.upload(tables, kernel).unwrap();
@@ -87,7 +87,7 @@ fn generation(first_frame: u16) -> u8 {
     (first_frame % 255) as u8 + 1
 }
 
-/// What the model says that comes out of [`WholeBoard::play`].
+/// What comes out of [`WholeBoard::play`] according to the model.
 #[must_use]
 pub fn expected(case: &Case) -> Played {
     let mut whole = case.clone();

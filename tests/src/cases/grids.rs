@@ -9,21 +9,21 @@ use crate::dice::Dice;
 pub struct GridNeeds {
     /// T.
     pub entries: usize,
-    /// Pixel clocks between rows of a grid that are narrower than `width`.
+    /// Pixel clocks needed between rows of a grid that are narrower than `width`.
     pub blanking: u16,
-    /// Columns from which on no more are needed than without a grid.
+    /// The width from which on a grid needs no more blanking than row factors do.
     pub width: usize,
 }
 
 /// A factor of 1, and an offset of 0.
 const ONE: u32 = RowFactor::ONE.get();
 
-/// Offsets are drawn up to so many columns to the right, in units of 2^-13 column.
+/// The largest offset to the right that is drawn, 16 columns in units of 2^-13 column.
 const OFFSETS: usize = 16 << 13;
 
-/// A legal grid of any shape that the bank has room for: nodes from a common value down to none that is alike, at times above 2^24
-/// and at both ends of a range, and offsets to the right; brought nearer to the identity until a ring of so many samples can
-/// serve it.
+/// A legal grid of any shape that the bank has room for. Its nodes range from all alike to all different, are at times above 2^24
+/// and at times only at both ends of a range; its offsets go to the right. It is brought nearer to the identity until a ring of
+/// `ring` samples can serve it.
 pub(super) fn draw(dice: &mut Dice, geometry: Geometry, ring: usize, needs: GridNeeds) -> TableSet {
     let shapes: Vec<_> = GridShape::all().filter(|shape| shape.entries(&geometry) <= needs.entries).collect();
     let shape = shapes[dice.below(shapes.len())];

@@ -7,10 +7,10 @@ use crate::dice::Dice;
 use crate::proxy::Suffers;
 use crate::system::System;
 
-/// The longest packet on the wire, so that it stands still twice at most.
+/// The longest packet on the wire, so that no packet is stalled more than twice.
 const LONGEST_PACKET: usize = 4200;
 
-/// Stalls that a host must outlast: four of the longest are within its patience for one answer, twice each way.
+/// Stalls that a host must outlast: four of the longest fit into its patience for one answer, two each way.
 pub(super) const SHORT_STALLS: &str = "short stalls";
 const LONG_STALLS: &str = "long stalls";
 const LOSSES: &str = "whole packets";
@@ -18,13 +18,13 @@ const LOSSES: &str = "whole packets";
 /// Faults that strike at a rate.
 const AT_A_RATE: [&str; 7] = ["flip", "drop", "duplicate", "reorder", "truncate", "stall", "disconnect"];
 
-/// The paper's width and a few rows: rows as long as they get, and runs as short.
+/// The paper's width and a few rows: the longest rows, and still short runs.
 const WIDE: System = System { height: 4, ..System::PAPER };
-/// Some hundred rows.
+/// Some seventy rows.
 const MIDDLE: System = System { width: 128, height: 72, radius: 73.78, board: "mock", ring: 2048 };
 
-/// The cases `from` up to `to` of the campaign of `seed`, each by `draw_one`. Each is drawn for itself, so that a campaign can
-/// go on from anywhere.
+/// The cases of `indexes` in the campaign of `seed`, each by `draw_one`. Each is drawn independently, so that a campaign can go
+/// on from anywhere.
 #[must_use]
 pub fn draw(
     seed: u64,
@@ -45,7 +45,7 @@ pub fn draw(
     indexes.map(one).collect()
 }
 
-/// A run on the virtual clock: frames small and full, and any link.
+/// A run on the virtual clock: small frames up to full ones, and any link.
 pub fn virtual_(dice: &mut Dice) -> (&'static str, Way, System) {
     let system = match dice.below(400) {
         0 => System::PAPER,
@@ -55,7 +55,7 @@ pub fn virtual_(dice: &mut Dice) -> (&'static str, Way, System) {
     };
     let toward = dice.one_of(&["board", "host", "both"]);
     let seed = dice.below(1 << 31);
-    // Of one row's bytes up to some rows'.
+    // From the bytes of one row to those of some rows.
     let row = system.width * 3 / 2 + 40;
     let every = row + dice.below(12 * row);
     let (kind, fault) = match dice.below(4) {
@@ -85,12 +85,12 @@ pub fn real(dice: &mut Dice) -> (&'static str, Way, System) {
     real_up_to(dice, 0.4, -0.3)
 }
 
-/// The same, of links on which nothing takes long.
+/// Like [`real`], over links on which nothing takes long.
 pub fn real_and_short(dice: &mut Dice) -> (&'static str, Way, System) {
     real_up_to(dice, -0.7, -1.5)
 }
 
-/// With stalls up to 10^`longest` seconds and losses at a rate up to 10^`most`.
+/// A run in real time with stalls up to 10^`longest` seconds and losses at a rate up to 10^`most`.
 fn real_up_to(dice: &mut Dice, longest: f64, most: f64) -> (&'static str, Way, System) {
     let system = System::TINY;
     let every = LONGEST_PACKET + dice.below(20_000);

@@ -1,4 +1,4 @@
-//! What a long campaign has found, kept in a file so that it can go on from there.
+//! The results of a long campaign, kept in a file so that it can go on from there.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -26,7 +26,7 @@ impl Kept {
         Self::default()
     }
 
-    /// What this very program has found of the campaign of `seed` under `name`, in the target folder.
+    /// What this very build of the program has found in the campaign of `seed` under `name`, in the target folder.
     ///
     /// # Panics
     /// If the file cannot be used.
@@ -40,7 +40,7 @@ impl Kept {
         Self::in_file(&folder.join(format!("{name}-{seed}-{:016x}.jsonl", fingerprint.finish())))
     }
 
-    /// What stands in the file at `path`, which is made if need be.
+    /// The results in the file at `path`, which is created if need be.
     ///
     /// # Panics
     /// If the file cannot be used.
@@ -73,7 +73,8 @@ impl Kept {
         self.known.get(&index).cloned()
     }
 
-    /// A run without an end is not kept: it is to be seen again, and may have had a busy computer.
+    /// Keeps the result of a run. One that did not end is not kept: it shall be tried again, since the computer may have been
+    /// busy.
     pub(super) fn keep(&self, index: usize, (came, headline): &(Came, String)) {
         let (Some(file), Came::To(verdict)) = (&self.file, came) else { return };
         let line = json!({ "index": index, "came": verdict.to_string(), "headline": headline });

@@ -1,4 +1,4 @@
-//! A campaign for people.
+//! The table that a campaign prints.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -12,7 +12,7 @@ impl PoorLinks {
         self.0.iter().filter(|run| of(run) && run.came == came).count()
     }
 
-    /// How often a kind of link and a board ended in an error that says so, numbers left out.
+    /// How many runs ended in each error, by kind of link and board, with the numbers in its sentence left out.
     fn reasons(&self) -> BTreeMap<(&str, &str, String), usize> {
         let mut reasons = BTreeMap::new();
         for run in self.0.iter().filter(|run| run.came == Came::To(Verdict::Error)) {

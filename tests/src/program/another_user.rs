@@ -1,4 +1,4 @@
-//! `halfrow` as a user who is not root, or who may have little.
+//! `halfrow` as a user who is not root, or with limits of its own.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
@@ -30,11 +30,11 @@ impl Folder {
         if is_root() { self.as_user(NOBODY, &[], arguments) } else { self.command(arguments.iter().copied()) }
     }
 
-    /// A command that will start `halfrow` in this folder as a user of whom no other program is, within `limit`, an
-    /// option of `prlimit`. None for any user but root, who alone may become another: that is told as not tested.
+    /// A command that will start `halfrow` in this folder, within `limit`, an option of `prlimit`, as a user who runs no other
+    /// program. None unless this user is root, who alone may become another: that is reported as not tested.
     ///
     /// # Panics
-    /// As [`Self::as_nobody`].
+    /// Like [`Self::as_nobody`].
     #[must_use]
     pub fn within(&self, limit: &str, arguments: &[&str]) -> Option<Command> {
         if !is_root() {
@@ -47,12 +47,13 @@ impl Folder {
         Some(self.as_user(nobody_else(), &["prlimit", limit], arguments))
     }
 
-    /// The command, started by `by` as the user of the number `user` without any group of root's.
+    /// The command, started by `by` as the user of the number `user`, without any of root's groups.
     fn as_user(&self, user: u32, by: &[&str], arguments: &[&str]) -> Command {
         let command = self.command(arguments.iter().copied());
         let program = self.path().join("halfrow-of-another-user");
         if !program.exists() {
-            // By another program: while this one has the file open for writing, what other tests start inherits that, and nobody can run it.
+            // Copied by another program: while this one has the file open for writing, processes that other tests start inherit
+            // that, and nobody can run it.
             let copied = Command::new("cp").arg(command.get_program()).arg(&program).status().unwrap();
             assert!(copied.success(), "the program cannot be copied to {}", program.display());
         }
@@ -66,7 +67,7 @@ impl Folder {
     }
 }
 
-/// The number of a user who runs nothing: a user's processes are counted together, those of other tests among them.
+/// The number of a user who runs nothing: the limit counts all processes of a user, also those of other tests.
 fn nobody_else() -> u32 {
     static CALLS: AtomicU32 = AtomicU32::new(0);
     let call = CALLS.fetch_add(1, Ordering::Relaxed);

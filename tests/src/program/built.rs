@@ -1,14 +1,14 @@
-//! Where the program is, built anew if a source of it is newer.
+//! Where the program is; it is rebuilt if one of its sources is newer.
 //!
-//! `cargo test --workspace` has built it before the tests run, and with the same features. `cargo test -p halfrow-tests`
-//! has not, and a program of yesterday must not be tested.
+//! `cargo test --workspace` has built it before the tests run, with the same features. `cargo test -p halfrow-tests` has not, and
+//! an outdated program must not be tested.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::SystemTime;
 
-/// Names the program where there is no Cargo: in the machine that `scripts/in-linux` boots.
+/// Names the program where there is no Cargo: in the virtual machine that `scripts/in-linux` boots.
 const PROGRAM: &str = "HALFROW_TEST_PROGRAM";
 
 /// The program that belongs to this test: of the same target folder and profile.
@@ -33,7 +33,8 @@ fn build(folder: &Path) {
         Some(profile) => profile,
     };
     let mut cargo = Command::new(env!("CARGO"));
-    // As whoever built this test: alone, all that it needs would be built once more, with fewer features.
+    // With the same choice of packages as whoever built this test: on its own, all its dependencies would be built once more,
+    // with fewer features.
     cargo.args(["build", "--locked", "--bin", "halfrow", "--test", "command_line", "--profile", profile]);
     cargo
         .arg("--target-dir")
@@ -49,7 +50,7 @@ fn build(folder: &Path) {
     assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
 }
 
-/// Whether the program is there and no source that Cargo notes beside it is newer.
+/// Whether the program exists and none of the sources that Cargo lists for it is newer.
 fn is_fresh(program: &Path) -> bool {
     let noted = fs::read_to_string(program.with_extension("d")).unwrap_or_default();
     let Some((_, sources)) = noted.trim_end().split_once(": ") else { return false };
@@ -62,7 +63,7 @@ fn is_fresh(program: &Path) -> bool {
     })
 }
 
-/// When a file was last written; none if it is not there.
+/// When a file was last written; none if it does not exist.
 fn changed(file: &Path) -> Option<SystemTime> {
     fs::metadata(file).and_then(|found| found.modified()).ok()
 }

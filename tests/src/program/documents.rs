@@ -12,10 +12,10 @@ use super::held;
 /// The schema in the repository.
 pub const SCHEMA: &str = include_str!("../../../host/schema/halfrow-1.json");
 
-/// Holds a document against the schema, and a report against itself, read back.
+/// Checks a document against the schema, and a report also against itself after it was read back.
 ///
 /// # Panics
-/// If it is not as it should be.
+/// If either differs.
 pub fn assert_valid(document: &Value) {
     static VALIDATOR: OnceLock<Validator> = OnceLock::new();
     let validator = VALIDATOR.get_or_init(|| {

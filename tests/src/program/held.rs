@@ -1,19 +1,21 @@
-//! Holds documents to their schemas, and files of the repository to the commands that print them. What is otherwise is told by its place.
+//! Compares documents with their schemas, and files of the repository with the output of the commands that print them.
+//! Differences are reported with their place.
 
 use jsonschema::error::ValidationErrorKind;
 use jsonschema::{ValidationError, Validator};
 use serde_json::Value;
 
-/// More characters than these of a document say nothing to who reads them.
+/// A longer excerpt of a document, in bytes, tells its reader nothing.
 const FEW: usize = 200;
 
-/// What in a document is otherwise than its schema says, each with its place.
+/// Where a document departs from its schema, each with its place.
 #[must_use]
 pub fn errors(validator: &Validator, document: &Value) -> Vec<String> {
     validator.iter_errors(document).flat_map(|error| told(&error)).collect()
 }
 
-/// An error; where nothing of several alternatives fits, what is wrong by those of the value's own type: an object is no bad null.
+/// The sentences of an error. Where no alternative of several fits, those of the alternatives of the value's own type: an object
+/// is not called a bad null.
 fn told(error: &ValidationError<'_>) -> Vec<String> {
     use ValidationErrorKind::{AnyOf, Constant, OneOfNotValid, Type};
     let place = error.instance_path();
@@ -32,7 +34,7 @@ fn told(error: &ValidationError<'_>) -> Vec<String> {
     vec![format!("{said} at {place}")]
 }
 
-/// Holds a file of the repository to what `command` has printed.
+/// Compares a file of the repository with what `command` has printed.
 ///
 /// # Panics
 /// If they differ, with the first line that does.

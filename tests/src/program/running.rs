@@ -12,7 +12,7 @@ use nix::unistd::Pid;
 use super::Ended;
 use crate::patience::{LIMIT, end_of, wait_until};
 
-/// A program that was started. It is killed when this is dropped.
+/// A program that was started. It is killed when dropped.
 #[derive(Debug)]
 pub struct Running {
     child: Child,
@@ -20,7 +20,7 @@ pub struct Running {
     stderr: Said,
 }
 
-/// What a program says on one of its streams, as it comes.
+/// What a program prints on one of its streams, line by line as it comes.
 #[derive(Debug)]
 struct Said {
     lines: Receiver<String>,
@@ -34,7 +34,7 @@ impl Said {
             let mut stream = BufReader::new(stream);
             let mut line = Vec::new();
             while stream.read_until(b'\n', &mut line).is_ok_and(|length| length > 0) {
-                // Read on to the end even if nobody listens: a full pipe would hold the program up.
+                // Reads to the end even if nobody listens: a full pipe would hold the program up.
                 let _ = say.send(String::from_utf8_lossy(&line).into_owned());
                 line.clear();
             }
@@ -42,7 +42,7 @@ impl Said {
         Self { lines, text: String::new() }
     }
 
-    /// The next line; none behind the last.
+    /// The next line; none after the last.
     fn next(&mut self) -> Option<String> {
         let line = self.lines.recv_timeout(LIMIT).ok()?;
         self.text.push_str(&line);
@@ -67,10 +67,10 @@ impl Running {
         Self { child, stdout: Said::new(stdout), stderr: Said::new(stderr) }
     }
 
-    /// Waits until it says `words` on stderr.
+    /// Waits until it prints `words` on stderr.
     ///
     /// # Panics
-    /// If it ends or hangs without having said them.
+    /// If it ends or hangs without having printed them.
     pub fn wait_for(&mut self, words: &str) {
         loop {
             let line = self.stderr.next();
@@ -90,7 +90,7 @@ impl Running {
         self.stdout.next().unwrap().trim_end().to_owned()
     }
 
-    /// Sends it a signal, as `TERM`.
+    /// Sends it a signal, such as `TERM`.
     ///
     /// # Panics
     /// If it has ended already.
@@ -100,19 +100,19 @@ impl Running {
         kill(process, Signal::from_str(&format!("SIG{signal}")).unwrap()).unwrap();
     }
 
-    /// Its number among the processes.
+    /// Its process id.
     #[must_use]
     pub fn id(&self) -> u32 {
         self.child.id()
     }
 
-    /// Whether it has come to its end.
+    /// Whether it has ended.
     #[must_use]
     pub fn has_ended(&mut self) -> bool {
         matches!(self.child.try_wait(), Ok(Some(_)))
     }
 
-    /// Stops it, and waits until it stands still.
+    /// Sends it SIGSTOP, and waits until it is stopped.
     ///
     /// # Panics
     /// If it has ended already.
@@ -121,12 +121,12 @@ impl Running {
         self.send("STOP");
         wait_until("a program to stand still", || {
             let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.child.id())).unwrap();
-            // The state stands behind the name, which may have any letter in it.
+            // The state follows the name, which may contain any character.
             stat.rsplit(')').next().is_some_and(|rest| rest.trim_start().starts_with(['T', 'Z']))
         });
     }
 
-    /// Waits for its end.
+    /// Waits until it ends.
     ///
     /// # Panics
     /// If it hangs.
@@ -139,7 +139,7 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // It may have ended by itself, and then there is nothing to do.
+        // It may have ended by itself; then there is nothing to do.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -1,10 +1,10 @@
-//! Broken boards: every fault of the board is found, and its part named.
+//! Broken boards: every fault of the board is found, and the broken part named.
 
 use super::expect;
 use crate::scenario::{SMALLER, Scenario};
 
-/// Every fault of the board that the mock has, with the built-in frames; and some once more where they are harder to see, at the
-/// paper's size where fewer pixels have no such place. `scripts/soak campaign` draws faults at the paper's size.
+/// Every fault of the board that the mock has, with the built-in frames; some once more where they are harder to see, at the
+/// paper's size where smaller frames have no such place. `scripts/soak campaign` draws faults at the paper's size.
 pub const BROKEN_BOARDS: &[Scenario] = &[
     fails("a data line", ",fault=stuck-data", "data bit 5, stuck at 1"),
     fails("the highest data line", ",fault=stuck-data,bit=11,value=0", "data bit 11, stuck at 0"),

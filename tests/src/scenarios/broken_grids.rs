@@ -113,7 +113,7 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
     ),
 ];
 
-/// Frames as wide as they must be to follow each other without blanking.
+/// Frames wide enough to follow each other without blanking.
 const GRID: &[&str] = &["--width", "192", "--height", "24", "--radius", "130", "--projection", "exact"];
 
 const fn fails(name: &'static str, options: &'static str, sentence: &'static str) -> Scenario {

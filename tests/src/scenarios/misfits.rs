@@ -1,4 +1,4 @@
-//! Calls that fit no board, or not this one: refused before anything is written, with no verdict.
+//! Calls that fit no board, or not this one: refused before anything is written, without a verdict.
 
 use super::expect;
 use crate::scenario::{SMALLER, Scenario};

@@ -1,9 +1,9 @@
-//! Poor links: what can be repaired is, and the rest is an ERROR. A bad cable is never a FAIL.
+//! Poor links: what can be repaired is repaired, and the rest is an ERROR. A bad cable is never a FAIL.
 
 use super::expect;
 use crate::scenario::{On, Scenario};
 
-/// Links that lose or spoil something, and not too much.
+/// Links that lose or spoil something, but not too much.
 pub const REPAIRED_LINKS: &[Scenario] = &[
     passes("a flipped bit in a row", ",fault=flip,byte=60000", SMALL),
     passes("a flipped bit in a packet to the board", ",fault=flip,packet=60,toward=board", SMALL),
@@ -23,8 +23,7 @@ pub const REPAIRED_LINKS: &[Scenario] = &[
     passes("packets that end early", ",fault=truncate,rate=0.01,seed=6", SMALL),
 ];
 
-/// Links that stand still for a while, or deliver more or in another order than they should, which costs nothing or
-/// time alone.
+/// Links that stall for a while, deliver some things twice, or change their order, which costs time at most.
 pub const SLOW_LINKS: &[Scenario] = &[
     passes("a packet that comes twice", ",fault=duplicate,packet=70", SMALL),
     passes("a greeting that comes twice", ",fault=duplicate,packet=0", SMALL),
@@ -34,7 +33,7 @@ pub const SLOW_LINKS: &[Scenario] = &[
     passes("three seconds of silence again and again", ",fault=stall,every=60000,seconds=3", SMALL),
 ];
 
-/// How a run over a link ends that spoils most of what it carries.
+/// How a run ends over a link that spoils most of what it carries.
 const POOR: &[&str] =
     &["no answer to", "the link is too poor to judge a board over", "did not come back in 8 tries"];
 

@@ -3,7 +3,7 @@
 use super::passes;
 use crate::scenario::{On, Scenario};
 
-/// Boards in which nothing is wrong, and links that only take their time.
+/// Boards without a fault, and links that are only slow.
 pub const SOUND_BOARDS: &[Scenario] = &[
     passes("the paper's system", "", &[]),
     passes("the paper's system with seven taps", "", &["--kernel", "keys", "--frame", "builtin:noise"]),

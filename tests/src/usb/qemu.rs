@@ -1,4 +1,4 @@
-//! The FT232B that QEMU makes: a chip that is not of this project.
+//! The FT232B that QEMU emulates: a chip that this project did not make.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{ErrorKind, Read as _, Write as _};
@@ -18,7 +18,7 @@ use crate::patience::wait_until;
 
 const SERIAL: &str = "QEMU0001";
 
-/// The target that names it.
+/// The target of this chip.
 pub const QEMU_CHIP: &str = "usb:QEMU0001";
 
 /// A mock board behind QEMU's chip, until it is dropped.
@@ -30,7 +30,8 @@ pub struct QemuBoard {
 }
 
 impl QemuBoard {
-    /// The mock board that `options`, as of a target, describe. There is one such chip, so there can be one such board.
+    /// The mock board that `options`, like those of a target, describe. QEMU has one chip, so only one such board can exist at a
+    /// time.
     ///
     /// # Panics
     /// Without the port that `scripts/in-linux` gives to the guest.
@@ -43,7 +44,7 @@ impl QemuBoard {
         Self { is_over, said, thread: Some(thread::spawn(move || serve(port, board, &over))) }
     }
 
-    /// What it says.
+    /// The count of what it sends.
     #[must_use]
     pub fn said(&self) -> &Said {
         &self.said
@@ -57,7 +58,7 @@ impl Drop for QemuBoard {
     }
 }
 
-/// Carries bytes both ways, and waits for neither: QEMU stands still when nobody reads what its chip sends.
+/// Carries bytes both ways, and waits for neither: QEMU halts when nobody reads what its chip sends.
 fn serve(mut port: File, mut board: MockAtChip, is_over: &AtomicBool) {
     let begun = Instant::now();
     let (mut to_board, mut to_host) = (Vec::new(), Vec::new());
@@ -75,7 +76,7 @@ fn serve(mut port: File, mut board: MockAtChip, is_over: &AtomicBool) {
     }
 }
 
-/// How many bytes moved; none if the port is not ready.
+/// How many bytes were moved; 0 if the port is not ready.
 fn ready(moved: std::io::Result<usize>) -> usize {
     match moved {
         Err(error) if error.kind() == ErrorKind::WouldBlock => 0,
@@ -93,13 +94,13 @@ fn port(name: &str) -> File {
     OpenOptions::new().read(true).write(true).custom_flags(OFlag::O_NONBLOCK.bits()).open(device).unwrap()
 }
 
-/// Says `command` to QEMU's own monitor.
+/// Sends `command` to QEMU's own monitor.
 fn say(command: &str) {
     let mut monitor = port("monitor");
     monitor.write_all(format!("{command}\n").as_bytes()).unwrap();
 }
 
-/// QEMU's chip is out of its socket until this is dropped, whatever becomes of the test: others need it.
+/// Keeps QEMU's chip unplugged until it is dropped, whatever happens to the test: others need the chip.
 #[derive(Debug)]
 pub struct QemuChipOut(());
 
@@ -118,7 +119,7 @@ impl QemuChipOut {
 }
 
 impl Drop for QemuChipOut {
-    /// Plugs it in. Whoever needs it waits until the kernel sees it.
+    /// Plugs it in again. Whoever needs it waits until the kernel sees it.
     fn drop(&mut self) {
         say(&format!(
             "device_add usb-serial,id=chip,bus=xhci.0,chardev=far,serial={SERIAL},always-plugged=on"
