@@ -1,4 +1,4 @@
-//! All that a host does to a frame, row after row on one core: pack, encode, decode, unpack, correct, compare.
+//! Everything that a host does to a frame, row by row on one core: pack, encode, decode, unpack, correct, compare.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -11,7 +11,7 @@ use halfrow_protocol::{Decoder, Encoder, Header, Kind, Request, samples};
 use crate::Benchmark;
 use crate::scene::{HEIGHT, batch, tables};
 
-/// Buffers that go from row to row.
+/// Buffers that are reused from row to row.
 #[derive(Default)]
 struct Chain {
     encoder: Encoder,
@@ -21,7 +21,7 @@ struct Chain {
     corrected: Vec<u16>,
 }
 
-/// The chain with every path of the model, and without the model, over a batch of frames.
+/// The chain with each path of the model, and without the model, over a batch of frames.
 pub(crate) fn benchmarks() -> Result<Vec<Benchmark>, Box<dyn Error>> {
     let (tables, kernel) = (Arc::new(tables(HEIGHT)?), Kernel::from(Interpolant::Hermite));
     let frames = Arc::new(batch()?);
@@ -35,7 +35,7 @@ pub(crate) fn benchmarks() -> Result<Vec<Benchmark>, Box<dyn Error>> {
     Ok(benchmarks)
 }
 
-/// The benchmark in which `inputs` must become `expected`.
+/// The benchmark that must turn `inputs` into `expected`.
 fn chain(
     name: String,
     tables: &Arc<TableSet>,

@@ -1,9 +1,9 @@
-//! Runs benchmarks at the word of `scripts/bench`, so that those of several programs take turns.
+//! Runs benchmarks on request, so that `scripts/bench` can let those of several programs take turns.
 //!
-//! Without arguments it prints the names of its benchmarks, a line each and an empty one; then, for every line `TIMES NAME`
-//! that it reads, it runs that benchmark so often and prints the nanoseconds that all of it took. `halfrow-bench PATH
-//! KERNEL [grid] FRAMES` corrects some rows so many times by one path of the model, by one factor each or behind a grid, and
-//! ends: `scripts/instructions` counts what that executes.
+//! Without arguments it prints the names of its benchmarks, one a line, and an empty line. Then, for every line `TIMES NAME` that
+//! it reads, it runs that benchmark that many times and prints the nanoseconds that all of it took.
+//! `halfrow-bench PATH KERNEL [grid] FRAMES` corrects some rows FRAMES times by one path of the model, by one factor a row or by
+//! a grid, and ends: `scripts/instructions` counts the instructions of that.
 
 mod chain;
 mod mock;
@@ -14,7 +14,7 @@ use std::error::Error;
 use std::io::{BufRead, Write};
 use std::time::Instant;
 
-/// Something that is run again and again.
+/// Something that is run many times.
 struct Benchmark {
     name: String,
     run: Box<dyn FnMut()>,

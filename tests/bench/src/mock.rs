@@ -1,4 +1,4 @@
-//! The mock board's core, which takes a frame pixel clock by pixel clock.
+//! The mock board's core, which works through a frame pixel clock by pixel clock.
 
 use std::error::Error;
 use std::hint::black_box;

@@ -1,4 +1,4 @@
-//! The model's paths beside a copy of the frame.
+//! The model's paths, compared with a copy of the frame.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -15,7 +15,7 @@ use crate::scene::{HEIGHT, batch, frame, grid, tables};
 /// Rows of a frame whose instructions are counted.
 const COUNTED: usize = 32;
 
-/// Frames that one benchmark works on, and where their outputs go.
+/// The frames of one benchmark, and room for their outputs.
 struct Batch {
     frames: Arc<Vec<Frame>>,
     outputs: Vec<Vec<u16>>,
@@ -28,7 +28,7 @@ impl Batch {
     }
 }
 
-/// One frame again and again, as it stays in the cache, and a batch whose frames do not.
+/// One frame over and over, which stays in the cache, and a batch of frames that do not.
 pub(crate) fn benchmarks() -> Result<Vec<Benchmark>, Box<dyn Error>> {
     let (tables, grid) = (Arc::new(tables(HEIGHT)?), Arc::new(grid(HEIGHT)?));
     let one = Arc::new(vec![frame(HEIGHT, 0)?]);
@@ -60,7 +60,7 @@ pub(crate) fn benchmarks() -> Result<Vec<Benchmark>, Box<dyn Error>> {
     Ok(benchmarks)
 }
 
-/// A benchmark of a wrong result would mean nothing.
+/// A benchmark of a wrong result would mean nothing, so the result is compared first.
 fn check(tables: &TableSet, kernel: &Kernel, frame: &Frame, path: ModelPath) -> Result<(), Box<dyn Error>> {
     let equal = Corrector::new(path, kernel)?.correct(tables, frame)? == correct(tables, kernel, frame)?;
     if equal { Ok(()) } else { Err(format!("the path {path} differs from the oracle").into()) }
@@ -76,7 +76,7 @@ fn copy(name: &str, frames: &Arc<Vec<Frame>>) -> Benchmark {
     Benchmark { name: name.to_owned(), run: Box::new(run) }
 }
 
-/// The samples of a frame that no [`Frame`] has looked at.
+/// Raw samples, which no [`Frame`] has checked.
 fn samples(
     path: ModelPath,
     frames: &Arc<Vec<Frame>>,
@@ -110,7 +110,7 @@ fn signer(path: ModelPath, tables: &Arc<TableSet>, kernel: &Kernel) -> Result<Be
     Ok(Benchmark { name: format!("signed {path}"), run: Box::new(run) })
 }
 
-/// The frames in equal shares to as many threads as there are correctors, this one among them.
+/// Shares the frames equally among as many threads as there are correctors; the calling thread is one of them.
 fn corrector(
     name: String,
     frames: &Arc<Vec<Frame>>,
@@ -140,12 +140,12 @@ fn corrector(
 fn correct_share(share: (&mut Corrector, &[Frame], &mut [Vec<u16>]), tables: &TableSet) {
     let (corrector, frames, outputs) = share;
     for (frame, output) in frames.iter().zip(outputs) {
-        // The frames are of the tables' size and depth, which `check` has seen.
+        // The frames have the tables' size and depth: `check` has seen to it.
         let _ = black_box(corrector.correct_into(tables, black_box(frame), black_box(output)));
     }
 }
 
-/// Corrects `COUNTED` rows `frames` times, by one factor each or behind a grid.
+/// Corrects `COUNTED` rows `frames` times, by one factor a row or by a grid.
 pub(crate) fn count(
     path: ModelPath,
     interpolant: Interpolant,

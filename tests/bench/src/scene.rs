@@ -16,7 +16,7 @@ pub(crate) fn tables(height: usize) -> Result<TableSet, Box<dyn Error>> {
     Ok(TableSet::from_lens(geometry, &Equidistant::from_radius(RADIUS)?, None)?)
 }
 
-/// The grid of the paper's lens for frames of `height` rows, as DATAPATH.md has it for 1080.
+/// The grid of the paper's lens for frames of `height` rows, by the formula that DATAPATH.md applies to 1080.
 pub(crate) fn grid(height: usize) -> Result<TableSet, Box<dyn Error>> {
     let geometry = Geometry::centred(1920, height, BitDepth::Twelve)?;
     let centre = (959.5, (height - 1) as f64 / 2.0);
@@ -24,7 +24,7 @@ pub(crate) fn grid(height: usize) -> Result<TableSet, Box<dyn Error>> {
     Ok(camera.grid_by_formula(GridShape::new(5, 6)?))
 }
 
-/// Frames that take turns where a batch is timed: with their outputs twice what a cache of 64 MiB holds.
+/// Frames of a batch: with their outputs twice what a cache of 64 MiB holds.
 const BATCH: u32 = 16;
 
 /// The frames of a batch.
@@ -32,7 +32,7 @@ pub(crate) fn batch() -> Result<Vec<Frame>, Box<dyn Error>> {
     (0..BATCH).map(|first| frame(HEIGHT, first)).collect()
 }
 
-/// The golden frame, or one that starts later in its sequence.
+/// The golden frame of `height` rows, or with `first` > 0 one that starts later in its sequence.
 pub(crate) fn frame(height: usize, first: u32) -> Result<Frame, Box<dyn Error>> {
     let places = first..first + 1920 * height as u32;
     let samples = places.map(|place| (place.wrapping_mul(2_654_435_761) >> 20) as u16).collect();

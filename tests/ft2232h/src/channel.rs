@@ -11,10 +11,10 @@ const PACKET: usize = 512;
 /// The status bytes in front of every packet.
 const STATUS: usize = 2;
 
-/// Bytes that the chip holds towards the host.
+/// Bytes that the chip buffers towards the host.
 const FIFO: usize = 4096;
 
-/// CTS, DSR and DCD are there; and the low bits that the chip always sets.
+/// CTS, DSR and DCD are active; and the low bits that the chip always sets.
 const MODEM_STATUS: u8 = 0xb1;
 
 /// Both transmitter registers are empty.
@@ -22,13 +22,13 @@ const LINE_STATUS: u8 = 0x60;
 
 const FRAMING_ERROR: u8 = 0x08;
 
-/// How far two rates may be apart.
+/// By what share two baud rates may differ.
 const TOLERANCE: f64 = 0.03;
 
-/// What came of a read of the host's.
+/// What came of a read by the host.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Read {
-    /// There is nothing for it yet.
+    /// There is no packet for it yet.
     Open,
     /// It is complete.
     Done,
@@ -36,7 +36,7 @@ pub(crate) enum Read {
     Overflow,
 }
 
-/// A channel and what is behind it.
+/// A channel and what is connected to it.
 pub(crate) struct Channel {
     mode: ChannelMode,
     far_end: Option<Box<dyn FarEnd>>,
@@ -44,9 +44,9 @@ pub(crate) struct Channel {
     latency: Duration,
     /// When the last packet left.
     packet_at: Duration,
-    /// The board's strobe at SIWU#: what is there goes at once.
+    /// The board has strobed SIWU#: what is in the FIFO is sent at once.
     send_immediately: bool,
-    /// The rate that the board talks at, and the one that the host has set.
+    /// The rate at which the board talks, and the one that the host has set.
     board_baud: Option<f64>,
     baud: f64,
     /// Whether the last byte was spoilt by a wrong rate.
@@ -68,7 +68,7 @@ impl Channel {
         }
     }
 
-    /// Bytes that lie in the FIFO before anybody asks.
+    /// Puts bytes into the FIFO before the host asks for any.
     pub(crate) fn put_in_fifo(&mut self, bytes: &[u8]) {
         self.to_host.extend_from_slice(bytes);
     }
@@ -102,7 +102,7 @@ impl Channel {
         [MODEM_STATUS, LINE_STATUS | error]
     }
 
-    /// Takes bytes from the host, and lets the board say what it has to say.
+    /// Takes bytes from the host, and lets the board send what it has.
     pub(crate) fn write(&mut self, bytes: &[u8], now: Duration) -> Result<usize, Unplugged> {
         let Some(far_end) = &mut self.far_end else { return Ok(bytes.len()) };
         let wrong_rate = self.board_baud.is_some_and(|board| (self.baud / board - 1.0).abs() > TOLERANCE);
@@ -116,7 +116,7 @@ impl Channel {
             self.spoilt = false;
             return Ok(taken);
         }
-        // Bits are sampled where none are: both ends receive something, and never what was sent.
+        // Bits are sampled at the wrong times: both ends receive something, but never what was sent.
         let spoil = |byte: &u8| byte.rotate_left(3) ^ 0xa5;
         let spoilt: Vec<u8> = bytes.iter().map(spoil).collect();
         let taken = far_end.exchange(&spoilt, &mut self.to_host, now)?;
@@ -129,7 +129,7 @@ impl Channel {
     }
 
     /// Appends packets to `filled`, up to `length` bytes in all: full ones at once, a short one when the latency timer has run
-    /// out or the board says so.
+    /// out or the board has strobed SIWU#.
     pub(crate) fn read(&mut self, length: usize, filled: &mut Vec<u8>, now: Duration) -> Read {
         while filled.len() < length {
             let is_full = self.to_host.len() >= PACKET - STATUS;
@@ -156,7 +156,7 @@ impl Channel {
         self.packet_at + self.latency
     }
 
-    /// Takes back packets that the host did not wait for.
+    /// Takes back packets of a read that the host gave up.
     pub(crate) fn take_back(&mut self, packets: &[u8]) {
         let data: Vec<u8> = packets
             .chunks(PACKET)

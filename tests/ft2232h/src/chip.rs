@@ -5,7 +5,7 @@ use crate::descriptors::{CONFIGURATION, DEVICE, LANGUAGES, string};
 use crate::eeprom::{ChannelMode, Eeprom};
 use crate::far_end::FarEnd;
 
-/// What a chip is like.
+/// What a chip is made with.
 #[derive(Clone, Debug)]
 pub struct ChipOptions {
     /// Its serial number.
@@ -14,14 +14,14 @@ pub struct ChipOptions {
     pub product: String,
     /// Its EEPROM.
     pub eeprom: Eeprom,
-    /// The rate at which the board behind channel B talks; none for one that follows the chip's.
+    /// The rate at which the board at channel B talks; none for a board that follows the chip's rate.
     pub board_baud: Option<u32>,
-    /// What already lies in channel B's FIFO.
+    /// What already is in channel B's FIFO.
     pub stale: Vec<u8>,
 }
 
 impl Default for ChipOptions {
-    /// A board with a FIFO at channel B.
+    /// A chip with a FIFO board at channel B.
     fn default() -> Self {
         Self {
             serial: "HR000001".to_owned(),
@@ -58,7 +58,7 @@ pub struct Chip {
 }
 
 impl Chip {
-    /// A chip with `board` behind its channel B.
+    /// A chip with `board` at its channel B.
     #[must_use]
     pub fn new(options: ChipOptions, board: Box<dyn FarEnd>) -> Self {
         let [a, b] = if options.eeprom == Eeprom::BLANK {
@@ -76,7 +76,7 @@ impl Chip {
         Self { options, channels, configuration: 0 }
     }
 
-    /// The answer to a request, which is empty when the host does not ask for data; none is a stall.
+    /// The answer to a request, empty when the host asks for no data. None is a stall.
     pub(crate) fn control(&mut self, setup: Setup) -> Option<Vec<u8>> {
         match setup.kind {
             0x40 => self.vendor_out(setup).map(|()| Vec::new()),
@@ -95,7 +95,7 @@ impl Chip {
                 self.configuration = setup.value as u8;
                 Some(Vec::new())
             }
-            // The only alternative setting; a halt that is no more.
+            // SET_INTERFACE knows one alternative setting only; the other clears a halt.
             (0x01, 11) if setup.value == 0 => Some(Vec::new()),
             (0x02, 1) => Some(Vec::new()),
             _ => None,
@@ -114,7 +114,7 @@ impl Chip {
         }
     }
 
-    /// The channel that the low byte of an index names, from 1; 0 stands for A.
+    /// The channel that the low byte of an index names, counted from 1; 0 means A, too.
     fn channel(&mut self, index: u16) -> Option<&mut Channel> {
         self.channels.get_mut(usize::from(index & 0xff).saturating_sub(1))
     }
@@ -126,16 +126,16 @@ impl Chip {
         match setup.request {
             // Reset, or drop what is on its way to the host.
             0 if value == 0 || value == 2 => channel.drop_bytes_to_host(),
-            // Drop what is on its way to the board: the board takes it at once. Modem lines and flow control likewise
-            // change nothing that a host could see here, nor do event and error characters.
+            // Dropping what is on its way to the board does nothing, since the board takes it at once. Nor do modem lines, flow
+            // control, and event and error characters change anything that a host could see here.
             0 if value == 1 => {}
             1 | 2 | 4 | 6 | 7 => {}
             3 => channel.set_divisor(u32::from(value) | u32::from(index >> 8) << 16),
             9 if value <= 255 => channel.set_latency(value as u8),
-            // Reset and bit-banging; a synchronous FIFO takes both channels for one, and only A can be it.
+            // Reset and bit-banging. A synchronous FIFO takes up both channels, and only A can be it.
             11 if matches!(value >> 8, 0 | 1 | 4 | 0x10) => {}
             11 if value >> 8 == 0x40 && index & 0xff == 1 && both_are_fifos => {}
-            // Nobody is to write the EEPROM, so this one cannot be written.
+            // The EEPROM cannot be written, since nobody should.
             _ => return None,
         }
         Some(())
@@ -146,7 +146,7 @@ impl Chip {
             5 => Some(self.channel(setup.index)?.status().to_vec()),
             10 => Some(vec![self.channel(setup.index)?.latency()]),
             12 => self.channel(setup.index).map(|_| vec![0xff]),
-            // 64 words, repeated.
+            // 64 words, which repeat.
             0x90 => Some(self.options.eeprom.0[usize::from(setup.index & 63)].to_le_bytes().to_vec()),
             _ => None,
         }

@@ -22,7 +22,7 @@ impl Eeprom {
     /// An EEPROM as it leaves the factory.
     pub const BLANK: Self = Self([0xffff; 64]);
 
-    /// An EEPROM for these channels, with its checksum. The strings are left to the descriptors.
+    /// An EEPROM for these channels, with its checksum. The strings are in the descriptors alone.
     #[must_use]
     pub fn new(a: ChannelMode, b: ChannelMode) -> Self {
         let mut words = [0; 64];

@@ -1,4 +1,4 @@
-//! What is soldered to a channel's pins.
+//! What is connected to a channel's pins.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -7,18 +7,18 @@ use std::time::Duration;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unplugged;
 
-/// A device behind a channel.
+/// A device at a channel.
 pub trait FarEnd: Send {
-    /// Takes what it can of `to_board`, appends to `to_host` what it has to say at the time `now` since it was plugged in,
-    /// and returns how many bytes it took. It is called at least every millisecond while a host listens.
+    /// Takes what it can of `to_board`, appends to `to_host` what it has to send at the time `now` since it was plugged in, and
+    /// returns how many bytes it took. It is called at least every millisecond while a host listens.
     ///
     /// # Errors
-    /// [`Unplugged`] when the whole chip is to vanish at this point.
+    /// [`Unplugged`] when the whole chip shall vanish at this point.
     fn exchange(&mut self, to_board: &[u8], to_host: &mut Vec<u8>, now: Duration)
     -> Result<usize, Unplugged>;
 }
 
-/// Sends back what it gets.
+/// Sends back what it receives.
 #[derive(Debug, Default)]
 pub struct Loopback(VecDeque<u8>);
 
@@ -30,7 +30,7 @@ impl FarEnd for Loopback {
     }
 }
 
-/// Takes everything and always has something to say.
+/// Takes everything and always has something to send.
 #[derive(Debug, Default)]
 pub struct Endless;
 

@@ -1,12 +1,12 @@
-//! An FT2232H as a program: what FTDI's data sheet says that the chip does, for tests of whoever drives it.
+//! An FT2232H as a program: what FTDI's data sheet says that the chip does, to test drivers of it.
 //!
 //! ```text
 //! driver ── URBs ──► vhci-hcd ── USB/IP over a socket pair ──► Chip ─┬─ channel A  (JTAG on the boards: nothing behind it)
 //! (kernel's or ours)                                                 └─ channel B ── FarEnd: the board
 //! ```
 //!
-//! [`Chip`] knows descriptors, requests and channels, and takes no time of its own. [`Plugged`] is a chip in a port of
-//! the kernel's `vhci-hcd`. Nothing here is shared with the program that is tested with it.
+//! [`Chip`] has descriptors, requests and channels; it reads no clock. [`Plugged`] is a chip in a port of the kernel's
+//! `vhci-hcd`. Nothing here is shared with the programs that are tested with it.
 
 mod channel;
 mod chip;

@@ -17,10 +17,10 @@ const CONTROLLER: &str = "/sys/devices/platform/vhci_hcd.0";
 
 const DEVICES: &str = "/sys/bus/usb/devices";
 
-/// High speed, as the kernel counts.
+/// High speed, by the kernel's number for it.
 const HIGH_SPEED: u32 = 3;
 
-/// The kernel gives a device a name, and a port free, however busy it is; only a hang takes longer.
+/// The kernel names a device, and frees a port, however busy it is; only a hang takes longer.
 const PATIENCE: Duration = Duration::from_secs(300);
 
 /// A chip that is plugged in until it is dropped.
@@ -33,7 +33,7 @@ pub struct Plugged {
 
 struct Shared {
     server: Mutex<Server>,
-    /// Something has changed that may end the wait for the next tick.
+    /// Signalled when something changes that may end the wait for the next tick.
     changed: Condvar,
 }
 
@@ -65,8 +65,8 @@ impl Shared {
 }
 
 impl Plugged {
-    /// Plugs `chip` into the high-speed port `port`, 0 to 7, and waits until the kernel has given it a name. A driver may
-    /// take longer to bind.
+    /// Plugs `chip` into the high-speed port `port`, 0 to 7, and waits until the kernel has given it a name. A driver may bind
+    /// later.
     ///
     /// # Errors
     /// Without `vhci-hcd`, without being root, with the port taken, or when the kernel does not take the chip.
@@ -85,14 +85,14 @@ impl Plugged {
         Ok(plugged)
     }
 
-    /// The kernel's name for it, as `1-1`.
+    /// The kernel's name for it, such as `1-1`.
     #[must_use]
     pub fn bus_name(&self) -> &str {
         &self.bus_name
     }
 
     fn name_now(&self) -> Option<String> {
-        // A line a port: hub, port, state (6: in use), speed, device, socket, name.
+        // One line a port: hub, port, state (6: in use), speed, device, socket, name.
         let line = self.status_line()?;
         let fields: Vec<&str> = line.split_whitespace().collect();
         let name = fields.get(6).filter(|_| fields.get(2) == Some(&"006"))?;
@@ -130,7 +130,7 @@ impl Plugged {
 }
 
 impl Drop for Plugged {
-    /// Waits until the port can be used again: the hub takes a device for the old one if that is not gone yet.
+    /// Waits until the port can be used again: while the old device exists, the hub takes a new one for it.
     #[allow(clippy::print_stderr)]
     fn drop(&mut self) {
         let folder = Path::new(DEVICES).join(&self.bus_name);

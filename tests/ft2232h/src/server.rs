@@ -1,4 +1,4 @@
-//! URBs that wait, and what the chip makes of them.
+//! Pending URBs, and what the chip makes of them.
 
 use std::collections::VecDeque;
 use std::io::Write as _;
@@ -14,7 +14,7 @@ use crate::urb::{Command, Urb, UrbStatus, submitted, unlinked};
 /// How often a far end is asked while a host listens.
 const TICK: Duration = Duration::from_millis(1);
 
-/// A transfer that is under way, with the packets that it has taken, or the number of bytes that the board took of it.
+/// A transfer under way: the packets that a read has taken, or how many bytes of a write the board has taken.
 struct Waiting {
     urb: Urb,
     packets: Vec<u8>,
@@ -37,7 +37,7 @@ impl Server {
         Self { chip, socket, plugged_in: Instant::now(), reads, writes, is_gone: false }
     }
 
-    /// Takes a command of the host's.
+    /// Carries out a command of the host.
     pub(crate) fn take(&mut self, command: Command) {
         match command {
             Command::Unlink { number, which } => self.unlink(number, which),
@@ -88,7 +88,7 @@ impl Server {
         self.send(&unlinked(number, status));
     }
 
-    /// Moves what can be moved, and returns how long nothing more will happen by itself; none for ever.
+    /// Moves all bytes that can be moved, and returns how long nothing more will happen by itself; none means for ever.
     pub(crate) fn serve(&mut self) -> Option<Duration> {
         for channel in 0..2 {
             while !self.is_gone && self.serve_channel(channel) {}
@@ -97,7 +97,7 @@ impl Server {
         (listening && !self.is_gone).then_some(TICK)
     }
 
-    /// Returns whether a transfer has ended.
+    /// Serves one channel. Returns whether a transfer has ended or the board has taken bytes.
     fn serve_channel(&mut self, index: usize) -> bool {
         let now = self.plugged_in.elapsed();
         let channel = &mut self.chip.channels[index];
@@ -142,7 +142,7 @@ impl Server {
     /// Pulls the plug: the kernel sees the end of the socket.
     pub(crate) fn unplug(&mut self) {
         self.is_gone = true;
-        // It may be closed already, and then there is nothing to do.
+        // It may already be closed; then there is nothing to do.
         let _ = self.socket.shutdown(Shutdown::Both);
     }
 }

@@ -1,4 +1,4 @@
-//! The packets of USB/IP that carry URBs, as Linux's `Documentation/usb/usbip_protocol.rst` has them: 48 bytes, big endian.
+//! The packets of USB/IP that carry URBs, as Linux's `Documentation/usb/usbip_protocol.rst` defines them: 48 bytes, big endian.
 
 use std::io::{self, Read};
 
@@ -10,10 +10,10 @@ const UNLINKED: u32 = 4;
 /// Bytes of a packet without its payload.
 const HEADER: usize = 48;
 
-/// No more is taken from a kernel in one piece.
+/// The most bytes that are taken from a kernel in one URB.
 const LONGEST: usize = 1 << 20;
 
-/// An error number that ends a URB, as the kernel counts them.
+/// The error number that ends a URB, as the kernel numbers them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub(crate) enum UrbStatus {
@@ -31,7 +31,7 @@ pub(crate) enum UrbStatus {
 pub(crate) enum Command {
     /// A URB.
     Submit(Urb),
-    /// That the URB of number `which` ends.
+    /// Cancels the URB of number `which`.
     Unlink { number: u32, which: u32 },
 }
 
@@ -39,9 +39,9 @@ pub(crate) enum Command {
 #[derive(Debug)]
 pub(crate) struct Urb {
     pub(crate) number: u32,
-    /// With the direction's bit, as in a descriptor.
+    /// With the direction bit, as in a descriptor.
     pub(crate) endpoint: u8,
-    /// Bytes that the host takes.
+    /// Bytes that the host accepts.
     pub(crate) length: usize,
     pub(crate) setup: [u8; 8],
     /// Bytes that the host sends.
@@ -49,7 +49,7 @@ pub(crate) struct Urb {
 }
 
 impl Command {
-    /// Waits for the next one.
+    /// Waits for the next command.
     pub(crate) fn read(from: &mut impl Read) -> io::Result<Self> {
         let mut header = [0; HEADER];
         from.read_exact(&mut header)?;
@@ -74,7 +74,7 @@ impl Command {
     }
 }
 
-/// The end of a URB: of one towards the host with what it carries.
+/// The completion of a URB, with `data` for one towards the host.
 pub(crate) fn submitted(urb: &Urb, status: UrbStatus, moved: usize, data: &[u8]) -> Vec<u8> {
     let mut packet = reply(SUBMITTED, urb.number, status as i32, moved as u32);
     packet.extend_from_slice(data);

@@ -1,5 +1,5 @@
-//! A program that knows of halfrow what its documentation says: it judges a board over a link that it made itself, which
-//! breaks on the way and is opened again. Prints the verdict, the cause, and how often the board came back.
+//! A program that knows no more of halfrow than its documentation says. It judges a board over a link of its own making, which
+//! breaks during the run and is opened again. Prints the verdict, the cause, and how often the link came back.
 
 use std::error::Error;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -13,7 +13,7 @@ use halfrow::target::BoardKind;
 use halfrow::{Candidate, FrameSource, Link, Plan, RunOptions};
 use halfrow_mock::{Board, Options};
 
-/// Calls until the first link breaks: in the middle of the frames.
+/// Calls until the first link breaks, which is in the middle of the frames.
 const LIFE: usize = 30;
 
 /// A board that keeps its state while nobody is connected.
@@ -74,7 +74,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let link = |calls_left| OwnLink { board: Arc::clone(&board), now: Duration::ZERO, calls_left };
     let (again, count) = (Arc::clone(&board), Arc::clone(&opened));
     let candidate = Candidate::new("outside", BoardKind::Hardware, link(LIFE)).reopened_by(move || {
-        // The first try comes too early, as it does when a device is not known yet.
+        // The first try comes too early, as when the system does not know a device yet.
         match count.fetch_add(1, Ordering::Relaxed) {
             0 => Err("not there yet"),
             _ => Ok(OwnLink { board: Arc::clone(&again), now: Duration::ZERO, calls_left: usize::MAX }),
