@@ -1,4 +1,4 @@
-//! Boards that answer what they must not, or more often than they may, and links that double packets as well.
+//! Boards that answer what they must not, or too often; and links that double packets, too.
 
 use halfrow::result::{Answer, CheckName, Finding, Report, Rule};
 use halfrow::verdict::Verdict;
@@ -12,7 +12,7 @@ use halfrow_tests::system::{System, failed_check, judge_by_plan};
 
 use super::rules::{broken, plan};
 
-/// The report on a board of which each packet that is `doubled` comes twice, and each row as `alter` makes it.
+/// The report on a board where each packet that is `doubled` comes twice, and each row becomes what `alter` makes of it.
 fn doubling(
     doubled: impl Fn(Toward, &Passing) -> bool + Send + 'static,
     alter: impl Fn(Passing) -> Passing + Send + 'static,
@@ -49,7 +49,7 @@ fn a_link_that_doubles_packets_makes_no_sound_board_fail() {
     }
 }
 
-/// The row with another last sample.
+/// The row with a wrong last sample.
 fn spoilt(packet: Passing) -> Passing {
     let Some(Reply::RowOut(row)) = packet.reply() else { return packet };
     let mut samples = vec![0; row.place.width.into()];
@@ -60,7 +60,7 @@ fn spoilt(packet: Passing) -> Passing {
     packet.saying(&Reply::RowOut(RowOut { packed: &packed, ..row }))
 }
 
-/// As many packets came to it as were sent, so that no request came twice.
+/// As many packets reached the board as were sent, so no request came twice.
 #[test]
 fn wrong_samples_of_a_board_that_answers_twice_are_its_own() {
     let report = judge(&System::TINY, |toward, packet| {
@@ -71,7 +71,7 @@ fn wrong_samples_of_a_board_that_answers_twice_are_its_own() {
     assert_eq!(failed_check(&report), Some(CheckName::Frames), "{}", report.headline());
 }
 
-/// Every refusal of what is no packet has the number of what it refuses.
+/// The board answers each damaged packet with a refusal under the number of that packet.
 #[test]
 fn a_board_that_answers_damaged_packets_fails() {
     let mut last = None;
@@ -79,7 +79,7 @@ fn a_board_that_answers_damaged_packets_fails() {
         if toward == Toward::Board {
             return vec![packet];
         }
-        // Behind the write that is kept come the damaged ones, under the next number.
+        // The damaged packets follow the write to which they belong, under the next number.
         let is_written = packet.is(Kind::TableWrite);
         let is_read = packet.is(Kind::TableRead);
         let before = std::mem::replace(&mut last, is_written.then_some(packet.header.sequence));

@@ -1,5 +1,5 @@
-//! What is sent again, how often, and when that is too much: before links that lose, hold up or hold back single packets, and bring
-//! what is of another session.
+//! What is sent again, how often, and when that is too much: over links that lose, delay or hold back single packets, and links
+//! that bring packets of another session.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -45,7 +45,7 @@ fn as_many_retries_as_are_allowed_make_no_link_too_poor() {
     assert!(matches!(refused, BoardError::TooPoor { retries: 3, limit: 2, .. }), "{refused}");
 }
 
-/// "8 tries" is what is told when there is no answer.
+/// The message about a missing answer says "8 tries".
 #[test]
 fn a_request_is_tried_as_often_as_is_told() {
     let losing = |most: usize| {
@@ -66,7 +66,7 @@ fn a_request_is_tried_as_often_as_is_told() {
     assert_eq!(tries.load(Ordering::Relaxed), 8);
 }
 
-/// A link that takes nothing for as many exchanges as are left.
+/// A link that accepts nothing for the next `left` exchanges.
 fn full(link: Box<dyn Link>, left: Arc<AtomicUsize>) -> Box<dyn Link> {
     Through::boxed(link, move |link, out, back, wait| {
         let is_full = left.load(Ordering::Relaxed) > 0;
@@ -90,7 +90,7 @@ fn what_still_waits_to_be_written_is_not_written_twice() {
     assert_eq!((left.load(Ordering::Relaxed), came.load(Ordering::Relaxed)), (0, 1));
 }
 
-/// It has the number of the request that was sent last.
+/// The packet has the number of the request that was sent last.
 #[test]
 fn what_is_of_another_session_is_no_answer() {
     let report = judge(&System::TINY, |_, packet: Passing| match packet.reply() {
@@ -105,7 +105,7 @@ fn what_is_of_another_session_is_no_answer() {
     assert!(report.link.strays > 0);
 }
 
-/// A link brings a copy of an old packet behind newer ones, whose window the rows have left behind.
+/// A link brings a copy of an old packet after newer ones; its window is one that the rows have passed.
 #[test]
 fn a_window_that_comes_late_takes_no_credit_away() {
     let mut old = None;
@@ -120,7 +120,7 @@ fn a_window_that_comes_late_takes_no_credit_away() {
     assert!(report.link.strays > 0);
 }
 
-/// A link that brings one packet every so many milliseconds, in the order in which they came.
+/// A link that delivers one packet every `every` milliseconds, in the order in which they came.
 fn one_by_one(link: Box<dyn Link>, every: Arc<AtomicU64>) -> Box<dyn Link> {
     let (mut held, mut next) = (VecDeque::<Vec<u8>>::new(), Duration::ZERO);
     Through::boxed(link, move |link, out, back, wait| {
@@ -131,7 +131,7 @@ fn one_by_one(link: Box<dyn Link>, every: Arc<AtomicU64>) -> Box<dyn Link> {
         let until = next.saturating_sub(link.now());
         let (mut came, is_idle) = (Vec::new(), held.is_empty());
         let taken = link.exchange(out, &mut came, if is_idle { wait } else { wait.min(until) })?;
-        // A zero ends each packet, and begins it as well.
+        // Every packet ends in a zero and begins with one.
         held.extend(came.split_inclusive(|&byte| byte == 0).filter(|packet| packet.len() > 1).map(Vec::from));
         if is_idle {
             next = link.now() + every;
@@ -143,20 +143,20 @@ fn one_by_one(link: Box<dyn Link>, every: Arc<AtomicU64>) -> Box<dyn Link> {
     })
 }
 
-/// Each of the copies that were sent meanwhile brings an answer, and that to the next request stands behind them all.
+/// Each of the tries that were sent meanwhile brings an answer, and the answer to the next request comes after all of them.
 #[test]
 fn a_request_is_waited_for_while_answers_to_the_one_before_still_come() {
     let every = Arc::new(AtomicU64::new(0));
     let link = altered(|_, packet| vec![packet]);
     let mut board = opened(one_by_one(link, Arc::clone(&every)), RetryLimit::NONE);
-    // All eight tries of the first are under way by then.
+    // By then, all eight tries of the first request are under way.
     every.store(9800, Ordering::Relaxed);
     configure(&mut board).unwrap();
     configure(&mut board).unwrap();
     assert!(board.tally().late > 0);
 }
 
-/// 200, 400 and 800 ms, and half as long again as the 1.4 s that these are together.
+/// The fourth try comes after 200, 400 and 800 ms; later waits are at least one and a half times these 1.4 s.
 #[test]
 fn an_answer_to_the_fourth_try_says_how_late_others_may_be() {
     let mut answers = 0;

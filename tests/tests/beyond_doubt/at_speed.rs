@@ -1,5 +1,5 @@
-//! Frames that a board makes on its own: what is wrong with them is the board's, what is missing is nobody's, and what was not
-//! judged is said.
+//! Frames that a board makes by itself: what is wrong with them is the board's fault, what is missing is nobody's, and what was
+//! not judged is reported.
 
 use halfrow::link;
 use halfrow::progress::Silent;
@@ -16,14 +16,14 @@ use halfrow_tests::altered::{Altered, Passing, Toward, judge_claims, judge_each}
 use halfrow_tests::system::{System, failed_check, streamed};
 
 const TINY: System = System::TINY;
-/// H of it.
+/// Its H.
 const HEIGHT: u32 = TINY.height as u32;
 
 fn check(report: &Report) -> &Check {
     report.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap()
 }
 
-/// A packet of records with others in their place, or with none.
+/// A packet of records after `change` was made to them.
 fn with_records(packet: &Passing, change: impl FnOnce(u32, BurstState, &mut Vec<FrameRecord>)) -> Passing {
     let Some(Reply::Records(found)) = packet.reply() else { panic!("no records") };
     let mut records: Vec<_> = found.records().collect();
@@ -32,7 +32,7 @@ fn with_records(packet: &Passing, change: impl FnOnce(u32, BurstState, &mut Vec<
     packet.saying(&Reply::Records(Records { bytes: &bytes, ..found }))
 }
 
-/// The report on a board of which `change` makes another record of frame 1 of its first burst.
+/// The report on a board after `change` was made to its record of frame 1 of its first burst.
 fn with_record(change: impl Fn(&mut FrameRecord) + Send + 'static) -> Report {
     let mut done = false;
     judge_each(&TINY, move |toward, packet| {
@@ -49,7 +49,7 @@ fn with_record(change: impl Fn(&mut FrameRecord) + Send + 'static) -> Report {
     })
 }
 
-/// What a host asks for.
+/// The request in a packet.
 fn request(packet: &Passing) -> Request<'_> {
     Request::read(&Packet { header: packet.header, payload: &packet.payload }).unwrap()
 }
@@ -84,7 +84,7 @@ fn a_wrong_signature_fails_and_what_does_not_come_again_is_said() {
 /// A fault of the mock, the place that is suspected, and a part of the sentence.
 type SpeedFault = (&'static str, &'static str, &'static str);
 
-/// What only frames at full speed show. 64 x 8 samples a frame, three frames.
+/// What only frames at full speed show: 64 x 8 samples a frame, three frames.
 const SPEED_FAULTS: [SpeedFault; 5] = [
     (
         "slow-path,one-in=300",
@@ -115,7 +115,7 @@ fn what_fails_at_full_speed_alone_passes_row_by_row_and_fails_in_a_burst() {
     }
 }
 
-/// What a board counts, how it is spoilt, and what it should be.
+/// A count in a record, how it is spoilt, and the right value.
 type Count = (BurstCount, fn(&mut FrameRecord), u32);
 
 #[test]
@@ -187,7 +187,7 @@ fn with_one_bank_the_change_of_tables_stays_untested() {
     assert!(report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
 }
 
-/// The board says that the burst goes on, or that it is over, and gives no record.
+/// The report on a board that says that the burst goes on, or is over, and gives no record.
 fn without_records(state: BurstState) -> Report {
     judge_each(&TINY, move |toward, packet| match packet.reply() {
         Some(Reply::Records(found)) if toward == Toward::Host => {
@@ -209,7 +209,7 @@ fn frames_that_never_come_are_no_verdict() {
     }
 }
 
-/// A board that takes another seed than it is given makes other frames, each time.
+/// The packet as a board receives it that uses another seed than the host sent, so that it makes other frames each time.
 fn with_another_seed(toward: Toward, mut packet: Passing) -> Passing {
     if toward == Toward::Board && packet.is(Kind::Burst) {
         // WIRE.md, BURST: burst, frames, seed.
@@ -248,7 +248,7 @@ fn what_is_wrong_at_any_clock_is_not_called_a_matter_of_speed() {
     assert!(report.suspects[0].place().contains("row 40's factor, bit 20"), "{}", report.headline());
 }
 
-/// What is kept is still told, and no more than is known.
+/// The trapped row is still reported, but no more than is known.
 #[test]
 fn a_frame_that_cannot_be_streamed_again_is_said_to_be_seen_at_speed_alone() {
     let mut is_kept = false;
@@ -286,7 +286,7 @@ fn without_a_trap_it_is_said_that_no_row_was_kept() {
     assert!(report.headline().contains("of which the board kept no row"), "{}", report.headline());
 }
 
-/// A board that stays with the active tables makes every second frame wrong, all of it.
+/// A board that keeps using the active tables makes every second frame wrong as a whole.
 #[test]
 fn frames_of_the_other_tables_are_known_by_their_signatures() {
     let report = judge_each(&TINY, |toward, mut packet| {
@@ -304,7 +304,7 @@ fn frames_of_the_other_tables_are_known_by_their_signatures() {
         report.finding,
         Finding::DiffersAtSpeed { first: 1, repetition: Repetition::NotNeeded {}, .. }
     ));
-    // A corner's frame has none in front of it.
+    // A frame of a corner follows no other frame.
     let corner = System { height: 1, ..TINY }.judge(",fault=stale-table-hidden");
     assert!(matches!(corner.suspects[0].defect, Defect::StaleTables { .. }), "{:?}", corner.suspects);
 }
@@ -315,7 +315,7 @@ fn a_row_that_changes_on_its_way_in_is_not_said_to_be_computed_wrongly() {
         if toward == Toward::Board
             && matches!(request(&packet), Request::RowIn(row) if row.place.frame == 2 && row.place.row == 3)
         {
-            // The samples follow the place; black is not white.
+            // The samples follow the place. Whatever they are, this changes them.
             packet.payload[12..].iter_mut().for_each(|byte| *byte ^= 0x11);
         }
         packet
@@ -346,7 +346,7 @@ fn a_wrong_crc_of_what_entered_is_the_counts_fault_and_not_the_row_s() {
     );
 }
 
-/// What follows the samples means nothing on a board that does not say that it does.
+/// What follows the samples means nothing on a board that lacks capability 11.
 #[test]
 fn without_the_capability_nothing_is_read_behind_the_samples() {
     let report = judge_each(&TINY, |toward, mut packet| {
@@ -364,7 +364,7 @@ fn without_the_capability_nothing_is_read_behind_the_samples() {
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
 }
 
-/// The first try of a BURST comes late, behind the next one, which it sets back.
+/// The first try of a BURST arrives late, after the next burst, which it restarts.
 #[test]
 fn a_burst_that_comes_late_is_not_the_bitstreams_fault() {
     let (mut late, mut is_sent) = (None, false);

@@ -1,4 +1,4 @@
-//! Boards that say of themselves what no board can be: refused, by name, and never judged.
+//! Boards that claim what no board can have: refused, with the name of the capability, and never judged.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,10 +12,10 @@ use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge_claims, judge_claims_by, judge_each};
 use halfrow_tests::system::{System, streamed};
 
-/// A capability by its name in WIRE.md, and what it is set to.
+/// A capability, named as in WIRE.md, with the claimed value, and what makes the claim.
 type Claim = (&'static str, fn(&mut Capabilities));
 
-/// What no board can say. The values are those of WIRE.md section 3 and DATAPATH.md, just outside.
+/// Claims that no board can make. The values are just outside the ranges of WIRE.md section 3 and DATAPATH.md.
 const IMPOSSIBLE: &[Claim] = &[
     ("max_width = 63", |board| board.max_width = 63),
     ("max_width = 2047", |board| board.max_width = 2047),
@@ -57,7 +57,7 @@ fn grids(board: &mut Capabilities, change: fn(&mut Grids)) {
     change(board.grids.as_mut().unwrap());
 }
 
-/// What is unusual, and legal.
+/// Claims that are unusual, but legal.
 const UNUSUAL: &[Claim] = &[
     ("the least", |board| (board.max_width, board.max_height, board.ring) = (64, 8, 64)),
     ("the most", |board| (board.max_width, board.max_height, board.ring) = (2592, 2048, 16_384)),
@@ -100,7 +100,7 @@ fn a_board_that_cannot_be_is_refused_by_whoever_opens_it() {
     }
 }
 
-/// What a board may say of its size is what the datapath is made for.
+/// The sizes that a board may claim are those that the datapath allows.
 #[test]
 fn the_page_of_the_wire_names_the_sizes_that_the_model_has() {
     let page = include_str!("../../../protocol/WIRE.md");
@@ -109,7 +109,7 @@ fn the_page_of_the_wire_names_the_sizes_that_the_model_has() {
     [width, height].iter().for_each(|row| assert!(page.contains(row), "{row}"));
 }
 
-/// The mock has 4 banks for rows that wait: more would be credit that it does not give, fewer what it may give and does not.
+/// The mock has 4 input banks. A claim of more is credit that it does not give; a claim of fewer is less credit than it gives.
 #[test]
 fn a_board_with_other_row_banks_than_it_says_fails() {
     for (banks, change) in [
@@ -128,13 +128,13 @@ fn a_board_with_other_row_banks_than_it_says_fails() {
 #[test]
 fn a_board_that_is_only_unusual_is_judged() {
     for &(claim, change) in UNUSUAL {
-        // Corners would be those of a board that there is not, and what it must refuse too.
+        // Without corners and rules: those would be about a board that does not exist.
         let report = judge_claims_by(&streamed(System::TINY.plan()), change);
         assert_eq!(report.cause, Cause::Equal, "{claim}: {}", report.headline());
     }
 }
 
-/// What is changed in an answer to HELLO, and what is said of it.
+/// What is changed in an answer to HELLO, and what is reported then.
 type Greeting = (fn(&mut Welcome), &'static str);
 
 #[test]
@@ -156,7 +156,7 @@ fn a_greeting_that_no_board_answers_with_is_refused() {
     }
 }
 
-/// The list of a CAPABILITIES reply with `value` for `tag`, or without it.
+/// The list of a CAPABILITIES reply with `value` for `tag`, or without that tag.
 fn with(list: &[u8], tag: u8, value: Option<&[u8]>) -> Vec<u8> {
     let (mut rest, mut other) = (list, Vec::new());
     while let [of, length, after @ ..] = rest {
@@ -170,7 +170,7 @@ fn with(list: &[u8], tag: u8, value: Option<&[u8]>) -> Vec<u8> {
     other
 }
 
-/// RESET's level that closes a session.
+/// The level of RESET that closes a session.
 const CLOSES: u8 = 1;
 
 #[test]

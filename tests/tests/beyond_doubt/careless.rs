@@ -1,4 +1,4 @@
-//! Boards that take packets which are none, and links that make one whole again, which is no proof of such a board.
+//! Boards that accept broken packets; and links that repair one on the way, which is no proof of such a board.
 
 use std::convert::Infallible;
 use std::mem;
@@ -15,7 +15,7 @@ use halfrow_tests::system::judge_by_plan;
 
 use super::rules::{broken, plan};
 
-/// What a decoder does not look at.
+/// What a decoder does not check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Unlooked {
     Crc,
@@ -23,11 +23,11 @@ enum Unlooked {
     Length,
 }
 
-/// The mock board behind a decoder that does not look at something.
+/// The mock board with a decoder that leaves one check out.
 #[derive(Debug)]
 struct Careless {
     unlooked: Unlooked,
-    /// So many packets that are none it takes, and no more.
+    /// How many broken packets it still accepts.
     takes: usize,
     board: Board,
     piece: Vec<u8>,
@@ -35,7 +35,7 @@ struct Careless {
 }
 
 impl Careless {
-    /// The packet as it would be with the CRC, the version and the length that it should have, if nothing else is wrong.
+    /// The packet with the CRC, version and length that it should have, if nothing else is wrong with it.
     fn taken(&mut self) -> Vec<u8> {
         let piece = mem::take(&mut self.piece);
         let bytes = unstuffed(&piece);
@@ -68,7 +68,7 @@ impl Careless {
     }
 }
 
-/// What was stuffed into `piece` (WIRE.md, 1).
+/// The bytes that are stuffed into `piece` (WIRE.md, 1).
 fn unstuffed(piece: &[u8]) -> Vec<u8> {
     let (mut bytes, mut rest) = (Vec::new(), piece);
     while let [code, behind @ ..] = rest {
@@ -106,7 +106,7 @@ impl Endpoint for Careless {
     }
 }
 
-/// The report on a board that takes so many packets which are none.
+/// The report on a board that accepts `takes` broken packets.
 fn report(unlooked: Unlooked, takes: usize) -> Report {
     let board = Board::new(&Options::default(), None).unwrap();
     let careless = Careless { unlooked, takes, board, piece: Vec::new(), encoder: Encoder::new() };
@@ -122,7 +122,7 @@ fn a_board_that_takes_damaged_packets_fails() {
     }
 }
 
-/// The link flips the very bit back, so that the packet is whole again.
+/// The link flips back the very bit that was wrong, so that the packet is whole again.
 #[test]
 fn a_damaged_packet_that_a_link_makes_whole_again_makes_no_sound_board_fail() {
     for takes in 1..=2 {

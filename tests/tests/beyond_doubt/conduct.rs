@@ -1,4 +1,4 @@
-//! What boards do over rows that no link can do, and what links do that is no fault of a board.
+//! What boards do to rows that no link can do, and what links do that is no fault of a board.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -33,7 +33,7 @@ fn place(packet: &Passing) -> Option<RowPlace> {
     }
 }
 
-/// A ROW_OUT packet under another number, with what `change` makes of its row.
+/// A ROW_OUT packet under the sequence number `number`, after `change` was made to its row.
 fn changed(packet: &Passing, number: u16, change: impl FnOnce(&mut RowOut<'_>, &mut Vec<u8>)) -> Passing {
     let Some(Reply::RowOut(mut row)) = packet.reply() else { panic!("no row") };
     let mut packed = row.packed.to_vec();
@@ -55,7 +55,7 @@ fn a_board_whose_replies_have_no_flag_is_understood() {
     }));
 }
 
-/// A row that comes again just before the answer to STATUS, under a number that is the request's as well, and no other row's for long.
+/// A row comes again just before the answer to STATUS, under the number of that request, which is far from any row's number.
 #[test]
 fn rows_are_no_answers_whatever_their_number() {
     let mut last: Option<Passing> = None;
@@ -71,7 +71,7 @@ fn rows_are_no_answers_whatever_their_number() {
     }));
 }
 
-/// What comes of a board that sends row 3 of every frame, and behind it a row that `change` makes of it, both numbered honestly.
+/// The report on a board that sends, after row 3 of every frame, a row that `change` makes of it, with both numbered honestly.
 fn with_another(change: fn(&mut RowOut<'_>, &mut Vec<u8>)) -> Report {
     let mut extra = 0;
     judge(&System::TINY, move |_, mut packet| {
@@ -124,7 +124,8 @@ fn a_number_of_packets_that_does_not_count_is_the_board_s_fault() {
     );
 }
 
-/// Rows 4 and 5 of every frame, the other way round. With `honest`, the board numbers its packets as it sends them.
+/// The report on a board that swaps rows 4 and 5 of every frame. With `honest`, it numbers its packets in the order in which it
+/// sends them.
 fn reorders(honest: bool) -> Report {
     let mut held: Option<Passing> = None;
     judge(&System::TINY, move |_, packet| match place(&packet) {
@@ -154,7 +155,7 @@ fn a_board_that_reorders_rows_is_told_from_a_link_that_does() {
     passes(&reorders(false));
 }
 
-/// In the order in which they were sent, and with each other's numbers.
+/// In the order in which they were sent, but each with the other's number.
 #[test]
 fn of_two_rows_with_each_other_s_numbers_the_earlier_one_left_late() {
     let report = judge_each(&System::TINY, |_, mut packet| {
@@ -178,7 +179,7 @@ fn gaps_are_compared_with_their_seed() {
     fails(&report, CheckName::Counters, "the board counts 1 board clocks of gaps");
 }
 
-/// What each row says of itself, as `change` has it.
+/// The report on a board after `change` was made to each row that `is_meant`.
 fn with_rows(is_meant: fn(&RowPlace) -> bool, change: fn(&mut RowOut<'_>)) -> Report {
     judge_each(&System::TINY, move |_, packet| match place(&packet) {
         Some(at) if is_meant(&at) => changed(&packet, packet.header.sequence, |row, _| change(row)),
@@ -192,7 +193,7 @@ fn rows_that_say_that_they_were_sent_before_are_compared_with_the_board_s_count(
     fails(&report, CheckName::Counters, "0 rows sent again; the right number is 7");
 }
 
-/// Under its own number, and another place.
+/// The row has its own number, but another place.
 #[test]
 fn a_row_that_comes_under_another_place_is_the_board_s_fault() {
     let changes: [fn(&mut RowOut<'_>); 4] = [
@@ -215,12 +216,12 @@ fn what_entered_is_looked_at_wherever_a_board_is_to_tell_it() {
         CheckName::Frames,
         "the board's CRC of the samples that entered the core differs from that of the samples that were sent",
     );
-    // Beyond the frames of the plan, where rules are tried.
+    // Only after the frames of the plan, where rules are tried.
     let report = with_rows(|at| at.frame > 1000, |row| row.entered = row.entered.map(|crc| crc ^ 1));
     assert_eq!((report.verdict(), failed_check(&report)), (Verdict::Fail, Some(CheckName::Rules)));
 }
 
-/// It looks like a bit that is flipped in the first column of every row, and every output that is made of that column is right.
+/// For each row it looks as if a bit were flipped in the first column, but every output computed from that column is right.
 #[test]
 fn a_crc_unit_that_begins_with_a_wrong_bit_is_no_flipped_bit() {
     fn change(row: &mut RowOut<'_>) {
@@ -249,7 +250,7 @@ fn the_verilog_counts_what_the_host_sees() {
     }
 }
 
-/// Every answer to a read-back in turn is wrong, once: those between frames with other settings, and the last.
+/// Each answer to a read-back in turn is wrong once, including those between frames with other settings, and the last one.
 #[test]
 fn a_board_that_reads_back_wrong_once_fails_whenever_that_is() {
     let plan = System { height: 16, ..System::TINY }.plan().varying(Vary { centre: true, depth: true });
@@ -276,7 +277,7 @@ fn a_board_that_reads_back_wrong_once_fails_whenever_that_is() {
     }
 }
 
-/// Where it stands between two frames, all rows have come back that the host may send.
+/// Where the window stops between two frames, all rows that the host may send have come back.
 #[test]
 fn a_window_that_stands_still_ends_the_run() {
     let system = System { height: 16, ..System::TINY };
@@ -306,10 +307,10 @@ fn a_window_beyond_every_row_does_no_harm() {
     }
 }
 
-/// Whether the link delivered a request twice is known by STATUS alone.
+/// Only STATUS tells whether the link delivered a request twice.
 #[test]
 fn what_is_wrong_is_no_fail_while_the_board_does_not_tell_what_came_to_it() {
-    // With a wrong row, and no answer to STATUS from the answer number `until` on.
+    // With a wrong row, and no answers to STATUS after the first `until`.
     let judged = |until: usize| {
         let answers = Arc::new(AtomicUsize::new(0));
         let seen = Arc::clone(&answers);

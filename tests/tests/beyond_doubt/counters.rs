@@ -1,4 +1,4 @@
-//! What boards count, beside what the host saw and beside each other.
+//! A board's counters, compared with what the host saw and with each other.
 
 use halfrow::result::{CheckName, NotExercised, Report};
 use halfrow::verdict::Verdict;
@@ -9,7 +9,7 @@ use halfrow_tests::system::System;
 
 use crate::conduct::{fails, passes};
 
-/// The report on a board whose ROW_OUT packets have the numbers that `number` makes of the right ones.
+/// The report on a board with ROW_OUT packets whose numbers `number` makes of the right ones.
 fn numbered(number: fn(u16) -> u16) -> Report {
     judge_each(&System::TINY, move |_, mut packet| {
         if packet.is(Kind::RowOut) {
@@ -34,7 +34,7 @@ fn numbers_of_packets_that_were_never_sent_are_the_board_s_fault() {
     }
 }
 
-/// STATUS with another value in one counter.
+/// The report on a board after `change` was made to each of its STATUS replies.
 fn with_counter(change: fn(&mut Status)) -> Report {
     judge_each(&System::TINY, move |_, packet| match packet.reply() {
         Some(Reply::Status(mut status)) => {
@@ -75,7 +75,7 @@ fn damaged_packets_that_nobody_missed_are_only_noted() {
     assert!(report.not_exercised.contains(&NotExercised::CountersOfPoorLinks {}));
 }
 
-/// What it counts of its link keeps other counters from being compared, where the host saw nothing of that.
+/// When a board counts faults of its link of which the host saw nothing, other counters are not compared.
 #[test]
 fn counters_that_are_not_compared_are_told_of_a_board_that_passes() {
     let is_told = |change: fn(&mut Status)| {
@@ -88,7 +88,7 @@ fn counters_that_are_not_compared_are_told_of_a_board_that_passes() {
     assert!(is_told(|status| (status.crc_errors, status.rows_repeated) = (1, status.rows_repeated + 3)));
 }
 
-/// Each row that it took, each that it did not need and each refusal came in a packet of its own, over whatever link.
+/// Each row that a board took, each that it did not need and each refusal came in a packet of its own, over whatever link.
 #[test]
 fn counters_that_contradict_each_other_are_the_board_s_fault_over_any_link() {
     for change in [
@@ -106,7 +106,7 @@ fn counters_that_contradict_each_other_are_the_board_s_fault_over_any_link() {
     }
 }
 
-/// That is what a late copy of the STATUS that sets them back leaves as well.
+/// A late copy of the STATUS that clears the counters leaves the same.
 #[test]
 fn fewer_packets_than_were_answered_are_no_pass_and_no_fail() {
     let report = with_counter(|status| status.packets = status.packets.saturating_sub(30));

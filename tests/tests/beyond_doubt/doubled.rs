@@ -1,5 +1,5 @@
-//! Links that lose a packet which nobody misses and bring another one twice, so that as many come to a board as were sent; and boards
-//! that an old greeting opens meanwhile: none that is sound is FAIL.
+//! Links that lose a packet that nobody misses and deliver another one twice, so that a board receives as many as were sent; and
+//! boards that an old greeting opens meanwhile. No sound board is FAIL.
 
 use std::collections::BTreeMap;
 
@@ -11,10 +11,10 @@ use halfrow_tests::altered::{Passing, Toward, judge};
 use halfrow_tests::parallel;
 use halfrow_tests::system::System;
 
-/// The host of these runs.
+/// The number of the host in these runs.
 const HOST: u32 = 0;
 
-/// A packet toward the board: the one of its kind that has this number, from 0.
+/// A packet toward the board: its kind, and its number among those of that kind, from 0.
 type Numbered = (Kind, usize);
 
 /// Counts the packets of each kind.
@@ -22,7 +22,7 @@ type Numbered = (Kind, usize);
 struct Numbers(BTreeMap<u8, usize>);
 
 impl Numbers {
-    /// Whether `packet`, the next one, is that one.
+    /// Whether `packet`, the next one, is the one meant.
     fn is_next(&self, packet: &Passing, (kind, number): Numbered) -> bool {
         packet.is(kind) && self.0.get(&kind.code()).copied().unwrap_or_default() == number
     }
@@ -32,8 +32,8 @@ impl Numbers {
     }
 }
 
-/// The report on a sound board behind a link that loses the packet `lost` toward it, and brings `copied` once more, `later` packets
-/// behind itself. The answer to the copy is lost as well.
+/// The report on a sound board behind a link that loses the packet `lost` toward it, and delivers `copied` once more, `later`
+/// packets after the original. The answer to the copy is lost, too.
 fn lost_and_doubled(lost: Numbered, copied: Numbered, later: usize) -> Report {
     let mut numbers = Numbers::default();
     let (mut copy, mut unanswered): (Option<(Passing, usize)>, Option<u16>) = (None, None);
@@ -57,7 +57,7 @@ fn lost_and_doubled(lost: Numbered, copied: Numbered, later: usize) -> Report {
     })
 }
 
-/// None of these links makes a sound board FAIL, and most are no ERROR.
+/// None of these links makes a sound board FAIL, and fewer than half end in ERROR.
 #[track_caller]
 fn no_sound_board_fails(links: &[(Numbered, Numbered, usize)]) {
     let reports = parallel::map(links, |&(lost, copied, later)| lost_and_doubled(lost, copied, later));
@@ -84,17 +84,18 @@ fn a_late_request_is_no_fault_of_a_board_that_missed_an_acknowledgement() {
     no_sound_board_fails(&links);
 }
 
-/// Such a request is sent again, and cannot change a board by that.
+/// The lost request is sent again, which cannot change a board.
 #[test]
 fn a_late_request_is_no_fault_of_a_board_that_missed_one_that_asks() {
     let harmless = [0, 2, 4, 6].map(|number| ((Kind::TableCrc, 1), (Kind::Configure, number), 3));
-    // The kernel of one corner in place of the next one's, with no stream between the loss and the copy.
+    // The kernel of one corner replaces the next one's, with no stream between the loss and the copy.
     let behind_no_stream = ((Kind::TableCrc, 40), (Kind::TableWrite, 19), 11);
     let behind_a_stream = ((Kind::TableCrc, 1), (Kind::Expect, 4), 20);
     no_sound_board_fails(&[&harmless[..], &[behind_no_stream, behind_a_stream]].concat());
 }
 
-/// Old greetings of this host that come late, and open session after session until one has the number that the open one had.
+/// Old greetings of this host that arrive late. They open session after session, until one has the number of the session that was
+/// open.
 fn greetings() -> impl Iterator<Item = Passing> {
     let passing = |request: &Request<'_>| {
         let mut payload = Vec::new();
@@ -108,14 +109,14 @@ fn greetings() -> impl Iterator<Item = Passing> {
     })
 }
 
-/// The report on a sound board that loses its power in front of a packet, and that an old greeting then opens in a session of the same
+/// The report on a sound board that loses its power before the packet `before`; then old greetings open a session of the same
 /// number.
 fn opened_meanwhile(before: Numbered) -> Report {
     let mut numbers = Numbers::default();
     let mut awaited = None;
     judge(&System::TINY, move |toward, packet| {
         if toward == Toward::Host {
-            // What the old ones are told nobody waits for.
+            // Nobody waits for the answers to the old greetings.
             let is_own = awaited.is_none_or(|sequence| packet.header.sequence == sequence);
             awaited.take_if(|_| is_own);
             return Vec::from_iter(is_own.then_some(packet));
@@ -134,7 +135,7 @@ fn opened_meanwhile(before: Numbered) -> Report {
     })
 }
 
-/// A board that was just switched on has a session of the number that every such board has (WIRE.md, 2.2).
+/// A board that was just switched on may open a session of the same number again (WIRE.md, 2.2).
 #[test]
 fn a_board_that_was_switched_on_and_opened_meanwhile_is_no_fail() {
     let places = [(Kind::TableCrc, 5), (Kind::Commit, 9)];

@@ -1,4 +1,4 @@
-//! Lines that begin to echo in the middle of a run, in the board's place or beside it: what was sent is no answer to it.
+//! Lines that begin to echo in the middle of a run, instead of the board or besides it: a request is no answer to itself.
 
 use std::time::{Duration, Instant};
 
@@ -9,14 +9,14 @@ use halfrow::target::BoardKind;
 use halfrow::verdict::Verdict;
 use halfrow_tests::system::{System, judge_by_plan, open};
 
-/// Said of a line that echoes.
+/// What is reported of a line that echoes.
 const SAID: &str = "the line returns what is sent to it";
 
-/// A link whose line echoes as soon as so many bytes have been sent.
+/// A link whose line echoes once `left` bytes have been sent.
 struct Echoes {
     link: Box<dyn Link>,
     left: usize,
-    /// Whether the board gets all the same what is sent.
+    /// Whether the board still gets what is sent.
     beside: bool,
 }
 
@@ -51,7 +51,7 @@ impl Link for Echoes {
     }
 }
 
-/// The report on a sound board, with the wire's rules, whose line echoes from there on.
+/// The report on a sound board, with the wire's rules, whose line echoes after `behind` bytes.
 fn echoing(behind: usize, beside: bool) -> Report {
     let plan = Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() };
     let candidate = open("mock");
@@ -73,7 +73,7 @@ fn a_line_that_begins_to_echo_makes_no_sound_board_fail() {
             errors += 1;
             named += usize::from(report.headline().contains(SAID));
         }
-        // In the middle of rows it is rows that are missing.
+        // In the middle of rows, missing rows are reported instead.
         assert!(errors > 15 && 2 * named > errors, "beside: {beside}: {named} of {errors}");
     }
 }
@@ -90,7 +90,7 @@ fn a_line_that_echoes_from_the_first_is_named_with_a_board_and_without() {
 struct Console {
     begun: Instant,
     says: &'static [u8],
-    /// Whether it says that with the echo, or when it is looked at again.
+    /// Whether it says that together with the echo, or at the next exchange.
     at_once: bool,
     waits: Vec<u8>,
 }

@@ -1,4 +1,4 @@
-//! A PASS names what it did not put to the test, to the line: a fault there goes unseen, and one anywhere else does not.
+//! A PASS names what it did not test, line by line: a fault there goes unseen, and a fault anywhere else does not.
 
 use halfrow::link::Candidate;
 use halfrow::result::NotExercised;
@@ -10,7 +10,8 @@ use halfrow_protocol::Kind;
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{System, judge_by_plan, open, streamed};
 
-/// Few of the board's lines are used. Eight lines have the columns, and seven tell samples of the line memory apart.
+/// A system that uses few of the board's lines: eight address its columns, and seven are enough to tell the samples in the line
+/// memory apart.
 const SYSTEM: System = System { width: 160, height: 16, radius: 17.0, board: "mock", ring: 2048 };
 
 /// The plan of `SYSTEM` with frames of 8 bits.
@@ -28,7 +29,7 @@ fn a_stuck_address_line_goes_unseen_exactly_where_the_pass_names_it() {
     assert!(unseen_address_lines(&SYSTEM.plan()).is_empty());
 }
 
-/// Lines of the line memory that a PASS names, each of which goes unseen by this plan when it is stuck, and no other does.
+/// The lines of the line memory that a PASS names. Each of them goes unseen by this plan when it is stuck, and no other does.
 fn unseen_address_lines(plan: &Plan) -> Vec<usize> {
     let sound = judge_by_plan(plan, open("mock"));
     let named = |line: usize| {
@@ -51,7 +52,7 @@ fn unseen_address_lines(plan: &Plan) -> Vec<usize> {
 
 #[test]
 fn a_wrong_node_goes_unseen_exactly_where_the_pass_names_it() {
-    // A lens that stretches next to nothing.
+    // A lens that hardly stretches.
     let plan = streamed(System { radius: 2000.0, ..SYSTEM }.plan());
     let sound = judge_by_plan(&plan, open("mock"));
     let named = |node: usize| {
@@ -62,7 +63,7 @@ fn a_wrong_node_goes_unseen_exactly_where_the_pass_names_it() {
         sound.not_exercised.iter().any(names)
     };
     for node in [0, 1, 2, 3, 30, 31, 32, 33, 34, 62, 63, 64] {
-        // A high bit of a weight that is stored; the node that is hit is read right by the host.
+        // A high bit of a stored weight; hidden, so that the host reads the node right.
         let fault = format!("mock,fault=kernel-word,node={node},weight=g4,bit=13,hidden=true");
         let expected = if named(node) { Verdict::Pass } else { Verdict::Fail };
         assert_eq!(
@@ -92,7 +93,7 @@ fn what_hides_behind_a_depth_is_named_and_found_where_the_depth_varies() {
     assert!(!sound.not_exercised.contains(&bits));
 }
 
-/// A board that has its optical centre in the middle, whatever it is told.
+/// A board whose optical centre is in the middle, whatever it is told.
 fn ignoring_the_centre() -> Candidate {
     let alter = |toward, mut packet: Passing| {
         if toward == Toward::Board && packet.is(Kind::Configure) {

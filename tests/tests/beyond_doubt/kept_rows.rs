@@ -1,4 +1,5 @@
-//! Boards that are sound but for the rows that they keep for the host: as many as they have banks for, until each is acknowledged.
+//! Boards that are sound except in the rows that they keep for the host: as many as they have banks for, until each is
+//! acknowledged.
 
 use std::collections::BTreeSet;
 
@@ -11,10 +12,10 @@ use halfrow_tests::system::{failed_check, judge_by_plan};
 
 use super::rules::{broken, plan, said_by};
 
-/// Bytes of a row's place, its number first (WIRE.md, 20).
+/// Bytes of a row's place, which begins with its sequence number (WIRE.md, 20).
 const PLACE: usize = 12;
 
-/// The report on a board with so many output banks that says it has `told`.
+/// The report on a board with `row_banks_out` output banks that claims to have `told`.
 fn telling(row_banks_out: u8, told: u8) -> Report {
     let options = Options { row_banks_out, ..Options::default() };
     said_by(&options, move |packet| match packet.reply() {
@@ -48,7 +49,7 @@ fn any_number_of_banks_may_be_filled() {
     }
 }
 
-/// The report on a board that never hears the packets that are `swallowed`, and counts them all the same.
+/// The report on a board that never hears the packets that are `swallowed`, but still counts them.
 fn deaf_to(mut swallowed: impl FnMut(Toward, &Passing) -> bool + Send + 'static) -> Report {
     let mut missed = 0;
     let altered = move |toward, packet: Passing| {
@@ -75,7 +76,7 @@ fn a_board_that_ignores_acknowledgements_fails() {
     assert_eq!(counter, Counter::NextRowOut);
 }
 
-/// A row that is known is asked for with black samples.
+/// The host asks again for a row that the board has, by sending black samples.
 #[test]
 fn a_board_that_does_not_send_a_row_again_fails() {
     let mut came = BTreeSet::new();

@@ -1,4 +1,4 @@
-//! What a board says to a packet that came late: no sound board is blamed for it, and none that is broken is right.
+//! Answers of a board to packets that came late: no sound board is blamed for them, and no broken one passes by them.
 
 use halfrow::result::{Finding, Report};
 use halfrow::verdict::{Cause, Verdict};
@@ -9,14 +9,14 @@ use halfrow_tests::system::System;
 
 use crate::stale_packets::late_copy;
 
-/// What a run says that asks for another bitstream.
+/// How a report begins to ask for another bitstream.
 const BLAME: &str = "load a";
 
 fn refuses_a_row(packet: &Passing) -> bool {
     matches!(packet.reply(), Some(Reply::Refusal(refusal)) if refusal.kind == Kind::RowIn.code())
 }
 
-/// The report behind a link that delivers the refusal number `which` of a row once more, in front of the next row that comes back.
+/// The report behind a link that delivers refusal number `which` of a row once more, before the next row that comes back.
 fn late_refusal(which: usize) -> Report {
     let (mut seen, mut copy) = (0, None);
     judge(&System::TINY, move |toward, packet: Passing| {
@@ -42,7 +42,7 @@ fn an_old_refusal_of_a_row_is_none_of_the_rows_under_way() {
     }
 }
 
-/// The board refuses the copy, under the number that it has.
+/// The board refuses the copy, under the copy's number.
 #[test]
 fn a_refusal_of_an_old_row_is_none_of_the_rows_under_way() {
     for before in 50..55 {
@@ -67,7 +67,7 @@ fn a_row_that_is_refused_is_not_right() {
     assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
 }
 
-/// Both copies are answered, so that the host knows.
+/// Both copies are answered, so that the host knows of them.
 #[test]
 fn an_error_that_an_old_copy_of_a_request_may_have_brought_about_is_looked_at_again() {
     for which in [(Kind::Reset, 2), (Kind::Reset, 3), (Kind::Burst, 20), (Kind::Burst, 30)] {
@@ -80,7 +80,7 @@ fn an_error_that_an_old_copy_of_a_request_may_have_brought_about_is_looked_at_ag
     }
 }
 
-/// Refuses CONFIGURE in the first `sessions` sessions, behind an ECHO that came twice.
+/// The report on a board that refuses CONFIGURE in the first `sessions` sessions, after an ECHO that came twice.
 fn refusing(code: RefusalCode, sessions: usize) -> Report {
     let (mut greetings, mut twice) = (0, false);
     judge(&System::TINY, move |toward, packet: Passing| {

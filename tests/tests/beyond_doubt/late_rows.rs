@@ -1,11 +1,11 @@
-//! Rows that take another latency than the board claims.
+//! Rows whose latency differs from the one that the board claims.
 
 use halfrow::result::Finding;
 use halfrow_protocol::Reply;
 use halfrow_tests::altered::{Toward, judge_each};
 use halfrow_tests::system::System;
 
-/// A pipeline of another depth makes every row late.
+/// A pipeline of another depth would make every row late.
 #[test]
 fn one_late_row_is_not_the_depth_of_the_pipeline() {
     let report = judge_each(&System::TINY, |toward, packet| match packet.reply() {

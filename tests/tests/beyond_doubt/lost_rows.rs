@@ -1,4 +1,4 @@
-//! Rows that do not come back: the board's fault only when the board says so itself.
+//! Rows that do not come back: the board's fault only when the board itself says so.
 
 use halfrow::link::{Candidate, Link};
 use halfrow::result::Report;
@@ -10,13 +10,13 @@ use halfrow_tests::altered::{Altered, Passing, Toward, judge};
 use halfrow_tests::system::System;
 use halfrow_tests::through::Through;
 
-/// A row of every frame, or none.
+/// Whether the packet is this row of any frame.
 fn is_row_out(packet: &Passing, row: u16) -> bool {
     matches!(packet.reply(), Some(Reply::RowOut(found)) if found.place.row == row)
 }
 
 fn row_of_request(packet: &Passing) -> Option<u16> {
-    // Behind the row sequence number and the frame.
+    // After the row sequence number and the frame.
     packet.is(Kind::RowIn).then(|| u16::from_le_bytes([packet.payload[6], packet.payload[7]]))
 }
 
@@ -30,7 +30,7 @@ fn a_board_that_swallows_rows_fails() {
     }
 }
 
-/// A link, or a front end: the board counts that it sent the row again and again.
+/// The link loses them, or a front end: the board counts that it sent the row again each time.
 #[test]
 fn rows_that_the_board_says_it_sent_are_lost_behind_it() {
     for row in [0, 3, 7] {
@@ -54,13 +54,13 @@ fn rows_that_never_reach_the_board_are_lost_in_front_of_it() {
     }
 }
 
-/// Row 3 stays inside the board when row 4 never reaches it, and the board is right to say that it needs row 3 no more.
+/// Row 3 stays inside the board when row 4 never reaches it, and the board is right to say that it does not need row 3 again.
 #[test]
 fn a_row_that_waits_for_its_successor_is_not_swallowed() {
     let mut copies = 0;
     let report = judge(&System::TINY, move |toward, packet| match row_of_request(&packet) {
         Some(4) if toward == Toward::Board => Vec::new(),
-        // The counts of packets agree all the same.
+        // The counts of packets still agree.
         Some(3) if toward == Toward::Board => {
             copies += 1;
             if copies % 2 == 0 { vec![packet.clone(), packet] } else { vec![packet] }
@@ -70,7 +70,7 @@ fn a_row_that_waits_for_its_successor_is_not_swallowed() {
     assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
 }
 
-/// The link changes what the board says of its window, so that row 4 is never sent, and all counts agree.
+/// The link changes the window in what the board sends, so that row 4 is never sent, and all counts agree.
 #[test]
 fn a_row_whose_successor_was_not_let_in_is_not_swallowed() {
     let mut window = u32::MAX;
@@ -89,8 +89,8 @@ fn a_row_whose_successor_was_not_let_in_is_not_swallowed() {
     assert!(report.headline().contains("row 3 of frame 0"), "{}", report.headline());
 }
 
-/// What a sound board's row 3 comes to that never leaves its front end, when `change` is made to its counters: as a
-/// swallowed row looks from here.
+/// The report on a sound board whose row 3 never leaves its front end, after `change` was made to its counters. To the host it
+/// looks like a swallowed row.
 fn withheld(change: fn(&mut Status)) -> Report {
     judge(&System::TINY, move |_, packet| withhold(packet, change))
 }
@@ -107,7 +107,7 @@ fn withhold(packet: Passing, change: fn(&mut Status)) -> Vec<Passing> {
     }
 }
 
-/// Counters are set back before a row is played again.
+/// Counters are cleared before a row is played again.
 #[test]
 fn a_packet_that_came_twice_before_excuses_no_board_that_swallows_rows() {
     let mut is_doubled = false;
@@ -121,7 +121,7 @@ fn a_packet_that_came_twice_before_excuses_no_board_that_swallows_rows() {
     assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
 }
 
-/// A link that brings bytes that are no packet behind all that it brings.
+/// A link that adds bytes that are no packet to everything that it brings.
 fn noisy(link: Box<dyn Link>) -> Box<dyn Link> {
     Through::boxed(link, |link, out, back, wait| {
         let taken = link.exchange(out, back, wait)?;
@@ -132,7 +132,7 @@ fn noisy(link: Box<dyn Link>) -> Box<dyn Link> {
     })
 }
 
-/// What came damaged may have been the row.
+/// The damaged packet may have been the row.
 #[test]
 fn a_row_is_not_swallowed_where_packets_come_damaged() {
     let candidate = Altered::new(&Options::default(), |_, packet| withhold(packet, |_| {})).candidate();
@@ -144,7 +144,7 @@ fn a_row_is_not_swallowed_where_packets_come_damaged() {
 
 type Denial = fn(&mut Status);
 
-/// Each takes one of the board's words away that FAIL needs.
+/// Each denial takes back one of the board's statements that FAIL needs.
 #[test]
 fn a_row_that_the_board_does_not_admit_to_is_no_fail() {
     let admitted = withheld(|_| {});

@@ -1,5 +1,5 @@
-//! FAIL is the board's beyond doubt, and ERROR no more often than it must be: links that stall, lose, repeat and reorder
-//! before sound boards, and boards that are wrong in what they say.
+//! FAIL is the board's fault beyond doubt, and ERROR no more frequent than it must be: sound boards behind links that stall,
+//! lose, repeat and reorder, and boards that make wrong statements.
 
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used, clippy::panic)]

@@ -1,5 +1,5 @@
-//! Links that break behind something wrong that may have come from the link: it is looked at again where the board comes back, and
-//! told where it does not.
+//! Links that break after something wrong that may be the link's fault: it is judged again when the board comes back, and
+//! reported when it does not.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,16 +19,16 @@ use halfrow_tests::system::System;
 
 use crate::stale_packets::cut_when_told;
 
-/// How a board is wrong.
+/// When a board is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Wrong {
-    /// In each row, always.
+    /// In every row, always.
     Always,
-    /// In each row up to the outage.
+    /// In every row until the outage.
     Once,
 }
 
-/// Alters a bit of a row that comes back.
+/// The packet with a wrong bit, if it is a row that comes back.
 fn spoilt(packet: &Passing) -> Passing {
     match packet.reply() {
         Some(Reply::RowOut(row)) => {
@@ -40,13 +40,13 @@ fn spoilt(packet: &Passing) -> Passing {
     }
 }
 
-/// A link to a board that is switched on, whose rows are spoilt if it is `wrong`.
+/// A link to a board that is just switched on; if `wrong`, its rows are spoilt.
 fn board(wrong: bool) -> Box<dyn Link> {
     let alter = move |_, packet: Passing| vec![if wrong { spoilt(&packet) } else { packet }];
     Altered::new(&Options::default(), alter).candidate().link
 }
 
-/// A board behind packets that `alter` rewrites, over a link that can be cut.
+/// A board with packets that `alter` rewrites, over a link that can be cut.
 fn breakable(
     alter: impl FnMut(Toward, Passing) -> Vec<Passing> + Send + 'static,
     is_cut: Arc<AtomicBool>,
@@ -56,8 +56,8 @@ fn breakable(
     Candidate { link, ..candidate }
 }
 
-/// The report on such a board over a link that brings the first CONFIGURE twice and breaks at the greeting of the next session. The
-/// board comes back if the run waits for it so long.
+/// The report on such a board over a link that delivers the first CONFIGURE twice and breaks at the greeting of the next session.
+/// If the run waits with `reconnect`, the board comes back.
 fn unplugged_in_front_of_the_second_look(wrong: Wrong, reconnect: Option<Duration>) -> Report {
     let is_cut = Arc::new(AtomicBool::new(false));
     let (cut, mut greetings, mut configured) = (Arc::clone(&is_cut), 0, false);
@@ -101,8 +101,8 @@ fn what_was_found_is_told_although_the_link_broke_in_front_of_the_second_look() 
     assert_eq!(failed.map(|check| check.name).collect::<Vec<CheckName>>(), []);
 }
 
-/// The report on a board whose rows are spoilt, over a link that breaks once the fifth row of the first frame has left the board. It comes
-/// back if the run waits for it so long.
+/// The report on a board whose rows are spoilt, over a link that breaks once the fifth row of the first frame has left the board.
+/// If the run waits with `reconnect`, the board comes back.
 fn unplugged_in_the_middle_of_a_frame(wrong: Wrong, reconnect: Option<Duration>) -> Report {
     let is_cut = Arc::new(AtomicBool::new(false));
     let cut = Arc::clone(&is_cut);
@@ -117,7 +117,7 @@ fn unplugged_in_the_middle_of_a_frame(wrong: Wrong, reconnect: Option<Duration>)
     verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report
 }
 
-/// They are not judged again when their frame is sent once more.
+/// They are not judged when their frame is sent once more.
 #[test]
 fn rows_of_a_frame_that_the_link_broke_in_count_in_a_session_that_is_whole_alone() {
     let report = unplugged_in_the_middle_of_a_frame(Wrong::Once, Some(LIMIT));
@@ -135,7 +135,8 @@ fn what_differed_in_a_frame_that_the_link_broke_in_is_in_the_report() {
     assert!((1..8).contains(&frame.rows) && frame.comparison.differences > 0, "{frame:?}");
 }
 
-/// BURST comes twice, a frame has another signature, and the link breaks at the greeting of the session in which it is made again.
+/// BURST comes twice, a frame has another signature, and the link breaks at the greeting of the session in which the frame is
+/// made again.
 #[test]
 fn a_soak_that_breaks_off_in_front_of_a_second_look_tells_what_differed() {
     let is_cut = Arc::new(AtomicBool::new(false));

@@ -1,4 +1,4 @@
-//! Spoilt recordings, and clocks that go back as those of such do.
+//! Spoilt recordings, and clocks that go back as theirs do.
 
 use std::cell::Cell;
 use std::time::Duration;
@@ -15,14 +15,14 @@ use halfrow_tests::dice::Dice;
 use halfrow_tests::program::Folder;
 use halfrow_tests::system::{System, open};
 
-/// Where the exchanges of a recording begin: behind the magic and one line.
+/// Where the exchanges of a recording begin: after the magic and one line.
 fn first_exchange(recording: &[u8]) -> usize {
     let mut lines =
         recording.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(place, _)| place + 1);
     lines.nth(1).unwrap()
 }
 
-/// Gives every exchange of a recording another time.
+/// Replaces the time of every exchange of a recording.
 fn retimed(recording: &[u8], mut time: impl FnMut(u64) -> u64) -> Vec<u8> {
     let (mut spoilt, mut at) = (recording.to_vec(), first_exchange(recording));
     while let Some(head) = recording.get(at..at + 16) {
@@ -66,7 +66,7 @@ fn a_recording_whose_times_go_back_is_judged_or_refused() {
     }
 }
 
-/// Earlier programs did not ask a board what came to it, and said nothing of that in their recordings.
+/// Earlier programs did not ask a board for its counts, and their recordings do not say so.
 #[test]
 fn a_recording_of_a_run_that_asked_for_no_counts_is_judged_as_it_was() {
     let folder = Folder::new();
@@ -88,7 +88,7 @@ fn a_recording_of_a_run_that_asked_for_no_counts_is_judged_as_it_was() {
     }
 }
 
-/// A link that is this program's alone.
+/// A link that this program has for itself.
 struct Exclusive(Box<dyn Link>);
 
 impl Link for Exclusive {
@@ -141,7 +141,7 @@ fn a_recording_of_a_board_that_was_taken_over_is_judged_as_it_was() {
     assert_eq!(again["verdict"], "PASS", "{}", again["headline"]);
 }
 
-/// An exchange in which a host commits generation 2, by which frames are judged, for the last frame that has a number.
+/// An exchange in which a host commits generation 2, by which frames are judged, for the frame of the last number.
 fn last_frame_committed() -> Vec<u8> {
     let commit = Commit { steps_crc: 0, kernel_crc: 0, first_frame: u16::MAX, generation: 2, shape: None };
     let (request, mut sent) = (Request::Commit(commit), Vec::new());
@@ -171,7 +171,7 @@ fn a_recording_of_numbers_that_no_run_has_is_no_recording_of_this_run() {
     }
 }
 
-/// The link that repeats these exchanges: what was taken, and what was received.
+/// The link that replays these exchanges, each of which says what was taken and what was received.
 fn replayed(folder: &Folder, exchanges: &[(&[u8], &[u8])]) -> Box<dyn Link> {
     let mut recording =
         b"halfrow recording 1\n{\"link\":\"\",\"bytes_per_second\":null,\"run\":{}}\n".to_vec();
@@ -186,12 +186,13 @@ fn replayed(folder: &Folder, exchanges: &[(&[u8], &[u8])]) -> Box<dyn Link> {
         .link
 }
 
-/// When a wait by the clock is over, a recording has no clock to say; whoever waits on without a word says something else.
+/// When a wait is over that the clock limits, a recording has no clock to say so. But who waits on without sending departs from
+/// the recording.
 #[test]
 fn whoever_waits_once_where_the_recorded_host_sent_says_the_same_as_it() {
     let folder = Folder::new();
     let (mut came, wait) = (Vec::new(), Duration::from_millis(1));
-    // More than a host says to take its leave.
+    // More than a host sends to end its session.
     let more = [7; 200];
     let mut link = replayed(&folder, &[(&[], &[0]), (&[1, 2], &[3]), (&more, &[])]);
     assert_eq!(link.exchange(&[], &mut came, wait).unwrap(), 0);
@@ -203,7 +204,7 @@ fn whoever_waits_once_where_the_recorded_host_sent_says_the_same_as_it() {
     assert!(matches!(error, LinkError::OtherConversation { byte: 2 }), "{error}");
 }
 
-/// A link whose clock goes back at every other look.
+/// A link whose clock goes back at every other reading.
 struct Backwards {
     link: Box<dyn Link>,
     looks: Cell<u64>,

@@ -1,5 +1,5 @@
-//! Boards that refuse what they must carry out: never FAIL, since another host or an old request may be why, and never the fault of
-//! the station where it is the board's alone.
+//! Boards that refuse what they must carry out: never FAIL, since another host or an old request may be the reason, and never
+//! called the station's fault where only the board can be at fault.
 
 use halfrow::result::Report;
 use halfrow::verdict::{Cause, Verdict};

@@ -1,4 +1,4 @@
-//! Boards that are sound but for one rule, which the least run with the rules finds.
+//! Boards that are sound except for one rule, which the smallest run with the rules finds.
 
 use halfrow::board::RefusalCode;
 use halfrow::result::{CheckName, Counter, Finding, Report, Rule};
@@ -11,12 +11,12 @@ use halfrow_tests::system::{failed_check, judge_by_plan};
 
 use super::rules::{broken, carried_out, plan, refusal, said_by};
 
-/// The report on a board behind packets that `alter` rewrites, each into those that it returns.
+/// The report on a board with packets that `alter` rewrites, each into those that it returns.
 fn behind(alter: impl FnMut(Toward, Passing) -> Vec<Passing> + Send + 'static) -> Report {
     judge_by_plan(&plan(), Altered::new(&Options::default(), alter).candidate())
 }
 
-/// The report on a board that gets other packets of a `kind` than are sent, as `alter` makes them.
+/// The report on a board that receives packets of `kind` as `alter` changes them.
 fn hearing(kind: Kind, alter: impl Fn(&mut Vec<u8>) + Send + 'static) -> Report {
     behind(move |toward, mut packet| {
         if toward == Toward::Board && packet.is(kind) {
@@ -26,7 +26,7 @@ fn hearing(kind: Kind, alter: impl Fn(&mut Vec<u8>) + Send + 'static) -> Report 
     })
 }
 
-/// The report on a board that answers a request of `kind` whose payload `is_meant` with what `alter` makes of its answer.
+/// The report on a board whose answer to a request of `kind`, if its payload `is_meant`, becomes what `alter` makes of it.
 fn answering(
     kind: Kind,
     is_meant: impl Fn(&[u8]) -> bool + Send + 'static,
@@ -50,7 +50,7 @@ fn span(payload: &[u8]) -> (u8, u16, u16) {
     (payload[0], number(3), number(5))
 }
 
-/// Records do not fit into one packet then.
+/// So many records that they do not fit into one packet.
 fn many_records() -> Options {
     Options { records: 300, ..Options::default() }
 }
@@ -67,7 +67,7 @@ fn a_board_of_many_records_refuses_what_it_must_while_a_burst_is_under_way() {
     assert_eq!(broken(&report).0, Rule::UnderWay);
 }
 
-/// The last record that there is room for, which no packet has that begins with the first.
+/// The last record of the memory, which is in no packet that begins with the first.
 #[test]
 fn a_board_of_many_records_tells_the_last_of_them() {
     let report = said_by(&many_records(), |mut packet| {
@@ -84,13 +84,13 @@ fn a_board_of_many_records_tells_the_last_of_them() {
     assert_eq!(broken(&report).0, Rule::Records);
 }
 
-/// Bits of a configuration of a depth.
+/// The depths that a configuration may have, in bits.
 const DEPTHS: [u8; 3] = [8, 10, 12];
-/// Where CONFIGURE has the seed of gaps, and the depth (WIRE.md, 18).
+/// The bytes of CONFIGURE with the gap seed and the depth (WIRE.md, 18).
 const GAP_SEED: usize = 8;
 const DEPTH: usize = 12;
 
-/// The board that gets it is set to what `stored` makes of a configuration which it refuses.
+/// The report on a board that stores what `stored` makes of a configuration that it refuses.
 fn storing(stored: impl Fn(&mut Vec<u8>) + Send + 'static) -> Report {
     let (mut swallowed, mut stored_so_far) = (None, 0);
     behind(move |toward, packet| {
@@ -103,7 +103,7 @@ fn storing(stored: impl Fn(&mut Vec<u8>) + Send + 'static) -> Report {
             return vec![other, packet];
         }
         if let Some(Reply::Status(status)) = packet.reply().filter(|_| toward == Toward::Host) {
-            // It was sent one packet.
+            // The host sent one packet where the board received two.
             let packets = status.packets - stored_so_far;
             return vec![packet.saying(&Reply::Status(Status { packets, ..status }))];
         }
@@ -168,7 +168,7 @@ fn samples_beyond_their_depth_go_in_as_they_are() {
     for clips in [false, true] {
         let mut depth = 12;
         let report = behind(move |toward, mut packet| {
-            // Those that are refused are wider.
+            // Those that must be refused are wider.
             if toward == Toward::Board && packet.is(Kind::Configure) && packet.payload.starts_with(&[64, 0]) {
                 depth = *packet.payload.get(DEPTH).unwrap_or(&depth);
             }
@@ -249,7 +249,7 @@ fn each_entry_of_a_packet_is_looked_at() {
     assert_eq!(broken(&report).0, Rule::Entry);
 }
 
-/// Row factors (0), the kernel (1), and a grid (3), whose memory goes on behind the rows.
+/// Row factors (0), the kernel (1), and a grid (3), whose memory extends beyond the rows.
 #[test]
 fn entries_are_written_and_summed_up_where_they_are_asked_for() {
     let at_0 = |table: u8| {
@@ -303,7 +303,7 @@ fn signatures_are_expected_of_the_rows_that_they_are_for() {
     assert_eq!(broken(&report).0, Rule::Trap);
 }
 
-/// The report on a board that counts otherwise than it should, as `alter` has it.
+/// The report on a board after `alter` was made to its counters.
 fn counting(alter: impl Fn(&mut Status) + Send + 'static) -> Report {
     behind(move |toward, packet| match packet.reply() {
         Some(Reply::Status(mut status)) if toward == Toward::Host => {
@@ -362,7 +362,7 @@ fn an_echo_of_nothing_is_nothing() {
 
 #[test]
 fn an_answer_that_ends_too_early_is_wrong() {
-    // Of a request with a byte behind its fields, as the rules alone send it.
+    // Of a request with a byte after its fields, which only the rules send.
     let report = answering(
         Kind::TableCrc,
         |payload| payload.len() == 7 + 1,
@@ -374,8 +374,8 @@ fn an_answer_that_ends_too_early_is_wrong() {
     assert_eq!(broken(&report).0, Rule::Skipped, "{}", report.headline());
 }
 
-/// The report on a board that has trapped nothing where it must say `is_lost`, of the row, and of whether signatures were told since the
-/// last RESET.
+/// The report on a board that denies the row in its trap where `is_lost` holds, for the row's number and for whether signatures
+/// were uploaded since the last RESET.
 fn trapping_less(is_lost: impl Fn(u16, bool) -> bool + Send + 'static) -> Report {
     let mut is_told = false;
     behind(move |_, packet| {

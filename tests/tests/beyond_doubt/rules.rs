@@ -1,4 +1,4 @@
-//! What a board must refuse, keep and end: one that does otherwise fails, wherever it does, and a sound one never.
+//! What a board must refuse, keep and end: a board that does not fails, wherever that is, and a sound one never does.
 
 use halfrow::result::{Answer, Check, CheckName, Finding, NotExercised, Outcome, Report, Rule};
 use halfrow::run::{AtSpeed, Part, Plan, Selection};
@@ -9,10 +9,10 @@ use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{System, failed_check, judge_by_plan, open};
 
-/// The frame in which rows are given out of order.
+/// The number of the frame in which rows are sent out of order.
 const FRAME: u16 = 0x1234;
 
-/// The least run with the rules.
+/// The smallest run with the rules.
 pub(super) fn plan() -> Plan {
     Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() }
 }
@@ -21,12 +21,12 @@ fn check(report: &Report) -> &Check {
     report.checks.iter().find(|check| check.name == CheckName::Rules).unwrap()
 }
 
-/// The report on a board of which `alter` makes something else of what it says; none takes it away.
+/// The report on a board after `alter` was made to everything that it sends; none drops a packet.
 fn saying(alter: impl FnMut(Passing) -> Option<Passing> + Send + 'static) -> Report {
     said_by(&Options::default(), alter)
 }
 
-/// The same of a board of the build `options`.
+/// Like [`saying`], for a board of the build `options`.
 pub(super) fn said_by(
     options: &Options,
     mut alter: impl FnMut(Passing) -> Option<Passing> + Send + 'static,
@@ -45,7 +45,7 @@ pub(super) fn refusal(packet: &Passing) -> Option<Refusal> {
     }
 }
 
-/// The packet as the reply of its kind, empty.
+/// The empty reply that says that the request was carried out, instead of this refusal.
 pub(super) fn carried_out(packet: &Passing, refusal: Refusal) -> Passing {
     let mut header = packet.header;
     header.kind = refusal.kind;
@@ -88,7 +88,7 @@ fn builds_of_every_kind_keep_the_rules() {
     }
 }
 
-/// Pauses of a burst are no fault, and of a record's flags one has a meaning.
+/// Pauses of a burst are no fault, and only one of a record's flags has a meaning.
 #[test]
 fn what_a_record_may_say_is_not_looked_at() {
     let report = saying(|mut packet| {
@@ -105,7 +105,7 @@ fn what_a_record_may_say_is_not_looked_at() {
 #[test]
 fn each_refusal_that_does_not_come_fails() {
     let (mut taken, mut rules) = (0, Vec::new());
-    // Some of several hundred, and no two stretches of the same length.
+    // Every 17th of several hundred refusals.
     for place in (0..600).step_by(17) {
         let mut count = 0;
         let report = saying(move |packet| {
@@ -142,12 +142,12 @@ fn a_refusal_for_another_reason_or_with_another_detail_fails() {
             Some(packet.saying(&Reply::Refusal(other)))
         });
         let (rule, ..) = broken(&report);
-        // A configuration that is cut short is refused first, without a detail.
+        // A configuration that is cut short is refused first, and without a detail.
         assert!([Rule::Payload, Rule::Configuration].contains(&rule), "{rule:?}");
     }
 }
 
-/// What a link may do to one packet.
+/// What a link may do to a single packet.
 const UPSETS: [&str; 3] = ["duplicate", "reorder", "drop"];
 #[test]
 fn whatever_a_link_does_to_one_packet_a_sound_board_passes() {
@@ -160,7 +160,7 @@ fn whatever_a_link_does_to_any_packet_a_sound_board_passes() {
     upset_packets(1);
 }
 
-/// Upsets every packet of that many either way, each in a run of its own.
+/// Upsets every `step`-th packet either way, each in a run of its own.
 fn upset_packets(step: usize) {
     let whole = judge_by_plan(&plan(), open("mock")).link;
     let packets = whole.packets_out.max(whole.packets_in);
@@ -175,7 +175,7 @@ fn upset_packets(step: usize) {
     }
 }
 
-/// What must be said and is not, by the report.
+/// The missing answer, according to the report.
 fn unsaid(report: &Report) -> (Rule, &Answer) {
     assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
     let Finding::WrongOverDoubtfulLink { found, .. } = &report.finding else {
@@ -187,7 +187,7 @@ fn unsaid(report: &Report) -> (Rule, &Answer) {
     }
 }
 
-/// It may be the link that loses the same each time, but what was asked is said.
+/// The link may lose the same packet each time, but the report says what was asked.
 #[test]
 fn a_board_that_says_nothing_where_it_must_refuse_is_told_of() {
     for kind in [Kind::RowIn, Kind::TableCrc, Kind::TableRead, Kind::Commit, Kind::Records] {
@@ -199,7 +199,7 @@ fn a_board_that_says_nothing_where_it_must_refuse_is_told_of() {
     }
 }
 
-/// As often as a request is asked.
+/// The tries of a request.
 const TRIES: usize = 8;
 
 #[test]
@@ -216,7 +216,7 @@ fn a_link_that_loses_all_that_a_board_says_for_a_while_makes_no_sound_board_fail
     }
 }
 
-/// Nobody who runs `verify` is told to run it.
+/// The report does not tell a user of `verify` to run it.
 #[test]
 fn a_row_that_does_not_come_back_behind_what_was_refused_is_told_of() {
     let report = saying(|packet| {
@@ -242,7 +242,7 @@ fn a_board_that_took_a_row_and_says_that_none_is_inside_is_told_of() {
     );
 }
 
-/// Both copies of a request may be lost as well, and then nothing is said of the board.
+/// Both copies of a request may be lost, too; then nothing is reported of the board.
 #[test]
 fn a_link_that_loses_what_must_be_refused_does_not() {
     let alter = |toward, packet: Passing| {
@@ -312,7 +312,7 @@ fn a_commit_that_is_not_checked_passes_but_for_the_rules() {
     assert!(report.not_exercised.contains(&NotExercised::Rules {}));
 }
 
-/// What a board must answer about bursts is a rule as any other, however long it is judged at speed.
+/// What a board must answer about bursts is a rule like any other, however long it is judged at speed.
 #[test]
 fn a_board_whose_trap_keeps_nothing_breaks_a_rule_also_where_no_time_is_spent_at_speed() {
     let plan = Plan { at_speed: AtSpeed::Off, ..System::TINY.plan() };

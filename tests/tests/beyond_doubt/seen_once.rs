@@ -1,4 +1,4 @@
-//! What a board has said in a whole packet stands, whatever the link does behind it.
+//! What a board has said in a whole packet stands, whatever the link does afterwards.
 
 use halfrow::result::{CheckName, Report};
 use halfrow::verdict::Verdict;
@@ -6,8 +6,8 @@ use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Passing, Toward, judge};
 use halfrow_tests::system::System;
 
-/// The report on a board that says something else in its packet `place` of the kind `kind`, from 0, and whose packets of the kind
-/// `lost` are all lost behind that.
+/// The report on a board whose packet number `place` of `kind`, from 0, is altered, and whose packets of the kind `lost` are all
+/// lost after that one.
 fn altered_once(
     kind: Kind,
     place: usize,
@@ -34,7 +34,8 @@ fn altered_once(
 
 #[test]
 fn a_frame_that_was_wrong_at_speed_fails_though_no_record_comes_behind_it() {
-    // One record, of 18 bytes that begin with its signature, behind the packet's own fields, the last of which counts them.
+    // One record: 18 bytes, which begin with its signature, after the packet's own fields, the last of which is the count of
+    // records.
     let first_alone = |payload: &mut Vec<u8>| {
         payload.truncate(28);
         payload[9] = 1;

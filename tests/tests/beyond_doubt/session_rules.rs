@@ -1,4 +1,4 @@
-//! Boards that are sound but for what opens a session and what ends one, and for what they count.
+//! Boards that are sound except in what opens a session, what ends one, and what they count.
 
 use halfrow::result::{Answer, CheckName, Counter, Finding, Report, Rule};
 use halfrow_mock::Options;
@@ -9,7 +9,7 @@ use halfrow_tests::system::{failed_check, judge_by_plan, open};
 
 use super::rules::{broken, plan};
 
-/// The report on a board to which `alter` sends other packets than the host does.
+/// The report on a board that receives the host's packets as `alter` changes them.
 fn hearing(mut alter: impl FnMut(&mut Passing) + Send + 'static) -> Report {
     let altered = move |toward, mut packet| {
         if toward == Toward::Board {
@@ -20,7 +20,7 @@ fn hearing(mut alter: impl FnMut(&mut Passing) + Send + 'static) -> Report {
     judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate())
 }
 
-/// The report on a board that counts otherwise.
+/// The report on a board whose counters `alter` changes.
 fn counting(mut alter: impl FnMut(Status) -> Status + Send + 'static) -> Report {
     let altered = move |toward, packet: Passing| match packet.reply() {
         Some(Reply::Status(status)) if toward == Toward::Host => {
@@ -58,7 +58,7 @@ fn another_host_must_not_get_a_board_that_is_held() {
     assert_eq!(broken(&report).0, Rule::Held);
 }
 
-/// The board answers by the nonce that it was sent.
+/// The board answers with the nonce that it received.
 #[test]
 fn a_greeting_that_is_repeated_must_open_no_session() {
     let (mut greetings, mut again) = (Vec::new(), 0);
@@ -113,7 +113,7 @@ fn what_another_session_says_that_it_has_must_free_no_bank() {
     assert_eq!(miscounted(&report), Counter::NextRowOut);
 }
 
-/// From the greetings on that the rules send.
+/// Only in the sessions that the rules open.
 #[test]
 fn tables_must_stay_behind_a_greeting() {
     let mut greetings = 0;
@@ -148,7 +148,7 @@ fn any_number_but_0_must_clear_the_counters() {
     assert_eq!(miscounted(&report), Counter::RowsIn);
 }
 
-/// No link has a copy of a request that clears at hand each time.
+/// No link has a copy of a clearing request ready each time.
 #[test]
 fn a_board_that_clears_its_counters_whenever_it_is_asked_fails() {
     let report = hearing(|packet| {

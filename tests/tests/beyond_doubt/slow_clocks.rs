@@ -1,5 +1,5 @@
-//! Boards with a slow pixel clock, behind links that say zeros between packets, which mean nothing: they pass, unless the clock is
-//! another one than they name.
+//! Boards with a slow pixel clock, behind links that insert zeros between packets, which mean nothing: they pass, unless their
+//! clock differs from the one that they name.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,18 +16,19 @@ use halfrow_protocol::{Packet, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{System, judge_by_plan};
 
-/// 10 kHz.
+/// 10 kHz, in Hz.
 const CLOCK: u32 = 10_000;
-/// What up to three frames of the least width take it, in milliseconds: the longest have 8 rows of some 100 clocks.
+/// How long such a board takes for up to three frames of the least width, in milliseconds: the longest have 8 rows of some 100
+/// clocks.
 const TAKES: u64 = 330;
 const FEW: u32 = 3;
-/// Between two zeros.
+/// The time between two zeros.
 const BETWEEN: Duration = Duration::from_millis(2);
 
-/// A link that says a zero now and then while nothing else is said.
+/// A link that inserts a zero now and then while nothing else comes.
 struct Trickles {
     link: Box<dyn Link>,
-    /// Milliseconds on its clock, for the board.
+    /// The time on its clock, in milliseconds, for the board.
     clock: Arc<AtomicU64>,
 }
 
@@ -54,13 +55,13 @@ impl Link for Trickles {
     }
 }
 
-/// A sound board that makes few frames as slowly as its clock says. The mock's take no time.
+/// A sound board that makes few frames as slowly as its clock demands. The mock alone would take no time.
 fn slow_board() -> Candidate {
     board_of(0, |_| TAKES)
 }
 
-/// A board that says with `source` where its clock comes from, and takes as many milliseconds for few frames as `takes` says of the
-/// bursts that it has begun before.
+/// A board that names `source` as its clock source. For few frames it takes as many milliseconds as `takes` returns for the
+/// number of bursts begun before.
 fn board_of(source: u8, takes: impl Fn(usize) -> u64 + Send + 'static) -> Candidate {
     let clock = Arc::new(AtomicU64::new(0));
     let (now, mut begun) = (Arc::clone(&clock), BTreeMap::new());
@@ -79,7 +80,7 @@ fn board_of(source: u8, takes: impl Fn(usize) -> u64 + Send + 'static) -> Candid
             (Toward::Host, _, Some(Reply::Records(records)))
                 if begun.get(&records.burst).is_some_and(|&(begun, takes)| now < begun + takes) =>
             {
-                // One frame at a third of the time, another at two.
+                // One frame after a third of the time, another after two thirds.
                 let (begun, takes) = begun[&records.burst];
                 let made = ((now - begun) * u64::from(FEW) / takes) as usize;
                 let come = made.saturating_sub(records.from as usize).min(records.bytes.len());
@@ -112,11 +113,11 @@ fn its_bursts_are_waited_for_where_rules_are_tried() {
     passes(&Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() });
 }
 
-/// A clock_source of WIRE.md.
+/// Values of clock_source (WIRE.md, 01).
 const PIXCLK: u8 = 1;
 const PLL: u8 = 2;
 
-/// The report on a board whose frames at speed are all that is judged.
+/// The report on a board of which only frames at speed are judged.
 fn judged(source: u8, takes: impl Fn(usize) -> u64 + Send + 'static) -> Report {
     let parts = Some(Selection::least().with(Part::AtSpeed, 3));
     judge_by_plan(&Plan { parts, ..System::TINY.plan() }, board_of(source, takes))
@@ -143,7 +144,7 @@ fn is_named(part: &NotExercised) -> bool {
     matches!(part, NotExercised::NamedClock { clock_hz: CLOCK, .. })
 }
 
-/// Who feeds PIXCLK is not judged.
+/// Whoever feeds PIXCLK is not judged.
 #[test]
 fn another_clock_from_outside_is_named_beside_a_pass() {
     let report = judged(PIXCLK, |_| 3000);
@@ -165,8 +166,8 @@ fn a_clock_from_outside_is_looked_at_once() {
     assert_eq!(most.load(Ordering::Relaxed), 1);
 }
 
-/// A host that is frozen together with its clock sees a burst end before it can. Three short frames tell of neither bound what would clear
-/// it, and neither do they of a clock that was seen to be slow.
+/// A host that is frozen together with its clock sees a burst end before it can. Three short frames give neither bound that would
+/// clear it, nor do they for a clock that was seen to be slow.
 #[test]
 fn what_is_seen_once_of_a_clock_is_looked_at_again() {
     for takes in [0, 3000] {
@@ -176,7 +177,7 @@ fn what_is_seen_once_of_a_clock_is_looked_at_again() {
     }
 }
 
-/// Nobody keeps to the clock of a mock.
+/// A mock does not keep to its clock.
 #[test]
 fn a_clock_that_is_the_host_s_own_is_not_looked_at() {
     let report = judged(0, |_| 3000);

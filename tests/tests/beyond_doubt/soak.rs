@@ -1,5 +1,5 @@
-//! Hours at the full pixel clock: all that was judged is told whatever ends them, what differs does not, and neither does a board
-//! that goes away.
+//! Hours at the full pixel clock: everything that was judged is reported, whatever ends them; neither differences nor a board
+//! that goes away end them.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -46,7 +46,7 @@ fn soaked(target: &str, length: SoakLength) -> Report {
     soaked_by(link::open(&target.parse().unwrap()).unwrap(), length, &RunOptions::default())
 }
 
-/// What a soak came to, whose parts must agree.
+/// The soak in a report, whose parts must agree.
 fn soak(report: &Report) -> &SoakReport {
     let soak = report.soak.as_ref().unwrap();
     let charted = |count: fn(&SoakInterval) -> u64| -> u64 { soak.chart.intervals.iter().map(count).sum() };
@@ -55,7 +55,7 @@ fn soak(report: &Report) -> &SoakReport {
     soak
 }
 
-/// The seeds of the bursts that a host asks for.
+/// The report, and the seeds of the bursts that the host asked for.
 fn seeds_of(length: SoakLength) -> (Report, Vec<u32>) {
     let (sender, seeds) = std::sync::mpsc::channel();
     let board = Altered::new(&slow(), move |toward, packet: Passing| {
@@ -130,7 +130,7 @@ fn a_board_that_is_always_wrong_is_looked_into_so_often_and_then_counted() {
     assert!(soak.wrong > 45_000, "{soak:?}");
 }
 
-/// Ends a soak when `frames` of it are judged.
+/// The report on a soak that is stopped when `frames` of its frames are judged.
 fn stopped_at(target: &str, frames: u32) -> Report {
     let judged = Arc::new(AtomicU32::new(0));
     let stop = Stop::when({
@@ -162,7 +162,7 @@ fn what_differed_is_no_error_for_being_interrupted() {
     assert!(soak(&report).wrong > 0);
 }
 
-/// The stop comes before it is looked at whether the link may have brought it about.
+/// The stop comes before it is checked whether the link may be the cause.
 #[test]
 fn what_differed_in_the_burst_that_is_interrupted_is_no_error_either() {
     let report = stopped_at("mock,pixel-clock=10000,fault=slow-path,one-in=2", 1);
@@ -177,7 +177,7 @@ fn without_bursts_nothing_is_judged() {
     assert_eq!(soak(&report).frames, 0);
 }
 
-/// A board that begins every burst, makes no frame, and ends it when it is told to.
+/// The report on a board that begins every burst, makes no frame, and ends the burst when told to.
 fn without_frames(pixel_clock: u32, length: SoakLength) -> Report {
     let mut state = BurstState::UnderWay;
     let options = Options { pixel_clock, ..Options::default() };
@@ -204,7 +204,7 @@ fn a_soak_that_is_over_before_any_frame_has_come_judged_nothing() {
     assert_eq!((report.finding.clone(), soak(&report).frames), (Finding::NothingJudged {}, 0));
 }
 
-/// (64·8 + 8) clocks of 100 Hz are 5.2 s a frame: 20 of them are more than a burst's minute.
+/// (64·8 + 8) clocks of 100 Hz are 5.2 s a frame: 20 frames take more than the minute of a burst.
 #[test]
 fn a_soak_ends_with_a_burst_of_a_minute_without_a_frame() {
     for length in [frames(10), SoakLength::Time { seconds: 3600.0 }] {
@@ -214,7 +214,7 @@ fn a_soak_ends_with_a_burst_of_a_minute_without_a_frame() {
     }
 }
 
-/// The mock makes the frames of a burst of a minute at once.
+/// The mock makes the frames of a burst of a minute all at once.
 #[test]
 fn a_time_limit_ends_a_soak_amid_a_minute_in_which_nothing_comes() {
     let options = RunOptions { timeout: Some(Duration::from_secs(30)), ..RunOptions::default() };
@@ -231,7 +231,7 @@ fn with_one_bank_tables_change_between_bursts() {
     assert!(report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
 }
 
-/// Unplugs the board amid its bursts, behind so many bytes.
+/// The report on a board that is unplugged amid its bursts, after `byte` bytes.
 fn unplugged(byte: u64, replug: Replug) -> Report {
     let folder = Folder::new();
     let served = Served::unplugged_once("mock", &folder.path().join("board"), byte, Some(replug));
@@ -258,7 +258,7 @@ fn a_board_that_was_unplugged_is_judged_on_and_whether_it_had_its_power_is_said(
     }
 }
 
-/// A link that delivers a copy of the request number `which` of a kind in front of the request number `before` of another.
+/// The report behind a link that delivers a copy of request number `which` of a kind before request number `before` of another.
 fn late_copy(which: (Kind, usize), before: (Kind, usize)) -> Report {
     let (mut seen, mut waited) = (0, 0);
     let mut copy: Option<Passing> = None;
@@ -288,7 +288,7 @@ fn an_old_copy_of_a_request_makes_no_sound_board_fail() {
     }
 }
 
-/// The report on a board behind a link that loses every so many of its answers, and spoils every signature or none.
+/// The report on a board behind a link that loses every `every`-th answer, with every signature `spoilt`, or none.
 fn over_a_link_that_loses(every: usize, spoilt: bool) -> Report {
     let mut answers = 0;
     let board = Altered::new(&slow(), move |toward, packet: Passing| {
@@ -312,7 +312,7 @@ fn over_a_link_that_loses(every: usize, spoilt: bool) -> Report {
     soaked_by(board.candidate(), frames(5000), &RunOptions::default())
 }
 
-/// The first BURST once more in front of the third, which the board then refuses.
+/// The first BURST arrives once more before the third, which the board then refuses.
 #[test]
 fn what_a_board_says_behind_an_old_burst_does_not_end_a_soak() {
     let (mut bursts, mut first) = (0, None);
@@ -332,7 +332,7 @@ fn what_a_board_says_behind_an_old_burst_does_not_end_a_soak() {
     assert!(!report.headline().contains("stop whatever else"), "{}", report.headline());
 }
 
-/// Answers that are lost make requests come twice, and with them doubt. A fault that stays is none of the link's.
+/// Lost answers make requests come twice, which raises doubt. A fault that stays is not the link's.
 #[test]
 fn over_a_link_that_loses_answers_sound_boards_do_not_fail_and_broken_ones_do_not_pass() {
     for every in [31, 53, 211] {
@@ -346,7 +346,7 @@ fn over_a_link_that_loses_answers_sound_boards_do_not_fail_and_broken_ones_do_no
     assert_ne!(doubtful.verdict(), Verdict::Pass, "{}", doubtful.headline());
 }
 
-/// A board that says what its host did not ask for gives no verdict, and what was judged before is told.
+/// A board that sends what its host did not ask for gives no verdict, and what was judged before is reported.
 #[test]
 fn records_that_end_too_soon_are_no_verdict() {
     let mut left = 3;

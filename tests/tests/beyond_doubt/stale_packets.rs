@@ -1,5 +1,4 @@
-//! Links that deliver a second copy of a request late, behind newer ones: a sound board is never FAIL for it, and a broken one
-//! never PASS.
+//! Links that deliver a second copy of a request late, after newer ones: no sound board is FAIL for it, and no broken one PASS.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -19,8 +18,8 @@ use halfrow_tests::altered::{Altered, Passing, Toward, judge};
 use halfrow_tests::system::System;
 use halfrow_tests::through::Through;
 
-/// A link that delivers the request number `which` of a kind once more, in front of the request number `before` of another, and
-/// may lose the answer to that copy.
+/// The report behind a link that delivers request number `which` of a kind once more, before request number `before` of another,
+/// and loses the answer to that copy unless `answered`.
 pub(super) fn late_copy(which: (Kind, usize), before: (Kind, usize), answered: bool) -> Report {
     let (mut seen, mut waited) = (0, 0);
     let mut copy: Option<Passing> = None;
@@ -68,13 +67,13 @@ fn an_old_copy_of_a_request_makes_no_sound_board_fail() {
             }
         }
     }
-    // Most of them do no harm, and some would have.
+    // Most of them do no harm, but some would have.
     let errors = ends.iter().filter(|&&verdict| verdict == Verdict::Error).count();
     assert!(errors > 0 && 2 * errors < ends.len(), "{errors} errors of {}", ends.len());
 }
 
-/// How many reads and echoes are wrong in the test of a link that delivers the first TABLE_WRITE once more in front of the second
-/// TABLE_READ, before a board that reads its tables otherwise if it is `broken`.
+/// How many reads and echoes are wrong in the link test of a link that delivers the first TABLE_WRITE once more before the second
+/// TABLE_READ, and whether it did so; a `broken` board reads its tables wrongly.
 fn wrong_of_link(broken: bool) -> (u64, bool) {
     let (sender, delivered) = std::sync::mpsc::channel();
     let (mut copy, mut reads) = (None, 0);
@@ -99,7 +98,8 @@ fn wrong_of_link(broken: bool) -> (u64, bool) {
     (figures.errors.wrong, delivered.try_recv().is_ok())
 }
 
-/// What comes between a host that has found something and the answer to the STATUS by which it asks whether that is a link's.
+/// What happens after a host has found something wrong, before the answer to the STATUS by which it asks whether the link is at
+/// fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ends {
     /// Nothing.
@@ -112,7 +112,7 @@ enum Ends {
     SessionLost,
 }
 
-/// A link that breaks when it is told to.
+/// A link that breaks when told to.
 pub(super) fn cut_when_told(link: Box<dyn Link>, is_cut: Arc<AtomicBool>) -> Box<dyn Link> {
     Through::boxed(link, move |link, out, back, wait| {
         if is_cut.load(Ordering::Relaxed) {
@@ -124,18 +124,18 @@ pub(super) fn cut_when_told(link: Box<dyn Link>, is_cut: Arc<AtomicBool>) -> Box
 
 /// What a link does to the first session with a board.
 struct FirstSession {
-    /// Whether it delivers a copy of an old CONFIGURE behind the one with gaps, and loses the answer to that copy. Else
-    /// all rows behind that one are wrong.
+    /// Whether it delivers a copy of an old CONFIGURE after the one with gaps, and loses the answer to that copy. If not, all
+    /// rows after the one with gaps are wrong.
     is_stale: bool,
-    /// The STATUS with which the run ends, from 1, and how.
+    /// The number of the STATUS at which the session ends, from 1, and how it ends.
     ends: (usize, Ends),
     is_cut: Arc<AtomicBool>,
     is_stopped: Arc<AtomicBool>,
-    /// How often STATUS was asked for in it.
+    /// How often STATUS was asked for in this session.
     asked: Arc<AtomicUsize>,
     greetings: usize,
     before: Option<Passing>,
-    /// The number of the CONFIGURE in front of the one with gaps.
+    /// The number of the CONFIGURE before the one with gaps.
     old: Option<u16>,
 }
 
@@ -160,7 +160,7 @@ impl FirstSession {
         [packet].into_iter().chain(before.filter(|_| self.is_stale)).collect()
     }
 
-    /// Ends the run in place of its answer to STATUS.
+    /// Ends the session instead of answering STATUS.
     fn end(&self, packet: &Passing) -> Vec<Passing> {
         let refusal = Refusal { code: RefusalCode::Session, kind: Kind::Status.code(), detail: 0 };
         let mut lost = packet.saying(&Reply::Refusal(refusal));
@@ -208,7 +208,7 @@ fn first_session(is_stale: bool, ends: (usize, Ends)) -> (Report, usize) {
     (report.unwrap().report, asked.load(Ordering::Relaxed))
 }
 
-/// The last STATUS of the first session is the one by which it is asked whether a request came twice.
+/// The last STATUS of the first session is the one that asks whether a request came twice.
 #[test]
 fn an_end_amid_the_question_whether_a_request_came_twice_makes_no_sound_board_fail() {
     let (report, last) = first_session(true, (0, Ends::Never));
@@ -220,7 +220,7 @@ fn an_end_amid_the_question_whether_a_request_came_twice_makes_no_sound_board_fa
     }
 }
 
-/// Whoever stops a run leaves the board answering.
+/// After a stop the board still answers.
 #[test]
 fn a_stop_amid_that_question_makes_no_error_of_a_board_that_is_wrong() {
     let (report, last) = first_session(false, (0, Ends::Never));
@@ -229,8 +229,8 @@ fn a_stop_amid_that_question_makes_no_error_of_a_board_that_is_wrong() {
     assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
 }
 
-/// What a host knows of a session that ended amid a segment is still true of what came back in it. The frames behind the old copy are
-/// wrong, and in the next session every one is right.
+/// What a host knows of a session that ended amid a segment still holds for what came back in it. The frames after the old copy
+/// are wrong, and in the next session all are right.
 #[test]
 fn an_old_copy_of_a_request_makes_no_sound_board_fail_that_goes_away_later() {
     let is_cut = Arc::new(AtomicBool::new(false));
@@ -263,7 +263,7 @@ fn an_old_copy_of_a_request_makes_no_link_test_call_a_sound_board_wrong() {
     assert!(wrong_of_link(true).0 > 0);
 }
 
-/// A request comes twice, and the counters are wrong behind frames that are right; in the session in which that is looked at again
+/// A request comes twice, and the counters are wrong after frames that are right. In the session in which that is judged again,
 /// nothing comes back.
 #[test]
 fn no_check_of_a_doubtful_session_is_told_of_the_next_one() {
@@ -291,7 +291,7 @@ fn no_check_of_a_doubtful_session_is_told_of_the_next_one() {
     assert_eq!(told, [&passed[..], &[(CheckName::Link, Outcome::Error)]].concat());
 }
 
-/// A packet of an earlier session that has the number of HELLO, in front of the answer to that.
+/// The report behind a link that brings a packet of an earlier session, with the number of HELLO, before the answer to HELLO.
 fn behind_stale(kind: Kind, reply: &'static Reply<'static>) -> Report {
     judge(&System::TINY, move |toward, packet: Passing| {
         if toward == Toward::Board || !packet.is(Kind::Hello) {
@@ -303,7 +303,7 @@ fn behind_stale(kind: Kind, reply: &'static Reply<'static>) -> Report {
     })
 }
 
-/// WIRE.md, 2.1: nothing but its own reply or refusal is for whoever greets.
+/// WIRE.md, 2.1: a host that greets takes nothing but its own reply or refusal.
 #[test]
 fn what_is_of_an_earlier_session_is_no_answer_to_a_greeting() {
     const BUSY: Refusal = Refusal { code: RefusalCode::Busy, kind: Kind::Configure.code(), detail: 0 };
@@ -313,7 +313,7 @@ fn what_is_of_an_earlier_session_is_no_answer_to_a_greeting() {
     }
 }
 
-/// Every program's first packet would be its number 1 otherwise, and a refusal names no nonce.
+/// Without a random first number every program's first packet would have number 1, and a refusal names no nonce.
 #[test]
 fn a_refusal_that_an_earlier_program_was_told_is_not_this_one_s() {
     let draws = Draws { nonce: 5, host: 6, sequence: 0xfffe };

@@ -1,4 +1,4 @@
-//! Links that only stand still: a sound board passes.
+//! Links that only stall: a sound board passes.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use halfrow_tests::proxy::{Proxy, Suffers};
 use halfrow_tests::served::Served;
 use halfrow_tests::system::System;
 
-/// The system with which a false FAIL was seen.
+/// A system on which such a link once led to a false FAIL.
 const SEEN: System = System { width: 128, height: 72, radius: 73.78, board: "mock", ring: 2048 };
 
 const STALL: Duration = Duration::from_secs(3);
@@ -20,7 +20,7 @@ fn passes(report: &Report, what: &str) {
     assert_eq!(report.verdict(), Verdict::Pass, "{what}: {}", report.headline());
 }
 
-/// Judges a served board behind a proxy whose both directions stand still behind every 12,000 bytes from the host.
+/// Judges a served board through a proxy that stalls both directions after every 12,000 bytes from the host.
 #[track_caller]
 fn passes_behind_a_proxy(system: &System) {
     let served = Served::on_a_tcp_port("127.0.0.1", "mock");
@@ -34,7 +34,7 @@ fn a_proxy_that_stands_still_now_and_then_costs_no_verdict() {
     passes_behind_a_proxy(&System { height: 16, ..SEEN });
 }
 
-/// A good board behind a link that only stalls, as it was seen to fail.
+/// A sound board on a link that only stalls, at the size at which that once led to FAIL.
 #[test]
 #[ignore = "a minute long; scripts/soak runs it"]
 fn the_link_that_gave_a_false_fail_passes() {
@@ -53,7 +53,8 @@ fn on_the_virtual_clock_every_stall_within_the_patience_passes() {
     }
 }
 
-/// Of thousands of packets three in a row get lost some time. Each that is lost behind them is waited for as the first ones were.
+/// Of thousands of packets, three in a row get lost at some time. After that, the wait for a lost packet is no longer than it was
+/// before.
 #[test]
 fn a_link_that_only_loses_packets_is_not_waited_for_as_one_that_is_late() {
     let options = ",fault=lose,size=40,rate=0.085,toward=board,seed=87657095";
@@ -63,7 +64,7 @@ fn a_link_that_only_loses_packets_is_not_waited_for_as_one_that_is_late() {
     assert!((0.2..1.0).contains(&seconds_each), "{seconds_each} s on the wire's own clock");
 }
 
-/// Each answer to STATUS comes with the one to the next try, so that no link loses anything and each is asked for twice.
+/// Each answer to STATUS comes together with the answer to the next try, so the link loses nothing, but each is asked for twice.
 #[test]
 fn a_link_that_holds_each_count_back_comes_to_an_end() {
     let mut held = None;
