@@ -1,4 +1,4 @@
-//! Campaigns of drawn faults: small ones here, large ones when `scripts/soak` asks for them.
+//! Campaigns of random faults: small ones here, large ones when `scripts/soak` asks for them.
 
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used)]
@@ -16,10 +16,10 @@ use halfrow_tests::program::Folder;
 use halfrow_tests::proxy::Suffers;
 use halfrow_tests::system::{System, streamed};
 
-/// Any drawing will do; this one can be drawn again.
+/// Any seed will do; a fixed one draws the same cases again.
 const SEED: u64 = 20_140_401;
 
-/// Judges so many faults, prints what found them, and allows none that nothing finds.
+/// Judges `count` faults, prints what found them, and allows none that nothing finds.
 #[track_caller]
 #[allow(clippy::print_stdout)]
 fn every_fault_is_found(system: &System, count: usize) {
@@ -30,10 +30,10 @@ fn every_fault_is_found(system: &System, count: usize) {
     assert!(unfound.is_empty(), "{unfound:?}");
 }
 
-/// How long a run on the virtual clock may take, and one in real time: some patience for every answer.
+/// How long a run may take, on the virtual clock or in real time: some patience for every answer.
 const SOON: Duration = Duration::from_secs(300);
 
-/// Judges the boards of all `cases`, prints the verdicts, and allows no false one.
+/// Judges the boards of all `cases`, prints the verdicts, and allows no wrong one.
 #[track_caller]
 #[allow(clippy::print_stdout)]
 fn no_verdict_is_false(cases: &[Case], kept: &Kept) {
@@ -49,7 +49,7 @@ fn every_single_fault_of_a_small_board_is_found() {
     every_fault_is_found(&System::SMALL, 100);
 }
 
-/// Where nothing is stretched no output lies near node 40, and rows of 64 samples never meet in a memory of 2048.
+/// Where nothing is stretched, no output lies near node 40; and rows of 64 samples never meet in a memory of 2048.
 #[test]
 fn what_no_streamed_sample_can_show_is_left_to_read_back_or_to_full_speed() {
     let unstretched = System { radius: 1e8, ..System::TINY };
@@ -67,13 +67,13 @@ fn what_no_streamed_sample_can_show_is_left_to_read_back_or_to_full_speed() {
 fn no_poor_link_gives_a_false_verdict() {
     let mut cases = poor_links::draw(SEED, 0..150, poor_links::virtual_);
     cases.extend(poor_links::draw(SEED, 300..324, poor_links::real_and_short));
-    // A board that swallows rows is given some ten seconds, which cost nothing on a virtual clock.
+    // On a board that swallows rows a run waits some ten seconds, which cost nothing on a virtual clock.
     let is_slow = |case: &Case| !matches!(case.way, Way::Virtual(_)) && case.broken.contains("lost-row");
     cases.retain(|case| !is_slow(case));
     no_verdict_is_false(&cases, &Kept::nothing());
 }
 
-/// A link that computes CRCs anew is the one thing that a judge cannot see through. The campaign must see it, or it sees
+/// A link that recomputes CRCs is the one thing that a judge cannot see through. The campaign must report it, or it reports
 /// nothing.
 #[test]
 fn a_campaign_reports_false_verdicts_and_hangs() {
@@ -95,16 +95,16 @@ fn a_campaign_goes_on_where_it_stopped() {
     let file = folder.path().join("kept").join("runs.jsonl");
     let cases = poor_links::draw(SEED, 0..6, poor_links::virtual_);
     let half = poor_links::run(&cases[..3], SOON, &Kept::in_file(&file));
-    // Killed in the middle of a line.
+    // As if killed in the middle of a line.
     let mut text = std::fs::read_to_string(&file).unwrap();
     text.push_str("{\"index\": 3, \"came\": \"FA");
     std::fs::write(&file, &text).unwrap();
     let kept = Kept::in_file(&file);
     assert_eq!((kept.len(), half.0.len()), (3, 3));
-    // What is known is not judged again: with no time at all only the others come to nothing.
+    // Known results are not judged again: with no time at all, only the others do not end.
     let rest = poor_links::run(&cases, Duration::ZERO, &kept);
     assert_eq!(rest.hangs().map(|run| run.case.index).collect::<Vec<_>>(), [3, 4, 5]);
-    // What did not end is not known, and is judged again.
+    // Runs that did not end are not kept, and are judged again.
     assert_eq!(Kept::in_file(&file).len(), 3);
 }
 
@@ -124,7 +124,7 @@ fn none_of_twenty_thousand_poor_links_gives_a_false_verdict() {
     no_verdict_is_false(&cases, &kept);
 }
 
-/// Eight hours of the mock's clock, at which a burst has 2307 frames of 64 x 8 samples, and the host looks every 250 ms.
+/// Eight hours on the mock's clock, at which a burst has 2307 frames of 64 x 8 samples and the host asks every 250 ms.
 #[allow(clippy::print_stdout)]
 fn soaked_for_eight_hours(target: &str) -> Report {
     let plan = Plan {

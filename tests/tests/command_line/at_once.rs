@@ -1,4 +1,4 @@
-//! Several runs at once, and what killed ones leave behind.
+//! Several runs at the same time, and what killed ones leave behind.
 
 use std::fs;
 use std::io::Write as _;
@@ -10,7 +10,7 @@ use crate::running::{opened_to_write, started, stopped_amid, streaming};
 use crate::signals::LARGE;
 use crate::small;
 
-/// A run whose report and recording are the same for every seed.
+/// A run whose report and recording have the same names for every seed.
 fn run(folder: &Folder, seed: usize, more: &[&str]) -> Ended {
     let seed = seed.to_string();
     let call = ["--seed", &seed, "--report", "out", "--record", "run.rec", "--json"];
@@ -25,7 +25,7 @@ fn reported_seed(folder: &Folder) -> u64 {
     seed
 }
 
-/// Starts runs with the seeds 1 to 6 at once.
+/// Runs the seeds 1 to 6 at the same time.
 fn six(folder: &Folder, more: &[&str]) -> Vec<Ended> {
     std::thread::scope(|scope| {
         let started: Vec<_> = (1..=6).map(|seed| scope.spawn(move || run(folder, seed, more))).collect();
@@ -126,7 +126,7 @@ fn a_place_that_is_taken_during_the_run_is_left_alone() {
     assert!(folder.read("run.rec.partial-2").starts_with(b"halfrow recording 1\n"));
 }
 
-/// What there is in the folder by names of ours.
+/// The names in the folder that the program gives to files in progress.
 fn under_way(folder: &Folder) -> Vec<String> {
     folder.names(".").into_iter().filter(|name| name.starts_with(".halfrow-")).collect()
 }
@@ -139,7 +139,7 @@ fn what_killed_runs_left_is_cleared_and_what_running_ones_write_is_not() {
     // Two claims, the report's folder, the recording.
     assert_eq!(dead.len(), 4, "{dead:?}");
     folder.write(".halfrow-notes", "somebody's own");
-    // One that runs clears what is dead, and nobody clears what it has.
+    // A running call clears what dead ones left, and nobody clears what it has.
     let alive = streaming(&folder, ["--report", "alive", "--record", "alive.rec"]);
     assert_eq!(folder.halfrow(small("tables", &["-o", "t.json"])).code, Some(0));
     let left = under_way(&folder);
@@ -166,7 +166,7 @@ fn a_frame_that_a_killed_program_left_is_cleared() {
     assert_eq!(folder.names("out").iter().filter(half).count(), 0);
 }
 
-/// The frame comes through a pipe, so that the call waits for it.
+/// The frame comes through a pipe, so the call waits for it.
 #[test]
 fn files_that_come_while_a_frame_is_corrected_are_left_alone() {
     let frame = [b"P5\n128 16\n4095\n".as_slice(), &[0; 2 * 128 * 16]].concat();
@@ -179,7 +179,7 @@ fn files_that_come_while_a_frame_is_corrected_are_left_alone() {
             let running = started(&folder, small("correct", &[&["in.pgm"], &more[..]].concat()));
             let mut pipe = opened_to_write(&pipe);
             folder.write(taken, "precious");
-            // Who reads it may leave before the end.
+            // The reader may stop before the end.
             let _ = pipe.write_all(&frame);
             drop(pipe);
             let ended = running.end();

@@ -32,7 +32,7 @@ fn a_frame_that_no_datapath_takes_is_refused() {
     }
 }
 
-/// Whoever gives one is told what the option takes, not that there is no option `-1`.
+/// The error is about the option's value, not about an unknown option `-1`.
 #[test]
 fn a_negative_number_is_refused_by_its_option() {
     let folder = Folder::new();
@@ -76,7 +76,7 @@ fn names_of_nothing_are_refused_with_those_that_there_are() {
     refused(&folder, &["verify", "--board", "replay:moon"], "moon");
 }
 
-/// What is wrong with an address is known before there is anything to serve.
+/// An error in an address is found before there is anything to serve.
 #[test]
 fn an_address_that_is_none_is_a_wrong_call() {
     let folder = Folder::new();

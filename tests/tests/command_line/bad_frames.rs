@@ -4,7 +4,7 @@ use halfrow_tests::program::Folder;
 
 use crate::{refused, small};
 
-/// A frame of the small size in every format, and the folder that holds them.
+/// A folder with a frame of the small size in every format.
 fn frames() -> Folder {
     let folder = Folder::new();
     for name in ["frame.pgm", "frame.png", "frame.tif", "frame.raw"] {
@@ -148,7 +148,7 @@ fn a_picture_that_no_board_takes_is_to_be_scaled() {
     assert!(ended.code == Some(2) && !ended.stderr.contains("halfrow tables"), "{}", ended.stderr);
 }
 
-/// A chunk that is damaged, told without the names of the decoder's own types.
+/// A damaged chunk, reported without the names of the decoder's own types.
 #[test]
 fn a_damaged_png_is_told_in_plain_words() {
     let folder = frames();
@@ -197,7 +197,7 @@ fn a_pipe_is_no_frame_to_judge_with() {
     refused(&folder, &["verify", "--lens", "pipe.pgm"], sentence);
 }
 
-/// Names are bytes, and need not be text.
+/// File names are bytes, and need not be text.
 #[cfg(target_os = "linux")]
 #[test]
 fn files_whose_names_are_no_text_are_read() {
@@ -218,11 +218,11 @@ fn files_whose_names_are_no_text_are_read() {
     assert!(board.status.code() == Some(2) && said.contains("--board <TARGET>"), "{said}");
 }
 
-/// A TIFF of 128 x 16 whose directory comes first, as scanners write it, and whose samples break off.
+/// A TIFF of 128 x 16 whose directory comes first, as scanners write it, and whose samples are cut off.
 #[test]
 fn a_tiff_without_all_of_its_samples_is_told_once() {
     let folder = Folder::new();
-    // Tag, type (3 for 16 bits, 4 for 32) and value; the samples begin behind these nine entries.
+    // Tag, type (3 for 16 bits, 4 for 32) and value; the samples begin after these nine entries.
     let entries: [(u16, u16, u32); 9] = [
         (256, 4, 128),
         (257, 4, 16),

@@ -14,7 +14,7 @@ fn legal() -> (Folder, Value) {
     (folder, file)
 }
 
-/// What `verify` says to the legal file after `change`.
+/// `verify` and `correct` must refuse the legal file after `change`.
 #[track_caller]
 fn bad_tables(change: impl FnOnce(&mut Value), sentence: &str) {
     changed(2, change, sentence);
@@ -37,7 +37,7 @@ fn the_legal_file_itself_is_taken() {
     assert_eq!(folder.halfrow(["verify", "--tables", "again.json"]).code, Some(0));
 }
 
-/// As `tables` names them when it has written them, and as it was asked to.
+/// The two names that `tables` takes and prints when it writes images.
 #[test]
 fn memory_images_are_told_to_be_for_verilog() {
     let folder = Folder::new();
@@ -79,7 +79,8 @@ fn a_weight_of_two_is_refused_with_its_node() {
     bad_tables(|file| file["kernel"][0][1] = 0.5.into(), "node 0");
 }
 
-/// From the right edge's point of view a row with a small factor lies far ahead; from the left edge's, far back.
+/// With a small factor a row's source lies far ahead of its left edge when the centre is at the right, and far back from its
+/// right edge when the centre is at the left.
 #[test]
 fn rows_that_reach_beyond_the_ring_are_refused() {
     let (folder, mut file) = legal();
@@ -98,7 +99,7 @@ fn rows_that_reach_beyond_the_ring_are_refused() {
     assert_eq!(folder.halfrow(["verify", "--tables", "legal.json"]).code, Some(0));
 }
 
-/// The model would compute something all the same, by each of its paths something else.
+/// The model would still compute something, and each of its paths something else.
 #[test]
 fn nothing_is_corrected_by_tables_that_no_board_takes() {
     let folder = Folder::new();
@@ -118,7 +119,7 @@ fn nothing_is_corrected_by_tables_that_no_board_takes() {
     );
 }
 
-/// Windows' editors write one, and show it nowhere.
+/// Editors on Windows write one, and show it nowhere.
 #[test]
 fn a_byte_order_mark_changes_nothing() {
     let (folder, _) = legal();
@@ -160,7 +161,7 @@ fn what_no_table_file_has_is_refused() {
     refused(&folder, &["verify", "--tables", "half.json"], "it breaks off at line");
 }
 
-/// The largest table file that there can be has under 64 KiB; one of 10 MB would take hundreds to parse.
+/// The largest possible table file has less than 64 KiB; one of 10 MB would take hundreds to parse.
 #[test]
 fn a_file_longer_than_any_tables_is_refused_before_it_is_parsed() {
     let (folder, _) = legal();

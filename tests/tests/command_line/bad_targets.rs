@@ -1,4 +1,4 @@
-//! Boards that cannot be named.
+//! Boards with wrong names.
 
 use halfrow_tests::program::Folder;
 
@@ -11,7 +11,7 @@ fn no_such_board(target: &str, sentence: &str) {
     refused(&folder, &["info", "--board", target], sentence);
 }
 
-/// What a run over a board costs is told without the board, but not of what is none.
+/// The cost of a run is listed without opening its board, but not for a target that is none.
 #[test]
 fn a_list_for_a_board_that_cannot_be_named_is_refused() {
     let folder = Folder::new();

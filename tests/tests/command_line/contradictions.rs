@@ -1,10 +1,10 @@
-//! Options that another one leaves without effect: refused on the command line, passed over from elsewhere.
+//! Options that another one leaves without effect: refused on the command line, ignored from elsewhere.
 
 use halfrow_tests::program::{Folder, finish};
 
 use crate::{refused, small};
 
-/// A folder with a recording of two frames of 128 x 16 in it, and a file that would be a frame.
+/// A folder with a recording of two frames of 128 x 16.
 fn recorded() -> Folder {
     let folder = Folder::new();
     let frames = ["--frame", "builtin:bars", "--frame", "builtin:grey", "--record", "run.rec"];
@@ -75,7 +75,7 @@ fn what_a_station_always_says_is_passed_over_beside_a_recording() {
     assert!(said.contains("--retry-limit of the environment is passed over"), "{said}");
 }
 
-/// It is of one link. A station's patience for its boards keeps nobody from recording one.
+/// A recording is of one link. But a station's patience for its boards does not prevent a recording.
 #[test]
 fn a_recording_that_is_made_waits_for_no_board() {
     let folder = Folder::new();
@@ -103,7 +103,7 @@ fn the_list_of_a_recording_is_what_it_holds() {
     assert_eq!(named, [noise, noise, "builtin:bars", "builtin:grey", noise, noise]);
 }
 
-/// `verify` and `correct` with `option` beside a table file for 128 x 16, 12 bits, centre at 63.5.
+/// `verify` and `correct` with `option`, and a table file for 128 x 16, 12 bits, centre at 63.5.
 fn beside_tables<'a>(option: &[&'a str]) -> [Vec<&'a str>; 2] {
     let call = |command: &[&'a str]| [command, &["--tables", "made.json"], option].concat();
     [call(&["verify", "-q"]), call(&["correct", "builtin:street", "--model", "-o", "out.pgm"])]
@@ -151,7 +151,7 @@ fn what_a_table_file_says_itself_may_be_said() {
     }
 }
 
-/// Flags come before a table file that a station always takes.
+/// Flags take precedence over a table file that a station always uses.
 #[test]
 fn options_that_make_tables_beat_a_file_from_elsewhere() {
     let folder = with_tables();
@@ -210,7 +210,7 @@ fn an_option_of_paper_needs_an_item_that_heeds_it() {
     }
 }
 
-/// Faults of the mock board that a run never comes upon.
+/// Faults of the mock board that a run can never meet.
 #[test]
 fn a_fault_without_effect_is_refused_with_one_that_has_some() {
     let folder = Folder::new();
@@ -229,7 +229,7 @@ fn a_fault_without_effect_is_refused_with_one_that_has_some() {
         ("stuck-address,bit=11", "the ring has no address line bit=11; give one from 0 to 10"),
         ("stale-table,table-banks=1", "the wrong one of two banks of tables; give table-banks=2"),
         ("slow-path,bursts=no", "leave bursts=no out"),
-        // One frame and two of noise with these tables: 32 rows are played before row 3 of the last.
+        // One frame and two of noise with these tables: 32 rows are played before row 3 of the last frame.
         ("drifting-table,after=36", "give 35 at most, or stream more frames"),
     ] {
         let board = format!("mock,fault={fault}");
@@ -256,7 +256,7 @@ fn a_fault_at_speed_is_refused_where_no_frame_is_made_at_speed() {
     }
 }
 
-/// Behind a grid the fault's row is the number of an entry, of which there are more than rows.
+/// With a grid the fault's row is the number of an entry, of which there are more than rows.
 #[test]
 fn a_fault_of_a_grids_entry_is_held_against_the_grid() {
     let folder = Folder::new();

@@ -7,8 +7,8 @@ use halfrow_tests::program::{Folder, finish};
 
 use crate::{refused, small};
 
-/// Golden values: one row of 64 samples, C = 63, Q = 14648488, corrected with the Keys kernel by a program outside this
-/// project.
+/// Golden values: one row of 64 samples, C = 63, Q = 14648488, corrected with the Keys kernel by a program that is not part of
+/// this project.
 const GOLDEN: [u16; 64] = [
     1931, 464, 2776, 1089, 3910, 1995, 1820, 3119, 952, 2005, 2057, 131, 2989, 1276, 3450, 2119, 530, 2964,
     1302, 4074, 2182, 1772, 3322, 1166, 1947, 2245, 317, 3208, 1464, 3470, 2325, 621, 3212, 1509, 363, 2370,
@@ -34,7 +34,7 @@ fn both_model_and_mock_give_the_golden_row() {
     let made =
         folder.halfrow(["tables", "--width", "64", "--height", "1", "--kernel", "keys", "-o", "made.json"]);
     assert_eq!(made.code, Some(0), "{}", made.stderr);
-    // In the middle row nothing is stretched.
+    // The only row lies on the axis, so its own factor is 1.
     folder.write("tables.json", folder.text("made.json").replace("16777216", "14648488"));
     for how in ways {
         let call = ["correct", "in.pgm", "--tables", "tables.json", "-o", "out.pgm", "--overwrite"];
@@ -197,14 +197,14 @@ fn orientation(file: &[u8]) -> u16 {
     entries.filter(|&entry| short(entry) == 274).map(|entry| short(entry + 8)).next().unwrap()
 }
 
-/// `file` of the TIFF family with another orientation.
+/// `file`, of the TIFF family, with another orientation.
 fn turned(mut file: Vec<u8>, orientation: u8) -> Vec<u8> {
     let entry = file.windows(8).position(|bytes| bytes == [18, 1, 3, 0, 1, 0, 0, 0]).unwrap();
     file[entry + 8] = orientation;
     file
 }
 
-/// By hand: the upper half of the scene is bright in a camera that hangs upside down, and so is at the bottom of what it reads out.
+/// By hand: a camera that hangs upside down reads out the bright upper half of the scene at the bottom.
 #[test]
 fn what_a_camera_that_hangs_upside_down_has_seen_is_shown_upright() {
     let folder = Folder::new();
@@ -227,7 +227,7 @@ fn what_a_camera_that_hangs_upside_down_has_seen_is_shown_upright() {
     }
 }
 
-/// A camera that hangs upside down: its samples lie as they lay, and a viewer turns them as before.
+/// A camera that hangs upside down: its samples stay in their order, and a viewer turns them as before.
 #[test]
 fn the_orientation_of_a_dng_is_kept() {
     let folder = Folder::new();

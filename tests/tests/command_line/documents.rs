@@ -1,4 +1,4 @@
-//! What --json prints: one shape for the results and the errors of every command, as the schema says.
+//! What --json prints: one shape for the results and errors of every command, which the schema defines.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -128,7 +128,7 @@ fn the_schema_refuses_a_document_with_a_key_that_it_does_not_know() {
     assert_valid(&said);
 }
 
-/// The board may be null, too.
+/// The board may also be null.
 #[test]
 #[should_panic(expected = "('moon' was unexpected) at /board")]
 fn a_key_that_the_schema_of_the_board_does_not_know_is_named() {

@@ -1,4 +1,4 @@
-//! `halfrow explain`, and where people meet the codes that it explains.
+//! `halfrow explain`, and where users meet the codes that it explains.
 
 use std::collections::BTreeSet;
 
@@ -37,7 +37,7 @@ fn every_code_is_explained() {
     }
 }
 
-/// Verdicts and acts as runs on broken boards show them.
+/// Verdicts and remedies are those that runs on broken boards show.
 #[test]
 fn an_explanation_is_that_of_the_run_that_had_the_code() {
     let run = halfrow(small("verify", &["--json", "--board", "mock,fault=stuck-data,bit=5,value=1"])).json();
@@ -62,7 +62,7 @@ fn verdicts_checks_and_faults_are_explained_too() {
     let faults: Vec<_> =
         faults["faults"].as_array().unwrap().iter().map(|it| it["name"].as_str().unwrap()).collect();
     for (of, words) in [("verdict", vec!["PASS", "FAIL", "ERROR"]), ("check", checks), ("fault", faults)] {
-        // A code may be called alike: the defect `tap-offset`, and `rules` as what may be left out.
+        // A code may have the same name: the defect `tap-offset`, and `rules` as a part that is left out.
         let (own, alike): (Vec<_>, Vec<_>) = explained(&words).into_iter().partition(|it| it["of"] == of);
         let codes: Vec<_> = own.iter().map(|it| it["code"].as_str().unwrap()).collect();
         assert_eq!(codes, words);
@@ -78,7 +78,7 @@ fn verdicts_checks_and_faults_are_explained_too() {
     }
 }
 
-/// What stands at the left of a PASS with limits, of a FAIL, of a soak and of a simulated board.
+/// The words at the left of a PASS with limits, of a FAIL, of a soak and of a simulated board.
 #[test]
 fn every_word_at_the_left_of_a_result_is_explained() {
     let runs = [
@@ -104,7 +104,7 @@ fn every_word_at_the_left_of_a_result_is_explained() {
     }
 }
 
-/// The first words of a result's lines, but of its head, of its table of frames and of what goes on below another.
+/// The first words of a result's lines, without its head, its table of frames and continued lines.
 fn words_at_the_left(text: &str) -> Vec<String> {
     let labelled = text.lines().skip(1).filter(|line| !line.starts_with(' '));
     labelled
@@ -121,7 +121,7 @@ fn a_pass_names_the_codes_of_what_it_leaves_open() {
     assert!(explained(&codes).iter().any(|it| it["of"] == "not-exercised"), "{codes:?}");
 }
 
-/// A finding with another suspect asks for something else.
+/// A finding with another suspect has another remedy.
 #[test]
 fn what_an_example_s_suspect_asks_for_is_said_to_be_the_example_s() {
     for it in explained(&["samples-differ", "table-reads-wrong", "differs-at-speed"]) {
@@ -156,7 +156,7 @@ fn an_unknown_code_is_answered_with_those_that_are_like_it() {
     assert_eq!(halfrow(["explain"]).code, Some(2));
 }
 
-/// Those for fish have no values of arguments that stand alone.
+/// Fish's completions have no values for positional arguments.
 #[test]
 fn completions_know_the_codes() {
     for shell in ["bash", "zsh"] {

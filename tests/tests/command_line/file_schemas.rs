@@ -12,7 +12,7 @@ fn schema(text: &str) -> Validator {
     jsonschema::validator_for(&serde_json::from_str(text).unwrap()).unwrap()
 }
 
-/// A file that the program makes of a small frame.
+/// A file that the program makes for a small frame.
 fn made(more: &[&str]) -> Value {
     let folder = Folder::new();
     let call = ["tables", "--width", "64", "--height", "16", "--radius", "40", "-o", "made.json"];
@@ -21,7 +21,7 @@ fn made(more: &[&str]) -> Value {
     serde_json::from_slice(&folder.read("made.json")).unwrap()
 }
 
-/// Sets the value at `pointer`, or removes it for `null`; schema and program must both refuse the file then.
+/// Sets the value at `pointer`, or removes it for `null`; then both schema and program must refuse the file.
 #[track_caller]
 fn both_refuse<T>(
     schema: &Validator,

@@ -1,4 +1,4 @@
-//! `--projection exact`: tables that are a grid of factors, and boards that take them or do not.
+//! `--projection exact`: tables that are a grid of factors, and boards that do or do not take them.
 
 use std::path::PathBuf;
 
@@ -7,14 +7,14 @@ use serde_json::Value;
 
 use crate::refused;
 
-/// Small frames, and a lens whose image circle is larger.
+/// Small frames, and a lens with a larger image circle.
 const SMALL: [&str; 6] = ["--width", "192", "--height", "48", "--radius", "130"];
 
 fn exact<'a>(command: &[&'a str]) -> Vec<&'a str> {
     [command, &SMALL, &["--projection", "exact"]].concat()
 }
 
-/// What `verify` says of this board.
+/// The report of `verify` on this board.
 #[track_caller]
 fn judged(folder: &Folder, board: &str, tables: &[&str], code: i32) -> Value {
     let call = [&["verify", "--json", "--quiet", "--board", board], tables].concat();
@@ -29,7 +29,7 @@ fn a_board_is_judged_behind_a_grid() {
     let tables = exact(&[]);
     let said = judged(&folder, "mock", &tables, 0);
     assert!(said["tables"]["source"].as_str().unwrap().contains("(exact projection, v = "), "{said}");
-    // Rows that follow each other, and frames at the full pixel clock.
+    // Streamed frames, and frames at the full pixel clock.
     let passed = |check: &str| {
         said["checks"]
             .as_array()
@@ -45,7 +45,7 @@ fn a_board_is_judged_behind_a_grid() {
     );
 }
 
-/// In a frame of fewer rows the entries of a grid lie otherwise, so that parts of frames would be refused.
+/// In a frame of fewer rows a grid's entries have other places, so parts of frames would be refused.
 #[test]
 fn frames_behind_a_grid_are_whole_within_a_time() {
     let folder = Folder::new();
@@ -57,7 +57,7 @@ fn frames_behind_a_grid_are_whole_within_a_time() {
     refused(&folder, &exact(&["verify", "--board", "mock,speed=20000", "--within", "1"]), "give at least");
 }
 
-/// Tables by turns, of which each has its shape from a commit.
+/// Two tables take turns, each with its shape from a commit.
 #[test]
 fn a_board_is_soaked_behind_a_grid() {
     let folder = Folder::new();
@@ -141,13 +141,13 @@ fn what_each_projection_leaves_is_told() {
     );
     assert!(told["map"]["brightest_px"].as_f64().unwrap() < 0.1, "the map is of what was asked for: {told}");
     assert_eq!(told["rows"], "exact");
-    // A frame of 192 x 48 whose circle has the radius 130 ends within 85 degrees.
+    // A frame of 192 x 48 whose circle has a radius of 130 ends within 85 degrees.
     let left = &told["residual_px"];
     assert_eq!(
         (&left["share_beyond_90_degrees"], &left["parts"]["exact"]["rim"]["max"]),
         (&0.0.into(), &0.0.into())
     );
-    // One that is as wide as the circle and as high has the rim in it.
+    // One as wide and as high as the circle has the rim in it.
     let whole = ["--width", "260", "--height", "260", "--radius", "130"];
     let told = folder.halfrow([&["lens", "--json"], &whole[..]].concat()).json();
     let left = &told["residual_px"];
@@ -157,7 +157,7 @@ fn what_each_projection_leaves_is_told() {
     assert!(text.contains("rim max") && text.contains("level lines bend as before"), "{text}");
 }
 
-/// A grid goes on where the exact projection ends, so that none of its rows is as it was.
+/// The grid is extended beyond the end of the exact projection, so none of its rows is left as it was.
 #[test]
 fn a_lens_that_misses_the_frame_gives_no_grid_either() {
     let folder = Folder::new();
@@ -166,7 +166,7 @@ fn a_lens_that_misses_the_frame_gives_no_grid_either() {
     for call in [&["tables", "-o", "x.json"][..], &["lens"], &["verify", "-q"]] {
         refused(&folder, &[call, &far].concat(), "48 of 48 rows lie outside the image circle");
     }
-    // Of the |y| of 0.5 to 23.5 six on either side are above 18.
+    // Of the |y| from 0.5 to 23.5, six on either side are above 18.
     let high = ["--width", "192", "--height", "48", "--radius", "18"];
     let told = |more: &[&str]| {
         let call = [&["tables", "-o", "t.json", "--overwrite"], &high[..], more].concat();
@@ -183,7 +183,7 @@ fn a_lens_that_misses_the_frame_gives_no_grid_either() {
     );
 }
 
-/// The largest error is that of the inner picture or that of the rest, and none is larger, whatever counts as image circle.
+/// The largest error is the largest of the inner part or of the rest, wherever the image circle ends.
 #[test]
 fn the_parts_of_what_is_left_are_parts_of_it() {
     let lens =
@@ -203,7 +203,7 @@ fn the_parts_of_what_is_left_are_parts_of_it() {
     }
 }
 
-/// A board has several datapaths, and a run judges by one.
+/// A board may have several datapaths, but a run judges by one.
 #[test]
 fn the_board_s_identity_names_the_datapath_that_it_is_judged_by() {
     for (call, datapath) in [(exact(&["verify", "-q"]), 2), ([&["verify", "-q"], &SMALL[..]].concat(), 1)] {

@@ -1,4 +1,4 @@
-//! The hashes of files that were read.
+//! The hashes of the files that a run has read.
 
 use std::process::Command;
 
@@ -6,7 +6,8 @@ use halfrow_tests::program::{Folder, finish};
 
 use crate::small;
 
-/// Whether `call` opens `file` once: what replaces it between two times would be named by a hash that is not that of what was judged.
+/// Asserts that `call` opens `file` only once: if the file were replaced between two times, the hash would not be that of what
+/// was judged.
 #[track_caller]
 fn opens_once(folder: &Folder, call: &[&str], file: &str) {
     let line = "exec strace -f -qq -e trace=open,openat -o opened \"$@\"";

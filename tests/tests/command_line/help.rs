@@ -4,7 +4,7 @@ use std::process::{Command, Stdio};
 
 use halfrow_tests::program::{Folder, halfrow};
 
-/// All commands, and how each one's help begins.
+/// All commands, and how the help of each begins.
 const COMMANDS: [(&str, &str); 21] = [
     ("verify", "Judge a board"),
     ("soak", "Judge a board for hours"),
@@ -63,7 +63,7 @@ fn the_page_of_commands_shows_what_the_command_line_takes() {
     assert!(page.contains("the lens options make the tables. With it, options that make tables are refused"));
 }
 
-/// Each is refused there.
+/// `frames` refuses each of them.
 #[test]
 fn the_help_of_frames_names_no_option_of_tables() {
     let help = halfrow(["frames", "--help"]).stdout;
@@ -74,7 +74,7 @@ fn the_help_of_frames_names_no_option_of_tables() {
     assert!(help.contains("--radius"), "{help}");
 }
 
-/// What each command does without `--board`.
+/// Whether the help of each command names the mock as its default board.
 #[test]
 fn the_board_s_default_is_that_of_the_command() {
     for (command, default) in [("verify", true), ("soak", true), ("info", true), ("correct", false)] {

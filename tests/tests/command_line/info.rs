@@ -1,11 +1,11 @@
-//! What `info` says of a board.
+//! What `info` prints about a board.
 
 use halfrow_mock::Options;
 use halfrow_pipe::BoardOptions as _;
 use halfrow_tests::program::halfrow;
 use serde_json::json;
 
-/// The reply to its closing RESET among them: a session that is lost is closed.
+/// Any of its replies may be lost, even the one to the closing RESET: a session that is unknown is closed.
 #[test]
 fn a_board_is_told_of_whatever_reply_is_lost() {
     for packet in 1..10 {
@@ -16,7 +16,7 @@ fn a_board_is_told_of_whatever_reply_is_lost() {
     }
 }
 
-/// The page has a line for each line in front of the counters, in order.
+/// The page has a row for each line before the counters, in order.
 #[test]
 fn the_page_of_capabilities_has_every_line() {
     let page = include_str!("../../../docs/capabilities.md");

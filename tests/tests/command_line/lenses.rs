@@ -1,6 +1,6 @@
 //! `--lens`: lens files from calibration programs, on every command that makes tables, and `lens` itself.
 //!
-//! Expected numbers are of NumPy 2.4.6 and SciPy 1.17.1 (`linprog`), from the definitions.
+//! Expected numbers were computed with NumPy 2.4.6 and SciPy 1.17.1 (`linprog`) from the definitions.
 
 use std::path::PathBuf;
 
@@ -9,13 +9,13 @@ use serde_json::Value;
 
 use crate::refused;
 
-/// The path of a lens file that the tests of the reader have.
+/// The path of a lens file of the lens reader's own tests.
 fn lens(name: &str) -> String {
     let files = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../host/judge/tests/lenses/files");
     files.join(name).display().to_string()
 }
 
-/// A folder with the measured lens in it, 752 x 480.
+/// A folder with a measured lens in it, for pictures of 752 x 480.
 fn folder() -> Folder {
     let folder = Folder::new();
     folder.write("dsl215.txt", std::fs::read(lens("dsl215.txt")).unwrap());
@@ -136,7 +136,7 @@ fn refused_map(folder: &Folder) {
     refused(folder, &["lens", "--lens", "dsl215.txt", "--map", "left.txt"], "left.txt must be a PNG");
 }
 
-/// The same lens on the paper's sensor, whose pixels have 2.2 µm, not 6.
+/// The same lens on the paper's sensor, whose pixels measure 2.2 µm instead of 6.
 #[test]
 fn a_lens_moves_to_another_sensor_by_its_pixel_pitch() {
     let call = [
@@ -202,8 +202,8 @@ fn a_call_that_names_two_lenses_or_none_that_fits_is_refused() {
     both(["--rows", "fitted"]);
 }
 
-/// A lens on pixels twice as high as wide: y is 1, 3, … 99 widths of a pixel, and R = 80/π · π/2 = 40, so 30 rows on either side
-/// are outside. By R alone it were 10.
+/// A lens on pixels twice as high as wide: in widths of a pixel |y| is 1, 3, … 99, and R = 80/π · π/2 = 40, so 30 rows on either
+/// side are outside. With R in heights of a pixel it would be 10.
 #[test]
 fn rows_outside_the_image_circle_are_those_of_the_lens_file() {
     let folder = Folder::new();
@@ -223,7 +223,7 @@ fn rows_outside_the_image_circle_are_those_of_the_lens_file() {
     assert_eq!(outside(&["--tables", "high.json"]), Value::Null);
 }
 
-/// A calibration's file with these keys more, of OpenCV's fisheye model with f = `focal`.
+/// Writes a calibration file with additional keys `more`, of OpenCV's fisheye model with f = `focal`.
 fn calibration(folder: &Folder, focal: &str, more: &str) {
     let matrix = format!("\"K\":[[{focal},0,31.5],[0,{focal},8],[0,0,1]],\"D\":[0,0,0,0]");
     folder.write("lens.json", format!("{{{matrix}{more}}}"));
@@ -249,12 +249,12 @@ fn a_calibration_without_a_picture_size_needs_one() {
         let ended = folder.halfrow([&["lens"], &lens[..], more].concat());
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     }
-    // ROS's drivers write 0 x 0 for what they do not know.
+    // ROS's drivers write 0 x 0 when they do not know the size.
     calibration(&folder, "40", ",\"width\":0,\"height\":0");
     refused(&folder, &["lens", "--lens", "lens.json"], sentence);
 }
 
-/// f is 1000 pixels: 90 degrees are at 1000 · π/2, and 100 at 1000 · 10π/18.
+/// f is 1000 pixels: 90 degrees are at 1000 · π/2, and 100 degrees at 1000 · 10π/18.
 #[test]
 fn a_radius_of_another_angle_than_90_degrees_says_so() {
     let folder = Folder::new();
@@ -315,7 +315,7 @@ fn long_numbers_are_told_in_short() {
     }
 }
 
-/// The window of taps must be there: the model says which row cannot have it.
+/// The window of taps must exist: the model says for which row it does not.
 #[test]
 fn a_centre_that_no_board_can_do_is_refused_by_the_tables() {
     let (folder, path) = (Folder::new(), lens("opencv-4.10.yml"));
@@ -327,10 +327,10 @@ fn a_centre_that_no_board_can_do_is_refused_by_the_tables() {
     assert!(said["illegal"].as_str().unwrap().contains("needs samples"), "{}", said["illegal"]);
 }
 
-/// Degrees of the verticals in the picture, and where the lens images each on the horizon, in pixels from its axis.
+/// The verticals in the picture: their degrees, and where the lens images each of them on the horizon, in pixels from its axis.
 const VERTICALS: [(f64, f64); 4] = [(10.0, 45.2), (30.0, 134.8), (50.0, 223.7), (70.0, 309.2)];
 
-/// How far from a vertical's place on the horizon it is looked for, in pixels: less than half of the way to the next.
+/// How far around its place on the horizon a vertical is searched for, in pixels: less than half of the way to the next.
 const REACH: f64 = 40.0;
 
 /// Vertical lines in the scene as the lens images them: OCamCalib's cam2world, written out.
@@ -353,7 +353,7 @@ fn photograph() -> Vec<u8> {
     picture
 }
 
-/// The root mean square of how far the verticals of a picture are from straight, in pixels.
+/// The root mean square of the deviations of a picture's verticals from straight lines, in pixels.
 fn bend(picture: &[u8]) -> f64 {
     let samples = &picture[picture.len() - 2 * 752 * 480..];
     let light = |row: usize, column: usize| {
@@ -378,7 +378,7 @@ fn bend(picture: &[u8]) -> f64 {
     (places.map(variance).sum::<f64>() / (2 * VERTICALS.len()) as f64).sqrt()
 }
 
-/// From the positions of the lines in NumPy and the factors of `linprog`: 3.447 px with Eq. 9 and 2.070 px with fitted rows.
+/// From the lines' positions in NumPy and the factors of `linprog`: 3.447 px with Eq. 9 and 2.070 px with fitted rows.
 #[test]
 fn verticals_photographed_by_the_lens_come_out_straighter_with_fitted_rows() {
     let folder = folder();

@@ -1,4 +1,4 @@
-//! `halfrow load`, with programs in openFPGALoader's place.
+//! `halfrow load`, with scripts in the place of openFPGALoader.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,21 +11,21 @@ use halfrow_tests::program::{Ended, Folder, Running, finish, halfrow};
 use halfrow_tests::served::Served;
 use serde_json::{Value, json};
 
-/// What openFPGALoader 0.10 says without a board, each line on the stream that it uses.
+/// What openFPGALoader 0.10 prints without a board, each line on the stream that it uses.
 const NO_BOARD: &str = "echo 'JTAG init failed with: unable to open ftdi device'; \
                         echo 'unable to open ftdi device: -3 (device not found)' >&2; exit 1";
-/// One that works, and notes what it was called with.
+/// A loader that works, and notes its arguments.
 const WORKS: &str = r#"printf '%s\n' "$@" >called; printf 'Loading: 40%%\rLoading: 100%%\nDone\n'"#;
-/// One that hangs with a child, whose number it notes whole.
+/// A loader that hangs with a child, whose process id it has completely written.
 const HANGS: &str = "sleep 1000 & echo $! >id; mv id child; echo started >&2; wait";
 
-/// One that works, and leaves a program behind that is of no group of its own and never stops talking.
+/// A loader that works, and leaves a program behind that is in no group with it and never stops printing.
 const LEAVES: &str = "setsid sh -c 'echo >left; exec yes progress' & until [ -e left ]; do sleep 0.01; done";
 
-/// A folder with `bin/openFPGALoader`, which does this.
+/// A folder with a `bin/openFPGALoader` that runs `script`.
 fn with_loader(script: &str) -> Folder {
     let folder = Folder::new();
-    // What is written by a process of its own is open in no other when it is started.
+    // Written by another process, so that no process started by other tests has the file open when it is run.
     let put = "mkdir bin; printf '#!/bin/sh\\n%s\\n' \"$1\" >bin/openFPGALoader; chmod +x bin/openFPGALoader";
     let mut shell = Command::new("sh");
     shell.current_dir(folder.path()).args(["-ec", put, "sh", script]);
@@ -38,7 +38,7 @@ fn repository() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// Has the build scripts' own program write what is known of `top.bit`.
+/// Lets the build scripts' own program write the record of `top.bit`.
 fn recorded(folder: &Folder, board: &str, build: &str) {
     let mut record = Command::new(repository().join("fpga/boards/record"));
     record.current_dir(folder.path()).args(["top.bit", board, "xc6slx25", "fifo", build, "ISE 14.7"]);
@@ -46,7 +46,7 @@ fn recorded(folder: &Folder, board: &str, build: &str) {
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
 }
 
-/// The command in a folder whose `bin` comes first on the path.
+/// `halfrow load` in a folder whose `bin` comes first on the path.
 fn command(folder: &Folder, arguments: &[&str]) -> Command {
     let mut command = folder.command(["load"].into_iter().chain(arguments.iter().copied()));
     let bin = folder.path().join("bin");
@@ -58,7 +58,7 @@ fn load(folder: &Folder, arguments: &[&str]) -> Ended {
     finish(&mut command(folder, arguments))
 }
 
-/// A call that must end with `code` and this code of an error.
+/// Runs a call that must end with the exit code `code` and the error code `error`; returns the error.
 #[track_caller]
 fn refused(folder: &Folder, arguments: &[&str], code: i32, error: &str) -> Value {
     let ended = load(folder, &[arguments, &["--json"]].concat());
@@ -67,14 +67,14 @@ fn refused(folder: &Folder, arguments: &[&str], code: i32, error: &str) -> Value
     said["error"].clone()
 }
 
-/// The build of the mock board, as the board tells it.
+/// The build that the mock board reports.
 fn build_of_the_mock() -> String {
     halfrow(["info", "--json"]).json()["board"]["identity"]["build"].as_str().unwrap().to_owned()
 }
 
 fn is_running(id: &str) -> bool {
     let state = fs::read_to_string(format!("/proc/{id}/stat")).unwrap_or_default();
-    // One whose parent did not look after it yet has ended, too.
+    // A process whose parent has not waited for it yet has ended, too.
     state.rsplit(')').next().is_some_and(|rest| !rest.is_empty() && !rest.trim_start().starts_with('Z'))
 }
 
@@ -202,7 +202,7 @@ fn without_a_loader_it_is_told_how_to_get_one_and_how_to_load_by_hand() {
 fn a_loader_that_hangs_is_killed_at_the_deadline_with_all_that_it_started() {
     let folder = with_loader(HANGS);
     recorded(&folder, "ulx3s", "00000001");
-    // A busy machine may take longer to start it than it may take in all.
+    // A busy machine may need longer just to start it.
     let begun = ["1", "8", "64"].into_iter().any(|deadline| {
         let error = refused(&folder, &["top.bit", "--deadline", deadline], 3, "loader-late");
         let begun = folder.path().join("child").exists();
@@ -222,7 +222,7 @@ fn a_program_that_a_loader_leaves_behind_cannot_talk_for_ever() {
     assert_eq!(ended.code, Some(0));
 }
 
-/// Whoever starts it may want to hear nothing of its own children.
+/// Whoever starts the program may ignore the signals of child processes.
 #[test]
 fn a_loader_s_end_is_known_where_signals_of_children_are_ignored() {
     let folder = with_loader(WORKS);
@@ -243,7 +243,7 @@ fn a_board_that_is_silent_is_waited_for_no_longer_than_the_deadline() {
     let target = format!("tcp:{}", silent.local_addr().unwrap());
     let call = ["top.bit", "--board", &target, "--deadline", "1", "--json"];
     let code = || load(&folder, &call).json()["error"]["code"].clone();
-    // A busy machine may take longer to start a loader than that.
+    // A busy machine may need longer than that to start a loader.
     let code = (0..20).map(|_| code()).find(|code| code != "loader-late");
     assert_eq!(code, Some("run-too-long".into()));
 }
@@ -272,7 +272,7 @@ fn a_signal_ends_the_loader_too() {
     wait_until("the loader's child to end", || !is_running(child.trim()));
 }
 
-/// The boards' names in the repository.
+/// The names of the boards in the repository.
 fn folders() -> BTreeSet<String> {
     let boards = fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../fpga/boards")).unwrap();
     let folders = boards.map(Result::unwrap).filter(|entry| entry.path().is_dir());
@@ -290,6 +290,6 @@ fn the_boards_that_have_bitstreams_are_listed_with_what_to_load() {
     for board in boards {
         assert!(text.contains(&format!("halfrow load {}", board["bitstream"].as_str().unwrap())), "{text}");
     }
-    // A list of some targets says nothing of others.
+    // A list of given targets says nothing about others.
     assert_eq!(halfrow(["boards", "mock", "--json"]).json()["bitstreams"], json!([]));
 }

@@ -1,10 +1,10 @@
-//! `tables` and `frames`: what they write, and that `verify` takes it.
+//! `tables` and `frames`: what they write, and that `verify` accepts it.
 
 use halfrow_tests::program::{Folder, halfrow};
 
 use crate::{refused, small};
 
-/// Row factors of the paper's system that a program outside this project computed.
+/// Row factors of the paper's system, computed by a program that is not part of this project.
 const FIRST_FACTOR: u32 = 14_648_698;
 const MIDDLE_FACTOR: u32 = 16_777_214;
 
@@ -24,7 +24,7 @@ fn the_paper_s_table_file_holds_the_golden_factors() {
     assert_eq!((&file["datapath"], &file["centre2"]), (&1.into(), &1919.into()));
 }
 
-/// CRC-32 of the factors and of each kernel, also from the outside program.
+/// CRC-32 of the factors and of each kernel, also by that program.
 #[test]
 fn what_is_uploaded_has_the_golden_checksums() {
     for (kernel, crc) in [("hermite", "16e29b0f"), ("keys", "54f5e990")] {
@@ -81,7 +81,7 @@ fn written_frames_are_what_they_are_called() {
     }
 }
 
-/// The samples of a PGM of 128 columns and 16 bits, from `row` on.
+/// The samples of a PGM of 128 columns with 16 bits each, from `row` on.
 fn samples_from(folder: &Folder, name: &str, row: usize) -> Vec<i32> {
     let bytes = folder.read(name);
     let head = bytes.split(|&byte| byte == b'\n').take(3).map(|line| line.len() + 1).sum::<usize>();
@@ -89,7 +89,8 @@ fn samples_from(folder: &Folder, name: &str, row: usize) -> Vec<i32> {
     samples.map(|&sample| u16::from_be_bytes(sample).into()).collect()
 }
 
-/// Of a frame of 32 rows, whose axis is in row 15.5, the rows from 12 on are a frame whose axis is in row 3.5, but for the noise.
+/// In a frame of 32 rows with the axis in row 15.5, the rows from 12 on equal a frame with the axis in row 3.5, except for the
+/// noise.
 #[test]
 fn the_street_is_seen_about_the_axis_wherever_that_is() {
     let lens = |centre: f64, rows: u32| {

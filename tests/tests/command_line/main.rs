@@ -52,7 +52,7 @@ fn small<'a>(command: &'a str, more: &[&'a str]) -> Vec<&'a str> {
     [command].into_iter().chain(SMALL).chain(more.iter().copied()).collect()
 }
 
-/// Runs a call that is wrong. It must end with `code`, say `sentence` on stderr, print nothing, and write nothing.
+/// Runs a wrong call. It must end with `code`, print `sentence` on stderr and nothing on stdout, and write nothing.
 #[track_caller]
 fn refused_with(code: i32, folder: &Folder, arguments: &[&str], sentence: &str) -> Ended {
     let before = folder.names(".");
@@ -64,7 +64,7 @@ fn refused_with(code: i32, folder: &Folder, arguments: &[&str], sentence: &str) 
     ended
 }
 
-/// [`refused_with`] the exit code of wrong usage.
+/// Like [`refused_with`], with the exit code of wrong usage.
 #[track_caller]
 fn refused(folder: &Folder, arguments: &[&str], sentence: &str) {
     refused_with(2, folder, arguments, sentence);

@@ -1,4 +1,4 @@
-//! Where a wrong value comes from: what the environment or the settings file says is not told as the call's.
+//! Where a wrong value comes from: a value of the environment or the settings file is not called the command line's.
 
 use halfrow_tests::program::{Ended, Folder, finish};
 
@@ -6,7 +6,7 @@ use crate::{refused, small};
 
 const FILE: &str = "settings.toml";
 
-/// Every variable that `verify` reads beside [`FILE`]'s.
+/// All variables that `verify` reads besides [`FILE`]'s.
 const VARIABLES: [&str; 14] = [
     "HALFROW_MODEL_PATH",
     "HALFROW_BOARD",
@@ -28,7 +28,7 @@ fn with_variable(folder: &Folder, (name, value): (&str, &str), more: &[&str]) ->
     finish(folder.command(small("verify", more)).env(name, value))
 }
 
-/// The call is refused by the name of the variable, for this `reason`.
+/// The call is refused, naming the variable and this `reason`.
 #[track_caller]
 fn blames_it(folder: &Folder, variable: (&str, &str), more: &[&str], reason: &str) {
     let ended = with_variable(folder, variable, more);
@@ -38,7 +38,7 @@ fn blames_it(folder: &Folder, variable: (&str, &str), more: &[&str], reason: &st
     }
 }
 
-/// As CI files unset a variable.
+/// CI files unset a variable this way.
 #[test]
 fn an_empty_variable_is_none() {
     let folder = Folder::new();
@@ -58,7 +58,7 @@ fn an_empty_variable_is_none() {
     assert!(help.stdout.contains("[env: HALFROW_TIMEOUT=]"), "{}", help.stdout);
 }
 
-/// Each is right by itself, and beside what else was given it is not.
+/// Each is right by itself, but not together with the rest of the call.
 #[test]
 fn a_value_of_the_environment_that_does_not_fit_is_told_as_the_variable_s() {
     let folder = Folder::new();
@@ -124,7 +124,7 @@ fn a_wrong_value_of_the_settings_file_is_told_with_the_file_and_the_key() {
     assert!(!ended.stderr.contains("settings file"), "{}", ended.stderr);
 }
 
-/// Programs find the same sentence, and the code of the reason.
+/// The document has the same sentence, and the code of the reason.
 #[test]
 fn json_names_the_place_and_keeps_the_reason_s_code() {
     let folder = Folder::new();
