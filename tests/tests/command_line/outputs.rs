@@ -1,4 +1,4 @@
-//! What is in an output's way is found before a board is opened or anything is computed, and stays as it was.
+//! What is in an output's way is found before a board is opened or anything is computed, and is left as it was.
 
 use std::fs;
 use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _, chown, symlink};
@@ -11,10 +11,10 @@ use halfrow_tests::program::{Folder, finish};
 
 use crate::{refused, small};
 
-/// A board that would end a run with another code than a refusal's.
+/// A board on which a run would end with another code than that of a refusal.
 const DEAD: &str = "mock,fault=disconnect,byte=0";
 
-/// A call of every command that writes, and where it would write a file.
+/// A call of every command that writes, and a file that it would write.
 fn calls() -> Vec<(Vec<&'static str>, &'static str)> {
     vec![
         (small("verify", &["--board", DEAD, "--record", "run.rec"]), "run.rec"),
@@ -33,10 +33,10 @@ fn calls() -> Vec<(Vec<&'static str>, &'static str)> {
     ]
 }
 
-/// Puts something at a place.
+/// Puts something in the place of an output.
 type Make = fn(&Path);
 
-/// A folder with what is wanted at `place`, and with a picture that `kernel train` could begin with.
+/// A folder in which `make` has put something at `place`, and with a picture that `kernel train` could begin with.
 fn folder_with(place: &str, make: impl Fn(&Path)) -> Folder {
     let folder = Folder::new();
     folder.write("a.png", "no picture");
@@ -52,7 +52,7 @@ fn a_file_that_is_there_is_replaced_by_request_alone() {
         let folder = folder_with(place, |path| fs::write(path, "precious").unwrap());
         refused(&folder, &call, &format!("{place} exists; allow it to be overwritten (--overwrite)"));
         assert_eq!(folder.text(place), "precious", "{call:?}");
-        // A folder is named where the call named one.
+        // Where the call named a folder, the message speaks of a folder.
         let named = if place.contains('/') || call.contains(&"frames") { "folder" } else { "file" };
         refused(&folder, &call, &format!("or name another {named}"));
     }
@@ -88,7 +88,7 @@ fn what_is_no_regular_file_is_never_replaced() {
     for (sentence, make) in makers {
         for (call, place) in calls() {
             let folder = folder_with(place, make);
-            // A folder is a place for frames.
+            // For these commands a folder is a valid output.
             if call[0] == "correct" && folder.path().join(place).is_dir() && !place.contains('/') {
                 continue;
             }
@@ -121,7 +121,7 @@ fn a_folder_that_takes_no_files_is_found_at_once() {
             refused(&folder, &call, "folder");
         }
     }
-    // A folder that can be made is no fault.
+    // A folder that can still be made is no error.
     let calls: [&[&str]; 4] = [
         &["frames", "-o"],
         &["correct", "builtin:black", "--model", "-o"],
@@ -146,7 +146,7 @@ fn a_report_s_place_is_no_link_and_no_file() {
     refused(&folder, &call, "it is no folder");
 }
 
-/// Writes files that can be read: frames, tables, a kernel, a lens, settings, and a recording.
+/// A folder with readable files: frames, tables, a kernel, a lens, settings, and a recording.
 fn inputs() -> Folder {
     let folder = Folder::new();
     let made = |call: Vec<&str>| assert_eq!(folder.halfrow(call.iter().copied()).code, Some(0), "{call:?}");
@@ -209,7 +209,7 @@ fn an_input_is_never_overwritten() {
     }
 }
 
-/// Neither can exFAT, nor some file systems of a network.
+/// Neither exFAT has them, nor some network file systems.
 #[test]
 fn a_file_system_without_renames_to_new_names_and_without_links_takes_files() {
     let folder = Folder::new();
@@ -221,8 +221,8 @@ fn a_file_system_without_renames_to_new_names_and_without_links_takes_files() {
     assert_eq!(folder.names("."), ["a.pgm"]);
 }
 
-/// What rename(2) and fsync(2) leave to the caller: what has its name before its bytes are on the disk may be empty after a
-/// power cut, and a name that is not on the disk may be gone.
+/// What rename(2) and fsync(2) leave to the caller: a file that gets its name before its bytes are on the disk may be empty after
+/// a power cut, and a name that is not on the disk may be gone.
 #[test]
 fn outputs_are_on_the_disk_before_their_names_are_and_their_names_at_the_end() {
     let folder = Folder::new();
@@ -252,7 +252,7 @@ fn outputs_are_on_the_disk_before_their_names_are_and_their_names_at_the_end() {
     }
 }
 
-/// Of what nobody can give to the group that it was of, the other group may read what everybody may.
+/// When the file cannot be given to the group that it had, the other group may read only what everybody may.
 #[test]
 fn a_file_that_comes_to_another_group_is_open_to_nobody_more() {
     if !is_root() {

@@ -6,14 +6,14 @@ use serde_json::{Value, json};
 
 use crate::{refused, refused_with};
 
-/// The report of a run with these arguments, which must end with `code`.
+/// The report and output of a run with these arguments, which must end with `code`.
 #[track_caller]
 fn made(folder: &Folder, code: i32, arguments: &[&str]) -> (Value, String) {
     let call = ["paper", "--quiet", "-o", "out"].iter().chain(arguments).copied();
     let ended = folder.halfrow(call);
     assert_eq!(ended.code, Some(code), "{arguments:?}: {}{}", ended.stdout, ended.stderr);
     let report: Value = serde_json::from_slice(&folder.read("out/paper.json")).unwrap();
-    // Whatever is written was looked at before.
+    // Only files that are checked for in advance are written.
     if !arguments.contains(&"--overwrite") {
         let items = report["items"].as_array().unwrap().iter();
         let items = items.map(|item| item["item"].as_str().unwrap().parse::<Item>().unwrap());
@@ -89,19 +89,19 @@ fn pictures_and_numbers_are_files_and_the_page_stands_alone() {
     assert!(page.contains("Fig. 4(d): the projection of Carroll et al."));
     assert!(!page.contains("src=\"http") && !page.contains("<script"), "the page loads something");
     assert_eq!(page.matches("src=\"data:image/").count(), 12);
-    // Exact columns stay straight; a row of the table is longitude, fisheye, perspective, Mercator, exact.
+    // Exact columns stay straight; the columns of the table are longitude, fisheye, perspective, Mercator, exact.
     let straight = folder.text("out/fig-4.csv");
     assert!(straight.lines().skip(1).all(|line| line.ends_with(",0.000,0.000,0.000")), "{straight}");
 }
 
-/// Where a lens whose circle has the radius 320 around (319.5, 319.5) images a point of the world: r = R · θ / 90°.
+/// Where a lens whose image circle has the radius 320 around (319.5, 319.5) images a point of the world: r = R · θ / 90°.
 fn imaged([u, v, w]: [f64; 3]) -> [f64; 2] {
     let (aside, angle) = (u.hypot(v), u.hypot(v).atan2(w));
     let r = 320.0 * angle / std::f64::consts::FRAC_PI_2;
     [319.5 + r * u / aside, 319.5 + r * v / aside]
 }
 
-/// Two upright edges and a wall's long foot, in a photograph of one's own: the street's, as it was written before.
+/// Two upright edges and a wall's long foot in a photograph of the user's own, which here is the street as written before.
 #[test]
 fn a_photograph_is_shown_by_lines_that_are_marked_in_it() {
     let folder = Folder::new();
@@ -127,7 +127,7 @@ fn a_photograph_is_shown_by_lines_that_are_marked_in_it() {
     };
     let (own, mercator, plane) = (straight("Carroll"), straight("Mercator"), straight("perspective"));
     assert!(own < 1.0 && mercator > 10.0 && plane < 0.01, "{table}");
-    // The same picture, seen by the same lens.
+    // It is the same picture, through the same lens.
     assert_eq!(folder.read("out/fig-4a.png"), folder.read("photograph.png"));
     for (content, said) in [
         ("{}".to_owned(), "is no file of lines"),
@@ -199,7 +199,7 @@ fn a_file_that_has_no_end_is_not_read_to_it() {
     }
 }
 
-/// What was not tried is said where the result is said, which is not green then.
+/// What was not tried is reported next to the result, which is not green then.
 #[test]
 fn a_page_of_which_a_part_was_not_tried_says_so_at_its_head() {
     let folder = Folder::new();
@@ -240,7 +240,7 @@ fn json_is_what_the_folder_holds_and_the_exit_code_stays() {
     );
 }
 
-/// The cells of the rows of a page's table with this head.
+/// The cells of a page's table with this head, row by row.
 fn rows_of_page(page: &str, head: &[&str]) -> Vec<Vec<String>> {
     let cells =
         |line: &str| line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
@@ -248,7 +248,8 @@ fn rows_of_page(page: &str, head: &[&str]) -> Vec<Vec<String>> {
     behind.take_while(|line| line.starts_with('|')).map(cells).collect()
 }
 
-/// That docs/lenses.md has this table, its numbers to one unit of their last digit, since logarithms and sines differ by machines.
+/// Asserts that docs/lenses.md has this table, its numbers within one unit of their last digit, since logarithms and sines differ
+/// between machines.
 #[track_caller]
 fn assert_on_page(table: &Value) {
     let page = include_str!("../../../docs/lenses.md");
@@ -273,8 +274,8 @@ fn assert_on_page(table: &Value) {
     }
 }
 
-/// The bends of the fisheye picture and behind Eq. 9 were computed in NumPy, by bisecting Eq. 4 and OCamCalib's polynomial over the
-/// rows of each edge, with the same medians; Eq. 9's mean over the map, too.
+/// The bends of the fisheye picture and of Eq. 9 were computed in NumPy, by bisecting Eq. 4 and OCamCalib's polynomial over the
+/// rows of each edge, with the same medians; so was Eq. 9's mean over the map.
 #[test]
 fn three_ways_stand_side_by_side_and_bends_are_those_of_the_projections() {
     let folder = Folder::new();
@@ -301,7 +302,7 @@ fn three_ways_stand_side_by_side_and_bends_are_those_of_the_projections() {
     assert!(folder.text("out/verticals-edges.csv").lines().count() == 1 + 8 * 10);
 }
 
-/// What a grid by formula leaves at most was computed in Python, apart from this program: the claims.
+/// The claims, which are the largest errors that a grid by formula leaves, were computed in Python, apart from this program.
 #[test]
 fn what_is_left_per_lens_frame_and_centre_is_what_the_page_of_lenses_says() {
     let folder = Folder::new();

@@ -1,5 +1,5 @@
-//! Photographs on the command line. The BMPs are written here byte by byte; the others are those of `host/frames/tests/photographs`,
-//! which Pillow made.
+//! Photographs on the command line. The BMPs are written here byte by byte; the others are those of
+//! `host/frames/tests/photographs`, made by Pillow.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use halfrow_tests::program::{Folder, finish};
 
 use crate::{refused, small};
 
-/// A BMP of `width` x `height` pixels of one colour, 24 bits each, the lowest row first.
+/// A BMP of `width` x `height` pixels of one colour, 24 bits each, beginning with the lowest row.
 fn bmp(width: u32, height: u32, [red, green, blue]: [u8; 3]) -> Vec<u8> {
     let line = (3 * width).next_multiple_of(4);
     let mut file = b"BM".to_vec();

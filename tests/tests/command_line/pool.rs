@@ -1,11 +1,11 @@
-//! `--board pool:KIND`: a board that several computers share, which the program beside this one leases.
+//! `--board pool:KIND`: a board that several computers share, leased by the program next to this one.
 
 use std::process::Command;
 
 use halfrow_tests::patience::wait_until;
 use halfrow_tests::program::{Folder, Running, command, finish};
 
-/// A folder with a copy of the program, and beside it a script that leases boards.
+/// A folder with a copy of the program, and next to it a script that leases boards.
 fn leased_by(script: &str) -> Folder {
     let folder = Folder::new();
     folder.write("lease", script);
@@ -23,10 +23,10 @@ fn verify(folder: &Folder, board: &str) -> Command {
     call
 }
 
-/// Where a report goes that may take the place of an earlier one.
+/// Where a report goes that may replace an earlier one.
 const INTO: [&str; 3] = ["--report", "out", "--overwrite"];
 
-/// What leases a board, and writes down when it is given back.
+/// A script that leases a board, and records when it is given back.
 const LEASES: &str = r#"#!/bin/sh
 echo "$@" > called
 echo '{"waits":{"before":2,"seconds":0}}'

@@ -37,8 +37,8 @@ fn pixel(image: &RgbImage, row: usize, column: usize) -> &[u8] {
     &image.data[3 * (row * image.width + column)..][..3]
 }
 
-/// By hand, on either side of the edge. In row 7 a blue place has its own 40, greens 100, 100, 100 and 0, and reds 200, 200, 0
-/// and 0; a green place reds 200 and 0. In row 8 a green place has no red beside it, and blues 40 and 0.
+/// By hand, on either side of the edge. In row 7 a blue place has its own 40, greens of 100, 100, 100 and 0, and reds of 200,
+/// 200, 0 and 0; a green place has reds of 200 and 0. In row 8 a green place has no red next to it, and blues of 40 and 0.
 #[test]
 fn missing_colours_are_means_of_their_neighbours() {
     let image = preview(&["--preview-coded"]);
@@ -55,7 +55,7 @@ fn missing_colours_are_means_of_their_neighbours() {
     }
 }
 
-/// The same coded by IEC 61966-2-1, computed in Python: 200, 100, 75, 40 and 20 of 255 become 229, 168, 148, 110 and 79.
+/// The same values coded by IEC 61966-2-1, computed in Python: 200, 100, 75, 40 and 20 of 255 become 229, 168, 148, 110 and 79.
 #[test]
 fn light_is_coded_for_the_screen() {
     let image = preview(&[]);

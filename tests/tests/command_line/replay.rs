@@ -1,4 +1,4 @@
-//! `--record` and `replay:FILE`: the same judgement once more, without the board and without the files.
+//! `--record` and `replay:FILE`: the same judgement again, without the board and without the files.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::{refused, small};
 
-/// Judges a board and records it; `files` are gone by the time that the recording is judged again.
+/// Judges a board and records it; its files are removed before the recording is judged.
 #[track_caller]
 fn both(board: &str, arguments: &[&str], prepare: impl Fn(&Folder) -> Vec<&'static str>) -> [Ended; 2] {
     let folder = Folder::new();
@@ -23,7 +23,7 @@ fn both(board: &str, arguments: &[&str], prepare: impl Fn(&Folder) -> Vec<&'stat
     [first, again]
 }
 
-/// What a run found, without what depends on where the bytes came from.
+/// The results of a run, without what depends on where the bytes came from.
 fn findings(ended: &Ended) -> [Value; 7] {
     let said = ended.json();
     assert!(said.is_object(), "{}", ended.stderr);
@@ -51,7 +51,7 @@ fn no_files(_: &Folder) -> Vec<&'static str> {
     Vec::new()
 }
 
-/// A frame file and a table file.
+/// Makes a frame file and a table file.
 fn frame_and_tables(folder: &Folder) -> Vec<&'static str> {
     assert_eq!(folder.halfrow(small("frames", &["--only", "street", "-o", "."])).code, Some(0));
     assert_eq!(folder.halfrow(small("tables", &["--kernel", "keys", "-o", "lens.json"])).code, Some(0));
@@ -155,7 +155,7 @@ fn what_is_no_recording_is_refused() {
     fs::File::create(folder.path().join("disk.img")).unwrap().set_len(1 << 43).unwrap();
     refused(&folder, &replay("replay:disk.img"), "disk.img is no recording of this version");
     refused(&folder, &replay("replay:head.rec"), "the head of the recording head.rec is damaged");
-    // It would be read until the memory is full.
+    // It would be read until memory is full.
     refused(&folder, &replay("replay:/dev/zero"), "/dev/zero is a pipe or a device");
     refused(&folder, &replay("replay"), "write replay:FILE");
     refused(&folder, &replay("replay:"), "write replay:FILE");
@@ -163,7 +163,7 @@ fn what_is_no_recording_is_refused() {
     refused(&folder, &replay("replay:run.rec,speed=1"), "takes no option");
 }
 
-/// Its frames would fill the memory before any of them was asked for.
+/// Its frames would fill the memory before any of them is asked for.
 #[test]
 fn a_recording_of_more_frames_than_a_run_may_have_is_refused() {
     let folder = Folder::new();
@@ -204,7 +204,7 @@ fn a_recording_that_finds_no_space_is_no_pass_even_if_only_its_end_is_missing() 
     }
 }
 
-/// Whoever has no space for what a run says has a board to be judged all the same.
+/// A user without disk space for the recording still has a board to judge.
 #[cfg(unix)]
 #[test]
 fn a_wrong_board_is_wrong_on_a_full_disk_too() {

@@ -1,4 +1,4 @@
-//! `--report`: all three files or none, and nothing of anybody else's is touched.
+//! `--report`: all three files or none, and files of others are never touched.
 
 use halfrow_tests::program::Folder;
 
@@ -32,7 +32,7 @@ fn a_failure_is_reported_with_its_suspect() {
     assert!(folder.text("out/report.xml").contains("<failure"));
 }
 
-/// Without a suspect there is a line for the technician as well as one for the designer, in each view.
+/// Without a suspect, each view still has a line for the technician and one for the designer.
 #[test]
 fn a_failure_without_a_suspect_says_what_to_do_at_the_bench() {
     let folder = Folder::new();
@@ -52,7 +52,7 @@ fn a_failure_without_a_suspect_says_what_to_do_at_the_bench() {
     }
 }
 
-/// Rows far above the optical centre, which read neither end of what went in: by what came out all of it is right.
+/// Rows far above the optical centre, which read neither end of their input: judging by the output, all of it is right.
 #[test]
 fn a_sample_that_no_output_reads_is_not_the_crc_unit_s_fault_when_it_is_spoilt_on_its_way_in() {
     let spoilt = "mock,fault=spoilt-row,row=0,column=0,bit=5";

@@ -1,4 +1,4 @@
-//! Runs that are sent signals.
+//! Runs that receive signals.
 
 use std::fs::File;
 use std::path::Path;
@@ -9,12 +9,12 @@ use halfrow_tests::program::{Folder, Running};
 /// At 20,000 bytes a second the built-in frames would take an hour.
 pub(crate) const SLOW: &str = "mock,pace=real,speed=20000";
 
-/// Starts `halfrow` in `folder` with every signal as a user's shell leaves it, whatever started the tests.
+/// Starts `halfrow` in `folder` with every signal handled by default, as from a user's shell, whatever started the tests.
 pub(crate) fn started<'a>(folder: &Folder, arguments: impl IntoIterator<Item = &'a str>) -> Running {
     Running::start(&mut folder.by_shell("exec env --default-signal=INT,TERM,HUP \"$@\"", arguments))
 }
 
-/// A run on a slow board that has its session, and so hears signals.
+/// A run on a slow board that has opened its session, and so handles signals.
 pub(crate) fn streaming<'a>(folder: &Folder, arguments: impl IntoIterator<Item = &'a str>) -> Running {
     let call = ["verify", "-vv", "--json", "--board", SLOW];
     let mut running = started(folder, call.into_iter().chain(arguments));
@@ -22,8 +22,8 @@ pub(crate) fn streaming<'a>(folder: &Folder, arguments: impl IntoIterator<Item =
     running
 }
 
-/// A run of `arguments` that stands still where something half written is in `out`. A quick one may write all
-/// that it has between two looks: then it is begun again.
+/// A run of `arguments` that is stopped while something half written is in `out`. A quick run may write everything between two
+/// checks; then it is started again.
 pub(crate) fn stopped_amid(folder: &Folder, arguments: &[&str]) -> Running {
     let out = folder.path().join("out");
     let is_hidden = |name: &str| name.starts_with('.');
@@ -46,7 +46,7 @@ pub(crate) fn stopped_amid(folder: &Folder, arguments: &[&str]) -> Running {
     running
 }
 
-/// The pipe at `path`, which opens when a program reads it.
+/// The write end of the pipe at `path`, once a program reads it.
 pub(crate) fn opened_to_write(path: &Path) -> File {
     let path = path.to_owned();
     come_to_an_end(move || File::options().write(true).open(path).unwrap())

@@ -14,7 +14,7 @@ fn run(folder: &Folder, settings: &str, variable: Option<(&str, &str)>, argument
     finish(&mut command)
 }
 
-/// The seed, the target and the kernel's CRC of a run.
+/// The seed of a run.
 fn seed(ended: &Ended) -> u64 {
     ended.json()["run"]["seed"].as_u64().unwrap()
 }
@@ -43,7 +43,7 @@ fn the_board_is_chosen_in_the_same_order() {
 #[test]
 fn the_kernel_is_chosen_in_the_same_order() {
     let folder = Folder::new();
-    // CRC-32 of each kernel's nodes, the first from a program outside this project.
+    // CRC-32 of each kernel's nodes, the first by a program that is not part of this project.
     let crc = |ended: &Ended| ended.json()["tables"]["kernel_crc32"].as_str().unwrap().to_owned();
     let named = |kernel| crc(&run(&folder, "", None, &["--kernel", kernel]));
     assert_eq!(named("keys"), "54f5e990");
@@ -54,7 +54,7 @@ fn the_kernel_is_chosen_in_the_same_order() {
     assert_eq!(crc(&run(&folder, file, variable, &["--kernel", "nearest"])), named("nearest"));
 }
 
-/// The file is what the same call of `verify` judges by.
+/// `verify` judges by the same kernel with these settings.
 #[test]
 fn tables_are_made_with_the_kernel_of_the_settings() {
     let folder = Folder::new();
@@ -106,7 +106,7 @@ fn frames_tables_and_report_come_from_the_file_too() {
     assert_eq!(run(&folder, &format!("{settings}overwrite = true\n"), None, &[]).code, Some(0));
 }
 
-/// Options that make tables are flags, so they come before a table file that the station always wants.
+/// Options that make tables are flags, so they take precedence over a table file that the station always uses.
 #[test]
 fn a_lens_on_the_command_line_beats_tables_from_elsewhere() {
     let folder = Folder::new();
@@ -176,7 +176,7 @@ fn the_user_s_own_settings_file_is_read() {
     assert_eq!(seed(&finish(command.env("HALFROW_SETTINGS", FILE))), 12);
 }
 
-/// The home of another user, which `USER` in a container's image often leaves.
+/// Another user's home, which is what a container image often leaves in `USER`.
 #[cfg(unix)]
 #[test]
 fn the_user_s_own_settings_file_is_passed_over_when_it_may_not_be_read_and_a_named_one_is_not() {

@@ -21,9 +21,9 @@ fn interrupted(folder: &Folder, signal: &str, arguments: &[&str]) -> Ended {
     running.end()
 }
 
-/// Signals, and the codes of commands that they end.
+/// Signals, and the exit codes of commands that they end.
 const SIGNALS: [(&str, i32); 3] = [("HUP", 129), ("INT", 130), ("TERM", 143)];
-/// Who stopped them, in the order of [`SIGNALS`].
+/// What is said to have stopped them, in the order of [`SIGNALS`].
 const STOPPED: [&str; 3] =
     ["stopped because the terminal or connection is gone", "stopped by hand", "stopped by the system"];
 
@@ -55,7 +55,7 @@ fn an_interrupted_run_leaves_a_whole_report_that_says_so_and_a_recording() {
     }
 }
 
-/// Its minutes are those of the mock's clock, which stands still while it computes.
+/// Its minutes are on the mock's clock, which stands still while the mock computes.
 #[test]
 fn an_interrupted_soak_has_told_its_minutes_and_leaves_what_was_judged() {
     let folder = Folder::new();
@@ -112,7 +112,7 @@ fn frames_that_are_half_written_go_with_the_program() {
         assert_eq!(ended.code, Some(code), "{signal}: {}", ended.stderr);
         let written = folder.names("out");
         assert!(written.iter().all(|name| !name.starts_with('.')), "{signal}: {written:?}");
-        // Those that are there are whole.
+        // Those that exist are whole.
         let header = "P5\n1920 1080\n4095\n".len();
         assert!(
             written.iter().all(|name| folder.read(&format!("out/{name}")).len() == header + 2 * 1920 * 1080)
@@ -120,7 +120,7 @@ fn frames_that_are_half_written_go_with_the_program() {
     }
 }
 
-/// It waits for a frame that does not come, and has begun to write nothing.
+/// The command waits for a frame that does not come, and has not begun to write.
 #[test]
 fn who_writes_nothing_is_not_told_of_what_is_gone() {
     let folder = Folder::new();
@@ -141,7 +141,7 @@ fn a_second_signal_ends_at_once_what_the_first_could_not() {
     let _pipe = OpenOptions::new().read(true).write(true).open(pipe).unwrap();
     let call = small("correct", &["in.pgm", "-o", "out", "--board", "mock"]);
     let running = started(&folder, call);
-    // It makes the folder when it has its board, and then waits for a frame that does not come.
+    // It makes the folder once it has opened its board, and then waits for a frame that does not come.
     until_there_is(folder.path(), |name| name == "out");
     running.send("INT");
     running.send("TERM");
@@ -150,7 +150,7 @@ fn a_second_signal_ends_at_once_what_the_first_could_not() {
     assert_eq!(folder.names("out"), [""; 0]);
 }
 
-/// It hears both together, unless it has looked for the first one before the second came: then it is begun again.
+/// The run sees both at once, unless it checks for the first one before the second comes: then it is started again.
 #[test]
 fn what_was_recorded_stays_when_a_second_signal_ends_the_run() {
     let folder = Folder::new();
@@ -166,7 +166,7 @@ fn what_was_recorded_stays_when_a_second_signal_ends_the_run() {
     assert!(folder.read("run.rec.partial").starts_with(b"halfrow recording 1\n"));
 }
 
-/// Its log waits for somebody to read it.
+/// Its log waits for a reader.
 #[test]
 fn a_second_signal_ends_what_waits_to_say_something() {
     let folder = Folder::new();
@@ -187,7 +187,7 @@ fn a_second_signal_ends_what_waits_to_say_something() {
     assert_eq!(waiting.0.wait().unwrap().code(), Some(143));
 }
 
-/// A program that may wait for ever, which is killed when this is dropped.
+/// A program that may wait for ever. It is killed when dropped.
 struct Waiting(Child);
 
 impl Drop for Waiting {
@@ -197,7 +197,7 @@ impl Drop for Waiting {
     }
 }
 
-/// A pipe that takes nothing more, since nobody reads it: its two ends.
+/// A pipe that accepts nothing more, since nobody reads it: its two ends.
 fn full_pipe() -> (PipeReader, PipeWriter) {
     let (unread, mut full) = std::io::pipe().unwrap();
     let descriptor = full.as_raw_fd();

@@ -18,7 +18,7 @@ fn what_a_simulated_board_cannot_be_is_refused() {
 #[test]
 fn a_waveform_is_written_and_never_over_another_file() {
     let folder = Folder::new();
-    // A whole run writes gigabytes.
+    // Of `info` only, since the waveform of a whole run has gigabytes.
     let call = ["info", "--board", "sim,trace=run.vcd"];
     assert_eq!(folder.halfrow(call.iter().copied()).code, Some(0));
     let waveform = folder.text("run.vcd");

@@ -1,10 +1,10 @@
-//! `halfrow station`, which starts a program beside it.
+//! `halfrow station`, which starts the program next to it.
 
 use std::process::Command;
 
 use halfrow_tests::program::{Folder, command, finish};
 
-/// What is written by a process of its own is open in no other when it is started.
+/// Written by another process, so that no process started by other tests has the file open when it is run.
 fn shell(folder: &Folder, text: &str, argument: &std::ffi::OsStr) {
     let mut shell = Command::new("sh");
     shell.current_dir(folder.path()).args(["-ec", text, "sh"]).arg(argument);

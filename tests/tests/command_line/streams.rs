@@ -1,5 +1,5 @@
-//! Streams that take nothing: full, closed, broken, or a terminal that is gone. The exit code stands, and what else a command
-//! makes is made.
+//! Streams that accept nothing: full, closed, broken, or a terminal that is gone. The exit code stands, and the command's other
+//! outputs are still made.
 
 use std::fs::{File, OpenOptions};
 use std::process::{Command, Stdio};
@@ -13,7 +13,7 @@ use crate::small;
 /// What is wrong with a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Wrong {
-    /// It takes nothing, and says so.
+    /// It accepts nothing, and says so.
     Full,
     /// It is closed.
     Closed,
@@ -26,7 +26,7 @@ enum Wrong {
 const WRONGS: [Wrong; 4] = [Wrong::Full, Wrong::Closed, Wrong::Broken, Wrong::Gone];
 
 impl Wrong {
-    /// The stream, unless it is one that a shell must close.
+    /// The stream; a closed one is closed by a shell instead.
     fn stream(self) -> Stdio {
         match self {
             Self::Full => OpenOptions::new().write(true).open("/dev/full").unwrap().into(),
@@ -45,13 +45,13 @@ impl Wrong {
         }
     }
 
-    /// Whether a reader is missed: one that closed its end or a stream that was closed has seen enough.
+    /// Whether the result is lost: a reader that has closed its end, or a stream that was closed, wants no more.
     fn loses(self) -> bool {
         matches!(self, Self::Full | Self::Gone)
     }
 }
 
-/// Runs `halfrow` with wrong streams.
+/// Runs `halfrow` with these faults of its streams.
 fn on(folder: &Folder, out: Option<Wrong>, err: Option<Wrong>, arguments: &[&str]) -> Ended {
     let closes = [(out, ">&-"), (err, "2>&-")];
     let closes = closes.iter().filter(|(wrong, _)| *wrong == Some(Wrong::Closed)).map(|(_, close)| *close);
@@ -64,10 +64,10 @@ fn on(folder: &Folder, out: Option<Wrong>, err: Option<Wrong>, arguments: &[&str
     Ended { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
 }
 
-/// A call, what it ends with, and with what if stdout does not take its only result.
+/// A call, its exit code, and its exit code if stdout does not take its only result.
 type Call = (Vec<&'static str>, i32, i32);
 
-/// What is wrong with stdout and with stderr, and how much is said.
+/// What is wrong with stdout and with stderr, and a flag for the verbosity.
 type Way = (Option<Wrong>, Option<Wrong>, Option<&'static str>);
 
 /// Calls that judge or are refused: the exit code is their result.
@@ -93,7 +93,7 @@ fn judging() -> Vec<Call> {
     calls.into_iter().map(|(call, code)| (call, code, code)).collect()
 }
 
-/// Calls that write files, which stdout only tells of.
+/// Calls that write files, of which stdout only tells.
 fn writing() -> Vec<Call> {
     let calls = [
         small("tables", &["-o", "t.json"]),
@@ -126,7 +126,7 @@ fn printing() -> Vec<Call> {
     calls.into_iter().map(|call| (call, 0, 3)).collect()
 }
 
-/// Runs every call in every way, and lists what ended otherwise than it should.
+/// Runs every call in every way, and lists those that ended unexpectedly.
 fn surprises(ways: &[Way]) -> Vec<String> {
     let calls = [judging(), writing(), printing()].concat();
     let runs: Vec<(&Call, &Way)> =
@@ -151,7 +151,7 @@ fn stdout_that_takes_nothing_changes_no_verdict() {
 
 #[test]
 fn stderr_that_takes_nothing_changes_nothing() {
-    // With -vv there is something to say in any run.
+    // With -vv every run has something to log.
     let ways: Vec<_> = WRONGS.iter().map(|&wrong| (None, Some(wrong), Some("-vv"))).collect();
     let surprises = surprises(&ways);
     assert!(surprises.is_empty(), "{}:\n{}", surprises.len(), surprises.join("\n"));

@@ -1,4 +1,5 @@
-//! A user who may have no more threads or files than it takes to begin. Root has no limit of threads, so that those tests run as another user.
+//! A user who may have no more threads or files than it takes to begin. Root has no limit on threads, so those tests run as
+//! another user.
 
 use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt as _;
@@ -26,7 +27,7 @@ fn a_program_that_cannot_begin_for_want_of_processes_says_what_it_wants() {
     wants_more(&finish(&mut command));
 }
 
-/// This limit is each process's own, and whoever runs the test has it.
+/// This limit is per process, so it also holds for root.
 #[test]
 fn a_program_that_cannot_begin_for_want_of_files_says_what_it_wants() {
     let folder = Folder::new();

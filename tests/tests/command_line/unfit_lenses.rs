@@ -1,10 +1,10 @@
-//! Lens files whose numbers no frame can have: the file is named, and what to do is what can be done to a file.
+//! Lens files whose numbers fit no frame: the message names the file, and says what can be done to a file.
 
 use halfrow_tests::program::Folder;
 
 use crate::refused;
 
-/// OpenCV's fisheye model, pictures of `size`, with these focal lengths and k1.
+/// A lens file of OpenCV's fisheye model, for pictures of `size`, with these focal lengths and k1.
 fn calibration(folder: &Folder, [fx, fy, k1]: [&str; 3], size: [u32; 2]) {
     let [width, height] = size;
     let (x, y) = ((f64::from(width) - 1.0) / 2.0, (f64::from(height) - 1.0) / 2.0);
@@ -74,7 +74,7 @@ fn a_lens_that_no_tables_can_follow_is_the_lens_file_s() {
     folder.write("lens.txt", lens.replacen("1.000314 -0.000012", "1.000314 1e308", 1));
     let exact = ["tables", "-o", "x.json", "--projection", "exact", "--lens", "lens.txt"];
     refused(&folder, &exact, &format!("{unfit}row 0 would not lie in the frame; "));
-    // A skew that is a number until it is scaled.
+    // A skew that is finite until it is scaled.
     calibration(&folder, ["40", "40", "0"], [64, 17]);
     folder.write("lens.json", folder.text("lens.json").replacen("[40,0,", "[40,1e308,", 1));
     let scaled = ["tables", "-o", "x.json", "--lens", "lens.json", "--lens-pitch", "6", "--pixel-pitch", "3"];

@@ -1,4 +1,4 @@
-//! Folders that may be written and not listed, as drop boxes are.
+//! Folders that may be written but not listed, such as drop boxes.
 
 use std::fs::{self, Permissions};
 use std::os::unix::fs::PermissionsExt as _;

@@ -1,11 +1,11 @@
-//! What `verify` varies by itself, and what it says that it did not exercise.
+//! What `verify` varies by itself, and what it reports as not exercised.
 
 use halfrow_tests::program::{Folder, halfrow};
 use serde_json::{Value, json};
 
 use crate::small;
 
-/// What the frames of a call are set to otherwise than its tables have it.
+/// The settings in which the frames of a call differ from its tables.
 fn variations(arguments: &[&str]) -> Vec<Value> {
     let said = halfrow(small("verify", arguments).into_iter().chain(["--json"])).json();
     assert_eq!(said["verdict"], "PASS", "{arguments:?}");
@@ -50,14 +50,14 @@ fn a_pass_says_in_words_what_it_did_not_exercise() {
     let ended = halfrow(small("verify", &["--at-speed", "0"]));
     let text = ended.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(text.contains("not exercised: address lines 7 to 10 of columns; "), "{text}");
-    // What no streamed frame has, corners at full speed have.
+    // Corners at full speed have what no streamed frame has.
     let whole = halfrow(small("verify", &[]));
     assert!(whole.code == Some(0) && !whole.stdout.contains("not exercised"), "{}", whole.stdout);
     let broken = halfrow(small("verify", &["--board", "mock,fault=stuck-data"]));
     assert!(!broken.stdout.contains("not exercised"), "{}", broken.stdout);
 }
 
-/// A recording from before frames of their own were streamed does not speak of them.
+/// A recording of a program without variations does not mention them.
 #[test]
 fn a_recording_that_does_not_speak_of_variations_has_none() {
     let folder = Folder::new();

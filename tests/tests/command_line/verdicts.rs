@@ -69,7 +69,7 @@ fn colours_are_for_terminals_and_for_those_who_ask() {
     assert!(!refused.stdout.contains(ESCAPE) && !refused.stderr.contains(ESCAPE));
 }
 
-/// What `command` sends a terminal of so many columns.
+/// What `command` sends to a terminal of `columns` columns.
 fn on_terminal(columns: &str, command: &mut Command) -> String {
     let mut master = posix_openpt(OFlag::O_RDWR | OFlag::O_NOCTTY | OFlag::O_CLOEXEC).unwrap();
     grantpt(&master).unwrap();
@@ -80,13 +80,13 @@ fn on_terminal(columns: &str, command: &mut Command) -> String {
     let mut child = command.stdout(terminal).stderr(Stdio::null()).spawn().unwrap();
     command.stdout(Stdio::null());
     let mut sent = Vec::new();
-    // It ends with an error once nobody has the terminal open.
+    // Reading fails once nobody has the terminal open.
     let _ = master.read_to_end(&mut sent);
     assert!(child.wait().unwrap().success());
     String::from_utf8(sent).unwrap().replace("\r\n", "\n")
 }
 
-/// Sentences are no easier to read the longer their lines are: a wide terminal shows what a narrow one does, and no line is broken twice.
+/// Longer lines are harder to read: a wide terminal shows what a narrow one does, and no line is broken twice.
 #[test]
 fn a_terminal_shows_the_text_in_colours_and_within_80_columns_however_wide_it_is() {
     let arguments = small("verify", &["--operator", "Ada Weber"]);
@@ -94,11 +94,11 @@ fn a_terminal_shows_the_text_in_colours_and_within_80_columns_however_wide_it_is
     let wide = on_terminal("200", &mut command(arguments.clone()));
     let plain = on_terminal("200", command(arguments).env("NO_COLOR", "1"));
     let seen = anstream::adapter::strip_str(&narrow).to_string();
-    // The verdict is one line, for whoever looks for it.
+    // The verdict is one line, so that it can be searched for.
     let (text, verdict) = seen.trim_end().rsplit_once('\n').unwrap();
     assert!(text.lines().all(|line| line.chars().count() <= 80), "{seen}");
     assert!(verdict.starts_with("PASS (mock board") && seen.contains("\noperator Ada Weber\n"), "{seen}");
-    // Times may differ; a layout does not.
+    // Times may differ, but the layout does not.
     let shape = |text: &str| -> Vec<_> {
         text.lines().map(|line| line.split(' ').next().map(str::to_owned)).collect()
     };
@@ -115,7 +115,7 @@ fn the_list_names_every_frame_and_opens_no_board() {
     assert!(ended.stdout.contains("builtin:zone-plate"), "{}", ended.stdout);
 }
 
-/// The prices of parts at each link that a list is for.
+/// For each link that the list covers, its rate and the prices of the parts.
 fn listed_prices(board: &str) -> Vec<(f64, Vec<(String, f64)>)> {
     let listed = halfrow(["verify", "--list", "--json", "--board", board]).json();
     let links = listed["prices"].as_array().cloned().unwrap_or_default();
@@ -131,20 +131,20 @@ fn the_list_prices_each_part_at_the_link_that_the_target_names_or_at_usual_ones(
     let usual = listed_prices("mock");
     assert_eq!(usual.iter().map(|(rate, _)| *rate).collect::<Vec<_>>(), [300e3, 1200e3, 5000e3]);
     let price = |parts: &[(String, f64)], name: &str| parts.iter().find(|part| part.0 == name).unwrap().1;
-    // 1080 rows of 2880 bytes of samples, and 26 of place and figures with 18 of their packet and 11 stuffed in.
+    // 1080 rows, each with 2880 bytes of samples, 26 of place and figures, 18 of its packet and 11 of stuffing.
     let row = 2880 + 26 + 18 + 11;
     for (rate, parts) in &usual {
         let carried = f64::from(row * 1079) / rate;
         let street = price(parts, "builtin:street");
-        // At 5 MB/s the round trip is longer than the board has banks for.
+        // At 5 MB/s the board has too few banks to fill the round trip.
         let most = if *rate < 5e6 { 1.02 } else { 1.3 };
         assert!((carried..carried * most + 0.01).contains(&street), "{street} {carried}");
-        // Three frames on the mock cost a link their tables, and their 65 ms.
+        // Three frames on the mock cost the link their tables, and take 65 ms.
         assert!(price(parts, "at speed") < 0.2 + 5000.0 / rate, "{rate}");
     }
     let [(rate, own)] = &listed_prices("mock,speed=1200000")[..] else { panic!() };
     assert_eq!((*rate, own), (1.2e6, &usual[1].1));
-    // 3 Mbaud are 300,000 bytes a second, and nobody opens the port.
+    // 3 Mbaud are 300,000 bytes a second; the port is not opened.
     let [(rate, _)] = &listed_prices("serial:/dev/no-such-port,baud=3000000")[..] else { panic!() };
     assert_eq!(*rate, 3e5);
     let text = halfrow(["verify", "--list", "--board", "mock,speed=1200000"]).stdout;
@@ -196,7 +196,7 @@ fn a_run_ends_at_its_time_limit() {
     assert!(headline.contains("the run did not end within its time limit of 20.0 s"), "{headline}");
 }
 
-/// Nothing is said of a defect, since what the board holds was not read back.
+/// No defect is reported, since the board's tables were not read back.
 #[test]
 fn what_differed_until_a_run_broke_off_is_told() {
     let board = "mock,fault=stuck-data,bit=7,speed=100000";
@@ -214,7 +214,7 @@ fn what_differed_until_a_run_broke_off_is_told() {
     assert_eq!(said["error"]["code"], "run-too-long");
 }
 
-/// It is not the link's pace that more time would help.
+/// The message does not ask for more time: the link's pace is not the reason.
 #[test]
 fn a_run_whose_board_is_silent_when_its_time_ends_says_so() {
     let board = "mock,fault=stall,packet=300,seconds=60";
@@ -248,7 +248,7 @@ fn limits_that_make_no_sense_are_refused() {
     refused(&folder, &["verify", "--seed=-1"], "give a whole number, 0 to 18446744073709551615");
 }
 
-/// A board in this program has a clock of its own, and --timeout means somebody's patience, too.
+/// A board in this program has a clock of its own, but --timeout also limits how long a user waits.
 #[test]
 fn the_time_limit_is_also_this_computer_s() {
     let folder = Folder::new();
@@ -265,7 +265,7 @@ fn the_time_limit_is_also_this_computer_s() {
     }
 }
 
-/// Somebody who has answered is there: what stands between is the suspect.
+/// A board that has answered exists, so what lies between is the suspect.
 #[test]
 fn a_board_that_falls_silent_behind_a_noisy_link_is_not_the_suspect() {
     let silent = halfrow(small("verify", &["--board", "mock,fault=stall,packet=0,seconds=1000"]));
@@ -283,7 +283,7 @@ fn a_board_that_falls_silent_behind_a_noisy_link_is_not_the_suspect() {
     }
 }
 
-/// Another device at the port, or another rate: bytes come, and they are no packets.
+/// Another device at the port, or another rate: bytes come, but they are no packets.
 #[test]
 fn bytes_that_are_no_packets_are_told_from_silence() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -300,7 +300,7 @@ fn bytes_that_are_no_packets_are_told_from_silence() {
     assert!(last.contains(" bytes came, with no packet among them; check that the target's rate"), "{last}");
 }
 
-/// An earlier PASS must not lie where the report of this run belongs.
+/// An earlier PASS must not remain where the report of this run belongs.
 #[test]
 fn a_board_that_cannot_be_opened_has_a_report_too() {
     let folder = Folder::new();
@@ -316,7 +316,7 @@ fn a_board_that_cannot_be_opened_has_a_report_too() {
         assert!(ended.stderr.contains(report["error"]["message"].as_str().unwrap()), "{report}");
         assert!(folder.text("out/report.xml").contains("errors=\"2\""));
     }
-    // A call that is wrong is no run, and takes nothing away.
+    // A wrong call is no run, and removes nothing.
     let wrong = folder.halfrow(small("verify", &[&into[..], &["--board", "serial"]].concat()));
     assert_eq!(wrong.code, Some(2));
     assert_eq!(folder.names("out"), ["report.html", "report.json", "report.xml"]);
@@ -325,7 +325,7 @@ fn a_board_that_cannot_be_opened_has_a_report_too() {
     assert!(!folder.path().join("new").exists());
 }
 
-/// What a mock board is too small for, a larger one is not.
+/// The message names a mock that is large enough, and that mock passes.
 #[test]
 fn a_mock_that_is_too_small_is_told_how_it_is_made_larger() {
     let wide = ["--width", "2592", "--height", "4", "--frame", "builtin:grey"];
@@ -340,7 +340,7 @@ fn a_mock_that_is_too_small_is_told_how_it_is_made_larger() {
     refused(&Folder::new(), &high, "takes these: mock,max-width=64,max-height=9");
 }
 
-/// A wire without a speed takes no time at all by its own clock.
+/// By its own clock, a wire without a speed takes no time at all.
 #[test]
 fn a_virtual_clock_measures_nothing_of_a_link() {
     let link = |board| halfrow(["link", "--seconds", "0.01", "--board", board]);
@@ -355,7 +355,7 @@ fn a_virtual_clock_measures_nothing_of_a_link() {
     assert!(!moving.contains("not measured") && moving.contains("MB/s"), "{moving}");
 }
 
-/// A table file does not say which lens it is for, and the street's figures are those of a lens.
+/// A table file does not say which lens it is for, but the street's figures are those of a lens.
 #[test]
 fn the_street_behind_a_table_file_is_said_to_be_seen_through_a_lens_of_its_own() {
     let folder = Folder::new();

@@ -48,7 +48,7 @@ fn too_few_seconds_end_with_2_and_the_least_that_this_link_needs() {
     assert!(error["parameters"]["least"].as_f64().unwrap() > 3.0, "{error}");
 }
 
-/// A row of 64 samples takes this board a minute by its own words, and no time on its wire.
+/// A row of 64 samples takes this board a minute by the clock that it names, but no time on its wire.
 #[test]
 fn a_clock_that_the_board_names_is_not_told_as_the_link_s_or_the_call_s() {
     let folder = Folder::new();
