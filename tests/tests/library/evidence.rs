@@ -9,13 +9,13 @@ use halfrow::progress::Silent;
 use halfrow::run::{Finished, FrameSource, Plan, RunOptions, verify};
 use halfrow_tests::system::System;
 
-/// Frames that all differ, beside the run's own.
+/// Frames that all differ, in addition to the run's own.
 const FRAMES: u32 = 200;
 
-/// As large as it must be for faults whose suspects frames that came back right tell apart.
+/// Large enough for faults whose suspects can only be told apart by frames that came back right.
 const DIAGNOSED: System = System { height: 16, radius: 40.0, ..System::TINY };
 
-/// What is left of a run over many frames of a broken board.
+/// The result of a run of many frames on a broken board.
 fn run(evidence_bytes: usize) -> Finished {
     let plan = System::TINY.plan().frames([FrameSource::Builtin(Builtin::Noise)]);
     let plan = Plan { repeat: FRAMES, fail_fast: false, ..plan };
@@ -80,7 +80,7 @@ fn a_run_of_many_frames_that_differ_keeps_within_its_budget_and_says_what_it_lef
     assert_eq!(found(&kept), found(&whole));
 }
 
-/// What the diagnosis says of the board `target`: each suspect's place, share and evidence.
+/// The diagnosis of the board `target`: each suspect's place, share and evidence.
 fn suspects(target: &str, keep_equal: bool) -> Vec<(String, f64, String)> {
     let board = link::open(&target.parse().unwrap()).unwrap();
     let options = RunOptions { keep_equal, ..RunOptions::default() };
@@ -89,7 +89,7 @@ fn suspects(target: &str, keep_equal: bool) -> Vec<(String, f64, String)> {
     report.suspects.iter().map(|suspect| (suspect.place(), suspect.explained, suspect.evidence())).collect()
 }
 
-/// Some of these faults leave frames as they should be that a suspect may or may not change.
+/// With some of these faults, frames come back right that one suspect would have changed and another not.
 #[test]
 fn suspects_are_the_same_whether_pictures_are_wanted_or_not() {
     let _alone = crate::RUNS.lock();

@@ -1,4 +1,4 @@
-//! The log of two runs at once.
+//! The log of two runs at the same time.
 
 use std::io::{self, Write};
 use std::sync::{Arc, Mutex};
@@ -48,7 +48,7 @@ fn every_line_of_two_runs_at_once_says_which_board_it_is_about() {
     let lines: Vec<_> = log.lines().filter(|line| line.contains(" halfrow::")).collect();
     let nameless: Vec<_> = lines.iter().filter(|line| !line.contains(" run{board=")).collect();
     assert!(nameless.is_empty(), "{nameless:#?}");
-    // Only one of the two links damages what it carries, and only its lines say so.
+    // Only one of the two links damages what it carries, and only that run's lines say so.
     let damaged = lines.iter().filter(|line| line.contains("damaged"));
     assert!(damaged.clone().count() > 0 && damaged.clone().all(|line| line.contains(boards[0])), "{log}");
 }

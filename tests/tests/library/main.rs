@@ -1,4 +1,4 @@
-//! The library as a program other than `halfrow` calls it.
+//! The library, as called by a program other than `halfrow`.
 
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used)]
@@ -13,6 +13,6 @@ mod words;
 
 use std::sync::Mutex;
 
-/// Held by tests that run in this process: one without a log of its own must not be the first at a place that logs while
-/// another begins to listen.
+/// Held by tests that run in this process: a thread without a log of its own must not be the first at a place that logs while
+/// another thread installs its log.
 static RUNS: Mutex<()> = Mutex::new(());

@@ -11,7 +11,7 @@ fn a_program_outside_judges_over_a_link_that_it_made_and_opens_again() {
     let test = std::env::current_exe().unwrap();
     // target/PROFILE/deps/TEST
     let target = test.ancestors().nth(3).unwrap();
-    // With the versions of the workspace, which are there; Cargo takes out those that it needs not.
+    // With the versions of the workspace, which are already downloaded; Cargo removes those that it does not need.
     fs::copy(tests.join("../Cargo.lock"), tests.join("outside/Cargo.lock")).unwrap();
     let ran = Command::new(env!("CARGO"))
         .args(["run", "--offline", "--quiet", "--target-dir"])

@@ -1,4 +1,4 @@
-//! Runs of some of their parts.
+//! Runs of some of their parts only.
 
 use std::sync::{Arc, Mutex};
 
@@ -24,7 +24,7 @@ fn judged(board: &str, parts: Selection) -> Report {
     judge_by_plan(&plan(Some(parts)), open(board))
 }
 
-/// What the host sends in a run by `plan`.
+/// The packets that the host sends in a run by `plan`.
 fn sent(plan: &Plan) -> Vec<Passing> {
     let packets = Arc::new(Mutex::new(Vec::new()));
     let seen = Arc::clone(&packets);
@@ -51,8 +51,8 @@ fn all_parts_are_the_run_as_it_is_without_a_selection_to_the_byte() {
     assert!(expected == found);
 }
 
-/// On a virtual clock none of this is by chance. Rows of 64 samples are cheaper than they are taken to be, and pixel clocks
-/// take the mock no time.
+/// On a virtual clock nothing here is left to chance. Rows of 64 samples cost less than their price, and pixel clocks take the
+/// mock no time.
 #[test]
 fn a_price_is_what_a_run_takes_and_a_little_more() {
     let _alone = crate::RUNS.lock();
@@ -100,7 +100,7 @@ fn one_row_and_a_burst_are_a_run() {
         "{at_speed:?}"
     );
 
-    // Both need what is behind row 0.
+    // Both need rows after row 0.
     for fault in ["row-factor,row=9,hidden=true", "warm-bit,after=1,row=9"] {
         let report = judged(&format!("mock,fault={fault}"), least.clone());
         assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{fault}: {}", report.headline());
@@ -137,7 +137,7 @@ fn frames_at_another_centre_and_depth_can_be_cut_too() {
     let report = judged("mock");
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     let rows: Vec<_> = report.frames.iter().map(|frame| (frame.rows, frame.generation)).collect();
-    // One row of the decoy comes before the change of tables.
+    // One row of the decoy comes before the tables change.
     assert_eq!(rows, [(1, 1), (4, 1), (4, 2), (10, 3), (3, 4)]);
     let report = judged("mock,fault=spoilt-row,row=9,entered=no");
     assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
@@ -164,7 +164,7 @@ fn what_was_left_out_is_not_called_exercised() {
     assert!(rows_told(&report), "{:?}", report.not_exercised);
     assert!(report.not_exercised.contains(&NotExercised::FullSpeed {}));
     assert!(report.not_exercised.contains(&NotExercised::Rules {}));
-    // Frames at speed are made with every row.
+    // Frames at speed are made with all their rows.
     let report = judged("mock", Selection::least().with(Part::AtSpeed, 2));
     assert!(!rows_told(&report), "{:?}", report.not_exercised);
 }
@@ -181,13 +181,13 @@ fn a_frame_of_a_file_is_cut_like_any() {
     assert_eq!((report.verdict(), report.frames[0].first_rows), (Verdict::Pass, Some(1)));
 }
 
-/// DATAPATH.md, "Legal": S[0] = 8·C·(2^24 - Q[0]) + 2^15·O is 24,192 - 32,768 here, and may be -2^14 at least. Half way to 1 and rounded
-/// down, as factors and offsets are, 24 becomes 16, and the offset stays -1: 16,128 - 32,768.
+/// DATAPATH.md, "Legal": S[0] = 8·C·(2^24 - Q[0]) + 2^15·O is 24,192 - 32,768 here, and must be at least -2^14. Moved half way to
+/// 1 and rounded down, like all factors and offsets of a decoy, 24 becomes 16, and the offset stays -1: 16,128 - 32,768.
 #[test]
 fn a_grid_beside_which_there_is_no_decoy_is_judged_without_one() {
     let _alone = crate::RUNS.lock();
     let (geometry, one) = (Geometry::new(192, 8, BitDepth::Twelve, 126).unwrap(), 1 << 24);
-    // Three segments: the offset and four nodes, of three grid rows each.
+    // Three segments: an offset and four nodes, each for three grid rows.
     let entries = [one - 1, one - 24, one, one, one].map(|entry| [entry; 3]).concat();
     let tables = TableSet::from_grid(geometry, GridShape::new(6, 6).unwrap(), &entries).unwrap();
     assert!(tables.check_ring(256).is_ok() && tables.halved().check_ring(256).is_err());
@@ -195,7 +195,7 @@ fn a_grid_beside_which_there_is_no_decoy_is_judged_without_one() {
     let plan = Plan::new(tables, Interpolant::Hermite.into()).seen_through(lens);
     let report = judge_by_plan(&plan, open("mock"));
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
-    // All built-in frames, one with the sensor's blanking and one with gaps, and the judged tables.
+    // All built-in frames, one with the sensor's blanking and one with gaps, all with the judged tables.
     let frames: Vec<_> = report.frames.iter().map(|frame| frame.generation).collect();
     assert_eq!(frames, vec![2; Builtin::ALL.len() + 2]);
     assert!(report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));

@@ -1,8 +1,8 @@
-//! What comes along with the library.
+//! The dependencies of the library.
 
 use std::process::Command;
 
-/// What is for programs that a person calls in a terminal.
+/// Packages for programs that a person calls in a terminal.
 const FOR_PROGRAMS: [&str; 9] = [
     "clap",
     "clap_builder",
@@ -15,7 +15,7 @@ const FOR_PROGRAMS: [&str; 9] = [
     "tracing-subscriber",
 ];
 
-/// The names of all packages that `package` is built with.
+/// The names of all packages with which `package` is built.
 fn tree(package: &str) -> Vec<String> {
     let listed = Command::new(env!("CARGO"))
         .args(["tree", "--offline", "--locked", "--edges", "normal", "--prefix", "none"])

@@ -1,4 +1,4 @@
-//! Runs that must keep within a time.
+//! Runs that are given a time limit.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use halfrow::verdict::Verdict;
 use halfrow_tests::system::{System, failed_check, open};
 
 const ROWS: usize = 16;
-/// The time of a whole run over this is 5.7 s.
+/// A whole run on this board takes 5.7 s.
 const SLOW: &str = "mock,speed=20000";
 
 fn plan(seconds: f64) -> Plan {
@@ -65,7 +65,7 @@ fn a_link_that_takes_no_time_has_time_for_everything() {
         within.curve.len() > 2 && points.into_iter().all(|two| two[0].found < two[1].found),
         "{within:?}"
     );
-    // A whole run finds also what no part of it is known to.
+    // A whole run also finds faults that no single part is known to find.
     assert!(within.curve.last().is_some_and(|last| last.found <= within.found), "{within:?}");
 }
 
@@ -75,7 +75,7 @@ fn what_is_covered_is_found_and_what_is_left_out_passes_and_is_named() {
     let Err(Misfit::Within(WithinError::TooFew { least, .. })) = judged(SLOW, &plan(0.2)) else { panic!() };
     let short = plan(least + 0.15);
     let sound = judged(SLOW, &short).unwrap();
-    // Every kind of sample meets the stuck line in the first row.
+    // Samples of every kind meet the stuck line in the first row.
     let found = judged(&format!("{SLOW},fault=stuck-data"), &short).unwrap();
     assert_eq!(failed_check(&found), Some(CheckName::Frames), "{}", found.headline());
 
@@ -92,7 +92,7 @@ fn what_is_covered_is_found_and_what_is_left_out_passes_and_is_named() {
     assert_eq!(failed_check(&seen), Some(CheckName::Frames), "{}", seen.headline());
 }
 
-/// The most rows of any frame.
+/// The largest number of rows of any frame.
 fn report_rows(report: &Report) -> usize {
     report.frames.iter().map(|frame| frame.rows).max().unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! The words of the libraries: they name settings, and the program alone names flags.
+//! The words of the libraries: they name settings, and only the program names flags.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,8 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The lines of the libraries that are no comments, with where they stand. A text that is broken by a `\` is one line.
+/// The lines of the libraries except comments, with the files that they are in. A string that is continued by a `\` counts as one
+/// line.
 fn lines() -> Vec<(String, String)> {
     let mut files = Vec::new();
     LIBRARIES.iter().for_each(|library| sources(&root().join(library), &mut files));
@@ -34,7 +35,7 @@ fn lines() -> Vec<(String, String)> {
     lines
 }
 
-/// Whether the text has a flag in it, as in `--overwrite`.
+/// Whether the text contains a flag, such as `--overwrite`.
 fn names_a_flag(line: &str) -> bool {
     let behind = line.match_indices("--").map(|(place, dashes)| &line[place + dashes.len()..]);
     let mut behind = behind.filter_map(|rest| rest.chars().next());

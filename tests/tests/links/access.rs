@@ -1,4 +1,4 @@
-//! Ports that a user may not open, or not now. Root may open every port, so where the tests run as root these run as nobody.
+//! Ports that a user may not open, or not now. Root may open every port, so where the tests run as root, these run as nobody.
 
 use std::fs::{self, Permissions};
 use std::os::unix::fs::{PermissionsExt as _, chown};
@@ -46,13 +46,13 @@ fn a_port_in_use_is_busy_for_a_user_without_rights_too() {
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
 }
 
-/// One thread is the program's own, one waits for signals, one makes frames and one predicts signatures.
+/// One thread is the main one, one waits for signals, one makes frames and one predicts signatures.
 #[test]
 fn a_run_that_gets_no_thread_ends_with_its_result() {
     let folder = Folder::new();
     let run = ["verify", "--json", "--width", "128", "--height", "32", "--radius", "80"];
     let with_threads = |most: u32| {
-        // More than there is room for share the work otherwise.
+        // Where there is no room for them, more threads share the work otherwise.
         let mut command = folder.within(&format!("--nproc={most}"), &run)?;
         Some(finish(command.env("RAYON_NUM_THREADS", "64")).json())
     };

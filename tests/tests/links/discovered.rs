@@ -10,7 +10,7 @@ use halfrow_tests::program::halfrow;
 use halfrow_tests::served::Served;
 use serde_json::{Value, json};
 
-/// What `halfrow boards` says of `target` alone.
+/// What `halfrow boards` says about `target` alone.
 fn look_at(target: &str, more: &[&str]) -> Value {
     let ended = halfrow(["boards", "--json", target].into_iter().chain(more.iter().copied()));
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
@@ -23,7 +23,7 @@ fn a_search_lists_devices_and_the_boards_that_need_none() {
     let entries = listed["boards"].as_array().unwrap();
     let mock = entries.iter().find(|entry| entry["target"] == "mock").unwrap();
     assert_eq!(mock["kind"], "mock");
-    // A pseudo-terminal is no device that a board could be behind.
+    // A pseudo-terminal is no device behind which a board could be.
     assert!(!listed.to_string().contains("/dev/pts"), "{listed}");
 }
 
@@ -56,7 +56,7 @@ fn what_is_no_board_is_told_from_what_is_not_there() {
     assert_eq!((&missing["access"], &missing["answer"]), (&json!({ "state": "missing" }), &Value::Null));
     let refused = look_at("tcp:127.0.0.1:1", &["--ask"]);
     assert_eq!(refused["answer"]["state"], "failed");
-    // Nobody has looked whether it is free.
+    // It was not checked whether the port is free.
     let asked = halfrow(["boards", "--ask", "tcp:127.0.0.1:1"]).stdout;
     assert!(asked.contains("    cannot be asked: "), "{asked}");
     let text = halfrow(["boards", "serial:/dev/ttyUSB99"]).stdout;
@@ -84,7 +84,7 @@ fn a_board_that_another_host_holds_is_left_to_it() {
     }
 }
 
-/// Two programs that leave it to the default to draw their numbers are two hosts.
+/// Two programs with default options draw their own numbers, so they are two hosts.
 #[test]
 fn a_session_that_is_dropped_holds_the_board_and_one_that_was_closed_does_not() {
     let served = Served::on_a_tcp_port("127.0.0.1", "mock");
@@ -97,7 +97,7 @@ fn a_session_that_is_dropped_holds_the_board_and_one_that_was_closed_does_not() 
     assert!(matches!(refused, Err(BoardError::Held { .. })), "{refused:?}");
 }
 
-/// A GPS receiver, a console, a board at another rate.
+/// A GPS receiver, a console, or a board at another rate.
 #[test]
 fn what_talks_and_is_no_board_is_told_from_silence() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -107,7 +107,7 @@ fn what_talks_and_is_no_board_is_told_from_silence() {
             let (mut host, _) = listener.accept().unwrap();
             let mut heard = [0; 256];
             while host.read(&mut heard).is_ok_and(|read| read > 0) {
-                // It may be gone by now.
+                // The host may be gone by now.
                 let _ = host.write_all(b"$GPGGA,,,,,,0,,,,,,,,*66\r\n");
             }
         }

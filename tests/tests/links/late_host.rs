@@ -1,4 +1,4 @@
-//! A host that is kept from running, as on a busy machine: what came meanwhile was in time.
+//! A host that is kept from running, as on a busy machine: what arrived meanwhile was in time.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use halfrow::verdict::Cause;
 use halfrow_tests::parallel;
 use halfrow_tests::system::System;
 
-/// Longer than any deadline.
+/// Longer than any timeout of the host.
 const PAUSE: Duration = Duration::from_secs(1);
 
 #[test]

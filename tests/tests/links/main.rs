@@ -22,14 +22,14 @@ use halfrow_tests::served::Served;
 /// The options of a frame so small that a whole run takes a moment.
 const SMALL: [&str; 6] = ["--width", "64", "--height", "8", "--frame", "builtin:noise"];
 
-/// Judges the board behind `target`.
+/// Judges the board at `target`.
 fn verify(target: &str, more: &[&str]) -> Ended {
     let call = ["verify", "--json", "--board", target].into_iter();
     halfrow(call.chain(SMALL).chain(more.iter().copied()))
 }
 
-/// Judges the board that is served, which must pass. Rows may be asked for again when the thread that serves it is late,
-/// and nothing may be damaged.
+/// Judges the served board, which must pass. Rows may be asked for again when the thread that serves it is late, but nothing may
+/// be damaged.
 #[track_caller]
 fn passes(served: &Served) {
     let ended = verify(&served.target(), &[]);

@@ -16,7 +16,7 @@ fn a_wire_is_measured_to_be_what_it_is() {
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let figures = &ended.json()["link"];
     assert_eq!((figures["limit"].as_f64(), figures["errors"]["wrong"].as_u64()), (Some(1.2e6), Some(0)));
-    // An empty packet takes 18 or 19 bytes, so 2 ms and some 31 µs there and back.
+    // An empty packet takes 18 or 19 bytes, so the round trip is 2 ms and some 31 µs.
     let median = figures["round_trips"]["median_us"].as_f64().unwrap();
     assert!((2000.0..2050.0).contains(&median), "{median}");
     // A packet of 4,079 bytes and its answer of 18 need 3.44 ms on the wire and 2 ms of delay.
@@ -41,7 +41,7 @@ fn errors_are_counted_on_either_side() {
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
         let errors = &ended.json()["link"]["errors"];
         let (damaged, bytes) = (errors[counter].as_f64().unwrap(), errors["bytes"].as_f64().unwrap());
-        // One byte in 100,000, and about half of all bytes go that way.
+        // One byte in 100,000, and about half of all bytes go this way.
         assert!((0.3..1.5).contains(&(damaged / (bytes * 0.5e-5))), "{errors}");
         assert_eq!(errors[other], 0);
         assert!(errors["bound"].as_f64() > errors["rate"].as_f64());

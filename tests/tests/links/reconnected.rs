@@ -1,4 +1,4 @@
-//! Boards that are unplugged and plugged in again: the run goes on where it stood.
+//! Boards that are unplugged and plugged in again: the run goes on where it was.
 
 use std::time::{Duration, Instant};
 
@@ -13,13 +13,13 @@ use halfrow_tests::system::System;
 
 use crate::{SMALL, ends, verify};
 
-/// Much longer than a board is away.
+/// Much longer than the board is away.
 const PATIENCE: Duration = LIMIT;
 
-/// Every way to come back as the board that is given.
+/// Every way in which the given board can come back.
 const HOW: [fn(String) -> Replug; 3] = [|_| Replug::Powered, Replug::Switched, Replug::Reset];
 
-/// The bytes that a whole run takes from the board, and its rows.
+/// The bytes that a whole run receives from the board, and its rows.
 fn undisturbed() -> (u64, usize) {
     let served = Served::on_a_serial_port("mock");
     let report = System::TINY.judge_at(&served.target());
@@ -40,12 +40,11 @@ fn interrupted(board: &str, byte: u64, replug: Replug) -> Report {
     come_to_an_end(move || System::TINY.judge_patiently(&target, Some(PATIENCE)))
 }
 
-/// Interrupts runs after `count` numbers of bytes that are drawn from all of a run, in every way.
+/// Interrupts `count` runs in turn in every way, each after a random number of bytes, one in each part of a run.
 fn goes_on_after(count: usize) {
     let (bytes, all_rows) = undisturbed();
     let mut dice = Dice::new(4);
-    // The last bytes are of the session's end, which comes behind the verdict. One cut in every part of the rest leaves no
-    // step of a run out.
+    // The last bytes end the session, after the verdict. One cut in every part of the rest leaves out no step of a run.
     let bytes = bytes as usize - 100;
     let draw = |part: usize| (part * bytes + dice.below(bytes)) / count;
     let cuts: Vec<_> = (0..count).map(draw).zip(HOW.into_iter().cycle()).collect();
@@ -85,7 +84,7 @@ fn a_broken_board_is_found_although_it_was_away() {
     assert_eq!(report.link.reconnections.len(), 1);
 }
 
-/// What the board that `target` leads to is suspected of, and how often it was away.
+/// The suspects of the board at `target`, and how often it was away.
 fn suspected(target: String) -> (Vec<(String, String)>, usize) {
     let system = System { height: 16, radius: 40.0, ..System::TINY };
     let report = come_to_an_end(move || system.judge_patiently(&target, Some(PATIENCE)));
@@ -93,8 +92,8 @@ fn suspected(target: String) -> (Vec<(String, String)>, usize) {
     (suspects.collect(), report.link.reconnections.len())
 }
 
-/// The board is away between frames that came back right, which rule suspects out, and the first that does not. Where it is wrong
-/// before, all is judged anew in another session.
+/// The board is away after frames that came back right, which rule suspects out, and before the first that did not. A board that
+/// was wrong before that is judged anew in another session.
 #[test]
 fn a_board_that_was_away_in_the_middle_is_suspected_of_the_same() {
     let faults = [

@@ -1,4 +1,4 @@
-//! The mock's scenarios, by way of a serial port.
+//! The mock's scenarios, over a serial port.
 
 use halfrow_tests::scenario::{Scenario, run_all_on_serial_ports, run_each};
 use halfrow_tests::scenarios::{
@@ -6,7 +6,7 @@ use halfrow_tests::scenarios::{
 };
 use halfrow_tests::served::Served;
 
-/// All but those at full size, which would move the same bytes for much longer.
+/// All but those at full size, which would move the same kinds of packets for much longer.
 fn small(scenarios: &'static [Scenario]) -> Vec<&'static Scenario> {
     scenarios.iter().filter(|scenario| scenario.has_own_size()).collect()
 }
@@ -26,7 +26,7 @@ fn broken_boards_fail() {
 #[test]
 fn what_a_link_spoils_is_asked_for_again() {
     let reports = run_all_on_serial_ports(&small(REPAIRED_LINKS));
-    // What is hit depends on who is late: an acknowledgement, behind which another one comes, is not asked for again.
+    // What is hit depends on timing: an acknowledgement that another one follows is not asked for again.
     let mended = reports.iter().filter(|report| report["link"]["retries"] != 0).count();
     assert!(2 * mended > reports.len(), "{mended} of {}", reports.len());
 }
@@ -41,7 +41,7 @@ fn hopeless_links_end_with_an_error() {
     let _ = run_all_on_serial_ports(&small(HOPELESS_LINKS));
 }
 
-/// As with boards that `HALFROW_TEST_BOARDS` names: one device, and one scenario after the other.
+/// Like boards that `HALFROW_TEST_BOARDS` names: one device, and one scenario after another.
 #[test]
 fn a_board_behind_a_device_takes_every_scenario_that_is_for_any_board() {
     for served in [Served::on_a_serial_port("mock"), Served::on_a_tcp_port("127.0.0.1", "mock")] {

@@ -10,14 +10,14 @@ use halfrow_tests::served::{Replug, Served};
 
 use crate::{ends, passes, verify};
 
-/// A running ser2net, which ends when this is dropped.
+/// A running ser2net, which is killed when dropped.
 struct Ser2net {
     child: Child,
     port: u16,
 }
 
 impl Ser2net {
-    /// Exports `device`.
+    /// Starts one that exports `device`.
     fn start(folder: &Folder, device: &Path) -> Self {
         let device = device.display();
         let configuration = format!(
@@ -40,19 +40,19 @@ impl Ser2net {
         format!("tcp:127.0.0.1:{}", self.port)
     }
 
-    /// What its descriptors lead to.
+    /// The targets of its descriptors.
     fn open_files(&self) -> Vec<PathBuf> {
         let descriptors =
             fs::read_dir(format!("/proc/{}/fd", self.child.id())).into_iter().flatten().flatten();
         descriptors.filter_map(|descriptor| fs::read_link(descriptor.path()).ok()).collect()
     }
 
-    /// The port that the system has given it. A connection would open the device, so it is looked for among the ports that
-    /// are listened on.
+    /// The port that the system has given it. It is looked up among the listening ports, since a connection would open the
+    /// device.
     fn listens_on(&self) -> Option<u16> {
         let ours = self.open_files();
         fs::read_to_string("/proc/net/tcp").unwrap().lines().find_map(|line| {
-            // Number, near end, far end, state (0A: listening), and five more in front of the inode.
+            // Number, near end, far end, state (0A: listening), and five more fields before the inode.
             let fields: Vec<_> = line.split_whitespace().collect();
             let [_, near, _, "0A", _, _, _, _, _, inode, ..] = fields[..] else { return None };
             let is_ours = ours.contains(&format!("socket:[{inode}]").into());
@@ -68,7 +68,7 @@ impl Drop for Ser2net {
     }
 }
 
-/// Debian puts it where users do not look.
+/// Debian puts it into a folder that is not on a user's path.
 fn program() -> PathBuf {
     let folders =
         ["/usr/sbin", "/usr/local/sbin", "/usr/bin"].map(|folder| Path::new(folder).join("ser2net"));

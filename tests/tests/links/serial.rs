@@ -1,4 +1,4 @@
-//! Serial ports: set, locked, drained, and never waited for beyond a deadline.
+//! Serial ports: set up, locked, drained, and never waited for beyond a deadline.
 
 use std::fs::{self, OpenOptions};
 use std::io::Write as _;
@@ -40,7 +40,7 @@ fn a_port_that_is_not_there_is_an_error_of_the_station() {
         3,
         "there is no serial port /dev/ttyUSB99; check that the board is plugged in",
     );
-    // As other programs take a port.
+    // Paths that other programs accept as ports.
     ends(&verify("serial:null", &[]), 3, "there is no serial port null; write serial:/dev/null, or check");
     ends(&verify("serial:/dev/null", &[]), 2, "/dev/null is no serial port");
     ends(&verify("serial:/etc/passwd", &[]), 2, "/etc/passwd is no serial port");
@@ -59,7 +59,7 @@ fn a_port_in_use_is_busy_until_it_is_closed() {
     passes(&served);
 }
 
-/// Nobody finds a program to close that is the one which says so.
+/// Nobody can close another program when this one is meant.
 #[test]
 fn a_port_that_this_program_has_open_is_not_said_to_be_another_s() {
     let served = Served::on_a_serial_port("mock");
@@ -70,7 +70,7 @@ fn a_port_that_this_program_has_open_is_not_said_to_be_another_s() {
     assert!(refused.contains("is in use by links") && refused.contains(&own), "{refused}");
 }
 
-/// Waits until the kernel, which takes its time, has carried what was written at one end of a pseudo-terminal to `end`.
+/// Waits until the kernel has carried what was written at one end of a pseudo-terminal to `end`, which takes it some time.
 fn wait_for_bytes(end: &impl AsRawFd) {
     let ready = poll(&mut [PollFd::new(end.as_raw_fd(), PollFlags::POLLIN)], LIMIT.as_millis() as i32);
     assert_eq!(ready, Ok(1));
@@ -79,13 +79,13 @@ fn wait_for_bytes(end: &impl AsRawFd) {
 #[test]
 fn stale_bytes_are_dropped() {
     let served = Served::on_a_serial_port("mock");
-    // A host that asked for much and never read it: a greeting's end, then answers without a question.
+    // A host that asked for much and never read it: the end of a greeting, then answers without a question.
     let mut rude = OpenOptions::new().read(true).write(true).open(served.address()).unwrap();
     rude.write_all(&[0; 100]).unwrap();
     rude.write_all(b"\x05halfrow\x00\x11\x22").unwrap();
     drop(rude);
     passes(&served);
-    // A board that has been talking to nobody.
+    // A board that has been sending while nobody listened.
     let pty = Pty::open().unwrap();
     let say = |bytes: &[u8]| assert_eq!(nix::unistd::write(pty.as_raw_fd(), bytes), Ok(bytes.len()));
     say(&[0x55; 3000]);
@@ -115,7 +115,7 @@ fn a_peer_that_takes_nothing_holds_nobody_up() {
         for _ in 0..20 {
             taken += link.exchange(&[0x55; 100_000], &mut Vec::new(), Duration::from_millis(20)).unwrap();
         }
-        // Nor does closing it wait for what was never taken.
+        // Nor does closing it wait for what was never accepted.
         drop(link);
         taken
     });

@@ -1,4 +1,4 @@
-//! `halfrow serve`, and what a host that vanishes leaves behind.
+//! `halfrow serve`, and the state in which a host that vanishes leaves a board.
 
 use std::net::TcpStream;
 use std::process::Command;
@@ -23,14 +23,14 @@ impl Server {
         Self { running, target }
     }
 
-    /// Sends it a signal, and returns the exit code of its end.
+    /// Sends it a signal, and returns its exit code.
     fn end(self, signal: &str) -> Option<i32> {
         self.running.send(signal);
         self.running.end().code
     }
 }
 
-/// A run that has got its session with the board, and moves bytes both ways.
+/// A run that has opened its session with the board, and moves bytes both ways.
 fn streaming(served: &Served) -> Running {
     let slow = ["verify", "-vv", "--quiet", "--board", &served.target()];
     let mut run = Running::start(&mut program::command(slow));
@@ -69,7 +69,7 @@ fn a_name_that_is_taken_stays_what_it_is() {
     assert_eq!(ended.code, Some(2), "{}", ended.stderr);
     assert!(ended.stderr.contains("mine is there already"), "{}", ended.stderr);
     assert_eq!(folder.text("mine"), "precious");
-    // One that a killed server left behind leads nowhere.
+    // A link that a killed server left behind leads nowhere.
     std::os::unix::fs::symlink("/dev/pts/not-there", folder.path().join("old")).unwrap();
     let server = Server::start(&["--link", folder.path().join("old").to_str().unwrap()]);
     assert_eq!(server.end("TERM"), Some(0));
@@ -97,7 +97,7 @@ fn a_board_held_by_another_host_is_busy_over_the_network() {
     assert_eq!(taken.code, Some(0), "{}", taken.stderr);
 }
 
-/// What it has open when it waits is all that it may have.
+/// It may open no more files than it has open when it waits.
 #[test]
 fn a_host_that_cannot_be_let_in_is_told_of_and_served_when_it_can() {
     let mut server = Server::start(&["--tcp", "0"]);
@@ -117,7 +117,7 @@ fn a_host_that_cannot_be_let_in_is_told_of_and_served_when_it_can() {
     assert_eq!(server.end("TERM"), Some(0));
 }
 
-/// A board keeps its tables from one session to the next, under a generation that the next may name, too.
+/// A board keeps its tables from one session to the next, under a generation that the next may use as well.
 #[test]
 fn what_an_earlier_session_left_on_a_board_misleads_nobody() {
     const LENS: [&str; 6] = ["--width", "128", "--height", "72", "--radius", "73.78"];

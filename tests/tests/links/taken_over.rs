@@ -1,4 +1,4 @@
-//! Boards that are there, and are kept from a run that lost them: by another host that took them over, or by the system.
+//! Boards that still exist but are kept from a run that lost them: by another host that took them over, or by the system.
 
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
@@ -19,12 +19,12 @@ const PATIENCE: Duration = Duration::from_millis(300);
 /// A line to a board that two hosts reach.
 struct Line {
     link: Box<dyn Link>,
-    /// Bytes that the first of them sends until the other one takes the board over.
+    /// Bytes that the first host sends until the other one takes the board over.
     left: usize,
 }
 
 impl Line {
-    /// What the other host says, and hears.
+    /// Sends the other host's greeting, and reads until the board is silent.
     fn take_over(&mut self) -> Result<(), LinkError> {
         let hello =
             Hello { nonce: 77, host: 77, version_min: VERSION, version_max: VERSION, take_over: true };
@@ -45,7 +45,7 @@ impl Line {
     }
 }
 
-/// The first host's end of it.
+/// The first host's end of the line.
 #[derive(Clone)]
 struct End(Arc<Mutex<Line>>);
 

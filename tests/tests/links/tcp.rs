@@ -1,4 +1,4 @@
-//! TCP, without anything between.
+//! TCP, with nothing in between.
 
 use std::io::{Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
@@ -19,7 +19,7 @@ fn a_board_behind_a_tcp_port_passes_again_and_again() {
     assert_eq!(with_rate.code, Some(0), "{}", with_rate.stdout);
 }
 
-/// Ten bits a byte: one to start, eight, one to stop.
+/// Ten bits a byte: a start bit, eight bits, a stop bit.
 #[test]
 fn the_rate_of_the_line_at_the_far_end_is_that_of_the_link() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -44,7 +44,7 @@ fn a_board_behind_an_ipv6_port_passes() {
 #[test]
 fn ports_that_lead_nowhere_are_told_apart() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    // The near end of a connection: nothing listens there, and while it lasts nobody else can.
+    // The near end of a connection: nothing listens there, and while the connection lasts nothing else can.
     let near = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
     ends(
         &verify(&format!("tcp:{}", near.local_addr().unwrap()), &[]),
@@ -85,7 +85,7 @@ fn a_line_that_echoes_is_no_board_with_a_wrong_bitstream() {
 
 #[test]
 fn a_server_that_speaks_in_words_is_quoted() {
-    // One that is cut within a character, and one of ser2net whose device another program has.
+    // A message that is cut within a character, and messages of ser2net, such as that another program has its device.
     let long = format!("{}é no board here", "a".repeat(199));
     for (words, code, sentence) in [
         (long.as_str(), 3, "aaa` and no board"),
@@ -121,7 +121,7 @@ fn a_second_host_is_turned_away_while_a_first_is_connected() {
     let (stop, stopped) = channel::<()>();
     std::thread::scope(|scope| {
         let stop: Sender<()> = stop;
-        // One that says something every now and then, and reads what it is told.
+        // A host that sends something now and then, and reads what comes back.
         let first = &mut first;
         let hello = &hello;
         scope.spawn(move || {
@@ -134,7 +134,7 @@ fn a_second_host_is_turned_away_while_a_first_is_connected() {
         drop(stop);
     });
     drop(first);
-    // The first one greeted the board, so it is its for another ten seconds.
+    // The first host greeted the board, so it holds it for another ten seconds.
     let second = verify(&served.target(), &["--take-over"]);
     assert_eq!(second.code, Some(0), "{}{}", second.stdout, second.stderr);
 }

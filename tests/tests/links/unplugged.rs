@@ -10,7 +10,8 @@ use halfrow_tests::patience::come_to_an_end;
 use halfrow_tests::served::Served;
 use halfrow_tests::system::System;
 
-/// Judges a board that is unplugged as `options` say, which must end in an error. Returns whether the run came that far.
+/// Judges a board that is unplugged as `options` say, which must end in an error. Returns whether it was unplugged before the run
+/// ended.
 fn is_unplugged(options: &str) -> bool {
     let served = Served::on_a_serial_port(&format!("mock,fault=disconnect,{options}"));
     let target = served.target();
@@ -28,7 +29,7 @@ fn is_unplugged(options: &str) -> bool {
 #[test]
 fn at_every_packet_it_is_an_error_that_names_the_place() {
     for toward in ["board", "host"] {
-        // Each of those that a run of frames needs, and some of the many behind them.
+        // Each packet that a run of frames needs, and some of the many that follow.
         let packets: Vec<u32> = (0..160).chain((160..3200).step_by(76)).collect();
         let unplugged =
             parallel::map(&packets, |packet| is_unplugged(&format!("packet={packet},toward={toward}")));
@@ -38,7 +39,7 @@ fn at_every_packet_it_is_an_error_that_names_the_place() {
     }
 }
 
-/// Unplugs boards after `count` numbers of bytes either way, drawn from all of a run.
+/// Unplugs boards after random numbers of bytes, `count` cuts in turn either way, within a whole run.
 #[track_caller]
 fn is_unplugged_after(count: usize) {
     let whole = System::TINIEST.judge_at(&Served::on_a_serial_port("mock").target());
@@ -48,7 +49,7 @@ fn is_unplugged_after(count: usize) {
     let cuts: Vec<_> = (0..count)
         .map(|index| {
             let (toward, bytes) = ends[index % 2];
-            // The last bytes either way are of the session's end, which comes behind the verdict.
+            // The last bytes either way end the session, after the verdict.
             format!("byte={},toward={toward}", dice.below(bytes as usize - 100))
         })
         .collect();

@@ -1,4 +1,4 @@
-//! Which of several chips is meant.
+//! Which of several chips a target names.
 
 use std::fs::File;
 

@@ -1,4 +1,4 @@
-//! A board that a program has is not taken from it, and what was borrowed is given back.
+//! A board is not taken from a program that has it open, and what was borrowed is given back.
 
 use std::fs;
 use std::path::Path;
@@ -24,13 +24,13 @@ impl Holding {
 
 impl Drop for Holding {
     fn drop(&mut self) {
-        // It may have ended by itself, and then there is nothing to do.
+        // It may have ended by itself; then there is nothing to do.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }
 }
 
-/// When the driver made this port: another time, another port.
+/// When the driver made this port: another time means another port.
 fn made(port: &Path) -> SystemTime {
     let folder = Path::new("/sys/class/tty").join(port.file_name().unwrap());
     fs::metadata(folder).unwrap().modified().unwrap()

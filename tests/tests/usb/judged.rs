@@ -1,4 +1,4 @@
-//! Boards behind an FT2232H are judged as boards in this process are.
+//! Boards behind an FT2232H are judged like boards in this process.
 
 use halfrow_ft2232h::{ChipOptions, Plugged};
 use halfrow_tests::usb::{chip, sentence, uart, verify};

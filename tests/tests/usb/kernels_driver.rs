@@ -1,4 +1,4 @@
-//! The same chip behind the kernel's own driver: it is not one that only this project's link believes in.
+//! The same emulated chip behind the kernel's own driver, so it is not one that only this project's link accepts.
 
 use halfrow_ft2232h::Plugged;
 use halfrow_tests::scenarios::all;

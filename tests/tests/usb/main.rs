@@ -1,4 +1,4 @@
-//! The link over USB, on Debian's kernel and chips made of software. `scripts/in-linux` boots that kernel; see there.
+//! The link over USB, on Debian's kernel and emulated chips. `scripts/in-linux` boots that kernel, and says how.
 
 #![cfg(target_os = "linux")]
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.

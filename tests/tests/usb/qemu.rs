@@ -1,4 +1,4 @@
-//! The link drives a chip that somebody else wrote.
+//! The link drives a chip that this project did not make.
 
 use halfrow_tests::program::{Running, command};
 use halfrow_tests::usb::{QEMU_CHIP, QemuBoard, QemuChipOut, sentence, verify};

@@ -1,4 +1,4 @@
-//! The scenarios of the mock, behind chips.
+//! The mock's scenarios, behind chips.
 
 use halfrow_tests::scenarios::all;
 use halfrow_tests::usb::{QEMU_CHIP, QemuBoard, is_quick, of_boards, plug, run_all};
@@ -6,7 +6,7 @@ use halfrow_tests::usb::{QEMU_CHIP, QemuBoard, is_quick, of_boards, plug, run_al
 #[test]
 #[ignore = "needs scripts/in-linux"]
 fn every_eightieth_of_the_small_ones_behind_an_ft2232h() {
-    // Those between the ones that are judged behind the kernel's own driver.
+    // Those halfway between the ones that are judged behind the kernel's own driver.
     let quick = all().filter(is_quick).skip(40);
     run_all(quick.step_by(80), plug, |_| "usb".to_owned());
 }

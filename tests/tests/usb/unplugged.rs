@@ -1,10 +1,10 @@
-//! A board that is pulled out at any moment: an error, no hang, no verdict, and a station that can go on.
+//! A board that is unplugged at any moment: an error, no hang, no verdict, and a station that can go on.
 
 use halfrow_tests::dice::Dice;
 use halfrow_tests::patience::come_to_an_end;
 use halfrow_tests::usb::{plug, sentence, verify};
 
-/// Pulls the plug at byte `byte` on the way `toward` the board or the host, and plugs a whole board in afterwards.
+/// Pulls the plug at byte `byte` on the way `toward` the board or the host.
 fn pull(byte: usize, toward: &str) {
     let board = plug(&format!(",fault=disconnect,byte={byte},toward={toward}"));
     let ended = come_to_an_end(|| verify("usb"));
@@ -28,7 +28,7 @@ fn in_the_handshake_in_the_tables_and_in_a_row() {
     assert_eq!(verify("usb").code, Some(0));
 }
 
-/// At `count` bytes, drawn by `seed`.
+/// Pulls the plug at `count` random places by `seed`; then a sound board must pass.
 pub(crate) fn anywhere(seed: usize, count: usize) {
     let mut dice = Dice::new(20_261_121 + seed as u64);
     for _ in 0..count {

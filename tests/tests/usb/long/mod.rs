@@ -1,5 +1,5 @@
-//! What takes an hour in all, in parts of some minutes; `scripts/test-usb --long` boots for each and remembers those that have
-//! passed.
+//! Tests that take an hour together, in parts of some minutes; `scripts/test-usb --long` boots for each part and remembers those
+//! that have passed.
 
 mod speed;
 

@@ -1,4 +1,4 @@
-//! How fast the link is over the emulated chip, with the chip's own limit beside it. The emulated processor sets the scale.
+//! The speed of the link over the emulated chip, compared with the chip's own limit. The emulated processor sets the scale.
 
 use std::time::{Duration, Instant};
 
@@ -7,7 +7,7 @@ use halfrow_ft2232h::{Chip, ChipOptions, Endless, Plugged};
 use halfrow_tests::program::halfrow;
 use halfrow_tests::usb::plug;
 
-/// Bytes a second to the board and from it, for two seconds.
+/// Bytes a second to the board and from it, over two seconds.
 fn raw(link: &mut dyn Link, outgoing: &[u8]) -> (f64, f64) {
     let (mut sent, mut came, mut incoming) = (0, 0, Vec::new());
     let begun = Instant::now();
