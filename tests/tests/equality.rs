@@ -1,5 +1,5 @@
 //! Model and mock, which share no arithmetic, on the same rows: random legal tables, kernels, sizes, depths, builds, blankings
-//! and gaps, with another frame, other tables and another kernel close behind.
+//! and gaps, with another frame, other tables and another kernel following at once.
 
 use halfrow_tests::cases::{Build, Case};
 use halfrow_tests::dice::Dice;

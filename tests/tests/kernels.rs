@@ -1,6 +1,6 @@
 //! What the fitted kernels gain over Hermite on the photographs of Table 1, and fitting one from the command line.
 //!
-//! The photographs are taken from the folder `HALFROW_IMAGES`, or from `../shared/kodak` beside the project.
+//! The photographs are those in the folder `HALFROW_IMAGES`, or in `../shared/kodak` next to the project.
 
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used)]
@@ -13,8 +13,8 @@ use halfrow_tests::photographs;
 use halfrow_tests::program::{Ended, Folder, error_sentence};
 use serde_json::Value;
 
-/// Gains in dB, each mean, least and most, found with NumPy 2: under Table 1's warp, under a band-limited one, under that with noise
-/// of 2, 5 and 10 levels, which NumPy draws otherwise, and under it demosaicked.
+/// Gains in dB, each as mean, least and most, computed with NumPy 2: with Table 1's warp, with a band-limited one, with that and
+/// noise of 2, 5 and 10 levels (NumPy draws other noise), and with that and demosaicking.
 const GAINS: [(&str, [[f64; 3]; 6]); 2] = [
     (
         "sharp5",
@@ -115,7 +115,7 @@ fn a_place_that_cannot_be_written_is_refused_before_the_training() {
     assert!(refused.stderr.contains("check that it exists and is writable"), "{}", refused.stderr);
 }
 
-/// Two pictures with detail of every size in the folder `photos`, and a file that is none.
+/// A folder `photos` with two pictures that have detail of every size, and a file that is no picture.
 fn folder_of_pictures() -> Folder {
     let folder = Folder::new();
     std::fs::create_dir(folder.path().join("photos")).unwrap();
@@ -187,7 +187,7 @@ fn a_trained_kernel_corrects_frames_alike_in_the_model_and_on_a_board() {
     assert!(corrected("hermite", "hermite.pgm", &["--model"]) != model);
 }
 
-/// A photograph without any detail beside those of [`folder_of_pictures`].
+/// Adds a photograph without any detail to those of [`folder_of_pictures`].
 fn add_a_flat_one(folder: &Folder, name: &str) {
     let image = RgbImage { width: 96, height: 64, data: vec![90; 3 * 96 * 64] };
     write_rgb(&folder.path().join(name), &image, false).unwrap();
@@ -246,7 +246,7 @@ fn a_pipe_among_the_photographs_is_refused_and_not_waited_for() {
     let folder = folder_of_pictures();
     let pipe = folder.path().join("photos/z.png");
     assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
-    // Whoever reads it finds its end.
+    // Whoever reads the pipe finds it empty.
     std::thread::spawn(move || std::fs::OpenOptions::new().write(true).open(pipe));
     let refused = train(&folder, &["-o", "mine.json"]);
     assert_eq!(refused.code, Some(2), "{}{}", refused.stdout, refused.stderr);

@@ -1,6 +1,6 @@
-//! What the integers cost on photographs: the integer datapath beside double precision, at 1920 x 1080 and 12 bits.
+//! What integer arithmetic costs on photographs: the integer datapath compared with double precision, at 1920 x 1080 and 12 bits.
 //!
-//! The photographs are taken from the folder `HALFROW_IMAGES`, or from `../shared/kodak` beside the project.
+//! The photographs are those in the folder `HALFROW_IMAGES`, or in `../shared/kodak` next to the project.
 
 use halfrow_model::{
     Equidistant, Geometry, Interpolant, Kernel, TableSet, correct, correct_real, round_to_frame,

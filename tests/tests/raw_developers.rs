@@ -1,4 +1,4 @@
-//! DNG files as raw developers see them: dcraw, LibRaw's tools, and ExifTool.
+//! DNG files in the view of raw developers: dcraw, LibRaw's tools, and ExifTool.
 
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used, clippy::panic)]
@@ -9,7 +9,7 @@ use halfrow::frames::{ReadOptions, decode};
 use halfrow_model::{BitDepth, Frame, Phase};
 use halfrow_tests::program::{Folder, halfrow};
 
-/// What `program` of Debian's `package` prints when it is run in `folder`.
+/// What `program`, of Debian's `package`, prints when it runs in `folder`.
 #[track_caller]
 fn printed(folder: &Folder, package: &str, program: &str, arguments: &[&str]) -> Vec<u8> {
     let started = Command::new(program).args(arguments).current_dir(folder.path()).output();
@@ -22,7 +22,7 @@ fn printed(folder: &Folder, package: &str, program: &str, arguments: &[&str]) ->
 #[track_caller]
 fn text(folder: &Folder, package: &str, program: &str, arguments: &[&str]) -> String {
     let text = String::from_utf8(printed(folder, package, program, arguments)).unwrap();
-    // Columns are filled with blanks.
+    // Columns are padded with blanks.
     text.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n").collect()
 }
 
@@ -96,8 +96,8 @@ fn exiftool_finds_nothing_missing_and_the_depth_as_white() {
     }
 }
 
-/// dcraw with its own bilinear interpolation, the file's colours and white, sRGB's curve, and no brightening. Both round to 8 bits,
-/// dcraw on the way to 16 as well; and at the border they mean by different neighbours.
+/// dcraw with its own bilinear interpolation, the file's colours and white, sRGB's curve, and no brightening. Both round to 8
+/// bits, dcraw also to 16 on the way; and at the border they average different neighbours.
 #[test]
 fn dcraw_develops_the_picture_that_the_preview_shows() {
     const SIZE: (usize, usize) = (320, 180);
@@ -133,7 +133,7 @@ fn libraw_develops_it() {
     assert!(folder.read("frame.dng.ppm").starts_with(b"P6\n96 54\n255\n"));
 }
 
-/// The file that was written is an input again, and a wrong phase or depth is noticed.
+/// The file can be read again, and a wrong phase or depth is noticed.
 #[test]
 fn it_can_be_corrected_again() {
     let (folder, _) = corrected(Phase::Gbrg, BitDepth::Ten);

@@ -1,4 +1,4 @@
-//! The same scenarios on every kind of board. Other boards than the mock are named by `HALFROW_TEST_BOARDS`.
+//! The same scenarios on every kind of board. `HALFROW_TEST_BOARDS` names boards other than the mock.
 
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used)]
@@ -11,7 +11,7 @@ use halfrow_tests::scenarios::{
 };
 use serde_json::Value;
 
-/// Samples that were compared, and those that differed.
+/// The number of samples that were compared, and of those that differed.
 fn samples(report: &Value) -> (u64, u64) {
     let frames = report["frames"].as_array().unwrap();
     let sum = |what| frames.iter().filter_map(|frame| frame["comparison"][what].as_u64()).sum();
@@ -64,7 +64,7 @@ fn what_does_not_fit_the_board_is_refused_without_a_verdict() {
     run_all_on_boards(MISFITS);
 }
 
-/// Whoever makes a board goes by the page.
+/// Whoever makes a board relies on the page.
 #[test]
 fn the_host_waits_as_long_as_the_page_of_the_wire_says() {
     let page = include_str!("../../protocol/WIRE.md");

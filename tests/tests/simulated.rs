@@ -1,4 +1,4 @@
-//! The Verilog against model and mock, the core alone and the whole board: every sample and every latency.
+//! The Verilog compared with model and mock, the core alone and the whole board: every sample and every latency.
 
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used)]
@@ -16,7 +16,7 @@ use halfrow_tests::photographs::{self, filled};
 use halfrow_tests::simulated_core;
 use halfrow_tests::whole_board::{self, WholeBoard};
 
-/// Plays so many cases on each build of the core.
+/// Plays `cases` cases on each build of the core.
 #[allow(clippy::print_stdout)]
 fn cores_agree(cases: u64) {
     let mut counts = BTreeMap::new();
@@ -51,7 +51,7 @@ fn board_agrees(verilog: &mut WholeBoard, case: &Case, name: &str) -> Played {
     played
 }
 
-/// Plays so many cases on a simulated board, all in one session.
+/// Plays `cases` cases on a simulated board, all in one session.
 #[allow(clippy::print_stdout)]
 fn boards_agree(front: Front, cases: u64) {
     let mut verilog = WholeBoard::open(link(Board::new(front, 1)));
@@ -67,7 +67,7 @@ fn boards_agree(front: Front, cases: u64) {
         samples += played.samples.len();
         rows += played.latencies.len() / 2;
     }
-    // Two frames in nine cases of twenty are behind a grid, and in three of ten the datapath changes from one to the other.
+    // On average, nine frames in ten cases (of two frames each) have a grid, and in three of ten cases the datapath changes.
     assert!(build.grids.is_none() || grids >= cases as usize / 2 && changes >= cases as usize / 10);
     println!(
         "model, mock and {front:?} agree: {cases} cases, {rows} rows, {samples} samples; {grids} frames behind a grid, and in \
@@ -75,7 +75,7 @@ fn boards_agree(front: Front, cases: u64) {
     );
 }
 
-/// Two tables for photographs at the paper's size: row factors, and others that reach further.
+/// Two sets of tables for photographs at the paper's size: row factors of its lens, and others that reach further.
 fn row_factors(geometry: Geometry) -> [TableSet; 2] {
     let tables = TableSet::from_lens(geometry, &Equidistant::default(), None).unwrap();
     let reversed: Vec<_> = tables.entries().rev().collect();
@@ -84,7 +84,7 @@ fn row_factors(geometry: Geometry) -> [TableSet; 2] {
     [tables, narrower]
 }
 
-/// Two grids for them, of the paper's lens and of a shorter one whose grid has another shape.
+/// Two grids likewise: of the paper's lens, and of a lens with a smaller radius whose grid has another shape.
 fn grids(geometry: Geometry) -> [TableSet; 2] {
     let middle = ((geometry.width() - 1) as f64 / 2.0, (geometry.height() - 1) as f64 / 2.0);
     let paper = Equidistant::default();
@@ -167,7 +167,7 @@ fn model_mock_and_verilog_agree_on_photographs_behind_grids() {
     photographs_agree("grids", &grids(Geometry::default()));
 }
 
-/// Two frames of the paper's size by two, the first of each pair once more in front of the second.
+/// Two photographs at a time, as frames of the paper's size; the first of each pair is played once more before the second.
 #[allow(clippy::print_stdout)]
 fn photographs_agree(what: &str, tables: &[TableSet; 2]) {
     let paths = photographs::paths();

@@ -1,6 +1,6 @@
-//! Table 1 of the paper, with the 24 photographs, and through a board that works and one that does not.
+//! Table 1 of the paper, with the 24 photographs, by a sound board and a broken one.
 //!
-//! The photographs are taken from the folder `HALFROW_IMAGES`, or from `../shared/kodak` beside the project.
+//! The photographs are those in the folder `HALFROW_IMAGES`, or in `../shared/kodak` next to the project.
 
 use halfrow_tests::photographs;
 use halfrow_tests::program::Folder;
@@ -34,7 +34,8 @@ fn table_1_is_the_paper_s_in_reals_in_integers_and_through_a_board() {
     for (claim, average) in claims.iter().zip(AVERAGES) {
         assert!((found(claim) - average).abs() < 5e-4, "{claim}");
     }
-    // The photograph farthest off, integers beside reals, four kernels through the board, the board beside reals.
+    // Besides the averages: the photograph farthest off, integers against reals, four kernels through the board, the board
+    // against reals.
     assert_eq!(claims.len(), 3 + 2 + 4 + 1);
     assert!(found(&claims[3]) < 0.2 && found(&claims[4]) < 0.01 && found(&claims[9]) < 0.01);
     assert!(claims[5..9].iter().all(|claim| found(claim) == 0.0), "{claims:?}");
@@ -51,7 +52,7 @@ fn a_board_of_five_taps_is_refused_since_cubic_needs_seven() {
     assert!(table_1_refusal().is_none_or(|said| said.contains("needs seven taps")));
 }
 
-/// What the call says to a board of five taps.
+/// What the call prints for a board of five taps; none without photographs.
 fn table_1_refusal() -> Option<String> {
     let first = photographs::paths().into_iter().next()?;
     let images = first.parent()?.to_str()?.to_owned();

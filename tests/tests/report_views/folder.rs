@@ -118,7 +118,7 @@ fn a_report_that_replaces_one_is_open_to_the_same_people() {
     }
 }
 
-/// As `mkdir -p` and `mktemp -d` make one before a run.
+/// `mkdir -p` or `mktemp -d` makes one before a run.
 #[test]
 fn an_empty_folder_is_a_place_for_a_report() {
     for overwrite in [false, true] {
@@ -129,7 +129,7 @@ fn an_empty_folder_is_a_place_for_a_report() {
         assert_eq!(names(&path), ["report.html", "report.json", "report.xml"]);
         assert_eq!(names(station.path()), ["today"]);
     }
-    // It is looked at again at the end.
+    // The folder is checked again at the end.
     let station = TempDir::new().unwrap();
     let path = station.path().join("today");
     fs::create_dir(&path).unwrap();

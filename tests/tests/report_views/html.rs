@@ -14,7 +14,7 @@ fn page(report: &Report, evidence: &[Evidence]) -> String {
     report::html(report, evidence).unwrap()
 }
 
-/// The names of all tags, end tags with their slash.
+/// The names of all tags; those of end tags with their slash.
 fn tags(page: &str) -> Vec<&str> {
     let name = |piece: &'_ str| piece.find(|end: char| " >".contains(end)).unwrap_or(piece.len());
     page.split('<').skip(1).map(|piece| &piece[..name(piece)]).collect()
@@ -42,7 +42,7 @@ fn nothing_from_outside_becomes_markup() {
     assert!(page.contains("frames/&lt;script&gt;alert(1)&lt;/script&gt;&amp;.pgm"));
 }
 
-/// As many retries as are allowed are not too many.
+/// The permitted number of retries is not too many.
 #[test]
 fn a_link_s_retries_are_told_with_the_most_that_are_allowed() {
     let report = made::pass();
@@ -65,7 +65,7 @@ fn a_pass_says_what_share_of_faults_it_stands_for_where_it_may() {
         let report = Report { board: BoardReport { kind, ..report.board }, coverage, ..report };
         report::wording::coverage(&report)
     };
-    // 99.95 % would be rounded up.
+    // Rounding to the nearest would make it 100.0 %.
     let measured = Some(CoverageReport { found: 1999, faults: 2000, equivalent: 100 });
     let share = "finds 99.9 % of 2,000 single faults of the Verilog at this geometry";
     assert_eq!(of(BoardKind::Sim, measured).as_deref(), Some(share));
@@ -115,7 +115,7 @@ fn a_fail_shows_suspects_and_what_to_do() {
     assert!(page.contains("halfrow verify --frame 'my frames/a.pgm'"));
 }
 
-/// Sixteen frames of noise, which nothing compresses, of as many rows as charts can have.
+/// A report of sixteen frames of noise, which does not compress, with as many rows as charts can have.
 fn noise() -> (Report, Vec<Evidence>) {
     let mut state = 1_u64;
     let mut noise = || {
@@ -146,7 +146,7 @@ fn sixteen_frames_of_noise_stay_under_four_megabytes_and_all_are_shown() {
     assert!(!page.contains("left out"));
 }
 
-/// The first frame that differs is the one that is looked at.
+/// The first frame that differs is the one that people look at.
 #[test]
 fn of_many_frames_the_first_that_differ_keep_their_maps_and_what_is_left_out_is_said() {
     let frame = |sample| made::sized_frame(64, 16, |_, _| sample);
@@ -181,7 +181,7 @@ fn a_pass_stays_under_two_megabytes() {
     assert_eq!(page.matches("As it went in").count(), 32, "a caption and a description for each");
 }
 
-/// Whatever came of it, the head says which board it was, and when; what is to be done follows.
+/// Whatever the result, the head says which board it was, and when; what to do follows.
 #[test]
 fn the_head_names_board_serial_time_and_operator() {
     for (report, board) in [
@@ -214,7 +214,7 @@ fn a_soak_is_shown_over_time_with_what_differed() {
     let page = page(&made::soaked(), &[]);
     assert!(page.contains("8 h 0 min of 8 h 0 min: 1,326,976 frames in 480 bursts, 2 of which differ."));
     assert!(page.contains("Frames judged in each 2 min 8 s: at most 5,924"));
-    // The intervals without a frame have no bar, those in which frames differ one of their own.
+    // Intervals without a frame have no bar, and those in which frames differ have one of another class.
     let path = |class: &str| {
         let rest = page.split(&format!("class=\"{class}\" d=\"")).nth(1).unwrap();
         rest.split('"').next().unwrap().matches('M').count()
@@ -224,7 +224,7 @@ fn a_soak_is_shown_over_time_with_what_differed() {
     assert!(!self::page(&made::pass(), &[]).contains("over time"));
 }
 
-/// Two boards' reports are compared by what came out of them.
+/// Two boards' reports are compared by what came out.
 #[test]
 fn the_hash_of_what_went_in_is_told_from_that_of_what_came_out() {
     let (report, evidence) = made::fail();
@@ -238,7 +238,7 @@ fn the_hash_of_what_went_in_is_told_from_that_of_what_came_out() {
     assert_eq!(hash("SHA-256 of those that came out"), halfrow::result::sha256([bytes]));
 }
 
-/// What nothing known explains.
+/// A suspect for differences that nothing known explains.
 fn unknown() -> Suspect {
     let defect = Defect::NoneKnown {
         rows: None,
@@ -263,13 +263,14 @@ fn a_report_asks_nobody_to_make_one() {
     report.frames.truncate(1);
     let without_maps = page(&report, &[]);
     assert!(without_maps.contains("every frame that has a map is right"), "{without_maps}");
-    // Beside what explains it, that something else does not is no news.
+    // Next to a suspect that explains the differences, one that does not is not worth showing.
     report.suspects = [known, vec![unknown()]].concat();
     let page = page(&report, &[]);
     assert!(page.contains("row factor") && !page.contains("an unknown part"), "{page}");
 }
 
-/// WCAG 2.1, success criterion 1.4.11: 3 : 1 between what is to be told apart, which no kind of colour blindness takes away.
+/// WCAG 2.1, success criterion 1.4.11: a contrast of 3 : 1 between what must be told apart, which survives every kind of colour
+/// blindness.
 #[test]
 fn intervals_that_differ_are_told_from_others_by_brightness() {
     let page = page(&made::soaked(), &[]);

@@ -10,10 +10,10 @@ fn json(report: &Report) -> Value {
     serde_json::from_str(&report::json(report).unwrap()).unwrap()
 }
 
-/// A report that is equal to the other when it is read back.
+/// Asserts that the report is the same after it was read back.
 #[track_caller]
 fn assert_same_when_read_back(report: &Report) {
-    // From the text by way of values: a second way to read a report would take long to compile.
+    // Parsed by way of a JSON value: a second way to read a report would take long to compile.
     let again: Report = serde_json::from_value(json(report)).unwrap();
     assert_eq!(again, *report);
 }
@@ -65,7 +65,7 @@ fn everything_that_may_not_be_exercised_reads_back_equal_with_words_of_its_own()
     assert_eq!(known, examples::not_exercised().iter().map(|part| part.tagged().0).collect());
 }
 
-/// A report of before there were these keys.
+/// A report that is older than these keys.
 #[test]
 fn a_report_that_does_not_say_what_was_varied_is_read() {
     let mut old = json(&made::pass());
@@ -77,7 +77,7 @@ fn a_report_that_does_not_say_what_was_varied_is_read() {
     assert_eq!(read, Report { not_exercised: Vec::new(), ..made::pass() });
 }
 
-/// A report of when row factors were the only tables.
+/// A report of a version in which row factors were the only tables.
 #[test]
 fn a_report_with_the_earlier_names_of_tables_is_read() {
     let uploaded = Finding::TablesUploaded { entries: 1080, nodes: 65, generation: 2 };
@@ -93,7 +93,7 @@ fn a_report_with_the_earlier_names_of_tables_is_read() {
     assert_eq!(serde_json::from_value::<Report>(old).unwrap(), now);
 }
 
-/// What serde says of a code that does not exist names all that do.
+/// The codes that serde lists when it refuses one that does not exist.
 fn codes_known<T: serde::de::DeserializeOwned + std::fmt::Debug>() -> BTreeSet<String> {
     let refused = serde_json::from_value::<T>(json!({ "code": "none", "parameters": {} })).unwrap_err();
     let refused = refused.to_string();

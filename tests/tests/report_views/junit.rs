@@ -109,7 +109,7 @@ fn characters_that_xml_forbids_are_spelt_out() {
     assert!(!text.contains(['\u{0}', '\u{1b}', '\u{ffff}']));
 }
 
-/// Whether xmllint finds a document to be as the schema says, and else what it says.
+/// Validates a document against the schema with xmllint; the error is what xmllint prints.
 fn lint(document: &str) -> Result<(), String> {
     let schema = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/report_views/junit.xsd");
     let mut lint = Command::new("xmllint");
@@ -128,7 +128,7 @@ fn every_document_is_one_that_jenkins_takes() {
     }
 }
 
-/// What quick-junit writes by itself, and what Jenkins refuses.
+/// The first three are what quick-junit writes by itself; Jenkins refuses all of them.
 #[test]
 fn the_schema_refuses_what_jenkins_does() {
     let document = report::junit(&made::fail().0).unwrap();

@@ -11,7 +11,7 @@ use halfrow::result::{
 use halfrow::verdict::Cause;
 use halfrow_model::{BitDepth, Frame, Phase};
 
-/// Two equal frames of 1920 × 1080 on the mock board.
+/// Two right frames of 1920 × 1080 on the mock board.
 pub(crate) fn pass() -> Report {
     let frames: Vec<_> = [(1, "builtin:street"), (2, "builtin:noise")].map(equal_frame).into();
     Report {
@@ -45,7 +45,7 @@ pub(crate) fn pass() -> Report {
     }
 }
 
-/// Eight hours of which two frames differed, and one minute the board was away.
+/// Eight hours in which two frames differed and the board was away for a minute.
 pub(crate) fn soaked() -> Report {
     let defect = Defect::SeenAtSpeed { row: Some(3), samples: 1, bits: vec![11] };
     let finding = Finding::DiffersAtSpeed {

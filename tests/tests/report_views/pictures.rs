@@ -1,4 +1,4 @@
-//! The pictures of the page, taken out of it and decoded again.
+//! The pictures of the page, extracted and decoded.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -67,7 +67,7 @@ fn the_three_crops_share_one_contrast() {
     let (report, evidence) = made::fail();
     let page = report::html(&report, &evidence).unwrap();
     let grey = |alt| picture(&page, alt).2[31 * 48 + 47][0];
-    // Row 31, column 47 is 31 · 64 + 47 = 2031 of 2032 in the input, and 2032 of 2032 in the other two.
+    // At row 31, column 47 the input is 31 · 64 + 47 = 2031 of at most 2032, and the other two are 2032 of 2032.
     assert_eq!((grey("Input"), grey("Expected"), grey("Found")), (254, 255, 255));
 }
 
