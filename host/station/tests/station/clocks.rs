@@ -1,4 +1,4 @@
-//! The clocks of a computer, for one program.
+//! A computer's clocks, as one program sees them.
 
 use std::fs::{self, File};
 use std::os::unix::fs::FileExt as _;
@@ -12,7 +12,7 @@ pub(crate) struct Clocks {
 }
 
 impl Clocks {
-    /// Those that the computer has, with what sets them in `folder`.
+    /// The computer's own clocks at first; what sets them is in `folder`.
     pub(crate) fn in_folder(folder: &Path) -> Self {
         let [library, set] = ["clocks.so", "clocks.set"].map(|name| folder.join(name));
         let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/station/clocks.c");
@@ -23,12 +23,12 @@ impl Clocks {
         Self { library, set }
     }
 
-    /// Has the program go by them.
+    /// Makes the program use these clocks.
     pub(crate) fn of<'a>(&self, program: &'a mut Command) -> &'a mut Command {
         program.env("LD_PRELOAD", &self.library).env("SET_CLOCKS", &self.set)
     }
 
-    /// The wall's clock, and that since the computer started, show so many seconds more than the computer's own.
+    /// Sets the wall clock, and the clock since the computer started, this many seconds ahead of the computer's own.
     pub(crate) fn ahead(&self, wall: i64, since_start: i64) {
         let bytes = [wall, since_start].map(i64::to_ne_bytes).concat();
         File::options().write(true).open(&self.set).unwrap().write_all_at(&bytes, 0).unwrap();

@@ -1,4 +1,4 @@
-//! What all tests stand on: a plan, serial numbers, the program, and a look at what it kept.
+//! What all tests use: a plan, serial numbers, the program, and a view of what it stored.
 
 use std::fs::{self, File};
 use std::os::unix::fs::{FileTypeExt as _, PermissionsExt as _};
@@ -10,10 +10,10 @@ use std::time::{Duration, Instant, SystemTime};
 
 use tempfile::TempDir;
 
-/// A plan whose runs take a moment; `scripts` and `packages` read it as well.
+/// A plan whose runs take a moment; `scripts` and `packages` read it, too.
 pub(crate) const PLAN: &str = include_str!("quick.toml");
 
-/// [`PLAN`] for a product whose serial numbers are `letters` before a number that guards itself as an ISBN-10 does.
+/// [`PLAN`] for a product whose serial numbers are `letters` and a number with a check digit as in an ISBN-10.
 pub(crate) fn guarded_plan(product: &str, letters: &str) -> String {
     let pattern = format!("^{letters}(?<number>[0-9]{{9}}[0-9X])$");
     PLAN.replace("CAM-T", product).replace("^CAT[0-9]{5}$", &pattern).replace("\"none\"", "\"mod11\"")
@@ -25,12 +25,12 @@ pub(crate) fn now_ms() -> i64 {
     now.as_millis().try_into().unwrap()
 }
 
-/// A folder for a station, on a disk: where others keep temporary files may be memory.
+/// A folder for a station, on a disk: the usual temporary folder may be in memory.
 pub(crate) fn folder() -> TempDir {
     tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap()
 }
 
-/// A program of this name in `folder`, which a shell carries out.
+/// A shell script of this name in `folder`.
 pub(crate) fn script(folder: &Path, name: &str, lines: &str) -> PathBuf {
     let path = folder.join(name);
     fs::write(&path, format!("#!/bin/sh\n{lines}")).unwrap();
@@ -38,10 +38,10 @@ pub(crate) fn script(folder: &Path, name: &str, lines: &str) -> PathBuf {
     path
 }
 
-/// How long somebody is waited for who must come: it ends hangs alone.
+/// How long to wait for what must happen: the limit only ends hangs.
 const HANG: Duration = Duration::from_secs(120);
 
-/// The writing end of the FIFO at `path`, as soon as somebody reads there; they wait until it is dropped.
+/// The writing end of the FIFO at `path`, as soon as a reader has opened it. The reader waits until it is dropped.
 pub(crate) fn held_up(path: &Path) -> File {
     let begun = Instant::now();
     while !fs::metadata(path).is_ok_and(|found| found.file_type().is_fifo()) {
@@ -54,20 +54,20 @@ pub(crate) fn held_up(path: &Path) -> File {
     opened.recv_timeout(HANG).unwrap().unwrap()
 }
 
-/// `[plant]` of a station whose results go to `url`, however full the disk is that the tests have.
+/// `[plant]` of a station whose results go to `url`, however full the disk of the tests is.
 pub(crate) fn plant_settings(url: &str) -> String {
     format!("[plant]\nurl = \"{url}\"\nmost_filled = 100\n")
 }
 
-/// Serial numbers whose check digits publishers computed: ISBNs of printed books, The C Programming Language and TeX:
-/// The Program among them.
+/// Serial numbers whose check digits publishers computed: ISBNs of printed books, including The C Programming Language and TeX:
+/// The Program.
 pub(crate) const SERIALS: [&str; 4] = ["CA0131103628", "CA0201134373", "CA080442957X", "CA0306406152"];
 
 pub(crate) fn program() -> &'static Path {
     Path::new(env!("CARGO_BIN_EXE_halfrow-station"))
 }
 
-/// What the program did.
+/// How a call of the program ended, and what it printed.
 #[derive(Debug)]
 pub(crate) struct Did {
     pub(crate) code: Option<i32>,
@@ -82,16 +82,16 @@ impl From<Output> for Did {
     }
 }
 
-/// Has the database take nothing more into the audit.
+/// Makes the database refuse new entries in the audit.
 pub(crate) const NO_AUDIT: &str =
     "CREATE TRIGGER full BEFORE INSERT ON audit BEGIN SELECT RAISE(FAIL, 'the disk is full'); END";
 
-/// What `check` says of this folder.
+/// Runs `check` on this folder.
 pub(crate) fn check(data: &Path) -> Did {
     Command::new(program()).arg("check").arg("--data").arg(data).output().unwrap().into()
 }
 
-/// A look at the database of this folder that is not the program's: one value of each row.
+/// Reads the database of this folder without the program: the first value of each row.
 pub(crate) fn query(data: &Path, text: &str) -> Vec<String> {
     let database = rusqlite::Connection::open(data.join("station.db")).unwrap();
     let mut statement = database.prepare(text).unwrap();

@@ -1,11 +1,11 @@
-//! The station stays out of everybody's first build, and building it compiles again nothing that `halfrow` is made of.
+//! The station is not in a first build of the project, and building it compiles nothing again that `halfrow` is made of.
 //!
-//! Cargo compiles a crate once for each set of features. What a selection of packages asks for is told by `cargo tree`.
+//! Cargo compiles a crate once for each set of features. `cargo tree` says what a selection of packages asks for.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
 
-/// Crates with their versions, and the sets of features that each is compiled with.
+/// Crates with their versions, and the sets of features with which each is compiled.
 type Crates = BTreeMap<String, BTreeSet<String>>;
 
 fn tree(selection: &[&str]) -> Crates {
@@ -56,7 +56,7 @@ fn what_halfrow_is_made_of_is_compiled_once_for_both_programs() {
     }
 }
 
-/// The comparison sees a set of features that differs: without the default members' own wishes `halfrow-frames` has fewer.
+/// The comparison sees another set of features: without the other default members `halfrow-frames` has fewer.
 #[test]
 fn a_crate_with_other_features_would_be_seen() {
     let (everybody, alone) = (tree(&[]), tree(&["--package", "halfrow-frames"]));

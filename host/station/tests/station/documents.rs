@@ -1,4 +1,4 @@
-//! What is printed as JSON: it is as the schema in the repository says, and every error has a code.
+//! What is printed as JSON: it conforms to the schema in the repository, and every error has a code.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -19,7 +19,7 @@ fn did(arguments: &[&str]) -> Did {
     Command::new(program()).args(arguments).output().unwrap().into()
 }
 
-/// What was printed, which is as the schema says, with the process's own exit code.
+/// The printed document, which must conform to the schema and have the process's own exit code.
 fn document(did: &Did) -> Value {
     let said: Value = serde_json::from_str(&did.said).unwrap_or_else(|error| panic!("{error}: {did:?}"));
     let schema = jsonschema::validator_for(&serde_json::from_str(SCHEMA).unwrap()).unwrap();
@@ -84,7 +84,7 @@ fn what_has_no_verdict_is_a_document_with_a_code() {
         (&"station-input-wrong".into(), &1.into())
     );
     station.plan(PLAN);
-    // There is no folder for any record.
+    // No record can be saved: where its folder would be is a file.
     fs::create_dir_all(station.data().join("blobs")).unwrap();
     for first in 0..=255 {
         fs::write(station.data().join(format!("blobs/{first:02x}")), "no folder").unwrap();
@@ -146,7 +146,7 @@ fn a_document_with_a_key_that_the_schema_does_not_know_is_refused() {
     document(&Did { said: did.said.replacen("\"codes\"", "\"moons\"", 2), ..did });
 }
 
-/// What a record has that is otherwise than its schema says, or a report in it than that of `halfrow`.
+/// Where a record departs from its schema, or a report in it from that of `halfrow`.
 fn misread(record: &Value) -> Vec<String> {
     let [schema, report] = [RECORD, include_str!("../../../schema/halfrow-1.json")]
         .map(|schema| jsonschema::validator_for(&serde_json::from_str(schema).unwrap()).unwrap());
@@ -156,7 +156,7 @@ fn misread(record: &Value) -> Vec<String> {
     held::errors(&schema, record).into_iter().chain(wrong).collect()
 }
 
-/// Of a PASS with every kind of step, a FAIL, an ERROR and a run that was found open.
+/// The records of a PASS with every kind of step, a FAIL, an ERROR, and a run that was found open.
 #[test]
 fn every_record_is_as_its_schema_says() {
     let link = "[[step]]\nkind = \"link\"\nseconds = 0.01\n[[step]]";
@@ -177,7 +177,7 @@ fn every_record_is_as_its_schema_says() {
         let record: Value = serde_json::from_str(&did(&["export", &run, "--data", &data]).said).unwrap();
         assert_eq!(misread(&record), Vec::<String>::new(), "schema/record-1.json");
         causes.insert(record["conclusion"]["cause"].as_str().unwrap().to_owned());
-        // The control: a key less, or more.
+        // The control: one key less, or one more.
         for key in record.as_object().unwrap().keys() {
             let mut less = record.clone();
             less.as_object_mut().unwrap().remove(key);
@@ -190,7 +190,7 @@ fn every_record_is_as_its_schema_says() {
     assert_eq!(causes.into_iter().collect::<Vec<_>>(), ["board", "crash", "link", "none"]);
 }
 
-/// Records are kept for ever: the schema takes those of every release.
+/// Records are kept for ever: the schema accepts those of every release.
 #[test]
 fn the_records_of_earlier_programs_are_as_the_schema_says() {
     let released = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/station/history/released");

@@ -1,4 +1,4 @@
-//! The lanes' states and the way of a scan, without a board.
+//! The states of the lanes, and what becomes of a scan, without a board.
 
 mod plugged;
 
@@ -16,10 +16,10 @@ const SCAN: Starts = Starts { scan: true, button: false, presence: false };
 const BUTTON: Starts = Starts { scan: false, button: true, presence: false };
 const PLUG: Starts = Starts { scan: false, button: false, presence: true };
 
-/// Who scans.
+/// The operator who scans.
 const WEBER: &str = "weber";
 
-/// The rule of a product whose serial numbers guard themselves as ISBN-10 do.
+/// The rule of a product whose serial numbers have a check digit as in an ISBN-10.
 fn rule(product: &str, letters: &str) -> Rule {
     let plan = guarded_plan(product, letters);
     let serial: SerialRule = Plan::parse("plan.toml".as_ref(), plan).unwrap().serial;
@@ -128,7 +128,7 @@ fn a_lane_whose_process_cannot_be_killed_is_out() {
     assert_eq!(words(&floor), [Word::Error]);
 }
 
-/// It is known before its result is, which may wait for the disk or for the plant.
+/// This is known before the result is, which may wait for the disk or for the plant.
 #[test]
 fn a_lane_whose_process_cannot_be_killed_is_out_whatever_comes_of_its_result() {
     let unsaved = || Event::Unsaved { why: Said::of(&std::io::Error::other("full")) };
@@ -228,7 +228,7 @@ fn a_scan_goes_to_the_lane_that_was_scanned_and_never_to_a_guess() {
     floor.scan("HR:LANE:3", WEBER, at(0)).unwrap();
     let elsewhere = floor.scan(&serial(0), WEBER, at(0)).unwrap_err();
     assert_eq!(elsewhere, ScanError::Elsewhere { serial: serial(0), lane: "2".to_owned() });
-    // A misread label uses up nothing.
+    // A misread label does not use up the choice of the lane.
     assert!(floor.scan("CA0131103629", WEBER, at(0)).is_err());
     assert_eq!(floor.scan(&serial(1), WEBER, at(0)).unwrap().lane, Some(2));
 }
@@ -245,7 +245,7 @@ fn a_product_chooses_its_plan() {
     assert!(matches!(both.scan(&serial(0), WEBER, at(0)), Err(ScanError::Ambiguous { .. })));
 }
 
-/// Misread labels of twelve kinds, made of a right one; another board's label is refused where its number is known
+/// Misread labels of twelve kinds, made from a right one. The label of another board is refused where its number is known
 /// (runs/identity.rs, lanes/refused.rs).
 fn misread(right: &str, other: &str, place: usize) -> Vec<(&'static str, String)> {
     let digits = 2..right.len() - 1;
@@ -272,7 +272,7 @@ fn misread(right: &str, other: &str, place: usize) -> Vec<(&'static str, String)
     ]
 }
 
-/// The lane's shift ends while a serial number waits for the button: it does not start any more.
+/// The lane's shift ends while a serial number waits for the button: the run does not start any more.
 #[test]
 fn what_waits_is_forgotten_when_its_lane_owes_a_check() {
     let mut floor = floor(&[BUTTON], false);
@@ -293,7 +293,7 @@ fn what_waits_is_forgotten_when_its_lane_owes_a_check() {
     assert_eq!(floor.lanes()[0].can(), [Act::Abort]);
 }
 
-/// The hours of its shift end while a board is tested, or right behind its verdict.
+/// The lane's shift ends while a board is tested, or right after its verdict.
 #[test]
 fn a_verdict_stays_though_its_lane_owes_a_check() {
     let why = Said::of(&std::io::Error::other("the shift is over"));
@@ -339,7 +339,7 @@ fn the_mock_is_judged_where_it_is_owed_without_a_board_and_nowhere_else() {
     }
 }
 
-/// Every class `times` times; right labels between them are taken every time.
+/// Tries every kind `times` times; the right label, scanned after each, is accepted every time.
 fn misreads(times: usize) {
     let (mut refused, mut taken) = (0, 0);
     for place in 0..times {
@@ -347,7 +347,7 @@ fn misreads(times: usize) {
         for (class, wrong) in misread(&right, &other, place) {
             let mut floor = floor(&[SCAN], false);
             plug(&mut floor, 0);
-            // Two neighbours that are alike are exchanged by nobody.
+            // Exchanging two equal neighbours changes nothing.
             if wrong != right {
                 let error = floor.scan(&wrong, WEBER, at(0));
                 assert!(matches!(error, Err(ScanError::Serial(_))), "{class}: {wrong:?}: {error:?}");

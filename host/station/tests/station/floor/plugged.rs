@@ -18,7 +18,7 @@ fn a_number_that_was_scanned_first_goes_to_the_board_that_is_plugged_in() {
     assert_eq!(words(&floor), [Word::Ready, Word::Running]);
 }
 
-/// Whoever waited for the plug says which lane it is after all.
+/// The operator may still name a lane while the number waits for a plug.
 #[test]
 fn a_number_that_a_lane_was_given_waits_for_no_other_board() {
     let mut floor = floor(&[SCAN, SCAN], true);
@@ -55,7 +55,7 @@ fn a_board_that_was_there_already_takes_no_number() {
     assert_eq!(words(&floor), [Word::Ready, Word::Empty]);
 }
 
-/// Has the first lane take no number, each in a way of its own.
+/// The first lane accepts no number, each time for another reason.
 fn taking_nothing() -> [(&'static str, Floor); 5] {
     let [mut out, mut owes, mut running] = [(); 3].map(|()| floor(&[SCAN, SCAN], true));
     out.act(0, Act::Out, WEBER).unwrap();
@@ -78,7 +78,7 @@ fn taking_nothing() -> [(&'static str, Floor); 5] {
     ]
 }
 
-/// It is that of the board which came: no other board is tested under it.
+/// The number belongs to the board that was plugged in: no other board is tested under it.
 #[test]
 fn a_number_whose_board_came_to_a_lane_that_does_not_take_it_waits_for_no_other() {
     for (why, mut floor) in taking_nothing() {

@@ -1,4 +1,4 @@
-//! The commands that look at results.
+//! The commands that show results.
 
 use std::path::Path;
 use std::process::Command;
@@ -11,7 +11,7 @@ use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use crate::common::program;
 use crate::held;
 
-/// What a command says, and its exit code.
+/// Runs a command; returns its exit code, stdout and stderr.
 pub(crate) fn did(made: &impl AsRef<Path>, arguments: &[&str]) -> (i32, String, String) {
     let output = Command::new(program())
         .args(arguments)
@@ -36,7 +36,7 @@ fn json(made: &impl AsRef<Path>, arguments: &[&str]) -> Value {
     said
 }
 
-/// What the program's own schema of a command finds wrong about what the command said.
+/// Where the output of a command departs from the schema that the program prints for it.
 pub(crate) fn misread(command: &str, said: &Value) -> Vec<String> {
     let schema = Command::new(program()).args(["schema", command]).output().unwrap().stdout;
     let schema = jsonschema::validator_for(&serde_json::from_slice(&schema).unwrap()).unwrap();
@@ -127,7 +127,7 @@ fn a_unit_is_told_with_its_steps_and_suspects() {
 fn no_percentage_is_told_without_its_interval() {
     let made = made();
     let text = said(&made, &["yield"]);
-    // Wilson for 1 of 2, by hand: (1 ± z / sqrt(2 + z²)) / 2, for the centre is 1/2.
+    // Wilson for 1 of 2, by hand: (1 ± z / sqrt(2 + z²)) / 2, since the centre is 1/2.
     assert!(text.contains("50.0 % (9.5–90.5)"), "{text}");
     assert!(text.matches(" % ").count() == text.matches(" % (").count(), "{text}");
     assert!(text.contains("first FAIL, in the end PASS"), "{text}");
@@ -164,7 +164,7 @@ fn a_waiver_is_seen_by_everyone() {
     assert_eq!(did(&folder, &["check"]).0, 0);
 }
 
-/// Of what each command prints: the control is a key less, or more.
+/// Asserts that the schema of a command refuses its output with one key less, or one more.
 fn is_held_to_its_schema(folder: &TempDir, arguments: &[&str], place: &str) {
     let told = json(folder, arguments);
     for key in told.pointer(place).unwrap().as_object().unwrap().keys() {

@@ -1,4 +1,4 @@
-//! Limits of a p-chart and the test of two proportions, against SciPy's and statsmodels' figures.
+//! Limits of a p-chart and the test of two proportions, compared with the figures of SciPy and statsmodels.
 
 use halfrow_station::history::control::{Limits, limits};
 use halfrow_station::history::drift::drifts;
@@ -7,8 +7,8 @@ use halfrow_station::history::yields::{By, Wanted, Yield, yields};
 
 use super::made::{BEGIN_MS, DAY_MS, End, Made, Run};
 
-/// Units, their mean in thousandths, and the least and the greatest number that is within the limits: `scipy.stats.binom.cdf` reaches
-/// 0.0013498980316301 there first, from either side.
+/// Units, their mean in thousandths, and the least and the greatest number within the limits: `scipy.stats.binom.cdf` first
+/// reaches 0.0013498980316301 there, from either side.
 const LIMITS: [(u64, u64, u64, u64); 5] = [
     (30, 970, 25, 30),
     (200, 970, 186, 200),
@@ -39,7 +39,8 @@ fn groups_of_nobody_have_no_limits_and_shares_at_the_end_none_but_their_own() {
     }
 }
 
-/// Passed and judged here and elsewhere, and what `statsmodels.stats.proportion.proportions_ztest` says of them.
+/// Passed and judged here, passed and judged elsewhere, and the p-value that `statsmodels.stats.proportion.proportions_ztest`
+/// gives for them.
 const CHANCES: [(u64, u64, u64, u64, f64); 3] = [
     (940, 1000, 9700, 10_000, 3.697_961_058_300_583_5e-7),
     (485, 500, 4850, 5000, 1.0),
@@ -62,7 +63,7 @@ fn a_station_that_judges_otherwise_is_marked() {
         let told = first.chance.unwrap();
         assert!((told - chance).abs() <= 1e-12 * chance.max(1e-3), "{told} and not {chance}");
         assert_eq!(first.chance, second.chance);
-        // Two stations: half of one in a hundred.
+        // With two stations, half of one in a hundred.
         assert_eq!(first.is_marked, chance < 0.005);
         assert_eq!((first.elsewhere.count, first.elsewhere.of), (others, of));
     }

@@ -1,4 +1,4 @@
-//! The plans of the plant in copies of a station's folder.
+//! The plant's plans in copies of a station's folder.
 
 use std::fs;
 use std::os::unix::fs::symlink;
@@ -18,7 +18,7 @@ fn made() -> Made {
     made
 }
 
-/// Puts a plan with a picture into `plans`, as it is when it was fetched. Returns its hash.
+/// Puts a plan with a picture into `plans`, in the form of a fetched plan. Returns its hash.
 fn fetched(plans: &Path) -> String {
     let aside = plans.join("aside");
     fs::create_dir_all(aside.join("frames")).unwrap();
@@ -46,7 +46,7 @@ fn files(folder: &Path) -> Vec<String> {
     found
 }
 
-/// Whoever writes to the share that copies lie on would have what root alone may read, who restores.
+/// Otherwise, when root restores a copy, whoever can write to its share could obtain files that only root may read.
 #[test]
 fn a_copy_in_which_a_link_is_is_refused() {
     let (made, place) = (made(), tempfile::tempdir().unwrap());

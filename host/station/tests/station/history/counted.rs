@@ -1,4 +1,4 @@
-//! What is counted when a run ends: brought up to date where the database is older, and checked against the records.
+//! What is counted when a run ends: updated where the database is older, and checked against the records.
 
 use halfrow_station::check::check;
 use halfrow_station::history::unit::units;
@@ -15,7 +15,7 @@ fn a_database_is_brought_up_to_date_with_a_copy_beside_it_by_who_writes_alone() 
     first_schema(&Connection::open(folder.database()).unwrap());
     let refused = Snapshot::take(&folder).unwrap_err();
     assert!(matches!(refused, StoreError::Older { found: 1, .. }), "{refused:?}");
-    // What an earlier attempt left half written is in nobody's way.
+    // What an earlier attempt left half written does no harm.
     std::fs::write(kept.path().join("station.before-2.partial"), "half").unwrap();
     drop(Store::open(&folder).unwrap());
     assert!(Snapshot::take(&folder).is_ok());
@@ -25,7 +25,7 @@ fn a_database_is_brought_up_to_date_with_a_copy_beside_it_by_who_writes_alone() 
     assert!(!kept.path().join("station.before-2.partial").exists());
 }
 
-/// Ids are of moments, and tell in which order runs were begun.
+/// Ids contain the time, and tell in which order runs began.
 #[test]
 fn a_clock_that_is_set_back_puts_no_run_in_front_of_an_earlier_one() {
     let back = Run { started_ms: BEGIN_MS - HOUR_MS, ..Run::of("S1", End::Fail(&["memory"])) };
@@ -41,17 +41,17 @@ fn a_clock_that_is_set_back_puts_no_run_in_front_of_an_earlier_one() {
     assert!(id > first, "{id}");
     made.run_as(id, &back);
     assert_eq!((last(&made).as_deref(), faults(&made)), (Some("FAIL"), 0));
-    // Who logged in while the clock was ahead is in no order with runs.
+    // A login while the clock was ahead is in no order with runs.
     let database = Connection::open(made.folder().database()).unwrap();
     let ahead = super::made::id(BEGIN_MS + 24 * HOUR_MS, 0);
     let line = "INSERT INTO audit VALUES (?1, ?2, 'weber', 'login', 'weber', '')";
     assert_eq!(database.execute(line, (&ahead, BEGIN_MS + 24 * HOUR_MS)).unwrap(), 1);
-    // A clock that goes on is what it was.
+    // When the clock goes on, ids follow it again.
     let later = made.store.new_id(BEGIN_MS + HOUR_MS).unwrap().to_string();
     assert_eq!(later[..13], super::made::id(BEGIN_MS + HOUR_MS, 0)[..13]);
 }
 
-/// What is counted when a run ends follows from the records like all else.
+/// What is counted when a run ends follows from the records like everything else.
 #[test]
 fn what_was_counted_wrong_is_told_by_check() {
     let mut made = Made::new();

@@ -14,7 +14,7 @@ use tempfile::TempDir;
 use super::commands::did;
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 
-/// A run of every end, by people with names that need care.
+/// A run of every kind of end, by operators whose names need care.
 fn made() -> Made {
     let mut made = Made::new();
     let ends = [
@@ -34,13 +34,13 @@ fn made() -> Made {
     made
 }
 
-/// The hashes of all records, the newest first.
+/// The hashes of all records, newest first.
 fn hashes(made: &Made) -> Vec<String> {
     let page = page(&made.now(), &Filter::default(), None, 100).unwrap();
     page.runs.into_iter().filter_map(|run| run.record_sha256).collect()
 }
 
-/// All runs in a folder of files of this format.
+/// Exports all runs as files of this format into a folder.
 fn exported(made: &Made, format: &str) -> (TempDir, PathBuf) {
     let place = tempfile::tempdir().unwrap();
     let to = place.path().join("out");
@@ -89,7 +89,7 @@ fn the_same_run_has_the_same_bytes_every_time() {
     assert_eq!(fs::read(first).unwrap(), fs::read(second).unwrap());
 }
 
-/// Colours are taken out of what others print, and a name may have some.
+/// Colours are removed from other output, but a name may contain some.
 #[test]
 fn stdout_has_the_same_bytes_as_a_file() {
     let mut made = Made::new();
@@ -155,7 +155,7 @@ fn every_cell_of_the_table_is_read_back_by_python() {
     assert!(!read().status.success(), "the control");
 }
 
-/// For OpenHTF what that itself makes of a phase with a measurement that failed.
+/// In OpenHTF's format, that is what OpenHTF itself makes of a phase with a failed measurement.
 #[test]
 fn a_limit_is_told_as_what_it_blames() {
     let mut made = Made::new();
@@ -189,7 +189,7 @@ fn a_limit_is_told_as_what_it_blames() {
     assert_eq!(outcomes(Blame::Nobody, 1.0), ["PASS", "PASS", "PASS", "PASS", "nothing"]);
 }
 
-/// With OpenHTF from PyPI, in a Python of its own that is made when it is not there.
+/// With OpenHTF from PyPI, in its own virtual environment, which is made if it does not exist.
 #[test]
 #[ignore = "for scripts/soak"]
 fn openhtf_writes_the_same_of_the_record_that_it_makes_of_ours() {
@@ -226,7 +226,7 @@ fn evidence_is_copied_out_under_its_names() {
         ["in", "out"].map(|name| fs::read(to.join(format!("{name}.txt"))).unwrap()),
         [&b"in"[..], b"out"]
     );
-    // What is there already is as good, and what is otherwise is left alone.
+    // A file that exists with the same content counts as copied, and another one is left alone.
     assert_eq!(copied(run).0, 0);
     fs::write(to.join("in.txt"), "mine").unwrap();
     let (code, _, complained) = copied(run);

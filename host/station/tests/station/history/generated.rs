@@ -1,4 +1,4 @@
-//! A history of any length whose truth is known, since it is counted while it is made.
+//! A history of any length whose true figures are known, since they are counted while it is made.
 
 use std::collections::BTreeMap;
 
@@ -26,17 +26,17 @@ impl Draw {
     }
 }
 
-/// What is true of the history.
+/// The true figures of the history.
 #[derive(Default)]
 struct Truth {
-    /// Every judgement of a unit under plans of one name, whether it passed, in order.
+    /// For each unit and name of a plan, whether it passed each judgement, in order.
     judged: BTreeMap<(u64, &'static str), Vec<bool>>,
     runs: BTreeMap<&'static str, u64>,
     errors: BTreeMap<&'static str, u64>,
     parts: BTreeMap<&'static str, u64>,
 }
 
-/// A history, and what is true of it.
+/// A history, and its true figures.
 pub(crate) struct Generated {
     pub(crate) made: Made,
     truth: Truth,
@@ -47,7 +47,7 @@ pub(crate) fn serial(unit: u64) -> String {
     format!("CAT{unit:07}")
 }
 
-/// A history of so many runs, in a database as the first program made it, which the station then brings up to date.
+/// A history of `runs` runs, in a database as the first program made it, which the station then brings up to date.
 pub(crate) fn generate(runs: u64) -> Generated {
     let kept = tempfile::tempdir().unwrap();
     let mut database = Connection::open(Folder::new(kept.path()).database()).unwrap();
@@ -87,7 +87,7 @@ fn plan_hash(place: usize) -> String {
     format!("{place:064}")
 }
 
-/// What enters runs.
+/// The statements that enter runs.
 struct Statements<'a> {
     unit: Statement<'a>,
     run: Statement<'a>,
@@ -111,7 +111,7 @@ impl<'a> Statements<'a> {
         }
     }
 
-    /// Units come one after the other; one run in thirty is of an earlier unit.
+    /// Units come one after another; one run in thirty is of an earlier unit.
     fn enter(&mut self, number: u64, draw: &mut Draw, truth: &mut Truth) {
         let is_again = number > 100 && draw.below(30) == 0;
         let unit = if is_again { number - 1 - draw.below(100) } else { number };
@@ -150,7 +150,7 @@ impl<'a> Statements<'a> {
     }
 }
 
-/// Five minutes after one another in each lane.
+/// Each lane begins a run every five minutes.
 pub(crate) fn started_ms(number: u64) -> i64 {
     BEGIN_MS + (number / LANES) as i64 * 300_000 + (number % LANES) as i64 * 1000
 }
@@ -160,7 +160,7 @@ impl Generated {
         self.made.now()
     }
 
-    /// Compares all that is counted with the truth.
+    /// Compares everything that is counted with the true figures.
     pub(crate) fn compare(&self) {
         let now = self.now();
         let found = yields(&now, &Wanted::default(), By::Plan).unwrap();
@@ -193,7 +193,7 @@ fn all_that_is_counted_is_true() {
     generate(6_000).compare();
 }
 
-/// What was counted when the database was brought up to date, and what is counted with each run, are one.
+/// What is counted when the database is brought up to date adds up with what is counted at each run.
 #[test]
 fn what_was_entered_before_and_after_is_counted_together() {
     let mut all = generate(300);

@@ -1,4 +1,4 @@
-//! How long each look at a million runs takes.
+//! How long each query of a million runs takes.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -15,14 +15,14 @@ use super::made::{End, Run, id};
 use super::served::Served;
 use crate::pages::http::Answer;
 
-/// The 95th and the 99th percentile, and the longest.
+/// The 95th and the 99th percentile, and the longest time.
 fn slowest(mut times: Vec<Duration>) -> [Duration; 3] {
     times.sort_unstable();
     let at = |per_cent: usize| times[(times.len() * per_cent / 100).min(times.len() - 1)];
     [at(95), at(99), at(100)]
 }
 
-/// How long something took, and how long the processor was at it.
+/// How long something took, and for how long it had the processor.
 type Took = (Duration, Duration);
 
 fn timed(act: impl FnOnce()) -> Took {
@@ -31,13 +31,13 @@ fn timed(act: impl FnOnce()) -> Took {
     (begun.elapsed(), on_processor() - busy)
 }
 
-/// How long this thread has had the processor.
+/// For how long this thread has had the processor.
 fn on_processor() -> Duration {
     let said = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap();
     Duration::from_nanos(said.split(' ').next().unwrap().parse().unwrap())
 }
 
-/// Prints what whoever measures looks at.
+/// Prints the figures of a measurement.
 #[allow(clippy::print_stdout)]
 fn told(name: &str, times: Vec<Took>, wanted: &str) {
     let (wall, processor): (Vec<_>, Vec<_>) = times.into_iter().unzip();
@@ -47,7 +47,7 @@ fn told(name: &str, times: Vec<Took>, wanted: &str) {
     );
 }
 
-/// A filter, now and then of several conditions.
+/// A filter, at times with several conditions.
 fn filter(draw: &mut Draw, runs: u64) -> Filter {
     let mut filter = Filter::default();
     let verdicts = [Verdict::Pass, Verdict::Fail, Verdict::Error];
@@ -64,7 +64,7 @@ pub(crate) fn wanted_runs() -> u64 {
     std::env::var("HALFROW_STATION_RUNS").map_or(1_000_000, |runs| runs.parse().unwrap())
 }
 
-/// Prints how long each look takes, with the database in the computer's memory, as a station's is.
+/// Prints how long each query takes, with the database cached in memory, as a station's is.
 #[test]
 #[ignore = "for scripts/soak"]
 fn a_million_runs_are_looked_at_in_time() {
@@ -104,7 +104,7 @@ fn a_million_runs_are_looked_at_in_time() {
     served(&|path| station.get(path), runs, &mut draw);
 }
 
-/// The same through the program's own pages, without a browser.
+/// The same through the pages that the program serves, without a browser.
 pub(crate) fn served(get: &dyn Fn(&str) -> Answer, runs: u64, draw: &mut Draw) {
     let page = |path: &str| timed(|| assert_eq!(get(path).status, 200, "{path}"));
     let mut list = || {
@@ -113,7 +113,7 @@ pub(crate) fn served(get: &dyn Fn(&str) -> Answer, runs: u64, draw: &mut Draw) {
         page(&format!("/history?after={started_ms}.{}{lane}", id(started_ms, 0)))
     };
     told("/history", (0..400).map(|_| list()).collect(), "wanted p95 50 ms");
-    // A unit is made by its first run; some numbers are of none.
+    // A unit exists from its first run on; some numbers have none.
     let units = (0..400).map(|_| {
         let path = format!("/unit?serial={}", serial(draw.below(runs)));
         timed(|| drop(get(&path)))
@@ -131,7 +131,7 @@ pub(crate) fn served(get: &dyn Fn(&str) -> Answer, runs: u64, draw: &mut Draw) {
     told("/metrics", (0..20).map(|_| page("/metrics")).collect(), "wanted 100 ms");
 }
 
-/// Runs that are begun and ended while two others look at all there is.
+/// Times runs that begin and end while two other threads query everything.
 fn commits(of: &mut Generated) -> (Vec<Took>, Vec<Took>) {
     let (folder, all) = (of.made.folder(), Wanted::default());
     let is_over = AtomicBool::new(false);

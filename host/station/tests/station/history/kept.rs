@@ -13,7 +13,7 @@ use tempfile::TempDir;
 use super::commands::did;
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run, id};
 
-/// A PASS, two FAILs with evidence, of which the later one shares one piece with the first, and an open run.
+/// A PASS, two FAILs with evidence, of which the later one shares one piece with the earlier, and an open run.
 fn made() -> Made {
     let mut made = Made::new();
     made.run(&Run::of("S1", End::Pass));
@@ -29,7 +29,7 @@ fn runs(folder: &Folder) -> Page {
     page(&Snapshot::take(folder).unwrap(), &Filter::default(), None, 100).unwrap()
 }
 
-/// Runs over, runs open, pieces of evidence, pieces that were removed.
+/// Counts runs that ended, open runs, pieces of evidence, and pieces that were removed.
 fn sound(folder: &Folder) -> [usize; 4] {
     let Checked { runs, open, evidence, pruned, superseded, faults } = check(folder).unwrap();
     assert!(faults.is_empty() && superseded.is_empty(), "{faults:?} {superseded:?}");
@@ -55,7 +55,7 @@ fn a_backup_is_of_its_moment_while_runs_go_on() {
     assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1, "nothing else is left there");
 }
 
-/// Lanes begin runs at once, and the store takes one behind the other.
+/// Lanes begin runs at the same time, and the store takes one after another.
 #[test]
 fn runs_are_sound_that_are_entered_in_another_order_than_they_began_in() {
     let mut made = Made::new();
@@ -74,12 +74,12 @@ fn a_restored_folder_is_the_one_that_was_saved() {
     restore(&Folder::new(&copy), &again).unwrap();
     assert_eq!(sound(&Folder::new(&again)), [3, 1, 7, 0]);
     assert_eq!(runs(&Folder::new(&again)), runs(&made.folder()));
-    // The folder can be worked in: the open run is closed and another one begun.
+    // A station can work in the folder: the open run is closed, and another one can begin.
     let mut store = Store::open(&Folder::new(&again)).unwrap();
     assert_eq!(halfrow_station::run::recover(&mut store).unwrap().len(), 1);
 }
 
-/// It may be a disk of its own, which a file system is made on with a folder for what is found of it.
+/// The folder may be a disk of its own, whose file system has a lost+found folder.
 #[test]
 fn a_folder_that_is_there_stays_the_one_that_it_is() {
     let (made, place) = (made(), tempfile::tempdir().unwrap());
@@ -96,7 +96,7 @@ fn a_folder_that_is_there_stays_the_one_that_it_is() {
     assert_eq!(fs::read_dir(place.path()).unwrap().count(), 2, "nothing else is left there");
 }
 
-/// A kill leaves what was copied so far, and a station that begins anew beside it would be in the way of the copy.
+/// A kill leaves what was copied so far, and a station that began anew next to it would be in the copy's way.
 #[test]
 fn no_station_begins_where_a_restore_has_not_ended() {
     let (made, place) = (made(), tempfile::tempdir().unwrap());
@@ -108,12 +108,12 @@ fn no_station_begins_where_a_restore_has_not_ended() {
     assert_eq!(fs::read_dir(&data).unwrap().count(), 1, "nothing was begun");
     fs::remove_dir_all(data.join(".partial")).unwrap();
     restore(&Folder::new(&copy), &data).unwrap();
-    // One that was interrupted behind its end, or of a copy, is in no station's way.
+    // What a restore that was interrupted at its very end has left, or a backup, is in no station's way.
     fs::create_dir(data.join(".partial")).unwrap();
     drop(Store::open(&Folder::new(&data)).unwrap());
 }
 
-/// As a service manager starts a station again in the folder that is restored.
+/// A service manager may start a station again in the folder that is being restored.
 #[test]
 fn a_restore_keeps_a_start_out_and_comes_to_no_folder_in_which_one_works() {
     let (made, place) = (made(), tempfile::tempdir().unwrap());
@@ -125,13 +125,13 @@ fn a_restore_keeps_a_start_out_and_comes_to_no_folder_in_which_one_works() {
     let refused = restore(&Folder::new(&copy), &data).unwrap_err();
     assert!(matches!(refused, CopyError::Store(StoreError::InUse { .. })), "{refused:?}");
     drop(lock);
-    // What a restore that was killed leaves of its lock is in no other's way.
+    // What is left of the lock of a killed restore is in no other's way.
     restore(&Folder::new(&copy), &data).unwrap();
     assert_eq!(sound(&Folder::new(&data)), [3, 1, 7, 0]);
     drop(Store::open(&Folder::new(&data)).unwrap());
 }
 
-/// What anybody but the owner may do with what lies in `folder`, by its names.
+/// The permissions of group and others on what is in `folder`, by name, where there are any.
 fn open_to_others(folder: &Path) -> Vec<(String, u32)> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| {
         let entry = entry.unwrap();
@@ -140,7 +140,7 @@ fn open_to_others(folder: &Path) -> Vec<(String, u32)> {
     entries.filter(|(_, mode)| *mode != 0).collect()
 }
 
-/// As the packaged station's own folder, wherever a copy lies and whatever makes it.
+/// Like the packaged station's own folder, wherever the copy is and whoever makes it.
 #[test]
 fn a_copy_and_what_is_restored_of_it_are_for_nobody_else() {
     let (made, place) = (made(), tempfile::tempdir().unwrap());
@@ -154,7 +154,7 @@ fn a_copy_and_what_is_restored_of_it_are_for_nobody_else() {
         assert!(folder.join("station.db").is_file() && folder.join("blobs").is_dir());
         assert_eq!(open_to_others(folder), [], "{}", folder.display());
     }
-    // One that was there is whose it was.
+    // A folder that existed keeps its permissions.
     assert_eq!(open_to_others(place.path()), [("into".to_owned(), 0o055)]);
 }
 
@@ -199,7 +199,7 @@ fn old_evidence_is_removed_and_no_record_or_row() {
     assert_eq!(sound(&Folder::new(&to)), [3, 1, 3, 4]);
 }
 
-/// A computer without a battery begins in 1970, until it is told the time.
+/// A computer without a battery starts in 1970, until its clock is set.
 #[test]
 fn evidence_of_a_run_that_ended_by_a_clock_from_long_ago_is_no_older_for_it() {
     let mut made = made();
@@ -219,7 +219,7 @@ fn evidence_of_a_run_that_ended_by_a_clock_from_long_ago_is_no_older_for_it() {
     assert!(code == 3 && complained.contains("removed since older evidence is not kept"), "{complained}");
 }
 
-/// The control: without the line in the audit it is lost.
+/// The control: without the line in the audit the evidence counts as lost.
 #[test]
 fn evidence_that_was_not_removed_by_age_is_missed() {
     let made = made();
@@ -229,7 +229,7 @@ fn evidence_that_was_not_removed_by_age_is_missed() {
     assert!(backup(&made.folder(), &place.path().join("copy")).is_err());
 }
 
-/// What was removed with its run was written anew with a later one, which has lost it.
+/// What was removed with its run was written anew with a later one, and is now lost.
 #[test]
 fn evidence_of_a_later_run_is_missed_though_an_earlier_one_s_was_removed() {
     let mut made = made();
@@ -291,7 +291,7 @@ fn the_commands_say_what_they_did() {
     assert_eq!(did(&made, &["prune", "--older-than", "1"]).0, 4, "this test writes");
 }
 
-/// Whoever copies each night learns of it at once, and not on the day on which the copy is needed.
+/// Whoever makes a copy each night learns of it at once, not on the day when the copy is needed.
 #[test]
 fn a_copy_that_would_not_be_restored_is_kept_and_told() {
     let made = made();
@@ -314,7 +314,7 @@ fn a_copy_that_would_not_be_restored_is_kept_and_told() {
     restore(&Folder::new(&whole), &again).unwrap();
 }
 
-/// What is left of a station that judged one unit when these of its files are gone.
+/// The folder of a station that judged one unit, without these of its files.
 fn kept_without(files: &[&str]) -> (TempDir, Folder) {
     let mut made = Made::new();
     let folder = made.folder();
@@ -345,7 +345,7 @@ fn a_file_that_is_no_database_is_told_from_a_disk_that_is_full_or_locked() {
     }
 }
 
-/// As a bit that flipped in the name leaves it: SQLite finds nothing wrong, and whatever asks for the column fails.
+/// What a flipped bit in the name leaves: SQLite finds nothing wrong, but every query of the column fails.
 #[test]
 fn a_column_that_has_lost_its_name_is_a_fault_of_the_database() {
     let (_kept, folder) = kept_without(&["station.db-wal", "station.db-shm"]);
@@ -360,7 +360,7 @@ fn a_column_that_has_lost_its_name_is_a_fault_of_the_database() {
     assert!(matches!(refused, CopyError::Faulty { .. }), "{refused:?}");
 }
 
-/// The records and what was decided by them would be gone without a word.
+/// Otherwise the records, and the decisions based on them, would be gone without notice.
 #[test]
 fn nothing_begins_anew_beside_the_evidence_of_earlier_runs() {
     let (kept, folder) = kept_without(&["station.db", "station.db-wal", "station.db-shm"]);
@@ -372,7 +372,7 @@ fn nothing_begins_anew_beside_the_evidence_of_earlier_runs() {
     fs::write(folder.database(), "").unwrap();
     assert_eq!(refused(&folder), [true, true]);
     let copied = rusqlite::Connection::open(folder.database()).unwrap();
-    // As the file is while its tables are in the write-ahead log alone.
+    // The state of the file while its tables are in the write-ahead log alone.
     copied
         .execute_batch(
             "PRAGMA journal_mode = WAL; CREATE TABLE t (n); DROP TABLE t; PRAGMA wal_checkpoint(TRUNCATE)",

@@ -1,4 +1,4 @@
-//! The history's pages over HTTP, against what was entered.
+//! The history's pages over HTTP, compared with what was entered.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -12,7 +12,7 @@ use super::served::{self, Served};
 use super::yields::{CASES, enter};
 use crate::common::{self, program};
 
-/// Sixty runs of seven units in four lanes by two operators, an hour after one another.
+/// Sixty runs of seven units in three lanes by two operators, one every hour.
 fn many() -> (Served, Vec<(String, Run)>) {
     let mut made = Made::new();
     let ends = [End::Pass, End::Fail(&["memory"]), End::Error(RunCause::Link), End::Pass];
@@ -27,7 +27,7 @@ fn many() -> (Served, Vec<(String, Run)>) {
     (Served::of(made), entered)
 }
 
-/// What stands behind each `before` up to `end`.
+/// What follows each `before`, up to `end`.
 fn all_between(page: &str, before: &str, end: char) -> Vec<String> {
     page.split(before).skip(1).map(|rest| rest.split(end).next().unwrap().to_owned()).collect()
 }
@@ -37,7 +37,7 @@ fn listed(page: &str) -> Vec<String> {
     all_between(page, "<td class=\"when\"><a href=\"/runs/", '"')
 }
 
-/// The runs of the list at `path` and of all pages behind it.
+/// The runs of the list at `path` and of all pages that follow it.
 fn walked(served: &Served, path: &str) -> Vec<String> {
     let mut runs = Vec::new();
     let mut path = path.to_owned();
@@ -79,7 +79,7 @@ fn lists_are_what_was_entered_page_by_page_whatever_is_asked_for() {
     }
 }
 
-/// The numbers of a line of the yield: units; first pass and in the end; flipped and waived; runs; errors; crashes.
+/// The numbers of a line of the yield: units, first pass, in the end, waived, flipped, runs, errors, crashes.
 fn yield_line(served: &Served) -> Vec<u64> {
     let page = served.page("/yield?plan=final");
     let Some((_, row)) = page.split_once("<td class=\"name\">") else { return Vec::new() };
@@ -96,7 +96,7 @@ fn yield_line(served: &Served) -> Vec<u64> {
     else {
         panic!("{row}")
     };
-    // Of no unit there is no share.
+    // Without units there is no share.
     let rate = |place: usize| counts.get(place).map_or([0, 0], |rate| [rate[0], rate[1]]);
     let [first, last, errors] = [rate(0), rate(1), rate(2)];
     assert_eq!((first[1], last[1], errors[1]), (units, units, runs));
@@ -111,7 +111,7 @@ fn the_yield_s_page_says_what_was_worked_by_hand() {
             enter(&mut made, word, hour);
         }
         let served = Served::of(made);
-        // What the program finds open it closes as a crash.
+        // The served program closes an open run as a crash.
         if story.contains(":O") {
             continue;
         }
@@ -127,7 +127,7 @@ fn no_share_of_a_yield_stands_without_its_interval_and_flips_are_listed_by_unit(
         let shares = page.matches("<span class=\"share\">").count();
         assert!(shares > 0);
         assert_eq!(shares, page.matches("</span> <span class=\"interval\">").count());
-        // The first column is headed by what its lines are about.
+        // The head of the first column names what the lines are about.
         let head = match by {
             "day" => "Day, Plan",
             "lane" => "Lane, Plan",
@@ -216,14 +216,14 @@ fn a_run_s_page_says_all_of_it_and_gives_it_to_others() {
     assert_eq!(evidence.header("content-type"), Some("text/plain; charset=utf-8"));
     assert_eq!(evidence.header("x-content-type-options"), Some("nosniff"));
     assert_eq!(evidence.header("cache-control"), Some("private, no-cache"));
-    // The record has a hash, too, and is no attachment of the run; nor is what another run has.
+    // The record has a hash, too, but is no attachment of the run; nor is an attachment of another run.
     let stored = served.folder().verdict_of(&id).unwrap().unwrap();
     for wrong in [stored.record_sha256.as_str(), &"0".repeat(64), "..%2F..%2Fstation.db", "x"] {
         for at in ["evidence", "preview"] {
             assert_eq!(served.get(&format!("/runs/{id}/{at}/{wrong}")).status, 404, "{at} {wrong}");
         }
     }
-    // What is there and no picture is no picture.
+    // An attachment that is not a picture has no preview.
     assert_eq!(served.get(&format!("/runs/{id}/preview/{hash}")).status, 404);
     let record = served.get(&format!("/runs/{id}/export/record"));
     assert_eq!(record.body, served.folder().blobs().get(&stored.record_sha256).unwrap());
@@ -237,7 +237,7 @@ fn a_run_s_page_says_all_of_it_and_gives_it_to_others() {
     }
 }
 
-/// Judges a board of the mock's by a plan of a moment, and returns the exit code.
+/// Judges a mock board by a plan that takes a moment, and returns the exit code.
 fn judge(folder: &Path, board: &str, serial: &str) -> Option<i32> {
     let plan = folder.join("plan.toml");
     std::fs::write(&plan, served::plan()).unwrap();
@@ -247,7 +247,7 @@ fn judge(folder: &Path, board: &str, serial: &str) -> Option<i32> {
     run.output().unwrap().status.code()
 }
 
-/// The samples of a frame that was kept, and how they hash.
+/// The samples of a frame that was kept, and their hash.
 fn samples(served: &Served, run: &str, name: &str, record: &Record) -> (Vec<u16>, String) {
     let attached = record.attachments.iter().find(|one| one.name.ends_with(name)).unwrap();
     let answer = served.get(&format!("/runs/{run}/evidence/{}", attached.sha256));
@@ -270,7 +270,7 @@ fn a_fail_keeps_the_frames_that_are_wrong_and_shows_them() {
     let told = &record.steps.last().unwrap().evidence.as_ref().unwrap()["frames"][0];
     let [input, found, expected] =
         ["-in.png", "-out.png", "-should.png"].map(|name| samples(&served, failed, name, &record));
-    // What the judge counted and hashed while it had the frame.
+    // The judge counted and hashed these while it had the frame.
     let differing = found.0.iter().zip(&expected.0).filter(|(found, expected)| found != expected).count();
     assert_eq!(Some(differing as u64), told["comparison"]["differences"].as_u64());
     assert_eq!(Some(input.1.as_str()), told["sha256"].as_str());
@@ -281,9 +281,9 @@ fn a_fail_keeps_the_frames_that_are_wrong_and_shows_them() {
         let answer = served.get(picture);
         assert_eq!((answer.status, answer.header("content-type")), (200, Some("image/png")), "{picture}");
         assert!(answer.body.starts_with(b"\x89PNG"));
-        // Of so small a frame each sample has its own square in the map.
+        // The map of so small a frame has a square for each sample.
         assert_eq!(answer.body[16..24], [0, 0, 0, 64, 0, 0, 0, 8], "{picture}");
-        // It is evidence of that run, and of no other.
+        // It is evidence of that run only.
         assert_eq!(served.get(&picture.replace(failed, passed)).status, 404);
     }
     assert!(page.contains("A square stands for one sample. Colour of its difference:"), "{page}");
@@ -328,7 +328,7 @@ fn a_unit_s_page_tells_its_story_in_every_language() {
     }
 }
 
-/// More runs than are read at once.
+/// More runs than are read at a time.
 fn hundreds() -> Made {
     let mut made = Made::new();
     for number in 0_usize..450 {
@@ -373,7 +373,7 @@ fn a_table_of_a_filter_is_what_the_command_writes() {
     assert!(nothing.starts_with("run,product,serial,") && nothing.lines().count() == 1, "{nothing}");
 }
 
-/// Half a table must not be taken for the whole.
+/// Part of a table must not be taken for the whole.
 #[test]
 fn a_table_that_cannot_go_on_breaks_off() {
     let made = hundreds();

@@ -1,4 +1,4 @@
-//! A store with runs that were entered as the station enters them, and judged by no board.
+//! A store with runs that were entered the way the station enters them, but that no board was judged for.
 
 use std::path::Path;
 
@@ -21,11 +21,11 @@ pub(crate) const PRODUCT: &str = "CAM-T";
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum End {
     Pass,
-    /// With these parts suspected.
+    /// With these parts as suspects.
     Fail(&'static [&'static str]),
-    /// The latency is beyond its limit.
+    /// The latency is beyond its limit, and nothing else is wrong.
     TooLate,
-    /// And five samples differ besides.
+    /// In addition, five samples differ.
     TooLateAndWrong,
     Error(RunCause),
     Open,
@@ -43,9 +43,9 @@ pub(crate) struct Run {
     pub(crate) end: End,
     /// What is attached.
     pub(crate) evidence: Vec<&'static str>,
-    /// The job that it is of.
+    /// The job to which it belongs.
     pub(crate) job: Option<JobClaim>,
-    /// What was seen of the board's device, and its number; nobody looked if it is none.
+    /// What was seen of the board's device, and its number; none if nobody looked.
     pub(crate) device: Option<(DeviceSeen, &'static str)>,
     /// Whether it counts as production.
     pub(crate) production: bool,
@@ -83,7 +83,7 @@ impl Made {
         Self::at(crate::common::folder())
     }
 
-    /// With what is in this folder already.
+    /// A store with what is already in this folder.
     pub(crate) fn at(folder: TempDir) -> Self {
         let store = Store::open(&Folder::new(folder.path())).unwrap();
         Self { folder, store, entered: 0 }
@@ -98,18 +98,18 @@ impl Made {
         (self.folder, self.store)
     }
 
-    /// Enters the `number`-th run of several stores that are looked at together.
+    /// Enters a run as the `number`-th of several stores that are viewed together.
     pub(crate) fn numbered(&mut self, number: u32, run: &Run) -> String {
         self.count_from(number);
         self.run(run)
     }
 
-    /// The next run is the `number`-th.
+    /// Makes the next run the `number`-th.
     pub(crate) fn count_from(&mut self, number: u32) {
         self.entered = number - 1;
     }
 
-    /// The folder, which another program may write to from here on.
+    /// Closes the store and returns its folder, to which another program may write from now on.
     pub(crate) fn closed(self) -> TempDir {
         self.folder
     }
@@ -140,19 +140,19 @@ impl Made {
         self.try_begin(run).unwrap()
     }
 
-    /// As [`Self::begin`], if the store takes it.
+    /// Like [`Self::begin`], if the store accepts the run.
     pub(crate) fn try_begin(&mut self, run: &Run) -> Result<(RunHead, PlanRecord), StoreError> {
         self.entered += 1;
         let plan = plan(run.plan);
         Ok((self.store.begin(self.head(run), &plan)?, plan))
     }
 
-    /// Ends it.
+    /// Ends a run.
     pub(crate) fn finish(&mut self, run: &Run, head: RunHead, plan: PlanRecord) {
         self.try_finish(run, head, plan).unwrap();
     }
 
-    /// As [`Self::finish`], if the store takes it.
+    /// Like [`Self::finish`], if the store accepts the record.
     pub(crate) fn try_finish(
         &mut self,
         run: &Run,
@@ -197,7 +197,7 @@ impl AsRef<Path> for Made {
     }
 }
 
-/// The `number`-th id of this moment.
+/// The `number`-th id of this millisecond.
 pub(crate) fn id(ms: i64, number: u32) -> String {
     let mut random = [0; 10];
     random[..4].copy_from_slice(&number.to_be_bytes());
@@ -206,7 +206,7 @@ pub(crate) fn id(ms: i64, number: u32) -> String {
 
 fn plan((name, version): (&str, &str)) -> PlanRecord {
     let text = format!("schema = 1 # {name} {version}\n");
-    // What the station's own hash of a plan without files is.
+    // The station computes the hash of a plan without files the same way.
     let sha256 = halfrow::result::sha256([text.as_bytes()]);
     let (name, version) = (name.to_owned(), version.to_owned());
     PlanRecord { sha256, name, version, text, files: None }
@@ -251,7 +251,7 @@ pub(crate) fn record(run: RunHead, plan: PlanRecord, made: &Run) -> Record {
     }
 }
 
-/// The step that a run's end comes from.
+/// The step that decides how a run ends.
 fn verify(run: &RunHead, end: End) -> StepRecord {
     let came = match end {
         End::Pass => (StepOutcome::Passed, RunCause::None, 0),

@@ -1,4 +1,4 @@
-//! What was judged, read back: pages, units, yields, what fails most; and what is kept.
+//! What was judged, read back: pages, units, yields, the most frequent failures; and what is kept.
 
 pub(crate) mod commands;
 mod control;

@@ -1,4 +1,4 @@
-//! Pages against the list that they are pages of.
+//! Pages of a list, compared with the whole list.
 
 use halfrow::Verdict;
 use halfrow_station::history::Period;
@@ -7,7 +7,7 @@ use halfrow_station::record::RunCause;
 
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 
-/// Forty runs of which many have the same moment, in an order that is not that of their moments.
+/// Forty runs, many with the same start, and not entered in the order of their starts.
 fn made() -> (Made, Vec<(String, Run)>) {
     let mut made = Made::new();
     let ends = [End::Pass, End::Fail(&["memory"]), End::Error(RunCause::Link), End::Pass, End::Open];
@@ -19,7 +19,7 @@ fn made() -> (Made, Vec<(String, Run)>) {
         run.lane = (number % 4).to_string();
         run.operator = ["weber", "lang"][number % 2].to_owned();
         if run.end == End::Open {
-            // A lane and a unit have one open run.
+            // A lane and a unit can only have one open run.
             run.lane = format!("open {number}");
             run.serial = format!("OPEN{number}");
         }
@@ -28,7 +28,7 @@ fn made() -> (Made, Vec<(String, Run)>) {
     (made, entered)
 }
 
-/// What the list says itself.
+/// The runs that `filter` selects, taken from the list itself.
 fn wanted(entered: &[(String, Run)], filter: &Filter) -> Vec<String> {
     let verdict = |run: &Run| match run.end {
         End::Pass => Some(Verdict::Pass),
@@ -49,7 +49,7 @@ fn wanted(entered: &[(String, Run)], filter: &Filter) -> Vec<String> {
     found.into_iter().rev().map(|(_, id)| id).collect()
 }
 
-/// All pages of so many runs, one after the other.
+/// All pages of `limit` runs each, one after another.
 fn walked(made: &Made, filter: &Filter, limit: u32) -> Vec<String> {
     let (mut found, mut after) = (Vec::new(), None);
     loop {
@@ -104,7 +104,7 @@ fn nothing_is_found_by_a_name_that_is_not_there() {
     }
 }
 
-/// With numbers of rows instead of keys, a run would be shown twice.
+/// With row numbers instead of keys, a run would be shown twice.
 #[test]
 fn runs_that_are_added_meanwhile_move_nothing() {
     let (mut made, entered) = made();

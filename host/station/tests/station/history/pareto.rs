@@ -1,4 +1,4 @@
-//! What fails most, against counts that were made by hand.
+//! The most frequent failures, compared with counts made by hand.
 
 use halfrow_station::history::Period;
 use halfrow_station::history::pareto::{Of, pareto};
@@ -7,7 +7,7 @@ use halfrow_station::record::{RunCause, StepOutcome, StepRecord};
 
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run, record};
 
-/// Six runs of four units failed: three with the memory suspected first, one with the clock, one with nothing, and one
+/// Six runs of four units failed: three with the memory as first suspect, one with the clock, one without a suspect, and one that
 /// was too late.
 fn made() -> Made {
     let mut made = Made::new();
@@ -28,7 +28,7 @@ fn made() -> Made {
     made
 }
 
-/// Names with runs and units.
+/// Names with their numbers of runs and units.
 fn bars(made: &Made, wanted: &Wanted, by: Of) -> Vec<(String, u64, u64)> {
     let pareto = pareto(&made.now(), wanted, by).unwrap();
     assert!(pareto.bars.iter().all(|bar| bar.runs.of == pareto.failed));
@@ -76,7 +76,7 @@ fn all_that_failed_are_told_with_their_units() {
     assert_eq!((all.failed, all.units), (6, 4));
 }
 
-/// It was tried again since the station was to blame as well; in the second try the board is in time, and wrong.
+/// A retry was due since the station was at fault as well; in the second try the board is in time, but wrong.
 #[test]
 fn a_limit_that_a_try_missed_which_was_not_the_last_counts() {
     let mut made = Made::new();

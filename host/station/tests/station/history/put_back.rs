@@ -1,4 +1,4 @@
-//! A database that is put back: under a station at work, and beside the log of one that was killed.
+//! A database that is put back: under a station at work, and next to the log of one that was killed.
 
 use std::fs::{self, File};
 use std::os::unix::fs::MetadataExt as _;
@@ -16,14 +16,14 @@ use super::commands::did;
 use super::made::{End, Made, Run};
 use crate::common::{folder, program, query};
 
-/// As `mv`, `rsync` and most programs put a file back: another one has the name.
+/// Puts a file back as `mv`, `rsync` and most programs do: another file gets the name.
 fn renamed_to(from: &Path, to: &Folder) {
     let aside = to.path().join("aside");
     fs::copy(from, &aside).unwrap();
     fs::rename(&aside, to.database()).unwrap();
 }
 
-/// The folder of a station as it is if it is killed at this moment.
+/// A copy of a station's folder as a kill at this moment would leave it.
 fn killed(made: &Made) -> TempDir {
     let left = folder();
     let from = made.folder().path().join(".");
@@ -31,8 +31,8 @@ fn killed(made: &Made) -> TempDir {
     left
 }
 
-/// A station that judged S1 and ended, the database as it was then, the station in its next session, and the run by which it judged
-/// S2 in that.
+/// A station in its second session, after it judged S1 in its first; the database as it was in between; and the run that judged
+/// S2 in the second session.
 fn in_its_second_session() -> (Made, TempDir, String) {
     let mut made = Made::new();
     made.run(&Run::of("S1", End::Pass));
@@ -45,7 +45,7 @@ fn in_its_second_session() -> (Made, TempDir, String) {
     (made, earlier, run)
 }
 
-/// The units that were judged, by a look at `data` as the station has it.
+/// The units that were judged, as the database in `data` has them.
 fn units(data: &Path) -> Vec<String> {
     query(data, "SELECT serial FROM run JOIN unit ON unit.id = unit_id ORDER BY 1")
 }
@@ -78,7 +78,7 @@ fn no_verdict_counts_that_is_in_another_file_than_the_one_of_this_name() {
     assert_eq!(units(made.closed().path()), ["S1", "S2", "S3"]);
 }
 
-/// As `cp` puts a file back: it is the same one, with other bytes.
+/// `cp` puts a file back this way: it is the same file with other bytes.
 #[test]
 fn a_database_that_is_written_over_is_not_gone_on_with_nor_spoilt() {
     let (mut made, earlier, saved) = in_its_second_session();
@@ -87,7 +87,7 @@ fn a_database_that_is_written_over_is_not_gone_on_with_nor_spoilt() {
     let refused = made.try_begin(&Run { lane: "3".to_owned(), ..Run::of("S4", End::Open) }).unwrap_err();
     assert!(refused.to_string().contains("was replaced or removed while this program"), "{refused}");
     assert!(made.store.saved(&saved).is_err());
-    // As the station does at its end.
+    // As the station does when it ends.
     made.store.fold_log();
     let kept = made.closed();
     let refused = Store::open(&data).unwrap_err().to_string();
@@ -99,21 +99,21 @@ fn a_database_that_is_written_over_is_not_gone_on_with_nor_spoilt() {
     assert_eq!(units(kept.path()), ["S1"]);
 }
 
-/// The control: a second connection alone reads the verdict back, and it is lost.
+/// The control: a second connection alone does read the verdict back, and yet it is lost.
 #[test]
 fn a_verdict_is_read_back_out_of_the_log_of_a_file_without_a_name() {
     let (mut made, earlier, saved) = in_its_second_session();
     renamed_to(&earlier.path().join("station.db"), &made.folder());
     let folder = made.folder();
     assert!(folder.verdict_of(&saved).unwrap().is_some());
-    // As the station does at its end.
+    // As the station does when it ends.
     made.store.fold_log();
     let kept = made.closed();
     assert!(folder.verdict_of(&saved).unwrap().is_none());
     assert_eq!(units(kept.path()), ["S1"]);
 }
 
-/// How a database comes to lie beside the log of another one, and whether a station may start on it.
+/// How a database comes to be next to the log of another one, and whether a station may start on it.
 #[test]
 fn a_database_is_not_opened_with_the_log_of_another_one() {
     let (made, earlier, _) = in_its_second_session();
@@ -121,7 +121,7 @@ fn a_database_is_not_opened_with_the_log_of_another_one() {
     backup(&made.folder(), &copy.path().join("copy")).unwrap();
     let [of_before, of_now] = [earlier.path(), &copy.path().join("copy")].map(|data| data.join("station.db"));
     let open = |left: &TempDir| Store::open(&Folder::new(left.path())).map(drop);
-    // What a kill leaves is whole, once and again.
+    // What a kill leaves is whole, however often it is opened.
     let left = killed(&made);
     for _ in 0..2 {
         open(&left).unwrap();
@@ -151,7 +151,7 @@ fn a_database_is_not_opened_with_the_log_of_another_one() {
     }
 }
 
-/// A reader of what was before the start keeps the start's number out of the file itself.
+/// A reader of the state before the start keeps the start's number from being written into the file itself.
 #[test]
 fn an_earlier_copy_is_told_apart_as_soon_as_nobody_reads_what_was_before_the_start() {
     let mut made = Made::new();
@@ -190,7 +190,7 @@ fn a_log_of_another_database_is_not_shown_while_a_start_has_the_folder() {
     assert!(refused.contains("is the log of another database"), "{refused}");
 }
 
-/// As a folder is put back from a copy of its files, and the lock that was there is left.
+/// A folder may be put back from a copy of its files while the old lock stays.
 #[test]
 fn a_database_and_its_log_that_were_put_there_together_count_without_the_lock_of_the_others() {
     let (made, ..) = in_its_second_session();
@@ -207,7 +207,7 @@ fn a_database_and_its_log_that_were_put_there_together_count_without_the_lock_of
     assert_eq!(units(kept.path()), ["S1", "S2"]);
 }
 
-/// As `rsync` and `tar` put a whole folder back: another lock is held by nobody, and another station could start.
+/// `rsync` and `tar` put a whole folder back this way: nobody holds the new lock, and another station could start.
 #[test]
 fn a_station_whose_lock_is_another_file_goes_on_with_nothing_and_lets_no_lock_go() {
     let (mut made, _, saved) = in_its_second_session();
@@ -223,7 +223,7 @@ fn a_station_whose_lock_is_another_file_goes_on_with_nothing_and_lets_no_lock_go
     fs::hard_link(&lock, &kept).unwrap();
     fs::copy(&lock, &aside).unwrap();
     fs::rename(&aside, &lock).unwrap();
-    // As its pages look.
+    // The station's pages read the database this way.
     drop(made.now());
     assert_eq!(locks(&database), held);
     let next = Run { lane: "3".to_owned(), ..Run::of("S4", End::Open) };
@@ -233,7 +233,7 @@ fn a_station_whose_lock_is_another_file_goes_on_with_nothing_and_lets_no_lock_go
     fs::rename(&kept, &lock).unwrap();
     made.store.saved(&saved).unwrap();
     made.try_begin(&next).unwrap();
-    // The control: whoever closes the file gives them up.
+    // The control: closing any descriptor of the file gives the locks up.
     drop(File::open(&database).unwrap());
     assert_eq!(locks(&database), 0);
 }
@@ -257,11 +257,11 @@ fn a_start_says_once_that_its_database_was_put_back() {
         assert!(is_said(kept.path()));
         assert!(!is_said(kept.path()));
     }
-    // A folder of its own is none that was put back.
+    // A copy that became a station's folder was not put back.
     assert!(!is_said(&copy.path().join("copy")));
 }
 
-/// The control: without what the start wrote down nothing tells that the log is another one's.
+/// The control: without what the start wrote down, nothing tells that the log belongs to another database.
 #[test]
 fn sqlite_plays_any_log_into_any_database() {
     let (made, earlier, _) = in_its_second_session();
@@ -270,8 +270,8 @@ fn sqlite_plays_any_log_into_any_database() {
     assert_eq!(units(left.path()), ["S1", "S2"]);
 }
 
-/// SQLite folds a log into the database many times while a station is at work: a copy of before is then one of another database, though
-/// no start lies between. Here each copy lies beside each later log.
+/// SQLite folds a log into the database many times while a station is at work. An earlier copy is then one of another database,
+/// though no start lies in between. Here each copy is put next to each later log.
 #[test]
 fn a_copy_that_was_made_while_a_station_was_at_work_is_taken_whole_or_refused() {
     for is_read in [false, true] {
@@ -298,8 +298,8 @@ fn a_copy_that_was_made_while_a_station_was_at_work_is_taken_whole_or_refused() 
     }
 }
 
-/// Whether a station starts on the database `copy` beside the log in `left`, where it `judged` so many. Where it does not, nothing is
-/// shown nor spoilt.
+/// Whether a station starts on the database `copy` next to the log in `left`, where it `judged` this many units. If it does not,
+/// nothing is shown and nothing is spoilt.
 fn is_taken(copy: &Path, left: &Path, judged: usize) -> bool {
     let tried = folder();
     assert!(Command::new("cp").arg("-r").args([&left.join("."), tried.path()]).status().unwrap().success());
@@ -320,7 +320,7 @@ fn is_taken(copy: &Path, left: &Path, judged: usize) -> bool {
     taken.is_ok()
 }
 
-/// Whatever it fails of, the log may be another one's after all.
+/// Whatever the reason of the failure, the log may still belong to another database.
 #[test]
 fn a_start_that_fails_leaves_the_log_that_it_found() {
     let (made, ..) = in_its_second_session();
@@ -336,7 +336,7 @@ fn a_start_that_fails_leaves_the_log_that_it_found() {
     assert!(files() == before, "it was folded");
 }
 
-/// A program that wrote nothing of the log down may have left it.
+/// It may have been left by a program that did not write down which log it had.
 #[test]
 fn a_database_that_was_left_by_an_earlier_program_is_looked_at_before_its_log_counts() {
     let (made, ..) = in_its_second_session();
@@ -348,7 +348,7 @@ fn a_database_that_was_left_by_an_earlier_program_is_looked_at_before_its_log_co
     let left = killed(&made);
     fs::write(left.path().join("station.lock"), "").unwrap();
     let mut database = fs::read(left.path().join("station.db")).unwrap();
-    // A page of an index, as an older copy has it.
+    // A page of an index as an older copy has it.
     let page = query(left.path(), "SELECT rootpage FROM sqlite_schema WHERE name = 'binding_device'");
     let place = 4096 * (page[0].parse::<usize>().unwrap() - 1);
     database[place..place + 4096].fill(0);
@@ -360,7 +360,7 @@ fn a_database_that_was_left_by_an_earlier_program_is_looked_at_before_its_log_co
     assert!(fs::read(left.path().join("station.db")).unwrap() == database, "the log was not played into it");
 }
 
-/// Whoever is killed in between leaves nothing that looks like a station which has only some of its evidence.
+/// A kill in between leaves nothing that looks like a station with only some of its evidence.
 #[test]
 fn of_a_copy_that_comes_into_a_folder_the_database_comes_last() {
     let mut made = Made::new();

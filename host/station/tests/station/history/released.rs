@@ -1,5 +1,5 @@
-//! A database of every schema that was released opens, and what is exported of it has the same bytes. What they are is in
-//! the folder `released`, and how they were made in its README.md.
+//! A database of every schema that was released can be opened, and what is exported from it has the same bytes as ever. The
+//! databases are in the folder `released`; its README.md says how they were made.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use super::commands::did;
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use crate::common::{program, query};
 
-/// Each format, and what its files are exported to.
+/// Each format, and the name of its export.
 const FORMATS: [(&str, &str); 4] =
     [("record", "record"), ("junit", "junit"), ("openhtf", "openhtf"), ("csv", "runs.csv")];
 
@@ -25,7 +25,7 @@ fn crate_folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
-/// The text of a schema, as SQLite takes it, and its hash; none when there is none of this number.
+/// The text of a schema for SQLite, and its hash; none when no schema has this number.
 fn schema(number: usize) -> Option<(String, String)> {
     let text = fs::read_to_string(crate_folder(&format!("sql/schema-{number}.sql"))).ok()?;
     let hash = halfrow::result::sha256([&text]);
@@ -44,7 +44,7 @@ fn released(number: usize) -> PathBuf {
     crate_folder(&format!("tests/station/history/released/schema-{number}"))
 }
 
-/// A station's folder as a program of this schema left it.
+/// A station's folder as a program with this schema left it.
 fn left(number: usize) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let database = Connection::open(folder.path().join("station.db")).unwrap();
@@ -59,7 +59,7 @@ fn copied(from: &Path, to: &Path) {
     assert!(did.success());
 }
 
-/// The hashes of all that is exported of this folder, as `sha256sum` prints them.
+/// The hashes of everything that is exported from this folder, as `sha256sum` prints them.
 fn exported(data: &Path) -> String {
     let place = tempfile::tempdir().unwrap();
     for (format, to) in FORMATS {
@@ -73,8 +73,8 @@ fn exported(data: &Path) -> String {
     String::from_utf8(listed.stdout).unwrap()
 }
 
-/// What is true of the history in each of them, counted by hand: S1 failed and then passed, S2 passed, S3 passed behind a
-/// crash, S4 was too late; S5 came to an error alone, and S6 is open.
+/// Asserts the figures of the history that each of them has, counted by hand: S1 failed and then passed, S2 passed, S3 passed
+/// after a crash, S4 was too late, S5 only came to an error, and S6 is open.
 fn is_true_of(data: &Path) {
     let folder = Folder::new(data);
     let checked = check(&folder).unwrap();
@@ -114,12 +114,12 @@ fn a_database_of_every_released_schema_opens_and_exports_the_same_bytes() {
     });
 }
 
-/// The copy that lies beside a database which had this schema.
+/// The copy that is kept of a database with this schema.
 fn before(number: usize) -> Vec<String> {
     (number < newest()).then(|| format!("station.before-{}.db", number + 1)).into_iter().collect()
 }
 
-/// What lies in this folder of earlier databases, finished or not.
+/// The copies of earlier databases in this folder, finished or not.
 fn copies(data: &Path) -> Vec<String> {
     let names = fs::read_dir(data).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     names.filter(|name| name.contains("before")).collect()
@@ -135,12 +135,12 @@ fn a_database_that_cannot_be_brought_up_to_date_is_the_earlier_programs_still() 
     let refused = Store::open(&Folder::new(data.path())).unwrap_err();
     assert!(format!("{refused:?}").contains("mismatch already exists"), "{refused:?}");
     assert_eq!(query(data.path(), "SELECT max(n) FROM schema_version"), ["1"]);
-    // However often it is tried, its copy is the same.
+    // The copy is made once, however often the upgrade is tried.
     assert!(Store::open(&Folder::new(data.path())).is_err());
     assert_eq!(copies(data.path()), before(1));
 }
 
-/// An older database may be brought up to date in the folder of a newer one, as where a copy is tried that is too old.
+/// An older database may be brought up to date in the folder of a newer one, for example when a copy that is too old is tried.
 #[test]
 fn a_copy_of_before_an_upgrade_is_not_written_over() {
     let data = left(1);
@@ -155,7 +155,7 @@ fn a_copy_of_before_an_upgrade_is_not_written_over() {
     assert_eq!(names(&copy, "SELECT CAST(max(n) AS TEXT) FROM schema_version"), ["1"]);
 }
 
-/// A disk that takes nothing more of the copy.
+/// The disk is full before the copy is complete.
 #[test]
 fn of_a_copy_that_was_not_made_nothing_is_left() {
     let data = left(1);
@@ -171,7 +171,7 @@ fn of_a_copy_that_was_not_made_nothing_is_left() {
     assert_eq!(copies(data.path()), before(1));
 }
 
-/// A kill on the way leaves no name behind it at once.
+/// A kill in between leaves these files.
 #[test]
 fn of_a_copy_that_was_not_finished_nothing_is_left() {
     let data = left(1);
