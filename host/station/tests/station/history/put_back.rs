@@ -161,7 +161,7 @@ fn an_earlier_copy_is_told_apart_as_soon_as_nobody_reads_what_was_before_the_sta
     let reader = Snapshot::take(&Folder::new(kept.path())).unwrap();
     let mut made = Made::at(kept);
     let open = |left: &TempDir| Store::open(&Folder::new(left.path())).map(drop);
-    // The control: neither number is in a start's way yet.
+    // The control: neither number prevents a start yet.
     let left = killed(&made);
     fs::write(left.path().join("station.db"), &earlier).unwrap();
     open(&left).unwrap();

@@ -182,7 +182,7 @@ fn of_a_copy_that_was_not_finished_nothing_is_left() {
     assert_eq!(copies(data.path()), before(1));
 }
 
-/// Of an earlier day, in a folder whose station has a number for its log.
+/// The database is of an earlier day, and the station of the folder has a number for its log.
 #[test]
 fn a_database_that_is_put_back_is_in_no_start_s_way_wherever_the_one_is_killed_that_brings_it_up_to_date() {
     let mut kills = 0;
@@ -220,13 +220,13 @@ fn a_backup_of_every_released_schema_is_restored_and_stays_as_it_is() {
         assert_eq!(new.join("station.before-2.db").is_file(), number < 2);
         assert_eq!(fs::read(backup.path().join("station.db")).unwrap(), before, "the backup is as it was");
         assert_eq!(fs::read_dir(backup.path()).unwrap().count(), 2);
-        // The station works in it.
+        // A station can work in it.
         let mut store = Store::open(&Folder::new(&new)).unwrap();
         assert_eq!(halfrow_station::run::recover(&mut store).unwrap().len(), 1);
     });
 }
 
-/// Its database is brought up to date under a lock of its own, which is not to take the name of the one that is held.
+/// Its database is brought up to date under a lock of its own, which must not replace the one that is held.
 #[test]
 fn a_backup_of_an_earlier_program_is_restored_into_a_folder_that_is_there() {
     let (backup, data) = (left(1), tempfile::tempdir().unwrap());
@@ -262,7 +262,7 @@ fn a_backup_of_a_newer_program_or_with_a_fault_is_refused_and_nothing_is_left() 
     refused(&backup, "plans/evil is neither a file nor a folder");
 }
 
-/// A restore of this is refused with these words about it, and leaves nothing behind.
+/// A restore of `backup` is refused with these words, and leaves nothing behind.
 fn refused(backup: &TempDir, told: &str) {
     let place = tempfile::tempdir().unwrap();
     let from = backup.path().to_str().unwrap();
@@ -272,7 +272,7 @@ fn refused(backup: &TempDir, told: &str) {
     assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0);
 }
 
-/// Makes the folder of each schema that has none, when that is wanted. Those that are there are never made again.
+/// Makes the folder of each schema that has none, if the environment asks for it. Existing ones are never made again.
 #[test]
 #[ignore = "for whoever adds a schema; see released/README.md"]
 fn make_those_that_are_missing() {
@@ -291,7 +291,7 @@ fn make_those_that_are_missing() {
     }
 }
 
-/// Writes the sums of all views anew, when that is wanted. Those of records are never other ones.
+/// Writes the sums of all views anew, if the environment asks for it. Those of records never change.
 #[test]
 #[ignore = "for whoever adds to a view; see released/README.md"]
 fn sum_the_views_anew() {
@@ -336,13 +336,13 @@ pub(crate) fn history() -> Made {
     made
 }
 
-/// The database that a program of this schema has of the history, as text: what the schema has not is left out.
+/// The history in a database of a program with this schema, as text: what the schema lacks is left out.
 fn database(number: usize, of: &Made) -> String {
     let database = Connection::open_in_memory().unwrap();
     database.execute_batch("PRAGMA foreign_keys = OFF").unwrap();
     let version = fs::read_to_string(crate_folder("sql/schema-version.sql")).unwrap();
     database.execute_batch(&for_sqlite(&version)).unwrap();
-    // Tables are filled by the schema that makes them, and rows of their own come with it.
+    // Tables are filled after the schema that makes them, whose own rows come with it.
     let source = of.folder().database();
     database.execute("ATTACH $1 AS made", [source.to_str().unwrap()]).unwrap();
     for version in 1..=number {

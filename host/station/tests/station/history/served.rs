@@ -1,4 +1,4 @@
-//! The station's own program, with its pages for whoever looks.
+//! The station's own program, which serves pages.
 
 use std::fs;
 use std::process::Command;
@@ -10,12 +10,12 @@ use crate::common::PLAN;
 use crate::pages::http::{Answer, Request};
 use crate::pages::station::{Serving, command};
 
-/// A plan of what was made.
+/// The plan of the runs that were made.
 pub(crate) fn plan() -> String {
     PLAN.replace("quick", "final")
 }
 
-/// A station that is served until this goes.
+/// A station that serves until it is dropped.
 pub(crate) struct Served {
     serving: Serving,
     data: TempDir,
@@ -23,12 +23,12 @@ pub(crate) struct Served {
 }
 
 impl Served {
-    /// Serves what was made.
+    /// Serves the runs that were made.
     pub(crate) fn of(made: Made) -> Self {
         Self::called(made, |_| ())
     }
 
-    /// Serves what was made, with a clock on the wall of this zone.
+    /// Serves the runs that were made, with a wall clock in this time zone.
     pub(crate) fn in_zone(made: Made, zone: &str) -> Self {
         Self::called(made, |call| {
             call.env("TZ", zone);
@@ -54,12 +54,12 @@ impl Served {
         halfrow_station::store::Folder::new(self.data.path())
     }
 
-    /// What is at `path`.
+    /// The answer to a request for `path`.
     pub(crate) fn get(&self, path: &str) -> Answer {
         self.get_in(path, "en")
     }
 
-    /// What is at `path` for a browser that prefers `language`.
+    /// The answer to a request for `path` by a browser that prefers `language`.
     pub(crate) fn get_in(&self, path: &str, language: &str) -> Answer {
         let port = self.serving.port;
         let request = Request::bare(port, "GET", path).with("host", &format!("127.0.0.1:{port}"));
@@ -70,7 +70,7 @@ impl Served {
         answer
     }
 
-    /// The page at `path`, which is there.
+    /// The page at `path`, which must exist.
     pub(crate) fn page(&self, path: &str) -> String {
         let answer = self.get(path);
         assert_eq!(answer.status, 200, "{path}\n{}", answer.text());

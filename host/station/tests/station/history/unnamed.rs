@@ -1,4 +1,4 @@
-//! What no row names is removed a day later, and nothing else.
+//! What no row of the database names is removed after a day, and nothing else.
 
 use std::fs::{self, File};
 use std::path::Path;
@@ -19,19 +19,19 @@ use crate::runs::bench::{PLAN, Station};
 
 const HOUR: Duration = Duration::from_secs(3600);
 
-/// Makes a file as old as this.
+/// Sets a file's time to this long ago.
 fn aged(path: &Path, age: Duration) {
     File::options().append(true).open(path).unwrap().set_modified(SystemTime::now() - age).unwrap();
 }
 
-/// Evidence of this age, and its hash.
+/// Stores evidence of this age; returns its hash.
 fn evidence(folder: &Folder, bytes: &str, age: Duration) -> String {
     let hash = folder.blobs().put(bytes.as_bytes()).unwrap();
     aged(&folder.blobs().path(&hash), age);
     hash
 }
 
-/// What a run of this name wrote down, so long ago.
+/// Makes the spool of the run `run`, of this age.
 fn spool(folder: &Folder, run: &str, age: Duration) {
     let path = folder.spool(run);
     fs::create_dir(&path).unwrap();
@@ -51,13 +51,13 @@ fn what_no_row_names_goes_when_it_is_a_day_old() {
     let mut made = Made::new();
     made.run(&Run { evidence: vec!["seen"], ..Run::of("S1", End::Fail(&["memory"])) });
     let folder = made.folder();
-    // However old it is.
+    // Named files stay, however old they are.
     for hash in query(made.as_ref(), "SELECT sha256 FROM attachment UNION SELECT record_sha256 FROM run") {
         aged(&folder.blobs().path(&hash), 1000 * HOUR);
     }
     let old = evidence(&folder, "nobody's", 25 * HOUR);
     let young = evidence(&folder, "whose?", 23 * HOUR);
-    // The clock was ahead, and is set right.
+    // Written while the clock was ahead, which then was set right.
     let ahead = folder.blobs().put(b"tomorrow's").unwrap();
     let tomorrow = SystemTime::now() + 25 * HOUR;
     File::open(folder.blobs().path(&ahead)).unwrap().set_modified(tomorrow).unwrap();
@@ -74,14 +74,14 @@ fn what_no_row_names_goes_when_it_is_a_day_old() {
     assert_eq!(prune_unnamed(&mut made.store, "engel").unwrap(), Unnamed::default());
 }
 
-/// The index was lost, or restored from a copy that is older: what it does not name may be all that is left of a run.
+/// The index was lost or restored from an older copy: what it does not name may be all that is left of a run.
 #[test]
 fn a_record_that_no_row_names_stays_and_what_it_names() {
     let mut made = Made::new();
     made.run(&Run { evidence: vec!["seen"], ..Run::of("S1", End::Fail(&["memory"])) });
     let theirs = query(made.as_ref(), "SELECT sha256 FROM attachment UNION SELECT record_sha256 FROM run");
     let folder = made.closed();
-    // An older copy of the database, from before all runs.
+    // An older copy of the database, made before all runs.
     fs::copy(Made::new().closed().path().join("station.db"), folder.path().join("station.db")).unwrap();
     let mut made = Made::at(folder);
     for hash in &theirs {
@@ -95,7 +95,7 @@ fn a_record_that_no_row_names_stays_and_what_it_names() {
     }
 }
 
-/// A database that is put back from last night lies beside today's records, and goes on without their runs.
+/// A database of last night that is put back lies next to today's records, and goes on without their runs.
 #[test]
 fn a_record_whose_run_has_no_row_is_told_and_is_in_every_copy() {
     let mut made = Made::new();
@@ -121,7 +121,7 @@ fn a_record_whose_run_has_no_row_is_told_and_is_in_every_copy() {
     assert!(copied.contains("1 records of runs that no row names"), "{copied}");
 }
 
-/// The power went between the record and its row: the next start ends the run as ERROR, with another record.
+/// The power failed between the record and its row: the next start ends the run as ERROR, with another record.
 #[test]
 fn a_record_that_came_to_no_row_is_no_fault() {
     let mut made = Made::new();
@@ -149,8 +149,8 @@ fn a_record_that_is_damaged_says_nothing_of_its_run() {
     assert_eq!(told(), 0);
 }
 
-/// A copy of a moment at which runs were under way is put back when they are over: nothing on the disk tells that from a power cut
-/// in front of the COMMIT.
+/// A copy made while runs were under way is put back after they ended: nothing on the disk tells that from a power cut before the
+/// COMMIT.
 #[test]
 fn a_verdict_whose_run_is_open_or_another_in_the_database_is_told_and_is_no_fault() {
     let mut made = Made::new();
@@ -202,7 +202,7 @@ fn a_spool_goes_a_day_after_its_run_was_lost_and_that_of_an_open_run_stays() {
     for (run, hours) in [(&open, 100), (&over, 100), (&old, 25), (&young, 23)] {
         spool(&folder, run, hours * HOUR);
     }
-    // Its folder is as old as its first file, and was written to since.
+    // Its folder is as old as its first file, but the file was written to later.
     spool(&folder, &written, 25 * HOUR);
     aged(&folder.spool(&written).join("events.jsonl"), HOUR);
     let removed = prune_unnamed(&mut made.store, "engel").unwrap();
@@ -210,14 +210,14 @@ fn a_spool_goes_a_day_after_its_run_was_lost_and_that_of_an_open_run_stays() {
     let is_there = |run: &str| folder.spool(run).exists();
     let are_there = || [&open, &over, &old, &young, &written].map(|run| is_there(run));
     assert_eq!(are_there(), [true, true, false, true, true]);
-    // The next start closes the open run with what is in its spool, and needs that of the other no more.
+    // The next start closes the open run with what is in its spool, and has no use for the other one's.
     spool(&folder, &old, 25 * HOUR);
     assert_eq!(recover(&mut made.store).unwrap()[0].record.attachments[0].name, "events.jsonl");
     assert_eq!(are_there(), [false, false, false, true, true]);
     is_sound(&folder);
 }
 
-/// The run finds its evidence there already, as old as what may go, and its row comes later.
+/// The run finds that its evidence already exists, old enough to be removed, and its row comes later.
 #[test]
 fn evidence_of_a_run_without_its_row_stays_however_long_it_lay_there() {
     let mut made = Made::new();
@@ -231,7 +231,7 @@ fn evidence_of_a_run_without_its_row_stays_however_long_it_lay_there() {
     is_sound(&made.folder());
 }
 
-/// Ends what others do, whatever becomes of the test.
+/// Ends what the other threads do, however the test ends.
 struct Over<'a>(&'a AtomicBool);
 
 impl Drop for Over<'_> {
@@ -240,8 +240,8 @@ impl Drop for Over<'_> {
     }
 }
 
-/// Runs are recorded while somebody removes what no row names as fast as it goes, and somebody else makes all of it look
-/// old. What has no row yet is safe all the same, since only one of the programs has the folder.
+/// Runs are recorded while one thread removes what no row names as fast as it can, and another makes all of it look old. What has
+/// no row yet is still safe, since only one program at a time has the folder.
 #[test]
 fn runs_that_are_recorded_meanwhile_lose_nothing() {
     let station = Station::with(PLAN);

@@ -1,4 +1,4 @@
-//! Waivers stand beside a FAIL, with an audit.
+//! Waivers are added to a FAIL, with an entry in the audit.
 
 use halfrow_station::record::RunCause;
 use halfrow_station::store::NoWaiver;
@@ -51,7 +51,7 @@ fn what_is_no_fail_or_has_a_waiver_or_no_reason_is_not_waived() {
     assert_eq!(rows(&made, "SELECT operator_id FROM audit"), ["engel"]);
 }
 
-/// A line of its own would look like a verdict.
+/// A line of its own could look like a verdict.
 #[test]
 fn a_reason_and_a_name_are_printed_in_one_line() {
     let mut made = Made::new();
@@ -69,7 +69,7 @@ fn a_reason_and_a_name_are_printed_in_one_line() {
     );
 }
 
-/// The line in the audit that tells of it is none.
+/// The audit's line about it is not a result.
 #[test]
 fn a_waiver_that_is_not_sent_is_a_result_as_its_run_is() {
     let mut made = Made::new();

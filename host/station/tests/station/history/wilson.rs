@@ -1,4 +1,4 @@
-//! Intervals, against those of another program and against the closed formula.
+//! Intervals, compared with those of another program and with the closed formula.
 
 use halfrow_station::history::rate::Rate;
 

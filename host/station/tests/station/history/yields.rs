@@ -1,4 +1,4 @@
-//! Yields, against cases that were worked by hand.
+//! Yields, compared with cases that were worked by hand.
 
 use halfrow_station::history::Period;
 use halfrow_station::history::yields::{By, Wanted, Yields, yields};
@@ -8,9 +8,10 @@ use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use super::served::Served;
 use crate::common::now_ms;
 
-/// Runs in their order: the unit, then `P` PASS, `F` FAIL, `W` a FAIL that is waived, `E` ERROR, `C` a crash, `R` refused,
-/// `O` open; then the plan's name and version if they are other ones. Beside them what counts for the plan `final`:
+/// Runs in their order: the unit, then `P` for PASS, `F` FAIL, `W` a waived FAIL, `E` ERROR, `C` a crash, `R` refused, `O` open;
+/// then the plan's name and version unless they are `final,1`. Next to them what counts for the plan `final`:
 ///
+/// units, first pass, in the end, waived, flipped; runs, errors, crashes.
 /// units, first pass, in the end, waived, flipped; runs, errors, crashes.
 pub(crate) const CASES: [(&str, [u64; 8]); 42] = [
     ("A:P", [1, 1, 1, 0, 0, 1, 0, 0]),
@@ -28,7 +29,7 @@ pub(crate) const CASES: [(&str, [u64; 8]); 42] = [
     ("A:F A:P A:F", [1, 0, 0, 0, 0, 3, 0, 0]),
     ("A:P A:F A:P", [1, 1, 1, 0, 0, 3, 0, 0]),
     ("A:F A:P A:F A:P", [1, 0, 1, 0, 1, 4, 0, 0]),
-    // An ERROR before a judgement uses up no first pass, and one after it takes nothing back.
+    // An ERROR before a judgement does not use up the first pass, and one after it takes nothing back.
     ("A:E A:P", [1, 1, 1, 0, 0, 2, 1, 0]),
     ("A:E A:F", [1, 0, 0, 0, 0, 2, 1, 0]),
     ("A:F A:E", [1, 0, 0, 0, 0, 2, 1, 0]),
@@ -40,7 +41,7 @@ pub(crate) const CASES: [(&str, [u64; 8]); 42] = [
     ("A:F A:C A:F", [1, 0, 0, 0, 0, 3, 1, 1]),
     ("A:F A:C A:P A:C", [1, 0, 1, 0, 1, 4, 2, 2]),
     ("A:R A:R A:P", [1, 1, 1, 0, 0, 3, 2, 0]),
-    // A waiver makes no FAIL a PASS. It counts while its FAIL is the last judgement.
+    // A waiver does not make a FAIL a PASS. It counts while its FAIL is the last judgement.
     ("A:W", [1, 0, 0, 1, 0, 1, 0, 0]),
     ("A:W A:P", [1, 0, 1, 0, 1, 2, 0, 0]),
     ("A:W A:F", [1, 0, 0, 0, 0, 2, 0, 0]),
@@ -50,13 +51,13 @@ pub(crate) const CASES: [(&str, [u64; 8]); 42] = [
     ("A:W A:W", [1, 0, 0, 1, 0, 2, 0, 0]),
     ("A:W A:P A:W", [1, 0, 0, 1, 0, 3, 0, 0]),
     ("A:F A:W A:P", [1, 0, 1, 0, 1, 3, 0, 0]),
-    // What is open has not come to anything.
+    // An open run does not count yet.
     ("A:F A:O", [1, 0, 0, 0, 0, 1, 0, 0]),
-    // Units are counted each for itself.
+    // Each unit is counted by itself.
     ("A:P B:F", [2, 1, 1, 0, 0, 2, 0, 0]),
     ("A:F B:F A:P", [2, 0, 1, 0, 1, 3, 0, 0]),
     ("A:W B:P C:E D:F D:P", [3, 1, 2, 1, 1, 5, 1, 0]),
-    // Another version of the plan is compared, another plan is not.
+    // Another version of the plan is counted with it, another plan is not.
     ("A:F A:P@final,2", [1, 0, 1, 0, 1, 2, 0, 0]),
     ("A:F@final,2 A:W", [1, 0, 0, 1, 0, 2, 0, 0]),
     ("A:F A:P@intake,1", [1, 0, 0, 0, 0, 1, 0, 0]),
@@ -64,7 +65,7 @@ pub(crate) const CASES: [(&str, [u64; 8]); 42] = [
     ("A:P@intake,1 A:F@intake,1 A:W", [1, 0, 0, 1, 0, 1, 0, 0]),
 ];
 
-/// Enters one word of a story.
+/// Enters one word of a case.
 pub(crate) fn enter(made: &mut Made, word: &str, hour: i64) {
     let (word, plan) = word.split_once('@').unwrap_or((word, "final,1"));
     let (serial, end) = word.split_once(':').unwrap();
@@ -152,7 +153,7 @@ fn of_two_days() -> Made {
     made
 }
 
-/// The name of each line with units, first pass, in the end; runs, errors.
+/// For each line its name, then units, first pass, in the end, runs, errors.
 fn lines(made: &Made, wanted: &Wanted, by: By) -> Vec<(String, [u64; 5])> {
     let found = yields(&made.now(), wanted, by).unwrap();
     let line = |line: &halfrow_station::history::yields::Yield| {
@@ -190,11 +191,11 @@ fn a_unit_belongs_to_the_lane_and_the_day_of_its_first_judgement() {
     assert_eq!(yields(&made.now(), &second, By::Plan).unwrap().flips, Vec::new());
 }
 
-/// A shift counts its own boards, wherever the midnight of UTC is.
+/// A shift counts its own boards, whenever it is midnight in UTC.
 #[test]
 fn the_day_so_far_begins_at_midnight_by_the_clock_on_the_wall() {
     let now_ms = now_ms();
-    // Half past one in the night, as many minutes east of UTC as make it so (POSIX.1-2024, 8.3 counts them to the west).
+    // Half past one at night, in a zone that is as far east of UTC as that takes (POSIX.1-2024, 8.3 counts to the west).
     let east = (90 - now_ms / 60_000).rem_euclid(1440);
     let east = if east > 720 { east - 1440 } else { east };
     let sign = if east > 0 { '-' } else { '+' };
