@@ -29,7 +29,7 @@ fn who_waits_longest_is_the_next_and_a_job_comes_behind_people() {
     plant.give_back(&held).unwrap();
     assert_eq!(plant.wait(&third).unwrap(), Turn::Waits { before: 1 }, "another waits longer");
     assert_eq!(plant.claim(&worker("12")).unwrap(), None);
-    // Who does not ask again is forgotten.
+    // A waiter that does not ask again is forgotten.
     server
         .client("plant")
         .batch_execute("UPDATE waiter SET until_ms = 0 WHERE holder = '12 second'")
@@ -59,7 +59,7 @@ fn a_board_that_was_taken_over_or_out_is_held_no_more() {
     assert_eq!(told, [["board out", "it smells"], ["board in", "it was cleaned"]]);
 }
 
-/// A plant with `shelf-0`, which every station reaches, and `shelf-1`, which only the station A does.
+/// A plant with `shelf-0`, which every station reaches, and `shelf-1`, which only station A reaches.
 fn one_for_all_and_one_for_a() -> (Server, Plant) {
     let (server, mut plant) = shared(1);
     let of_a = SharedBoard { station: "A".to_owned(), ..board(1, "mock") };
@@ -67,7 +67,7 @@ fn one_for_all_and_one_for_a() -> (Server, Plant) {
     (server, plant)
 }
 
-/// Several who wait, the first of them longest.
+/// Waiters, of whom the first has waited longest.
 fn waiting<const N: usize>(who: [(&str, &str); N]) -> [Waiter; N] {
     who.map(|(name, station)| {
         thread::sleep(std::time::Duration::from_millis(2));
@@ -75,7 +75,7 @@ fn waiting<const N: usize>(who: [(&str, &str); N]) -> [Waiter; N] {
     })
 }
 
-/// The board that they get, or how many are in front of them.
+/// The board that the waiter gets, or how many are ahead of it.
 fn got(plant: &mut Plant, waiter: &Waiter) -> Result<String, u32> {
     match plant.wait(waiter).unwrap() {
         Turn::Held(lease) => Ok(lease.board),
@@ -113,7 +113,7 @@ fn what_those_in_front_are_to_get_is_left_to_them() {
     for number in 0..2 {
         assert!(plant.take_out(&format!("shelf-{number}"), "it smells", "engel").unwrap());
     }
-    // Nobody is told of boards that are out, so that both wait without one.
+    // Boards that are out are offered to nobody, so both wait without one.
     for waiter in [&first, &second] {
         assert_eq!(plant.wait(waiter).unwrap(), Turn::Never);
         let wait = format!(
@@ -158,7 +158,7 @@ fn a_board_whose_holder_vanished_can_be_shared_otherwise() {
     assert!(!plant.renew(&held).unwrap(), "it was another board");
 }
 
-/// A board under two names would be given to two.
+/// A board with two names would be given to two holders.
 #[test]
 fn a_unit_is_shared_under_one_name() {
     let (server, mut plant) = shared(1);
@@ -202,7 +202,7 @@ impl Hold {
         Self { stdin: process.stdin.take(), told, process, _folder: folder }
     }
 
-    /// The next thing that it tells which has this key.
+    /// The next message that has this key.
     fn tells(&mut self, key: &str) -> Value {
         let lines = self.told.by_ref().map(|line| serde_json::from_str::<Value>(&line.unwrap()).unwrap());
         lines.map(|mut told| told[key].take()).find(|told| !told.is_null()).unwrap()
@@ -229,13 +229,13 @@ fn a_board_is_held_until_stdin_ends_and_the_next_one_gets_it() {
     drop(first.stdin.take());
     assert!(first.process.wait().unwrap().success());
     assert_eq!(second.tells("held")["fence"], 2);
-    // Whoever started it was killed, which ends its stdin; it was killed itself, which the lease ends.
+    // Whoever started the second was killed, which ends its stdin; and it was killed itself, so only its lease ends.
     second.process.kill().unwrap();
     let mut client = server.client("plant");
     assert_eq!(client.execute("UPDATE board SET until_ms = 0", &[]).unwrap(), 1);
     assert_eq!(third.tells("held")["fence"], 3);
     assert!(plant.take_out("shelf-0", "it smells", "engel").unwrap());
-    // It is looked every ten seconds.
+    // The holder checks its lease every ten seconds.
     assert!(third.tells("lost")["said"].as_str().unwrap().contains("not ours any more"));
     assert_eq!(third.process.wait().unwrap().code(), Some(3));
     drop(Plant::connect(&server.address()).unwrap());

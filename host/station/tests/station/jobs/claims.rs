@@ -1,4 +1,4 @@
-//! Who has a job: one at a time, the last one for certain, and its run counts alone.
+//! Who has a job: one at a time; the last one is sure to have it, and only that one's run counts.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -13,7 +13,7 @@ use super::{any, board, job, plan, run_out, shared, with_a_job, worker};
 use crate::history::made::{BEGIN_MS, End, Made, Run};
 use crate::plant::server::Server;
 
-/// The `number`-th run of this unit, as its station sends it.
+/// The `number`-th run of this unit, in the form in which its station sends it.
 fn run_of_unit(serial: &str, number: u32, end: End) -> Parcel {
     let mut made = Made::new();
     let run = Run { started_ms: BEGIN_MS + i64::from(number), ..Run::of(serial, end) };
@@ -21,7 +21,7 @@ fn run_of_unit(serial: &str, number: u32, end: End) -> Parcel {
     made.folder().parcel(&Entry { kind: Kind::Run, subject, attempts: 0 }).unwrap()
 }
 
-/// As [`run_of_unit`], for a claim.
+/// Like [`run_of_unit`], for a claim.
 fn run_of(claim: &Claim, number: u32, end: End) -> Parcel {
     let parcel = run_of_unit(claim.serial(), number, end);
     let Parcel::Run { mut record, .. } = parcel else { panic!("it is a run") };
@@ -32,7 +32,7 @@ fn run_of(claim: &Claim, number: u32, end: End) -> Parcel {
     Parcel::Run { record, text, sha256 }
 }
 
-/// The state of each job, with its attempts.
+/// The state of each job, and its attempts.
 fn states(server: &Server) -> Vec<Vec<String>> {
     server.rows("SELECT state, attempts FROM job ORDER BY id")
 }
@@ -76,7 +76,7 @@ fn a_job_is_had_by_one_at_a_time_and_so_is_a_board() {
     assert_eq!(server.rows(once), [["40"]]);
 }
 
-/// What a worker that had stood still for too long does, and what the next one does: how many runs count as judgements.
+/// What a worker does that was stopped for too long, and what the next one does. Returns the runs that count as judgements.
 pub(crate) fn late(is_fenced: bool) -> (Server, Vec<Vec<String>>) {
     let (server, mut plant, _) = with_a_job();
     let first = plant.claim(&worker("first")).unwrap().unwrap();
@@ -108,7 +108,7 @@ fn a_run_of_a_claim_that_was_lost_is_kept_and_does_not_count() {
     assert_eq!(server.rows("SELECT runs, units, passed FROM day_count"), [["1", "1", "1"]]);
     let done = server.rows("SELECT job.state, run.nth FROM job JOIN run ON run.id = job.run_id");
     assert_eq!(done, [["done", "1"]]);
-    // Nor when an earlier run of the unit is counted in front of it.
+    // Nor does it count when an earlier run of the unit comes later and is counted before it.
     let mut plant = Plant::connect(&server.address()).unwrap();
     plant.take(&run_of_unit(&board(0, "mock").serial, 1, End::Fail(&["clock"]))).unwrap();
     assert_eq!(server.rows("SELECT nth FROM run ORDER BY id"), [["1"], ["0"], ["2"]]);
@@ -119,7 +119,7 @@ fn a_run_of_a_claim_that_was_lost_is_kept_and_does_not_count() {
     assert_eq!(server.rows("SELECT sum(runs) FROM day_count"), [["2"]]);
 }
 
-/// Only the plant knows that it does not count: its record is as that of the one which does.
+/// Only the plant knows that it does not count: its record looks like the one that does.
 #[test]
 fn an_error_of_a_claim_that_was_lost_counts_nowhere_and_is_no_fault() {
     let (server, mut plant, _) = with_a_job();
@@ -140,7 +140,7 @@ fn what_judged_nothing_is_given_back_five_times_and_then_waits_for_a_person() {
     for number in 1..=5 {
         let claim = plant.claim(&worker("12")).unwrap().unwrap();
         match number {
-            // A worker that vanished, a board that is no board, and a run that is an ERROR.
+            // A worker that vanished (twice), a board that is no board, and runs that are an ERROR.
             1 | 2 => run_out(&server),
             3 => plant.fail(&claim, "it is no board").unwrap(),
             _ => plant.take(&run_of(&claim, number, End::Error(RunCause::Link))).unwrap(),
@@ -152,7 +152,7 @@ fn what_judged_nothing_is_given_back_five_times_and_then_waits_for_a_person() {
     assert!(plant.retry_job(&id, "engel", "the cable is new").unwrap());
     assert!(!plant.retry_job(&id, "engel", "twice").unwrap());
     let claim = plant.claim(&worker("12")).unwrap().unwrap();
-    // What was not begun costs no attempt.
+    // A job that was not begun costs no attempt.
     plant.decline(&claim).unwrap();
     assert_eq!(states(&server), [["waiting", "0"]]);
     let claim = plant.claim(&worker("12")).unwrap().unwrap();
@@ -165,7 +165,8 @@ fn what_judged_nothing_is_given_back_five_times_and_then_waits_for_a_person() {
     assert_eq!(verdicts, [["ERROR"], ["ERROR"], [Verdict::Fail.to_string().as_str()]]);
 }
 
-/// A plant to which the run of a job's fifth claim comes when that has run out, others have asked for a job, and this was done `meanwhile`.
+/// A plant that gets the run of a job's fifth claim after that claim has run out, others have asked for a job, and `meanwhile`
+/// was done.
 fn fifth_claim(end: End, meanwhile: impl Fn(&mut Plant, &str)) -> Server {
     let (server, mut plant, id) = with_a_job();
     let fifth = (0..5).map(|_| {
@@ -177,14 +178,14 @@ fn fifth_claim(end: End, meanwhile: impl Fn(&mut Plant, &str)) -> Server {
     assert_eq!(plant.claim(&worker("12")).unwrap(), None);
     assert_eq!(states(&server), [["dead", "5"]]);
     meanwhile(&mut plant, &id);
-    // It is sent twice, as what is in doubt is.
+    // It is sent twice, like everything whose delivery is in doubt.
     for _ in 0..2 {
         plant.take(&run_of(&fifth, 1, end)).unwrap();
     }
     server
 }
 
-/// What is at the plant is what is made anew from its records.
+/// Asserts that the plant's tables are those that its records give.
 fn assert_well(server: &Server) {
     let snapshot = Snapshot::of_plant(Plant::connect(&server.address()).unwrap()).unwrap();
     let checked = check_plant(&snapshot, &mut |_| ()).unwrap();
@@ -198,13 +199,13 @@ fn the_run_of_the_last_claim_counts_however_late_it_comes() {
     assert_eq!(server.rows(done), [["done", "1", "NULL"]]);
     assert_eq!(server.rows("SELECT runs, units, passed FROM day_count"), [["1", "1", "1"]]);
     assert_well(&server);
-    // A person has it judged again meanwhile; nobody has claimed it since.
+    // Meanwhile an engineer wants the job judged again; nobody has claimed it since.
     let retry =
         |plant: &mut Plant, id: &str| assert!(plant.retry_job(id, "engel", "the cable is new").unwrap());
     let server = fifth_claim(End::Fail(&["clock"]), retry);
     assert_eq!(server.rows(done), [["done", "1", "NULL"]]);
     assert_well(&server);
-    // An ERROR leaves the job as it is, and is counted as one.
+    // An ERROR leaves the job as it is, and is counted as an error.
     let server = fifth_claim(End::Error(RunCause::Link), retry);
     assert_eq!(states(&server), [["waiting", "0"]]);
     assert_eq!(server.rows("SELECT runs, errors FROM day_count"), [["1", "1"]]);

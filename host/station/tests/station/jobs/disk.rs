@@ -1,4 +1,4 @@
-//! Stations that take jobs while their own disk takes nothing.
+//! Stations that take jobs while their own disk accepts nothing.
 
 use std::process::{Child, Command, Stdio};
 use std::thread;
@@ -15,7 +15,7 @@ use crate::common::{Did, folder, program, query};
 use crate::lanes::floor::HANG;
 use crate::plant::server::Server;
 
-/// A station in a folder of its own, whose database can be made to refuse.
+/// A station in its own folder, whose database can be made to refuse changes.
 struct Station {
     folder: TempDir,
 }
@@ -36,7 +36,7 @@ impl Station {
         command
     }
 
-    /// Its database refuses this, as on a full disk.
+    /// Makes its database refuse this, as on a full disk.
     fn refuses(&self, what: &str) {
         self.change(&format!(
             "CREATE TRIGGER full BEFORE {what} ON run BEGIN SELECT RAISE(ABORT, 'full'); END"
@@ -71,7 +71,7 @@ impl Drop for Worker {
     }
 }
 
-/// Waits until the plant has rows for this.
+/// Waits until this query of the plant has rows.
 fn await_rows(server: &Server, text: &str) -> Vec<Vec<String>> {
     let until = Instant::now() + HANG;
     loop {
@@ -109,7 +109,7 @@ fn a_job_that_a_full_disk_kept_from_beginning_costs_no_attempt() {
     worker.end();
 }
 
-/// Its run stays open until then, and nothing else is begun on its board.
+/// Its run stays open until then, and nothing else begins on its board.
 #[test]
 fn what_a_worker_could_not_save_is_closed_before_it_takes_another_job() {
     let (server, station) = one_job_and_no_disk_for("UPDATE");

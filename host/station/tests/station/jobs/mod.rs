@@ -29,7 +29,7 @@ pub(crate) fn plan() -> Plan {
     Plan::parse("plan.toml".as_ref(), PLAN.to_owned()).unwrap()
 }
 
-/// A board of this kind with this number, that every station reaches.
+/// A board of this kind with this number, which every station reaches.
 pub(crate) fn board(number: usize, kind: &str) -> SharedBoard {
     SharedBoard {
         name: format!("shelf-{number}"),
@@ -45,7 +45,7 @@ pub(crate) fn board(number: usize, kind: &str) -> SharedBoard {
     }
 }
 
-/// A plant with so many boards of the kind `mock`.
+/// A plant with `count` boards of the kind `mock`.
 fn shared(count: usize) -> (Server, Plant) {
     let server = Server::prepared();
     let mut plant = Plant::connect(&server.address()).unwrap();
@@ -55,7 +55,7 @@ fn shared(count: usize) -> (Server, Plant) {
     (server, plant)
 }
 
-/// A plant with one board and one job for it, whose id is the last.
+/// A plant with one board and one job for it; the last member is the job's id.
 fn with_a_job() -> (Server, Plant, String) {
     let (server, mut plant) = shared(1);
     let (plan, any) = (plan(), any());
@@ -71,13 +71,13 @@ pub(crate) fn job<'a>(plan: &'a Plan, wanted: &'a Wanted) -> NewJob<'a> {
     NewJob { plan, wanted, needs: &[], priority: 0, operator: "engel" }
 }
 
-/// A worker of this station, which has nothing but the plan.
+/// A worker of this station, which only has the plan.
 pub(crate) fn worker(station: &str) -> Worker {
     let [holder, station] = [format!("{station} 1"), station.to_owned()];
     Worker { holder, station, plans: vec![plan().sha256], has: Vec::new() }
 }
 
-/// All leases have run out, as if their holders had said nothing for long.
+/// Lets all leases run out, as if their holders had been silent for long.
 pub(crate) fn run_out(server: &Server) {
     server
         .client("plant")
@@ -97,7 +97,7 @@ fn settings(server: &Server, folder: &Path, name: &str) -> PathBuf {
     path
 }
 
-/// The station of these settings, whose lanes are of `program`. Nothing that it keeps is sent on.
+/// The station of these settings, whose lanes run `program`. Nothing that it stores is sent on.
 fn at_work(settings: &Settings, program: PathBuf) -> Work<'_> {
     let plans = settings.plans.iter().map(|file| file.plan.sha256.clone()).collect();
     Work {
@@ -109,7 +109,7 @@ fn at_work(settings: &Settings, program: PathBuf) -> Work<'_> {
     }
 }
 
-/// The next job, judged; whoever waits for too long ends it by hand.
+/// The next job, judged; it is stopped if it takes too long.
 fn judged(work: &Work<'_>) -> Judged {
     let claim = work.claim().unwrap().unwrap();
     let begun = Instant::now();

@@ -7,13 +7,13 @@ use halfrow_station::store::Plant;
 
 use super::{any, job, plan, shared, worker};
 
-/// How many stations take jobs at once, and how many each second, all together.
+/// How many stations take jobs at the same time, and how many jobs a second they take together.
 const STATIONS: usize = 100;
 const A_SECOND: usize = 50;
-/// For so long.
+/// For how long.
 const TAKEN: Duration = Duration::from_secs(30);
 
-/// What a station found: how long each of its claims took.
+/// How long each claim of a station took.
 fn waits(server: &crate::plant::server::Server, number: usize) -> Vec<Duration> {
     let mut plant = Plant::connect(&server.address()).unwrap();
     let worker = worker(&format!("station {number}"));

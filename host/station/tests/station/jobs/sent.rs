@@ -1,4 +1,4 @@
-//! What became of a job's run at the plant.
+//! What the plant does with the run of a job.
 
 use std::cell::Cell;
 
@@ -13,8 +13,8 @@ use halfrow_station::store::{Parcel, SINK_OF_PLANT};
 use super::{at_work, judged, settings, with_a_job};
 use crate::common::{folder, program};
 
-/// Whether the plant has the run of a job, and whether the run counts there, if the outbox `sends` and a person cancels the job
-/// while the result is being saved.
+/// Whether the plant has the run of a job, and whether the run counts there, if the outbox `sends`, and if a person cancels the
+/// job while the result is being saved.
 fn became(sends: bool, is_cancelled: bool) -> (bool, Option<bool>) {
     let (server, mut plant, id) = with_a_job();
     let folder = folder();
@@ -46,7 +46,7 @@ fn whether_a_run_counts_is_told_once_the_plant_has_it() {
     assert_eq!(became(false, false), (false, None), "nobody knows yet");
 }
 
-/// A plant that is there, and takes nothing.
+/// A plant that answers, but accepts nothing.
 struct Refusing;
 
 impl Sink for Refusing {

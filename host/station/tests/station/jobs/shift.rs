@@ -12,8 +12,8 @@ use halfrow_station::store::SharedBoard;
 use super::{any, at_work, board, job, settings, shared};
 use crate::common::{PLAN, folder, program};
 
-/// What is recorded of production when a station takes a job of a plan with this beside. Its board is away, which
-/// may be a product.
+/// What a record says about production when a station takes a job of a plan with the section `shift`. The station cannot reach
+/// its board, which may be a product.
 fn is_production(shift: &str) -> bool {
     let (server, mut plant) = shared(0);
     plant.share(&SharedBoard { target: "tcp:127.0.0.1:1".to_owned(), ..board(0, "mock") }, "engel").unwrap();
@@ -28,7 +28,7 @@ fn is_production(shift: &str) -> bool {
     let work = at_work(&settings, program().to_owned());
     let claim = work.claim().unwrap().unwrap();
     let is_over = Cell::new(false);
-    // The plant is sent nothing, so nobody is to wait for it.
+    // Nothing is sent to the plant, so waiting for it would be in vain.
     let stop = || is_over.get().then_some(StoppedBy::Person);
     let mut heard = |stage: Stage<'_>| is_over.set(matches!(stage, Stage::Saving { .. }));
     work.judge(claim, &stop, &mut heard).unwrap().saved.record.production

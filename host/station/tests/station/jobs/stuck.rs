@@ -1,4 +1,4 @@
-//! A board that a process may have still when its run is over.
+//! A board that a process may still have when its run is over.
 
 use std::time::Instant;
 
@@ -22,7 +22,7 @@ fn a_board_whose_lane_cannot_be_killed_is_taken_out_and_not_given_back() {
     let stuck = Stuck::in_folder(folder.path());
     let work = at_work(&settings, stuck.program.clone());
     let claim = work.claim().unwrap().unwrap();
-    // Nothing is sent on here, so it waits until the board is lost.
+    // Nothing is sent on here, so the worker waits until the board is lost.
     let begun = Instant::now();
     let stop = || (begun.elapsed() > HANG).then_some(StoppedBy::Person);
     let judged = work.judge(claim, &stop, &mut |_| ()).unwrap();

@@ -1,4 +1,4 @@
-//! Stations that take jobs: real processes, real runs on mock boards.
+//! Stations that take jobs: real processes, and real runs on mock boards.
 
 use std::fs;
 use std::process::{Command, Stdio};
@@ -74,7 +74,7 @@ fn a_worker_that_is_killed_leaves_a_job_that_another_one_does() {
     first.kill().unwrap();
     first.wait().unwrap();
     let (_other, mut command) = work(&server, "13");
-    // Its lease is still good.
+    // The lease of the first is still valid.
     let none = Did::from(command.output().unwrap());
     assert_eq!((none.code, none.said.as_str()), (Some(0), ""), "{none:?}");
     run_out(&server);
@@ -83,14 +83,14 @@ fn a_worker_that_is_killed_leaves_a_job_that_another_one_does() {
     let did = Did::from(command.output().unwrap());
     assert!(did.said.contains("\"verdict\":\"PASS\""), "{did:?}");
     assert_eq!(server.rows("SELECT state, fence FROM job"), [["done", "2"]]);
-    // What the first one had begun is closed when it starts again, and counts for nothing of the job.
+    // The run that the first one had begun is closed when it starts again, and does not count for the job.
     let again = Command::new(program())
         .args(["work", "--once", "--settings"])
         .arg(folder.path().join("station.toml"))
         .output()
         .unwrap();
     assert!(again.status.success(), "{again:?}");
-    // Without a lane, too, it tells what it has not sent.
+    // A station without a lane also tells what it has not sent.
     let unsent = Command::new(program())
         .args(["outbox", "list", "--settings"])
         .arg(folder.path().join("station.toml"))
@@ -101,7 +101,7 @@ fn a_worker_that_is_killed_leaves_a_job_that_another_one_does() {
     assert_eq!(server.rows("SELECT count(*) FROM run WHERE verdict = 'PASS'"), [["1"]]);
 }
 
-/// Boards that are judged for as long as one wants.
+/// A board whose judging takes as long as the test needs.
 fn endless(number: usize) -> halfrow_station::store::SharedBoard {
     halfrow_station::store::SharedBoard {
         target: "mock,pace=real,speed=20000".to_owned(),
@@ -109,7 +109,7 @@ fn endless(number: usize) -> halfrow_station::store::SharedBoard {
     }
 }
 
-/// A station takes as many jobs at once as its settings say, by one connection, and gives all of them back when it is told to end.
+/// A station takes as many jobs at a time as its settings say, over one connection, and gives all of them back when told to end.
 #[test]
 fn a_station_judges_so_many_jobs_at_once_and_ends_all_of_them_when_it_is_told_to() {
     let (server, mut plant) = shared(0);
@@ -133,13 +133,13 @@ fn a_station_judges_so_many_jobs_at_once_and_ends_all_of_them_when_it_is_told_to
         assert_eq!(worker.try_wait().unwrap(), None, "it ends");
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
-    // Both hands are full: the third board is free, and its job waits.
+    // Both places are taken: the third board is free, and its job waits.
     assert_eq!(
         server.rows("SELECT state, count(*) FROM job GROUP BY state ORDER BY state"),
         [["claimed", "2"], ["waiting", "1"]]
     );
     let connections = "SELECT count(*) FROM pg_stat_activity WHERE application_name = 'halfrow-station'";
-    // One for what it holds, one for what it sends.
+    // One connection for what it holds, one for what it sends.
     assert_eq!(server.rows(connections), [["2"]]);
     kill(Pid::from_raw(worker.id() as i32), Signal::SIGTERM).unwrap();
     let did = Did::from(worker.wait_with_output().unwrap());
@@ -173,7 +173,7 @@ fn a_run_that_was_ended_since_its_job_was_cancelled_says_so_and_blames_nobody() 
     assert_eq!(crate::common::query(&data, "SELECT headline FROM run"), [headline]);
 }
 
-/// The other one was there first.
+/// The other one came first.
 #[test]
 fn a_station_takes_no_job_while_another_one_has_its_name() {
     let (server, mut plant) = shared(1);
@@ -199,7 +199,7 @@ fn a_station_takes_no_job_while_another_one_has_its_name() {
     assert_eq!(server.rows("SELECT state, fence FROM job"), [["waiting", "0"]]);
 }
 
-/// The commands of an engineer at a plant.
+/// Runs the commands of an engineer at a plant.
 struct Engineer {
     server: Server,
     folder: tempfile::TempDir,
@@ -219,7 +219,7 @@ impl Engineer {
         command.env("USER", "engel").output().unwrap().into()
     }
 
-    /// What the audit has.
+    /// The acts in the audit.
     fn acts(&self) -> Vec<String> {
         self.server.rows("SELECT act FROM audit WHERE operator_id = 'engel' ORDER BY id").concat()
     }

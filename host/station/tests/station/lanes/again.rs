@@ -1,4 +1,4 @@
-//! Units that passed already, in lanes.
+//! Units that have already passed, in lanes.
 
 use std::fs;
 
@@ -27,7 +27,7 @@ fn a_unit_that_passed_is_scanned_once_more_if_it_is_meant() {
         let ready = running.state("1", "READY");
         assert_eq!(ready["note"].as_str(), Some(said.as_str()));
     }
-    // Another unit between the two, so that the second scan is a first one.
+    // Another unit comes in between, so that the second scan is a first one again.
     running.scan(SERIALS[1]);
     running.state("1", "PASS");
     running.scan(serial);

@@ -1,4 +1,4 @@
-//! Every way in which runs in several lanes end.
+//! Every way in which runs in several lanes can end.
 
 use std::io::{self, ErrorKind, Read as _};
 use std::net::TcpListener;
@@ -17,7 +17,7 @@ use serde_json::Value;
 use super::floor::{HANG, Running, SERIALS, Station};
 use crate::common::program;
 
-/// A board that takes the connection and says nothing.
+/// A board that accepts the connection and stays silent.
 pub(crate) fn silent_board() -> (TcpListener, String) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("tcp:{}", listener.local_addr().unwrap());
@@ -39,7 +39,7 @@ pub(crate) fn connected(listener: &TcpListener) {
     thread::spawn(move || while connection.read(&mut [0; 64]).is_ok_and(|read| read > 0) {});
 }
 
-/// The process of the lane of this run.
+/// The process id of the lane that has this run.
 pub(super) fn lane_of(station: &Station, run: &Value) -> i32 {
     let noted = station.path("data/spool").join(run.as_str().unwrap()).join("lane.pid");
     std::fs::read_to_string(noted).unwrap().split_whitespace().next().unwrap().parse().unwrap()
@@ -75,13 +75,13 @@ fn lanes_judge_at_once_and_every_verdict_has_its_record() {
         words.dedup();
         words
     };
-    // Whether the board was seen before anybody listened is chance.
+    // Whether the board was seen before anybody listened is left to chance.
     let from_the_board: Vec<_> = words("1").into_iter().skip_while(|word| word == "EMPTY").collect();
     assert_eq!(from_the_board, ["READY", "RUNNING", "SAVING", "PASS"]);
     station.assert_well();
 }
 
-/// The board of a hung lane is that of nobody else, and a lane beside goes on.
+/// No other process has the board of the hung lane, and the lane next to it goes on.
 #[test]
 fn a_lane_that_hangs_is_killed_and_recorded_and_the_others_do_not_notice() {
     let (listener, target) = silent_board();
@@ -119,7 +119,7 @@ fn a_run_is_ended_by_a_barcode() {
     station.assert_well();
 }
 
-/// The result of the other lane cannot be saved meanwhile.
+/// Meanwhile the result of the other lane cannot be saved.
 #[test]
 fn no_board_is_taken_while_the_station_closes() {
     let (listener, target) = silent_board();
@@ -137,7 +137,7 @@ fn no_board_is_taken_while_the_station_closes() {
     database.execute_batch("BEGIN IMMEDIATE").unwrap();
     thread::scope(|scope| {
         scope.spawn(|| engine.close(Some(StoppedBy::Person)));
-        // The lane lets go of its board when the station has told it to.
+        // The lane closes its connection when the station has told it to end.
         let _ = io::copy(&mut board, &mut io::sink());
         engine.scan(2, SERIALS[1], "weber");
         engine.label(3, Some(1), SERIALS[1], "weber", None);
@@ -161,7 +161,7 @@ fn a_signal_ends_all_runs_in_order() {
     station.assert_well();
 }
 
-/// As a computer does that has much else to do, or that was laid to sleep.
+/// As on a computer that is busy with other things, or that was suspended.
 #[test]
 fn a_station_that_is_kept_waiting_for_seconds_goes_on_working() {
     let station = Station::with(&["mock,serial=1"], "");
@@ -176,7 +176,7 @@ fn a_station_that_is_kept_waiting_for_seconds_goes_on_working() {
     assert_eq!(running.end().0, Some(0));
 }
 
-/// The evidence of a run cannot be laid down, and then it can: the program goes on all the time.
+/// First the evidence of a run cannot be stored, then it can; the program runs all the time.
 #[test]
 fn what_cannot_be_saved_blocks_its_lane_until_the_disk_is_well() {
     let station = Station::with(&["mock,serial=1", "mock,serial=2"], "");

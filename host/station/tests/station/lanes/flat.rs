@@ -1,4 +1,4 @@
-//! A long shift: what the station holds does not grow with its runs.
+//! A long shift: a station's resources do not grow with its runs.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,7 +13,7 @@ use super::ends::{connected, lane_of, silent_board};
 use super::floor::{Running, Station};
 use crate::common::PLAN;
 
-/// What a process holds.
+/// The resources of a process.
 #[derive(Clone, Copy, Debug)]
 struct Held {
     files: usize,
@@ -31,14 +31,14 @@ fn held(process: u32) -> Held {
     Held { files, threads: number("Threads"), resident_kib: number("VmRSS") }
 }
 
-/// The one in the middle by `key`.
+/// The median by `key`.
 fn middle(of: &[Held], key: impl Fn(&Held) -> u64) -> u64 {
     let mut all: Vec<_> = of.iter().map(key).collect();
     all.sort_unstable();
     all[all.len() / 2]
 }
 
-/// Boards in three lanes, one after the other, until so many were judged; how long each took.
+/// Judges boards in three lanes until `runs` were judged; returns how long each took.
 fn judged(running: &mut Running, serials: &mut u32, runs: u32) -> Vec<Duration> {
     let (mut given, mut took) = (0, Vec::new());
     let mut begun = BTreeMap::new();
@@ -59,13 +59,13 @@ fn judged(running: &mut Running, serials: &mut u32, runs: u32) -> Vec<Duration> 
         took.push(since.elapsed());
         let lane = news["lane"].as_str().unwrap().to_owned();
         give(running, &lane, &mut begun);
-        // The rest is of no use, and would be many.
+        // The rest is not needed, and there would be much of it.
         running.heard.retain(|news| news["lane"] == "4" && !news["shown"].is_null());
     }
     took
 }
 
-/// The run in lane 4, whose board says nothing, comes to its end by `signal`; returns how long that took.
+/// Ends the run in lane 4, whose board is silent, by `signal`; returns how long that took.
 fn ended_by(
     signal: Signal,
     station: &Station,
@@ -95,20 +95,20 @@ fn ended_by(
     begun.elapsed()
 }
 
-/// What a shift came to.
+/// The figures of a shift.
 #[derive(Default)]
 struct Shift {
-    /// What the station held, now and then.
+    /// The station's resources, after each round.
     samples: Vec<Held>,
-    /// How long runs took.
+    /// How long runs took without a hung lane.
     alone: Vec<Duration>,
-    /// And beside a hung lane.
+    /// How long they took next to a hung lane.
     beside: Vec<Duration>,
-    /// How long it took at the longest until a hung lane was recorded.
+    /// The longest time until a hung lane was recorded.
     longest: Duration,
 }
 
-/// A thousand runs, of which 20 are killed and 10 hang; returns how many they were.
+/// A thousand runs, of which 20 are killed and 10 hang; returns their exact number.
 fn worked(shift: &mut Shift, station: &Station, running: &mut Running, listener: &TcpListener) -> u32 {
     let mut serials = 0;
     for round in 0..20 {
@@ -127,7 +127,7 @@ fn worked(shift: &mut Shift, station: &Station, running: &mut Running, listener:
     serials
 }
 
-/// The time in the middle, in seconds.
+/// The median, in seconds.
 fn median(all: &mut [Duration]) -> f64 {
     all.sort_unstable();
     all[all.len() / 2].as_secs_f64()
@@ -152,7 +152,7 @@ fn a_thousand_runs_with_kills_and_hung_lanes_leave_nothing_behind() {
     let (first, last) = (&samples[2..9], &samples[13..]);
     let files = |held: &Held| held.files as u64;
     assert_eq!(middle(first, files), middle(last, files), "{samples:?}");
-    // A thread of a run may be about to end.
+    // The thread of a run may be just about to end.
     let threads = |held: &Held| held.threads;
     assert!(middle(last, threads) <= middle(first, threads) + 1, "{samples:?}");
     let (early, late) = (middle(first, |held| held.resident_kib), middle(last, |held| held.resident_kib));

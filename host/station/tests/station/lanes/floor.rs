@@ -1,4 +1,4 @@
-//! A station in a folder of its own, and its program at work.
+//! A station in its own folder, and its program at work.
 
 use std::fs;
 use std::io::{BufRead as _, BufReader, Write as _};
@@ -20,7 +20,7 @@ pub(crate) fn plan() -> String {
     common::guarded_plan("CAM-T", "CA")
 }
 
-/// How long something is waited for that must come: it ends hangs alone.
+/// How long to wait for what must come: the limit only ends hangs.
 pub(crate) const HANG: Duration = Duration::from_secs(120);
 
 /// A folder with settings.
@@ -29,7 +29,7 @@ pub(crate) struct Station {
 }
 
 impl Station {
-    /// With a lane for each of these boards, called 1, 2, and so on, and more settings behind them.
+    /// A station with a lane for each of these boards, named 1, 2, and so on, followed by more settings.
     pub(crate) fn with(boards: &[&str], more: &str) -> Self {
         let station = Self { folder: common::folder() };
         fs::write(station.path("plan.toml"), plan()).unwrap();
@@ -47,12 +47,12 @@ impl Station {
         self.folder.path().join(name)
     }
 
-    /// The station at work.
+    /// Starts the station.
     pub(crate) fn start(&self) -> Running {
         self.started(Command::new(common::program()))
     }
 
-    /// The station at work by this call of its program.
+    /// Starts the station by this call of its program.
     pub(crate) fn started(&self, mut program: Command) -> Running {
         let mut child = program
             .args(["lanes", "--operator", "weber", "--settings"])
@@ -72,12 +72,12 @@ impl Station {
         Running { stdin: child.stdin.take(), child, news, heard: Vec::new() }
     }
 
-    /// A look at the database that is not the program's: one value of each row.
+    /// Reads the database without the program: the first value of each row.
     pub(crate) fn query(&self, text: &str) -> Vec<String> {
         common::query(&self.path("data"), text)
     }
 
-    /// Everything that it kept is as it was written.
+    /// Asserts that everything it stored is as it was written.
     pub(crate) fn assert_well(&self) {
         let did = common::check(&self.path("data"));
         assert_eq!(did.code, Some(0), "{did:?}");
@@ -98,7 +98,7 @@ impl Running {
         writeln!(self.stdin.as_mut().unwrap(), "{text}").unwrap();
     }
 
-    /// Scans what need not be text.
+    /// Scans bytes that need not be text.
     pub(crate) fn scan_bytes(&mut self, bytes: &[u8]) {
         self.stdin.as_mut().unwrap().write_all(&[bytes, b"\n"].concat()).unwrap();
     }
@@ -109,7 +109,7 @@ impl Running {
         self.scan(serial);
     }
 
-    /// The next piece of news that is wanted.
+    /// Waits for the next piece of news that is wanted.
     pub(crate) fn wait(&mut self, what: &str, is_wanted: impl Fn(&Value) -> bool) -> Value {
         loop {
             let news = self.news.recv_timeout(HANG);
@@ -121,14 +121,14 @@ impl Running {
         }
     }
 
-    /// The lane in this state.
+    /// Waits for the lane to be in this state.
     pub(crate) fn state(&mut self, lane: &str, state: &str) -> Value {
         self.wait(&format!("{state} in lane {lane}"), |news| {
             news["news"] == "lane" && news["lane"] == lane && news["state"] == state
         })
     }
 
-    /// What became of a scan.
+    /// Waits for the answer to a scan: whether it was accepted, and what was said.
     pub(crate) fn answer(&mut self, scanned: &str) -> (bool, String) {
         let answer = self.wait(&format!("answer to {scanned}"), |news| {
             news["news"] == "scan" && news["scanned"] == scanned
@@ -136,7 +136,7 @@ impl Running {
         (answer["is_taken"].as_bool().unwrap(), answer["said"].as_str().unwrap().to_owned())
     }
 
-    /// Its process.
+    /// Its process id.
     pub(crate) fn id(&self) -> u32 {
         self.child.id()
     }

@@ -6,7 +6,7 @@ use super::floor::{SERIALS, Station};
 use super::stuck::Stuck;
 use crate::common::{program, script};
 
-/// A hook that writes down what it was told, and fails if the record is not there by then, or if it has the plant's password.
+/// The hook records its arguments, and fails if the record is not stored by then, or if it is given the plant's password.
 #[test]
 fn hooks_are_told_after_the_commit() {
     let settings = r#"
@@ -37,7 +37,8 @@ arguments = ["{lane}", "{serial}", "{verdict}", "{record}"]
     assert_eq!(lamp("2").trim(), format!("2 {} FAIL", SERIALS[1]));
 }
 
-/// The lamp of a FAIL is not to be lit over by the PASS before it. The first hook waits for what comes after two more verdicts.
+/// The hook of an earlier PASS must not light its lamp over a later FAIL. The first hook waits for a file that is written after
+/// two more verdicts.
 #[test]
 fn the_hooks_of_a_lane_run_in_the_order_of_its_verdicts_and_keep_it_from_no_test() {
     let settings = r#"
@@ -97,7 +98,7 @@ program = "no-such-program"
     assert_eq!(station.query("SELECT verdict FROM run"), ["PASS"]);
 }
 
-/// A label printer that talks is let finish.
+/// A label printer that prints much on stderr is not interrupted.
 #[test]
 fn a_hook_that_complains_at_length_does_its_work_and_is_heard_from_its_beginning() {
     let settings = r#"

@@ -1,4 +1,5 @@
-//! Lanes whose boards labgrid lends, by a program that stands for the one that reaches it; `scripts/labgrid` has the real ones.
+//! Lanes whose boards labgrid lends, with a script in the place of the program that reaches labgrid; `scripts/labgrid` tests the
+//! real ones.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
@@ -12,7 +13,7 @@ use super::ends::{connected, silent_board};
 use super::floor::{SERIALS, Station};
 use crate::common::program;
 
-/// Says what stands in `answer`, and keeps a diary: what it was called with, and that its stdin ended.
+/// Prints what is in `answer`, and keeps a diary of its arguments and of the end of its stdin.
 const LENDER: &str = r#"#!/bin/sh
 cd "$(dirname "$0")"
 echo "$@" >> diary
@@ -23,7 +24,7 @@ sleep 0.2
 echo given back >> diary
 "#;
 
-/// A station whose lane 1 is the place cam-1, and what is said of it.
+/// A station whose lane 1 is the place cam-1, about which the script prints `answer`.
 fn station(answer: &str, more: &str) -> Station {
     let lender = format!("[labgrid]\nprogram = \"./lender\"\ncoordinator = \"bench:20408\"\n{more}");
     let station = Station::with(&["labgrid:cam-1"], &lender);
@@ -38,7 +39,7 @@ fn diary(station: &Station) -> Vec<String> {
     diary.lines().map(str::to_owned).collect()
 }
 
-/// Waits until the diary has so many lines.
+/// Waits until the diary has this many lines.
 fn written(station: &Station, lines: usize) -> Vec<String> {
     let begun = Instant::now();
     while diary(station).len() < lines {
@@ -67,7 +68,7 @@ fn the_board_of_a_place_is_judged_where_labgrid_says_and_the_place_given_back() 
     station.assert_well();
 }
 
-/// What is answered, and the code and the beginning of the sentence that are shown then.
+/// What the script answers, and the code and the beginning of the sentence that are shown then.
 const REFUSALS: [(&str, &str, &str); 8] = [
     (
         r#"{"refused": {"why": "held", "holder": "bench/alice"}}"#,
@@ -167,7 +168,7 @@ fn a_station_that_is_killed_gives_the_place_back() {
     assert_eq!(station.query("SELECT cause FROM run"), ["crash"]);
 }
 
-/// Neither has any need for it, and what it starts would have it, too.
+/// Neither needs it, and what they start would get it, too.
 #[test]
 fn neither_a_lane_nor_what_has_its_place_is_told_the_plant_s_password() {
     let (listener, target) = silent_board();

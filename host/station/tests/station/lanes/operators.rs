@@ -10,7 +10,7 @@ use halfrow_station::store::{Folder, Store};
 use super::floor::{HANG, SERIALS, Station};
 use crate::common::program;
 
-/// Weber's board is plugged in when Braun has scanned another one.
+/// Weber's board is plugged in after Braun has scanned another one.
 #[test]
 fn the_record_names_whoever_scanned_the_board_and_not_whoever_scanned_last() {
     let station = Station::with(&["mock"], "");
@@ -35,7 +35,7 @@ fn the_record_names_whoever_scanned_the_board_and_not_whoever_scanned_last() {
     engine.label(2, Some(0), SERIALS[1], "braun", None);
     state("1", Word::Pass);
     fs::write(&port, "").unwrap();
-    // The file is no port.
+    // The file is not a serial port.
     state("2", Word::Error);
     engine.close(None);
     assert_eq!(station.query("SELECT operator_id FROM run ORDER BY lane"), ["braun", "weber"]);

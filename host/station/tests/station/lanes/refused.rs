@@ -1,4 +1,4 @@
-//! Scans and boards that are refused by the program as a whole.
+//! Scans and boards that the program as a whole refuses.
 
 use super::floor::{SERIALS, Station};
 
@@ -22,7 +22,7 @@ fn a_scan_that_is_refused_begins_nothing() {
     assert_eq!(station.query("SELECT id FROM run"), Vec::<String>::new());
 }
 
-/// As a scanner sends whose bytes are another alphabet's, or a line that is disturbed.
+/// Such bytes come from a scanner with another character set, or over a disturbed line.
 #[test]
 fn a_scan_that_is_no_text_is_refused_and_the_next_one_is_taken() {
     let station = Station::with(&["mock"], "");
@@ -34,7 +34,7 @@ fn a_scan_that_is_no_text_is_refused_and_the_next_one_is_taken() {
     assert_eq!(running.end().0, Some(0));
 }
 
-/// The two classes of mis-scan that no check digit finds: each board under the other's number.
+/// The two kinds of mis-scan that no check digit finds: each board under the other's number.
 #[test]
 fn boards_that_were_exchanged_are_refused_before_a_frame_is_sent() {
     let station = Station::with(&["mock,serial=1", "mock,serial=2"], "");

@@ -1,4 +1,4 @@
-//! A station at work of which a file becomes another one: that of its program, as an upgrade has it, or one of its plan.
+//! A station at work while one of its files is replaced: its program, as in an upgrade, or a file of its plan.
 
 use std::fs;
 use std::process::Command;
@@ -7,10 +7,10 @@ use super::ends::{connected, lane_of, silent_board};
 use super::floor::{Running, SERIALS, Station};
 use crate::common::{program, script};
 
-/// The station at work by a file of its own, and that file.
+/// Starts the station by a program file of its own; returns that file as well.
 fn started(station: &Station) -> (Running, std::path::PathBuf) {
     let own = station.path("halfrow-station");
-    // A copy might still be open for writing in what another test starts.
+    // A link, since a copy might still be open for writing in a process of another test.
     fs::hard_link(program(), &own).unwrap();
     (station.started(Command::new(&own)), own)
 }
@@ -31,7 +31,7 @@ fn a_station_judges_by_the_program_that_it_is_though_its_file_is_another_one_or_
     station.assert_well();
 }
 
-/// `ps` and `top` tell whose it is.
+/// `ps` and `top` show whose process it is.
 #[test]
 fn a_lane_s_process_has_the_program_s_name() {
     let (listener, silent) = silent_board();
@@ -46,7 +46,7 @@ fn a_lane_s_process_has_the_program_s_name() {
     assert_eq!(read("cmdline"), format!("{}\0lane\0", own.display()));
 }
 
-/// A lane reads the files of its plan anew, and judges by no other than those that the record names.
+/// A lane reads the files of its plan itself, and judges only by those that the record names.
 #[test]
 fn a_file_of_the_plan_that_becomes_another_one_at_work_judges_no_board() {
     let station = Station::with(&["mock"], "");

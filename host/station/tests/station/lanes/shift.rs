@@ -1,4 +1,4 @@
-//! A unit that is known to be good and one that is known to be bad check a lane before its production counts.
+//! A good unit and a bad one check a lane before its production counts.
 
 use std::fs;
 use std::process::Command;
@@ -14,7 +14,7 @@ const SHIFT: &str = "[shift]\ngood = \"CA0131103628\"\nbad = \"CA0201134373\"\nh
 
 #[test]
 fn a_lane_is_out_until_the_good_unit_passed_and_the_bad_one_failed() {
-    // One lane is right; in the other the judge finds nothing, or the units were exchanged.
+    // One lane is right. In the other the judge finds nothing, or the units were exchanged.
     let station = Station::with(&["mock", "mock,fault=stuck-data"], "");
     fs::write(station.path("plan.toml"), plan().replace("[tables]", SHIFT)).unwrap();
     let [good, bad, product, _] = SERIALS;
@@ -34,7 +34,7 @@ fn a_lane_is_out_until_the_good_unit_passed_and_the_bad_one_failed() {
     let out = running
         .wait("the bad unit", |news| news["note"].as_str().is_some_and(|note| note.contains("the bad")));
     assert_eq!((&out["state"], &out["shown"]["verdict"]), (&"PASS".into(), &"PASS".into()), "it stays");
-    // The good board under the bad one's number passes, so the lane finds nothing.
+    // The good board under the bad one's number passes, which looks like a lane that finds no fault.
     running.test("1", bad);
     running.wait("a bad unit that passed", |news| {
         news["note"].as_str().is_some_and(|note| note.contains("the bad unit CA0201134373 was judged PASS"))
@@ -60,7 +60,7 @@ fn a_checked_lane_takes_products_until_the_check_is_over() {
         fs::write(station.path("station.toml"), settings.replace("\"mock\"", &format!("\"{board}\"")))
             .unwrap();
     };
-    // The fixture holds one board after the other.
+    // The fixture holds one board after another.
     for (name, serial) in [("mock", SERIALS[0]), ("mock,fault=stuck-data", SERIALS[1])] {
         board(name);
         let mut running = station.start();
@@ -82,12 +82,12 @@ fn a_checked_lane_takes_products_until_the_check_is_over() {
     running.end();
 }
 
-/// [`SHIFT`] with the mock in the place of the bad unit.
+/// [`SHIFT`] with the mock instead of the bad unit.
 fn with_mock() -> String {
     plan().replace("[tables]", &SHIFT.replace(SERIALS[1], "HR:MOCK"))
 }
 
-/// Has the lane judge the good unit; the state behind it, in which the mock is owed.
+/// Lets the lane judge the good unit; returns the state after that, in which the mock is due.
 fn good_passes(running: &mut Running, lane: &str) -> Value {
     running.test(lane, SERIALS[0]);
     running.wait("the mock", |news| {
@@ -95,7 +95,7 @@ fn good_passes(running: &mut Running, lane: &str) -> Value {
     })
 }
 
-/// Has the lane judge the mock until a fault is drawn that the plan finds, as nearly all are.
+/// Lets the lane judge the mock until a fault is drawn that the plan finds, as it does nearly all.
 fn mock_fails(running: &mut Running, lane: &str) -> Value {
     loop {
         running.test(lane, "HR:MOCK");
@@ -132,7 +132,7 @@ fn the_mock_with_a_drawn_fault_may_be_what_is_known_to_be_bad() {
     assert!(running.answer("HR:MOCK").1.contains("no check by a mock board now"));
     running.test("1", product);
     running.state("1", "PASS");
-    // The other lane is not checked by it.
+    // This does not check the other lane.
     running.test("2", SERIALS[3]);
     assert!(!running.answer(SERIALS[3]).0);
     running.end();
@@ -146,7 +146,7 @@ fn the_mock_with_a_drawn_fault_may_be_what_is_known_to_be_bad() {
     assert_eq!(station.query(&format!("SELECT count(device) {mocks}")), ["0"], "it is bound to nothing");
     assert_eq!(station.query("SELECT sum(runs) FROM day_count"), ["3"], "two good units and the product");
     assert_eq!(station.query("SELECT count(*) FROM failure"), ["0"]);
-    // A part of a day is counted by another statement than a whole one.
+    // Part of a day is counted by another statement than a whole day.
     let began: i64 = station.query("SELECT min(started_ms) FROM run")[0].parse().unwrap();
     let [from, until] = [began - 1, began + 3_600_000]
         .map(|moment| jiff::Timestamp::from_millisecond(moment).unwrap().to_string());
@@ -158,7 +158,7 @@ fn the_mock_with_a_drawn_fault_may_be_what_is_known_to_be_bad() {
     station.assert_well();
 }
 
-/// `run` judges this in lane 1.
+/// Judges this in lane 1 by the command `run`.
 fn run(station: &Station, what: &[&str]) -> Did {
     let mut call = Command::new(program());
     let call = call.arg("run").args(what).args(["--station", "12", "--data"]).arg(station.path("data"));
@@ -169,7 +169,7 @@ fn run_mock(station: &Station) -> Did {
     run(station, &["--mock"])
 }
 
-/// Of this plan's frames no draw is known to go unfound, so the verdict is changed by a hand that is not the program's.
+/// No fault is known that the frames of this plan do not find, so the test itself changes the verdict.
 #[test]
 fn a_drawn_fault_that_the_plan_does_not_find_keeps_the_lane_out() {
     let station = Station::with(&["mock"], "");
@@ -193,7 +193,7 @@ fn a_drawn_fault_that_the_plan_does_not_find_keeps_the_lane_out() {
     running.end();
 }
 
-/// What the plan demands of boards, of their clocks and of their links, is not asked of the mock.
+/// What the plan demands of boards, their clocks and their links is not demanded of the mock.
 #[test]
 fn a_plan_for_hardware_judges_the_mock_by_its_frames_alone() {
     let station = Station::with(&["mock"], "");
@@ -215,7 +215,7 @@ fn a_plan_for_hardware_judges_the_mock_by_its_frames_alone() {
     assert!(did.complained.contains("no mock board checks the shifts of this plan"), "{did:?}");
 }
 
-/// The second lane shows that the station has looked at its lanes meanwhile.
+/// The second lane shows that the station has checked its lanes meanwhile.
 #[test]
 fn a_checked_lane_asks_its_store_behind_its_runs_alone() {
     let station = Station::with(&["mock"], "");
@@ -250,7 +250,7 @@ fn a_checked_lane_asks_its_store_behind_its_runs_alone() {
     assert!(blind.is_empty(), "{blind:?}");
 }
 
-/// A station whose lane was checked, as far as its database says at `started_ms`, an expression of SQL.
+/// A station whose lane was checked at `started_ms`, an SQL expression, according to its database.
 fn checked_at(started_ms: &str) -> Station {
     let station = Station::with(&["mock"], "");
     fs::write(station.path("plan.toml"), with_mock()).unwrap();
@@ -285,7 +285,7 @@ fn what_failed_before_the_good_unit_passed_checks_no_shift() {
     station.assert_well();
 }
 
-/// Under a clock that was wrong, or is now.
+/// The clock was wrong then, or is now.
 #[test]
 fn what_is_dated_tomorrow_checks_no_shift() {
     let station = checked_at("started_ms + 86400000");
@@ -296,7 +296,7 @@ fn what_is_dated_tomorrow_checks_no_shift() {
     running.end();
 }
 
-/// As under a clock that goes on, or is set right, while the station is at work.
+/// The clock goes on, or is set right, while the station is at work.
 #[test]
 fn what_was_dated_ahead_checks_its_lane_from_the_moment_on_that_is_told() {
     let station = checked_at("started_ms + 1000000");
@@ -322,7 +322,7 @@ fn what_was_dated_ahead_checks_its_lane_from_the_moment_on_that_is_told() {
 
 #[test]
 fn a_lane_is_out_as_soon_as_the_hours_of_its_shift_end() {
-    // Eight hours have gone by but for some seconds.
+    // Eight hours have passed, except for some seconds.
     let station = checked_at("(unixepoch() - 8 * 3600 + 6) * 1000");
     let mut running = station.start();
     let out = running.state("1", "OUT");
@@ -332,7 +332,7 @@ fn a_lane_is_out_as_soon_as_the_hours_of_its_shift_end() {
     running.end();
 }
 
-/// What checks a lane checks no other lane or station, and no other plan.
+/// A check of a lane is no check of another lane, station or plan.
 #[test]
 fn a_check_is_of_one_lane_and_of_one_plan() {
     let station = checked_at("started_ms");

@@ -13,7 +13,7 @@ use nix::unistd::Pid;
 
 use super::floor::{HANG, SERIALS, Station};
 
-/// A program whose lanes say nothing, and leave the group of processes that is killed then.
+/// A program whose lanes stay silent, and leave the process group that is killed then.
 pub(crate) struct Stuck {
     pub(crate) program: PathBuf,
     ids: PathBuf,
@@ -38,7 +38,7 @@ impl Drop for Stuck {
     }
 }
 
-/// Its result cannot be saved either; when that is put right, the lane is out of service all the same.
+/// Its result cannot be saved, either; after that is put right, the lane is still out of service.
 #[test]
 fn a_lane_whose_process_cannot_be_killed_is_out_though_its_result_was_not_saved() {
     let station = Station::with(&["mock"], "");

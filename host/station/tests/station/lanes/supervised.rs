@@ -1,4 +1,4 @@
-//! A lane, as its supervisor hears it.
+//! A lane as its supervisor sees it.
 
 use std::thread;
 use std::time::Duration;
@@ -11,7 +11,7 @@ use halfrow_station::record::BoardSeen;
 use super::floor::HANG;
 use crate::common::{folder, script};
 
-/// A station that takes so long over every message.
+/// A station that takes this long for every message.
 struct Slow(Duration);
 
 impl Attendant for Slow {
@@ -28,21 +28,21 @@ impl Attendant for Slow {
     }
 }
 
-/// Both messages are there before the first one is taken.
+/// Both messages have arrived before the first one is taken.
 const TWO: &str = r#"{"told":"doing","what":"frames"}\n{"told":"done"}\n"#;
 
-/// What the program's own lane tells first.
+/// The first message of the program's own lane.
 fn begun() -> String {
     format!(r#"{{"told":"begun","program":"{}"}}\n"#, halfrow::VERSION)
 }
 
-/// How a lane ends that tells this as soon as it has its job, and then waits for what it is told.
+/// The end of a lane that sends this as soon as it has its job, and then waits for an answer.
 fn end_of(told: &str, silence: Duration, attendant: &mut dyn Attendant) -> End {
     let lane = format!("read -r job\nprintf '{told}'\nread -r more\n");
     end_of_script(&lane, String::new(), silence, attendant)
 }
 
-/// How a lane ends that is this script, with a plan of this text.
+/// The end of a lane that runs this script, with a plan of this text.
 fn end_of_script(lane: &str, text: String, silence: Duration, attendant: &mut dyn Attendant) -> End {
     let folder = folder();
     let lane = script(folder.path(), "lane", lane);
@@ -70,7 +70,7 @@ fn a_lane_is_not_silent_while_the_station_takes_what_it_told() {
     assert_eq!(end_of(&told, silence, slow), End::Done);
 }
 
-/// Its job is more than a pipe holds.
+/// Its job is longer than what a pipe holds.
 #[test]
 fn a_lane_that_reads_nothing_is_silent() {
     let text = "#".repeat(1 << 20);

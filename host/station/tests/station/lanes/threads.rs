@@ -1,4 +1,4 @@
-//! A system that has no thread to give.
+//! A system that has no thread left.
 
 use std::process::Command;
 
