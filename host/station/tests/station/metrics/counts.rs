@@ -1,4 +1,4 @@
-//! Runs by verdict, as they are told to whoever asks every few seconds.
+//! Runs by verdict, as they are reported to whoever asks every few seconds.
 
 use halfrow_station::history::counts::Tally;
 use halfrow_station::record::RunCause;
@@ -10,7 +10,7 @@ fn run(serial: &str, lane: &str, end: End, started_ms: i64) -> Run {
     Run { lane: lane.to_owned(), started_ms, ..Run::of(serial, end) }
 }
 
-/// What is counted, a line for each plan, lane and verdict that has runs.
+/// What is counted: a line for each plan, lane and verdict with runs.
 fn counted(tally: &Tally, made: &Made) -> Vec<String> {
     let counts = tally.counts(&made.now()).unwrap();
     let lines = counts.iter().flat_map(|(cell, count)| {
@@ -21,7 +21,7 @@ fn counted(tally: &Tally, made: &Made) -> Vec<String> {
     lines.collect()
 }
 
-/// The same, from the runs themselves.
+/// The same, counted from the runs themselves.
 fn from_the_runs(made: &Made) -> Vec<String> {
     let text = "SELECT plan.name || ' ' || lane || ' ' || verdict || ' ' || count(*) FROM run
         JOIN plan ON plan.sha256 = plan_sha256 JOIN unit ON unit.id = unit_id
@@ -43,7 +43,7 @@ fn runs_are_counted_by_verdict_whatever_day_they_come_from() {
         run("S4", "3", End::Open, BEGIN_MS + 40 * DAY_MS),
         // The mock that checks a shift is no unit.
         run("HR:MOCK:1", "1", End::Fail(&[]), BEGIN_MS + 40 * DAY_MS + 1),
-        // It comes late, into a day that was counted.
+        // It comes late, for a day that was already counted.
         run("S5", "2", End::Fail(&[]), BEGIN_MS + 2 * HOUR_MS),
     ];
     for of in &runs {
@@ -58,18 +58,18 @@ fn runs_are_counted_by_verdict_whatever_day_they_come_from() {
     let (cell, count) = all.first_key_value().unwrap();
     assert_eq!((cell.plan.plan.as_str(), cell.lane.as_str()), ("final", ""));
     assert_eq!((count.errors, count.failed, count.passed), (1, 4, 1));
-    // S1, S3 and S5 were judged under `final`, and none of them passed at first.
+    // S1, S3 and S5 were judged under `final`, and none of them passed the first time.
     assert_eq!((count.units, count.first_passed), (3, 0));
 }
 
-/// A million runs are looked at once, and then those of the days on which something ended.
+/// All runs are read once, which may be a million; after that only those of days on which something ended.
 #[test]
 fn a_day_without_another_run_is_not_looked_at_again() {
     let (mut made, tally) = (Made::new(), Tally::new(true, 0));
     made.run(&run("S1", "1", End::Fail(&[]), BEGIN_MS));
     made.run(&run("S2", "1", End::Fail(&[]), BEGIN_MS + DAY_MS));
     assert_eq!(counted(&tally, &made), ["final 1 FAIL 2"]);
-    // Nothing that the program does: whoever looks at this day finds no FAIL.
+    // The program never does this: a new count of these days finds no FAIL.
     let database = rusqlite::Connection::open(made.folder().database()).unwrap();
     database.execute_batch("UPDATE run SET nth = 0").unwrap();
     assert_eq!(counted(&Tally::new(true, 0), &made), ["final 1 PASS 2"]);
@@ -82,7 +82,7 @@ fn a_day_without_another_run_is_not_looked_at_again() {
     );
 }
 
-/// A plant that takes long to count is not counted all the time.
+/// A plant whose counting takes long is not counted all the time.
 #[test]
 fn what_was_counted_is_told_again_for_as_long_as_is_wanted() {
     let mut made = Made::new();

@@ -26,7 +26,7 @@ pub(super) fn scan(serving: &Serving, lane: &str, serial: &str) {
     assert!(answer.text().contains("\"is_taken\":true"), "{}", answer.text());
 }
 
-/// The figures as soon as this one has this value.
+/// The figures, as soon as this one has this value.
 pub(super) fn once(serving: &Serving, name: &str, value: f64) -> Figures {
     loop {
         let figures = Figures::of(serving);
@@ -41,7 +41,7 @@ pub(super) fn in_state(serving: &Serving, lane: &str, state: &str) -> Figures {
     once(serving, &format!("halfrow_lane_state{{lane=\"{lane}\",state=\"{state}\"}}"), 1.0)
 }
 
-/// What is told of a lane is what the store has of it.
+/// Asserts that the figures of a lane agree with the store.
 fn agrees(station: &Station, figures: &Figures, lane: &str) {
     for verdict in ["PASS", "FAIL", "ERROR"] {
         let counted = figures.at(&format!("halfrow_runs_total{{{},verdict=\"{verdict}\"}}", of_lane(lane)));
@@ -86,7 +86,7 @@ fn what_lanes_did_is_counted_and_promtool_finds_nothing_wrong() {
     for serial in SERIALS {
         assert!(!figures.text.contains(serial) && !figures.text.contains("weber"), "{}", figures.text);
     }
-    // The control: promtool sees a counter without its ending, and a text that is none.
+    // The control: promtool finds a counter without its ending, and a text that is no format of its.
     for (was, is) in [("halfrow_runs_total", "halfrow_runs"), ("lane=\"1\"", "lane=\"1")] {
         let wrong = promtool(&["check", "metrics"], Path::new("/"), &figures.text.replace(was, is));
         assert_ne!(wrong.code, Some(0), "{wrong:?}");
@@ -110,7 +110,7 @@ fn a_lane_that_was_killed_and_a_result_that_is_not_saved_are_told() {
     assert_eq!(killed.at("halfrow_lane_kills_total{lane=\"1\"}"), 1.0);
     assert_eq!(killed.at("halfrow_lane_kills_total{lane=\"2\"}"), 0.0);
     assert_eq!(killed.at("halfrow_unsaved_results"), 0.0);
-    // The evidence of a run cannot be laid down, and then it can.
+    // First the evidence of a run cannot be stored, then it can.
     let blobs = station.path("data/blobs");
     let aside = station.path("aside");
     fs::rename(&blobs, &aside).unwrap();
@@ -124,7 +124,7 @@ fn a_lane_that_was_killed_and_a_result_that_is_not_saved_are_told() {
     once(&serving, "halfrow_unsaved_results", 0.0);
 }
 
-/// Whoever is woken looks at the plant, not at the disk.
+/// Whoever is called at night then checks the plant, not the disk.
 #[test]
 fn a_verdict_that_waits_for_the_plant_is_told_from_a_result_that_is_not_saved() {
     let mut server = Server::prepared();
@@ -143,7 +143,7 @@ fn a_verdict_that_waits_for_the_plant_is_told_from_a_result_that_is_not_saved() 
     assert_eq!(in_state(&serving, "1", "pass").at(of_lane), 0.0);
 }
 
-/// What the lanes do is told also when nothing can be counted.
+/// What the lanes do is reported even when nothing can be counted.
 #[test]
 fn a_store_that_cannot_be_read_is_said_to_be() {
     let station = Station::private(1);
@@ -171,7 +171,7 @@ fn a_plant_that_is_away_is_behind_and_says_for_how_long() {
     assert_eq!(none.shapes(), told("A station"), "docs/metrics.md lists what is served");
     scan(&serving, "1", SERIALS[0]);
     in_state(&serving, "1", "pass");
-    // The run, and the line of the audit that it was scanned.
+    // The run, and the audit's line about its scan.
     let entries = station.query("SELECT count(*) FROM outbox WHERE done_ms IS NULL").remove(0);
     let behind = once(&serving, "halfrow_outbox_entries{sink=\"plant\"}", entries.parse().unwrap());
     let age = behind.at("halfrow_outbox_oldest_seconds{sink=\"plant\"}");
@@ -179,7 +179,8 @@ fn a_plant_that_is_away_is_behind_and_says_for_how_long() {
     assert_sound(&behind);
 }
 
-/// What those get who ask as Prometheus does: the same figures, as the reference reads them, and as a machine with a token.
+/// Prometheus asks for this format: it has the same figures, read here by the reference implementation, and a machine with a
+/// token may ask for it.
 #[test]
 #[ignore = "for scripts/soak"]
 fn openmetrics_is_what_its_reference_reads() {
@@ -221,7 +222,7 @@ fn a_machine_with_a_token_reads_them_in_the_format_that_it_asks_for() {
         let bearer = format!("Bearer {}", token.trim());
         stranger.clone().with("authorization", &bearer).with("accept", accept).send()
     };
-    // As Prometheus 2.42 asks.
+    // The header that Prometheus 2.42 sends.
     let open = ask(
         "application/openmetrics-text;version=1.0.0,application/openmetrics-text;version=0.0.1;q=0.75,text/plain;version=0.0.4;q=0.5,*/*;q=0.1",
     );

@@ -1,4 +1,4 @@
-//! What Prometheus is told, read by Prometheus' own programs.
+//! What Prometheus gets, read by Prometheus' own programs.
 
 mod counts;
 mod figures;

@@ -1,4 +1,4 @@
-//! A plant's figures, over all stations.
+//! A plant's figures, over all its stations.
 
 use std::fs;
 use std::io::Write as _;
@@ -57,7 +57,7 @@ fn a_plant_tells_of_all_stations_and_says_when_it_is_away() {
     assert_eq!(Figures::of(&serving).samples, figures.samples);
 }
 
-/// What the program did with these settings, when it was told this.
+/// What the program did with these settings and this on stdin.
 fn did(arguments: &[&str], settings: &Path, said: &str) -> Did {
     let mut child = Command::new(program())
         .args(arguments)
@@ -68,12 +68,12 @@ fn did(arguments: &[&str], settings: &Path, said: &str) -> Did {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // Not every command reads it.
+    // Not every command reads stdin.
     let _ = child.stdin.take().unwrap().write_all(said.as_bytes());
     child.wait_with_output().unwrap().into()
 }
 
-/// A plant that others can reach has people and machines of its own, and no lanes in its settings.
+/// A plant that others can reach has its own people and machines, and no lanes in its settings.
 #[test]
 fn people_and_machines_look_at_a_plant_that_others_can_reach() {
     let server = Server::prepared();
@@ -99,7 +99,7 @@ fn people_and_machines_look_at_a_plant_that_others_can_reach() {
     assert_eq!(noted, [["prometheus", "token"], ["Braun", "login"]]);
 }
 
-/// The role that the page of the plant tells how to make.
+/// The role is the one that the plant's page says how to make.
 #[test]
 fn the_pages_work_with_a_role_that_only_looks_and_no_machine_is_let_in_without_the_audit() {
     let server = Server::prepared();
@@ -134,7 +134,8 @@ fn the_pages_work_with_a_role_that_only_looks_and_no_machine_is_let_in_without_t
     assert_eq!(server.rows(noted), [["mes", "token"], ["Braun", "login"]]);
 }
 
-/// Somebody holds a table of the plant: who watches is told soon, however often, and pages that need nothing of it go on.
+/// A client locks a table of the plant: whoever asks for figures, however often, learns of it soon, and pages that do not need
+/// the plant go on.
 #[test]
 fn a_plant_that_hangs_is_away_and_holds_up_nothing_else() {
     let server = Server::prepared();
@@ -142,7 +143,7 @@ fn a_plant_that_hangs_is_away_and_holds_up_nothing_else() {
     let (_folder, serving) = served(&server);
     let mut holder = server.client("plant");
     holder.batch_execute("BEGIN; LOCK TABLE day_count IN ACCESS EXCLUSIVE MODE").unwrap();
-    // More than the pages have threads for what waits.
+    // More requests than the pages have threads for those that wait.
     std::thread::scope(|scope| {
         let asked: Vec<_> =
             (0..12).map(|_| scope.spawn(|| Figures::of(&serving).at("halfrow_plant_up"))).collect();

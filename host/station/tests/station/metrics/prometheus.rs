@@ -1,4 +1,4 @@
-//! The examples in `monitoring`, on a real Prometheus server that reads a station and its plant.
+//! The examples in `monitoring`, on a real Prometheus server that scrapes a station and its plant.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -18,10 +18,10 @@ use crate::pages::station::{SERIALS, Serving, Station};
 use crate::plant::pages::served;
 use crate::plant::server::Server;
 
-/// How long something is waited for that must come: it ends hangs alone.
+/// How long to wait for what must come: the limit only ends hangs.
 const HANG: Duration = Duration::from_secs(120);
 
-/// Prometheus with the example's configuration, which ends with its test.
+/// Prometheus with the example's configuration. It ends with its test.
 struct Prometheus {
     _folder: TempDir,
     port: u16,
@@ -29,7 +29,7 @@ struct Prometheus {
 }
 
 impl Prometheus {
-    /// One that looks at these ports twice a second.
+    /// A server that scrapes these ports twice a second.
     fn of(station: u16, plant: u16) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let mut text = fs::read_to_string(example("prometheus.yml")).unwrap();
@@ -37,7 +37,7 @@ impl Prometheus {
             ("scrape_interval: 15s", "scrape_interval: 500ms"),
             ("station12.example:8612", &format!("127.0.0.1:{station}")),
             ("plant.example:8613", &format!("127.0.0.1:{plant}")),
-            // Both are open to their own computer.
+            // Both need no token on their own computer.
             ("    authorization: {credentials_file: station.token}\n", ""),
             ("    authorization: {credentials_file: plant.token}\n", ""),
         ] {
@@ -79,7 +79,7 @@ impl Prometheus {
         (answer.status, answer.text())
     }
 
-    /// How many series answer this query.
+    /// How many series a query returns.
     fn series(&self, query: &str) -> usize {
         let (status, text) = self.get(&format!("/api/v1/query?query={}", escaped(query)));
         let answer: Value = serde_json::from_str(&text).unwrap();
@@ -87,7 +87,7 @@ impl Prometheus {
         answer["data"]["result"].as_array().unwrap().len()
     }
 
-    /// Those of the queries that nothing answers, however long it is waited: a change over time needs two moments.
+    /// The queries that still return nothing after a long wait: a change over time needs two samples.
     fn unanswered_in_the_end<'a>(&self, queries: &'a BTreeSet<String>) -> Vec<&'a str> {
         let begun = Instant::now();
         loop {
@@ -99,7 +99,7 @@ impl Prometheus {
         }
     }
 
-    /// Those of the queries that nothing answers.
+    /// The queries that return nothing.
     fn unanswered<'a>(&self, queries: &'a BTreeSet<String>) -> Vec<&'a str> {
         queries.iter().filter(|query| self.series(query) == 0).map(String::as_str).collect()
     }
@@ -112,7 +112,7 @@ impl Drop for Prometheus {
     }
 }
 
-/// Every query of a dashboard, for all that its variables stand for.
+/// Every query of a dashboard, for all values of its variables.
 fn queries(name: &str) -> BTreeSet<String> {
     let text = fs::read_to_string(example(name)).unwrap();
     let board: Value = serde_json::from_str(&text).unwrap();
@@ -139,14 +139,14 @@ fn queries(name: &str) -> BTreeSet<String> {
     all
 }
 
-/// Every metric that the alert rules name.
+/// Every metric in the alert rules.
 fn named_by_alerts() -> BTreeSet<String> {
     let text = fs::read_to_string(example("alerts.yml")).unwrap();
     let words = text.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_');
     words.filter(|word| word.starts_with("halfrow_")).map(str::to_owned).collect()
 }
 
-/// Boards are judged, and the plant has them all.
+/// Judges boards, and waits until the plant has all runs.
 fn judged(serving: &Serving) {
     for ((lane, state), serial) in [("1", "pass"), ("2", "fail")].into_iter().zip(SERIALS) {
         scan(serving, lane, serial);
@@ -166,7 +166,7 @@ fn every_query_of_the_dashboards_and_of_the_alerts_is_answered() {
         "mock,serial=2,fault=stuck-data",
     );
     let station_pages = station.serve();
-    // It looks for what it is to read five seconds after its start.
+    // It looks for its targets five seconds after its start.
     let prometheus = Prometheus::of(station_pages.port, plant.port);
     judged(&station_pages);
     for name in ["grafana-station.json", "grafana-plant.json"] {
@@ -175,7 +175,7 @@ fn every_query_of_the_dashboards_and_of_the_alerts_is_answered() {
     let named = named_by_alerts();
     assert!(named.len() >= 8, "{named:?}");
     assert_eq!(prometheus.unanswered_in_the_end(&named), Vec::<&str>::new());
-    // The control: a name that nothing has.
+    // The control: a name that no metric has.
     let wrong: BTreeSet<_> = queries("grafana-station.json")
         .iter()
         .map(|query| query.replace("commit_seconds", "comit_seconds"))

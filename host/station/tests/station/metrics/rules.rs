@@ -1,4 +1,4 @@
-//! The example of alert rules, by `promtool`.
+//! The example of alert rules, checked by `promtool`.
 
 use std::fs;
 use std::path::PathBuf;
@@ -7,12 +7,12 @@ use tempfile::TempDir;
 
 use super::text::promtool;
 
-/// A file of the examples.
+/// The path of a file of the examples.
 pub(super) fn example(name: &str) -> PathBuf {
     [env!("CARGO_MANIFEST_DIR"), "monitoring", name].iter().collect()
 }
 
-/// The rules with their tests, in a folder in which they may be changed.
+/// The rules and their tests, in a folder in which they may be changed.
 fn copied() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for name in ["alerts.yml", "alerts-test.yml"] {
@@ -33,12 +33,12 @@ fn every_alert_fires_when_it_should_and_else_not() {
     let (text, tests) = (fs::read_to_string(&rules).unwrap(), fs::read_to_string(tests).unwrap());
     let alerts: Vec<_> = text.lines().filter_map(|line| line.trim().strip_prefix("- alert: ")).collect();
     assert!(alerts.len() >= 8, "{alerts:?}");
-    // Each is seen to fire, and its test to fail when it does not.
+    // Each alert is seen to fire, and its test to fail when it does not.
     for alert in alerts {
         assert!(tests.contains(&format!("alertname: {alert}\n")), "{alert} is not tested");
         let (before, behind) = text.split_once(&format!("alert: {alert}\n")).unwrap();
         let never = behind.replacen("expr:", "expr: vector(0) > 1 #", 1);
-        // What follows on lines of its own is no expression any more.
+        // An expression that follows on lines of its own must still be one.
         let never = never.replacen("vector(0) > 1 # |", "|\n          vector(0) > 1 and", 1);
         fs::write(&rules, format!("{before}alert: {alert}\n{never}")).unwrap();
         let did = test();

@@ -1,4 +1,4 @@
-//! Figures as they are served, taken apart.
+//! Figures as they are served, parsed.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write as _;
@@ -8,20 +8,20 @@ use std::process::{Command, Stdio};
 use crate::common::Did;
 use crate::pages::station::Serving;
 
-/// What a metric is: its kind, and its labels but for that of a histogram's bound.
+/// A metric's kind, and its labels except that of a histogram's bound.
 type Shape = (String, BTreeSet<String>);
 
 /// The figures of one answer.
 #[derive(Debug)]
 pub(crate) struct Figures {
     pub(crate) text: String,
-    /// Every sample by its name with its labels.
+    /// Every sample, by its name with its labels.
     pub(crate) samples: BTreeMap<String, f64>,
     kinds: BTreeMap<String, String>,
 }
 
 impl Figures {
-    /// Those that are served now, in the format of Prometheus.
+    /// The figures that are served now, in Prometheus' own format.
     pub(crate) fn of(serving: &Serving) -> Self {
         let answer = serving.here().get("/metrics").send();
         assert_eq!(answer.status, 200, "{}", answer.text());
@@ -44,12 +44,12 @@ impl Figures {
         Self { text, samples, kinds }
     }
 
-    /// The value of this name with these labels.
+    /// The value of the sample with this name and labels.
     pub(crate) fn at(&self, name: &str) -> f64 {
         *self.samples.get(name).unwrap_or_else(|| panic!("there is no {name} in\n{}", self.text))
     }
 
-    /// Every metric with what it is. What has no sample has no labels here.
+    /// Every metric with its shape. A metric without samples has no labels here.
     pub(crate) fn shapes(&self) -> BTreeMap<String, Shape> {
         let mut shapes: BTreeMap<_, _> =
             self.kinds.iter().map(|(name, kind)| (name.clone(), (kind.clone(), BTreeSet::new()))).collect();
@@ -65,14 +65,14 @@ impl Figures {
     }
 }
 
-/// What the page says of metrics below this headline.
+/// The metrics that the page lists below this headline.
 pub(crate) fn told(headline: &str) -> BTreeMap<String, Shape> {
     let page = include_str!("../../../../../docs/metrics.md");
     let section = page.split("\n## ").find(|section| section.starts_with(headline)).unwrap();
     let rows = section.lines().filter(|line| line.starts_with("| `"));
     let shape = |row: &str| {
         let cells: Vec<_> = row.split('|').map(str::trim).collect();
-        // Prometheus' own format has no kind for what tells by its labels.
+        // Prometheus' own format has no kind for metrics that only have labels.
         let kind = if cells[2] == "info" { "gauge" } else { cells[2] };
         let labels = cells[3].split(", ").filter(|label| !label.is_empty()).map(str::to_owned);
         (cells[1].trim_matches('`').to_owned(), (kind.to_owned(), labels.collect()))
@@ -80,7 +80,7 @@ pub(crate) fn told(headline: &str) -> BTreeMap<String, Shape> {
     rows.map(shape).collect()
 }
 
-/// What `promtool` says when it is given this text.
+/// Runs `promtool` with this text on stdin.
 pub(crate) fn promtool(arguments: &[&str], folder: &Path, said: &str) -> Did {
     let mut child = Command::new("promtool")
         .args(arguments)
@@ -94,7 +94,7 @@ pub(crate) fn promtool(arguments: &[&str], folder: &Path, said: &str) -> Did {
     child.wait_with_output().unwrap().into()
 }
 
-/// Has `promtool` look at a text of figures.
+/// Asserts that `promtool` accepts the figures.
 pub(crate) fn assert_sound(figures: &Figures) {
     let did = promtool(&["check", "metrics"], Path::new("/"), &figures.text);
     assert_eq!((did.code, did.complained.as_str()), (Some(0), ""), "{}", figures.text);

@@ -1,4 +1,4 @@
-//! Badges, passwords, cookies, and where pages may be.
+//! Badges, passwords, cookies, and where pages may be served.
 
 use std::fs;
 use std::io::Write as _;
@@ -33,7 +33,7 @@ fn what_others_can_reach_needs_people() {
     assert!(people.refused().contains("users.toml cannot be read"));
 }
 
-/// Nothing can be written, as on a disk that is full.
+/// Nothing can be written, as on a full disk.
 #[test]
 fn a_key_that_cannot_be_written_is_drawn_when_it_can() {
     let station = Station::with(1, "[access]\nusers = \"users.toml\"");
@@ -86,7 +86,7 @@ fn a_token_is_told_once_and_nobody_may_guess_for_long() {
     assert_eq!(ask(&"0".repeat(64)).status, 429, "the eleventh waits");
     assert_eq!(station.query("SELECT act FROM audit"), ["token refused"; 10]);
     assert_eq!(ask(token).status, 200, "nobody guesses what is right");
-    // Behind a proxy all have one address, and people log in all the same.
+    // Behind a proxy all clients have one address, but people can still log in.
     assert_eq!(serving.operator().get("/").send().status, 200);
     drop(serving);
     fs::set_permissions(&file, fs::Permissions::from_mode(0o644)).unwrap();
@@ -126,14 +126,14 @@ fn whoever_is_added_anew_logs_in_anew_with_what_is_another() {
     anew("Braun", "engineer", "B-0022\nanother horse\n");
     assert_eq!(engineer.get("/").send().status, 401, "the password is another");
     assert_eq!(braun.get("/").send().status, 200, "the badge is the same");
-    // A station that starts again knows it, too.
+    // A station that is started again knows it, too.
     let [weber, braun] = ["A-0099", "B-0022"].map(|badge| serving.logged_in(badge, ""));
     anew("Weber", "operator", "A-0017\n");
     drop(serving);
     let again = station.serve();
     let asks = |browser: &Browser| {
         let (_, session) = browser.cookie.split_once('=').unwrap();
-        // The port is of the cookie's name.
+        // The cookie's name contains the port.
         let cookie = format!("__Host-halfrow-{}={session}", again.port);
         again.browser(PUBLIC).get("/").with("cookie", &cookie).send().status
     };
@@ -159,7 +159,7 @@ fn people_who_cannot_be_read_stay_logged_in_and_are_told() {
     assert_eq!(operator.get("/").send().status, 200);
 }
 
-/// As browsers fetch a page behind a link on one of another site: without the cookie where it is the browser's first.
+/// The first request may come from a link on another site, without the cookie that browsers withhold then.
 #[test]
 fn a_link_from_elsewhere_leads_to_a_page_that_logs_in() {
     let station = Station::public(1);
@@ -175,7 +175,7 @@ fn many_who_guess_at_once_guess_no_oftener() {
     let station = Station::public(1);
     let serving = station.serve();
     let browser = serving.browser(PUBLIC);
-    // A password takes a while to be told from another.
+    // Checking a password takes a while.
     let guess = browser.post("/login", &[("badge", "B-0022"), ("password", "wrong horse")]);
     let guesses: Vec<_> =
         (0..30).map(|_| guess.clone()).map(|one| thread::spawn(move || one.send())).collect();
@@ -184,7 +184,7 @@ fn many_who_guess_at_once_guess_no_oftener() {
     assert_eq!((of(403), of(429)), (10, 20), "{statuses:?}");
 }
 
-/// A station for whoever sits at it, with people and nothing but a scanner.
+/// A station used at its own computer, with user accounts and only a scanner.
 #[test]
 fn a_badge_is_scanned_into_the_page_that_nobody_is_logged_in_on() {
     let more = "[web]\nlisten = \"127.0.0.1:0\"\n[access]\nusers = \"users.toml\"";
@@ -206,7 +206,7 @@ fn a_badge_is_scanned_into_the_page_that_nobody_is_logged_in_on() {
     browser.learn(&badge);
     browser.learn(&browser.get("/").send());
     assert!(scan(&browser, SERIALS[0]).text().contains("\"is_taken\":true"));
-    // What was no badge counts, as it does at the login.
+    // A scan that is no badge counts, as it does at the login.
     for wrong in 1..10 {
         assert_eq!(scan(&stranger, &format!("A-1{wrong:03}")).status, 401, "{wrong}");
     }
@@ -228,12 +228,12 @@ fn whoever_is_logged_in_does_not_guess_the_badges_of_others_for_long() {
         assert_eq!(scan(&browser, &format!("B-1{wrong:03}")).status, 200, "{wrong}");
     }
     assert_eq!(scan(&browser, "B-0022").status, 429, "also if it is right");
-    // The control: another one's session, from the same address.
+    // The control: another session, from the same address.
     browser = serving.operator();
     assert!(scan(&browser, "B-0022").text().contains("Braun tests from now on"));
 }
 
-/// A proxy that hands on what others ask as if it came from this computer.
+/// A proxy that forwards the requests of others as if they came from this computer.
 #[test]
 fn a_station_without_people_takes_nothing_from_a_proxy() {
     let station = Station::private(1);
@@ -244,7 +244,7 @@ fn a_station_without_people_takes_nothing_from_a_proxy() {
         let answer = get().with(name, "192.0.2.2").send();
         assert!(answer.status == 421 && answer.text().contains("[access]"), "{name}: {answer:?}");
     }
-    // The control: where people log in, a proxy is as good as any other.
+    // The control: where people log in, requests through a proxy are fine.
     let public = Station::public(1);
     let behind = public.serve();
     assert_eq!(behind.operator().get("/").with("X-Forwarded-For", "192.0.2.2").send().status, 200);
@@ -264,7 +264,7 @@ fn what_is_tested_here_is_told_to_nobody_who_may_not_look() {
     }
 }
 
-/// It may be a badge, and whoever looks may be a machine.
+/// The scan may be a badge, and the news may be read by a machine.
 #[test]
 fn what_somebody_scans_is_told_to_nobody_else() {
     let station = Station::private(1);
@@ -277,7 +277,7 @@ fn what_somebody_scans_is_told_to_nobody_else() {
     assert_eq!(news.next().as_deref(), Some(r#"data: {"is_taken":false,"lane":null}"#));
 }
 
-/// A browser that is everybody's keeps it, and asks.
+/// A browser that several people share has it in its cache, and only asks whether it changed.
 #[test]
 fn what_never_changes_is_shown_from_no_cache_to_whoever_has_logged_out() {
     let station = Station::public(1);
@@ -285,7 +285,7 @@ fn what_never_changes_is_shown_from_no_cache_to_whoever_has_logged_out() {
     let browser = serving.operator();
     let known = browser.get("/runs/1/export/csv").with("if-none-match", "\"1\"");
     assert_eq!(known.send().status, 304);
-    // The control: nothing is there that could be sent.
+    // The control: the run does not exist, so nothing could be sent.
     assert_eq!(known.clone().without("if-none-match").send().status, 404);
     assert_eq!(browser.post("/logout", &[]).send().status, 303);
     assert_eq!(known.send().status, 401);
@@ -311,7 +311,7 @@ fn the_badge_of_another_operator_is_no_scan() {
     );
 }
 
-/// It may be a badge that this station does not know.
+/// The text may be a badge that this station does not know.
 #[test]
 fn what_no_plan_takes_is_kept_by_its_length_alone() {
     let station = Station::public(1);
@@ -331,7 +331,7 @@ fn nobody_sends_more_than_a_form_and_nobody_holds_a_place_for_long() {
     let here = serving.here();
     let large = here.post("/scan", &[("text", &"x".repeat(70_000))]).send();
     assert_eq!(large.status, 413);
-    // RFC 9112, section 6.3: two lengths, or a length beside chunks, may be read in two ways.
+    // RFC 9112, section 6.3: two lengths, or a length together with chunks, may be read in two ways.
     let host = format!("host: 127.0.0.1:{}\r\n", serving.port);
     for lengths in [
         "content-length: 3\r\ncontent-length: 5\r\n",
@@ -351,7 +351,7 @@ fn nobody_sends_more_than_a_form_and_nobody_holds_a_place_for_long() {
     assert!(serving.is_alive());
 }
 
-/// As a share does that is slow.
+/// The file is on a slow network share, for example.
 #[test]
 fn a_file_that_says_who_may_enter_holds_up_those_alone_who_are_in_it() {
     let station = Station::public(1);

@@ -1,8 +1,8 @@
-//! What an engineer changes on a page: a waiver, and another device under a serial number.
+//! What an engineer changes on a page: a waiver, and another device for a serial number.
 
 use crate::pages::station::{Browser, SERIALS, Serving, Station};
 
-/// A station with people and a board that fails, and the run that has failed.
+/// A station with user accounts and a board that fails, and the run that failed.
 fn failed() -> (Station, Serving, String) {
     let station = Station::public(1)
         .where_instead("station.toml", "mock,serial=1", "mock,serial=1,fault=stuck-data")
@@ -10,7 +10,7 @@ fn failed() -> (Station, Serving, String) {
     let serving = station.serve();
     let operator = serving.operator();
     let scan = operator.post("/scan", &[("text", SERIALS[0])]).with("accept", "application/json");
-    // The board is seen when the station has looked for it.
+    // The board is only seen once the station has looked for it.
     while !scan.send().text().contains("\"is_taken\":true") {}
     let mut failed = Vec::new();
     while failed.is_empty() {

@@ -1,4 +1,4 @@
-//! Requests that nobody should send. None may end the program or be answered with a fault of its own.
+//! Requests that nobody should send. None may end the program, or be answered with an internal error.
 
 use std::time::{Duration, Instant};
 
@@ -9,10 +9,10 @@ use rand::rngs::SysRng;
 use crate::pages::http::{Request, exchange};
 use crate::pages::station::{SERIALS, Station};
 
-/// How long it goes on, unless `HALFROW_FUZZ_SECONDS` says otherwise.
+/// How many seconds it runs, unless `HALFROW_FUZZ_SECONDS` says otherwise.
 const SHORT: u64 = 5;
 
-/// Numbers that look drawn, the same ones for the same seed.
+/// Pseudo-random numbers, the same ones for the same seed.
 struct Drawn(u64);
 
 impl Drawn {
@@ -89,7 +89,7 @@ fn no_request_ends_the_program_or_is_answered_with_its_own_fault() {
     let (start, mut sent) = (Instant::now(), 0_u32);
     while start.elapsed() < Duration::from_secs(seconds) {
         let path = path(&mut drawn, &paths);
-        // Most are acts that go through to the routes.
+        // Half of them are acts with all that it takes to reach the routes.
         let mut request = if drawn.below(2) == 0 { here.post(&path, &[]) } else { here.get(&path) };
         if drawn.below(8) == 0 {
             request.method = drawn.of(&METHODS).to_owned();

@@ -1,11 +1,11 @@
-//! A client that sends just what it is told to send.
+//! An HTTP client that sends exactly what it is given.
 
 use std::collections::BTreeMap;
 use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::time::Duration;
 
-/// How long an answer is waited for: it ends hangs alone.
+/// How long to wait for an answer: the limit only ends hangs.
 const HANG: Duration = Duration::from_secs(120);
 
 /// An answer.
@@ -14,17 +14,17 @@ pub(crate) struct Answer {
     pub(crate) status: u16,
     pub(crate) headers: BTreeMap<String, String>,
     pub(crate) body: Vec<u8>,
-    /// Whether the body came to its end.
+    /// Whether the body arrived completely.
     pub(crate) is_whole: bool,
 }
 
 impl Answer {
-    /// The body, which is text.
+    /// The body as text.
     pub(crate) fn text(&self) -> String {
         String::from_utf8(self.body.clone()).unwrap()
     }
 
-    /// The value of the header of this name, in lower case.
+    /// The value of the header `name`, given in lower case.
     pub(crate) fn header(&self, name: &str) -> Option<&str> {
         self.headers.get(name).map(String::as_str)
     }
@@ -36,13 +36,13 @@ fn connected(port: u16) -> TcpStream {
     stream
 }
 
-/// What comes back for these bytes, on a connection of their own.
+/// The answer to these bytes, on a new connection.
 ///
 /// # Errors
-/// How the connection ended, when it did without an answer.
+/// Why the connection ended, if it ended without an answer.
 pub(crate) fn exchange(port: u16, bytes: &[u8]) -> io::Result<Answer> {
     let mut stream = connected(port);
-    // A server that has heard enough closes before it has read all.
+    // A server that refuses a request may close the connection before it has read everything.
     let _ = stream.write_all(bytes);
     let mut head = Vec::new();
     let mut byte = [0];
@@ -60,8 +60,8 @@ pub(crate) fn exchange(port: u16, bytes: &[u8]) -> io::Result<Answer> {
     Ok(Answer { status, headers, body, is_whole })
 }
 
-/// What follows a head, and whether it came to its end. The head of an answer to HEAD tells of a body that does not come, and
-/// news have no end.
+/// The body after a head, and whether it is complete. The head of an answer to HEAD announces a body that does not come, and a
+/// stream of news has no end.
 fn body(stream: &mut TcpStream, headers: &BTreeMap<String, String>) -> (Vec<u8>, bool) {
     let mut bytes = Vec::new();
     if headers.get("content-type").is_some_and(|kind| kind == "text/event-stream") {
@@ -77,7 +77,7 @@ fn body(stream: &mut TcpStream, headers: &BTreeMap<String, String>) -> (Vec<u8>,
     (bytes, is_whole)
 }
 
-/// The bytes of chunks (RFC 9112, section 7.1), and whether the last one came.
+/// The content of chunks (RFC 9112, section 7.1), and whether the last one arrived.
 fn unchunked(mut rest: &[u8]) -> (Vec<u8>, bool) {
     let mut bytes = Vec::new();
     while let Some(end) = rest.windows(2).position(|window| window == b"\r\n") {
@@ -103,7 +103,7 @@ pub(crate) struct Request {
 }
 
 impl Request {
-    /// Without any header.
+    /// A request without any header.
     pub(crate) fn bare(port: u16, method: &str, path: &str) -> Self {
         Self {
             port,
@@ -130,7 +130,7 @@ impl Request {
         exchange(self.port, text.as_bytes()).unwrap_or_else(|error| panic!("no answer to {self:?}: {error}"))
     }
 
-    /// The lines of an answer that has no end, its head's included.
+    /// The lines of an answer that does not end, including those of its head.
     pub(crate) fn lines(&self) -> impl Iterator<Item = String> + use<> {
         let mut stream = connected(self.port);
         stream.write_all(self.text().as_bytes()).unwrap();
@@ -152,7 +152,7 @@ impl Request {
     }
 }
 
-/// A value in a form.
+/// A form value, percent-encoded.
 pub(crate) fn escaped(text: &str) -> String {
     let escape = |byte: u8| {
         if byte.is_ascii_alphanumeric() { char::from(byte).to_string() } else { format!("%{byte:02X}") }

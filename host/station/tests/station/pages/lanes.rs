@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::common::{NO_AUDIT, plant_settings};
 use crate::pages::station::{SERIALS, Serving, Station};
 
-/// The page's news.
+/// The page's stream of news.
 struct Live(BufReader<TcpStream>);
 
 impl Live {
@@ -20,7 +20,7 @@ impl Live {
         Self(BufReader::new(stream))
     }
 
-    /// The next event: its number, its name, what it says.
+    /// The next event: its number, name and data.
     fn next(&mut self) -> (u64, String, Value) {
         let (mut id, mut name, mut line) = (0, String::new(), String::new());
         loop {
@@ -106,7 +106,7 @@ fn without_a_script_the_page_says_the_states_and_takes_a_serial_number() {
     let serving = station.serve();
     let here = serving.here();
     let page = here.get("/").send().text();
-    // What comes anew is the frame with the lanes, and nobody else frames it.
+    // What is loaded anew is the frame with the lanes, and no other site may frame it.
     assert!(page.contains("<noscript><iframe src=\"/still\"") && !page.contains("http-equiv"), "{page}");
     let still = here.get("/still").send();
     assert!(still.text().contains("<meta http-equiv=\"refresh\" content=\"5\">"), "{}", still.text());
@@ -122,7 +122,7 @@ fn without_a_script_the_page_says_the_states_and_takes_a_serial_number() {
     assert!(refused.contains("class=\"answer refused\""), "{refused}");
 }
 
-/// Nobody logged in: what is to be scanned is a badge, in every lane and over them all.
+/// Nobody is logged in: a badge is asked for, in every lane and above them.
 #[test]
 fn whoever_is_not_logged_in_is_asked_for_the_badge() {
     let station = Station::with(1, "[web]\nlisten = \"127.0.0.1:0\"\n[access]\nusers = \"users.toml\"");
@@ -143,7 +143,7 @@ fn whoever_is_not_logged_in_is_asked_for_the_badge() {
     );
 }
 
-/// A label of another product is answered by what to do, and not by the plan's pattern.
+/// A label of another product is answered with what to do, not with the plan's pattern.
 #[test]
 fn a_wrong_label_is_answered_without_a_pattern() {
     let station = Station::private(1);
@@ -159,7 +159,7 @@ fn every_language_says_it_in_its_words() {
     let serving = station.serve();
     for (preferred, word) in [("de-AT", "BEREIT"), ("zh", "就绪"), ("fr", "READY")] {
         let mut seen = String::new();
-        // The board is seen when the station has looked for it.
+        // The board is only seen once the station has looked for it.
         while !seen.contains("lane ready") {
             seen = serving.here().get("/").with("accept-language", preferred).send().text();
         }
@@ -168,7 +168,7 @@ fn every_language_says_it_in_its_words() {
     let here = serving.here();
     let answer = here.post("/language", &[("language", "de")]).send();
     assert!(answer.headers["set-cookie"].starts_with("halfrow-language=de;"), "{answer:?}");
-    // Back to the page that it was chosen on, if there is one at its address.
+    // The answer leads back to the page on which the language was chosen, if that page has an address.
     for (from, to) in [
         ("/history?serial=S%201&lane=1", "/history?serial=S%201&lane=1"),
         ("/runs/1", "/runs/1"),
@@ -183,7 +183,7 @@ fn every_language_says_it_in_its_words() {
     assert_eq!(answer.headers["location"], "/");
 }
 
-/// A scan is for the lane that its page names, whatever another page scans in between.
+/// A scan is for the lane that its own page names, whatever another page scans in between.
 #[test]
 fn two_pages_do_not_get_each_others_lanes() {
     let station = Station::private(2);
@@ -202,7 +202,7 @@ fn two_pages_do_not_get_each_others_lanes() {
     assert_eq!(scan(&other, SERIALS[1], "2")["lane"], "2");
 }
 
-/// Who and what it is about, when a verdict was saved, and the day so far: all without a script.
+/// Who is logged in, plan and station, when a verdict was saved, and the day so far: all without a script.
 #[test]
 fn the_page_says_plan_station_and_operator_when_it_was_saved_and_the_day() {
     let station = Station::public(1);
@@ -226,7 +226,7 @@ fn the_page_says_plan_station_and_operator_when_it_was_saved_and_the_day() {
     let shape: String =
         text.chars().take(11).map(|letter| if letter.is_ascii_digit() { '0' } else { letter }).collect();
     assert_eq!(shape, "saved 00:00");
-    // One of one: Wilson's interval, whose lower end is 1 / (1 + 1.96²).
+    // One of one: the lower end of Wilson's interval is 1 / (1 + 1.96²).
     assert!(page.contains("today 1 judged · first pass 100.0 % (20.7–100.0) · errors 0"), "{page}");
     let german = operator.get("/").with("accept-language", "de").send().text();
     assert!(german.contains("100,0 % (20,7–100,0)") && german.contains("(Bediener)"), "{german}");
@@ -251,8 +251,7 @@ fn the_page_counts_what_is_not_at_the_plant_and_nothing_that_other_sinks_do_not_
     assert!(page.contains(&format!("not at the plant yet: {results}<")), "{page}");
 }
 
-/// Reasons, refusals and headlines come by their codes.
-/// What a page asks for names the last beat that it heard. Behind it another board may be in the lane.
+/// A request names the last beat that its page got. After that, another board may be in the lane.
 #[test]
 fn what_comes_long_behind_the_beat_that_its_page_heard_is_not_done() {
     let station = Station::private(1);
@@ -264,7 +263,7 @@ fn what_comes_long_behind_the_beat_that_its_page_heard_is_not_done() {
     };
     let beat = || Live::of(&serving).next().2["beat"].as_str().unwrap().to_owned();
     let old = beat();
-    // The barcode of the lane does nothing with it.
+    // A scan of the lane's barcode changes nothing here.
     while post("/scan", "HR:LANE:1", &old)["is_taken"] == true {
         std::thread::sleep(Duration::from_millis(50));
     }
@@ -279,11 +278,11 @@ fn what_comes_long_behind_the_beat_that_its_page_heard_is_not_done() {
         }
     }
     assert_eq!(station.query("SELECT act FROM audit"), Vec::<String>::new());
-    // With a young one, once the board is seen.
+    // With a recent beat, once the board is seen.
     while post("/scan", SERIALS[0], &beat())["is_taken"] != true {}
 }
 
-/// A station whose lane has a serial number and is started by `start`.
+/// A station whose lane has a serial number, and is started by `start`.
 fn started_by(start: &str) -> (Station, Serving) {
     let board = "board = \"mock,serial=1\"";
     let started = format!("{board}\nstart = [\"{start}\"]");
@@ -294,7 +293,7 @@ fn started_by(start: &str) -> (Station, Serving) {
     (station, serving)
 }
 
-/// The page of the lanes as soon as it says this.
+/// The page of the lanes, as soon as it contains `state`.
 fn seen(serving: &Serving, state: &str) -> String {
     let mut page = String::new();
     while !page.contains(state) {
@@ -303,7 +302,7 @@ fn seen(serving: &Serving, state: &str) -> String {
     page
 }
 
-/// As on a disk that is full.
+/// As on a full disk.
 #[test]
 fn an_abort_that_cannot_be_entered_is_done_all_the_same() {
     let (station, serving) = started_by("button");
@@ -328,7 +327,7 @@ fn an_abort_that_cannot_be_entered_is_done_all_the_same() {
     assert_eq!(station.query(acts), [scan.as_str(), &scan, "lane HR:ABORT"], "what could be entered");
 }
 
-/// What is offered would be done.
+/// Everything that the page offers is also accepted.
 #[test]
 fn a_lane_that_waits_says_what_starts_it() {
     for (start, does, has_button) in

@@ -1,8 +1,8 @@
-//! Whether pages say in the reader's language what is to be said.
+//! Whether pages say everything in the reader's language.
 
 use crate::pages::station::{Browser, SERIALS, Station};
 
-/// What was scanned in the lane becomes its verdict, and here is the page of that run.
+/// Waits for the verdict on what was scanned in the lane, and returns the page of that run.
 fn run_of(here: &Browser, lane: &str, word: &str, language: &str) -> String {
     let page = loop {
         let page = here.get("/").send().text();
@@ -58,7 +58,7 @@ fn nothing_that_an_operator_is_told_stays_english_in_another_language() {
     }
 }
 
-/// The label of another board is the commonest mistake at a line.
+/// Scanning the label of another board is the most common mistake on a line.
 #[test]
 fn what_to_do_about_a_wrong_label_is_told_in_the_language() {
     let station = Station::private(1).where_instead("plan.toml", "not-checked", "required");
@@ -81,7 +81,7 @@ fn what_to_do_about_a_wrong_label_is_told_in_the_language() {
     }
 }
 
-/// On a run's page, of the whole run and of its step.
+/// On a run's page, once for the whole run and once for its step.
 #[test]
 fn what_to_do_is_told_once_and_in_one_language() {
     let station = Station::private(1).where_instead("station.toml", "mock,serial=1", "tcp:127.0.0.1:1");
@@ -95,7 +95,7 @@ fn what_to_do_is_told_once_and_in_one_language() {
     }
 }
 
-/// It checks the shift, and says nothing of the board that is in the lane.
+/// The mock checks the shift, and says nothing about the board in the lane.
 #[test]
 fn under_the_fail_of_the_mock_board_nobody_is_told_to_put_the_own_board_aside() {
     let shift = format!("[shift]\ngood = \"{}\"\nbad = \"HR:MOCK\"\nhours = 8\n[tables]", SERIALS[0]);
@@ -105,7 +105,7 @@ fn under_the_fail_of_the_mock_board_nobody_is_told_to_put_the_own_board_aside() 
     scan(&here, SERIALS[0], "1");
     run_of(&here, "1", "pass", "en");
     let page = |language: &str| here.get("/").with("accept-language", language).send().text();
-    // A fault that goes unfound is drawn now and then.
+    // Now and then a fault is drawn that goes unfound.
     while !page("en").contains("lane fail") {
         here.post("/scan", &[("text", "HR:MOCK"), ("lane", "1")]).send();
     }

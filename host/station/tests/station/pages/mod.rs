@@ -1,4 +1,4 @@
-//! The station's pages, by their program and over its socket.
+//! The station's pages, served by its program over a socket.
 
 mod access;
 mod browser;

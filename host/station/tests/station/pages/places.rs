@@ -2,7 +2,7 @@
 
 use crate::pages::station::Station;
 
-/// A program on the station's own computer that opens page after page, and closes none.
+/// A program on the station's own computer that opens connection after connection, and closes none.
 #[test]
 fn whoever_has_taken_many_connections_keeps_nobody_from_the_pages() {
     for (station, has_proxy) in [(Station::private(1), false), (Station::public(1), true)] {

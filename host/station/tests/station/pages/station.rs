@@ -1,4 +1,4 @@
-//! A station with its pages at work.
+//! A station that serves its pages.
 
 use std::fs::{self, File};
 use std::io::{BufRead as _, BufReader, Read as _, Seek as _, Write as _};
@@ -15,20 +15,20 @@ use super::http::{Answer, Request, escaped};
 pub(crate) use crate::common::SERIALS;
 use crate::common::{self, guarded_plan, program};
 
-/// Where browsers find the station that others can reach.
+/// The name under which browsers reach a station that others can reach.
 pub(crate) const PUBLIC: &str = "station12.example";
 
-/// The people of a station that has people: name, role, badge, password.
+/// The accounts of a station that has some: name, role, badge, password.
 const PEOPLE: [(&str, &str, &str, &str); 2] =
     [("Weber", "operator", "A-0017", ""), ("Braun", "engineer", "B-0022", "correct horse")];
 
-/// A folder with settings.
+/// A folder with a station's settings.
 pub(crate) struct Station {
     folder: TempDir,
 }
 
 impl Station {
-    /// With so many mock boards, and more settings before them.
+    /// A station with this many mock boards, with more settings before them.
     pub(crate) fn with(lanes: usize, more: &str) -> Self {
         let station = Self { folder: common::folder() };
         let plan = guarded_plan("CAM-T", "CA").replace("if-present", "not-checked");
@@ -42,12 +42,12 @@ impl Station {
         station
     }
 
-    /// At the computer itself, where nobody logs in.
+    /// A station used at its own computer, where nobody logs in.
     pub(crate) fn private(lanes: usize) -> Self {
         Self::with(lanes, "[web]\nlisten = \"127.0.0.1:0\"")
     }
 
-    /// Behind a proxy that speaks TLS, with people who log in.
+    /// A station behind a proxy that speaks TLS, where people log in.
     pub(crate) fn public(lanes: usize) -> Self {
         let web = format!("[web]\nlisten = \"127.0.0.1:0\"\npublic = \"https://{PUBLIC}\"");
         let station =
@@ -59,7 +59,7 @@ impl Station {
         station
     }
 
-    /// With another word in one of its files.
+    /// The station after a replacement in one of its files.
     pub(crate) fn where_instead(self, name: &str, was: &str, is: &str) -> Self {
         let text = fs::read_to_string(self.path(name)).unwrap();
         assert!(text.contains(was), "{text}");
@@ -67,7 +67,7 @@ impl Station {
         self
     }
 
-    /// That is served at this port from now on, where a page knew it before.
+    /// The station, to be served at this port from now on, where a page knew an earlier one.
     pub(crate) fn at(self, port: u16) -> Self {
         self.where_instead("station.toml", "127.0.0.1:0", &format!("127.0.0.1:{port}"))
     }
@@ -81,7 +81,7 @@ impl Station {
         self.secrets("token", arguments, "")
     }
 
-    /// `halfrow-station user` with these words on stdin.
+    /// `halfrow-station user` with this on stdin.
     pub(crate) fn user(&self, arguments: &[&str], said: &str) -> Output {
         self.secrets("user", arguments, said)
     }
@@ -97,7 +97,7 @@ impl Station {
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
-        // A call that is refused reads nothing.
+        // A call that is refused does not read stdin.
         let _ = child.stdin.take().unwrap().write_all(said.as_bytes());
         child.wait_with_output().unwrap()
     }
@@ -106,7 +106,7 @@ impl Station {
         Serving::of(&mut self.command())
     }
 
-    /// What `serve` says when it does not.
+    /// What `serve` prints when it refuses to start.
     pub(crate) fn refused(&self) -> String {
         let output = self.command().output().unwrap();
         assert_eq!(output.status.code(), Some(2));
@@ -117,7 +117,7 @@ impl Station {
         command(&self.path("station.toml"))
     }
 
-    /// A look at the database that is not the program's.
+    /// Reads the database without the program.
     pub(crate) fn query(&self, text: &str) -> Vec<String> {
         common::query(&self.path("data"), text)
     }
@@ -130,16 +130,16 @@ pub(crate) fn command(settings: &Path) -> Command {
     command
 }
 
-/// The pages at work.
+/// A running program that serves pages.
 pub(crate) struct Serving {
     child: Child,
-    /// What it says on stderr.
+    /// Its stderr.
     complained: File,
     pub(crate) port: u16,
 }
 
 impl Serving {
-    /// What `command` serves.
+    /// Starts `command`, and waits for the address of its pages.
     pub(crate) fn of(command: &mut Command) -> Self {
         loop {
             let complained = tempfile::tempfile().unwrap();
@@ -149,46 +149,46 @@ impl Serving {
             let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map_while(Result::ok);
             let said = lines.find_map(|line| line.split("http://127.0.0.1:").nth(1).map(str::to_owned));
             if let Some(said) = said {
-                // What else it says must not fill the pipe.
+                // Its further output must not fill the pipe.
                 thread::spawn(move || lines.for_each(drop));
                 return Self { child, complained, port: said.trim_end_matches('/').parse().unwrap() };
             }
             let code = child.wait().unwrap().code();
             let why = whole(complained);
-            // A store that this test has closed is held for a moment by what other tests are just starting.
+            // Processes that other tests are just starting briefly hold a store that this test has closed.
             assert_eq!(code, Some(4), "it does not say where its pages are: {why}");
         }
     }
 
-    /// Stops the program, or lets it go on.
+    /// Sends the program a signal.
     pub(crate) fn signal(&self, signal: Signal) {
         kill(Pid::from_raw(self.child.id().try_into().unwrap()), signal).unwrap();
     }
 
-    /// Whether the system keeps this signal from the program.
+    /// Whether the program ignores this signal.
     pub(crate) fn ignores(&self, signal: Signal) -> bool {
         let status = fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap();
         let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).unwrap();
         u64::from_str_radix(ignored.trim(), 16).unwrap() >> (signal as i32 - 1) & 1 == 1
     }
 
-    /// What it has said on stderr so far.
+    /// What it has printed on stderr so far.
     pub(crate) fn complained(&self) -> String {
         whole(File::open(format!("/proc/self/fd/{}", self.complained.as_raw_fd())).unwrap())
     }
 
-    /// Whether the program goes on.
+    /// Whether the program still runs.
     pub(crate) fn is_alive(&mut self) -> bool {
         self.child.try_wait().unwrap().is_none()
     }
 
-    /// What it ends with when `signal` stops it.
+    /// Its exit code when `signal` stops it.
     pub(crate) fn stopped_by(mut self, signal: Signal) -> Option<i32> {
         self.signal(signal);
         self.child.wait().unwrap().code()
     }
 
-    /// A browser that was never here.
+    /// A browser that comes for the first time.
     pub(crate) fn browser(&self, host: &str) -> Browser {
         let mut browser =
             Browser { port: self.port, host: host.to_owned(), cookie: String::new(), csrf: String::new() };
@@ -196,12 +196,12 @@ impl Serving {
         browser
     }
 
-    /// A browser at the computer itself.
+    /// A browser on the station's own computer.
     pub(crate) fn here(&self) -> Browser {
         self.browser(&format!("127.0.0.1:{}", self.port))
     }
 
-    /// A browser elsewhere in which somebody has logged in.
+    /// A browser elsewhere, after a login.
     pub(crate) fn logged_in(&self, badge: &str, password: &str) -> Browser {
         let mut browser = self.browser(PUBLIC);
         let answer = browser.post("/login", &[("badge", badge), ("password", password)]).send();
@@ -221,7 +221,7 @@ impl Serving {
 }
 
 impl Drop for Serving {
-    // A test that fails shows it.
+    // Shown when a test fails.
     #[allow(clippy::print_stdout)]
     fn drop(&mut self) {
         let ended = self.child.try_wait();
@@ -234,14 +234,14 @@ impl Drop for Serving {
     }
 }
 
-/// All that was written into a file.
+/// The whole content of a file.
 fn whole(mut file: File) -> String {
     let mut text = Vec::new();
     let read = file.rewind().and_then(|()| file.read_to_end(&mut text));
     read.map_or_else(|error| error.to_string(), |_| String::from_utf8_lossy(&text).into_owned())
 }
 
-/// What a browser knows of the station.
+/// The state that a browser keeps for a station.
 #[derive(Clone, Debug)]
 pub(crate) struct Browser {
     port: u16,
@@ -251,7 +251,7 @@ pub(crate) struct Browser {
 }
 
 impl Browser {
-    /// Keeps the cookie that it was given, and the mark of the forms.
+    /// Keeps the cookie and the forms' token of an answer.
     pub(crate) fn learn(&mut self, answer: &Answer) {
         if let Some(cookie) = answer.headers.get("set-cookie") {
             self.cookie = cookie.split(';').next().unwrap().to_owned();
@@ -266,7 +266,7 @@ impl Browser {
         if self.cookie.is_empty() { request } else { request.with("cookie", &self.cookie) }
     }
 
-    /// With all that an act of one of the station's own pages has.
+    /// A request with everything that a form of the station's own pages sends.
     pub(crate) fn post(&self, path: &str, fields: &[(&str, &str)]) -> Request {
         let scheme = if self.host == PUBLIC { "https" } else { "http" };
         let mut request = self.get(path).with("origin", &format!("{scheme}://{}", self.host));

@@ -1,4 +1,4 @@
-//! Every route refuses whoever may not. A route that is new has no row here, and fails.
+//! Every route refuses everybody who may not use it. A new route without a row here fails the test.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use halfrow_station::web::{Who, routes};
 use crate::pages::http::Request;
 use crate::pages::station::{Browser, PUBLIC, Station};
 
-/// A route as this table has it: method, path, who may, a path that there is, and the fields of a form that is right.
+/// A route: method, pattern, who may use it, a path that exists, and the fields of a valid form.
 type Row = (&'static str, &'static str, Who, &'static str, &'static [(&'static str, &'static str)]);
 
 const ROWS: [Row; 30] = [
@@ -40,11 +40,11 @@ const ROWS: [Row; 30] = [
     ("POST", "/lanes/{lane}/in", Who::Engineer, "/lanes/1/in", &[]),
     ("POST", "/runs/{run}/waive", Who::Engineer, "/runs/1/waive", &[("reason", "used as it is")]),
     ("POST", "/unit/rebind", Who::Engineer, "/unit/rebind", &[("serial", "1"), ("reason", "repaired")]),
-    // What the station's own pages refuse before they look at who asks.
+    // Paths without a route are refused before anybody's rights are checked.
     ("GET", "", Who::Anyone, "/nothing/here", &[]),
 ];
 
-/// What a refusal has for a status.
+/// The status codes of refusals.
 const REFUSALS: [u16; 4] = [303, 401, 403, 421];
 
 #[test]
@@ -64,7 +64,7 @@ fn status(request: &Request) -> u16 {
     request.send().status
 }
 
-/// The request of a row, as `browser` sends it.
+/// The request of a row, sent by `browser`.
 fn request(browser: &Browser, row: &Row) -> Request {
     if row.0 == "POST" { browser.post(row.3, row.4) } else { browser.get(row.3) }
 }
@@ -78,7 +78,7 @@ fn who_may_not_is_refused_at_every_route() {
     for row in ROWS {
         let (who, what) = (row.2, format!("{} {}", row.0, row.3));
         let [stranger, operator, engineer] = browsers.each_ref().map(|browser| request(browser, &row));
-        // The control: whoever may is not refused.
+        // The control: whoever may use the route is not refused.
         let right = match who {
             Who::Anyone => stranger.clone(),
             Who::Reader | Who::Operator => operator.clone(),
@@ -103,7 +103,7 @@ fn who_may_not_is_refused_at_every_route() {
     }
 }
 
-/// An act that a page of somebody else had a browser send, in all ways in which it could.
+/// An act that a page of another site makes a browser send, in each way in which it could.
 fn refused_from_elsewhere(right: &Request, foreign: String, what: &str) {
     for origin in ["https://evil.example", "null", "http://station12.example"] {
         assert_eq!(status(&right.clone().with("origin", origin)), 403, "{what} from {origin}");
@@ -122,7 +122,7 @@ fn a_page_asked_for_by_a_stranger_leads_to_the_login() {
     assert_eq!((answer.status, answer.headers["location"].as_str()), (303, "/login"));
 }
 
-/// A machine with a token sees every page that an operator sees, and acts nowhere; a token that is none opens nothing.
+/// A machine with a token sees every page that an operator sees, and may change nothing; an invalid token opens nothing.
 #[test]
 fn a_token_reads_every_page_and_does_nothing() {
     let station = Station::public(1);
@@ -140,7 +140,7 @@ fn a_token_reads_every_page_and_does_nothing() {
             assert_eq!(answer.header("set-cookie"), None, "{what}: a machine has no cookie");
         } else {
             assert_eq!(answer.status, 403, "{what}");
-            // An operator's cookie beside it does not help.
+            // An operator's cookie in the same request does not help.
             assert_eq!(status(&with(request(&operator, row), token.trim())), 403, "{what}");
         }
     }

@@ -1,4 +1,4 @@
-//! axe-core's rules for those who see, hear or move otherwise, over every page.
+//! axe-core's rules for accessibility, on every page.
 
 use std::fs;
 use std::path::Path;
@@ -9,12 +9,12 @@ use serde_json::json;
 use super::chromium::Chromium;
 use crate::pages::station::{SERIALS, Station};
 
-/// From npm, as it was published; no part of the program.
+/// From npm, as published; not part of the program.
 const AXE: &str = "axe-core@4.14.1";
 /// SHA-256 of its `axe.min.js`.
 const SHA256: &str = "29348999450cdf2849a8e70b7912fc2da85a849da39c0d0d5394f51d4a9ed95c";
 
-/// The rules, which npm brings when they are not there.
+/// The script with the rules; npm fetches it if it is not there.
 fn axe() -> String {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("axe-core-4.14.1");
     let file = folder.join("package/axe.min.js");
@@ -34,7 +34,7 @@ fn axe() -> String {
 const RUN: &str = "axe.run(document, {resultTypes: ['violations']}).then(found =>
     found.violations.map(one => `${one.id}: ${one.nodes.map(node => node.target.join(' ')).join(', ')}`))";
 
-/// The violations of the page at `address`, in every language, light and dark.
+/// Adds the violations of the page at `path`, in every language, light and dark.
 fn violations(page: &mut Chromium, axe: &str, own: &str, path: &str, found: &mut Vec<String>) {
     for language in ["en", "de", "zh"] {
         let cookie = json!({ "url": own, "name": "halfrow-language", "value": language });
@@ -80,7 +80,7 @@ fn no_page_violates_a_rule_of_axe() {
             {
                 violations(&mut page, &axe, &own, path, &mut found);
             }
-            // The control: what nobody could see.
+            // The control: an image without a text for those who cannot see it.
             let unseen = "document.querySelector('main').append(Object.assign(new Image(), {src: '/x'}))";
             page.evaluate(&format!("{unseen}, true"));
             assert!(page.evaluate(RUN).to_string().contains("image-alt"));

@@ -1,4 +1,4 @@
-//! Chromium without a window, over the pipes of its DevTools protocol: messages of JSON, each ended by a zero.
+//! Chromium without a window, over the pipes of its DevTools protocol: messages in JSON, each ended by a zero byte.
 
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::{Child, ChildStdin, Command, Stdio};
@@ -11,9 +11,9 @@ use tempfile::TempDir;
 
 use crate::pages::station::Serving;
 
-/// How long something is waited for that must come: it ends hangs alone.
+/// How long to wait for what must come: the limit only ends hangs.
 const HANG: Duration = Duration::from_secs(120);
-/// How often it is looked.
+/// How often a condition is checked.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// The browser's descriptors 3 and 4 are its ends of the pipes.
@@ -28,25 +28,25 @@ pub(super) struct Chromium {
     from: Receiver<Value>,
     session: Value,
     number: u64,
-    /// Addresses of everything that the page asked for.
+    /// The addresses of everything that the page requested.
     pub(super) asked: Vec<String>,
     _profile: TempDir,
 }
 
 impl Chromium {
-    /// With the page at `address`.
+    /// A browser with the page at `address`.
     pub(super) fn open(address: &str) -> Self {
         Self::with(&[], address)
     }
 
-    /// With the lanes of a station, as soon as they are live.
+    /// A browser with the page of a station's lanes, as soon as it is live.
     pub(super) fn live(serving: &Serving) -> Self {
         let mut page = Self::open(&format!("http://127.0.0.1:{}/", serving.port));
         page.wait("document.getElementById('lamp')?.textContent === 'live'");
         page
     }
 
-    /// With the page at `address`, by a browser with more arguments.
+    /// A browser with further arguments, with the page at `address`.
     pub(super) fn with(arguments: &[&str], address: &str) -> Self {
         let profile = tempfile::tempdir().unwrap();
         let mut child = Command::new("sh")
@@ -87,7 +87,7 @@ impl Chromium {
         self.call("Page.navigate", json!({ "url": address }));
     }
 
-    /// Asks the browser for something; returns the number of the answer.
+    /// Sends a request to the browser; returns the number of the answer.
     fn put(&mut self, method: &str, parameters: &Value) -> u64 {
         self.number += 1;
         let mut message = json!({ "id": self.number, "method": method, "params": parameters });
@@ -99,14 +99,14 @@ impl Chromium {
         self.number
     }
 
-    /// Waits for the answer of this number, which is no error.
+    /// Waits for the answer of this number, which must be no error.
     fn answer(&mut self, number: u64) -> Value {
         let answer = self.heard(number);
         assert!(answer["error"].is_null(), "{answer}");
         answer["result"].clone()
     }
 
-    /// Waits for the answer of this number, or for why there is none.
+    /// Waits for the answer of this number, which may be an error.
     fn heard(&mut self, number: u64) -> Value {
         loop {
             let message =
@@ -125,12 +125,12 @@ impl Chromium {
         self.answer(number)
     }
 
-    /// What the page's script says.
+    /// The value of a script in the page.
     pub(super) fn evaluate(&mut self, script: &str) -> Value {
         self.evaluated(script).unwrap_or_else(|left| panic!("{script}: {left}"))
     }
 
-    /// The same; an error if the page is left for another one meanwhile.
+    /// Like [`Self::evaluate`]; an error if the page is left for another one meanwhile.
     fn evaluated(&mut self, script: &str) -> Result<Value, Value> {
         let parameters = json!({ "expression": script, "awaitPromise": true, "returnByValue": true });
         let number = self.put("Runtime.evaluate", &parameters);
@@ -144,10 +144,10 @@ impl Chromium {
         Ok(said["result"]["value"].clone())
     }
 
-    /// Waits until the page's script says yes.
+    /// Waits until a script in the page returns true.
     pub(super) fn wait(&mut self, script: &str) {
         let start = Instant::now();
-        // A page that is left has not said yes.
+        // While one page is left for another, there is no value yet.
         while self.evaluated(script) != Ok(json!(true)) {
             if start.elapsed() > HANG {
                 let page = self.evaluate("document.body.innerText");
@@ -157,7 +157,7 @@ impl Chromium {
         }
     }
 
-    /// Presses the keys of `text` and then `end`, so long apart, as a scanner does.
+    /// Presses the keys of `text` and then `end`, this long apart, as a scanner does.
     pub(super) fn scan(&mut self, text: &str, end: &str, apart: Duration) {
         let keys: Vec<String> = text.chars().map(String::from).collect();
         let mut last = 0;

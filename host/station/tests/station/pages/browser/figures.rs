@@ -7,14 +7,14 @@ use super::scans::serial;
 use crate::pages::station::{Browser, Serving, Station};
 
 const LANES: usize = 16;
-/// Milliseconds that a verdict may take from the read-back behind its COMMIT to the screen: half of them here, where all
-/// lanes start at the same moment and judge on the processors that show it; 95 of 100 is what a line wants.
+/// Milliseconds that half of the verdicts may take from the read-back after COMMIT to the screen. All lanes start at the same
+/// moment here, and judge on the processors that show the page; on a line, 95 of 100 verdicts should be that fast.
 const MOST_LATE: f64 = 150.0;
-/// What nodes and heap may grow from the hundredth run to the last.
+/// How much nodes and heap may grow from the hundredth run to the last, as a factor.
 const MOST_GROWTH: f64 = 1.1;
 
-/// Keeps for each run when its verdict was saved, by the station, and when the frame that shows it was drawn, by the page:
-/// both by the clock of this computer.
+/// Records for each run when its verdict was saved, from the station, and when the frame that shows it was drawn, from the page:
+/// both by this computer's clock.
 const WATCH: &str = "(() => {
     window.seen = new Map();
     const look = () => {
@@ -36,7 +36,7 @@ fn open(serving: &Serving) -> Chromium {
     page
 }
 
-/// Another board in every lane; returns their serial numbers.
+/// Scans another board in every lane; returns their serial numbers.
 fn round(here: &Browser, number: usize) -> Vec<String> {
     let serials: Vec<_> = (0..LANES).map(|lane| serial(number * LANES + lane)).collect();
     for (serial, lane) in serials.iter().zip(1..) {

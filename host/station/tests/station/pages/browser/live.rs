@@ -1,4 +1,4 @@
-//! What is shown is live, or says that it is not.
+//! What is shown is live, or is said not to be.
 
 use std::time::Duration;
 
@@ -8,10 +8,10 @@ use serde_json::json;
 use super::chromium::Chromium;
 use crate::pages::station::{SERIALS, Station};
 
-/// The most milliseconds from the last beat until the page says that it is not live, beside what a busy machine takes.
+/// The most milliseconds from the last beat until the page says that it is not live, apart from delays of a busy machine.
 pub(super) const NOT_LIVE: f64 = 3000.0;
 
-/// Keeps when the page was last seen to beat, and when it turned live or not, by the page's own clock.
+/// Records when the page last got a beat, and when it stopped and began to be live, by the page's own clock.
 pub(super) const WATCH: &str = "new Promise(done => {
     window.beat = window.died = window.rose = 0;
     new MutationObserver(() => window.beat = performance.now()).observe(document.getElementById('clock'), {childList: true});
@@ -37,7 +37,7 @@ fn a_verdict_is_shown_with_its_record_and_stays_when_the_page_comes_anew() {
     page.go(&format!("http://127.0.0.1:{}/", serving.port));
     page.wait("document.getElementById('lamp')?.textContent === 'live'");
     assert_eq!(page.evaluate(&format!("{{ {shown} }}")), json!(stored[0]));
-    // What a page of somebody else could learn, or be given.
+    // Requests to other origins would tell them something, or let them send something.
     let own = format!("http://127.0.0.1:{}/", serving.port);
     assert!(page.asked.len() > 8, "{:?}", page.asked);
     let others: Vec<_> =
@@ -46,7 +46,7 @@ fn a_verdict_is_shown_with_its_record_and_stays_when_the_page_comes_anew() {
     assert_eq!(page.evaluate("window.violations ?? []"), json!([]));
 }
 
-/// The page's own judgement, of events as the station would never send them.
+/// The page checks this itself, with events that the station would never send.
 #[test]
 fn a_verdict_without_its_record_is_not_drawn() {
     let station = Station::private(1);
@@ -80,7 +80,7 @@ fn the_day_is_counted_anew_when_the_clock_begins_again() {
     let counted =
         "performance.getEntriesByType('resource').filter(one => one.name.endsWith('/today')).length";
     page.wait(&format!("{counted} > 0"));
-    // As if the last beat had been that of a second before midnight.
+    // As if the last beat had been in the second before midnight.
     page.evaluate("document.getElementById('clock').textContent = '23:59:60'");
     page.wait(&format!("{counted} > 1"));
 }
@@ -140,7 +140,7 @@ fn an_open_page_comes_anew_by_itself_when_lanes_and_plans_are_others() {
     page.wait("document.querySelector('#lane-A.pass') !== null");
 }
 
-/// The station stands still while its page scans, as on a computer that does something else, and goes on.
+/// The station is stopped while its page scans, as by a busy computer, and then goes on.
 #[test]
 fn what_is_scanned_while_the_page_is_not_live_is_never_done() {
     let station = Station::private(1);
@@ -158,7 +158,7 @@ fn what_is_scanned_while_the_page_is_not_live_is_never_done() {
     assert_eq!(station.query("SELECT act || ' ' || detail FROM audit"), [format!("scan {}", SERIALS[1])]);
 }
 
-/// Keeps where the page hears its news, the last of them, and that of a PASS; counts tones.
+/// Records the page's event source, the last event's number, and the event of a PASS; counts tones.
 const HEAR: &str = "
     window.tones = 0;
     window.OscillatorNode = class extends OscillatorNode { constructor(...of) { super(...of); window.tones += 1; } };
@@ -173,7 +173,7 @@ const HEAR: &str = "
         }
     };";
 
-/// The state comes anew when a board is pulled out, and when the next one is plugged in.
+/// The state is sent anew when a board is unplugged, and when the next one is plugged in.
 #[test]
 fn a_verdict_is_told_once() {
     let station = Station::private(1);

@@ -1,4 +1,4 @@
-//! Whether what is shown can be read.
+//! Whether what is shown is legible.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use crate::pages::station::{SERIALS, Station};
 /// WCAG 2.1, success criterion 1.4.3.
 const LEAST: f64 = 4.5;
 
-/// The least contrast of a text with what is behind it, and where, with the lane in each state.
+/// The least contrast between a text and its background, and where it is, with the lane in each state.
 const CONTRAST: &str = "(() => {
     const light = ([r, g, b]) => {
         const [x, y, z] = [r, g, b].map(c => (c /= 255) <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
@@ -59,12 +59,12 @@ fn every_text_can_be_told_from_what_is_behind_it() {
     }
 }
 
-/// With one lane the word fills the screen, and of sixteen each can be read from three metres: 4 % of the height.
+/// With one lane its word fills the screen; with sixteen, each word is legible from three metres: 4 % of the height.
 #[test]
 fn words_are_large_and_nothing_lies_upon_another() {
     for (lanes, is_long) in [(1, false), (4, false), (16, false), (4, true), (16, true)] {
         let mut station = Station::private(lanes);
-        // The longest that settings take.
+        // The longest name that settings allow.
         for lane in (1..=lanes).filter(|_| is_long) {
             let (was, is) = (format!("name = \"{lane}\""), format!("name = \"north-fixture-{lane:02}\""));
             station = station.where_instead("station.toml", &was, &is);
@@ -89,7 +89,7 @@ fn words_are_large_and_nothing_lies_upon_another() {
     }
 }
 
-/// What was found is the last column of a run's tables.
+/// The findings are the last column of a run's tables.
 #[test]
 fn what_was_found_can_be_read_on_a_phone() {
     let station =
@@ -113,7 +113,7 @@ fn what_was_found_can_be_read_on_a_phone() {
     assert_eq!(page.evaluate("document.documentElement.scrollWidth > innerWidth"), json!(false));
 }
 
-/// Parts of a lane, in every state, that overlap each other or stand out of it.
+/// Parts of a lane, in every state, that overlap each other or extend beyond the lane.
 const OVER: &str = "(() => {
     const found = [];
     const long = 'a headline that says at some length what was found in which row and what is to be done about it';

@@ -1,4 +1,4 @@
-//! The page through a proxy that speaks TLS: nginx, as docs/station-setup.md has it.
+//! The page through a proxy that speaks TLS: nginx, configured as in docs/station-setup.md.
 
 use std::fs;
 use std::net::{TcpListener, TcpStream};
@@ -15,14 +15,14 @@ use super::live::{NOT_LIVE, WATCH};
 use crate::common::folder;
 use crate::pages::station::{PUBLIC, Serving, Station};
 
-/// The most milliseconds until the page is live again, beside what a busy machine takes.
+/// The most milliseconds until the page is live again, apart from delays of a busy machine.
 const AGAIN: f64 = 5000.0;
-/// How long the proxy is waited for: it ends hangs alone.
+/// How long to wait for the proxy: the limit only ends hangs.
 const HANG: Duration = Duration::from_secs(60);
-/// Debian keeps servers where users do not look.
+/// Debian puts servers into folders that are not on a user's path.
 const NGINX: &str = "PATH=\"$PATH:/usr/sbin:/usr/local/sbin\" exec nginx -p \"$0\" -c nginx.conf -e stderr";
 
-/// The example of the page on setting a station up.
+/// The example of the page about setting up a station.
 fn example() -> String {
     let page =
         fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/station-setup.md")).unwrap();
@@ -31,7 +31,7 @@ fn example() -> String {
     page[begin..begin + length].to_owned()
 }
 
-/// A proxy before the pages of a station.
+/// A proxy in front of a station's pages.
 struct Proxy {
     nginx: Child,
     port: u16,
@@ -54,7 +54,7 @@ impl Proxy {
             assert!(server.contains(theirs), "{theirs} in {server}");
             server = server.replace(theirs, &ours);
         }
-        // Whoever is not root has none of its folders.
+        // Without root, nginx cannot use its own folders.
         let places: String = ["client_body", "proxy", "fastcgi", "uwsgi", "scgi"]
             .map(|place| format!("{place}_temp_path {};\n", of(place)))
             .concat();
@@ -94,7 +94,7 @@ fn certificate(folder: &Path) {
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
 }
 
-/// Somebody logs in, and their page.
+/// The page of the lanes after somebody has logged in.
 fn open(proxy: &Proxy) -> Chromium {
     let rules = format!("--host-resolver-rules=MAP {PUBLIC}:443 127.0.0.1:{}", proxy.port);
     let mut page = Chromium::with(&["--ignore-certificate-errors", &rules], &format!("https://{PUBLIC}/"));
@@ -131,7 +131,7 @@ fn behind_a_proxy_that_says_502_the_page_is_live_again_by_itself() {
     assert_eq!(station.query("SELECT DISTINCT operator_id FROM run"), ["Weber"]);
 }
 
-/// What others reach tells nothing to whoever is not logged in, so that such a page is not live.
+/// A station that others can reach sends news only to people who are logged in, so this page is not live.
 #[test]
 fn a_scan_of_whoever_is_nobody_any_more_leads_to_the_login() {
     let station = Station::public(1);

@@ -1,4 +1,4 @@
-//! Scans by real keys, at the speeds of scanners, wherever the focus is.
+//! Scans by real key events, at the speeds of scanners, wherever the focus is.
 
 use std::fs;
 use std::path::Path;
@@ -14,14 +14,14 @@ use crate::pages::station::Station;
 const SPEEDS: [u64; 4] = [0, 1, 8, 20];
 const LANES: usize = 4;
 
-/// The serial number of this number, with its check digit as ISO 2108:1992 computes it for an ISBN.
+/// A serial number made of `number`, with its check digit as ISO 2108:1992 computes it for an ISBN.
 pub(super) fn serial(number: usize) -> String {
     let digits = format!("{number:09}");
     let sum: usize = digits.bytes().zip(1..).map(|(digit, place)| usize::from(digit - b'0') * place).sum();
     format!("CA{digits}{}", if sum % 11 == 10 { "X".to_owned() } else { (sum % 11).to_string() })
 }
 
-/// Where the focus is put before a scan.
+/// Where the focus is before a scan.
 const FOCUS: [&str; 5] = [
     "document.activeElement.blur()",
     "document.querySelector('nav a').focus()",
@@ -30,27 +30,27 @@ const FOCUS: [&str; 5] = [
     "document.querySelector('.lane .act button')?.focus()",
 ];
 
-/// Waits until so many scans are answered.
+/// Waits until `all` scans are answered.
 fn answered(page: &mut Chromium, all: usize) {
     page.wait(&format!("document.getElementById('counter').textContent === '{all} / {all}'"));
 }
 
-/// Whether the page says that the last scan did not come in time, as happens on a busy computer: nothing was done, and whoever
-/// scanned is told to scan again.
+/// Whether the page says that the last scan did not come in time, as happens on a busy computer: nothing was done, and the
+/// operator is told to scan again.
 fn was_late(page: &mut Chromium) -> bool {
     let said = "document.getElementById('answer').textContent";
     let unsent = "document.getElementById('station').dataset.unsent";
     page.evaluate(&format!("{said}.includes('this came too late') || {said} === {unsent}")) == true
 }
 
-/// Somebody who scans, and who looks up behind each scan.
+/// An operator who scans, and reads the page after each scan.
 struct Operator {
     page: Chromium,
     scans: usize,
 }
 
 impl Operator {
-    /// Whether the scan came in time.
+    /// Scans; returns whether the scan came in time.
     fn scan(&mut self, text: &str, end: &str, apart: Duration) -> bool {
         self.page.scan(text, end, apart);
         self.scans += 1;
@@ -58,7 +58,7 @@ impl Operator {
         !was_late(&mut self.page)
     }
 
-    /// Chooses a lane, again if that came late.
+    /// Chooses a lane, and tries again if that came late.
     fn choose(&mut self, lane: usize, apart: Duration) {
         let is_chosen = (0..5).any(|_| self.scan(&format!("HR:LANE:{lane}"), "Enter", apart));
         assert!(is_chosen, "five scans of a lane came late");
@@ -67,8 +67,8 @@ impl Operator {
     }
 }
 
-/// So many scans at each speed: what the station was sent is what was scanned, each for its lane and in its order. Only what the
-/// page said to be late may be missing.
+/// Scans so many times at each speed. What the station received is what was scanned, each for its lane and in order. Only scans
+/// that the page called late may be missing.
 fn scanned(counts: [usize; 4], first: usize) {
     let station = Station::private(LANES);
     let serving = station.serve();
@@ -90,7 +90,7 @@ fn scanned(counts: [usize; 4], first: usize) {
         }
     }
     let sent = station.query("SELECT subject || ' ' || detail FROM audit WHERE act = 'scan' ORDER BY id");
-    // What the page did not hear of in time may have been sent all the same.
+    // A scan may have arrived although the page did not get the answer in time.
     scans.retain(|scan| sent.contains(scan) || !late.contains(scan));
     assert_eq!(sent, scans);
     assert!(late.len() * 4 <= sent.len(), "{late:?} came late");
@@ -103,11 +103,11 @@ fn no_scan_is_lost_or_changed_or_goes_to_another_lane() {
     scanned([12, 12, 8, 4], 0);
 }
 
-/// Parts of the ten thousand, each at one speed.
+/// The ten thousand scans are divided into parts, each at one speed.
 const PARTS: usize = 100;
 
-/// Four browsers at once, which keeps the computer busy. It goes on where it was stopped: a part that was done with this
-/// program is not done again.
+/// Four browsers at the same time, which keeps the computer busy. The test resumes where it was stopped: parts that this build of
+/// the program has passed are not run again.
 #[test]
 #[ignore = "for scripts/soak"]
 fn none_of_ten_thousand_scans_is_lost_or_changed_or_goes_to_another_lane() {
@@ -134,7 +134,7 @@ fn none_of_ten_thousand_scans_is_lost_or_changed_or_goes_to_another_lane() {
     fs::remove_dir_all(kept).unwrap();
 }
 
-/// A station at a line, which has no keyboard.
+/// A station on a line, without a keyboard.
 #[test]
 fn a_scanner_is_enough_to_log_in_and_to_log_in_again() {
     let station = Station::with(1, "[web]\nlisten = \"127.0.0.1:0\"\n[access]\nusers = \"users.toml\"");
@@ -151,7 +151,7 @@ fn a_scanner_is_enough_to_log_in_and_to_log_in_again() {
     page.wait(&who("Weber"));
     page.scan("CA0131103628", "Enter", Duration::ZERO);
     page.wait("document.querySelector('.lane.pass') !== null");
-    // Whoever is nobody any more is told so by the page.
+    // The page tells an operator who was removed.
     assert!(station.user(&["remove", "Weber"], "").status.success());
     page.scan("CA0201134374", "Enter", Duration::ZERO);
     page.wait(&who("Log in"));
@@ -168,7 +168,7 @@ fn half_scans_and_doubled_ones_are_refused_and_press_nothing() {
     let apart = Duration::ZERO;
     let refused = "document.getElementById('answer').className === 'answer refused'";
     page.scan("CA01311", "Escape", apart);
-    // Two labels without an end between them, one letter in lower case, a control character.
+    // Two labels without an end key in between, a letter in lower case, a wrong check digit, a blank.
     for (number, wrong) in
         ["CA0131103628CA0201134373", "cA0131103628", "CA0131103629", "CA013110362 8"].into_iter().enumerate()
     {
@@ -183,7 +183,7 @@ fn half_scans_and_doubled_ones_are_refused_and_press_nothing() {
     assert_eq!(station.query("SELECT count(*) || '' FROM run"), ["1"]);
 }
 
-/// With the field for a keyboard open: into the field, by scanners of either kind, and beside it.
+/// With the keyboard's field open: into the field, by scanners of either kind, and outside it.
 #[test]
 fn no_scan_is_lost_while_the_field_is_open() {
     let station = Station::private(2);

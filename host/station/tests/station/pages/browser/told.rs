@@ -1,4 +1,4 @@
-//! Whether an operator sees what is to be done: on the screen, read aloud, without scripts, on paper.
+//! Whether an operator learns what to do: on the screen, read aloud, without scripts, on paper.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::chromium::Chromium;
 use crate::pages::station::{Browser, SERIALS, Serving, Station};
 
-/// A station of so many lanes, the third of which has a board that is not there, the sixth a button.
+/// A station of `lanes` lanes. The third has a board that cannot be reached, the sixth a button.
 fn station(lanes: usize) -> Station {
     let six = "board = \"mock,serial=6\"";
     Station::private(lanes)
@@ -16,13 +16,13 @@ fn station(lanes: usize) -> Station {
         .where_instead("station.toml", six, &format!("{six}\nstart = [\"button\"]"))
 }
 
-/// Has `serial` tested in `lane`, or wait there.
+/// Lets `serial` be tested in `lane`, or wait there.
 fn scan(here: &Browser, serial: &str, lane: &str) {
     let scan = here.post("/scan", &[("text", serial), ("lane", lane)]).with("accept", "application/json");
     while !scan.clone().send().text().contains("\"is_taken\":true") {}
 }
 
-/// The page in `language`, as large as that.
+/// Opens the page in `language`, at this size.
 fn shown(page: &mut Chromium, serving: &Serving, language: &str, (width, height): (u32, u32)) {
     let own = format!("http://127.0.0.1:{}/", serving.port);
     let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 700 });
@@ -35,7 +35,7 @@ fn shown(page: &mut Chromium, serving: &Serving, language: &str, (width, height)
     ));
 }
 
-/// Words that are cut off or broken, buttons that lie on another, and lanes that are not whole.
+/// Words that are cut off or broken, buttons that overlap, and lanes that are not whole.
 const CUT: &str = "(() => {
     const found = [];
     for (const lane of document.querySelectorAll('.lane')) {
@@ -81,7 +81,7 @@ fn what_to_do_is_shown_whole_on_every_screen_and_in_every_language() {
                 assert_eq!(page.evaluate(CUT), json!([]), "{lanes} {language} {size:?}");
                 let said = "document.querySelector('#lane-3 .asks').textContent.replaceAll('`', '')";
                 assert_eq!(page.evaluate(said), json!(asked));
-                // It is said once.
+                // It is only said once.
                 let why = page.evaluate("document.querySelector('#lane-3 .why').textContent");
                 assert!(!why.as_str().unwrap().contains(asked), "{why}");
                 assert_eq!(page.evaluate("document.documentElement.scrollWidth > innerWidth"), json!(false));
@@ -90,7 +90,7 @@ fn what_to_do_is_shown_whole_on_every_screen_and_in_every_language() {
     }
 }
 
-/// What a screen reader says of each lane: heading, button, whether it is pressed.
+/// What a screen reader reads for each lane: heading, button, whether the button is pressed.
 const HEARD: &str = "[...document.querySelectorAll('.lane')].map(lane => {
     const [heading, button] = [lane.querySelector('h2'), lane.querySelector('.name')];
     const names = document.getElementById(lane.getAttribute('aria-labelledby'));
@@ -140,7 +140,7 @@ fn without_a_script_nothing_that_is_typed_is_thrown_away() {
     );
 }
 
-/// What of the page is there on paper.
+/// Which parts of the page are printed, and how.
 fn on_paper(page: &mut Chromium, address: &str) -> Value {
     page.go(address);
     page.wait("document.readyState === 'complete' && document.querySelector('main') !== null");
@@ -164,7 +164,7 @@ fn on_paper_verdicts_keep_their_ground_and_no_column_is_cut_off() {
     let history = on_paper(&mut page, &at("/history"));
     assert_eq!(history, json!(["exact", "none", null, "none"]));
     assert_eq!(on_paper(&mut page, &at("/yield?by=day")), json!([null, "none", "visible", "none"]));
-    // A4 without its margins, in pixels of CSS.
+    // A4 without its margins, in CSS pixels.
     let size = json!({ "width": 718, "height": 1046, "deviceScaleFactor": 1, "mobile": false });
     page.call("Emulation.setDeviceMetricsOverride", size);
     assert_eq!(page.evaluate("document.documentElement.scrollWidth > innerWidth"), json!(false));
