@@ -1,4 +1,4 @@
-//! The station, by its library and by its program; one program of tests, which is linked once.
+//! The tests of the station by its library and by its program. They are one program, which is linked once.
 
 // A helper that cannot go on fails the test.
 #![allow(clippy::panic, clippy::unwrap_used)]
@@ -9,7 +9,7 @@ mod compiled_once;
 mod documents;
 mod floor;
 #[path = "../../../../tests/src/program/held.rs"]
-// It is public where the tests of `halfrow` have it.
+// It is public since the tests of `halfrow` need that.
 #[allow(unreachable_pub)]
 mod held;
 mod history;

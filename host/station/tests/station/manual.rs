@@ -1,4 +1,4 @@
-//! Man pages and completions of the station, as packages take them along.
+//! Man pages and completions of the station, which packages contain.
 
 use std::fs;
 use std::path::Path;
@@ -24,7 +24,7 @@ fn every_command_has_a_page_which_is_not_written_over_unless_asked() {
     assert!(!folder.path().join("halfrow-station-lane.1").exists(), "a command that is hidden has a page");
     let help = did(&["--help"]).said;
     let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1);
-    // Names stand two columns in; what is said of them goes on further in.
+    // Names are indented by two columns, continued descriptions by more.
     let names = listed.take_while(|line| !line.is_empty()).filter_map(|line| line.strip_prefix("  "));
     let names: Vec<_> =
         names.filter(|line| !line.starts_with(' ')).filter_map(|line| line.split(' ').next()).collect();

@@ -1,4 +1,4 @@
-//! Plans: what is taken, and what is refused with its line and a remedy.
+//! Plans: what is accepted, and what is refused with its line and a remedy.
 
 mod tables;
 
@@ -141,7 +141,7 @@ fn what_differs_from_what_holds_without_it_is_what_the_plan_says() {
     assert_eq!(limit.blames, Blame::Board);
 }
 
-/// The hash is of the text and of what it names, by a calculation of its own: `sha256sum` of the same bytes.
+/// The hash is that of the text and of the files that it names. The expected one is computed from the same bytes by `sha256sum`.
 #[test]
 fn the_hash_changes_with_the_text_and_with_every_file_that_it_names() {
     let plan = load(WHOLE).unwrap();
@@ -163,7 +163,7 @@ fn the_hash_changes_with_the_text_and_with_every_file_that_it_names() {
     assert_ne!(Plan::load(&folder.path().join("plan.toml")).unwrap().sha256, expected);
 }
 
-/// What is replaced in the plan, by what, and what is said then.
+/// What is replaced in the plan, by what, and how the message begins then.
 const BAD: [(&str, &str, &str); 37] = [
     ("schema = 1", "schema = 2", "plan.toml:1: this program reads plans of schema 1, not 2; take the"),
     ("schema = 1", "schema = 1\nschma = 1", "plan.toml:2: unknown field `schma`"),
@@ -306,7 +306,7 @@ fn a_plan_that_is_checked_prints_its_names_in_their_own_lines() {
     assert!(said.contains("  2 a\\nPASS: 1 x "), "{said}");
 }
 
-/// As editors of Windows save umlauts, and a device that has no end.
+/// Editors on Windows save umlauts this way; the other file is a device without an end.
 #[test]
 fn a_plan_that_is_no_text_is_told_as_that() {
     let folder = tempfile::tempdir().unwrap();
@@ -329,7 +329,7 @@ fn as_json(text: &str) -> Option<Value> {
     serde_json::to_value(toml::from_str::<toml::Value>(text).ok()?).ok()
 }
 
-/// The schema takes what the program takes, and refuses what is wrong by its shape alone.
+/// The schema accepts what the program accepts, and refuses what only its form makes wrong.
 #[test]
 fn the_schema_says_of_plans_what_the_program_does() {
     let schema: Value = serde_json::from_str(JSON_SCHEMA).unwrap();
@@ -378,7 +378,7 @@ fn the_plan_of_the_page_is_one_by_the_schema() {
     assert_eq!(errors, Vec::<String>::new());
 }
 
-/// Which limits there are, and whom each blames, is told on the page and to whoever writes a plan with the schema.
+/// The page, and the schema for whoever writes a plan with it, list the limits that exist and whom each one blames.
 #[test]
 fn the_page_and_the_schema_tell_what_can_have_a_limit() {
     let page = include_str!("../../../../docs/station.md");

@@ -5,11 +5,11 @@ use std::process::Command;
 use super::floor::{Running, SERIALS, Station};
 use crate::common::program;
 
-/// The sixth start of a thread or a process fails in each of the station's threads. The engine's own thread alone makes so
-/// many: two for each run, its lane and then its hooks or its recovery.
+/// In each of the station's threads, the sixth start of a thread or a process fails. Only the engine's own thread starts that
+/// many: two for each run, for its lane and then for its hooks or its recovery.
 fn without_the_sixth(station: &Station) -> Running {
     let mut traced = Command::new("strace");
-    // Lanes and hooks are left alone.
+    // Lanes and hooks are not traced.
     traced.args(["-f", "-b", "execve", "-qq", "-o"]).arg(station.path("calls"));
     traced.args(["-e", "trace=clone3", "-e", "signal=none", "-e", "inject=clone3:error=EAGAIN:when=6"]);
     traced.arg(program());
@@ -35,7 +35,7 @@ fn hooks_that_no_thread_is_there_for_are_told_as_hooks_that_failed() {
     assert_one_failed(&station);
 }
 
-/// What strace did is what the station met.
+/// The station met exactly the failure that strace injected.
 fn assert_one_failed(station: &Station) {
     let calls = std::fs::read_to_string(station.path("calls")).unwrap();
     assert_eq!(calls.matches("(INJECTED)").count(), 1, "{calls}");

@@ -1,4 +1,4 @@
-//! What a plan says of tables and frames, and the files that they are made of.
+//! Tables and frames in a plan, and the files that they are made from.
 
 use std::fs;
 use std::process::Command;
@@ -8,14 +8,14 @@ use halfrow_station::plan::{Act, Plan};
 use super::{WHOLE, load};
 use crate::common::program;
 
-/// With tables, and of two steps one with tables of its own.
+/// A plan with these tables and two steps, of which the second has tables of its own.
 fn of_tables(tables: &str, own: &str) -> String {
     let [head, rest] = [&WHOLE[..WHOLE.find("[tables]").unwrap()], "frames = [\"builtin:noise\"]\n"];
     let own = format!("[[step]]\nkind = \"verify\"\nname = \"own\"\n{rest}[step.tables]\n{own}\n");
     format!("{head}[tables]\n{tables}\n[[step]]\nkind = \"verify\"\n{rest}{own}")
 }
 
-/// What a step says of tables is as if the plan said it for all.
+/// A key in the tables of a step has the same effect as in those of the plan.
 #[test]
 fn tables_of_a_step_stand_in_the_place_of_the_plan_s_key_by_key() {
     let tables = "radius = 20.0\nwidth = 64\nheight = 16\nbits = 10\nphase = \"rggb\"\nrows = \"equation-9\"\nkernel = \"hermite\"";
@@ -40,12 +40,12 @@ fn tables_of_a_step_stand_in_the_place_of_the_plan_s_key_by_key() {
         assert_ne!(own, of_plan, "{other}");
         assert_eq!(own, chosen(&of_tables(&tables.replace(key, other), ""), 1), "{other}");
     }
-    // A lens takes the place of a radius.
+    // A lens replaces a radius.
     let other = load(&of_tables(tables, "lens = \"other.yml\"")).map(drop).unwrap_err();
     assert!(other.contains("the file other.yml cannot be read"), "{other}");
 }
 
-/// What is in a row of a colour picture is red where the phase says so.
+/// The phase decides which samples of a colour picture's row are red.
 #[test]
 fn a_picture_in_colour_is_seen_through_the_phase_of_the_plan() {
     let folder = tempfile::tempdir().unwrap();
@@ -63,7 +63,7 @@ fn a_picture_in_colour_is_seen_through_the_phase_of_the_plan() {
     assert!(red[0] > red[1] && red[1] == blue[1] && blue[1] > blue[0], "{red:?}, {blue:?}");
 }
 
-/// A lens, a table file or a kernel of the same name with other bytes is another plan.
+/// With other bytes in a lens, table file or kernel of the same name, the plan is another one.
 #[test]
 fn every_file_that_tables_are_made_of_is_in_the_hash() {
     let folder = tempfile::tempdir().unwrap();
@@ -92,7 +92,7 @@ fn every_file_that_tables_are_made_of_is_in_the_hash() {
     }
 }
 
-/// Nobody writes to it, and whoever opened it would wait for ever.
+/// Nobody writes to it, so opening it would wait for ever.
 #[test]
 fn a_pipe_that_a_plan_names_is_refused_before_it_is_read() {
     let folder = tempfile::tempdir().unwrap();
@@ -106,7 +106,7 @@ fn a_pipe_that_a_plan_names_is_refused_before_it_is_read() {
     assert!(checked.status.code() == Some(2) && said.contains("plan.toml:27: the file "), "{said}");
 }
 
-/// Frames are counted by 16 bits on the wire, and a few of the numbers are not theirs (protocol/WIRE.md).
+/// Frame numbers have 16 bits on the wire, and a few of them are reserved (protocol/WIRE.md).
 #[test]
 fn more_frames_than_a_run_can_number_are_refused_when_the_plan_is_read() {
     let of_so_many = |count: usize| {

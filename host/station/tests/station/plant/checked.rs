@@ -1,4 +1,4 @@
-//! `plant check` finds whatever is not as it was sent.
+//! `plant check` finds everything that is not as it was sent.
 
 use std::path::Path;
 use std::process::Command;
@@ -18,12 +18,12 @@ use crate::history::made::{BEGIN_MS, DAY_MS, Run};
 use crate::history::released::history;
 use crate::jobs::claims::late;
 
-/// A plant with a job of which two runs came, the history of a station, late runs of three others, and what two bound differently.
+/// A plant with a job that got two runs, the history of a station, late runs of three others, and conflicting bindings of two.
 fn plant() -> Server {
     let (server, judged) = late(true);
     assert_eq!(judged, [["0"], ["1"]], "one run is superseded");
     send(history(), server.address());
-    // Beside those of the history, which began at the same moments.
+    // In addition to those of the history, which began at the same moments.
     let runs: Vec<_> = drawn(&mut Draw(3));
     let runs: Vec<_> = runs.into_iter().map(|run| Run { started_ms: run.started_ms + 7, ..run }).collect();
     let parcels = parcels(&runs);
@@ -38,7 +38,7 @@ fn plant() -> Server {
     server
 }
 
-/// What is wrong with the database `name` of the server, as sentences.
+/// The faults of the server's database `name`, as sentences.
 pub(super) fn faults(server: &Server, name: &str) -> Vec<String> {
     let url = server.url().replace("/plant", &format!("/{name}"));
     let plant = Plant::connect(&PlantAddress::new(&url, None, None).unwrap()).unwrap();
@@ -48,7 +48,7 @@ pub(super) fn faults(server: &Server, name: &str) -> Vec<String> {
     checked.faults.iter().map(ToString::to_string).collect()
 }
 
-/// What is wrong when `change` was made to a copy of the plant.
+/// The faults of a copy of the plant after `change`.
 fn spoilt(server: &Server, change: &str) -> Vec<String> {
     let copy = "CREATE DATABASE spoilt TEMPLATE plant";
     let mut client = server.client("postgres");
@@ -59,7 +59,7 @@ fn spoilt(server: &Server, change: &str) -> Vec<String> {
     faults(server, "spoilt")
 }
 
-/// A text without the run of which it is, so that what is expected can be written down.
+/// Whether a fault contains `expected`, which leaves out the run's id.
 fn is_told(faults: &[String], expected: &str) -> bool {
     faults.iter().any(|fault| fault.contains(expected))
 }
@@ -70,7 +70,7 @@ fn whatever_came_in_whatever_order_is_found_to_be_as_it_was_sent() {
     assert_eq!(faults(&server, "plant"), [""; 0]);
 }
 
-/// As of stations that have a newer program.
+/// As of stations with a newer program.
 #[test]
 fn records_with_a_key_more_are_no_fault() {
     let change = r#"WITH newer AS (
@@ -129,7 +129,7 @@ fn prune(settings: &Path, days: i64) -> Did {
     command.arg("--settings").arg(settings).output().unwrap().into()
 }
 
-/// What old runs have in rows may go, for their records have it; a run that comes late may have it all the same.
+/// The rows of old runs may go, since the records contain them; a run that arrives late may still have rows.
 #[test]
 fn rows_of_old_runs_are_removed_and_nothing_else_is_missed() {
     let server = plant();
@@ -139,7 +139,7 @@ fn rows_of_old_runs_are_removed_and_nothing_else_is_missed() {
     let kept = ["run", "record", "failure", "suspect", "day_count", "retest"];
     let (before, rows) = (kept.map(count), ["step", "measurement"].map(count));
     let prune = |days: i64| prune(&settings, days);
-    // Those of the two stations began years ago, all others later.
+    // The runs of the two stations began years ago, all others later.
     let years = (crate::common::now_ms() - BEGIN_MS) / DAY_MS + 1_500;
     let old = |table: &str| {
         let of = format!("SELECT id FROM run WHERE started_ms < {}", BEGIN_MS - 1_500 * DAY_MS);
@@ -159,13 +159,13 @@ fn rows_of_old_runs_are_removed_and_nothing_else_is_missed() {
         server.rows("SELECT operator_id, detail FROM audit WHERE act = 'prune rows'"),
         [["engel", "old"]; 2]
     );
-    // What is missing behind it is missed still.
+    // Rows of newer runs that are missing are still reported.
     let faults =
         spoilt(&server, "DELETE FROM step WHERE run_id = (SELECT max(run_id) FROM step) AND seq = 1");
     assert_eq!(faults.len(), 1, "{faults:?}");
 }
 
-/// Each change is one that the schema allows, and what names it.
+/// Changes that the schema allows, and part of the fault that names each.
 const CHANGES: [(&str, &str); 33] = [
     ("UPDATE plan SET version = '2' WHERE version = '1'", "table plan, row"),
     ("UPDATE plan SET first_used_ms = first_used_ms + 1 WHERE name = 'final'", "first_used_ms is"),

@@ -1,4 +1,4 @@
-//! Runs that a plant would take for earlier or later than they are.
+//! Runs that a plant would order wrongly because of their clock.
 
 use std::fs;
 use std::process::Command;
@@ -14,7 +14,7 @@ use crate::common::{now_ms, program};
 use crate::history::made::{End, HOUR_MS, Made, Run};
 use crate::lanes::floor::SERIALS;
 
-/// The server's clock is an hour fast for whoever connects from now on.
+/// Makes the server's clock an hour fast for whoever connects from now on.
 const FAST: &str = "CREATE FUNCTION public.clock_timestamp() RETURNS timestamptz LANGUAGE sql
     AS $$ SELECT pg_catalog.clock_timestamp() + interval '1 hour' $$;
     ALTER DATABASE plant SET search_path = public, pg_catalog";
@@ -23,7 +23,7 @@ fn now_of(serial: &str) -> Run {
     Run { started_ms: now_ms(), ..Run::of(serial, End::Pass) }
 }
 
-/// What the store says of a run that begins at this moment.
+/// Whether the store begins a run at this moment.
 fn begun(made: &mut Made, serial: &str) -> Result<(), StoreError> {
     made.try_begin(&now_of(serial)).map(drop)
 }
@@ -42,7 +42,7 @@ fn no_run_begins_while_the_clocks_of_station_and_plant_are_apart() {
     made.store.heard_plant(sink.beat(0, 0).unwrap().unwrap());
     let refused = begun(&mut made, "S2").unwrap_err();
     assert!(matches!(refused, StoreError::ClockApart { minutes: 60..=61 }), "{refused}");
-    // Whoever sends to others alone is in order with itself.
+    // A station that only sends elsewhere only needs to be in order with itself.
     made.store.sends_to(vec!["mes".to_owned()]).unwrap();
     begun(&mut made, "S3").unwrap();
 }
@@ -63,7 +63,7 @@ fn no_run_begins_behind_one_that_is_dated_ahead() {
     assert_eq!(running.end().0, Some(0));
 }
 
-/// A computer that slept has both clocks ahead; one whose clock was set has the wall's alone.
+/// When a computer was suspended, both clocks are ahead; when its clock was set, only the wall clock is.
 #[test]
 fn a_station_goes_on_without_its_plant_when_its_computer_slept_and_not_when_its_clock_was_set() {
     let mut server = Server::prepared();
@@ -74,7 +74,7 @@ fn a_station_goes_on_without_its_plant_when_its_computer_slept_and_not_when_its_
     let mut running = of_plant.started(program);
     running.scan(SERIALS[0]);
     running.state("1", "PASS");
-    // The plant's clock was heard before it was sent anything.
+    // The station got the plant's clock before it sent anything.
     await_sent(&of_plant);
     server.kill();
     let mut came_to = |serial: &str| {

@@ -1,5 +1,4 @@
-//! Connections that are cut in front of a COMMIT or behind it, and a server that is killed: nothing is lost, and nothing is there
-//! twice.
+//! Connections that are cut before or after a COMMIT, and a server that is killed: nothing is lost, and nothing is doubled.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -22,7 +21,7 @@ fn a_connection_that_is_cut_at_any_commit_loses_nothing_and_doubles_nothing() {
     cut_at(0..8);
 }
 
-/// Cuts connections in every way at each of these commits.
+/// Cuts connections in every way at each of these COMMITs.
 fn cut_at(numbers: impl IntoIterator<Item = usize>) {
     let server = Server::prepared();
     for number in numbers {
@@ -37,7 +36,7 @@ fn cut_at(numbers: impl IntoIterator<Item = usize>) {
             let address = PlantAddress::new(&url, None, None).unwrap();
             let (made, first) = send(history(), address.clone());
             assert!(first.is_away && first.failed == 1, "{cut:?} {number}: {first:?}");
-            // What the station holds to be unsent is there if, and only if, the server had heard of the COMMIT.
+            // What the station regards as unsent is at the plant if, and only if, the server got the COMMIT.
             let [unsent] = &made.now().unsent().unwrap()[..] else { panic!("nothing was cut") };
             let there = server
                 .rows("SELECT id FROM run UNION ALL SELECT id FROM audit UNION ALL SELECT id FROM waiver");
@@ -51,7 +50,7 @@ fn cut_at(numbers: impl IntoIterator<Item = usize>) {
     }
 }
 
-/// All that waits for a later try is due now.
+/// Makes everything that waits for a later try due now.
 pub(super) fn due(made: &crate::history::made::Made) {
     let database = rusqlite::Connection::open(made.folder().database()).unwrap();
     database.execute("UPDATE outbox SET next_ms = 0", []).unwrap();
@@ -71,7 +70,7 @@ fn a_server_that_is_killed_and_comes_back_gets_all() {
     let (made, all) = send(made, server.address());
     assert_eq!((all.sent, all.failed), (10, 0));
     is_as(&server, &made);
-    // Connections that are open when it is killed are not taken for anything.
+    // Connections that were open when the server was killed are not mistaken for live ones.
     server.kill();
     server.again();
     let (made, none) = send(made, server.address());

@@ -1,4 +1,4 @@
-//! How many runs a second a plant takes, and how large it grows by them.
+//! How many runs a second a plant takes, and how large it grows.
 
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread;
@@ -11,12 +11,12 @@ use super::sent::send_as;
 use super::server::Server;
 use crate::history::made::{BEGIN_MS, End, Made, Run};
 
-/// A year of two hundred stations at two hundred boards a day.
+/// A year of two hundred stations, each with two hundred boards a day.
 const YEAR: f64 = 200.0 * 200.0 * 365.0;
-/// How many runs one folder has, which is gone when they are sent.
+/// How many runs there are in a folder, which is deleted when they are sent.
 const FOLDER: u32 = 20_000;
 
-/// So many runs, one in thirty of them a FAIL, in folders; the next one is made while one is sent.
+/// `count` runs in folders, one in thirty of them a FAIL; the next folder is made while one is sent.
 fn made(count: u32) -> Receiver<Made> {
     let (sender, folders) = sync_channel(0);
     thread::spawn(move || {
@@ -72,7 +72,7 @@ fn a_plant_takes_so_many_runs_a_second_and_grows_by_so_much() {
     println!("{}", vacuumed(&server, "VACUUM (FULL, ANALYZE)"));
 }
 
-/// How large each table is when this is done.
+/// Runs this statement, and lists the sizes of the tables.
 fn vacuumed(server: &Server, how: &str) -> String {
     let begun = Instant::now();
     server.client("plant").batch_execute(how).unwrap();

@@ -1,4 +1,4 @@
-//! Runs of one unit come from several stations in any order, and are counted as one station would have counted them.
+//! Runs of one unit arrive from several stations in any order, and are counted as one station would have counted them.
 
 use halfrow_station::store::{Entry, Kind, Parcel, Plant};
 
@@ -8,7 +8,7 @@ use crate::history::made::{BEGIN_MS, DAY_MS, End, Made, Run};
 
 const STATIONS: [&str; 3] = ["station 7", "station 8", "station 9"];
 
-/// What is counted, with the serial number in the place of a unit's id, which depends on who came first.
+/// What is counted, with serial numbers instead of the units' ids, which depend on who came first.
 const COUNTED: [&str; 4] = [
     "SELECT run.id, unit.serial, run.nth FROM run JOIN unit ON unit.id = run.unit_id ORDER BY run.id",
     "SELECT * FROM day_count WHERE runs > 0 ORDER BY plan_sha256, station, lane, day",
@@ -19,7 +19,7 @@ const COUNTED: [&str; 4] = [
      FROM failure JOIN unit ON unit.id = failure.unit_id ORDER BY run_id, kind, name",
 ];
 
-/// A few units, each judged several times under two plans on three stations.
+/// Random runs of a few units, each judged several times under two plans on three stations.
 pub(super) fn drawn(draw: &mut Draw) -> Vec<Run> {
     let ends = [
         End::Pass,
@@ -37,7 +37,7 @@ pub(super) fn drawn(draw: &mut Draw) -> Vec<Run> {
     (0..24).map(run).collect()
 }
 
-/// Everything that is counted when one station has all of it.
+/// Everything that is counted when one station has all the runs.
 fn at_one(runs: &[Run]) -> Vec<Vec<Vec<String>>> {
     let mut made = Made::new();
     for (run, number) in runs.iter().zip(1..) {
@@ -59,7 +59,7 @@ fn at_one(runs: &[Run]) -> Vec<Vec<Vec<String>>> {
     COUNTED.map(select).to_vec()
 }
 
-/// What several stations have to send of these runs.
+/// What the stations send of these runs.
 pub(super) fn parcels(runs: &[Run]) -> Vec<Parcel> {
     let mut stations: Vec<_> = STATIONS.iter().map(|_| Made::new()).collect();
     let parcel = |(run, number): (&Run, u32)| {
@@ -89,7 +89,7 @@ fn in_hundreds_of_orders_runs_are_counted_as_if_one_station_had_them() {
     orders(300);
 }
 
-/// So many drawn histories, each in a drawn order.
+/// `count` random histories, each in a random order.
 fn orders(count: u32) {
     let server = Server::prepared();
     let mut draw = Draw(7);
@@ -101,7 +101,7 @@ fn orders(count: u32) {
         let mut plant = Plant::connect(&server.address()).unwrap();
         for place in &order {
             plant.take(&parcels[*place]).unwrap();
-            // Now and then nobody knows whether it came.
+            // Sometimes it is unknown whether a parcel arrived, so it is sent twice.
             if draw.below(4) == 0 {
                 plant.take(&parcels[*place]).unwrap();
             }
@@ -112,7 +112,7 @@ fn orders(count: u32) {
     }
 }
 
-/// Every station at once, as they come.
+/// All stations send at the same time.
 #[test]
 fn stations_that_send_at_once_count_each_unit_once() {
     let server = Server::prepared();
@@ -123,11 +123,11 @@ fn stations_that_send_at_once_count_each_unit_once() {
             let (address, parcels) = (server.address(), &parcels);
             scope.spawn(move || {
                 let mut plant = Plant::connect(&address).unwrap();
-                // Each is sent by two, from both ends.
+                // Each parcel is sent by two threads, which begin at opposite ends.
                 let mine = parcels.iter().skip(first % 3).step_by(3);
                 let mine: Vec<_> = if first < 3 { mine.collect() } else { mine.rev().collect() };
                 for parcel in mine {
-                    // Whoever lost a race tries again, as the outbox does.
+                    // Who lost a race tries again, as the outbox does.
                     while let Err(error) = plant.take(parcel) {
                         assert!(!error.is_away(), "{error:?}");
                     }

@@ -1,4 +1,4 @@
-//! The way to the plant: TLS wherever it leaves the computer, and a password that nobody sees.
+//! The link to the plant: TLS wherever it leaves the computer, and a password that is never shown.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
@@ -12,17 +12,17 @@ use tempfile::TempDir;
 use super::server::Server;
 use crate::common::{PLAN, program, query};
 
-/// A password that stands nowhere else.
+/// A password that occurs nowhere else.
 const PASSWORD: &str = "correct-horse-battery-5e1f";
-/// And one that is not it.
+/// A wrong password.
 const WRONG: &str = "wrong-horse-5e1f";
 
-/// Makes an authority and a certificate that it signs for `localhost` in `folder`: ca.pem, server.crt, server.key.
+/// Makes an authority, and a certificate for `localhost` signed by it, in `folder`: ca.pem, server.crt, server.key.
 pub(crate) fn certificates(folder: &Path) {
     certificates_for(folder, "IP:127.0.0.1");
 }
 
-/// As [`certificates`], for these names besides.
+/// Like [`certificates`], for these names as well.
 pub(crate) fn certificates_for(folder: &Path, names: &str) {
     let script = "set -e
         openssl req -x509 -newkey rsa:2048 -nodes -keyout ca.key -out ca.pem -days 2 -subj /CN=authority 2>/dev/null
@@ -55,33 +55,33 @@ fn what_leaves_the_computer_goes_through_tls_and_to_the_plant_alone() {
     let plant = Plant::connect(&address).unwrap();
     assert_eq!(server.rows(through), [["t"]]);
     drop(plant);
-    // Another authority's certificate is not the plant's.
+    // A certificate of another authority is not accepted as the plant's.
     let other = tempfile::tempdir().unwrap();
     certificates(other.path());
     let stranger = PlantAddress::new(&url, None, Some(&other.path().join("ca.pem"))).unwrap();
     let refused = Plant::connect(&stranger).unwrap_err();
     assert!(refused.to_string().contains("is signed by nobody who is trusted"), "{refused:?}");
     assert!(refused.is_away());
-    // A server that speaks no TLS is not spoken to over a network, whatever the address allows.
+    // Over a network the station does not talk to a server without TLS, whatever the address allows.
     let mut plain = Server::start();
     let far = format!("postgres://postgres@{}:{}/plant?sslmode=disable", this_computer(), plain.port());
     plain.listens_everywhere();
     let address = PlantAddress::new(&far, None, Some(&ca)).unwrap();
     let refused = Plant::connect(&address).unwrap_err();
     assert!(format!("{refused:?}").contains("does not support TLS"), "{refused:?}");
-    // Certificates that are none are told at once.
+    // A file without certificates is refused at once.
     let none = PlantAddress::new(&far, None, Some(&place.path().join("names"))).unwrap_err();
     assert!(matches!(none, PlantAddressError::Trust(TrustError::NoCertificates)), "{none:?}");
 }
 
-/// An address of this computer that others reach, too.
+/// An address of this computer that other computers can reach, too.
 fn this_computer() -> String {
     let said = Command::new("hostname").arg("-I").output().unwrap();
     let said = String::from_utf8(said.stdout).unwrap();
     said.split_whitespace().find(|name| !name.contains(':')).unwrap().to_owned()
 }
 
-/// A server that asks the role `halfrow` for the password.
+/// A server that asks the role `halfrow` for a password.
 fn guarded() -> Server {
     let server = Server::start();
     let role = format!("CREATE ROLE halfrow LOGIN SUPERUSER PASSWORD '{PASSWORD}'");
@@ -90,7 +90,7 @@ fn guarded() -> Server {
     server
 }
 
-/// A station's folder, with these lines under `[plant]`.
+/// A station's folder, with these additional lines under `[plant]`.
 fn station(server: &Server, more: &str) -> TempDir {
     let folder = crate::common::folder();
     fs::write(folder.path().join("plan.toml"), PLAN).unwrap();
@@ -102,7 +102,7 @@ fn station(server: &Server, more: &str) -> TempDir {
     folder
 }
 
-/// What a command does, with this password in its environment; it says none.
+/// The exit code and output of a command with this password in its environment; no password may be printed.
 fn did(folder: &TempDir, arguments: &[&str], password: Option<&str>) -> (Option<i32>, String) {
     let mut command = Command::new(program());
     command.args(arguments).args(["-vv", "--settings", "station.toml"]).current_dir(folder.path());

@@ -1,4 +1,4 @@
-//! A plant with a million runs: how long each look through its pages takes.
+//! A plant with a million runs: how long each query through its pages takes.
 
 use std::io::Write as _;
 use std::time::Instant;
@@ -10,7 +10,7 @@ use crate::history::generated::{Draw, generate};
 use crate::history::in_time::{served, wanted_runs};
 use crate::history::made::Made;
 
-/// Brings the tables of a station to the plant as they are, past its outbox.
+/// Copies the tables of a station to the plant directly, without its outbox.
 fn copied(made: &Made, server: &Server) {
     let station = rusqlite::Connection::open(made.folder().database()).unwrap();
     let mut client = server.client("plant");
@@ -30,7 +30,7 @@ fn copied(made: &Made, server: &Server) {
     client.batch_execute("VACUUM ANALYZE").unwrap();
 }
 
-/// A value as COPY takes it.
+/// A value in the format of COPY.
 fn text(value: rusqlite::types::ValueRef<'_>) -> String {
     match value {
         rusqlite::types::ValueRef::Null => "\\N".to_owned(),

@@ -1,4 +1,4 @@
-//! Devices and units that two stations bound differently, neither of which knew of the other.
+//! Devices and units that two stations bound differently, since neither knew of the other.
 
 use std::process::Command;
 
@@ -17,12 +17,12 @@ use crate::history::commands::misread;
 use crate::history::made::{BEGIN_MS, DAY_MS, End, HOUR_MS, Made, Run, id};
 use crate::metrics::text::Figures;
 
-/// Long before whatever a person does while a test runs.
+/// Long before anything that a person does while a test runs.
 const LONG_AGO_MS: i64 = BEGIN_MS - 2_000 * DAY_MS;
 
 const DEVICES: [&str; 4] = ["00000000000000d1", "00000000000000d2", "00000000000000d3", "00000000000000d4"];
 
-/// A station that judged these units, each with a device that it had not seen before.
+/// A station that judged these units, each with a device that was new to it.
 fn station(name: &'static str, first: u32, judged: &[(&str, &'static str)]) -> Made {
     let mut made = Made::new();
     for ((serial, device), number) in judged.iter().zip(first..) {
@@ -41,13 +41,13 @@ fn judge(
     made.numbered(number, &judged(station, number, serial, device));
 }
 
-/// A run of the `number`-th hour.
+/// A run in the `number`-th hour.
 fn judged(station: &'static str, number: u32, serial: &str, device: (DeviceSeen, &'static str)) -> Run {
     let started_ms = LONG_AGO_MS + i64::from(number) * HOUR_MS;
     Run { station, started_ms, device: Some(device), ..Run::of(serial, End::Pass) }
 }
 
-/// Both took D1 for another unit, and B3 for another device; of B4 they say the same.
+/// Two stations that saw D1 on different units, and B3 with different devices; about B4 they agree.
 pub(super) fn two() -> [Made; 2] {
     let [d1, d2, d3, d4] = DEVICES;
     [
@@ -61,7 +61,7 @@ pub(super) fn found(server: &Server) -> Vec<Mismatch> {
     mismatches(&Snapshot::of_plant(plant).unwrap()).unwrap()
 }
 
-/// Who takes what for what, and what stands against it from where.
+/// Each mismatch: which station saw which device as which unit, and which binding that contradicts.
 fn told(server: &Server) -> Vec<String> {
     let mut told: Vec<_> = found(server)
         .into_iter()
@@ -110,7 +110,7 @@ fn a_person_who_binds_anew_settles_it_until_somebody_judges_otherwise_again() {
     rebind(&mut eight, "B2", Some("00000000000000d9"));
     let (mut eight, _) = send_as("station 8", eight, server.address());
     assert_eq!(told(&server), [""; 0]);
-    // What an ERROR saw, and what nobody looked at, is no judgement of who is who.
+    // A device seen in an ERROR, or not checked, says nothing about which unit it is.
     let later = |number| BEGIN_MS + 4_000 * DAY_MS + number;
     let device = Some((DeviceSeen::Known, d1));
     let mut run = Run { station: "station 8", device, started_ms: later(1), ..Run::of("B2", End::Pass) };
@@ -158,14 +158,14 @@ fn it_is_on_the_pages_in_what_the_command_says_and_in_the_figures() {
     assert_eq!(misread("unit", &told), Vec::<String>::new(), "{told:#}");
     assert!(said.said.contains(&format!("here B1 is device {} since ", DEVICES[0])), "{said:?}");
     assert!(!unit(&at_plant, "B4").said.contains("mismatch"));
-    // A station itself has none, from its own engine.
+    // A station has none of its own, from its own engine.
     let data = seven.folder().path().to_owned();
     let ours = unit(&["--json", "--data", data.to_str().unwrap()], "B1").said;
     let ours: Value = serde_json::from_str(&ours).unwrap();
     assert_eq!(ours[0]["mismatches"], Value::Array(Vec::new()));
 }
 
-/// A change of a binding as a station sends it, of the `number`-th hour behind all runs.
+/// A change of a binding in the form in which a station sends it, in the `number`-th hour after all runs.
 fn rebinding(number: u32, serial: &str, device: Option<&str>) -> Parcel {
     let at_ms = LONG_AGO_MS + i64::from(100 + number) * HOUR_MS;
     Parcel::Audit(AuditLine {
@@ -179,7 +179,7 @@ fn rebinding(number: u32, serial: &str, device: Option<&str>) -> Parcel {
     })
 }
 
-/// All bindings: the unit, the end of the device's number, and from which hour to which.
+/// All bindings: the unit, the end of the device's number, and the hours from and to which they hold.
 fn bound(server: &Server) -> Vec<String> {
     let text = format!(
         "SELECT unit.serial || ' ' || right(device, 2) || ' ' || (from_ms - {LONG_AGO_MS}) / {HOUR_MS}
@@ -189,7 +189,7 @@ fn bound(server: &Server) -> Vec<String> {
     server.rows(&text).into_iter().flatten().collect()
 }
 
-/// Every order of `count` things.
+/// All orders of `count` things.
 fn orders(count: usize) -> Vec<Vec<usize>> {
     let Some(last) = count.checked_sub(1) else { return vec![Vec::new()] };
     let with = |order: Vec<usize>| {
@@ -236,7 +236,7 @@ fn what_a_run_bound_since_is_not_ended_by_a_change_that_comes_late() {
     let server = Server::prepared();
     let [d1, _, _, d4] = DEVICES;
     send_as("station 7", station("station 7", 1, &[("B1", d1)]), server.address());
-    // It has the device that the person has given to B1 meanwhile.
+    // Its device is the one that the person gives to B1.
     send_as("station 8", station("station 8", 110, &[("B4", d4)]), server.address());
     let mut plant = Plant::connect(&server.address()).unwrap();
     plant.take(&rebinding(1, "B1", Some(d4))).unwrap();
@@ -244,7 +244,7 @@ fn what_a_run_bound_since_is_not_ended_by_a_change_that_comes_late() {
     assert_eq!(faults(&server, "plant"), [""; 0]);
 }
 
-/// The runs of B1 by one station and of B2 by another, with one device; the later one of B2 comes first.
+/// The runs of B1 on one station and of B2 on another, with the same device; B2's later run arrives first.
 #[test]
 fn a_mismatch_is_as_new_as_its_newest_run_in_whatever_order_they_come() {
     let server = Server::prepared();
@@ -265,7 +265,7 @@ fn a_mismatch_is_as_new_as_its_newest_run_in_whatever_order_they_come() {
     assert_eq!(faults(&server, "plant"), [""; 0]);
 }
 
-/// A person binds its unit anew in the moment in which the second run begins.
+/// A person binds the unit anew at the moment at which its second run begins.
 #[test]
 fn what_a_run_began_with_is_no_mismatch_though_it_is_bound_otherwise_since() {
     let server = Server::prepared();

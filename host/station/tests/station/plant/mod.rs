@@ -1,4 +1,4 @@
-//! The plant, on a real PostgreSQL server, and what comes to it from stations.
+//! The plant, on a real PostgreSQL server, and what stations send to it.
 
 mod checked;
 mod clocks;

@@ -1,4 +1,4 @@
-//! The plant's pages: what a station's show, over all stations, from the other engine.
+//! The plant's pages: what a station's pages show, for all stations, from the other engine.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,14 +15,14 @@ use crate::history::released::history;
 use crate::jobs::{board, job, plan, worker};
 use crate::pages::station::{Browser, Serving};
 
-/// The pages of the plant, with the folder that they have.
+/// The pages of the plant, and the folder that they use.
 pub(crate) fn served(server: &Server) -> (tempfile::TempDir, Serving) {
     let folder = crate::common::folder();
     let serving = Serving::of(&mut command(&settings(server, folder.path(), "")));
     (folder, serving)
 }
 
-/// Settings of the plant's pages in this folder, with `more` of `[web]` and behind it.
+/// Settings of the plant's pages in this folder, with `more` after the first lines of `[web]`.
 pub(crate) fn settings(server: &Server, folder: &Path, more: &str) -> PathBuf {
     let web = format!("[web]\nlisten = \"127.0.0.1:0\"\n{more}\n");
     let plant = crate::common::plant_settings(&server.url());
@@ -32,7 +32,7 @@ pub(crate) fn settings(server: &Server, folder: &Path, more: &str) -> PathBuf {
     settings
 }
 
-/// The program that serves them.
+/// The program that serves the plant's pages.
 pub(crate) fn command(settings: &Path) -> Command {
     let mut command = Command::new(program());
     command.args(["plant", "serve", "--settings"]).arg(settings);
@@ -45,7 +45,7 @@ pub(crate) fn text(browser: &Browser, path: &str) -> String {
     answer.text()
 }
 
-/// Nobody is to find the yield of one line in that of all.
+/// The yield of one station must not be that of all.
 #[test]
 fn yields_and_failures_are_of_the_station_that_is_asked_for() {
     let server = Server::prepared();
@@ -61,7 +61,7 @@ fn yields_and_failures_are_of_the_station_that_is_asked_for() {
     }
 }
 
-/// Everything that another program takes has the same bytes from both engines.
+/// Everything that other programs read has the same bytes from both engines.
 #[test]
 fn what_is_exported_has_the_same_bytes_at_the_station_and_at_the_plant() {
     let server = Server::prepared();
@@ -78,7 +78,7 @@ fn what_is_exported_has_the_same_bytes_at_the_station_and_at_the_plant() {
             assert_eq!(theirs.body, ours, "{format} of {run}");
         }
     }
-    // The table of all, and of what a filter leaves.
+    // The table of all runs, and of those that a filter selects.
     for filter in
         ["", "?lane=2", "?verdict=FAIL", "?plan=final&from=2026-11-02", "?station=station+7", "?serial=S1"]
     {
@@ -104,7 +104,7 @@ fn the_pages_show_every_station_and_only_look() {
     let mut plant = Plant::connect(&server.address()).unwrap();
     let other = "018f0000-0000-7000-8000-000000000000".to_owned();
     plant.see(&presence("station 8", other.clone())).unwrap();
-    // A second one of the same name is refused, and changes nothing.
+    // A second station of the same name is refused, and changes nothing.
     let twin = plant.see(&presence("station 7", other)).unwrap_err();
     assert!(matches!(&twin, PlantError::OtherStation { name } if name == "station 7"), "{twin:?}");
     let (_folder, serving) = served(&server);
@@ -131,7 +131,7 @@ fn the_pages_show_every_station_and_only_look() {
             "{page}"
         );
     }
-    // What a station does, nobody does here.
+    // What can be done at a station cannot be done here.
     for (method, path) in [("POST", "/scan"), ("POST", "/unit/rebind"), ("GET", "/live"), ("GET", "/outbox")]
     {
         let request = if method == "POST" { browser.post(path, &[]) } else { browser.get(path) };

@@ -1,4 +1,4 @@
-//! Plans that the plant publishes: only what an engineer signed is taken, and never less than a station had.
+//! Plans that the plant publishes: a station only takes what an engineer signed, and never anything older than it had.
 
 use std::fs;
 use std::net::TcpListener;
@@ -11,14 +11,14 @@ use tempfile::TempDir;
 use super::server::Server;
 use crate::common::{Did, PLAN, plant_settings, program};
 
-/// A picture of eight rows that a plan names.
+/// A picture of eight rows, which a plan names.
 fn picture(level: u8) -> Vec<u8> {
     let mut bytes = b"P5\n64 8\n4095\n".to_vec();
     bytes.extend((0..64 * 8).flat_map(|at: u16| [level, (at % 251) as u8]));
     bytes
 }
 
-/// An engineer with a plan, and a station that would have it of the plant.
+/// An engineer with a plan, and a station that gets it from the plant.
 pub(super) struct Published {
     pub(super) server: Server,
     folder: TempDir,
@@ -45,7 +45,7 @@ impl Published {
         self.folder.path().join(name).display().to_string()
     }
 
-    /// Writes the plan down in this version, with a picture of this level.
+    /// Writes the plan in this version, with a picture of this level.
     pub(super) fn plan(&self, version: &str, level: u8) {
         let text = PLAN
             .replace("version = \"1\"", &format!("version = \"{version}\""))
@@ -84,7 +84,7 @@ impl Published {
         self.did(&["plan", "fetch"])
     }
 
-    /// The version of the plan that the station's settings have, and the level of its picture.
+    /// The version of the plan in the station's settings, and the level of its picture.
     pub(super) fn held(&self) -> (String, u8) {
         let settings = Settings::load(self.path("station.toml").as_ref()).unwrap();
         let plan = &settings.plans[0];
@@ -93,7 +93,7 @@ impl Published {
     }
 }
 
-/// As a terminal would hide what follows.
+/// Otherwise a terminal would hide what follows.
 #[test]
 fn a_name_that_a_terminal_would_obey_is_spelt_out() {
     let made = Published::new();
@@ -123,7 +123,7 @@ fn a_plan_comes_to_the_station_with_its_files_and_an_older_one_can_hold_again() 
     assert_eq!(made.fetch().said, "CAM-T/quick 1, number 1, is new\n");
     assert_eq!(made.held(), ("1".to_owned(), 1));
     assert_eq!(made.fetch().said, "CAM-T/quick 1, number 1\n");
-    // What runs were judged by under a version stays what it is.
+    // A plan by which runs were judged keeps its content under its version.
     made.plan("1", 2);
     let taken = made.publish("engel.key");
     assert!(taken.code == Some(2) && taken.complained.contains("a version of its own"), "{taken:?}");
@@ -166,7 +166,7 @@ fn what_nobody_signed_who_is_trusted_is_not_taken() {
     let made = Published::new();
     made.publish("engel.key");
     made.fetch();
-    // Somebody has another key, or changes what stands in the plant's database.
+    // Somebody has another key, or changes the plant's database.
     made.did(&["plan", "key", &made.path("other.key")]);
     made.plan("2", 2);
     assert_eq!(made.publish("other.key").code, Some(0));
@@ -192,7 +192,7 @@ fn what_nobody_signed_who_is_trusted_is_not_taken() {
     refused("has the hash");
     change("UPDATE bundle SET text = 'nothing'");
     refused("is not a plan");
-    // A statement that was right once is not taken behind a later one.
+    // A statement that was valid once is refused after a later one.
     made.plan("3", 3);
     made.publish("engel.key");
     assert_eq!(made.fetch().said, "CAM-T/quick 3, number 3, is new\n");
@@ -202,7 +202,7 @@ fn what_nobody_signed_who_is_trusted_is_not_taken() {
     assert_eq!(made.held(), ("3".to_owned(), 3));
 }
 
-/// As after the plant was put back, and its number was given anew.
+/// As after the plant was put back, so that its number was given to another plan.
 #[test]
 fn another_plan_under_the_number_that_a_station_has_is_not_taken() {
     let made = Published::new();
@@ -216,7 +216,7 @@ fn another_plan_under_the_number_that_a_station_has_is_not_taken() {
     assert_eq!(made.held(), ("1".to_owned(), 1));
 }
 
-/// What the engineer with the key is made to sign by somebody who can write to the database, and has no key that anybody trusts.
+/// What somebody who can write to the database, but has no trusted key, may try to make the engineer with the key sign.
 #[test]
 fn an_older_plan_holds_again_as_it_was_signed_or_not_at_all() {
     let made = Published::new();
@@ -254,7 +254,7 @@ fn an_older_plan_holds_again_as_it_was_signed_or_not_at_all() {
     refused("is signed neither by this key nor");
 }
 
-/// The next number is one more than the last that somebody signed who is trusted.
+/// The next number is one more than the last that was signed with a trusted key.
 #[test]
 fn a_plan_gets_no_number_that_nobody_signed_who_is_trusted() {
     let made = Published::new();
@@ -296,7 +296,7 @@ fn what_was_kept_is_looked_at_again_whenever_it_is_used() {
     fs::remove_file(file.parent().unwrap().join("frames/a.pgm")).unwrap();
     made.fetch();
     assert_eq!(made.held(), ("1".to_owned(), 1));
-    // A key that is not trusted any more.
+    // A key that is no longer trusted.
     let mut other = fs::read_to_string(&settings).unwrap();
     let key = made.did(&["plan", "key", &made.path("other.key")]).said.trim().to_owned();
     other = other.replace(&made.trusted, &key);
@@ -321,7 +321,7 @@ fn a_station_starts_with_what_it_has_when_the_plant_is_away() {
     assert!(with.code == Some(0) && with.complained.contains("the plans stay as they are"), "{with:?}");
 }
 
-/// As after the station's computer died: its folder comes from a backup, and the plant is away.
+/// As after the station's computer failed: its folder comes from a backup, and the plant is away.
 #[test]
 fn a_restored_station_starts_with_the_plans_that_it_had() {
     let mut made = Published::new();
@@ -337,7 +337,7 @@ fn a_restored_station_starts_with_the_plans_that_it_had() {
     assert!(started.code == Some(0) && started.complained.contains("the plans stay"), "{started:?}");
 }
 
-/// It takes connections, and says nothing for ever.
+/// The plant accepts connections, and then stays silent for ever.
 #[test]
 fn a_station_starts_with_what_it_has_when_the_plant_does_not_answer() {
     let made = Published::new();

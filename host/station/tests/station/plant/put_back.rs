@@ -1,4 +1,4 @@
-//! A plant that has lost what it had: its stations have it still.
+//! A plant that has lost data, which its stations still have.
 
 use halfrow_station::store::Plant;
 
@@ -11,7 +11,7 @@ use crate::common::{NO_AUDIT, query};
 use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use crate::history::released::history;
 
-/// The plant's tables, with nothing in them.
+/// Empties the plant's tables.
 fn emptied(server: &Server) {
     let mut client = server.client("postgres");
     client.batch_execute("DROP DATABASE plant WITH (FORCE)").unwrap();
@@ -43,12 +43,12 @@ fn a_plant_that_is_put_back_has_all_again_when_its_stations_send_it_again() {
     client.batch_execute("DROP DATABASE plant WITH (FORCE)").unwrap();
     client.batch_execute("ALTER DATABASE kept RENAME TO plant").unwrap();
     let lost = query(made.as_ref(), "SELECT max(id) FROM run WHERE state = 'final'").remove(0);
-    // It would never be known behind a run that is sent later.
+    // Once a later run is sent, nothing else would show the loss.
     made.run(&Run { lane: "3".to_owned(), started_ms: started_ms + HOUR_MS, ..Run::of("S3", End::Pass) });
     let (folder, store) = made.parts();
     drop(store);
     let again = ["outbox", "again", "plant", "--reason", "its disk broke", "--operator", "engel"];
-    // What cannot stand in the audit is not done, nor is anything for a sink that there is none of.
+    // What cannot be entered in the audit is not done, and neither is anything for a sink that does not exist.
     let database = rusqlite::Connection::open(folder.path().join("station.db")).unwrap();
     database.execute_batch(NO_AUDIT).unwrap();
     assert_eq!(did(folder.path(), &server, &again).code, Some(3));
@@ -62,7 +62,7 @@ fn a_plant_that_is_put_back_has_all_again_when_its_stations_send_it_again() {
     assert!(sent.said.contains("halfrow-station outbox again plant"), "{sent:?}");
     let done = did(folder.path(), &server, &again);
     assert_eq!((done.code, done.said.as_str()), (Some(0), "11 of plant are sent again\n"), "{done:?}");
-    // With the line of the audit that says so.
+    // Together with the audit's line about it.
     let sent = did(folder.path(), &server, &["outbox", "send", "--any-disk"]);
     assert!(sent.said.starts_with("13 sent, 0 not"), "{sent:?}");
     is_as(&server, &Made::at(folder));
@@ -70,7 +70,7 @@ fn a_plant_that_is_put_back_has_all_again_when_its_stations_send_it_again() {
     assert_eq!(told, [["engel", "plant", "its disk broke"]]);
 }
 
-/// The plant has this run, and nothing else that the station keeps.
+/// The plant gets this run, and nothing else that the station has.
 fn sent_alone(made: Made, run: &str, server: &Server) -> Made {
     let database = rusqlite::Connection::open(made.folder().database()).unwrap();
     let one = "UPDATE outbox SET done_ms = NULL, next_ms = 0, dead_ms = CASE WHEN subject = ?1 THEN NULL ELSE 1 END";
@@ -80,7 +80,7 @@ fn sent_alone(made: Made, run: &str, server: &Server) -> Made {
     made
 }
 
-/// A person need not know which runs a plant has lost where something that belongs to one of them comes later.
+/// A person need not know which runs a plant has lost when something that belongs to one of them comes later.
 #[test]
 fn runs_that_a_waiver_or_a_rebinding_misses_at_the_plant_are_sent_again() {
     let server = Server::prepared();

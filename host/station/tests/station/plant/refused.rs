@@ -1,4 +1,4 @@
-//! What a plant does not take, and what is not taken for a plant.
+//! What a plant refuses, and what is refused as a plant.
 
 use std::fs;
 use std::path::Path;
@@ -15,7 +15,7 @@ use crate::common::{Did, NO_AUDIT, PLAN, program, query};
 use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use crate::history::released::history;
 
-/// What a command of the station in this folder does, with settings that name the plant.
+/// Runs a command of the station in this folder, with settings that name the plant.
 pub(super) fn did(folder: &Path, server: &Server, arguments: &[&str]) -> Did {
     fs::write(folder.join("plan.toml"), PLAN).unwrap();
     let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n";
@@ -31,14 +31,14 @@ pub(super) fn did(folder: &Path, server: &Server, arguments: &[&str]) -> Did {
 fn a_run_that_the_plant_has_with_another_record_is_an_alarm_and_waits_for_a_person() {
     let server = Server::prepared();
     let (made, _) = send(history(), server.address());
-    // Somebody has changed a record at the plant, and the station does not know that it sent it.
+    // A record was changed at the plant, and the station does not know that it had sent it.
     let changed = "UPDATE run SET record_sha256 = repeat('0', 64) WHERE id = (SELECT min(id) FROM run)";
     server.client("plant").batch_execute(changed).unwrap();
     let run = query(made.as_ref(), "SELECT min(id) FROM run").remove(0);
     let database = rusqlite::Connection::open(made.folder().database()).unwrap();
     database.execute("UPDATE outbox SET done_ms = NULL", []).unwrap();
     let (made, all) = send(made, server.address());
-    // All others are sent.
+    // All the others are sent.
     assert_eq!((all.sent, all.failed, all.is_away), (9, 1, false));
     let unsent = made.now().unsent().unwrap();
     let [dead] = &made.now().dead(&unsent).unwrap()[..] else { panic!("nothing waits") };
@@ -49,7 +49,7 @@ fn a_run_that_the_plant_has_with_another_record_is_an_alarm_and_waits_for_a_pers
     // It is not tried again by itself.
     let (made, none) = send(made, server.address());
     assert_eq!(none.sent + none.failed, 0);
-    // A person finds out, puts it right at the plant, and releases it.
+    // A person looks into it, corrects the plant, and releases the entry.
     let ours = query(made.as_ref(), &format!("SELECT record_sha256 FROM run WHERE id = '{run}'")).remove(0);
     let right = format!("UPDATE run SET record_sha256 = '{ours}' WHERE id = '{run}'");
     server.client("plant").batch_execute(&right).unwrap();
@@ -59,7 +59,7 @@ fn a_run_that_the_plant_has_with_another_record_is_an_alarm_and_waits_for_a_pers
     assert_eq!(busy.code, Some(4), "{busy:?}");
     let (folder, store) = made.parts();
     drop(store);
-    // What cannot stand in the audit is not released.
+    // What cannot be entered in the audit is not released.
     database.execute_batch(NO_AUDIT).unwrap();
     let unnoted = did(folder.path(), &server, &release);
     assert_eq!(unnoted.code, Some(3), "{unnoted:?}");
@@ -79,7 +79,7 @@ fn a_run_that_the_plant_has_with_another_record_is_an_alarm_and_waits_for_a_pers
 #[test]
 fn a_waiver_waits_for_its_run() {
     let server = Server::prepared();
-    // The run that is waived stays behind.
+    // The waived run is not due yet.
     let mut made = history();
     made.store.sends_to(vec!["plant".to_owned()]).unwrap();
     let database = rusqlite::Connection::open(made.folder().database()).unwrap();
@@ -135,7 +135,7 @@ fn tables_that_are_not_there_or_of_another_version_are_no_plant() {
     assert!(matches!(newer, PlantError::Store(StoreError::Newer { found: 99, .. })), "{newer:?}");
 }
 
-/// The tables of the program of version 2, with a unit.
+/// The tables of a program with schema 2, and a unit in them.
 fn older(server: &Server) {
     let words = |text: &str| {
         text.replace("{int}", "BIGINT").replace("{real}", "DOUBLE PRECISION").replace("{strict}", "")
@@ -151,7 +151,7 @@ fn older(server: &Server) {
     client.batch_execute("INSERT INTO unit VALUES (repeat('u', 36), 'CAM-T', 'S1', 7)").unwrap();
 }
 
-/// A plant of an earlier program is copied before it is brought up to date, all in one.
+/// A plant of an earlier program is copied before it is brought up to date, both in one transaction.
 #[test]
 fn an_older_plant_is_copied_and_brought_up_to_date() {
     let server = Server::start();
@@ -165,7 +165,7 @@ fn an_older_plant_is_copied_and_brought_up_to_date() {
     Plant::connect(&server.address()).unwrap();
 }
 
-/// Who went back to the tables of before an upgrade brings them up to date again, and loses neither copy.
+/// Who went back to the tables from before an upgrade brings them up to date again, and loses neither copy.
 #[test]
 fn a_plant_that_went_back_is_brought_up_to_date_beside_the_copy_of_the_first_time() {
     let server = Server::start();
@@ -183,7 +183,7 @@ fn a_plant_that_went_back_is_brought_up_to_date_beside_the_copy_of_the_first_tim
     assert_eq!(server.rows("SELECT serial FROM before_3_2.unit"), [["before_3_2"]]);
 }
 
-/// What an earlier program has looked at in its transaction stays so until that is over.
+/// What an earlier program has read in a transaction holds until that is over.
 #[test]
 fn a_plant_is_brought_up_to_date_behind_what_an_earlier_program_has_under_way() {
     let server = Server::start();
@@ -199,7 +199,7 @@ fn a_plant_is_brought_up_to_date_behind_what_an_earlier_program_has_under_way() 
     assert_eq!(Plant::prepare(&server.address()).unwrap(), 7);
 }
 
-/// Also over the connection that it had before: what it does not know would be missing for ever.
+/// Also over a connection that it already had: what it does not know would be missing for ever.
 #[test]
 fn a_program_that_is_older_than_the_tables_writes_nothing_into_them() {
     let server = Server::prepared();
@@ -240,7 +240,7 @@ fn a_database_that_sorts_otherwise_than_a_station_is_refused() {
     assert!(refused.to_string().contains("createdb --template template0 --encoding UTF8"), "{refused}");
 }
 
-/// A station whose folder was lost and made anew is somebody else, until a person says that it is not.
+/// A station whose folder was lost and made anew counts as another one, until a person says that it is the same.
 #[test]
 fn a_station_with_another_folder_is_taken_for_itself_when_a_person_says_so() {
     let server = Server::prepared();

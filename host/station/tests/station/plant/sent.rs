@@ -1,4 +1,4 @@
-//! What comes to the plant is what the station has.
+//! What arrives at the plant is what the station has.
 
 use halfrow_station::outbox::{PlantSink, Round, round};
 use halfrow_station::store::{PlantAddress, Presence, SINK_OF_PLANT, SharedStore, Store};
@@ -8,12 +8,12 @@ use super::tables::is_as;
 use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use crate::history::released::history;
 
-/// Sends all that is due, until nothing is.
+/// Sends everything that is due, until nothing is.
 pub(crate) fn send(made: Made, address: PlantAddress) -> (Made, Round) {
     send_as("station 7", made, address)
 }
 
-/// As [`send`], from a station of this name.
+/// Like [`send`], from a station of this name.
 pub(crate) fn send_as(name: &str, made: Made, address: PlantAddress) -> (Made, Round) {
     let (folder, mut store) = made.parts();
     store.sends_to(vec![SINK_OF_PLANT.to_owned()]).unwrap();
@@ -31,18 +31,18 @@ pub(crate) fn send_as(name: &str, made: Made, address: PlantAddress) -> (Made, R
     (Made::at(folder), all)
 }
 
-/// The plant at this address as the sink of a station of this name.
+/// The plant at this address, as the sink of a station of this name.
 pub(super) fn sink(name: &str, store: &mut Store, address: PlantAddress) -> PlantSink {
     PlantSink::new(address, presence(name, store.origin().unwrap()), store.folder().clone())
 }
 
-/// A station of this name.
+/// The presence of a station of this name.
 pub(crate) fn presence(name: &str, origin: String) -> Presence {
     let plans = "CAM-T final 1\nCAM-T intake 1".to_owned();
     Presence { name: name.to_owned(), origin, program: "halfrow 0".to_owned(), plans, unsent: 0, dead: 0 }
 }
 
-/// The station does not know any more what it has sent.
+/// Makes the station forget what it has sent.
 pub(super) fn forget(made: &Made) {
     let database = rusqlite::Connection::open(made.folder().database()).unwrap();
     assert!(database.execute("DELETE FROM outbox", []).unwrap() > 0);
@@ -51,7 +51,7 @@ pub(super) fn forget(made: &Made) {
 #[test]
 fn all_that_a_station_keeps_comes_to_the_plant_once() {
     let server = Server::prepared();
-    // A role that may do what docs/plant.md says that a station's must.
+    // A role with the rights that a station's role needs according to docs/plant.md.
     let role = "CREATE ROLE station LOGIN; GRANT SELECT, INSERT, UPDATE, DELETE ON ALL TABLES IN SCHEMA public TO station";
     server.client("plant").batch_execute(role).unwrap();
     let url = server.url().replace("postgres@", "station@");
@@ -60,7 +60,7 @@ fn all_that_a_station_keeps_comes_to_the_plant_once() {
     // Seven runs, a waiver with its line in the audit, and a rebinding.
     assert_eq!(all, Round { sent: 10, failed: 0, is_away: false });
     is_as(&server, &made);
-    // What comes later is sent alone.
+    // What comes later is sent on its own.
     let (mut made, all) = send(made, server.address());
     assert_eq!(all, Round::default());
     let later = BEGIN_MS + 30 * HOUR_MS;

@@ -1,4 +1,4 @@
-//! A PostgreSQL server in a folder of its own, which ends with its test.
+//! A PostgreSQL server in its own folder, which ends with its test.
 
 use std::fs::{self, File};
 use std::net::TcpListener;
@@ -12,13 +12,13 @@ use halfrow_station::store::{Plant, PlantAddress};
 use postgres::{Client, NoTls};
 use tempfile::TempDir;
 
-/// How long a server may take to be there.
+/// How long a server may take to start.
 const STARTED: Duration = Duration::from_secs(60);
 
-/// A port that was free may be another's by the time the server asks for it; not again and again.
+/// A port that was free may be taken by the time the server asks for it, but not every time.
 const PORTS_TRIED: usize = 5;
 
-/// A server.
+/// A PostgreSQL server.
 pub(crate) struct Server {
     folder: TempDir,
     port: u16,
@@ -28,7 +28,7 @@ pub(crate) struct Server {
 }
 
 impl Server {
-    /// At work, with a database `plant` that has no tables.
+    /// A running server, with an empty database `plant`.
     pub(crate) fn start() -> Self {
         let folder = tempfile::tempdir().unwrap();
         give_to_server(folder.path());
@@ -46,7 +46,7 @@ impl Server {
         server
     }
 
-    /// With the plant's tables.
+    /// A running server with the plant's tables.
     pub(crate) fn prepared() -> Self {
         let server = Self::start();
         Plant::prepare(&server.address()).unwrap();
@@ -66,7 +66,7 @@ impl Server {
         assert!(self.begins(), "the server does not start again at port {}: {}", self.port, self.said());
     }
 
-    /// Starts it; not if its port is another's by now, or if it will not, which [`Server::said`] explains.
+    /// Starts it. Returns false if its port is taken by now, or if it does not start, which [`Server::said`] explains.
     fn begins(&mut self) -> bool {
         let mut server = as_server("postgres");
         server.arg("-D").arg(self.data()).args(["-p", &self.port.to_string(), "-k"]).arg(self.folder.path());
@@ -100,7 +100,7 @@ impl Server {
         self.folder.path().join("server.log")
     }
 
-    /// What it has written since it was started.
+    /// What it has logged since it was started.
     fn said(&self) -> String {
         fs::read_to_string(self.log()).unwrap()
     }
@@ -110,7 +110,7 @@ impl Server {
         self.data() == Path::new(&folder)
     }
 
-    /// Has a certificate and its key, which lie in `folder`, from here on.
+    /// Gives it a certificate and its key from `folder`, and restarts it.
     pub(crate) fn speaks_tls(&mut self, folder: &Path) {
         for name in ["server.crt", "server.key"] {
             fs::copy(folder.join(name), self.data().join(name)).unwrap();
@@ -121,7 +121,7 @@ impl Server {
         self.again();
     }
 
-    /// Can be reached from outside this computer, too, by everybody.
+    /// Restarts it such that everybody can reach it, also from other computers.
     pub(crate) fn listens_everywhere(&mut self) {
         self.listen = "*";
         self.allowed("host all all all trust\n");
@@ -129,13 +129,13 @@ impl Server {
         self.again();
     }
 
-    /// Asks this user for a password.
+    /// Makes it ask this user for a password.
     pub(crate) fn asks_for_a_password(&self, user: &str) {
         self.allowed(&format!("host all {user} all scram-sha-256\n"));
         self.client("postgres").batch_execute("SELECT pg_reload_conf()").unwrap();
     }
 
-    /// A rule in front of all others.
+    /// Puts a rule before all others.
     fn allowed(&self, rule: &str) {
         let path = self.data().join("pg_hba.conf");
         let rules = fs::read_to_string(&path).unwrap();
@@ -154,14 +154,14 @@ impl Server {
         assert!(Command::new("chmod").arg(mode).arg(&path).status().unwrap().success());
     }
 
-    /// Kills it and every process that it has, with -9.
+    /// Kills the server with SIGKILL; its child processes then end by themselves.
     pub(crate) fn kill(&mut self) {
         let Some(mut process) = self.process.take() else { return };
         let memory = self.memory();
-        // Its children end when they miss it.
+        // They end when they notice that it is gone.
         process.kill().unwrap();
         process.wait().unwrap();
-        // A machine has few of them, and they outlive whoever made them.
+        // A machine has few of these segments, and they outlive the process that made them.
         if let Some(memory) = memory {
             let _ = Command::new("ipcrm").args(["-m", &memory]).status();
         }
@@ -169,11 +169,11 @@ impl Server {
         for left in [socket, self.data().join("postmaster.pid")] {
             let _ = fs::remove_file(left);
         }
-        // It does not start while one of them still holds its memory.
+        // The server does not start while a child still holds its memory.
         thread::sleep(Duration::from_millis(300));
     }
 
-    /// The number of its segment of shared memory (System V), by which it tells whether another server has its folder.
+    /// The id of its segment of shared memory (System V), by which a server checks whether another one has its folder.
     fn memory(&self) -> Option<String> {
         let lock = fs::read_to_string(self.data().join("postmaster.pid")).ok()?;
         let key_and_number = lock.lines().nth(6)?;
@@ -197,7 +197,7 @@ impl Server {
         Client::connect(&text, NoTls)
     }
 
-    /// Every row of what `text` selects, each value as text.
+    /// All rows that `text` selects, each value as text.
     pub(crate) fn rows(&self, text: &str) -> Vec<Vec<String>> {
         rows(&mut self.client("plant"), text)
     }
@@ -213,7 +213,7 @@ impl Drop for Server {
     }
 }
 
-/// Every row of what `text` selects, each value as text; read by the server's own casts.
+/// All rows that `text` selects, each value as text, as the server itself converts it.
 pub(crate) fn rows(client: &mut Client, text: &str) -> Vec<Vec<String>> {
     let rows = client.simple_query(text).unwrap();
     let row = |message| match message {
@@ -225,10 +225,10 @@ pub(crate) fn rows(client: &mut Client, text: &str) -> Vec<Vec<String>> {
     rows.into_iter().filter_map(row).collect()
 }
 
-/// Whom Debian's package makes for the server, which refuses to run as root.
+/// The user that Debian's package makes for the server, which refuses to run as root.
 const USER: &str = "postgres";
 
-/// A cluster that has never run, which every server starts with a copy of: making one takes longer than most of the tests.
+/// A cluster that has never run. Every server starts with a copy, since making a cluster takes longer than most of the tests.
 fn cluster() -> &'static Path {
     static MADE: OnceLock<PathBuf> = OnceLock::new();
     MADE.get_or_init(|| {
@@ -241,7 +241,7 @@ fn cluster() -> &'static Path {
             let aside = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
             let whole = aside.path().join("data");
             copy(made.path(), &whole);
-            // Another process may have been sooner.
+            // Another process may have been faster.
             let renamed = fs::rename(whole, &cluster);
             assert!(renamed.is_ok() || cluster.exists(), "{renamed:?}");
         }
@@ -249,7 +249,7 @@ fn cluster() -> &'static Path {
     })
 }
 
-/// Made where the server's user may go.
+/// Makes a cluster in a folder that the server's user can reach.
 fn made_cluster() -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     give_to_server(folder.path());
@@ -257,7 +257,7 @@ fn made_cluster() -> TempDir {
         .arg("--pgdata")
         .arg(folder.path())
         .args(["--auth=trust", "--username=postgres", "--encoding=UTF8", "--locale=C", "--no-sync"])
-        // In megabytes: one segment is copied with each cluster.
+        // In megabytes: each copy of a cluster contains one segment.
         .arg("--wal-segsize=1")
         .output()
         .unwrap();
@@ -265,7 +265,7 @@ fn made_cluster() -> TempDir {
     folder
 }
 
-/// With its owners, since a server takes no cluster of somebody else.
+/// Copies with owners, since a server refuses a cluster of another user.
 fn copy(cluster: &Path, to: &Path) {
     let copied = Command::new("cp").arg("--archive").arg(cluster).arg(to).status().unwrap();
     assert!(copied.success(), "{} cannot be copied", cluster.display());
@@ -282,10 +282,10 @@ fn is_root() -> bool {
     Command::new("id").arg("-u").output().unwrap().stdout == b"0\n"
 }
 
-/// One of its programs, which ends with this thread.
+/// One of PostgreSQL's programs, which ends with this thread.
 fn as_server(program: &str) -> Command {
     let mut command = Command::new("setpriv");
-    // With it a server ends at once, too, but gives its shared memory back.
+    // SIGQUIT also ends a server at once, but lets it release its shared memory.
     command.args(["--pdeathsig", "QUIT"]);
     if is_root() {
         command.args(["--reuid", USER, "--regid", USER, "--clear-groups"]);
@@ -294,7 +294,7 @@ fn as_server(program: &str) -> Command {
     command
 }
 
-/// Where Debian keeps the newest server's programs; elsewhere they are on the path.
+/// Where Debian keeps the newest server's programs; on other systems they are on the path.
 fn program_path(program: &str) -> PathBuf {
     let versions = fs::read_dir("/usr/lib/postgresql").into_iter().flatten().flatten();
     let number = |path: &Path| path.file_name()?.to_str()?.parse::<u32>().ok();

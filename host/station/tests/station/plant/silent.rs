@@ -1,4 +1,4 @@
-//! A plant that takes what it is sent, and answers nothing.
+//! A plant that accepts what it is sent, and does not answer.
 
 use std::io::{Read as _, Write as _};
 use std::net::{Shutdown, TcpListener, TcpStream};
@@ -13,14 +13,14 @@ use super::sent::sink;
 use super::server::Server;
 use crate::history::made::{End, Made, Run};
 
-/// A way to a server.
+/// A relay in front of a server.
 struct Way {
     port: u16,
     is_silent: Arc<AtomicBool>,
 }
 
 impl Way {
-    /// To the server on the port `to`.
+    /// A relay to the server on the port `to`.
     fn to(to: u16) -> Self {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let port = listener.local_addr().unwrap().port();
@@ -44,7 +44,7 @@ impl Way {
     }
 }
 
-/// Carries bytes on until some are to be kept silent about: then this connection stays as it is for ever.
+/// Forwards bytes until it is to be silent; then this connection stays as it is for ever.
 fn carry(mut from: TcpStream, mut to: TcpStream, is_silent: &AtomicBool) {
     let mut bytes = vec![0; 65_536];
     while let Ok(read @ 1..) = from.read(&mut bytes) {
@@ -78,7 +78,7 @@ fn a_plant_that_answers_nothing_is_away_and_has_all_once_it_answers_again() {
     let (_folder, store) = made.parts();
     let store = SharedStore::new(store);
     assert_eq!(round(&store, &mut sink).unwrap().sent, 1);
-    // In a connection that is there, and in one that comes about.
+    // Over a connection that exists, and over a new one.
     way.is_silent(true);
     for _ in 0..2 {
         assert_eq!(due(), 1);

@@ -1,11 +1,11 @@
-//! What stands in the tables of a station and of a plant, each read by its own engine.
+//! The tables of a station and of a plant, each read by its own engine.
 
 use std::path::Path;
 
 use super::server::Server;
 use crate::history::made::Made;
 
-/// Tables that a plant has of a station, each with the columns by which its rows are put in order.
+/// Tables that a plant has of a station, each with the columns by which its rows are sorted.
 pub(super) const TABLES: [(&str, &str); 12] = [
     ("plan", "sha256"),
     ("unit", "id"),
@@ -21,10 +21,10 @@ pub(super) const TABLES: [(&str, &str); 12] = [
     ("failure", "run_id, kind, name"),
 ];
 
-/// A table, row by row, value by value.
+/// A table: its rows, and their values as text.
 pub(crate) type Table = Vec<Vec<String>>;
 
-/// The columns of a table, as the station has them, each as text; numbers that are not whole as their bits are.
+/// The columns of a station's table: their names and types.
 pub(super) fn columns(data: &Path, table: &str) -> Vec<(String, String)> {
     let of = |what: &str| {
         crate::common::query(data, &format!("SELECT {what} FROM pragma_table_info('{table}') ORDER BY cid"))
@@ -68,7 +68,7 @@ fn real_text(real: f64) -> String {
     format!("{real:?}")
 }
 
-/// Which rows come to a plant: those of runs that are over.
+/// Which rows are sent to a plant: those of runs that ended.
 fn kept(table: &str) -> &'static str {
     match table {
         "run" => "state = 'final'",
@@ -78,7 +78,7 @@ fn kept(table: &str) -> &'static str {
     }
 }
 
-/// The plant has of this station just what the station has.
+/// Asserts that the plant has exactly what this station has.
 pub(crate) fn is_as(server: &Server, made: &Made) {
     for (name, order) in TABLES {
         let theirs = of_plant(server, made.as_ref(), name, order);

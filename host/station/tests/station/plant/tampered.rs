@@ -1,4 +1,4 @@
-//! Plans that somebody changed in the plant's database, who has no key that anybody trusts.
+//! Plans that were changed in the plant's database by somebody without a trusted key.
 
 use std::fs;
 
@@ -12,17 +12,17 @@ use serde_json::{Value, json};
 use super::plans::Published;
 use crate::common::PLAN;
 
-/// A second step, behind the first.
+/// A second step, to follow the first.
 const SECOND: &str = "\n[[step]]\nkind = \"verify\"\nname = \"second\"\nframes = [\"frames/a.pgm\"]\n";
 
-/// The plan of this version, whose first step names no file.
+/// Writes the plan of this version with a first step that names no file.
 fn in_two_steps(made: &Published, version: &str) {
     made.plan(version, 2);
     let text = PLAN.replace("version = \"1\"", &format!("version = \"{version}\""));
     fs::write(made.path("plan.toml"), text + SECOND).unwrap();
 }
 
-/// The bundle of the plan that holds, changed in the plant's database.
+/// Makes `change` to the bundle of the plan that holds, in the plant's database.
 fn tampered(made: &Published, change: impl FnOnce(&mut Value)) {
     let mut plant = made.server.client("plant");
     let row = "SELECT sha256, text FROM bundle WHERE sha256 = (SELECT sha256 FROM publication ORDER BY number DESC LIMIT 1)";
@@ -33,7 +33,7 @@ fn tampered(made: &Published, change: impl FnOnce(&mut Value)) {
     plant.execute("UPDATE bundle SET text = $2 WHERE sha256 = $1", &[&hash, &bundle.to_string()]).unwrap();
 }
 
-/// What lies in the station's folder of plans, in order.
+/// What is in the station's folder of plans, sorted.
 fn kept(made: &Published) -> Vec<String> {
     let entries = fs::read_dir(made.path("data/plans")).unwrap();
     let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
@@ -41,7 +41,7 @@ fn kept(made: &Published) -> Vec<String> {
     names
 }
 
-/// The hash is of the text and of the files' names behind it: where one ends and the other begins is in no hash.
+/// The hash is that of the text followed by the files' names, but does not cover where one ends and the next begins.
 #[test]
 fn a_plan_that_was_cut_in_two_is_refused_until_it_is_published_again() {
     let made = Published::new();
@@ -76,7 +76,7 @@ fn publishing_again_puts_a_damaged_plan_right() {
     assert_eq!(made.fetch().said, "CAM-T/quick 1, number 2, is new\n");
 }
 
-/// It is signed, but the plan that is in it has another hash than the whole.
+/// It is signed, but the plan in it has another hash than the whole.
 #[test]
 fn a_plan_with_a_file_that_it_does_not_name_is_refused_before_anything_is_kept() {
     let made = Published::new();

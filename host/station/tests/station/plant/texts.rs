@@ -9,7 +9,7 @@ use super::tables::is_as;
 use crate::history::made::{End, Made, Run};
 use crate::history::released::history;
 
-/// Boards, scanners and forms can say any character, U+0000 among them, which PostgreSQL has in no text (8.3).
+/// Boards, scanners and forms can send any character, even U+0000, which no text in PostgreSQL can contain (8.3).
 #[test]
 fn no_character_keeps_a_result_from_the_plant() {
     let server = Server::prepared();
@@ -19,7 +19,7 @@ fn no_character_keeps_a_result_from_the_plant() {
     made.store.waive(&run, "engel", "used\0as it is").unwrap();
     made.store.note("weber", "scan", "CA\0", "").unwrap();
     let (made, all) = send(made, server.address());
-    // A run, a waiver with its line in the audit, and a line of its own.
+    // A run, a waiver with its line in the audit, and a further line.
     assert_eq!((all.sent, all.failed), (4, 0));
     is_as(&server, &made);
     assert_eq!(server.rows("SELECT operator_id FROM run"), [["we\u{fffd}ber"]]);
@@ -32,7 +32,7 @@ fn no_character_keeps_a_result_from_the_plant() {
 #[test]
 fn what_a_plant_can_never_hold_waits_for_a_person() {
     let server = Server::prepared();
-    // A character that the encoding does not have (appendix A).
+    // A character that the encoding lacks (appendix A).
     let never = "CREATE FUNCTION never() RETURNS trigger LANGUAGE plpgsql AS
             $$ BEGIN RAISE EXCEPTION 'no such character' USING ERRCODE = '22021'; END $$;
         CREATE TRIGGER never BEFORE INSERT ON waiver FOR EACH ROW EXECUTE FUNCTION never()";

@@ -9,7 +9,7 @@ use super::server::Server;
 use crate::common::plant_settings;
 use crate::lanes::floor::{SERIALS, Station};
 
-/// A station of this name whose settings have this under `[plant]`.
+/// A station of this name, with `more` under `[plant]` in its settings.
 pub(crate) fn station(server: &Server, name: &str, more: &str) -> Station {
     let station = Station::with(&["mock"], "");
     let path = station.path("station.toml");
@@ -33,7 +33,7 @@ fn a_plant_that_is_away_holds_up_only_lines_that_want_it_so() {
     server.kill();
     let waits = station(&server, "12", "green = \"plant\"");
     let goes_on = station(&server, "13", "");
-    // The control: the same without that line.
+    // The control: a station without that line.
     let mut running = goes_on.start();
     running.scan(SERIALS[0]);
     running.state("1", "PASS");
@@ -42,7 +42,7 @@ fn a_plant_that_is_away_holds_up_only_lines_that_want_it_so() {
     let unsaved = waiting.state("1", "UNSAVED");
     assert!(unsaved["shown"].is_null(), "{unsaved}");
     assert!(unsaved["note"].as_str().unwrap().contains("not at the plant yet"), "{unsaved}");
-    // It is saved here, and nothing is lost when the station ends meanwhile.
+    // It is saved here, and would not be lost if the station ended meanwhile.
     assert_eq!(waits.query("SELECT verdict FROM run"), ["PASS"]);
     server.again();
     let shown = waiting.state("1", "PASS");
@@ -62,7 +62,7 @@ fn no_more_is_judged_than_may_be_unsent() {
     let mut server = Server::prepared();
     server.kill();
     let station = station(&server, "12", "most_unsent = 1");
-    // What people did is sent, too, and is no result.
+    // What people did is sent, too, but is no result.
     let mut store = Store::open(&Folder::new(&station.path("data"))).unwrap();
     for _ in 0..5 {
         store.note("weber", "login", "", "").unwrap();
@@ -80,12 +80,12 @@ fn no_more_is_judged_than_may_be_unsent() {
         "{said}"
     );
     assert_eq!(station.query("SELECT count(*) FROM run"), ["2"]);
-    // The plant is back, and takes what waits before another try would be refused.
+    // The plant is back, and gets what waits before another scan would be refused.
     server.again();
     while server.rows("SELECT id FROM run").len() < 2 {
         std::thread::sleep(Duration::from_millis(50));
     }
-    // The station knows a moment later.
+    // The station learns of it a moment later.
     await_sent(&station);
     running.scan(SERIALS[2]);
     running.state("1", "PASS");
@@ -98,7 +98,7 @@ fn nothing_is_judged_beside_unsent_results_on_a_full_disk() {
     server.kill();
     let station = station(&server, "12", "");
     let path = station.path("station.toml");
-    // Any disk that has the program on it is as full.
+    // Any disk with the program on it is that full.
     let text = fs::read_to_string(&path).unwrap().replace("most_filled = 100", "most_filled = 1");
     fs::write(path, text).unwrap();
     let mut running = station.start();
@@ -108,7 +108,7 @@ fn nothing_is_judged_beside_unsent_results_on_a_full_disk() {
     let (is_taken, said) = running.answer(SERIALS[1]);
     assert!(!is_taken && said.starts_with("the disk is "), "{said}");
     assert_eq!(station.query("SELECT count(*) FROM run"), ["1"]);
-    // Nothing waits any more.
+    // Nothing waits now.
     server.again();
     await_sent(&station);
     running.scan(SERIALS[1]);

@@ -1,4 +1,4 @@
-//! A way to the server that is cut where COMMITs pass.
+//! A relay to the server that cuts connections at COMMITs.
 
 use std::io::{Read as _, Write as _};
 use std::net::{Shutdown, TcpListener, TcpStream};
@@ -11,17 +11,17 @@ use std::time::Duration;
 pub(crate) enum Cut {
     /// The server never sees the COMMIT.
     Before,
-    /// It carries it out, and nobody hears of it.
+    /// The server carries it out, and nobody learns of it.
     Behind,
-    /// The server never sees it, and the station hears that it was carried out.
+    /// The server never sees it, but the station is told that it was carried out.
     Pretended,
 }
 
-/// What a server answers to a COMMIT: CommandComplete, and ReadyForQuery outside of a transaction (PostgreSQL, 55.7).
+/// A server's answer to a COMMIT: CommandComplete, and ReadyForQuery outside a transaction (PostgreSQL, 55.7).
 const COMMITTED: &[u8] = b"C\0\0\0\x0bCOMMIT\0Z\0\0\0\x05I";
 
-/// A way to the server on the port `to` that is cut at those COMMITs at which `cuts` says so, which hears how many bytes went to
-/// the server since the COMMIT before. Returns its port.
+/// A relay to the server on the port `to`, which cuts those COMMITs for which `cuts` returns a way. `cuts` gets the number of
+/// bytes that went to the server since the previous COMMIT. Returns the relay's port.
 pub(crate) fn way(to: u16, cuts: impl Fn(usize) -> Option<Cut> + Send + Sync + 'static) -> u16 {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
@@ -29,7 +29,7 @@ pub(crate) fn way(to: u16, cuts: impl Fn(usize) -> Option<Cut> + Send + Sync + '
     thread::spawn(move || {
         for client in listener.incoming() {
             let (client, cuts) = (client.unwrap(), Arc::clone(&cuts));
-            // A server that is not there hangs up.
+            // A client is disconnected when the server is not there.
             let Ok(server) = TcpStream::connect(("127.0.0.1", to)) else { continue };
             let (from, back) = (server.try_clone().unwrap(), client.try_clone().unwrap());
             thread::spawn(move || carried(from, &back, |_| true));
@@ -49,14 +49,14 @@ pub(crate) fn way(to: u16, cuts: impl Fn(usize) -> Option<Cut> + Send + Sync + '
     port
 }
 
-/// Cuts a connection at this COMMIT. Returns whether it is carried on: never.
+/// Cuts a connection at this COMMIT. Returns whether the connection goes on, which is never.
 fn carry_out(cut: Cut, commit: &[u8], mut client: &TcpStream, mut server: &TcpStream) -> bool {
     match cut {
         Cut::Before => {}
         Cut::Behind => {
             let _ = client.shutdown(Shutdown::Both);
             if server.write_all(commit).is_ok() {
-                // It has done it when it answers that it waits for more.
+                // It has carried it out by the time it waits for more.
                 thread::sleep(Duration::from_millis(50));
             }
         }
@@ -73,7 +73,7 @@ fn some(from: &mut TcpStream) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// Carries bytes on for as long as `watch` lets them.
+/// Forwards bytes for as long as `watch` allows.
 fn carried(mut from: TcpStream, mut to: &TcpStream, mut watch: impl FnMut(&[u8]) -> bool) {
     while let Some(bytes) = some(&mut from) {
         if !watch(&bytes) || to.write_all(&bytes).is_err() {

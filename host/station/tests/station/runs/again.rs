@@ -1,4 +1,4 @@
-//! Units that passed already.
+//! Units that have already passed.
 
 use std::process::Command;
 
@@ -36,7 +36,7 @@ fn a_unit_that_passed_is_tested_again_as_the_plan_says() {
     }
 }
 
-/// An ERROR says nothing of a unit that passed.
+/// An ERROR says nothing about a unit that passed.
 #[test]
 fn a_unit_that_passed_has_passed_though_an_error_came_behind() {
     let station = Station::with(&plan("ask"));

@@ -1,4 +1,4 @@
-//! What a run does beside its store, and beside what it has started.
+//! What a run does without its store, and without what it has started.
 
 use std::fs;
 use std::process::Command;
@@ -16,7 +16,7 @@ use crate::common::{held_up, script};
 use crate::history::made::{End, Made, Run};
 use crate::lanes::floor::HANG;
 
-/// A lane whose log comes to no end.
+/// A lane whose log never ends.
 const ENDLESS_LOG: &str = "read -r job\nlog=$(readlink /proc/$$/fd/2)\nrm \"$log\" && mkfifo \"$log\"\n";
 
 #[test]
@@ -51,7 +51,7 @@ fn the_evidence_of_one_run_keeps_no_other_from_the_store() {
     assert_eq!(station.check().code, Some(0), "{:?}", station.check());
 }
 
-/// What the run of the station writes down.
+/// The spool of the station's run, once it exists.
 fn spool(station: &Station) -> std::path::PathBuf {
     let begun = Instant::now();
     loop {
@@ -64,7 +64,7 @@ fn spool(station: &Station) -> std::path::PathBuf {
     }
 }
 
-/// Its two threads are the last that a run starts.
+/// Its two threads are the last ones that a run starts.
 #[test]
 fn a_lane_without_a_thread_that_hears_it_or_gives_it_orders_is_killed_and_waited_for() {
     let station = Station::with(PLAN);
@@ -83,7 +83,7 @@ fn a_lane_without_a_thread_that_hears_it_or_gives_it_orders_is_killed_and_waited
         assert!(did.code == Some(3) && did.said.contains("the lane could not be started"), "{did:?}");
         let trace = fs::read_to_string(&trace).unwrap();
         let (_, behind) = trace.split_once("(INJECTED)").unwrap();
-        // Its orders ended with the thread that was to give them, so that it may be gone by itself before.
+        // Its orders end with the thread that should give them, so it may be gone by itself before.
         assert!(behind.contains("SIGKILL") && behind.contains("[{WIF"), "{trace}");
     }
 }

@@ -1,4 +1,4 @@
-//! A station in a folder of its own, and what its program does.
+//! A station in its own folder, and calls of its program.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,14 +19,14 @@ pub(crate) struct Station {
 }
 
 impl Station {
-    /// With this plan.
+    /// A station with this plan.
     pub(crate) fn with(plan: &str) -> Self {
         let station = Self { folder: common::folder() };
         station.plan(plan);
         station
     }
 
-    /// Takes this plan from here on.
+    /// Replaces the plan.
     pub(crate) fn plan(&self, plan: &str) {
         fs::write(self.path("plan.toml"), plan).unwrap();
     }
@@ -56,7 +56,7 @@ impl Station {
         Command::new(program()).args(self.run_arguments(serial, board)).output().unwrap().into()
     }
 
-    /// A run that goes on, with its streams.
+    /// Starts a run, with its streams piped.
     pub(crate) fn begin(&self, serial: &str, board: &str, more: &[&str]) -> Child {
         let mut run = Command::new(program());
         run.args(self.run_arguments(serial, board)).args(more);
@@ -67,7 +67,7 @@ impl Station {
         common::check(&self.data())
     }
 
-    /// A look at the database that is not the program's: one value of each row.
+    /// Reads the database without the program: the first value of each row.
     pub(crate) fn query(&self, text: &str) -> Vec<String> {
         common::query(&self.data(), text)
     }
@@ -82,7 +82,7 @@ impl Station {
     }
 }
 
-/// `sha256sum` of a file.
+/// The `sha256sum` of a file.
 pub(crate) fn sha256sum(path: &Path) -> String {
     let output = Command::new("sha256sum").arg(path).output().unwrap();
     String::from_utf8(output.stdout).unwrap()[..64].to_owned()

@@ -1,4 +1,4 @@
-//! `check` finds whatever is not as it was written.
+//! `check` finds everything that is not as it was written.
 
 use std::fs;
 use std::path::PathBuf;
@@ -22,7 +22,7 @@ fn station() -> Station {
     station
 }
 
-/// Every file of evidence.
+/// All files of evidence.
 pub(crate) fn evidence(station: &Station) -> Vec<PathBuf> {
     let folders = fs::read_dir(station.data().join("blobs")).unwrap();
     folders
@@ -35,7 +35,7 @@ pub(crate) fn evidence(station: &Station) -> Vec<PathBuf> {
 fn a_flipped_bit_in_any_piece_of_evidence_is_found() {
     let station = station();
     let all = evidence(&station);
-    // Three records, what two lanes told, and the frame of the FAIL in three views.
+    // Three records, the messages of two lanes, and the frame of the FAIL in three views.
     assert_eq!(all.len(), 8);
     for path in all {
         let right = fs::read(&path).unwrap();
@@ -54,7 +54,7 @@ fn a_flipped_bit_in_any_piece_of_evidence_is_found() {
     assert_eq!(station.check().code, Some(0));
 }
 
-/// Each change is one that the schema allows.
+/// Changes that the schema allows.
 #[test]
 fn a_changed_row_is_found_in_every_table() {
     for (change, table) in [
@@ -79,7 +79,7 @@ fn a_changed_row_is_found_in_every_table() {
     }
 }
 
-/// The index and the hash of the record agree with it.
+/// The index, and the record's own hash, agree with the record.
 #[test]
 fn a_record_with_another_plan_than_its_hash_is_of_is_found() {
     let station = Station::with(PLAN);
@@ -99,7 +99,7 @@ fn a_record_with_another_plan_than_its_hash_is_of_is_found() {
     );
 }
 
-/// Adds a key to every object of a record, but to those whose keys are anybody's.
+/// Adds a key to every object of a record, except to those whose keys are not the station's.
 fn add_key(to: &mut Value) {
     match to {
         Value::Object(members) => {
@@ -113,7 +113,7 @@ fn add_key(to: &mut Value) {
     }
 }
 
-/// Gives the only run of a station this record.
+/// Makes this the record of a station's only run.
 fn records(station: &Station, record: &Value) -> PathBuf {
     let hash = station.store().blobs().put(format!("{record:#}\n").as_bytes()).unwrap();
     let database = rusqlite::Connection::open(station.store().database()).unwrap();
@@ -121,7 +121,7 @@ fn records(station: &Station, record: &Value) -> PathBuf {
     station.store().blobs().path(&hash)
 }
 
-/// Whoever goes back to an earlier program has records of a later one.
+/// After going back to an earlier program, a station has records of a later one.
 #[test]
 fn a_record_with_keys_that_a_newer_program_added_is_read_and_held_to_its_hash() {
     let station = Station::with(PLAN);
@@ -157,12 +157,12 @@ fn a_record_of_another_schema_is_refused_by_its_number() {
         let did = station.check();
         assert_eq!(did.code, Some(3), "{did:?}");
         assert!(did.said.contains("is of schema 2, and this program reads schema 1"), "{did:?}");
-        // It may as well have lost a key that schema 1 has.
+        // It may just as well lack a key that schema 1 has.
         record.as_object_mut().unwrap().remove("device");
     }
 }
 
-/// The schema itself holds what no program may write.
+/// The schema itself refuses what no program may write.
 #[test]
 fn the_tables_take_no_result_that_cannot_be() {
     let station = station();

@@ -36,7 +36,7 @@ fn a_sound_board_passes_and_its_record_reads_back() {
     assert_eq!(record.plan.text, PLAN);
     assert_eq!(json["run"]["operator"], "weber");
     assert_eq!(json["steps"][1]["evidence"]["verdict"], "PASS");
-    // W/2 + L of DATAPATH.md, and the mock's L is 12.
+    // W/2 + L of DATAPATH.md; the mock's L is 12.
     assert_eq!(json["steps"][1]["measurements"][0]["value"], 32.0 + f64::from(latency(&json)));
     assert_eq!(station.check().code, Some(0), "{:?}", station.check());
 }
@@ -98,7 +98,7 @@ pub(crate) fn with_link() -> String {
     PLAN.replace("[[step]]", "[[step]]\nkind = \"link\"\nseconds = 0.01\n[[step]]")
 }
 
-/// Which of the three blames turns a PASS into what.
+/// What each value of `blames` makes of a PASS.
 #[test]
 fn a_limit_that_is_missed_blames_whom_the_plan_says() {
     for (blames, code, verdict) in [("board", 1, "FAIL"), ("station", 3, "ERROR"), ("nobody", 0, "PASS")] {
@@ -109,7 +109,7 @@ fn a_limit_that_is_missed_blames_whom_the_plan_says() {
         assert!(did.said.starts_with(verdict), "{did:?}");
         let measured = "SELECT outcome FROM measurement WHERE name = 'latency.clocks'";
         assert_eq!(station.query(measured), ["failed"]);
-        // Of a board that is wrong besides, the same limit says whether it was judged rightly.
+        // If the board is wrong as well, the same limit says whether it was judged correctly.
         let wrong = station.run("CAT00002", "mock,fault=stuck-data");
         assert_eq!(wrong.code, Some(if blames == "station" { 3 } else { 1 }), "{blames}: {wrong:?}");
     }
