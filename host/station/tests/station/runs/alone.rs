@@ -1,4 +1,4 @@
-//! What a run does without its store, and without what it has started.
+//! What a run does while it does not use its store, and with what it has started.
 
 use std::fs;
 use std::process::Command;

@@ -129,7 +129,7 @@ fn a_limit_on_what_nobody_can_measure_is_no_pass() {
     let limit = "[limits]\n\"link.to_board\" = { least = 1, blames = \"station\" }\n";
     let station = Station::with(&format!("{}{limit}", with_link()));
     let did = station.run("CAT00001", "mock");
-    // The wire of a mock takes no time.
+    // The wire of a mock takes no time, so nothing can be measured.
     assert_eq!(did.code, Some(6), "{did:?}");
     assert!(did.said.contains("link.to_board could not be measured"), "{did:?}");
     assert_eq!(station.query("SELECT outcome FROM step ORDER BY seq"), ["passed", "error", "skipped"]);
@@ -160,14 +160,14 @@ fn a_call_that_is_wrong_begins_no_run() {
     assert!(!station.data().exists());
 }
 
-/// A board that takes the connection and says nothing keeps the lane busy for some seconds.
+/// A board that accepts the connection but stays silent keeps the lane busy for some seconds.
 pub(crate) fn silent_board() -> (TcpListener, String) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("tcp:{}", listener.local_addr().unwrap());
     (listener, target)
 }
 
-/// The process of the lane, as soon as it has connected to the board and the station has heard of it.
+/// The process id of the lane, once it has connected to the board and the station has heard from it.
 pub(crate) fn lane_of(station: &Station, listener: &TcpListener) -> i32 {
     let (mut connection, _) = listener.accept().unwrap();
     assert_eq!(connection.read(&mut [0]).unwrap(), 1, "it greets");
@@ -237,7 +237,7 @@ fn a_run_that_is_stopped_ends_in_order() {
     assert_eq!(station.query("SELECT cause FROM run"), ["operator"]);
 }
 
-/// The station is killed in the middle of a run: its lane ends with it, and the run is ERROR at the next start.
+/// The station is killed in the middle of a run: its lane ends with it, and the run becomes an ERROR at the next start.
 #[test]
 fn a_run_that_is_found_open_is_an_error() {
     use nix::sys::signal::Signal;
@@ -268,7 +268,7 @@ fn a_run_that_is_found_open_is_an_error() {
     assert_eq!(station.check().code, Some(0), "{:?}", station.check());
 }
 
-/// Its link fails while a person ends the run.
+/// The link fails while a person ends the run.
 #[test]
 fn no_step_is_tried_again_once_the_run_is_to_end() {
     let text = PLAN.replace("timeout = 60", "timeout = 60\nretries = 3");
@@ -278,7 +278,7 @@ fn no_step_is_tried_again_once_the_run_is_to_end() {
     assert_eq!(tries, [(1, 1), (2, 1)]);
 }
 
-/// The tries of the steps of a lane that a person stops at the first message that `is_last`.
+/// The finished tries of the steps of a lane that a person stops at the first message that `is_last`.
 fn stopped(text: String, target: String, is_last: impl Fn(&Message) -> bool + Sync) -> Vec<StepRecord> {
     let spool = crate::common::folder();
     let path = spool.path().join("plan.toml");
@@ -313,7 +313,7 @@ fn stopped(text: String, target: String, is_last: impl Fn(&Message) -> bool + Sy
     tries.into_inner().unwrap()
 }
 
-/// What had come back by then is not judged, and is told.
+/// What had come back by then is not judged, but it is reported.
 #[test]
 fn a_run_that_is_stopped_tells_with_its_figures_that_samples_differed_by_then() {
     let text = PLAN.replace("timeout = 60", "timeout = 60\nrepeat = 1000");
@@ -338,7 +338,7 @@ fn a_run_that_is_stopped_tells_with_its_figures_that_samples_differed_by_then() 
     assert!(finding.message.replace(',', "").starts_with(&told), "{finding}");
 }
 
-/// The first try alone finds the board late; the mock says how long it takes, and W/2 more are right.
+/// Only the first try finds the board late. The mock's latency option is its L, to which W/2 is added.
 #[test]
 fn a_limit_that_only_the_first_try_of_a_step_missed_stays_told() {
     let limit = "[limits]\n\"latency.clocks\" = { most = 44, blames = \"station\" }\n";

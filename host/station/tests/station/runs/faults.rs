@@ -1,4 +1,4 @@
-//! Faults of the program itself and of its surroundings: the exit code is one of those that are documented.
+//! Faults of the program itself and of its environment: the exit code is still a documented one.
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
@@ -7,7 +7,7 @@ use std::process::Command;
 
 use super::bench::{Did, PLAN, Station, program};
 
-/// Rust's hash maps panic on a system without randomness: a panic that any program can be brought to.
+/// Rust's hash maps panic on a system without randomness, so this makes any program panic.
 fn without_randomness(arguments: &[&str]) -> Did {
     Command::new("strace")
         .args(["-f", "-qq", "-o", "/dev/null", "-e", "inject=getrandom:error=EIO"])
@@ -45,14 +45,14 @@ fn help_that_stdout_does_not_take_is_an_error() {
     }
 }
 
-/// A lane that reads its own name as text would panic.
+/// A lane that reads its own path as text would panic.
 #[test]
 fn a_program_whose_folder_is_no_text_judges_boards() {
     let station = Station::with(PLAN);
     let folder = station.path("").join(OsStr::from_bytes(b"m\xf6bel"));
     fs::create_dir(&folder).unwrap();
     let copy = folder.join("halfrow-station");
-    // What is written by a process of its own is open in no other when it is started.
+    // Written by another process, so that no process started by other tests has the file open when it is run.
     assert!(Command::new("cp").arg(program()).arg(&copy).status().unwrap().success());
     let did: Did =
         Command::new(copy).args(station.run_arguments("CAT00001", "mock")).output().unwrap().into();

@@ -1,4 +1,4 @@
-//! The serial number on the board against the FPGA's own number.
+//! The serial number on the label, checked against the FPGA's own number.
 
 use std::io::{Read as _, Write as _};
 use std::net::TcpListener;
@@ -30,7 +30,7 @@ fn rebind(station: &Station, arguments: &[&str]) -> Did {
         .into()
 }
 
-/// Refused, and not a frame was sent.
+/// Asserts that the run was refused without sending a frame.
 fn assert_refused(station: &Station, did: &Did, said: &str) {
     assert_eq!(did.code, Some(6), "{did:?}");
     assert!(did.said.starts_with("ERROR ") && did.said.contains(said), "{did:?}");
@@ -76,7 +76,7 @@ fn a_board_and_its_label_stay_together_from_the_first_judgement_on() {
     assert_well(&station);
 }
 
-/// A port behind which whoever connects finds the next of these boards, before which this is done.
+/// A port at which each connection reaches the next of these boards, after a call of `before`.
 pub(super) fn one_after_the_other(boards: Vec<String>, before: impl Fn() + Send + 'static) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("tcp:{}", listener.local_addr().unwrap());
@@ -116,7 +116,7 @@ fn a_board_that_is_swapped_behind_the_identity_step_is_not_judged() {
     }
 }
 
-/// The table of bindings is gone while the board is looked at.
+/// The table of bindings disappears while the board is identified.
 #[test]
 fn a_board_of_which_nobody_can_tell_whose_it_is_is_not_judged() {
     let station = Station::with(PLAN);
@@ -125,7 +125,7 @@ fn a_board_of_which_nobody_can_tell_whose_it_is_is_not_judged() {
     let database = move |text: &str| rusqlite::Connection::open(&path).unwrap().execute_batch(text);
     let again = database.clone();
     let boards = vec![device(0x22), device(0x22)];
-    // Whoever connects a second time finds it gone already.
+    // The second connection finds it gone already.
     let gone = move || drop(database("ALTER TABLE binding RENAME TO gone"));
     let did = station.run("CAT00017", &one_after_the_other(boards, gone));
     assert_eq!(did.code, Some(3), "{did:?}");
@@ -186,7 +186,7 @@ fn an_engineer_binds_anew_with_a_reason_that_is_kept() {
     assert_eq!(did.code, Some(0), "{did:?}");
     assert_eq!(station.run("CAT00017", &device(0x33)).code, Some(0));
     assert_refused(&station, &station.run("CAT00017", &device(0x11)), "CAT00017 is device 0000000000000033");
-    // Labels that were exchanged: the device of one under the number of the other.
+    // Exchanged labels: the device of one unit under the serial number of the other.
     let device_33 = "0000000000000033";
     let did = rebind(&station, &["--serial", "CAT00071", "--device", device_33, "--reason", "labels"]);
     assert_eq!(did.code, Some(0), "{did:?}");
@@ -207,7 +207,7 @@ fn an_engineer_binds_anew_with_a_reason_that_is_kept() {
     assert!(checked.code == Some(3) && checked.said.contains("fault: table binding"), "{checked:?}");
 }
 
-/// What a clock that was set back would put in front of it would be replayed in the wrong order.
+/// A run that a clock set back would put before the change would be replayed in the wrong order.
 #[test]
 fn a_run_behind_a_change_of_a_binding_has_a_later_id_whatever_the_clock_says() {
     let mut made = Made::new();

@@ -1,15 +1,15 @@
-//! The program is killed at every call by which something gets to the disk or to the screen.
+//! The program is killed at every call that brings something to the disk or to the screen.
 
 use super::bench::{PLAN, Station};
 use super::checked::evidence;
 use super::unsaved::{Call, calls, injected};
 
-/// Whatever changes the disk, and what says something.
+/// System calls that change the disk or print something.
 const CALLS: &str =
     "write,pwrite64,fdatasync,fsync,rename,renameat,renameat2,link,linkat,unlink,unlinkat,ftruncate,mkdir";
 
-/// Kills a run at each of these calls, and looks each time at what the next start finds. Returns how often the lane had
-/// judged the board good and the store has no PASS.
+/// Kills a run at each of these calls, and checks what the next start finds. Returns how often the lane had judged the board good
+/// although the store has no PASS.
 fn sweep(points: &[Call]) -> usize {
     let station = Station::with(PLAN);
     station.run("CAT00000", "mock");
@@ -26,7 +26,7 @@ fn sweep(points: &[Call]) -> usize {
         };
         let judged = spooled(&station)
             .contains("\"evidence\":{\"schema\":1,\"command\":\"verify\",\"verdict\":\"PASS\"");
-        // The next start, which is a start after a crash.
+        // The next start, which follows a crash.
         let next = station.run("CAT00000", "mock");
         assert_eq!(next.code, Some(0), "after {point:?}: {next:?}");
         let verdicts = of_unit("verdict");
@@ -45,7 +45,7 @@ fn sweep(points: &[Call]) -> usize {
     judged_only
 }
 
-/// What the lane of the run that is open has told.
+/// The messages of the open run's lane.
 fn spooled(station: &Station) -> String {
     let runs = std::fs::read_dir(station.data().join("spool")).unwrap();
     let events =
@@ -53,7 +53,7 @@ fn spooled(station: &Station) -> String {
     events.collect()
 }
 
-/// What lies among the evidence and is none.
+/// Files among the evidence that are not evidence.
 fn half_written(station: &Station) -> Vec<String> {
     let names =
         evidence(station).into_iter().map(|path| path.file_name().unwrap().to_string_lossy().into_owned());
@@ -68,19 +68,19 @@ fn all_points() -> Vec<Call> {
     all
 }
 
-/// The control is in it: had the verdict been shown when the lane told it, and not when it was saved, some of these runs would
-/// have been green without a row.
+/// The test contains its control: if the verdict were shown when the lane sends it, and not when it is saved, some of these runs
+/// would be green without a row.
 #[test]
 fn no_green_is_lost_wherever_the_program_is_killed() {
     let all = all_points();
-    // Results are saved in the last half.
+    // Results are saved in the second half.
     let one_in = |number| if 2 * number > all.len() { 4 } else { 12 };
     let few = all.iter().enumerate().filter(|(number, _)| number % one_in(*number) == 0);
     let judged_only = sweep(&few.map(|(_, call)| call.clone()).collect::<Vec<_>>());
     assert!(judged_only > 0, "the control");
 }
 
-/// In a folder in which nothing was kept before.
+/// In a folder that has no earlier results.
 #[test]
 fn a_first_start_is_in_no_other_s_way_wherever_it_is_killed() {
     let all = calls(&Station::with(PLAN), "CAT00000", "fsync,fdatasync");
@@ -93,7 +93,7 @@ fn a_first_start_is_in_no_other_s_way_wherever_it_is_killed() {
     }
 }
 
-/// At every one of them.
+/// At every call.
 #[test]
 #[ignore = "for scripts/soak"]
 fn no_green_is_lost_at_any_point() {

@@ -1,4 +1,4 @@
-//! The process of a lane is killed at its calls, while another lane of the same station works.
+//! The process of a lane is killed at its system calls, while another lane of the same station works.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
@@ -19,7 +19,7 @@ use halfrow_station::store::{SharedStore, Store};
 use super::bench::{PLAN, Station, program};
 use super::unsaved::{Call, numbered};
 
-/// Nobody ends the run, or looks at it.
+/// A run that nobody ends or watches.
 struct Unwatched;
 
 impl Watch for Unwatched {
@@ -30,7 +30,7 @@ impl Watch for Unwatched {
     fn hear(&mut self, _: Stage<'_>) {}
 }
 
-/// A run in this lane, whose process is one of `program`.
+/// A run in this lane, whose process runs `program`.
 pub(super) fn run_in(
     store: &SharedStore,
     station: &Station,
@@ -58,11 +58,11 @@ pub(super) fn run_in(
     run(store, &order, &mut Unwatched).unwrap()
 }
 
-/// The program, traced with the options that stand in a file beside it: strace ends as what it traces has ended.
+/// A script that traces the program with the options in a file next to it. strace ends the way the traced program ended.
 fn traced(station: &Station) -> PathBuf {
     let path = station.path("traced");
     let options = station.path("options");
-    // A script that were written anew for every run could not be executed while another thread starts a process.
+    // A script that was written anew for each run could not be executed while another thread starts a process.
     let script =
         format!("#!/bin/sh\nexec strace -qq $(cat {}) {} \"$@\"\n", options.display(), program().display());
     fs::write(&path, script).unwrap();
@@ -70,17 +70,17 @@ fn traced(station: &Station) -> PathBuf {
     path
 }
 
-/// Every call of the lane's first thread, in order, from the first one of the program itself on.
+/// Every call of the lane's first thread, in order, except those of the start and the end.
 fn all_calls(station: &Station, store: &SharedStore, lane: &Path) -> Vec<Call> {
     let log = station.path("calls");
     fs::write(station.path("options"), format!("-e signal=none -o {}", log.display())).unwrap();
     assert_eq!(run_in(store, station, "1", "CAT00001", lane).record.conclusion.verdict, Verdict::Pass);
     let all = numbered(&fs::read_to_string(log).unwrap());
-    // strace cannot end a call that does not return, nor the one by which the program begins.
+    // strace cannot kill at a call that does not return, nor at the one that starts the program.
     all.into_iter().filter(|(name, _)| !["execve", "exit_group"].contains(&name.as_str())).collect()
 }
 
-/// Ends what goes on beside, also when the test fails.
+/// Ends the other thread, even when the test fails.
 struct Over<'a>(&'a AtomicBool);
 
 impl Drop for Over<'_> {
@@ -89,7 +89,7 @@ impl Drop for Over<'_> {
     }
 }
 
-/// Whether the lane, killed at this call, had not told all yet: then its run is ERROR.
+/// Whether the lane was killed before it had sent everything, which makes its run an ERROR.
 fn killed_at(
     (name, number): (&str, usize),
     store: &SharedStore,
@@ -109,8 +109,7 @@ fn killed_at(
     true
 }
 
-/// Kills the lane at each of these calls. Returns how often that was in time, and how often it had told
-/// all before.
+/// Kills the lane at each of these calls. Returns how often that was in time, and how often the lane had already sent everything.
 fn sweep(choose: impl Fn(Vec<Call>) -> Vec<Call>) -> (usize, usize) {
     let station = Station::with(PLAN);
     let store = SharedStore::new(Store::open(&station.store()).unwrap());
@@ -150,7 +149,7 @@ fn sweep(choose: impl Fn(Vec<Call>) -> Vec<Call>) -> (usize, usize) {
     (killed, done)
 }
 
-/// A pipe takes 64 KiB: a longer job is not handed over before who should read it is gone.
+/// A pipe holds 64 KiB: a longer job is not fully written before its reader is gone.
 #[test]
 fn a_lane_that_ends_before_it_has_its_job_is_told_by_how_it_ended() {
     let station = Station::with(&format!("{PLAN}# {}\n", "-".repeat(1 << 18)));
@@ -169,7 +168,7 @@ fn a_lane_that_is_killed_anywhere_is_an_error_and_the_lane_beside_goes_on() {
     assert!(killed >= 12, "{killed}");
 }
 
-/// At every one of them.
+/// At every call.
 #[test]
 #[ignore = "for scripts/soak"]
 fn a_lane_that_is_killed_at_any_call_is_an_error_and_the_lane_beside_goes_on() {

@@ -1,4 +1,4 @@
-//! What a lane may have, and what a station's folder may be on.
+//! What a lane may use, and what a station's folder may be on.
 
 use std::fs;
 use std::process::{Command, Stdio};
@@ -72,7 +72,7 @@ fn a_folder_that_is_memory_is_refused_before_anything_is_made() {
     assert_eq!(run(&["--any-disk"]).code, Some(0));
 }
 
-/// All commands that keep results ask for the disk, in the same words.
+/// All commands that store results check the disk, and say the same words.
 #[test]
 fn whatever_keeps_results_refuses_a_folder_that_is_memory() {
     let memory = tempfile::tempdir_in("/dev/shm").unwrap();
@@ -97,7 +97,7 @@ fn whatever_keeps_results_refuses_a_folder_that_is_memory() {
     assert!(data.join("station.db").exists());
 }
 
-/// What a demonstration makes without a folder goes with it, so it may lie in memory.
+/// What a demonstration without a given folder makes is deleted with it, so it may be in memory.
 #[test]
 fn a_demonstration_that_is_not_kept_may_be_in_memory() {
     let memory = tempfile::tempdir_in("/dev/shm").unwrap();

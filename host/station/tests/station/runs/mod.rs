@@ -1,4 +1,4 @@
-//! Runs of the program, from the serial number to what is kept.
+//! Runs of the program, from the serial number to what is stored.
 
 mod again;
 mod alone;

@@ -1,4 +1,4 @@
-//! What is recorded of runs that are found open.
+//! What is recorded for runs that are found open.
 
 use std::os::unix::process::{CommandExt as _, ExitStatusExt as _};
 use std::process::Command;
@@ -12,8 +12,8 @@ use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run, step};
 
 const SHIFT: &str = "[shift]\ngood = \"CAT90001\"\nbad = \"HR:MOCK\"\nhours = 8\n[tables]";
 
-/// What is recorded of production of a run of this unit that is found open, by a plan of this text, eight hours after
-/// the lane's shift was checked so.
+/// Whether a run of this unit that is found open counts as production, by a plan of this text, eight hours after the lane's shift
+/// was checked by these runs.
 fn is_production(plan: &str, checked: &[(&str, End)], serial: &str) -> bool {
     let mut made = Made::new();
     for (serial, end) in checked {
@@ -25,7 +25,7 @@ fn is_production(plan: &str, checked: &[(&str, End)], serial: &str) -> bool {
     is_production
 }
 
-/// The unit whose run was found open, by a plan of this text, and whether that counts as production.
+/// The unit whose run was found open, by a plan of this text, and whether the run counts as production.
 fn recovered(made: Made, plan: &str) -> (String, bool) {
     let database = rusqlite::Connection::open(made.folder().database()).unwrap();
     database.execute("UPDATE plan SET text = $1", [plan]).unwrap();
@@ -36,12 +36,12 @@ fn recovered(made: Made, plan: &str) -> (String, bool) {
     (record.run.serial.clone(), record.production)
 }
 
-/// [`PLAN`], whose runs may count.
+/// [`PLAN`] for hardware, whose runs may count.
 fn hardware() -> String {
     PLAN.replace("require_hardware = false", "require_hardware = true")
 }
 
-/// The lane had written down by then what the board is.
+/// By then the lane had recorded what the board is.
 #[test]
 fn a_run_that_is_found_open_on_what_is_no_hardware_counts_as_no_production() {
     for (kind, counts) in [("hardware", true), ("mock", false)] {
@@ -57,7 +57,7 @@ fn a_run_that_is_found_open_on_what_is_no_hardware_counts_as_no_production() {
     }
 }
 
-/// One that hangs, and does not hear that its station is gone.
+/// A lane that hangs, and does not notice that its station is gone.
 #[test]
 fn the_lane_of_a_run_that_is_found_open_is_killed() {
     let mut made = Made::new();
@@ -71,7 +71,7 @@ fn the_lane_of_a_run_that_is_found_open_is_killed() {
     for (number, (spool, lane)) in spools.iter().zip(&lanes).enumerate() {
         let stat = std::fs::read_to_string(format!("/proc/{}/stat", lane.id())).unwrap();
         let began: usize = stat.split(' ').nth(21).unwrap().parse().unwrap();
-        // Another process of the second one's id.
+        // For the second lane, the start time is that of another process with its id.
         std::fs::write(spool.join("lane.pid"), format!("{} {}", lane.id(), began + number)).unwrap();
     }
     recover(&mut made.store).unwrap();

@@ -1,4 +1,4 @@
-//! What the store promises.
+//! What the store guarantees.
 
 use std::process::Command;
 
@@ -18,9 +18,8 @@ fn only_one_program_writes() {
     assert_eq!(station.run("CAT00001", "mock").code, Some(0));
 }
 
-/// The system calls of a run in their order: the record is on the disk, and its name, before the log of the database tells
-/// of it, and the log before the verdict is said. In the controls, where one of these is not brought to the disk, the same
-/// look finds that it is not.
+/// The system calls of a run, in order: the record and its name are on the disk before the database's log mentions it, and the
+/// log is on the disk before the verdict is printed. In the controls, one of these is left out, and the same checks notice it.
 #[test]
 fn the_verdict_is_said_after_record_and_log_are_on_the_disk() {
     let station = Station::with(PLAN);
@@ -47,7 +46,7 @@ fn the_verdict_is_said_after_record_and_log_are_on_the_disk() {
     assert!(!is_kept(&without("/data/blobs/")), "the control");
 }
 
-/// Whether the record is brought to the disk before it has its name, and its name before anything more is written to the log.
+/// Whether the record is brought to the disk before it gets its name, and the name before anything more is written to the log.
 fn is_kept(lines: &[&str]) -> bool {
     let is_renamed = |line: &&str| line.starts_with("renameat2(") && line.contains("/data/blobs/");
     let named = lines.iter().position(is_renamed).unwrap();
@@ -58,7 +57,7 @@ fn is_kept(lines: &[&str]) -> bool {
         && behind[..told].iter().any(|line| is_synced(line) && !line.contains(".aside>"))
 }
 
-/// Whether the last write to the log before the verdict is followed by bringing it to the disk.
+/// Whether the last write to the log before the verdict is brought to the disk before the verdict.
 fn is_safe(lines: &[&str]) -> bool {
     let said = lines.iter().position(|line| line.starts_with("write(1") && line.contains("PASS")).unwrap();
     let last = |call: &str| {

@@ -1,11 +1,11 @@
-//! A result that cannot be saved is none.
+//! A result that cannot be saved does not count.
 
 use std::collections::BTreeMap;
 use std::process::Command;
 
 use super::bench::{Did, PLAN, Station, program};
 
-/// A run under strace, in which calls fail or end the program.
+/// A run under strace, which makes calls fail or kills the program at them.
 pub(crate) fn injected(station: &Station, serial: &str, inject: &str) -> Did {
     Command::new("strace")
         .args(["-qq", "-o", "/dev/null", "-e"])
@@ -17,10 +17,10 @@ pub(crate) fn injected(station: &Station, serial: &str, inject: &str) -> Did {
         .into()
 }
 
-/// A system call of a run: its name, and which of that name it is, counted from 1.
+/// A system call of a run: its name, and its number among the calls of that name, from 1.
 pub(crate) type Call = (String, usize);
 
-/// The calls of these names that a run makes, in their order.
+/// The calls of these names that a run makes, in order.
 pub(crate) fn calls(station: &Station, serial: &str, names: &str) -> Vec<Call> {
     let trace = station.path("calls");
     let traced = Command::new("strace")
@@ -34,7 +34,7 @@ pub(crate) fn calls(station: &Station, serial: &str, names: &str) -> Vec<Call> {
     numbered(&std::fs::read_to_string(&trace).unwrap())
 }
 
-/// The calls that strace has written down, in their order.
+/// The calls in a trace by strace, in order.
 pub(crate) fn numbered(trace: &str) -> Vec<Call> {
     let mut counts = BTreeMap::new();
     let names = trace.lines().filter_map(|line| line.split_once('(')).map(|(name, _)| name.to_owned());
@@ -46,8 +46,8 @@ pub(crate) fn numbered(trace: &str) -> Vec<Call> {
     numbered.collect()
 }
 
-/// Whatever fails, and from which of `all` calls on as `places` chooses: there is a verdict on the screen only if it is
-/// in the store, and the station is well as soon as the disk is.
+/// Lets calls fail from each of the chosen `places` on. A verdict is on the screen only if it is in the store, and the station
+/// works again as soon as the disk does.
 fn starve(places: impl Fn(usize) -> Vec<usize>) {
     let station = Station::with(PLAN);
     station.run("CAT00001", "mock");
@@ -59,14 +59,14 @@ fn starve(places: impl Fn(usize) -> Vec<usize>) {
         for first in places(all) {
             fails_from(first);
         }
-        // Which call is the verdict's own differs by a few from run to run.
+        // Which call writes the verdict differs a little from run to run.
         assert!((1..=all).rev().any(fails_from), "no run came to its end and was not saved: {call}, {error}");
     }
     assert_eq!(station.query("SELECT count(*) FROM run WHERE state = 'open'"), ["0"]);
     assert_eq!(station.check().code, Some(0), "{:?}", station.check());
 }
 
-/// Whether a run in which calls fail as `place` says told that its board is to be kept apart, since its verdict was not saved.
+/// Whether a run in which calls fail at `place` says that its board must be kept apart, since its verdict was not saved.
 fn is_told_unsaved(station: &Station, place: &str) -> bool {
     let stored = || {
         station.query(
@@ -90,15 +90,15 @@ fn no_verdict_is_shown_that_the_disk_did_not_take() {
     starve(|all| [1, all / 3, all / 2, 2 * all / 3].map(|place| place.max(1)).to_vec());
 }
 
-/// A disk tells of a lost write once, and takes what comes after: each of the three calls that bring evidence to the disk,
-/// the file and the names of it and of its folder, is heeded when it alone fails.
+/// A disk reports a lost write once, and accepts what comes later. Three calls bring evidence to the disk, for the file, its
+/// name, and the name of its folder; each is checked when it alone fails.
 #[test]
 fn evidence_that_the_disk_did_not_take_at_once_is_none() {
     let station = Station::with(PLAN);
     station.run("CAT00001", "mock");
     let mut seen = 0;
     for number in 1.. {
-        // Evidence makes its folder anew.
+        // Evidence then makes its folder anew.
         std::fs::remove_dir_all(station.data().join("blobs")).unwrap();
         let trace = station.path("failed");
         let did: Did = Command::new("strace")
