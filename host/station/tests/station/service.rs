@@ -1,4 +1,4 @@
-//! What starts the program: the unit for systemd, which docs/station-setup.md installs, and `nohup`.
+//! What starts the program: the unit for systemd that docs/station-setup.md installs, and `nohup`.
 
 use std::fs;
 use std::os::unix::net::UnixDatagram;
@@ -11,9 +11,10 @@ use crate::lanes::floor::HANG;
 use crate::pages::station::{Serving, Station};
 
 const UNIT: &str = include_str!("../../systemd/halfrow-station.service");
-/// How the unit begins the program, which systemd finds where it is installed.
+/// How the unit starts the program, which systemd finds where it is installed.
 const STARTS: &str = "ExecStart=halfrow-station";
-/// The most that `systemd-analyze security` may count, of 10; it counts boards, their groups and the network, too.
+/// The largest exposure that `systemd-analyze security` may report, of 10. It also counts access to boards, their groups and the
+/// network.
 const EXPOSURE: f64 = 2.0;
 
 #[test]
@@ -25,7 +26,7 @@ fn the_unit_calls_the_program_as_it_is_called() {
     assert!(did.complained.contains("/nowhere/station.toml cannot be read"), "{did:?}");
 }
 
-/// What `systemd-analyze` says of this unit.
+/// The result of `systemd-analyze` for this unit.
 fn analysed(unit: &str, how: &[&str]) -> Did {
     let folder = folder();
     let path = folder.path().join("halfrow-station.service");
@@ -38,7 +39,7 @@ fn analysed(unit: &str, how: &[&str]) -> Did {
 fn systemd_finds_nothing_wrong_with_the_unit() {
     let right = analysed(UNIT, &["verify"]);
     assert_eq!((right.code, right.complained.as_str()), (Some(0), ""), "{right:?}");
-    // The control: what is misspelt is told.
+    // The control: a misspelt key is reported.
     let wrong = analysed(&UNIT.replace("WatchdogSec", "WatchdogSecs"), &["verify"]);
     assert!(wrong.complained.contains("WatchdogSecs"), "{wrong:?}");
 }
@@ -53,7 +54,7 @@ fn the_unit_leaves_open_what_lanes_need_and_little_else() {
     assert!(level <= EXPOSURE, "{did:?}");
 }
 
-/// As `nohup` does it, which wants the program to outlive the terminal.
+/// As `nohup` does, so that the program outlives the terminal.
 #[test]
 fn a_signal_that_it_was_started_to_ignore_stays_ignored() {
     let station = Station::private(1);
@@ -65,7 +66,7 @@ fn a_signal_that_it_was_started_to_ignore_stays_ignored() {
     assert_eq!([Signal::SIGHUP, Signal::SIGTERM].map(|signal| serving.ignores(signal)), [true, false]);
 }
 
-/// A copy of the one file has everything, and systemd takes the end for none of its own making.
+/// A copy of that one file has everything, and systemd regards the exit code as success.
 #[test]
 fn a_station_that_is_stopped_leaves_one_whole_file() {
     let station = Station::private(1);
@@ -76,7 +77,7 @@ fn a_station_that_is_stopped_leaves_one_whole_file() {
     assert!(!station.query("SELECT n FROM schema_version").is_empty());
 }
 
-/// What is looked at first may take longer than systemd waits for a start.
+/// Checking the whole database may take longer than systemd waits for a start.
 #[test]
 fn a_start_that_looks_at_all_of_the_database_says_so_and_asks_systemd_for_time() {
     let station = Station::private(1);
@@ -103,7 +104,7 @@ fn a_start_that_looks_at_all_of_the_database_says_so_and_asks_systemd_for_time()
     }
     let seconds = UNIT.lines().find_map(|line| line.strip_prefix("TimeoutStartSec=")).unwrap();
     assert_eq!(heard[0], format!("EXTEND_TIMEOUT_USEC={seconds}000000"));
-    // A start that looks at nothing says nothing.
+    // A start that checks nothing prints nothing.
     drop(serving);
     assert_eq!(station.serve().complained(), "");
 }

@@ -1,4 +1,4 @@
-//! Settings: what is taken, and what is refused with its line and a remedy.
+//! Settings: what is accepted, and what is refused with its line and a remedy.
 
 use std::fs;
 use std::time::Duration;
@@ -83,7 +83,7 @@ fn every_key_means_what_it_says() {
     assert!(settings.hooks[1].program.is_absolute());
 }
 
-/// What [`WHOLE`] has not, and little else.
+/// The keys that [`WHOLE`] lacks, and little else.
 const REST: &str = r#"schema = 1
 [station]
 name = "12"
@@ -112,7 +112,7 @@ start = ["presence"]
 program = "lamp"
 "#;
 
-/// The defaults are those of docs/station.md and docs/plant.md, the ports those that IANA has for MQTT.
+/// The defaults are those of docs/station.md and docs/plant.md; the ports are IANA's for MQTT.
 #[test]
 fn what_is_left_out_is_as_the_pages_say() {
     let settings = load(REST).unwrap();
@@ -137,7 +137,7 @@ fn what_is_left_out_is_as_the_pages_say() {
     assert_eq!(settings.sinks.iter().map(port).collect::<Vec<_>>(), [8883, 1883]);
 }
 
-/// `plan fetch` fetches what lanes and jobs are judged by, each once.
+/// `plan fetch` fetches the plans by which lanes and jobs are judged, each once.
 #[test]
 fn a_plan_of_the_plant_is_fetched_for_lanes_and_for_jobs() {
     let folder = tempfile::tempdir().unwrap();
@@ -151,7 +151,7 @@ fn a_plan_of_the_plant_is_fetched_for_lanes_and_for_jobs() {
     assert_eq!(published.data, folder.path().join("data"));
 }
 
-/// A change of [`WHOLE`], and what the error says, which names the line.
+/// A change of [`WHOLE`], and how the error begins, which names the line.
 const WRONG: &[(&str, &str, &str)] = &[
     ("schema = 1", "schema = 9", "station.toml:1: this program reads settings of schema 1, not 9; take the"),
     ("name = \"12\"", "name = \" \"", "station.toml:3: there is nothing here; write a name"),
@@ -254,7 +254,7 @@ fn ticked(text: &str) -> Vec<&str> {
     text.split('`').skip(1).step_by(2).collect()
 }
 
-/// Every key that is taken where `text` has the key `nix`.
+/// All keys that are accepted where `text` has the key `nix`.
 fn known(text: &str) -> Vec<String> {
     let said = load(text).map(drop).unwrap_err();
     assert!(said.contains("unknown field `nix`"), "{said}");
@@ -262,7 +262,7 @@ fn known(text: &str) -> Vec<String> {
     ticked(expected).into_iter().map(str::to_owned).collect()
 }
 
-/// The error about a key that is none sends its reader there.
+/// The error about an unknown key refers its reader to this page.
 #[test]
 fn the_page_names_every_key() {
     let page = include_str!("../../../../docs/station.md");

@@ -158,7 +158,7 @@ impl Server {
     pub(crate) fn kill(&mut self) {
         let Some(mut process) = self.process.take() else { return };
         let memory = self.memory();
-        // They end when they notice that it is gone.
+        // Its children end when they notice that it is gone.
         process.kill().unwrap();
         process.wait().unwrap();
         // A machine has few of these segments, and they outlive the process that made them.

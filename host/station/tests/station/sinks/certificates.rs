@@ -1,4 +1,4 @@
-//! Servers whose certificates are not good. Those of the tests are good for two days.
+//! Servers whose certificates are not valid. Those of the tests are valid for two days.
 
 use std::fs;
 use std::path::Path;
@@ -15,7 +15,7 @@ use crate::plant::link::certificates_for;
 
 const DAY: i64 = 86_400;
 
-/// A station, a server that it sends to, and whom it trusts.
+/// A station, a server to which it sends, and the certificates and clocks of both.
 struct Ends {
     folder: TempDir,
     server: Server,
@@ -30,7 +30,8 @@ impl Ends {
         Self { folder: history().closed(), server, ours, clocks }
     }
 
-    /// What is told when results are sent to `host` with the clock so many seconds ahead, and whoever signs in `trusted` is trusted.
+    /// The message when results are sent to `host` with the clock `ahead` seconds fast, and the authority in `trusted` is
+    /// trusted.
     fn told(&self, host: &str, trusted: &Path, ahead: i64) -> String {
         self.clocks.ahead(ahead, 0);
         let ca = format!("ca = \"{}\"", trusted.join("ca.pem").display());
@@ -42,7 +43,7 @@ impl Ends {
         sent.said
     }
 
-    /// The date of the server's certificate.
+    /// One of the two dates of the server's certificate.
     fn date(&self, which: &str) -> String {
         let certificate = self.ours.path().join("server.crt");
         let mut openssl = Command::new("openssl");
@@ -69,7 +70,7 @@ fn a_certificate_out_of_its_time_is_told_with_its_date_and_the_clock_s() {
     assert!(early.contains("the certificate of localhost") && early.contains(&from), "{early}");
 }
 
-/// A file of which a part cannot be read trusts nobody by the rest of it, and one without certificates trusts nobody at all.
+/// A file that can only be read in part is not used at all, and one without certificates trusts nobody.
 #[test]
 fn a_file_of_certificates_that_is_not_whole_is_told_before_anything_is_sent() {
     let ends = Ends::new();
@@ -90,7 +91,7 @@ fn a_file_of_certificates_that_is_not_whole_is_told_before_anything_is_sent() {
     assert!(ends.server.requests().is_empty());
 }
 
-/// As where the system trusts a proxy of the house, which reads what goes through it.
+/// For example, the system may trust a company's proxy, which reads what passes through it.
 #[test]
 fn who_signs_is_of_the_file_of_the_settings_alone_and_not_of_the_system_s() {
     let ends = Ends::new();
@@ -104,7 +105,7 @@ fn who_signs_is_of_the_file_of_the_settings_alone_and_not_of_the_system_s() {
     let refused = sent(&ends.ours, format!("ca = \"{}\"", ca(&theirs).display()));
     assert!(refused.said.contains("is signed by nobody who is trusted"), "{refused:?}");
     assert!(ends.server.requests().is_empty());
-    // Without a file the system's own are taken.
+    // Without a file, the system's own certificates are used.
     assert!(sent(&ends.ours, String::new()).said.starts_with("10 sent, 0 not"));
 }
 

@@ -1,4 +1,4 @@
-//! Events for dashboards, through a broker of Debian's.
+//! Events for dashboards, through Debian's broker.
 
 use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
@@ -16,7 +16,7 @@ use super::send;
 use crate::history::made::{End, Made, Run};
 use crate::plant::link::certificates;
 
-/// A broker that lets one user in, and a listener to all that it is told.
+/// A broker that accepts one user, and a subscriber to everything that it gets.
 struct Broker {
     _folder: TempDir,
     port: u16,
@@ -25,13 +25,13 @@ struct Broker {
 }
 
 const PASSWORD: &str = "rosebud-5e1f";
-/// Debian keeps it where users do not look.
+/// Debian puts it into a folder that is not on a user's path.
 const MOSQUITTO: &str = "PATH=\"$PATH:/usr/sbin:/usr/local/sbin\" exec mosquitto -c \"$0\"";
-/// How long is listened, in seconds.
+/// For how many seconds the subscriber listens.
 const LONGEST: &str = "30";
 
 impl Broker {
-    /// At work, with the certificate in `certified` if there is one.
+    /// A running broker, with the certificate in `certified` if there is one.
     fn start(certified: Option<&Path>) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
@@ -75,10 +75,10 @@ impl Broker {
         Self { _folder: folder, port, broker, listener: listener.spawn().unwrap() }
     }
 
-    /// The next events: topic and document of each.
+    /// The next events, each with topic and document.
     fn heard(&mut self, count: usize, begin: impl FnOnce()) -> Vec<(String, Value)> {
         let mut lines = BufReader::new(self.listener.stdout.take().unwrap()).lines().map(Result::unwrap);
-        // What is told before the listener is heard of is told to nobody.
+        // Events before the subscription would be lost.
         assert!(lines.any(|line| line.contains("received SUBACK")), "the listener is refused");
         begin();
         let events = lines.filter_map(|line| {
@@ -88,7 +88,7 @@ impl Broker {
         events.take(count).collect()
     }
 
-    /// The settings of a sink with this password, in a file of the station's folder.
+    /// The settings of a sink with this password, which is put into a file in the station's folder.
     fn sink(&self, station: &Path, scheme: &str, password: &str, more: &str) -> String {
         let path = station.join("broker.password");
         fs::write(&path, format!("{password}\n")).unwrap();
@@ -112,7 +112,7 @@ fn now_ms() -> i64 {
     i64::try_from(SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_millis()).unwrap()
 }
 
-/// A run and a waiver of now, and a run of two hours ago.
+/// The folder of a station with a run and a waiver of now, and a run of two hours ago.
 fn station() -> TempDir {
     let mut made = Made::new();
     let minute_ago = now_ms() - 60_000;
@@ -121,13 +121,13 @@ fn station() -> TempDir {
         made.run(&Run { started_ms: minute_ago, production: false, ..Run::of("NEW", End::Fail(&["clock"])) });
     made.store.waive(&failed, "engel", "seen").unwrap();
     let folder = made.closed();
-    // Earlier programs took any length.
+    // Earlier programs accepted a reason of any length.
     let database = rusqlite::Connection::open(folder.path().join("station.db")).unwrap();
     database.execute("UPDATE waiver SET reason = ?1", [long_reason()]).unwrap();
     folder
 }
 
-/// More than an event has on the average.
+/// A reason that is longer than an event usually is.
 fn long_reason() -> String {
     "seen ".repeat(40_000)
 }
@@ -146,7 +146,7 @@ fn what_has_just_happened_is_told_and_what_is_old_is_not() {
         let sink = broker.sink(folder.path(), scheme, PASSWORD, &ca);
         let events = broker.heard(2, || {
             let sent = send(folder.path(), &sink);
-            // The waiver's line in the audit is told to nobody, either.
+            // The waiver's line in the audit makes no event, either.
             assert!(sent.said.starts_with("4 sent, 0 not"), "{sent:?}");
         });
         let [(run, told), (waiver, waived)] = &events[..] else { panic!("{events:?}") };
@@ -164,7 +164,7 @@ fn a_broker_that_is_away_or_does_not_let_in_is_tried_again() {
     let mut broker = Broker::start(None);
     let folder = station();
     let refused = send(folder.path(), &broker.sink(folder.path(), "mqtt", "wrong", ""));
-    // What is old needs no broker.
+    // An old run is not sent to the broker at all.
     assert!(
         refused.said.starts_with("1 sent, 3 not")
             && refused.said.contains("check user and password_file in the settings"),
@@ -190,7 +190,7 @@ fn a_broker_whose_certificate_nobody_signed_who_is_trusted_is_told_as_that() {
     assert!(refused.said.starts_with("1 sent, 3 not") && refused.said.contains(told), "{refused:?}");
 }
 
-/// It lets the station in, and is gone before it confirms.
+/// The broker accepts the station, and is gone before it confirms an event.
 #[test]
 fn an_event_that_no_broker_has_confirmed_is_tried_again() {
     let folder = station();
@@ -200,7 +200,7 @@ fn an_event_that_no_broker_has_confirmed_is_tried_again() {
         for stream in listener.incoming() {
             let (mut stream, mut bytes) = (stream.unwrap(), [0; 4096]);
             let _ = stream.read(&mut bytes);
-            // CONNACK (MQTT 3.1.1, section 3.2), and no PUBACK.
+            // CONNACK (MQTT 3.1.1, section 3.2), but no PUBACK.
             let _ = stream.write_all(&[0x20, 2, 0, 0]);
             let _ = stream.read(&mut bytes);
         }

@@ -1,4 +1,4 @@
-//! A folder that results are written to.
+//! A folder into which results are written.
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
@@ -19,7 +19,7 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// The history's folder, and a sink of this format that lies in it.
+/// The folder of a station with a history, and a sink of this format inside it.
 fn station(format: &str) -> (tempfile::TempDir, String) {
     let folder = history().closed();
     let sink = format!("[[sink]]\nname = \"share\"\nfolder = \"share\"\nformat = \"{format}\"\n");
@@ -58,7 +58,7 @@ fn each_run_is_a_file_with_the_bytes_that_are_exported_and_a_waiver_is_one_too()
     }
 }
 
-/// The service makes what is its own for nobody else; what it writes here is for whoever looks into the folder.
+/// The service's own files are for nobody else, but what it writes here is for everybody who may read the folder.
 #[test]
 fn whoever_may_read_the_folder_may_read_its_files_and_nobody_else() {
     for (of_folder, of_files) in [(0o755, 0o644), (0o2770, 0o640), (0o700, 0o600)] {
@@ -95,13 +95,13 @@ fn a_folder_that_is_away_is_waited_for_and_another_file_is_never_written_over() 
     assert_eq!(fs::read_to_string(&other).unwrap(), "somebody's own");
     let listed = did(folder.path(), &sink, &["outbox", "list"]);
     assert!(listed.said.contains("nothing was changed: keep both"), "{listed:?}");
-    // A person puts it right, and releases all that waits at this sink.
+    // A person corrects it, and releases everything that waits for this sink.
     fs::remove_file(&other).unwrap();
     let release = ["outbox", "release", "--sink", "share", "--reason", "it was a trial"];
     assert_eq!(did(folder.path(), &sink, &release).code, Some(0));
     assert_eq!(did(folder.path(), &sink, &release).code, Some(2));
     assert!(send(folder.path(), &sink).said.contains(" sent, 0 not"));
-    // What is there already is not written again.
+    // A file that exists with the same content is not written again.
     let database = rusqlite::Connection::open(folder.path().join("station.db")).unwrap();
     database.execute("DELETE FROM outbox", []).unwrap();
     drop(database);
@@ -111,7 +111,7 @@ fn a_folder_that_is_away_is_waited_for_and_another_file_is_never_written_over() 
     assert_eq!(fs::metadata(&other).unwrap().modified().unwrap(), modified);
 }
 
-/// It comes when its record is put back, and what is behind it does not wait for that.
+/// The run is sent once its record is put back; those after it do not wait for that.
 #[test]
 fn a_run_whose_record_cannot_be_read_is_not_taken_for_sent() {
     let (folder, sink) = station("record");
@@ -141,7 +141,7 @@ fn a_sink_that_is_no_more_is_forgotten_when_the_settings_do_not_name_it() {
         refused.code == Some(2) && refused.complained.contains("take it out of them first"),
         "{refused:?}"
     );
-    // What cannot stand in the audit is not forgotten.
+    // What cannot be entered in the audit is not forgotten.
     let database = rusqlite::Connection::open(folder.path().join("station.db")).unwrap();
     database.execute_batch(NO_AUDIT).unwrap();
     assert_eq!(did(folder.path(), "", &forget).code, Some(3));

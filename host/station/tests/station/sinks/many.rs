@@ -1,4 +1,4 @@
-//! A sink that has refused a great many entries.
+//! A sink that has refused very many entries.
 
 use halfrow_station::said::{Said, Saying};
 use halfrow_station::store::Tried;
@@ -8,7 +8,7 @@ use crate::common::now_ms;
 use crate::history::made::Made;
 use crate::history::served::Served;
 
-/// A history of which a sink has refused this many lines of the audit.
+/// A history with a sink that has refused this many lines of the audit.
 fn refused(many: usize) -> Made {
     let mut made = Made::new();
     made.store.sends_to(vec!["mes".to_owned()]).unwrap();

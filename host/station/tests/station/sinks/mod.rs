@@ -1,4 +1,4 @@
-//! Whoever is sent results besides the plant: a folder, a web server, a broker of events. Each is another program.
+//! Where results are sent other than the plant: a folder, a web server, a broker of events. Each is another program.
 
 mod certificates;
 mod events;
@@ -18,12 +18,12 @@ use halfrow_station::store::{Folder, Parcel, SharedStore, Snapshot, Store, Tried
 
 use crate::common::{Did, PLAN, now_ms, program};
 
-/// What a command of the station in this folder does, whose settings have this `[[sink]]`.
+/// Runs a command of the station in this folder, with this `[[sink]]` in its settings.
 fn did(folder: &Path, sink: &str, arguments: &[&str]) -> Did {
     command(folder, sink, arguments).output().unwrap().into()
 }
 
-/// That command, not begun yet.
+/// The same command, not yet started.
 fn command(folder: &Path, sink: &str, arguments: &[&str]) -> Command {
     settings(folder, sink);
     let mut command = Command::new(program());
@@ -31,7 +31,7 @@ fn command(folder: &Path, sink: &str, arguments: &[&str]) -> Command {
     command
 }
 
-/// Writes these settings.
+/// Writes the station's settings, with this sink.
 fn settings(folder: &Path, sink: &str) {
     fs::write(folder.join("plan.toml"), PLAN).unwrap();
     let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n";
@@ -39,7 +39,7 @@ fn settings(folder: &Path, sink: &str) {
     fs::write(folder.join("station.toml"), text).unwrap();
 }
 
-/// Sends all that is not sent yet.
+/// Sends everything that is not yet sent.
 const SEND: [&str; 3] = ["outbox", "send", "--any-disk"];
 
 fn send(folder: &Path, sink: &str) -> Did {
@@ -82,7 +82,7 @@ fn a_sink_that_is_not_one_is_refused_with_its_line() {
     }
 }
 
-/// Each of these sinks is refused with these words.
+/// Asserts that each of these sinks is refused with these words.
 fn are_refused(folder: &Path, sinks: &[(&str, &str)]) {
     for (sink, expected) in sinks {
         settings(folder, &format!("[[sink]]\n{sink}"));
@@ -135,7 +135,7 @@ fn a_way_to_a_sink_that_is_none_is_refused_with_its_line() {
     are_refused(folder.path(), &cases);
 }
 
-/// Looks at what it has whenever it is given something.
+/// A sink that reads what is unsent whenever it is given something.
 struct Looking {
     folder: Folder,
     unsent: Vec<u32>,
@@ -168,7 +168,7 @@ fn what_a_sink_has_is_known_before_it_has_all_that_is_behind_it() {
     assert!(Snapshot::take(&sink.folder).unwrap().unsent().unwrap().is_empty());
 }
 
-/// The clock was wrong by a day when it was tried in vain.
+/// The clock was wrong by a day when the last try failed.
 #[test]
 fn what_waits_for_a_time_of_a_wrong_clock_is_sent_all_the_same() {
     let place = tempfile::tempdir().unwrap();
@@ -182,7 +182,7 @@ fn what_waits_for_a_time_of_a_wrong_clock_is_sent_all_the_same() {
         store.tried("mes", &[(entry, again)], now_ms()).unwrap();
         let shared = SharedStore::new(store);
         let mut sink = Looking { folder: folder.clone(), unsent: Vec::new() };
-        // What was noted before, and waits for less, is not sent.
+        // What was noted before, and waits for less time, is not sent.
         assert_eq!(round(&shared, &mut sink).unwrap().sent, sent, "{wait_ms}");
         drop(shared);
         store = Store::open(&folder).unwrap();

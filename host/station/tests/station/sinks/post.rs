@@ -1,4 +1,4 @@
-//! A web server that results are posted to, which is Python's own.
+//! A web server to which results are posted, which is Python's own.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -28,7 +28,7 @@ pub(super) struct Server {
 }
 
 impl Server {
-    /// At work, with the certificate in `certified` if there is one.
+    /// A running server, with the certificate in `certified` if there is one.
     pub(super) fn start(certified: Option<&Path>) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/station/sinks/server.py");
@@ -45,12 +45,12 @@ impl Server {
         server
     }
 
-    /// Answers this from here on.
+    /// Makes it answer this from now on.
     pub(super) fn answers(&self, answer: &str) {
         fs::write(self.folder.path().join("answer"), answer).unwrap();
     }
 
-    /// What was posted since the last look.
+    /// What was posted since the last call.
     pub(super) fn requests(&self) -> Vec<Value> {
         let path = self.folder.path().join("requests.jsonl");
         let text = fs::read_to_string(&path).unwrap_or_default();
@@ -95,7 +95,7 @@ fn each_run_is_posted_once_with_its_key_and_again_only_when_nobody_knows() {
             assert_eq!(request["path"], "/api/runs?line=3");
             assert_eq!(headers["authorization"], "Bearer rosebud-5e1f");
             assert_eq!(headers["content-type"], "application/json");
-            // A string of structured fields (draft-ietf-httpapi-idempotency-key-header-07, section 2.1) is in quotes.
+            // A string of structured fields is in quotes (draft-ietf-httpapi-idempotency-key-header-07, section 2.1).
             let key = headers["idempotency-key"].as_str().unwrap();
             let key = key.strip_prefix('"').unwrap().strip_suffix('"').unwrap().to_owned();
             let body = base64::prelude::BASE64_STANDARD.decode(request["body"].as_str().unwrap()).unwrap();
@@ -112,7 +112,7 @@ fn each_run_is_posted_once_with_its_key_and_again_only_when_nobody_knows() {
     assert!(server.requests().is_empty());
 }
 
-/// By the media types of RFC 7303, RFC 4180 and RFC 8259.
+/// The media types are those of RFC 7303, RFC 4180 and RFC 8259.
 #[test]
 fn each_document_says_what_it_is_whatever_runs_are_written_as() {
     for (format, of_runs) in [
@@ -141,7 +141,7 @@ fn what_a_server_answers_says_who_waits_for_whom() {
     let server = Server::start(None);
     let folder = history().closed();
     let sink = sink(&format!("http://127.0.0.1:{}/", server.port), "");
-    // It takes nothing at all: the first that is refused is enough.
+    // It accepts nothing at all: after the first refusal no more is sent.
     for (answer, said) in [
         ("503 later", "answers 503; it is asked again later"),
         ("429 slowly", "answers 429; it is asked again later"),
@@ -158,13 +158,13 @@ fn what_a_server_answers_says_who_waits_for_whom() {
         assert!(sent.said.starts_with("0 sent, 10 not") && sent.said.contains(said), "{answer}: {sent:?}");
         assert_eq!(server.requests().len(), 1, "{answer}");
     }
-    // It has trouble with each, or is still at work with it, and may have it later. Lines of the audit are not posted.
+    // It fails at each, or is still working on it, and may accept it later. Lines of the audit are not posted.
     for (answer, came) in [("500 oops", "2 sent, 8 not"), ("409 patience", "0 sent, 8 not")] {
         server.answers(answer);
         assert!(send(folder.path(), &sink).said.starts_with(came), "{answer}");
         assert_eq!(server.requests().len(), 8, "{answer}");
     }
-    // It never takes them as they are: they wait for a person.
+    // It will never accept them as they are, so they wait for a person.
     server.answers("422 the serial number is\n unknown here");
     for posted in [8, 0] {
         let refused = send(folder.path(), &sink);
@@ -196,14 +196,14 @@ fn what_was_tried_a_moment_ago_is_sent_when_a_person_says_so() {
     assert!(sent.said.starts_with("8 sent, 0 not") && sent.code == Some(0), "{sent:?}");
 }
 
-/// As pages do that proxies and frameworks have for those who look for faults.
+/// Error pages of proxies and frameworks repeat the request for those who look for faults.
 #[test]
 fn a_server_that_tells_what_it_was_sent_has_the_token_kept_nowhere() {
     let server = Server::start(None);
     let folder = history().closed();
     token(folder.path());
     let sink = sink(&format!("http://127.0.0.1:{}/", server.port), "token_file = \"mes.token\"");
-    // The second one stands across the end of what is told.
+    // The second token is cut by the end of what is kept.
     let told = "authorization: Bearer rosebud-5e1f, ";
     let filled = "x".repeat(500 - told.len() - 4);
     server.answers(&format!("400 {told}{filled}rosebud-5e1f rosebud-5e1f"));
@@ -254,7 +254,7 @@ fn what_leaves_the_computer_goes_to_the_server_of_that_name_alone() {
     assert_eq!(server.requests().len(), 8);
 }
 
-/// What programs take for the proxy of all that they send, unless they are told otherwise.
+/// The variables from which programs take the proxy for everything that they send, unless told otherwise.
 const PROXIES: [&str; 6] =
     ["ALL_PROXY", "all_proxy", "HTTPS_PROXY", "https_proxy", "HTTP_PROXY", "http_proxy"];
 
@@ -277,7 +277,7 @@ fn a_proxy_in_the_environment_gets_nothing() {
     assert!(proxy.requests().is_empty());
 }
 
-/// A proxy that connects whoever asks it to, and what it was asked for by each.
+/// A proxy that connects every client to the server that it names, and the heads of their requests.
 fn connecting() -> (u16, Receiver<String>) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();

@@ -1,11 +1,11 @@
-//! What keeps sinks from taking results, on the station's page.
+//! Why sinks do not accept results, on the station's page.
 
 use super::post::Server;
 use super::send;
 use crate::history::made::{End, Made, Run};
 use crate::history::served::Served;
 
-/// What the other system answers is nobody's to translate.
+/// The other system's answer is not translated.
 #[test]
 fn why_a_sink_takes_nothing_is_told_in_the_language_of_the_page_around_its_own_words() {
     let mut made = Made::new();

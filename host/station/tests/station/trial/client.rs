@@ -1,4 +1,4 @@
-//! A station as the library has it, in a thread: its store, its outbox and its claims are real; its boards answer at once.
+//! A station in a thread, made of the library: its store, its outbox and its claims are real, but its boards answer at once.
 
 use std::sync::atomic::Ordering;
 use std::thread;
@@ -17,30 +17,30 @@ use crate::history::made::{End, Made, Run};
 use crate::jobs::worker;
 use crate::plant::sent::send_as;
 
-/// How long a client waits that has nothing to do, or whose plant is away.
+/// How long a client pauses that has nothing to do, or whose plant is away.
 const PAUSE: Duration = Duration::from_millis(100);
-/// How often something is exchanged with a board in a run.
+/// The number of exchanges with a board in a run, and the time after each.
 const EXCHANGES: u32 = 4;
 const EXCHANGE: Duration = Duration::from_millis(5);
-/// How long it is waited for the plant to have a run.
+/// How long to wait until the plant has a run.
 const SENT: Duration = Duration::from_secs(20);
 
 /// What happens to a client while it has a job.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Fate {
     Well,
-    /// It is killed before it begins.
+    /// It is killed before it begins a run.
     KilledAtOnce,
     /// It is killed while it judges.
     KilledInRun,
-    /// It is killed when the result is kept, and not sent.
+    /// It is killed after the result is stored, but before it is sent.
     KilledUnsent,
-    /// It stands still while it judges, for longer than it may.
+    /// It stops while it judges, for longer than its lease lasts.
     Stalled,
 }
 
 impl Fate {
-    /// Of a hundred jobs, four end at once, five in the run, four unsent, and seven stand still.
+    /// Of a hundred jobs, a client is killed at once in four, in the run in five, unsent in four, and stops in seven.
     fn drawn(draw: &mut Draw) -> Self {
         match draw.below(100) {
             0..4 => Self::KilledAtOnce,
@@ -52,9 +52,9 @@ impl Fate {
     }
 }
 
-/// Takes jobs until the trial is over. Returns its folder.
+/// Takes jobs until the trial is over. Returns the client's folder.
 pub(super) fn work(trial: &Trial, number: u32) -> TempDir {
-    // As long as the process, as the names of stations in runs that are made are.
+    // Leaked, since the station's name in a made run is `'static`.
     let name: &'static str = Box::leak(format!("client {number}").into_boxed_str());
     let mut client = Client {
         trial,
@@ -84,7 +84,7 @@ struct Client<'a> {
     name: &'static str,
     worker: Worker,
     plant: PlantLink,
-    /// Its store; nobody but [`Client::with`] finds it away.
+    /// Its store; none only inside [`Client::with`].
     made: Option<Made>,
     draw: Draw,
     runs: u32,
@@ -96,7 +96,7 @@ impl Client<'_> {
         if fate == Fate::KilledAtOnce {
             return self.killed(claim);
         }
-        // Whoever is killed or stands still renews nothing, and gives nothing back.
+        // A client that is killed or stops renews nothing, and gives nothing back.
         let holding =
             (fate == Fate::Well).then(|| Holding::begin(self.plant.clone(), Held::Job(claim.clone())));
         self.judge(claim, fate);
@@ -106,7 +106,7 @@ impl Client<'_> {
         }
     }
 
-    /// Judges the board, and keeps the result.
+    /// Judges the board, and stores the result.
     fn judge(&mut self, claim: &Claim, fate: Fate) {
         let session = self.trial.shelf.begin(&claim.lease.board);
         self.runs += 1;
@@ -115,7 +115,7 @@ impl Client<'_> {
             station: self.name,
             lane: claim.lease.board.clone(),
             started_ms: now_ms(),
-            // A control's runs say nothing of their claim.
+            // In a control, runs do not name their claim.
             job: self.trial.shape.is_fenced.then_some(fence),
             ..Run::of(claim.serial(), End::Open)
         };
@@ -133,7 +133,7 @@ impl Client<'_> {
         }
     }
 
-    /// What is exchanged with the board; nothing comes of it if the client is killed.
+    /// Talks to the board; returns how the run ends, or none if the client is killed.
     fn exchanged(&self, claim: &Claim, session: &Session<'_>, fate: Fate) -> Option<End> {
         for number in 0..EXCHANGES {
             match (number, fate) {
@@ -160,7 +160,7 @@ impl Client<'_> {
         }
     }
 
-    /// It is gone, and starts again on what it had kept.
+    /// The client is gone, and starts again with what it had stored.
     fn killed(&mut self, claim: &Claim) {
         self.trial.happened.kills.fetch_add(1, Ordering::Relaxed);
         self.plant = PlantLink::new(self.trial.address());
@@ -175,7 +175,7 @@ impl Client<'_> {
         }
     }
 
-    /// Sends what is kept until the plant has all of it, or for so long, or until it `is_lost`. Returns how much is left.
+    /// Sends until the plant has everything, the time `long` is over, or the job `is_lost`. Returns how many entries are left.
     fn send(&mut self, long: Duration, is_lost: &dyn Fn() -> bool) -> u32 {
         let (address, name, begun) = (self.trial.address(), self.name, Instant::now());
         loop {

@@ -1,4 +1,4 @@
-//! What a trial came to, told from the databases alone.
+//! The result of a trial, taken from the databases alone.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,23 +7,23 @@ use tempfile::TempDir;
 
 use super::{Trial, lock};
 
-/// What was found, none of which may be.
+/// What was found; all of it should be zero.
 #[derive(Debug)]
 pub(super) struct Found {
-    /// Jobs without a run that counts and was judged.
+    /// Jobs without a run that counts as a judgement.
     pub(super) undone: usize,
-    /// Jobs with more than one.
+    /// Jobs with more than one such run.
     pub(super) doubles: usize,
-    /// Runs that were judged on a board on which another one had begun.
+    /// Runs that were judged on a board on which another one had begun meanwhile.
     pub(super) at_once: usize,
     /// Runs that a station and the plant do not both have with the same hash.
     pub(super) unlike: usize,
-    /// How many more judgements the plant counts than it has runs that count.
+    /// By how many the judgements that the plant has counted exceed its runs that count.
     pub(super) miscounted: i64,
 }
 
 impl Found {
-    /// Of a trial that is over, and the folders of its stations.
+    /// What is found after a trial is over, with the folders of its stations.
     pub(super) fn of(trial: &Trial, folders: &[TempDir]) -> Self {
         let server = lock(&trial.server);
         let judged = judged(trial, &server.rows(JUDGED));
@@ -42,7 +42,7 @@ impl Found {
         }
     }
 
-    /// What may not be, each in words.
+    /// What is not zero, in words.
     pub(super) fn wrong(&self) -> Vec<String> {
         let Self { undone, doubles, at_once, unlike, miscounted } = self;
         let all = [
@@ -81,7 +81,7 @@ fn judged(trial: &Trial, rows: &[Vec<String>]) -> BTreeMap<String, Vec<String>> 
     judged
 }
 
-/// The runs of a station that are over, each with its hash.
+/// The runs of a station that ended, each with its hash.
 fn kept(folder: &TempDir) -> Vec<String> {
     let text = "SELECT id || ' ' || record_sha256 FROM run WHERE state = 'final'";
     crate::common::query(&super::process::data(folder), text)

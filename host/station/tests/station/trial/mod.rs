@@ -1,6 +1,6 @@
-//! A trial of a whole plant: stations, some of them real programs, that judge thousands of boards while they are killed, while
-//! they stand still for longer than they may, while their connections are cut around COMMITs, and while the plant's server is
-//! killed. Every job is judged once in the end, and every record is at the plant as its station has it.
+//! A trial of a whole plant: stations, some of them real programs, judge thousands of boards while they are killed, while they
+//! are stopped for longer than their leases last, while their connections are cut around COMMITs, and while the plant's server is
+//! killed. In the end every job is judged once, and the plant has every record as its station has it.
 //!
 //! ```text
 //!  clients (threads: the library, a store of their own each) ─┐                           ┌─ killed, started again
@@ -30,13 +30,13 @@ use found::Found;
 use network::Network;
 use shelf::Shelf;
 
-/// What is sent in a transaction that has a run's record has more bytes than any other.
+/// In bytes: a transaction with a run's record sends more than this, and any other one less.
 const RUN: usize = 2_000;
-/// How often it is looked how far the trial is.
+/// How often the progress of the trial is checked.
 const LOOK: Duration = Duration::from_millis(200);
-/// How long a trial that waits for no lease may stand still until all of them have run out.
+/// How long a trial that does not wait for leases may make no progress until all of them are ended.
 const HURRY: Duration = Duration::from_secs(2);
-/// How long a trial may stand still.
+/// How long a trial may make no progress at all.
 const STUCK: Duration = Duration::from_secs(300);
 
 /// How large a trial is, and what happens in it.
@@ -45,38 +45,38 @@ struct Shape {
     boards: u32,
     clients: u32,
     processes: u32,
-    /// Stations in a network of their own, which needs root.
+    /// Stations in networks of their own, which need root.
     networks: u32,
     /// How often the server is killed.
     restarts: u32,
-    /// How long somebody stands still; none if the plant's clock is set on instead.
+    /// For how long a station is stopped; none if leases are ended instead, as by the plant's clock.
     stall: Option<Duration>,
-    /// Whether a run says which claim it is of, and a board knows who has it: without, the trial is a control, which must fail.
+    /// Whether a run names its claim, and a board knows who has it. Without that, the trial is a control, which must fail.
     is_fenced: bool,
 }
 
-/// What happened so far.
+/// What has happened so far.
 #[derive(Debug, Default)]
 struct Happened {
     kills: AtomicU32,
     /// Cuts around COMMITs of runs.
     cuts: AtomicU32,
-    /// And around others: of claims, of leases.
+    /// Cuts around other COMMITs: of claims and of leases.
     other_cuts: AtomicU32,
     stalls: AtomicU32,
     unplugged: AtomicU32,
 }
 
-/// A trial that is under way.
+/// A trial under way.
 struct Trial {
     shape: Shape,
     server: Mutex<Server>,
-    /// The port of the way to the server that is cut now and then.
+    /// The port of the relay to the server, which cuts connections now and then.
     port: u16,
     shelf: Shelf,
     happened: &'static Happened,
     is_over: AtomicBool,
-    /// Jobs of a control, and the runs that were believed to be theirs.
+    /// The jobs of a control, and the runs that were believed to be theirs.
     believed: Mutex<Vec<[String; 2]>>,
 }
 
@@ -110,7 +110,7 @@ impl Trial {
         Self { shape, server, port, shelf, happened, is_over, believed: Mutex::default() }
     }
 
-    /// The plant by the way that is cut.
+    /// The plant's address through the relay.
     fn address(&self) -> PlantAddress {
         PlantAddress::new(&self.url(), None, None).unwrap()
     }
@@ -123,10 +123,10 @@ impl Trial {
         self.is_over.load(Ordering::Relaxed)
     }
 
-    /// Lets everything happen until all jobs are done, and returns the folders of all stations, with nothing left to be sent.
+    /// Runs the trial until all jobs are done. Returns the folders of all stations, when nothing is left to be sent.
     fn run(&self) -> Vec<TempDir> {
         thread::scope(|scope| {
-            // However it ends: stations that went on would keep a failed trial from its end.
+            // Dropped however this ends: stations that went on would keep a failed trial from ending.
             let over = Over(&self.is_over);
             let Shape { clients, processes, networks, .. } = self.shape;
             let clients = (0..clients).map(|number| scope.spawn(move || client::work(self, number)));
@@ -142,7 +142,7 @@ impl Trial {
         })
     }
 
-    /// Kills the server now and then, and looks after jobs that came to nothing, until all are done.
+    /// Kills the server now and then, and revives jobs that failed, until all are done.
     fn watch(&self) {
         let mut restarts = 0;
         let (mut last, mut moved, begun) = (0, Instant::now(), Instant::now());
@@ -179,7 +179,7 @@ impl Trial {
         }
     }
 
-    /// How many jobs are done. What was claimed five times in vain is tried again, as a person would have it.
+    /// How many jobs are done. Jobs that were claimed five times in vain are tried again, as an engineer would do.
     fn done(&self) -> u32 {
         let server = lock(&self.server);
         for dead in server.rows("SELECT id FROM job WHERE state = 'dead'") {
@@ -191,7 +191,7 @@ impl Trial {
         server.rows("SELECT count(*) FROM job WHERE state = 'done'")[0][0].parse().unwrap()
     }
 
-    /// The job is done by this run, whoever has it.
+    /// Marks the job as done by this run, whoever has its claim.
     fn believed(&self, job: &str, run: &str) {
         lock(&self.believed).push([job, run].map(str::to_owned));
         let text =
@@ -199,7 +199,7 @@ impl Trial {
         lock(&self.server).client("plant").batch_execute(&text).unwrap();
     }
 
-    /// The lease of this job and this board has run out, as if the plant's clock had been set on.
+    /// Ends the lease of this job and this board, as if the plant's clock had been set forward.
     fn run_out(&self, job: &str, board: &str) {
         let text = format!(
             "UPDATE job SET until_ms = 0 WHERE id = '{job}' AND state = 'claimed';
@@ -209,7 +209,7 @@ impl Trial {
     }
 }
 
-/// Dropped, it ends a trial.
+/// Ends a trial when dropped.
 struct Over<'a>(&'a AtomicBool);
 
 impl Drop for Over<'_> {
@@ -222,13 +222,13 @@ fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
     of.lock().unwrap()
 }
 
-/// Tells whoever watches.
+/// Informs whoever watches a long trial.
 #[expect(clippy::print_stderr, reason = "a long trial is watched")]
 fn say(text: &str) {
     eprintln!("{text}");
 }
 
-/// What a trial of this shape comes to.
+/// Runs a trial of this shape; returns what was found, and what happened.
 fn tried(shape: Shape) -> (Found, &'static Happened) {
     let trial = Trial::begin(shape);
     let begun = Instant::now();
@@ -244,7 +244,7 @@ fn tried(shape: Shape) -> (Found, &'static Happened) {
     (found, trial.happened)
 }
 
-/// Some stations and some hundred boards, where nobody waits for a lease to run out.
+/// Some stations and more than a hundred boards; nobody waits for a lease to run out.
 const SHORT: Shape =
     Shape { boards: 150, clients: 8, processes: 2, networks: 0, restarts: 1, stall: None, is_fenced: true };
 
@@ -257,7 +257,7 @@ fn whatever_happens_to_stations_every_job_is_judged_once() {
     }
 }
 
-/// The control: what would be seen if stations that come too late were believed.
+/// The control: what would happen if stations that come too late were believed.
 #[test]
 fn without_fences_boards_are_judged_twice_at_once_and_jobs_twice() {
     let (found, _) = tried(Shape { boards: 60, processes: 0, restarts: 0, is_fenced: false, ..SHORT });

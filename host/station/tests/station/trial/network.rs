@@ -1,4 +1,4 @@
-//! A network of its own for a station, by a cable to this computer that can be unplugged: a namespace of Linux, which needs root.
+//! A station's own network, with a cable to this computer that can be unplugged: a namespace of Linux, which needs root.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,10 +11,10 @@ use crate::common::plant_settings;
 use crate::plant::link::certificates_for;
 use crate::plant::server::Server;
 
-/// What the server's certificate is signed by.
+/// The authority that signs the server's certificate.
 static AUTHORITY: OnceLock<TempDir> = OnceLock::new();
 
-/// Has the server speak TLS to all networks.
+/// Makes the server speak TLS in all these networks.
 pub(super) fn opened(server: &mut Server) {
     let folder = AUTHORITY.get_or_init(|| tempfile::tempdir().unwrap());
     let names: Vec<_> = (0..16).map(|number| format!("IP:{}", near(number))).collect();
@@ -23,12 +23,12 @@ pub(super) fn opened(server: &mut Server) {
     server.listens_everywhere();
 }
 
-/// This computer's end of the cable.
+/// The address of this computer's end of the cable.
 fn near(number: u32) -> String {
     format!("10.213.{number}.1")
 }
 
-/// A network of its own.
+/// A network of a station's own.
 pub(super) struct Network {
     number: u32,
     name: String,
@@ -48,7 +48,7 @@ impl Network {
         Self { number, name }
     }
 
-    /// What the settings say of the plant.
+    /// The part of the settings about the plant.
     pub(super) fn settings(&self, trial: &Trial, folder: &Path) -> String {
         let port = lock(&trial.server).port();
         let ca: PathBuf = folder.join("ca.pem");
@@ -60,7 +60,7 @@ impl Network {
         )
     }
 
-    /// This program in this network.
+    /// A command that runs this program in this network.
     pub(super) fn command(&self, program: &Path) -> Command {
         let mut command = Command::new("ip");
         command.args(["netns", "exec", &self.name]).arg(program);

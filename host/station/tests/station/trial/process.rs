@@ -1,4 +1,4 @@
-//! A station that is a process of its own: `halfrow-station work`, with all that becomes of it.
+//! A station in a process of its own: `halfrow-station work`, and what happens to it.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -16,12 +16,12 @@ use super::network::Network;
 use crate::common::{self, PLAN, program};
 use crate::history::generated::Draw;
 
-/// How long each step of a station's end may take, over a cable that was just plugged in.
+/// How long each step of ending a station may take, over a cable that was just plugged in.
 const ENDED: Duration = Duration::from_secs(120);
-/// How often it is looked whether the trial is over.
+/// How often it is checked whether the trial is over.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// Where a station in `folder` keeps what it keeps: a client in the folder itself.
+/// Where a station in `folder` stores its data: a client does so in the folder itself.
 pub(super) fn data(folder: &TempDir) -> PathBuf {
     let data = folder.path().join("data");
     if data.is_dir() { data } else { folder.path().to_owned() }
@@ -34,7 +34,7 @@ pub(super) fn work(trial: &Trial, number: u32, network: Option<Network>) -> Temp
         Some(network) => network.settings(trial, folder.path()),
         None => common::plant_settings(&trial.url()),
     };
-    // Every second one judges two boards at once.
+    // Every second station judges two boards at a time.
     settings(folder.path(), &format!("station {number}"), &plant, 1 + number % 2);
     let mut station = Station { trial, folder, network, draw: Draw(1_000 + u64::from(number)) };
     let mut child = station.start();
@@ -70,7 +70,7 @@ struct Station<'a> {
 }
 
 impl Station<'_> {
-    /// The program with these arguments, where it is.
+    /// The program with these arguments, in the station's network if it has one.
     fn command(&self, arguments: &[&str]) -> Command {
         let mut command = match &self.network {
             Some(network) => network.command(program()),
@@ -87,7 +87,7 @@ impl Station<'_> {
         self.command(&["work"]).spawn().unwrap()
     }
 
-    /// Two to five seconds, or until the trial is over.
+    /// Waits two to five seconds, or until the trial is over.
     fn wait(&mut self) {
         let until = Instant::now() + Duration::from_millis(2_000 + self.draw.below(3_000));
         while Instant::now() < until && !self.trial.is_over() {
@@ -95,7 +95,7 @@ impl Station<'_> {
         }
     }
 
-    /// It does nothing at all for longer than it may.
+    /// Stops the station for longer than its leases last.
     fn stand_still(&self, child: &Child) {
         let Some(stall) = self.trial.shape.stall else { return };
         let signal = |signal| kill(Pid::from_raw(child.id() as i32), signal).unwrap();
@@ -105,7 +105,7 @@ impl Station<'_> {
         signal(Signal::SIGCONT);
     }
 
-    /// Its network is away for a while, now and then for longer than it may.
+    /// Unplugs its network for a while, sometimes for longer than its leases last.
     fn unplug(&mut self) {
         let Some(network) = &self.network else { return };
         self.trial.happened.unplugged.fetch_add(1, Ordering::Relaxed);

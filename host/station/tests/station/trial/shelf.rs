@@ -1,4 +1,4 @@
-//! Boards that clients judge, as far as it matters who has them: each numbers its sessions, and hears the last one only.
+//! The boards of the clients, reduced to who has them: each numbers its sessions, and with fences serves only the last one.
 
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -9,12 +9,12 @@ use super::lock;
 /// All boards.
 pub(super) struct Shelf {
     sessions: Mutex<HashMap<String, u32>>,
-    /// Runs that were judged although another one had begun on their board while they were at it.
+    /// Runs that were judged although another run had begun on their board meanwhile.
     at_once: Mutex<Vec<String>>,
     is_fenced: bool,
 }
 
-/// Somebody else has begun on the board.
+/// Another session has begun on the board.
 #[derive(Debug)]
 pub(super) struct Superseded;
 
@@ -23,7 +23,7 @@ pub(super) struct Session<'a> {
     shelf: &'a Shelf,
     board: String,
     number: u32,
-    /// Whether it went on when another one had begun.
+    /// Whether it went on after another one had begun.
     is_beside: Cell<bool>,
 }
 
@@ -40,7 +40,7 @@ impl Shelf {
         Session { shelf: self, board: board.to_owned(), number: *number, is_beside: Cell::new(false) }
     }
 
-    /// How many runs were judged although another one had begun on their board while they were at it.
+    /// How many runs were judged although another run had begun on their board meanwhile.
     pub(super) fn at_once(&self) -> usize {
         lock(&self.at_once).len()
     }
@@ -61,7 +61,7 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// Has the run of this session judged. Whoever begins behind its last exchange is not beside it.
+    /// Records that the run of this session was judged. A session that begins after the last exchange does not matter.
     pub(super) fn judged(&self, run: &str) {
         if self.is_beside.get() {
             lock(&self.shelf.at_once).push(run.to_owned());
