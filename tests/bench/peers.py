@@ -1,4 +1,4 @@
-"""What others take for the same frame: OpenCV and NumPy on one thread. Speaks as halfrow-bench does (src/main.rs)."""
+"""How long OpenCV and NumPy take for the same frame on one thread. It is called like halfrow-bench (src/main.rs)."""
 
 import sys
 import time
@@ -34,7 +34,7 @@ def remap(picture, where, out):
 
 
 class Grey:
-    """The raw frame taken for a grey picture: wrong for Bayer, and what the speed of remap is usually quoted for."""
+    """The raw frame treated as a grey picture: wrong for Bayer, but what the speed of remap is usually quoted for."""
 
     def __init__(self, frame, shrink):
         self.frame, self.maps, self.out = frame, maps(WIDTH, shrink), np.empty_like(frame)
@@ -44,7 +44,7 @@ class Grey:
 
 
 class Planes:
-    """Every row's two colours by themselves: split, two remaps, merge."""
+    """The two colours of each row separately: split, two remaps, merge."""
 
     def __init__(self, frame, shrink):
         self.frame, self.out = frame, np.empty_like(frame)
@@ -65,7 +65,7 @@ class Planes:
 
 
 class Demosaicked:
-    """The conventional flow: demosaic, then one remap of three channels."""
+    """The conventional way: demosaic, then one remap of three channels."""
 
     def __init__(self, frame, shrink):
         self.frame, self.maps = frame, maps(WIDTH, shrink)
@@ -77,7 +77,7 @@ class Demosaicked:
 
 
 class Datapath:
-    """The integer datapath, vectorised, with sources and weights made once as remap's maps are (DATAPATH.md)."""
+    """The integer datapath (DATAPATH.md), vectorised, with sources and weights made once, like remap's maps."""
 
     def __init__(self, frame, _shrink):
         self.frame = frame

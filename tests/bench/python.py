@@ -1,4 +1,4 @@
-"""A frame through the Python package, each path, from array to array. Speaks as halfrow-bench does (src/main.rs)."""
+"""A frame through the Python package, from array to array, by each path. It is called like halfrow-bench (src/main.rs)."""
 
 import sys
 import time
