@@ -44,7 +44,7 @@ pub enum Kind {
 pub enum Found {
     /// A returned sample was wrong.
     BySamples,
-    /// No sample was wrong, and a table read back wrong.
+    /// No sample was wrong, but a table read back wrong.
     ByReadBack,
     /// No check fails.
     ByNothing,

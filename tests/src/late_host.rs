@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use halfrow::link::{Link, LinkError};
 
-/// What a kernel hands out in one read of a terminal.
+/// The most that a kernel returns in one read of a terminal.
 const READ: usize = 4096;
 
 /// A link whose host stands still for `pause` each time it reads the clock for the `every`-th time: a host may be interrupted

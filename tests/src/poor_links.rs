@@ -32,9 +32,9 @@ pub enum Way {
     SerialPort(String),
     /// In real time over TCP, through a proxy.
     Tcp {
-        /// What bytes to the board suffer.
+        /// What happens to bytes to the board.
         to_board: Suffers,
-        /// What bytes to the host suffer.
+        /// What happens to bytes to the host.
         to_host: Suffers,
     },
 }

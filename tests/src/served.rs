@@ -131,7 +131,7 @@ impl Served {
         *self.traffic.lock().unwrap()
     }
 
-    /// The target that leads to it.
+    /// The target that leads to this board.
     #[must_use]
     pub fn target(&self) -> String {
         self.target.clone()

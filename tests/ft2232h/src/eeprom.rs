@@ -1,4 +1,4 @@
-//! The 93C46 beside the chip: 64 words that say what its channels are.
+//! The 93C46 next to the chip: 64 words that say what its channels are.
 
 /// What a channel's pins are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -6,7 +6,7 @@
 pub enum ChannelMode {
     /// A serial line.
     Uart = 0,
-    /// An asynchronous FIFO in the manner of the FT245.
+    /// An asynchronous FIFO like that of the FT245.
     Fifo = 1,
     /// An opto-isolated serial line.
     Opto = 2,

@@ -136,7 +136,7 @@ impl Drop for Plugged {
         let folder = Path::new(DEVICES).join(&self.bus_name);
         self.unplug();
         for thread in self.threads.drain(..) {
-            // A thread that panicked has said so.
+            // A thread that panicked has printed why.
             let _ = thread.join();
         }
         let is_free = || {

@@ -15,7 +15,7 @@ pub(super) const SHORT_STALLS: &str = "short stalls";
 const LONG_STALLS: &str = "long stalls";
 const LOSSES: &str = "whole packets";
 
-/// Faults that strike at a rate.
+/// Faults that occur at a rate.
 const AT_A_RATE: [&str; 7] = ["flip", "drop", "duplicate", "reorder", "truncate", "stall", "disconnect"];
 
 /// The paper's width and a few rows: the longest rows, and still short runs.

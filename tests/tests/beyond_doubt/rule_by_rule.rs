@@ -205,7 +205,7 @@ fn samples_beyond_their_depth_are_counted() {
     );
 }
 
-/// What a later version may append, and fields that are not looked at.
+/// What a later version may append, and fields that boards ignore.
 #[test]
 fn what_is_to_be_skipped_is_no_reason_to_refuse() {
     for (kind, fields) in [

@@ -52,7 +52,7 @@ fn a_run_that_gets_no_thread_ends_with_its_result() {
     let folder = Folder::new();
     let run = ["verify", "--json", "--width", "128", "--height", "32", "--radius", "80"];
     let with_threads = |most: u32| {
-        // Where there is no room for them, more threads share the work otherwise.
+        // Where there is no room for this many, the work is shared otherwise.
         let mut command = folder.within(&format!("--nproc={most}"), &run)?;
         Some(finish(command.env("RAYON_NUM_THREADS", "64")).json())
     };

@@ -1,5 +1,5 @@
-/* Loaded before the C library: the wall's clock and the one since the computer started show more by the seconds in the file
-   SET_CLOCKS, two numbers of 64 bits. The clock that stands still while a computer sleeps shows what it shows. */
+/* Loaded before the C library: sets the wall clock and the clock since the computer started ahead by the seconds in the file
+   SET_CLOCKS, two numbers of 64 bits. The clock that stops while a computer is suspended is left as it is. */
 #define _GNU_SOURCE
 #include <fcntl.h>
 #include <stdint.h>

@@ -1,7 +1,7 @@
-"""Builds OpenHTF's own test record from a file of ours, has OpenHTF write it, and compares: read_openhtf.py FILE...
+"""Builds OpenHTF's own test record from one of our files, lets OpenHTF write it, and compares: read_openhtf.py FILE...
 
-OpenHTF 1.6.3 has a writer of this JSON and no reader; what it writes of the record that its own classes make of our file
-must be our file. Its converter for the manufacturing inspector must take the record, too.
+OpenHTF 1.6.3 can write this JSON, but not read it. So a record of its own classes is built from our file, and what OpenHTF writes
+of it must be that file. Its converter for the manufacturing inspector must accept the record, too.
 """
 import json
 import sys
@@ -13,7 +13,7 @@ from openhtf.util import validators
 
 
 def limits(texts):
-    """`LOW <= x <= HIGH`, each side where there is one."""
+    """The validators of `LOW <= x <= HIGH`, where either side may be missing."""
     for text in texts:
         sides = text.split(" <= ")
         where = sides.index("x")

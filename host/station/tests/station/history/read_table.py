@@ -10,7 +10,7 @@ def number(text):
 
 
 class Row(dict):
-    """A row that notes the names of the cells that were looked at."""
+    """A row that records which cells were read."""
 
     looked = set()
 

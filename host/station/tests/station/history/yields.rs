@@ -12,7 +12,6 @@ use crate::common::now_ms;
 /// then the plan's name and version unless they are `final,1`. Next to them what counts for the plan `final`:
 ///
 /// units, first pass, in the end, waived, flipped; runs, errors, crashes.
-/// units, first pass, in the end, waived, flipped; runs, errors, crashes.
 pub(crate) const CASES: [(&str, [u64; 8]); 42] = [
     ("A:P", [1, 1, 1, 0, 0, 1, 0, 0]),
     ("A:F", [1, 0, 0, 0, 0, 1, 0, 0]),

@@ -76,7 +76,8 @@ fn a_job_is_had_by_one_at_a_time_and_so_is_a_board() {
     assert_eq!(server.rows(once), [["40"]]);
 }
 
-/// What a worker does that was stopped for too long, and what the next one does. Returns the runs that count as judgements.
+/// What a worker does that was stopped for too long, and what the next one does. Returns `nth` of all runs, 0 for one that does
+/// not count.
 pub(crate) fn late(is_fenced: bool) -> (Server, Vec<Vec<String>>) {
     let (server, mut plant, _) = with_a_job();
     let first = plant.claim(&worker("first")).unwrap().unwrap();

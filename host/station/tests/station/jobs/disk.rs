@@ -123,7 +123,7 @@ fn what_a_worker_could_not_save_is_closed_before_it_takes_another_job() {
     assert_eq!(verdicts, ["ERROR", "PASS"]);
 }
 
-/// The table that knows it is gone.
+/// The table that would tell is gone.
 #[test]
 fn a_verdict_is_told_though_the_store_does_not_say_whether_the_plant_has_it() {
     let (server, ..) = with_a_job();

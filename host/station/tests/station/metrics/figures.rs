@@ -86,7 +86,7 @@ fn what_lanes_did_is_counted_and_promtool_finds_nothing_wrong() {
     for serial in SERIALS {
         assert!(!figures.text.contains(serial) && !figures.text.contains("weber"), "{}", figures.text);
     }
-    // The control: promtool finds a counter without its ending, and a text that is no format of its.
+    // The control: promtool notices a counter without its ending, and a text that it cannot parse.
     for (was, is) in [("halfrow_runs_total", "halfrow_runs"), ("lane=\"1\"", "lane=\"1")] {
         let wrong = promtool(&["check", "metrics"], Path::new("/"), &figures.text.replace(was, is));
         assert_ne!(wrong.code, Some(0), "{wrong:?}");

@@ -1,10 +1,10 @@
-"""Reads figures with the reference's parsers, and compares both formats: read_openmetrics.py OPENMETRICS TEXT"""
+"""Reads figures with the reference parsers, and compares both formats: read_openmetrics.py OPENMETRICS TEXT"""
 import sys
 
 from prometheus_client import parser
 from prometheus_client.openmetrics import parser as open_parser
 
-# What goes on while it is asked.
+# Changes between the two requests.
 CHANGES = {"halfrow_outbox_oldest_seconds"}
 
 

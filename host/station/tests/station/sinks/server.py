@@ -1,6 +1,6 @@
-"""A web server that writes down what is posted to it, and answers as it is told to.
+"""A web server that records what is posted to it, and answers what FOLDER/answer says.
     server.py FOLDER [CERTIFICATE KEY]
-Prints its port. FOLDER/answer has the status and the text of the next answers; FOLDER/requests.jsonl gets a line for each request.
+Prints its port. FOLDER/answer has the status and the text of the next answers; a line for each request goes to FOLDER/requests.jsonl.
 """
 import base64
 import http.server
