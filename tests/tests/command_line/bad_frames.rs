@@ -184,7 +184,7 @@ fn samples_of_few_bits_in_deep_frames_are_told_once() {
     assert!(ended.code == Some(0) && ended.stderr.contains(note), "{}", ended.stderr);
 }
 
-/// A run reads each file twice, for its samples and for its hash.
+/// A pipe cannot be read again to compare its hash with what was judged.
 #[cfg(unix)]
 #[test]
 fn a_pipe_is_no_frame_to_judge_with() {
