@@ -303,7 +303,7 @@ fn signatures_are_expected_of_the_rows_that_they_are_for() {
     assert_eq!(broken(&report).0, Rule::Trap);
 }
 
-/// The report on a board after `alter` was made to its counters.
+/// The report on a board whose counters `alter` changes.
 fn counting(alter: impl Fn(&mut Status) + Send + 'static) -> Report {
     behind(move |toward, packet| match packet.reply() {
         Some(Reply::Status(mut status)) if toward == Toward::Host => {

@@ -21,7 +21,7 @@ fn check(report: &Report) -> &Check {
     report.checks.iter().find(|check| check.name == CheckName::Rules).unwrap()
 }
 
-/// The report on a board after `alter` was made to everything that it sends; none drops a packet.
+/// The report on a board after `alter` changed everything that it sends; none drops a packet.
 fn saying(alter: impl FnMut(Passing) -> Option<Passing> + Send + 'static) -> Report {
     said_by(&Options::default(), alter)
 }
