@@ -3,27 +3,27 @@
 use crate::profile::RisingProfile;
 use crate::{Equidistant, LensError, Profile, Spherical};
 
-/// A lens that is symmetrical about its axis, before a sensor whose pixels may be oblong or slanted.
+/// A lens that is symmetrical about its axis, in front of a sensor whose pixels may be oblong or slanted.
 ///
-/// As everywhere in this crate image points are in pixels from the optical centre, x to the right and y down, and rays have
-/// u to the right, v down and w ahead.
+/// As everywhere in this crate, image points are in pixels from the optical centre, x to the right and y down; rays have u to
+/// the right, v down and w ahead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibratedLens {
     profile: RisingProfile,
     /// From the lens's own image to pixels.
     pixels: [[f64; 2]; 2],
-    /// Back from pixels.
+    /// From pixels back to the lens's own image.
     image: [[f64; 2]; 2],
 }
 
 impl CalibratedLens {
-    /// The lens with the profile `profile`, whose image (right, down) lies at the pixels `pixels` · (right, down).
+    /// The lens with the profile `profile`, whose image point (right, down) lies at `pixels` · (right, down) on the sensor.
     ///
     /// OpenCV's camera matrix gives \[\[fx, s\], \[0, fy\]\], OCamCalib's affine parameters \[\[1, e\], \[d, c\]\].
     ///
     /// # Errors
-    /// [`LensError`] when a number is not finite, the profile does not rise at the axis, or the pixels are no picture that
-    /// stands upright: each axis must keep its direction.
+    /// [`LensError`] when a number is not finite, the profile does not rise at the axis, or `pixels` does not keep the picture
+    /// upright: each axis must keep its direction.
     pub fn new(profile: Profile, pixels: [[f64; 2]; 2]) -> Result<Self, LensError> {
         let [[xx, xy], [yx, yy]] = pixels;
         if let Some(&wrong) = pixels.iter().flatten().find(|entry| !entry.is_finite()) {
@@ -40,23 +40,22 @@ impl CalibratedLens {
         Ok(Self { profile: RisingProfile::new(profile)?, pixels, image })
     }
 
-    /// The same lens on pixels that are `factor` times as many to the millimetre.
+    /// The same lens on a sensor with `factor` times as many pixels to the millimetre.
     ///
     /// # Errors
-    /// [`LensError`] when `factor` is not above zero or the lens becomes too large or too small for numbers.
+    /// [`LensError`] when `factor` is not above zero or the lens becomes too large or too small for a double.
     pub fn scaled(&self, factor: f64) -> Result<Self, LensError> {
         let pixels = self.pixels.map(|row| row.map(|entry| factor * entry));
         Self::new(self.profile.profile().clone(), pixels)
     }
 
-    /// The angle to the axis, in radians, up to which the lens images every ray farther out than the one before; at most π.
+    /// The angle to the axis, in radians, up to which the image radius grows with the angle; at most π.
     #[must_use]
     pub fn widest(&self) -> f64 {
         self.profile.widest()
     }
 
-    /// The columns to the right of the centre at which a ray lands that comes `angle` radians off the axis; none beyond
-    /// [`Self::widest`].
+    /// The columns to the right of the centre at which a ray `angle` radians off the axis lands; none beyond [`Self::widest`].
     #[must_use]
     pub fn column(&self, angle: f64) -> Option<f64> {
         Some(self.pixels[0][0] * self.profile.radius(angle)?)
@@ -68,13 +67,13 @@ impl CalibratedLens {
         self.pixels[0][0] * self.profile.focal_length()
     }
 
-    /// The height of a pixel in widths of one.
+    /// The height of a pixel, in pixel widths.
     #[must_use]
     pub fn pixel_height(&self) -> f64 {
         self.pixels[0][0] / self.pixels[1][1]
     }
 
-    /// The direction seen at the image point (`x`, `y`) as a unit vector; none where the profile has turned back.
+    /// The direction seen at the image point (`x`, `y`), as a unit vector; none where the profile has turned back.
     #[must_use]
     pub fn ray(&self, x: f64, y: f64) -> Option<[f64; 3]> {
         let (right, down) = transformed(self.image, x, y);
@@ -96,14 +95,13 @@ impl CalibratedLens {
         Some(transformed(self.pixels, right, down))
     }
 
-    /// Where the exact projection puts what is seen in the direction `ray`, in pixels from the optical centre: Eqs. 5 to 7
-    /// with this lens's own r(θ) instead of f·θ.
+    /// Where the exact projection puts what is seen in the direction `ray`, in pixels from the optical centre: Eqs. 5 to 7 with
+    /// this lens's own r(θ) instead of f·θ.
     ///
-    /// Every vertical of the scene, which is a longitude, becomes the column at which the lens itself images that longitude
-    /// on the horizon. So verticals are straight, the row of the axis stays as it is, and for an equidistant lens this is
-    /// x_u = f · longitude. The second number is the same for latitudes: the row at which the lens images the latitude above
-    /// or below the axis. Eq. 7 keeps y instead, since a sample cannot change its row; the difference is what no row factor
-    /// reaches.
+    /// Every vertical of the scene is a longitude. It becomes the column at which the lens itself images that longitude on the
+    /// horizon. So verticals are straight, the row of the axis stays as it is, and for an equidistant lens this is x_u = f ·
+    /// longitude. The second number is the same for latitudes: the row at which the lens images the latitude above or below the
+    /// axis. Eq. 7 keeps y instead, since a sample cannot change its row; no row factor can correct that difference.
     ///
     /// None where the longitude or the latitude is beyond [`Self::widest`].
     #[must_use]
@@ -114,14 +112,14 @@ impl CalibratedLens {
         Some((column, row.copysign(latitude)))
     }
 
-    /// The lowest row below the centre that a ray `angle` radians off the axis reaches, [`Self::widest`] at most.
+    /// The lowest row below the centre that a ray `angle` radians off the axis reaches; beyond [`Self::widest`], the one at it.
     pub(crate) fn lowest_row(&self, angle: f64) -> f64 {
         let [_, [yx, yy]] = self.pixels;
         yx.hypot(yy) * self.profile.radius(angle).unwrap_or(self.profile.farthest())
     }
 
-    /// The columns from the centre, left and right, at which rays `angle` radians off the axis cross row `y`, which is nearer
-    /// to the centre than [`Self::lowest_row`].
+    /// The columns, relative to the centre, at which rays `angle` radians off the axis cross row `y`, left and right. The row
+    /// must be nearer to the centre than [`Self::lowest_row`].
     pub(crate) fn columns_at(&self, angle: f64, y: f64) -> [f64; 2] {
         let radius = self.profile.radius(angle).unwrap_or(self.profile.farthest());
         // |(a, b)·x + (c, d)| = radius.
@@ -155,8 +153,8 @@ fn transformed([[xx, xy], [yx, yy]]: [[f64; 2]; 2], x: f64, y: f64) -> (f64, f64
 mod tests {
     use super::*;
 
-    /// By hand: half a radian lies on the circle of radius 5 in tenths, on which (0, 5) and its mirror image (4.8, 1.4) in the
-    /// direction (0.6, 0.8) come to the same row, and (3, 4) to the lowest one.
+    /// By hand: half a radian is the circle of radius 5 in tenths. On it, (0, 5) and its mirror image (4.8, 1.4) in the
+    /// direction (0.6, 0.8) land on the same row, and (3, 4) on the lowest one.
     #[test]
     fn a_row_of_slanted_pixels_crosses_a_circle_where_it_does_by_hand() {
         let pixels = [[10.0, 2.0], [7.5, 10.0]];

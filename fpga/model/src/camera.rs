@@ -1,4 +1,4 @@
-//! A lens before the frame: the row factors for it, by Eq. 9 and fitted, and the error that they leave.
+//! A lens in front of a frame: its row factors, by Eq. 9 or fitted, and the error that they leave.
 
 use crate::grid::{height_in_circle, is_inner};
 use crate::lens::{Short, is_positive};
@@ -7,7 +7,7 @@ use crate::{
     CalibratedLens, Geometry, GeometryError, LensError, MAX_RADIUS, MIN_RADIUS, RowFactor, TableSet,
 };
 
-/// A frame with the lens that it is seen through.
+/// A frame and the lens that it is seen through.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
     geometry: Geometry,
@@ -16,10 +16,10 @@ pub struct Camera {
     half_field: f64,
 }
 
-/// Why a lens cannot stand before a frame.
+/// Why a lens cannot be used with a frame.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CameraError {
-    /// The lens is none, or not inside this frame.
+    /// The figures describe no lens, or one that does not fit this frame.
     #[error(transparent)]
     Lens(#[from] LensError),
     /// The optical centre is outside the frame.
@@ -39,9 +39,9 @@ pub enum CameraError {
 pub struct Target {
     /// The sample's column.
     pub column: usize,
-    /// The column of the corrected frame that it belongs at, 0 to W − 1.
+    /// The column of the corrected frame where it belongs, 0 to W − 1.
     pub right_column: f64,
-    /// The row that it would belong at if samples could change their row.
+    /// The row where it would belong if samples could change their row.
     pub right_row: f64,
     /// Whether it is inner: up to 85 degrees off the axis, and within 0.9 of the height of the circle of 180 degrees.
     pub is_inner: bool,
@@ -59,11 +59,11 @@ pub struct Residual {
 impl Camera {
     /// The lens `lens` with its axis at column and row `centre` of the frame; C of `geometry` becomes round(2 · column).
     ///
-    /// `field_of_view_deg` is what counts as image circle, in degrees across: 180 is the hemisphere of the paper.
+    /// `field_of_view_deg` is the angle across what counts as the image circle, in degrees: 180 is the hemisphere of the paper.
     ///
     /// # Errors
-    /// [`CameraError`] when the centre is at no column of the frame or beyond [`MAX_RADIUS`], the field of view not above
-    /// 0° and at most 360°, R outside [`MIN_RADIUS`] to [`MAX_RADIUS`], or r(θ) turns back inside the circle and inside
+    /// [`CameraError`] when the centre's column is outside the frame or its row beyond [`MAX_RADIUS`], the field of view is not
+    /// above 0° and at most 360°, R is outside [`MIN_RADIUS`] to [`MAX_RADIUS`], or r(θ) turns back inside both the circle and
     /// the frame.
     pub fn new(
         geometry: Geometry,
@@ -97,7 +97,7 @@ impl Camera {
         })
     }
 
-    /// The frame, its centre that of the lens, to half a column.
+    /// The frame's geometry, with its centre at the lens's, to half a column.
     #[must_use]
     pub fn geometry(&self) -> &Geometry {
         &self.geometry
@@ -121,26 +121,26 @@ impl Camera {
         2.0 * self.half_field
     }
 
-    /// R of Eq. 9 in columns: where the lens images the edge of the field of view, so that a row that reaches the edge of
-    /// the circle is stretched to the circle's full width. If the profile turns back before, which is outside the frame
-    /// then, it is f · fov/2.
+    /// R of Eq. 9 in columns: where the lens images the edge of the field of view, so that a row that reaches the edge of the
+    /// circle is stretched to the circle's full width. If the profile turns back before that edge, which is then outside the
+    /// frame, R is f · fov/2.
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.lens.column(self.half_field).unwrap_or(self.lens.focal_length() * self.half_field)
     }
 
-    /// The row factors of Eq. 9 for [`Self::radius`]; y counts in widths of a pixel, as the circle is round in no other unit.
+    /// The row factors of Eq. 9 for [`Self::radius`]. y is counted in pixel widths, since the circle is round in no other unit.
     #[must_use]
     pub fn equation_9(&self) -> TableSet {
         self.table(|row| RowFactor::nearest(shrink_factor(self.radius(), self.height_of(row))))
     }
 
-    /// The row factors that make the largest horizontal error of every row as small as it can be.
+    /// The row factors that make the largest horizontal error of every row as small as possible.
     ///
-    /// With a = column − C/2 and b = the column it belongs at − C/2 the error of a sample is k·a − b, so the largest of a
-    /// row is the upper envelope of lines in k, least where its rising part meets its falling part. No k is below 1, which
-    /// a board cannot do, and a row without samples in the circle is not stretched. The samples are those of
-    /// [`Self::targets`], and the error is that of Fig. 5, against this lens's own [`CalibratedLens::straightened`].
+    /// With a = column − C/2 and b = the column where it belongs − C/2, the error of a sample is k·a − b. So the largest error
+    /// of a row is the upper envelope of lines in k, least where its rising part meets its falling part. k is at least 1, as a
+    /// board requires, and a row without samples in the circle is not stretched. The samples are those of [`Self::targets`],
+    /// and the error is that of Fig. 5, against this lens's own [`CalibratedLens::straightened`].
     #[must_use]
     pub fn fitted(&self) -> TableSet {
         self.table(|row| self.fitted_to(row))
@@ -152,14 +152,14 @@ impl Camera {
 
     fn fitted_to(&self, row: usize) -> RowFactor {
         let lines: Vec<(f64, f64)> = self.targets(row).map(|target| self.line(target)).collect();
-        // As no line's a is below zero, errors outwards rise with k and errors inwards fall.
+        // As no a is negative, outward errors rise with k and inward errors fall.
         let outwards = |k: f64| lines.iter().map(|(a, b)| k * a - b).fold(f64::NEG_INFINITY, f64::max);
         let inwards = |k: f64| lines.iter().map(|(a, b)| b - k * a).fold(f64::NEG_INFINITY, f64::max);
         let (mut low, mut high) = (1.0, 1.0 / RowFactor::LEAST.fraction());
         if lines.is_empty() || outwards(low) >= inwards(low) {
             return RowFactor::ONE;
         }
-        // Far below half a unit of Q: 1/k is known to 1e-13 of itself.
+        // Far finer than half a unit of Q: 1/k is known to 1e-13 of itself.
         while high - low > 1e-13 * low {
             let middle = f64::midpoint(low, high);
             if outwards(middle) < inwards(middle) {
@@ -171,14 +171,14 @@ impl Camera {
         RowFactor::nearest(1.0 / low)
     }
 
-    /// a and b of a sample, turned so that a is not below zero.
+    /// a and b of a sample, mirrored so that a is not negative.
     fn line(&self, target: Target) -> (f64, f64) {
         let middle = f64::from(self.geometry.centre2()) / 2.0;
         let (a, b) = (target.column as f64 - middle, target.right_column - middle);
         if a < 0.0 { (-a, -b) } else { (a, b) }
     }
 
-    /// The samples of row `row` that lie in the image circle and belong inside the corrected frame, from the left.
+    /// The samples of row `row` that lie in the image circle and belong inside the corrected frame, from left to right.
     pub fn targets(&self, row: usize) -> impl Iterator<Item = Target> + '_ {
         let last = (self.geometry.width() - 1) as f64;
         let nearest_to_axis = self.half_field.cos();
@@ -195,7 +195,7 @@ impl Camera {
         (0..self.geometry.width()).filter_map(target)
     }
 
-    /// How far the sample `target` of row `row` is from where it belongs, in a row of the row factor `row_factor`.
+    /// How far the sample `target` of row `row` is from where it belongs when the row is corrected with `row_factor`.
     #[must_use]
     pub fn residual(&self, row: usize, row_factor: RowFactor, target: Target) -> Residual {
         let middle = f64::from(self.geometry.centre2()) / 2.0;
@@ -203,7 +203,7 @@ impl Camera {
         Residual { columns: middle + stretched - target.right_column, rows: row as f64 - target.right_row }
     }
 
-    /// How far each of [`Self::targets`] of row `row` is from where it belongs, in a frame behind `tables`.
+    /// How far each of [`Self::targets`] of row `row` is from where it belongs in a frame corrected with `tables`.
     pub fn residuals<'a>(
         &'a self,
         tables: &'a TableSet,
@@ -234,7 +234,7 @@ impl Camera {
         (column as f64 - self.centre.0, row as f64 - self.centre.1)
     }
 
-    /// y of a row in widths of a pixel.
+    /// y of a row, in pixel widths.
     fn height_of(&self, row: usize) -> f64 {
         (row as f64 - self.centre.1) * self.lens.pixel_height()
     }

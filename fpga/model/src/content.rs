@@ -1,9 +1,9 @@
-//! What a board makes of a seed, and how it signs what leaves (AT-SPEED.md, "Content" and "Signature"). Written to be
-//! read, since boards are judged by it.
+//! The content that a board makes from a seed, and how it signs what leaves (AT-SPEED.md, "Content" and "Signature"). Written
+//! for clarity, since boards are judged by it.
 
 use crate::BitDepth;
 
-/// What the samples of a frame of a burst follow from.
+/// What determines the samples of a burst's frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Content {
     /// The burst's seed.
@@ -12,12 +12,12 @@ pub struct Content {
     pub frame: u16,
 }
 
-/// One kind of content, which a row has from its first sample to its last.
+/// A kind of content. A row keeps it from its first sample to its last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Noise,
     Swing,
-    /// Columns are grouped by 2^p, of which the first group is high or low.
+    /// Columns in groups of 2^p, alternately high and low; `high` says whether the first group is high.
     Toggle {
         p: u32,
         high: bool,
@@ -25,7 +25,7 @@ pub(crate) enum Kind {
     Steps,
 }
 
-/// A row before its first sample: its kind, and the draw d that told it.
+/// A row before its first sample: its kind, and the draw d that decided it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct RowStart {
     pub(crate) kind: Kind,
@@ -33,12 +33,12 @@ pub(crate) struct RowStart {
 }
 
 impl Content {
-    /// What d of row `row`, below 4096, is drawn behind.
+    /// The state before row `row`, below 4096: its draw d comes after this.
     pub(crate) fn state(self, row: usize) -> u32 {
         (self.seed ^ (u32::from(self.frame) << 12 | row as u32)) | 1 << 31
     }
 
-    /// Row `row`, below 4096.
+    /// The kind and the first draw of row `row`, below 4096.
     pub(crate) fn start(self, row: usize) -> RowStart {
         let d = xorshift32(self.state(row));
         let kind = match d % 4 {
@@ -50,7 +50,7 @@ impl Content {
         RowStart { kind, x: d }
     }
 
-    /// The samples of row `row`, below 4096, each of `depth`.
+    /// Fills `samples` with those of row `row`, below 4096, with the depth `depth`.
     pub fn row(self, row: usize, depth: BitDepth, samples: &mut [u16]) {
         let RowStart { kind, mut x } = self.start(row);
         let mut held = 0;
@@ -69,12 +69,12 @@ impl Content {
     }
 }
 
-/// The largest sample or none.
+/// The largest sample, or 0.
 pub(crate) fn full(high: bool, depth: BitDepth) -> u16 {
     if high { depth.max() } else { 0 }
 }
 
-/// The number that the generator draws behind `x` (WIRE.md, section 5), which is 0 for 0 alone.
+/// The generator's next draw after `x` (WIRE.md, section 5), which is 0 for 0 alone.
 #[must_use]
 #[inline]
 pub fn xorshift32(mut x: u32) -> u32 {

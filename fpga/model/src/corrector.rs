@@ -1,4 +1,4 @@
-//! The corrector: the integer datapath, bit for bit (DATAPATH.md). Written to be read, since boards are judged by it.
+//! The corrector: the integer datapath, bit for bit (DATAPATH.md). Written for clarity, since boards are judged by it.
 
 use crate::kernel::WEIGHT_ONE;
 use crate::table::Entries;
@@ -7,7 +7,7 @@ use crate::{Frame, Geometry, Kernel, RowFactor, RowValues, TableSet};
 /// Where an output sample comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Source {
-    /// a: the column of tap G2, the nearest at or left of the source that has the output's colour; −1 to W − 1.
+    /// a: the column of tap G2, the nearest column at or left of the source that has the output's colour; −1 to W − 1.
     pub base: i64,
     /// n: the column at or left of the source, 0 to W − 1.
     pub column: i64,
@@ -17,7 +17,7 @@ pub struct Source {
     pub fraction: i32,
 }
 
-/// A frame that the table set is not for.
+/// A frame of another size or depth than the table set is for.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CorrectError {
     /// The frame's size is not the table set's.
@@ -47,20 +47,20 @@ pub enum CorrectError {
     },
 }
 
-/// Where the output of `column`, 0 to W − 1, comes from in a row of the row factor `row_factor`.
+/// Where the output of `column`, 0 to W − 1, comes from in a row with the row factor `row_factor`.
 ///
 /// # Panics
-/// It may when the row has no such column.
+/// May panic when the row has no such column.
 #[must_use]
 pub fn source(geometry: &Geometry, row_factor: RowFactor, column: usize) -> Source {
     source_by_entry(geometry, row_factor.get(), column)
 }
 
-/// The arithmetic of [`source`] for any word in place of Q: what a board makes of an entry that it reads wrong. Above
-/// 2^24 the source may lie outside the row.
+/// The arithmetic of [`source`] for any word in place of Q: what a board makes of an entry that it misreads. Above 2^24 the
+/// source may lie outside the row.
 ///
 /// # Panics
-/// It may when the row has no column `column`.
+/// May panic when the row has no column `column`.
 #[must_use]
 pub fn source_by_entry(geometry: &Geometry, entry: u32, column: usize) -> Source {
     locate(rounded(row_start(geometry, entry) + 2 * column as i64 * i64::from(entry)), column)
@@ -76,7 +76,7 @@ fn rounded(coordinate: i64) -> i64 {
     (coordinate + (1 << 11)) >> 12
 }
 
-/// The source of `column` from q.
+/// The source of `column`, from q.
 pub(crate) fn locate(rounded: i64, column: usize) -> Source {
     let floor = rounded >> 13;
     let base = base_column(floor, column);
@@ -89,16 +89,16 @@ pub(crate) fn base_column(floor: i64, column: usize) -> i64 {
     floor - ((floor ^ column as i64) & 1)
 }
 
-/// G0 R1 G2 R3 G4 R5 G6 around the base column a.
+/// The taps G0 R1 G2 R3 G4 R5 G6 around the base column a.
 pub(crate) fn taps(geometry: &Geometry, row: &[u16], base: i64) -> [u16; 7] {
     let inside = usize::try_from(base - 2).ok().and_then(|first| row.get(first..)?.first_chunk());
-    // Only the row's ends need the edge rule's arithmetic, which would take half the time of a frame.
+    // Only the row's ends need the edge rule. Its arithmetic at every tap would take half the time of a frame.
     inside
         .copied()
         .unwrap_or_else(|| std::array::from_fn(|tap| row[geometry.sample_column(base - 2 + tap as i64)]))
 }
 
-/// The output sample: the taps under the five weights, rounded half up and clamped to 0..=`max`.
+/// The output sample: the taps weighed with the five weights, rounded half up and clamped to 0..=`max`.
 fn blend(weights: [i32; 5], taps: [u16; 7], max: u16) -> u16 {
     let [g0, r1, g4, r5, g6] = weights;
     let [s0, s1, s2, s3, s4, s5, s6] = taps.map(i32::from);
@@ -107,11 +107,11 @@ fn blend(weights: [i32; 5], taps: [u16; 7], max: u16) -> u16 {
     ((sum + WEIGHT_ONE / 2) >> 14).clamp(0, i32::from(max)) as u16
 }
 
-/// Corrects one row of the row factor `row_factor` into `output`.
+/// Corrects one row with the row factor `row_factor` into `output`.
 ///
 /// # Panics
-/// When `row` or `output` holds fewer samples than the geometry's width. It may when samples of `row` are not within the
-/// geometry's depth, as those of a [`Frame`] are.
+/// When `row` or `output` holds fewer samples than the geometry's width. May panic when samples of `row` exceed the geometry's
+/// depth, which those of a [`Frame`] never do.
 pub fn correct_row(
     geometry: &Geometry,
     row_factor: RowFactor,
@@ -128,11 +128,11 @@ pub fn correct_row(
     correct_from(geometry, source, kernel, row, output);
 }
 
-/// Corrects one row of the values `values` into `output`, which are of a table for this geometry.
+/// Corrects one row with `values`, which are those of a table for this geometry, into `output`.
 ///
 /// # Panics
-/// When `row` or `output` holds fewer samples than the geometry's width, or `values` are of a narrower one. It may when samples
-/// of `row` are not within the geometry's depth, as those of a [`Frame`] are.
+/// When `row` or `output` holds fewer samples than the geometry's width, or `values` are for a narrower one. May panic when
+/// samples of `row` exceed the geometry's depth, which those of a [`Frame`] never do.
 pub fn correct_row_of_values(
     geometry: &Geometry,
     values: &RowValues,
@@ -143,7 +143,7 @@ pub fn correct_row_of_values(
     correct_from(geometry, |column| values.source(column), kernel, row, output);
 }
 
-/// Corrects a row whose outputs come from `source`, which is asked column after column.
+/// Corrects a row whose outputs come from `source`, which is called column by column from the left.
 fn correct_from(
     geometry: &Geometry,
     mut source: impl FnMut(usize) -> Source,
@@ -162,7 +162,7 @@ fn correct_from(
 /// The corrected frame: what a board must return.
 ///
 /// # Errors
-/// [`CorrectError`] when the frame has another size or depth than the tables are for.
+/// [`CorrectError`] when the frame's size or depth is not the one that the tables are for.
 pub fn correct(tables: &TableSet, kernel: &Kernel, frame: &Frame) -> Result<Frame, CorrectError> {
     let geometry = tables.geometry();
     check_frame(geometry, frame)?;
@@ -182,16 +182,16 @@ pub fn correct(tables: &TableSet, kernel: &Kernel, frame: &Frame) -> Result<Fram
 }
 
 impl TableSet {
-    /// Whether `frame` has the size and the depth that the tables are for.
+    /// Checks that `frame` has the size and the depth that the tables are for.
     ///
     /// # Errors
-    /// [`CorrectError`] when it has another.
+    /// [`CorrectError`] when it has not.
     pub fn check_frame(&self, frame: &Frame) -> Result<(), CorrectError> {
         check_frame(self.geometry(), frame)
     }
 }
 
-/// Whether `frame` has the size and the depth of `geometry`.
+/// Checks that `frame` has the size and the depth of `geometry`.
 pub(crate) fn check_frame(geometry: &Geometry, frame: &Frame) -> Result<(), CorrectError> {
     let (width, height) = (geometry.width(), geometry.height());
     if (frame.width(), frame.height()) != (width, height) {

@@ -28,7 +28,7 @@ impl BitDepth {
         }
     }
 
-    /// The depth of `bits` bits, if it is one that the datapath has.
+    /// The depth of `bits` bits, if the datapath has it.
     #[must_use]
     pub fn from_bits(bits: u32) -> Option<Self> {
         Self::ALL.into_iter().find(|depth| depth.bits() == bits)
@@ -41,14 +41,14 @@ impl BitDepth {
     }
 }
 
-/// The bits that are set in any of `samples`: at most a depth's largest sample if, and only if, all of them are. Takes a
-/// vector at a time of whatever size its caller is compiled for.
+/// The bits that are set in any of `samples`: at most a depth's largest sample if and only if every sample is. Inlined, so that
+/// it is vectorised for whatever its caller is compiled for.
 #[inline(always)]
 pub(crate) fn bits_of(samples: &[u16]) -> u16 {
     samples.iter().fold(0, |bits, sample| bits | sample)
 }
 
-/// A frame of raw samples, one colour each, `width` × `height`, row after row.
+/// A frame of raw samples, one colour each, row after row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {
     width: usize,
@@ -106,18 +106,18 @@ impl FrameError {
         }
     }
 
-    /// Refuses the first of `samples`, in rows of `width`, that `depth` cannot hold.
+    /// Refuses `samples`, in rows of `width`, for the first one that `depth` cannot hold.
     pub(crate) fn check(width: usize, depth: BitDepth, samples: &[u16]) -> Result<(), Self> {
         samples.chunks(width).enumerate().try_for_each(|(row, samples)| Self::check_row(row, depth, samples))
     }
 
-    /// Refuses the first of `samples`, those of row `row`, that `depth` cannot hold.
+    /// Refuses `samples`, those of row `row`, for the first one that `depth` cannot hold.
     ///
     /// # Errors
-    /// [`FrameError::TooBright`] for it.
+    /// [`FrameError::TooBright`] for that sample.
     pub fn check_row(row: usize, depth: BitDepth, samples: &[u16]) -> Result<(), Self> {
         let max = depth.max();
-        // Vectors of samples: only a row that is refused is looked through one by one.
+        // The check is vectorised. Only a row that is refused is searched sample by sample.
         if bits_of(samples) <= max {
             return Ok(());
         }
@@ -133,7 +133,7 @@ impl Frame {
     ///
     /// # Errors
     /// [`FrameError`] when the width is odd or zero, rows are incomplete, or a sample exceeds `depth`. The limits of the
-    /// datapath (64 ≤ W ≤ 2592, H ≤ 2048) are the geometry's to check.
+    /// datapath (64 ≤ W ≤ 2592, H ≤ 2048) are checked by the geometry.
     pub fn new(width: usize, depth: BitDepth, phase: Phase, samples: Vec<u16>) -> Result<Self, FrameError> {
         if samples.is_empty() {
             return Err(FrameError::Empty);
@@ -146,13 +146,13 @@ impl Frame {
         Ok(Self { width, depth, phase, samples })
     }
 
-    /// A frame of the same size, depth and phase, for samples that are known to fit.
+    /// A frame of the same size, depth and phase, with samples that are known to fit.
     pub(crate) fn with_samples(&self, samples: Vec<u16>) -> Self {
         assert_eq!(samples.len(), self.samples.len());
         Self { samples, ..*self }
     }
 
-    /// A frame of `geometry`, for samples that are known to fit.
+    /// A frame of `geometry`, with samples that are known to fit.
     pub(crate) fn of_geometry(geometry: &Geometry, phase: Phase, samples: Vec<u16>) -> Self {
         assert_eq!(samples.len(), geometry.width() * geometry.height());
         Self { width: geometry.width(), depth: geometry.depth(), phase, samples }
@@ -176,7 +176,7 @@ impl Frame {
         self.depth
     }
 
-    /// The colours' arrangement.
+    /// The arrangement of the colours.
     #[must_use]
     pub fn phase(&self) -> Phase {
         self.phase
@@ -188,7 +188,7 @@ impl Frame {
         &self.samples
     }
 
-    /// All samples, row after row, without a copy.
+    /// Consumes the frame and returns all its samples, row after row, without copying.
     #[must_use]
     pub fn into_samples(self) -> Vec<u16> {
         self.samples

@@ -1,15 +1,15 @@
-//! The frame's geometry: what a board must know of a frame beside its samples.
+//! The frame's geometry: what a board must know about a frame besides its samples.
 
 use crate::BitDepth;
 use crate::lens::Short;
 
-/// The narrowest frame of the datapath, in columns; half a row is then always longer than a board's fixed delay.
+/// The narrowest frame of the datapath, in columns. At this width half a row is as long as a board's longest fixed delay.
 pub const MIN_WIDTH: usize = 64;
 
 /// The widest frame of the datapath, in columns: the MT9P031's full row.
 pub const MAX_WIDTH: usize = 2592;
 
-/// The highest frame of the datapath, in rows.
+/// The tallest frame of the datapath, in rows.
 pub const MAX_HEIGHT: usize = 2048;
 
 /// Size, depth and optical centre of the frames that a table set is for (DATAPATH.md, "Frame").
@@ -79,7 +79,7 @@ impl Geometry {
     /// The same frame with the optical centre at `column`, rounded to half a column: C = round(2 · cx).
     ///
     /// # Errors
-    /// [`GeometryError::Centre`] when the rounded centre is outside columns 0 to W − 1 or is no number.
+    /// [`GeometryError::Centre`] when the rounded centre is outside columns 0 to W − 1 or is not a number.
     pub fn with_centre(self, column: f64) -> Result<Self, GeometryError> {
         let centre2 = (2.0 * column + 0.5).floor();
         if (0.0..=2.0 * self.width as f64 - 2.0).contains(&centre2) {
@@ -119,15 +119,15 @@ impl Geometry {
         ((self.width - 1) as f64 / 2.0, (self.height - 1) as f64 / 2.0)
     }
 
-    /// y of row `row`: its distance below the optical centre in rows, from `centre_y` or else from the middle
-    /// (H − 1)/2.
+    /// y of row `row`: its distance below the optical centre in rows. The centre is `centre_y`, by default the middle (H −
+    /// 1)/2.
     #[must_use]
     pub fn row_offset(&self, row: usize, centre_y: Option<f64>) -> f64 {
         row as f64 - centre_y.unwrap_or(self.middle().1)
     }
 
-    /// The column whose sample P(m) stands for column `column`: itself inside the row, and the row's first or last
-    /// column of the same colour outside of it (DATAPATH.md, "Taps").
+    /// The column whose sample P(m) stands in for column `column`: itself inside the row; beyond its ends, the row's first or
+    /// last column of the same colour (DATAPATH.md, "Taps").
     #[must_use]
     pub fn sample_column(&self, column: i64) -> usize {
         let parity = column.rem_euclid(2) as usize;

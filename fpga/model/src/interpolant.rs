@@ -6,13 +6,13 @@ use std::str::FromStr;
 /// A rule that weighs the seven samples around a source point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Interpolant {
-    /// The nearer sample of the colour (Eq. 10).
+    /// The nearer sample of the output's colour (Eq. 10).
     Nearest,
-    /// A straight line between the two samples of the colour (Eq. 11).
+    /// A straight line between the two samples of the output's colour (Eq. 11).
     Linear,
-    /// Keys' cubic through four samples of the colour (Eq. 12).
+    /// Keys' cubic through four samples of the output's colour (Eq. 12).
     Keys,
-    /// The paper's cubic: two samples of the colour, slopes from three of the row's other colour (Eq. 18).
+    /// The paper's cubic: two samples of the output's colour, with slopes from three of the row's other colour (Eq. 18).
     #[default]
     Hermite,
 }

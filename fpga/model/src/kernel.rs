@@ -14,10 +14,10 @@ const MIN_WEIGHT: f64 = -2.0;
 /// The largest weight that 16 bits hold: 2 − 2^-14.
 const MAX_WEIGHT: f64 = i16::MAX as f64 / WEIGHT_ONE as f64;
 
-/// The taps in the order of their columns: the samples that an output is made of.
+/// The taps, the samples that an output is made of, in the order of their columns.
 pub const TAP_NAMES: [&str; 7] = ["G0", "R1", "G2", "R3", "G4", "R5", "G6"];
 
-/// The stored weights, in their order. Those of the taps G2 and R3 follow from the five.
+/// The stored weights, in their order. Those of the taps G2 and R3 follow from these five.
 pub const WEIGHT_NAMES: [&str; 5] = ["g0", "r1", "g4", "r5", "g6"];
 
 /// The weights of a kernel at its [`NODES`] nodes.
@@ -35,7 +35,7 @@ pub enum Taps {
     Seven,
 }
 
-/// Weights that make no kernel.
+/// Weights that are no kernel.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum KernelError {
     /// Not [`NODES`] nodes.
@@ -59,10 +59,10 @@ pub enum KernelError {
 }
 
 impl Kernel {
-    /// The kernel of `nodes`, each g0 r1 g4 r5 g6 in units of 2^-14.
+    /// The kernel with `nodes`, each g0 r1 g4 r5 g6 in units of 2^-14.
     ///
     /// # Errors
-    /// [`KernelError::Count`] when there are not [`NODES`] nodes.
+    /// [`KernelError::Count`] when there are not exactly [`NODES`] nodes.
     pub fn from_nodes(nodes: Vec<[i16; 5]>) -> Result<Self, KernelError> {
         let nodes = nodes.try_into().map_err(|nodes: Vec<_>| KernelError::Count(nodes.len()))?;
         Ok(Self { nodes })
@@ -71,8 +71,8 @@ impl Kernel {
     /// The kernel of real weights, each node g0 r1 g4 r5 g6, rounded half up to 14 fractional bits.
     ///
     /// # Errors
-    /// [`KernelError`] when there are not [`NODES`] nodes, or a weight is outside −2 to 2 − 2^-14 or no number. Nothing
-    /// is saturated.
+    /// [`KernelError`] when there are not exactly [`NODES`] nodes, or a weight is outside −2 to 2 − 2^-14 or not a number.
+    /// Nothing is saturated.
     pub fn from_weights(weights: &[[f64; 5]]) -> Result<Self, KernelError> {
         let nodes: Result<_, _> =
             weights.iter().enumerate().map(|(node, weights)| round_node(node, weights)).collect();
@@ -92,7 +92,7 @@ impl Kernel {
         if five { Taps::Five } else { Taps::Seven }
     }
 
-    /// The kernel as a board takes it: node after node, each weight as 16 bits, little endian; 650 bytes.
+    /// The kernel in a board's format: node after node, each weight as 16 bits, little endian; 650 bytes.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         self.nodes.iter().flatten().flat_map(|weight| weight.to_le_bytes()).collect()

@@ -8,10 +8,10 @@ use std::fmt;
 /// The smallest image radius that a lens may have, in pixels.
 pub const MIN_RADIUS: f64 = 1.0;
 
-/// The largest image radius that a lens may have, in pixels; squares of it are still exact enough in double precision.
+/// The largest image radius that a lens may have, in pixels; its square is still exact enough in double precision.
 pub const MAX_RADIUS: f64 = 1e9;
 
-/// A lens whose image radius grows with the angle to the axis: α = r / f (Eq. 1).
+/// A lens whose image radius is proportional to the angle to the axis: α = r / f (Eq. 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Equidistant {
     focal_length: f64,
@@ -30,15 +30,15 @@ pub struct Spherical {
 impl Spherical {
     /// The longitude and latitude of the direction `ray`, of any length.
     ///
-    /// The arctangents of two arguments hold beyond 90° too, where those of Eqs. 3 and 4 would fold over, and keep their
-    /// precision next to the poles.
+    /// The two-argument arctangent also holds beyond 90°, where those of Eqs. 3 and 4 would fold over, and keeps its precision
+    /// near the poles.
     #[must_use]
     pub fn of([u, v, w]: [f64; 3]) -> Self {
         Self { longitude: u.atan2(w), latitude: v.atan2(u.hypot(w)) }
     }
 }
 
-/// A number for a sentence: one that plain digits would make long is printed with an exponent.
+/// A number in a message: printed with an exponent where plain digits would be long.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Short(pub f64);
 
@@ -121,15 +121,15 @@ impl Equidistant {
         Self::checked(radius_px / FRAC_PI_2, radius_px)
     }
 
-    /// The lens of focal length `focal_mm` on pixels of `pixel_um`, with an image circle of `field_of_view_deg` across.
+    /// The lens of focal length `focal_mm` on pixels of `pixel_um`, with an image circle `field_of_view_deg` across.
     ///
-    /// R becomes the radius of the image circle, f · fov/2. Eq. 9 takes R as half the size of the whole image of 180°,
-    /// so 180 gives the paper's R. Another field of view stretches the rows until *its* circle fills the frame; it
-    /// changes R alone and leaves f, and with it the exact projection, as it is.
+    /// R becomes the radius of the image circle, f · fov/2. Eq. 9 takes R as half the size of the whole image of 180°, so 180
+    /// gives the paper's R. Another field of view stretches the rows until *its* circle fills the frame. It changes R alone and
+    /// leaves f, and with it the exact projection, as it is.
     ///
     /// # Errors
-    /// [`LensError`] when the focal length or the pitch is not above zero, the field of view is not above 0° and at
-    /// most 360°, or R comes out outside [`MIN_RADIUS`] to [`MAX_RADIUS`].
+    /// [`LensError`] when the focal length or the pitch is not above zero, the field of view is not above 0° and at most 360°,
+    /// or R is outside [`MIN_RADIUS`] to [`MAX_RADIUS`].
     pub fn from_focal_length(
         focal_mm: f64,
         pixel_um: f64,
@@ -162,7 +162,7 @@ impl Equidistant {
         self.focal_length
     }
 
-    /// R in pixels: what Eq. 9 stretches by, see [`Self::from_radius`] and [`Self::from_focal_length`].
+    /// R in pixels, the radius of Eq. 9; see [`Self::from_radius`] and [`Self::from_focal_length`].
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
@@ -170,7 +170,7 @@ impl Equidistant {
 
     /// The direction seen at the image point (`x`, `y`), as a unit vector: u right, v down, w forward (Eq. 2).
     ///
-    /// Beyond 90° (r > πf/2) w is negative: the ray comes from behind. A point farther out than πf is no image of
+    /// Beyond 90° (r > πf/2) w is negative: the ray comes from behind the lens. Points farther out than πf are no image of
     /// anything.
     #[must_use]
     pub fn ray(&self, x: f64, y: f64) -> [f64; 3] {
@@ -190,7 +190,7 @@ impl Equidistant {
 
     /// Where the direction `ray` is imaged, (x, y) in pixels: the inverse of [`Self::ray`] for vectors of any length.
     ///
-    /// The direction straight back is imaged all round the rim; its rightmost point stands for it. A zero vector has no
+    /// The direction straight back is imaged all around the rim; the rightmost point stands for it. A zero vector has no
     /// direction and gives the centre.
     #[must_use]
     pub fn image_point(&self, ray: [f64; 3]) -> (f64, f64) {

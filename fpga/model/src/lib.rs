@@ -9,11 +9,11 @@
 //! ```
 //!
 //! [`correct`] is the oracle: it implements `fpga/DATAPATH.md` and a board must equal it. [`Corrector`] gives the same bits
-//! many times faster, by vectors where the processor has them, behind all tables that [`TableSet::check_ring`] takes. A [`Signer`] predicts what a board signs that makes frames on
-//! its own, whose [`Content`] is that of `fpga/AT-SPEED.md`. [`correct_real`] computes the
-//! same correction in double precision, to show what the integers cost. Equation and section numbers in this crate are
-//! those of Lai et al., *Real-time distortion correction of fish-eye lens based on Bayer image signal*, Optical Review
-//! 2014. The crate knows no board, no protocol and no file.
+//! many times faster, with vector instructions where the processor has them, for every table that [`TableSet::check_ring`]
+//! accepts. A [`Signer`] predicts the signatures of frames that a board makes on its own, from the [`Content`] of
+//! `fpga/AT-SPEED.md`. [`correct_real`] computes the same correction in double precision, to show what the integers cost.
+//! Equation and section numbers in this crate are those of Lai et al., *Real-time distortion correction of fish-eye lens based
+//! on Bayer image signal*, Optical Review 2014. The crate knows no board, no protocol and no file format.
 
 #![warn(missing_debug_implementations)]
 

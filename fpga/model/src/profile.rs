@@ -1,29 +1,29 @@
-//! r(θ): how far from the centre a lens images a ray that comes in θ off its axis.
+//! r(θ): how far from the centre a lens images a ray at the angle θ to its axis.
 
 use std::f64::consts::PI;
 
 use crate::LensError;
 
-/// Places between the axis and the end of the search at which it is looked whether r still rises with θ.
+/// Places between the axis and the end of the search at which the slope of r(θ) is checked.
 const PLACES: u32 = 4096;
 
-/// How far a polynomial is looked at, in its own focal lengths: a stereographic lens images 152° there.
+/// How far out a polynomial is searched, in its own focal lengths: a stereographic lens images 152° there.
 const REACH: f64 = 8.0;
 
-/// The kind of a lens, with its coefficients.
+/// A lens's profile, with its coefficients.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Profile {
     /// r = θ, of focal length 1 (Eq. 1).
     Equidistant,
-    /// r = θ(1 + k1·θ² + k2·θ⁴ + k3·θ⁶ + k4·θ⁸), of focal length 1: Kannala and Brandt's model as OpenCV's
-    /// `fisheye` functions have it, the coefficients in the order k1 to k4.
+    /// r = θ(1 + k1·θ² + k2·θ⁴ + k3·θ⁶ + k4·θ⁸), of focal length 1: Kannala and Brandt's model as in OpenCV's `fisheye`
+    /// functions, the coefficients in the order k1 to k4.
     KannalaBrandt([f64; 4]),
-    /// The ray of the image radius r goes r sideways for every −(a0 + a1·r + a2·r² + …) ahead: Scaramuzza's model, as
-    /// OCamCalib has it. The coefficients are from a0 on, which is minus the focal length in pixels.
+    /// The ray at the image radius r goes r sideways for every −(a0 + a1·r + a2·r² + …) ahead: Scaramuzza's model, as in
+    /// OCamCalib. The coefficients start with a0, which is minus the focal length in pixels.
     Polynomial(Vec<f64>),
 }
 
-/// The part of a [`Profile`] from the axis outwards in which r and θ rise together, so that each has one of the other.
+/// The part of a [`Profile`] from the axis outwards in which r and θ rise together, so that each determines the other.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RisingProfile {
     profile: Profile,
@@ -33,7 +33,7 @@ pub(crate) struct RisingProfile {
 
 impl RisingProfile {
     /// # Errors
-    /// [`LensError::Coefficient`] when one is not finite, [`LensError::Axis`] when r does not rise at the axis.
+    /// [`LensError::Coefficient`] when a coefficient is not finite, [`LensError::Axis`] when r does not rise at the axis.
     pub(crate) fn new(profile: Profile) -> Result<Self, LensError> {
         let coefficients = match &profile {
             Profile::Equidistant => &[][..],
@@ -55,7 +55,7 @@ impl RisingProfile {
         }
     }
 
-    /// r = θ up to straight back.
+    /// r = θ up to π, straight back.
     pub(crate) const fn equidistant() -> Self {
         Self { profile: Profile::Equidistant, widest: PI, farthest: PI }
     }
@@ -74,7 +74,7 @@ impl RisingProfile {
         self.farthest
     }
 
-    /// r per θ at the axis.
+    /// The slope of r(θ) at the axis.
     pub(crate) fn focal_length(&self) -> f64 {
         match &self.profile {
             Profile::Polynomial(coefficients) => -polynomial(coefficients, 0.0).0,
@@ -117,7 +117,7 @@ impl RisingProfile {
 }
 
 impl Profile {
-    /// r and its slope where it is given as a formula of θ.
+    /// r and its slope, for a profile that is a formula of θ.
     fn plain_radius(&self, angle: f64) -> (f64, f64) {
         let Self::KannalaBrandt([k1, k2, k3, k4]) = self else {
             return (angle, 1.0);
@@ -128,7 +128,7 @@ impl Profile {
         (angle * value, value + 2.0 * square * slope)
     }
 
-    /// Where r and θ stop to rise together: θ where r is a formula of it, and r for a polynomial.
+    /// Where r and θ stop rising together: θ where r is a formula of θ, and r for a polynomial.
     fn rising_end(&self) -> f64 {
         let end = match self {
             Self::Polynomial(coefficients) => REACH * coefficients.first().map_or(0.0, |first| first.abs()),
@@ -151,7 +151,7 @@ impl Profile {
     }
 }
 
-/// The last place between `low`, where it rises, and `high`, where it does not.
+/// The last place between `low`, where the function rises, and `high`, where it does not.
 fn last_rising(mut low: f64, mut high: f64, rises: impl Fn(f64) -> bool) -> f64 {
     for _ in 0..60 {
         let middle = f64::midpoint(low, high);
@@ -169,7 +169,7 @@ fn angle_of(coefficients: &[f64], r: f64) -> f64 {
     r.atan2(-polynomial(coefficients, r).0)
 }
 
-/// The polynomial with these coefficients, from that of x⁰ on, and its slope at `x`.
+/// The value and the slope at `x` of the polynomial with these coefficients, lowest power first.
 fn polynomial(coefficients: &[f64], x: f64) -> (f64, f64) {
     coefficients
         .iter()
@@ -177,9 +177,10 @@ fn polynomial(coefficients: &[f64], x: f64) -> (f64, f64) {
         .fold((0.0, 0.0), |(value, slope), &coefficient| (value * x + coefficient, slope * x + value))
 }
 
-/// Where a function that rises through 0 in 0..=`high` is 0: Newton's method, and bisection where that would leave.
+/// The root in 0..=`high` of a function that rises through 0 there: Newton's method, and bisection where a step would leave the
+/// interval.
 ///
-/// `function` gives the value and the slope.
+/// `function` returns the value and the slope.
 fn rising_root(mut high: f64, guess: f64, function: impl Fn(f64) -> (f64, f64)) -> f64 {
     let (mut low, mut x) = (0.0, guess);
     for _ in 0..100 {

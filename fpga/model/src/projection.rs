@@ -1,7 +1,7 @@
-//! From fisheye image to corrected image: the exact projection (Eqs. 6, 7) and the simplified one (Eqs. 8, 9).
+//! From the fisheye image to the corrected image: the exact projection (Eqs. 6, 7) and the simplified one (Eqs. 8, 9).
 //!
-//! All points are in pixels from the optical centre, x to the right and y down; `d` marks the distorted (fisheye) image
-//! and `u` the undistorted one. Both projections keep y (Eq. 7), so that a row depends on itself alone.
+//! All points are in pixels from the optical centre, x to the right and y down; `d` marks the distorted (fisheye) image and `u`
+//! the undistorted one. Both projections keep y (Eq. 7), so that each row depends on itself alone.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -17,8 +17,8 @@ pub fn exact(lens: &Equidistant, x_d: f64, y_d: f64) -> (f64, f64) {
 
 /// The fisheye point that [`exact`] projects to (`x_u`, `y_u`).
 ///
-/// `None` where there is none or no single one: on rows at or beyond the poles (|y| ≥ πf/2), and for longitudes of 180°
-/// and more (|x_u| ≥ πf). Elsewhere x_u rises with x_d, from the middle to the rim of the sphere at r = πf, and bisection
+/// `None` where there is no such point or more than one: on rows at or beyond the poles (|y| ≥ πf/2), and for longitudes of
+/// 180° and more (|x_u| ≥ πf). Elsewhere x_u rises with x_d, from the middle to the rim of the sphere at r = πf, and bisection
 /// finds x_d to the last bit.
 #[must_use]
 pub fn exact_inverse(lens: &Equidistant, x_u: f64, y_u: f64) -> Option<(f64, f64)> {
@@ -32,7 +32,7 @@ pub fn exact_inverse(lens: &Equidistant, x_u: f64, y_u: f64) -> Option<(f64, f64
     Some((x_d.copysign(x_u), y_u))
 }
 
-/// The least double in 0..=`upper` for which `is_below` is false, for a predicate that is true up to it.
+/// The least double in 0..=`upper` for which `is_below` is false, for a predicate that is true below it.
 fn bisect(upper: f64, is_below: impl Fn(f64) -> bool) -> f64 {
     let (mut low, mut high) = (0.0, upper);
     if !is_below(low) {

@@ -1,15 +1,15 @@
-//! Which tables a board's ring can serve (DATAPATH.md, "Ring" and "Legal").
+//! Which tables suit a board's ring (DATAPATH.md, "Ring" and "Legal").
 
 use crate::grid::rounded;
 use crate::table::Entries;
 use crate::{RowFactor, RowValues, TableError, TableSet, source};
 
-/// n of a row's first and last column. Columns minus sources never fall along a row, so these decide.
+/// n of a row's first and last column. j − n never falls along a row, so these two decide.
 type Ends = [i64; 2];
 
 impl TableSet {
-    /// Whether a ring of `ring` samples holds every sample that every row reads, and every source of a grid lies in its row
-    /// (DATAPATH.md, "Ring" and "Legal").
+    /// Checks that a ring of `ring` samples holds every sample that every row reads, and that every source of a grid lies in
+    /// its row (DATAPATH.md, "Ring" and "Legal").
     ///
     /// # Errors
     /// [`TableError::BeforeFirst`], [`TableError::BehindLast`], [`TableError::LookAhead`] or [`TableError::LookBack`] for
@@ -35,12 +35,12 @@ impl TableSet {
         [0, geometry.width() - 1].map(|column| source(geometry, row_factor, column).column)
     }
 
-    /// The ends of row `row` of a grid, if they lie in the row.
+    /// The ends of row `row` of a grid, if both lie in the row.
     fn ends_of_values(&self, row: usize, values: &RowValues) -> Result<Ends, TableError> {
         let last = self.geometry().width() - 1;
         let [first, end] = [0, last].map(|column| rounded(values.coordinate(column)));
         if first < 0 {
-            // O counts in units of q.
+            // O is in units of q.
             return Err(TableError::BeforeFirst { row, raise: -first });
         }
         match excess(end >> 13, last) {
@@ -49,7 +49,7 @@ impl TableSet {
         }
     }
 
-    /// Both of the ring's conditions for one row.
+    /// Checks both of the ring's conditions for one row.
     fn check_row(&self, row: usize, ends: Ends, ring: usize) -> Result<(), TableError> {
         let (half, last) = (self.geometry().width() / 2, self.geometry().width() - 1);
         let [first, end] = ends;
@@ -64,7 +64,7 @@ impl TableSet {
     }
 }
 
-/// By how much `value` is above `limit`, if it is.
+/// How far `value` is above `limit`, if it is.
 fn excess(value: i64, limit: usize) -> Option<usize> {
     usize::try_from(value).ok()?.checked_sub(limit).filter(|&excess| excess > 0)
 }

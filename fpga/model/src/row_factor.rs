@@ -3,10 +3,10 @@
 use std::fmt;
 use std::ops::RangeInclusive;
 
-/// The row factor Q: how far apart, in source columns, two neighbouring outputs of a row are taken from (DATAPATH.md,
+/// The row factor Q: the distance, in source columns, between the sources of two neighbouring outputs of a row (DATAPATH.md,
 /// "Table").
 ///
-/// It is 1/k of Eq. 9 in units of 2^-24, so it is above 0 and at most 1: [`Self::RANGE`] as an integer. It is shown as a
+/// It is 1/k of Eq. 9 in units of 2^-24, so it is above 0 and at most 1: [`Self::RANGE`] as an integer. It is displayed as a
 /// decimal fraction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]

@@ -1,4 +1,4 @@
-//! The table set: row factors or a grid of them, which is all that the datapath keeps of the lens.
+//! The table set: row factors or a grid of factors. This is all that the datapath keeps of the lens.
 
 use std::ops::RangeInclusive;
 
@@ -6,7 +6,7 @@ use crate::grid::{ENTRY_BITS, Grid, GridFault};
 use crate::projection::shrink_factor;
 use crate::{Equidistant, Geometry, GridShape, RowFactor, RowFactorError, RowValues};
 
-/// One row factor a row, or a grid, together with the geometry they were made for (DATAPATH.md, "Table" and "Grid").
+/// One row factor per row, or a grid, with the geometry that they were made for (DATAPATH.md, "Table" and "Grid").
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TableSet {
     geometry: Geometry,
@@ -25,7 +25,7 @@ pub(crate) enum Entries {
 /// Tables that no board could use.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TableError {
-    /// Not one row factor a row.
+    /// Not exactly one row factor per row.
     #[error("{row_factors} row factors for {height} rows; give one for each row")]
     Count {
         /// Row factors given.
@@ -54,7 +54,7 @@ pub enum TableError {
         /// Z.
         rows: usize,
     },
-    /// An entry of more bits than a board keeps.
+    /// An entry with more bits than a board keeps.
     #[error("entry ({column}, {row}) of the grid is {units}; give 0 to {max}", max = TableSet::GRID_RANGE.end())]
     GridEntry {
         /// c: 0 for offsets, 1 + s for node s.
@@ -64,7 +64,7 @@ pub enum TableError {
         /// The entry.
         units: u32,
     },
-    /// A row that begins in front of the frame.
+    /// A row that begins left of the frame.
     #[error(
         "row {row} begins left of the frame; raise the offsets of its grid rows by {raise}, or make the grid from the \
          lens again"
@@ -72,10 +72,10 @@ pub enum TableError {
     BeforeFirst {
         /// The first such row.
         row: usize,
-        /// The least number that O lacks.
+        /// How much must be added to O, at least.
         raise: i64,
     },
-    /// A row that ends behind the frame.
+    /// A row that ends right of the frame.
     #[error(
         "row {row} ends {excess} columns right of the frame; lower the offsets of its grid rows, or make the grid from \
          the lens again"
@@ -89,7 +89,7 @@ pub enum TableError {
     /// A vertical centre that is no finite number.
     #[error("the optical centre is at row {0}; give a finite number, or none for the middle of the frame")]
     CentreRow(f64),
-    /// A row that needs samples before they have come.
+    /// A row that needs samples before they have arrived.
     #[error(
         "row {row} needs samples {excess} columns later than half a row of delay brings them; \
          move the optical centre to the left, towards the middle, or give a larger image radius"
@@ -100,7 +100,7 @@ pub enum TableError {
         /// Columns too far ahead.
         excess: usize,
     },
-    /// A row that needs samples the ring has overwritten.
+    /// A row that needs samples that the ring has already overwritten.
     #[error(
         "row {row} needs samples {excess} columns older than a ring of {ring} still holds; move the optical centre \
          to the right, towards the middle, give a larger image radius, or use a build with a longer ring"
@@ -116,13 +116,13 @@ pub enum TableError {
 }
 
 impl TableSet {
-    /// All entries of a grid.
+    /// The range of a grid's entries.
     pub const GRID_RANGE: RangeInclusive<u32> = 0..=(1 << ENTRY_BITS) - 1;
 
     /// The table of `row_factors`, one for each row of `geometry` from the top.
     ///
     /// # Errors
-    /// [`TableError::Count`] when there is not one row factor a row.
+    /// [`TableError::Count`] when there is not exactly one row factor per row.
     pub fn new(geometry: Geometry, row_factors: Vec<RowFactor>) -> Result<Self, TableError> {
         if row_factors.len() != geometry.height() {
             return Err(TableError::Count { row_factors: row_factors.len(), height: geometry.height() });
@@ -130,8 +130,8 @@ impl TableSet {
         Ok(Self { geometry, entries: Entries::Rows(row_factors) })
     }
 
-    /// The grid of shape `shape` with these entries, column by column from that of the offsets, each column from its first
-    /// grid row: as a board takes them.
+    /// The grid of shape `shape` with these entries, in a board's order: column by column from the offsets, each column from
+    /// its first grid row.
     ///
     /// # Errors
     /// [`TableError`] when there are not (N + 2)·Z entries or one is outside [`Self::GRID_RANGE`].
@@ -146,10 +146,10 @@ impl TableSet {
         Ok(Self { geometry, entries: Entries::Grid(grid) })
     }
 
-    /// The table of the row factors `units` in units of 2^-24, one for each row of `geometry` from the top.
+    /// The table of the row factors `units`, in units of 2^-24, one for each row of `geometry` from the top.
     ///
     /// # Errors
-    /// [`TableError`] when there is not one row factor a row or one is outside [`RowFactor::RANGE`].
+    /// [`TableError`] when there is not exactly one row factor per row, or one is outside [`RowFactor::RANGE`].
     pub fn from_units(geometry: Geometry, units: &[u32]) -> Result<Self, TableError> {
         let row_factor = |(row, &units): (usize, &u32)| {
             RowFactor::new(units).map_err(|source| TableError::RowFactor { row, source })
@@ -177,7 +177,7 @@ impl TableSet {
         Ok(Self::of_rows(geometry, |row| RowFactor::nearest(shrink(row))))
     }
 
-    /// The table with `row_factor` of every row.
+    /// The table with `row_factor(row)` for every row.
     pub(crate) fn of_rows(geometry: Geometry, row_factor: impl Fn(usize) -> RowFactor) -> Self {
         let row_factors = (0..geometry.height()).map(row_factor).collect();
         Self { geometry, entries: Entries::Rows(row_factors) }
@@ -188,10 +188,10 @@ impl TableSet {
         Self { geometry, entries: Entries::Grid(grid) }
     }
 
-    /// The same entries for frames of as many columns and rows, and of another depth or centre.
+    /// The same entries for frames of the same size but another depth or centre.
     ///
     /// # Errors
-    /// [`TableError`] when `geometry` has another size, so that there are too few or too many of them.
+    /// [`TableError`] when a table for `geometry` has another number of entries. For row factors only the height decides.
     pub fn with_geometry(&self, geometry: Geometry) -> Result<Self, TableError> {
         match &self.entries {
             Entries::Rows(row_factors) => Self::new(geometry, row_factors.clone()),
@@ -201,7 +201,7 @@ impl TableSet {
         }
     }
 
-    /// The tables of the upper `rows` rows alone; none when there are not so many, or none of them.
+    /// The tables of the upper `rows` rows alone; none when the frame has fewer rows, or `rows` is 0.
     #[must_use]
     pub fn upper(&self, rows: usize) -> Option<Self> {
         let own = &self.geometry;
@@ -214,7 +214,7 @@ impl TableSet {
         Some(Self { geometry, entries })
     }
 
-    /// The tables that stretch half as far: every entry half way to 2^24, rounded down.
+    /// The tables that stretch half as much: every entry half way to 2^24, rounded down.
     #[must_use]
     pub fn halved(&self) -> Self {
         let entries = match &self.entries {
@@ -236,7 +236,7 @@ impl TableSet {
         &self.entries
     }
 
-    /// The shape of a grid; none of row factors.
+    /// The shape of a grid; none for row factors.
     #[must_use]
     pub fn shape(&self) -> Option<GridShape> {
         match &self.entries {
@@ -245,7 +245,7 @@ impl TableSet {
         }
     }
 
-    /// The row factor of every row from the top; none of a grid, whose factors depend on the column.
+    /// The row factor of every row from the top; none for a grid, whose factors depend on the column.
     #[must_use]
     pub fn row_factors(&self) -> Option<&[RowFactor]> {
         match &self.entries {
@@ -254,13 +254,13 @@ impl TableSet {
         }
     }
 
-    /// The row factor of row `row`, if the tables are row factors and the frame has it.
+    /// The row factor of row `row`, if the tables are row factors and the frame has this row.
     #[must_use]
     pub fn row_factor(&self, row: usize) -> Option<RowFactor> {
         self.row_factors()?.get(row).copied()
     }
 
-    /// The values of row `row`, if the frame has it.
+    /// The values of row `row`, if the frame has this row.
     #[must_use]
     pub fn values(&self, row: usize) -> Option<RowValues> {
         let mut values = RowValues::default();
@@ -274,8 +274,8 @@ impl TableSet {
         Some(values)
     }
 
-    /// The entries in a board's order, in units of 2^-24: row factors from the top, which [`Self::from_units`] takes, or
-    /// those of a grid, which [`Self::from_grid`] takes.
+    /// The entries in a board's order, in units of 2^-24: row factors from the top, as [`Self::from_units`] takes them, or
+    /// those of a grid, as [`Self::from_grid`] takes them.
     pub fn entries(&self) -> impl DoubleEndedIterator<Item = u32> + ExactSizeIterator + '_ {
         let count = match &self.entries {
             Entries::Rows(row_factors) => row_factors.len(),
@@ -287,7 +287,7 @@ impl TableSet {
         })
     }
 
-    /// The tables as a board takes them: each entry as 32 bits, little endian, in a board's order.
+    /// The tables in a board's format: each entry as 32 bits, little endian, in a board's order.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         self.entries().flat_map(u32::to_le_bytes).collect()

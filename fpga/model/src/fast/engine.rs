@@ -1,4 +1,4 @@
-//! The paths behind one face.
+//! All paths behind one interface.
 
 use super::ModelPath;
 use super::content::hold;
@@ -14,7 +14,7 @@ use crate::frame::bits_of;
 use crate::grid::Grid;
 use crate::{Geometry, Kernel, RowFactor, RowValues};
 
-/// Rows whose outputs come from the same places, to be corrected together.
+/// Rows whose outputs come from the same columns, to be corrected together.
 pub(super) struct Rows<'a, W, const ROWS: usize> {
     pub(super) walk: W,
     pub(super) width: usize,
@@ -50,7 +50,7 @@ impl Engine {
         }
     }
 
-    /// Corrects rows of the row factor `row_factor`, with `ends` to keep their ends in.
+    /// Corrects rows that share the row factor `row_factor`; `ends` is scratch space for their ends.
     pub(super) fn correct_rows<const ROWS: usize>(
         &self,
         ends: &mut [Ends; 2],
@@ -68,7 +68,7 @@ impl Engine {
         self.correct_along(Line::new(geometry, row_factor), ends, geometry, rows, outputs);
     }
 
-    /// Corrects row `index` of `grid`, with `ends` to keep its ends in and `values` for its values.
+    /// Corrects row `index` of `grid`; `ends` and `values` are scratch space for its ends and its values.
     pub(super) fn correct_row_of_grid(
         &self,
         (ends, values): (&mut [Ends; 2], &mut RowValues),
@@ -103,7 +103,7 @@ impl Engine {
         self.correct(Rows { walk, width, max: geometry.depth().max(), inputs, outputs });
     }
 
-    /// Corrects padded rows; the oracle takes none.
+    /// Corrects padded rows. The oracle uses none.
     fn correct<W: Walk, const ROWS: usize>(&self, rows: Rows<'_, W, ROWS>) {
         match self {
             Self::Reference(_) => {}
@@ -115,13 +115,13 @@ impl Engine {
         }
     }
 
-    /// Whether samples that no depth can hold do no harm but to the outputs, as among vectors, whose lanes wrap. Such rows are looked
-    /// at when they are corrected, which has brought them near.
+    /// Whether samples that no depth can hold spoil nothing but the outputs, as with vectors, whose lanes wrap. Such an
+    /// engine's rows are checked after their correction, which has brought them into the cache.
     pub(super) fn takes_any_sample(&self) -> bool {
         !matches!(self, Self::Reference(_) | Self::Scalar(_))
     }
 
-    /// The bits that are set in any of `samples`, which tell whether a depth can hold all of them.
+    /// The bits that are set in any of `samples`; they tell whether a depth can hold all samples.
     pub(super) fn bits_of(&self, samples: &[u16]) -> u16 {
         match self {
             Self::Reference(_) | Self::Scalar(_) => bits_of(samples),
@@ -132,7 +132,7 @@ impl Engine {
         }
     }
 
-    /// [`hold`], which AVX-512 alone does faster.
+    /// [`hold`], which only AVX-512 does faster.
     pub(super) fn hold(&self, draws: &[u16], max: u16, samples: &mut [u16]) {
         match self {
             #[cfg(target_arch = "x86_64")]
@@ -141,7 +141,7 @@ impl Engine {
         }
     }
 
-    /// The sources of the next block of columns; the oracle has those of its own.
+    /// The sources of the next block of columns; the oracle finds its own.
     pub(super) fn locate(&self, walk: &mut impl Walk) -> Located {
         match self {
             Self::Reference(_) | Self::Scalar(_) => scalar::locate_block(walk),

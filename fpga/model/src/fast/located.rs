@@ -1,4 +1,4 @@
-//! The sources of a block as a path found them, for those who check them.
+//! The sources of a block as a path found them, for checks.
 
 use super::BLOCK;
 use super::padded::LEFT;
@@ -6,16 +6,16 @@ use crate::Source;
 
 /// Where a block's outputs come from.
 pub(super) struct Located {
-    /// As in [`Start`](super::walk::Start).
+    /// Like [`Start`](super::walk::Start)'s.
     pub(super) first: isize,
-    /// a of each column, from the block's least one.
+    /// a of each column, counted from the block's least one.
     pub(super) base: [u16; BLOCK],
     /// x of each column, the lower 14 bits.
     pub(super) x: [u16; BLOCK],
 }
 
 impl Located {
-    /// The oracle's, with the least base two columns left of the row.
+    /// The oracle's sources, with the least base taken as two columns left of the row.
     pub(super) fn by_oracle(column: usize, source: impl Fn(usize) -> Source) -> Self {
         let sources: [Source; BLOCK] = std::array::from_fn(|index| source(column + index));
         Self {
@@ -25,7 +25,7 @@ impl Located {
         }
     }
 
-    /// a of each column, −1 to W − 1, and x. n counts modulo 2^12, which tells where the row is not legal.
+    /// Writes a of each column, −1 to W − 1, and x. n is taken modulo 2^12, which matters only where the row is not legal.
     pub(super) fn write(&self, bases: &mut [i16], distances: &mut [u16]) {
         let least = self.first + 2 - LEFT as isize;
         for (((place, distance), base), x) in bases.iter_mut().zip(distances).zip(self.base).zip(self.x) {

@@ -1,9 +1,9 @@
-//! The corrector for much data: the same bits as [`crate::correct_row`], many samples at a time.
+//! The corrector for large amounts of data: the same bits as [`crate::correct_row`], many samples at a time.
 //!
-//! The oracle beside it stays as DATAPATH.md has it, and each path here is checked against it. What is done otherwise:
-//! a row's ends are copied with its edges drawn out, so that no tap is a special case; coordinates are taken relative to
-//! the block of columns, so that 32 bits hold them; and rows of one row factor, above and below the lens's axis, share
-//! coordinates and weights. Rows of a grid do not, since none mirrors another to the bit.
+//! The oracle next to it follows DATAPATH.md to the letter, and each path here is checked against it. What the paths do
+//! differently: a row's ends are copied together with the samples that stand in beyond them, so that no tap is a special case;
+//! coordinates are relative to the block of columns, so that they fit 32 bits; and rows with the same row factor, above and
+//! below the lens's axis, share coordinates and weights. Rows of a grid do not, since none mirrors another to the bit.
 
 mod content;
 mod engine;
@@ -39,18 +39,18 @@ const BLOCK: usize = 32;
 
 /// Corrects rows and frames with one kernel by one [`ModelPath`].
 ///
-/// Every path gives the same bits behind row factors, and behind a grid whose sources lie in their rows: one that
-/// [`TableSet::check_ring`] takes with some ring, which a program makes sure of once, before it corrects by a grid that it did
-/// not get from a [`Camera`](crate::Camera). No board can serve another grid, and each path makes something else of it.
+/// Every path gives the same bits for row factors, and for a grid whose sources lie in their rows: one that
+/// [`TableSet::check_ring`] accepts with some ring. A program checks this once, before it corrects with a grid that it did not
+/// get from a [`Camera`](crate::Camera). No board can serve any other grid, and each path makes something else of it.
 ///
-/// It may be used for any number of rows, frames and geometries, and allocates nothing for them but when a row is wider
-/// than all before. Several threads take one each: a clone shares what was made of the kernel.
+/// It can be used for any number of rows, frames and geometries. It allocates only when a row is wider than all before it. Each
+/// thread takes its own: a clone shares what was computed from the kernel.
 pub struct Corrector {
     path: ModelPath,
     engine: Arc<Engine>,
-    /// Of the two rows that are corrected together.
+    /// The ends of the two rows that are corrected together.
     ends: [Ends; 2],
-    /// Of the grid's row that is corrected.
+    /// The values of the grid's row that is being corrected.
     values: RowValues,
 }
 
@@ -70,7 +70,7 @@ impl Corrector {
     /// A corrector for `kernel`.
     ///
     /// # Errors
-    /// [`UnavailablePath`] when this processor cannot take `path`.
+    /// [`UnavailablePath`] when this processor does not support `path`.
     pub fn new(path: ModelPath, kernel: &Kernel) -> Result<Self, UnavailablePath> {
         let engine = Engine::new(path, kernel).ok_or(UnavailablePath(path))?;
         Ok(Self::of(path, Arc::new(engine)))
@@ -92,7 +92,7 @@ impl Corrector {
         self.path
     }
 
-    /// Corrects one row of the row factor `row_factor` into `output`, as [`crate::correct_row`] does.
+    /// Corrects one row with the row factor `row_factor` into `output`, as [`crate::correct_row`] does.
     ///
     /// The samples of `row` must be within the geometry's depth, as those of a [`Frame`] are.
     ///
@@ -108,11 +108,11 @@ impl Corrector {
         self.engine.correct_rows(&mut self.ends, geometry, row_factor, [row], [output]);
     }
 
-    /// Corrects `row`, which is row `index` of a frame behind `tables`, into `output`. A row that the frame does not have
-    /// leaves `output` as it is.
+    /// Corrects `row`, which is row `index` of a frame for `tables`, into `output`. For an index that the frame does not have,
+    /// `output` stays as it is.
     ///
-    /// The samples of `row` must be within the geometry's depth, as those of a [`Frame`] are, and those that a grid's row
-    /// takes must lie in the row, as [`TableSet::check_ring`] makes sure.
+    /// The samples of `row` must be within the geometry's depth, as those of a [`Frame`] are, and the sources of a grid's row
+    /// must lie in the row, as [`TableSet::check_ring`] makes sure.
     ///
     /// # Panics
     /// When `row` or `output` holds fewer samples than the geometry's width.
@@ -130,14 +130,15 @@ impl Corrector {
         }
     }
 
-    /// Corrects `frame` into `samples`, row after row. Rows of one row factor that mirror each other are corrected together.
+    /// Corrects `frame` into `samples`, row after row. Rows that mirror each other and have the same row factor are corrected
+    /// together.
     /// A grid's sources must lie in their rows, as [`TableSet::check_ring`] makes sure.
     ///
     /// # Errors
-    /// [`CorrectError`] when the frame has another size or depth than the tables are for.
+    /// [`CorrectError`] when the frame's size or depth is not the one that the tables are for.
     ///
     /// # Panics
-    /// When `samples` has another length than the frame's.
+    /// When the length of `samples` is not the frame's.
     pub fn correct_into(
         &mut self,
         tables: &TableSet,
@@ -150,15 +151,15 @@ impl Corrector {
         Ok(())
     }
 
-    /// Corrects the samples of a frame for which there is no [`Frame`], as those that another program holds, into `output`:
-    /// both W·H samples, row after row. Each row is looked at beside its correction, while it is at hand. A grid's sources must
-    /// lie in their rows, as [`TableSet::check_ring`] makes sure.
+    /// Corrects the samples of a frame for which there is no [`Frame`], such as those that another program holds, into
+    /// `output`: both W·H samples, row after row. Each row is checked next to its correction, while it is in the cache. A
+    /// grid's sources must lie in their rows, as [`TableSet::check_ring`] makes sure.
     ///
     /// # Errors
-    /// [`FrameError::TooBright`] for the first sample that the depth cannot hold. What `output` holds is then of no use.
+    /// [`FrameError::TooBright`] for the first sample that the depth cannot hold. The content of `output` is then meaningless.
     ///
     /// # Panics
-    /// When `samples` or `output` has another length than W·H.
+    /// When the length of `samples` or `output` is not W·H.
     pub fn correct_samples(
         &mut self,
         tables: &TableSet,
@@ -172,11 +173,11 @@ impl Corrector {
         let checked = self.correct_pairs(tables, samples, output, |engine, row| {
             if engine.bits_of(row) <= depth.max() { Ok(()) } else { Err(()) }
         });
-        // Rows are not taken from the top, and the first such sample is to be told.
+        // Rows are not corrected from the top down, but the first such sample is to be reported.
         checked.or_else(|()| FrameError::check(width, depth, samples))
     }
 
-    /// Corrects rows that mirror each other in turn, each of which `check` has let pass.
+    /// Corrects all rows, in pairs that mirror each other. Each row must pass `check`, before or after its correction.
     fn correct_pairs<E>(
         &mut self,
         tables: &TableSet,
@@ -205,7 +206,7 @@ impl Corrector {
         Ok(())
     }
 
-    /// Corrects the rows of these numbers, together if they have one row factor.
+    /// Corrects the two rows numbered `rows`, together if they have the same row factor.
     fn correct_pair(
         &mut self,
         tables: &TableSet,
@@ -224,11 +225,11 @@ impl Corrector {
         }
     }
 
-    /// The corrected frame, as [`crate::correct`] gives it where a grid's sources lie in their rows, as [`TableSet::check_ring`]
-    /// makes sure.
+    /// The corrected frame, the same as [`crate::correct`] gives if a grid's sources lie in their rows, as
+    /// [`TableSet::check_ring`] makes sure.
     ///
     /// # Errors
-    /// [`CorrectError`] when the frame has another size or depth than the tables are for.
+    /// [`CorrectError`] when the frame's size or depth is not the one that the tables are for.
     pub fn correct(&mut self, tables: &TableSet, frame: &Frame) -> Result<Frame, CorrectError> {
         let mut samples = vec![0; frame.samples().len()];
         self.correct_into(tables, frame, &mut samples)?;
@@ -236,7 +237,7 @@ impl Corrector {
     }
 
     /// Where this path takes the outputs of a row from: a into `bases` and x, in units of 2^-13 column, into `distances`,
-    /// column after column. They are those that [`crate::source`] tells, with x = 256·i + t.
+    /// column after column. They are those of [`crate::source`], with x = 256·i + t.
     ///
     /// # Panics
     /// When `bases` or `distances` is shorter than the geometry's width.
@@ -252,10 +253,10 @@ impl Corrector {
         self.locate_along(walk, oracle, geometry, (bases, distances));
     }
 
-    /// [`Self::locate`] in a row of the values `values`: those that [`RowValues::source`] tells.
+    /// [`Self::locate`] for a row with `values`; the sources are those of [`RowValues::source`].
     ///
     /// # Panics
-    /// When `bases` or `distances` is shorter than the geometry's width, or `values` are of a narrower one.
+    /// When `bases` or `distances` is shorter than the geometry's width, or `values` are for a narrower one.
     pub fn locate_by_values(
         &self,
         geometry: &Geometry,

@@ -1,25 +1,25 @@
-//! A row with its edges drawn out, so that no tap is a special case, and its outputs, so that no block is.
+//! A row with its edges extended, so that no tap is a special case, and its outputs, so that no block is.
 
 use super::BLOCK;
 
-/// Samples in front of a padded row. Its taps begin three columns left of the row.
+/// Samples to the left of a padded row. The leftmost tap can be three columns left of the row.
 pub(super) const LEFT: usize = 4;
 
-/// Samples behind a padded row, of which those up to column W + 3 count.
+/// Samples to the right of a padded row; only those up to column W + 3 count.
 const RIGHT: usize = WINDOW;
 
-/// Samples that the taps of a block are among, with some to spare for reading eight at a time.
+/// Samples among which the taps of a block lie, with some to spare for reading eight at a time.
 pub(super) const WINDOW: usize = BLOCK + 16;
 
-/// A row's two ends with the nearest samples of the same colour beyond them (DATAPATH.md, "Taps").
+/// A row's two ends and, beyond them, the nearest samples of the same colour (DATAPATH.md, "Taps").
 #[derive(Default)]
 pub(super) struct Ends {
-    /// As long as the row with both its margins. What is further than a window from an end is not kept up.
+    /// As long as the row with both its margins. Only what lies within a window of either end is kept up to date.
     padded: Vec<u16>,
 }
 
 impl Ends {
-    /// Takes the ends of `row`.
+    /// Copies the ends of `row`.
     pub(super) fn take(&mut self, row: &[u16]) {
         self.padded.resize(LEFT + row.len() + RIGHT, 0);
         let (front, rest) = self.padded.split_at_mut(LEFT);
@@ -46,8 +46,8 @@ impl<'a> Padded<'a> {
         Self { row, ends }
     }
 
-    /// [`WINDOW`] samples from the padded row's sample `first` on; a grid that is not legal may ask for ones that are not
-    /// there, and gets others.
+    /// [`WINDOW`] samples, starting with sample `first` of the padded row. A grid that is not legal may ask for samples that do
+    /// not exist, and gets others.
     #[inline]
     pub(super) fn window(&self, first: isize) -> &'a [u16] {
         let inside = first.wrapping_sub_unsigned(LEFT).cast_unsigned();
@@ -60,10 +60,10 @@ impl<'a> Padded<'a> {
     }
 }
 
-/// A row's outputs, of which a path takes a block at a time. The last block may go on behind the row.
+/// A row's outputs, which a path takes block by block. The last block may extend beyond the row.
 pub(super) struct Outputs<'a> {
     row: &'a mut [u16],
-    /// The last block, where the row does not hold all of it.
+    /// The last block, if the row holds only part of it.
     last: [u16; BLOCK],
 }
 
@@ -79,7 +79,7 @@ impl<'a> Outputs<'a> {
         rest.first_chunk_mut().unwrap_or(&mut self.last)
     }
 
-    /// Puts what the row holds of its last block in its place.
+    /// Copies the row's part of an incomplete last block into the row.
     pub(super) fn finish(self) {
         let whole = self.row.len() / BLOCK * BLOCK;
         let rest = &mut self.row[whole..];

@@ -6,7 +6,7 @@ use std::str::FromStr;
 /// One implementation of the datapath. All of them give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ModelPath {
-    /// The oracle, [`correct_row`](crate::correct_row), written to be read.
+    /// The oracle, [`correct_row`](crate::correct_row), written for clarity.
     Reference,
     /// Plain Rust, for every processor.
     Scalar,
@@ -79,7 +79,7 @@ impl FromStr for ModelPath {
     }
 }
 
-/// A path that this processor cannot take.
+/// A path that this processor does not support.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("this processor cannot take the path {0} of the model; use {best}, the fastest that it has", best = ModelPath::best())]
 pub struct UnavailablePath(pub ModelPath);

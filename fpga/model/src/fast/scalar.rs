@@ -1,7 +1,7 @@
 //! The datapath in plain Rust, one column at a time.
 //!
-//! The weights of all seven taps at all 2^14 distances x are computed once a kernel. A sample is then one sum of products,
-//! which compilers make of the vector instructions that every processor of a kind has.
+//! The weights of all seven taps at all 2^14 distances x are computed once per kernel. A sample is then one sum of products,
+//! for which compilers use the vector instructions that every processor of the architecture has.
 
 use super::located::Located;
 use super::nodes::{G0, G4, G6, Nodes, R1, R5};
@@ -13,7 +13,7 @@ use crate::WEIGHT_ONE;
 /// Distances x, 2^-13 column apart.
 const DISTANCES: usize = 1 << 14;
 
-/// Samples of a sum: seven taps, and one that has no weight.
+/// Terms of a sum: seven taps, and one with weight 0 that fills it up.
 const TERMS: usize = 8;
 
 /// G0 R1 G2 R3 G4 R5 G6 and 0, as 16 bits where all of them fit.
@@ -63,7 +63,7 @@ fn correct_as<W: Walk, T: Copy + Into<i32>, const ROWS: usize>(
     outputs.into_iter().for_each(Outputs::finish);
 }
 
-/// Corrects a block of one row whose taps begin at the places' bases of the window.
+/// Corrects a block of one row. The taps of each output begin at its base in the window.
 fn correct_block<T: Copy + Into<i32>>(
     weights: &[[T; TERMS]; DISTANCES],
     window: &[u16],
@@ -71,10 +71,10 @@ fn correct_block<T: Copy + Into<i32>>(
     max: i32,
     output: &mut [u16; BLOCK],
 ) {
-    // The sums first, and then what vectors do at once to all of them.
+    // The sums first, so that the rest is vectorised over all of them.
     let mut sums = [0; BLOCK];
     for ((sum, base), x) in sums.iter_mut().zip(places.base).zip(places.x) {
-        // Both as they are; that the compiler sees it saves checking.
+        // Neither changes either value: they let the compiler see the bounds and leave out its checks.
         let (offset, x) = (usize::from(base) % BLOCK, usize::from(x) % DISTANCES);
         *sum = weighted(&weights[x], &window[offset..offset + TERMS]);
     }
@@ -91,7 +91,7 @@ struct Places {
     x: [u16; BLOCK],
 }
 
-/// a and x of the whole block: what compilers make vectors of.
+/// a and x of the whole block, in a form that compilers vectorise.
 #[inline]
 fn locate(start: &Start) -> Places {
     let displacements = start.displacements();
@@ -110,7 +110,7 @@ fn weighted<T: Copy + Into<i32>>(weights: &[T; TERMS], taps: &[u16]) -> i32 {
     weights.iter().zip(taps).map(|(&weight, &tap)| weight.into() * i32::from(tap as i16)).sum()
 }
 
-/// The sources of the next block, for those who check them.
+/// The sources of the next block, for checks.
 pub(super) fn locate_block(walk: &mut impl Walk) -> Located {
     let start = walk.next();
     let Places { base, x } = locate(&start);

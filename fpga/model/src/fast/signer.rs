@@ -1,4 +1,4 @@
-//! Frames of a burst made, corrected and signed, as a board does it.
+//! The frames of a burst: made, corrected and signed as a board does it.
 
 use std::fmt;
 use std::sync::Arc;
@@ -8,9 +8,9 @@ use super::content::{Changes, Maker, hold};
 use crate::content::{Content, frame_signature, row_signature};
 use crate::{Frame, Geometry, Phase, TableSet};
 
-/// Predicts the signatures of a burst's frames (AT-SPEED.md) with one kernel by one [`Corrector`].
+/// Predicts the signatures of a burst's frames (AT-SPEED.md), with the kernel of one [`Corrector`].
 ///
-/// It may be used for any number of frames and geometries. Several threads take one each.
+/// It can be used for any number of frames and geometries. Each thread takes its own.
 pub struct Signer {
     corrector: Corrector,
     changes: Changes,
@@ -27,14 +27,14 @@ impl fmt::Debug for Signer {
 }
 
 impl Signer {
-    /// A signer of what `corrector` gives.
+    /// A signer of the outputs of `corrector`.
     #[must_use]
     pub fn new(corrector: Corrector) -> Self {
         Self { corrector, changes: Changes::default(), inputs: Vec::new(), outputs: Vec::new() }
     }
 
-    /// The signature of every row of the frame of `content` behind `tables`, from the top, into `rows`, and that of the
-    /// frame.
+    /// Predicts the frame of `content` corrected with `tables`: puts the signature of every row, from the top, into `rows` and
+    /// returns the signature of the frame.
     pub fn sign(&mut self, tables: &TableSet, content: Content, rows: &mut Vec<u32>) -> u32 {
         let geometry = tables.geometry();
         let (width, height) = (geometry.width(), geometry.height());
@@ -50,7 +50,7 @@ impl Signer {
         let mut makers = [maker.clone(), maker];
         let engine = Arc::clone(&self.corrector.engine);
         let hold = |draws: &[u16], max: u16, samples: &mut [u16]| engine.hold(draws, max, samples);
-        // A row in the middle, which nothing mirrors, is made and corrected twice.
+        // The middle row of an odd height, which mirrors itself, is made and corrected twice.
         for upper in 0..height.div_ceil(2) {
             let pair = [upper, height - 1 - upper];
             makers[0].make(pair[0], inputs.0, hold);
@@ -64,7 +64,7 @@ impl Signer {
 }
 
 impl Content {
-    /// The whole frame, as large as `geometry` says.
+    /// The whole frame, of the size and depth of `geometry`.
     #[must_use]
     pub fn frame(self, geometry: &Geometry, phase: Phase) -> Frame {
         let width = geometry.width();

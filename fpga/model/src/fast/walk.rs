@@ -1,7 +1,7 @@
 //! Where the outputs of a row come from, a block of columns at a time.
 //!
-//! Coordinates here are S with half a unit of q added, so that dropping bits rounds, in units of 2^-26 column. S of a grid
-//! has two bits more, which nothing depends on once that half is in.
+//! Coordinates here are S with half a unit of q added, so that dropping bits rounds; their unit is 2^-26 column. S of a grid
+//! has two more bits, which nothing depends on once that half is added.
 #![cfg_attr(not(target_arch = "x86_64"), allow(dead_code, reason = "vectors need more than plain Rust does"))]
 
 use super::BLOCK;
@@ -9,54 +9,55 @@ use super::padded::LEFT;
 use crate::grid::{RowNodes, curve};
 use crate::{Geometry, RowFactor};
 
-/// Bits of a coordinate below those of n.
+/// Bits of a coordinate below n.
 const FRACTION: u32 = 26;
 
-/// A column.
+/// One column.
 const COLUMN: u32 = 1 << FRACTION;
 
-/// Where a row's outputs come from, block after block.
+/// Steps through a row's sources, block after block.
 pub(super) trait Walk {
-    /// Whether the way from one output to the next changes along the row.
+    /// Whether the distance from one source to the next changes along the row.
     const CURVED: bool;
 
-    /// The next block; those behind the row mean nothing.
+    /// The next block. What lies beyond the row means nothing.
     fn next(&mut self) -> Start;
 
-    /// [`Start::step`] of a row of one factor.
+    /// [`Start::step`] of a row with a single factor.
     fn step(&self) -> u32;
 }
 
 /// Where a block of columns finds its samples.
 ///
-/// A column's *displacement* is its coordinate less that of the block's origin and less its own place in the block: what the
-/// factors have taken from the row since the origin, 2 columns to −31. An even number of columns in it leads to a sample of
-/// the output's colour, so its lower 14 bits of q are x and those above are half of a less the column.
+/// A column's *displacement* is its coordinate minus that of the block's origin and minus the column's place in the block: how
+/// far the sources have fallen back since the origin against one column per output, from 2 columns to −31. An even number of
+/// columns leads to a sample of the output's colour. So the lower 14 bits of the displacement, in units of q, are x, and the
+/// bits above are (a − the column) / 2.
 ///
-/// Displacements go along a parabola, modulo 2^32: d\[2j\] = d\[0\] + j · (2 · `step` + j · `bend`) and d\[2j + 1\] = d\[2j\] +
-/// `half` + j · `bend`. S of column i has i² · G in it, in units a quarter as large: of even columns that is j² · G whole, and of
-/// odd ones (j² + j) · G and a quarter of G, the one part that is to be rounded.
+/// Displacements follow a parabola, modulo 2^32: d\[2j\] = d\[0\] + j · (2 · `step` + j · `bend`) and d\[2j + 1\] = d\[2j\] +
+/// `half` + j · `bend`. S of column i contains i² · G, in units a quarter as large. For even columns that is exactly j² · G;
+/// for odd ones it is (j² + j) · G plus a quarter of G, the only part that must be rounded.
 ///
-/// n moves by 0 or 1 a column. So does the last column with the output's colour at or left of it, but for a first move
-/// back: from the lesser of the first two outputs' bases on, a block of N columns has its bases within N samples.
+/// a is n or n − 1, and n moves by 0 or 1 a column. So, counted from the lesser of the first two outputs' bases, the bases of N
+/// columns lie within N samples.
 #[derive(Clone, Copy)]
 pub(super) struct Start {
-    /// The padded row's sample of tap G0 for base column `least`, the least base of the block.
+    /// The sample of the padded row that is tap G0 for the base `least`, the least base of the block.
     pub(super) first: isize,
-    /// The origin, the even column at or left of the first n, − `least`: 0 or 1.
+    /// The origin (the even column at or left of the first n) minus `least`: 0 or 1.
     pub(super) lead: bool,
     /// The displacement d\[0\] of the first column: 27 bits.
     pub(super) displacement: u32,
-    /// Half of the way from the first even column to the next, if it would go on along a line.
+    /// Half the change from the first even column to the next, if there were no bend.
     pub(super) step: u32,
-    /// From the first column to the second.
+    /// The change from the first column to the second.
     pub(super) half: u32,
     /// G.
     pub(super) bend: u32,
 }
 
 impl Start {
-    /// Of the coordinate of the first column, and how it goes on.
+    /// From the coordinate of the first column, and how it continues.
     #[inline]
     fn new(own: i64, step: u32, half: u32, bend: u32) -> Self {
         let displacement = own as u32 % (2 * COLUMN);
@@ -67,7 +68,7 @@ impl Start {
         Self { first, lead, displacement, step, half, bend }
     }
 
-    /// The displacements of the block by adders, four columns at a time: what compilers make vectors of.
+    /// The displacements of the block by additions, four columns at a time, in a form that compilers vectorise.
     #[inline]
     pub(super) fn displacements(&self) -> [u32; BLOCK] {
         let &Self { displacement, step, half, bend, .. } = self;
@@ -92,7 +93,7 @@ impl Start {
     }
 }
 
-/// Each column's place in its block, from `least` on: [`Start::lead`] more than from the origin on.
+/// Each column's place in its block, counted from `least`: [`Start::lead`] more than when counted from the origin.
 pub(super) const LEADS: [[u16; BLOCK]; 2] = {
     let mut leads = [[0; BLOCK]; 2];
     let mut column = 0;
@@ -104,11 +105,11 @@ pub(super) const LEADS: [[u16; BLOCK]; 2] = {
     leads
 };
 
-/// The way of one factor.
+/// The walk along a row with a single factor.
 pub(super) struct Line {
     /// The coordinate of the next block's first column.
     own: i64,
-    /// 4Q, from one output to the next: at most one column.
+    /// 4Q, the distance from one source to the next: at most one column.
     stride: u32,
 }
 
@@ -135,15 +136,15 @@ impl Walk for Line {
     }
 }
 
-/// The way of a grid's row.
+/// The walk along a grid's row.
 pub(super) struct Curve<'a> {
     factors: &'a [u32],
     k: u32,
     /// The next block's first column.
     column: usize,
-    /// S of it, with half a unit of q.
+    /// S there, plus half a unit of q.
     own: i64,
-    /// How S would go on from there along a line.
+    /// The slope of S there.
     slope: i64,
     /// G.
     curve: i64,
@@ -156,10 +157,10 @@ impl<'a> Curve<'a> {
     }
 }
 
-/// S of a grid for half a unit of q.
+/// Half a unit of q, in units of a grid's S.
 const HALF: i64 = 1 << 14;
 
-/// Bits of S below those of a coordinate. Where a block begins they are 0, and so are those of the slope there.
+/// Bits of a grid's S below a coordinate. At the beginning of a block they are 0, and so are those of the slope there.
 const BELOW: u32 = 2;
 
 impl Walk for Curve<'_> {
@@ -167,7 +168,7 @@ impl Walk for Curve<'_> {
 
     #[inline]
     fn next(&mut self) -> Start {
-        // A segment holds whole blocks, and the slope goes on from one to the next.
+        // A segment holds whole blocks, and the slope is continuous from one segment to the next.
         let nodes = self.factors.get(self.column >> self.k..).unwrap_or_default();
         if let Some(&nodes) = nodes.first_chunk() {
             self.curve = curve(nodes, self.k);
@@ -187,7 +188,7 @@ impl Walk for Curve<'_> {
     }
 }
 
-/// The blocks that cover a row. The last one may go on behind it.
+/// The blocks that cover a row. The last one may extend beyond it.
 pub(super) fn blocks(width: usize) -> impl Iterator<Item = usize> {
     (0..width).step_by(BLOCK)
 }

@@ -1,4 +1,4 @@
-//! The grid for a lens that a board has room for.
+//! The best grid for a lens in the room that a board has.
 
 use super::fit::fitted;
 use super::lattice::Lattice;
@@ -7,11 +7,11 @@ use crate::{Camera, GridShape, TableSet};
 /// Columns between the outputs to which a grid is fitted.
 const COLUMN_STEP: usize = 8;
 
-/// The most rows between them, and about how many of the frame's they are at least.
+/// The most rows between those outputs, and about how many rows they lie on at least.
 const ROW_STEP: usize = 4;
 const ROWS: usize = 128;
 
-/// Shapes that are fitted: those of the least largest error by formula.
+/// Shapes to which a grid is fitted: those whose closed form has the least largest error.
 const TRIED: usize = 2;
 
 /// Too few entries for any grid.
@@ -34,17 +34,18 @@ pub struct GridRoomError {
 }
 
 impl Camera {
-    /// The grid of shape `shape` whose largest error in the inner part of the picture is about as small as it can be; the rest
+    /// The grid of shape `shape` whose largest error in the inner part of the picture is about as small as possible; the rest
     /// of the image circle follows by least squares.
     ///
-    /// It starts from [`Self::grid_by_formula`] and is never farther off than that. The same lens gives the same grid.
+    /// The fit starts from [`Self::grid_by_formula`] and its largest error is never above that grid's. The same lens always
+    /// gives the same grid.
     #[must_use]
     pub fn fitted_grid(&self, shape: GridShape) -> TableSet {
         fitted(self, shape, &self.lattice())
     }
 
-    /// The grid of at most `entries` entries whose largest error in the inner part of the picture is least, of those that a
-    /// ring of the fewest samples can serve, if there are any.
+    /// The grid of at most `entries` entries with the least largest error in the inner part of the picture, preferably one that
+    /// the smallest ring for this width can serve.
     ///
     /// # Errors
     /// [`GridRoomError`] when every grid has more entries.

@@ -1,17 +1,17 @@
-//! A grid from a lens by formula: a spline that takes the exact projection's values at a lattice of points.
+//! A grid for a lens by formula: a spline through the exact projection's values at a lattice of points.
 
 use super::projection::ProjectedRow;
 use super::rows::{RowSpline, fractions};
 use super::{ENTRY_BITS, Grid, rounded};
 use crate::{Camera, Geometry, GridShape, RowFactor, RowValues, TableSet};
 
-/// What rounds a factor whose last three bits fall away.
+/// Added to a factor, so that dropping its last three bits rounds.
 const ROUNDING: f64 = 4.0;
 
-/// How often offsets are corrected by what remains at the node next to the centre, of which rounding is a part.
+/// How often the offsets are corrected by the error that remains at the node nearest to the centre. Rounding is part of it.
 const CORRECTIONS: usize = 3;
 
-/// The coefficients of sources as a quadratic B-spline in both directions, column by column: (s, b) belongs to column
+/// The sources as coefficients of a quadratic B-spline in both directions, column by column: (s, b) belongs to column
 /// h·(s − 1/2) and row 2^v·(b − 1/2).
 #[derive(Clone)]
 pub(super) struct Spline {
@@ -21,7 +21,7 @@ pub(super) struct Spline {
 }
 
 impl Spline {
-    /// The quasi-interpolant (−f[−1] + 10·f[0] − f[1])/8 of the exact projection in both directions.
+    /// The exact projection's quasi-interpolant, (−f[−1] + 10·f[0] − f[1])/8 in both directions.
     pub(super) fn of_camera(camera: &Camera, shape: GridShape) -> Self {
         let (columns, rows) = (shape.columns(camera.geometry()), shape.rows(camera.geometry()));
         let place = |index: usize, pitch: usize| pitch as f64 * (index as f64 - 1.5);
@@ -37,14 +37,14 @@ impl Spline {
         Self { shape, rows, coefficients }
     }
 
-    /// The table of this spline for `camera`, its offsets such that the node next to the centre is hit.
+    /// The table of this spline for `camera`, with offsets that make the node nearest to the centre exact.
     pub(super) fn table(&self, camera: &Camera) -> TableSet {
         let node = self.next_to_centre(camera.geometry());
         let column = (node * self.shape.column_pitch()) as f64;
         self.table_through(camera, node, |row| ProjectedRow::new(camera, row as f64).source(column))
     }
 
-    /// The table of this spline for `camera`, its offsets such that the node next to the centre is where the spline has it.
+    /// The table of this spline for `camera`, with offsets that put the node nearest to the centre where the spline has it.
     pub(super) fn fitted_table(&self, camera: &Camera) -> TableSet {
         let node = self.next_to_centre(camera.geometry());
         let [left, right] = [node, node + 1].map(|column| &self.coefficients[column * self.rows..]);
@@ -54,7 +54,7 @@ impl Spline {
         })
     }
 
-    /// The table whose offsets bring `node` to the sources `wanted` of all rows.
+    /// The table whose offsets bring `node` to the sources `wanted`, one per row.
     fn table_through(&self, camera: &Camera, node: usize, wanted: impl Fn(usize) -> f64) -> TableSet {
         let geometry = camera.geometry();
         let mut grid = Grid::of_columns(geometry, self.shape, &self.entries(geometry));
@@ -64,7 +64,7 @@ impl Spline {
         TableSet::of_grid(*geometry, grid)
     }
 
-    /// The node next to the centre that is a column of the frame.
+    /// The node nearest to the centre, among those that are columns of the frame.
     fn next_to_centre(&self, geometry: &Geometry) -> usize {
         let pitch = self.shape.column_pitch();
         let node = (geometry.centre2() as usize + pitch) / (2 * pitch);
@@ -88,17 +88,17 @@ impl Spline {
     }
 }
 
-/// The nearest word that an entry can be.
+/// The value as an entry, clamped to its range.
 fn entry(value: f64) -> u32 {
     (value as u32).min((1 << ENTRY_BITS) - 1)
 }
 
-/// The quasi-interpolant's coefficients of all values but the first and the last.
+/// The quasi-interpolant's coefficients for all values but the first and the last.
 fn smoothed(values: &[f64]) -> Vec<f64> {
     values.windows(3).map(|three| (10.0 * three[1] - three[0] - three[2]) / 8.0).collect()
 }
 
-/// Takes from the offsets, by least squares over all rows, what the rows' values miss the sources `wanted` of `node` by.
+/// Corrects the offsets, by least squares over all rows, for the difference between the sources of `node` and `wanted`.
 fn correct_offsets(geometry: &Geometry, grid: &mut Grid, node: usize, wanted: &[f64]) {
     let column = node * grid.shape.column_pitch();
     let spline = RowSpline::new(grid.shape, geometry);
@@ -116,7 +116,7 @@ fn correct_offsets(geometry: &Geometry, grid: &mut Grid, node: usize, wanted: &[
     }
 }
 
-/// Raises the offsets of rows that would begin in front of the frame.
+/// Raises the offsets of rows that would begin left of the frame.
 fn raise_offsets(geometry: &Geometry, grid: &mut Grid) {
     let mut values = RowValues::default();
     for row in 0..geometry.height() {
@@ -133,17 +133,17 @@ fn raise_offsets(geometry: &Geometry, grid: &mut Grid) {
 }
 
 impl Camera {
-    /// The source of the output at column `column` of row `row` by the exact projection, which keeps rows: f(x, y) of Eqs. 5
-    /// to 7 with this lens's own r(θ), as [`CalibratedLens::straightened`](crate::CalibratedLens::straightened) has it.
+    /// The source of the output at column `column` of row `row` by the exact projection, which keeps rows: f(x, y) of Eqs. 5 to
+    /// 7 with this lens's own r(θ), as in [`CalibratedLens::straightened`](crate::CalibratedLens::straightened).
     ///
-    /// Beyond 90 degrees, where an output would need more of the row than a column a column, it goes on as a parabola, and
-    /// rows beyond the poles of the image circle are as the one there.
+    /// Beyond 90 degrees, where neighbouring outputs would need sources more than a column apart, it continues as a parabola.
+    /// Rows beyond the poles of the image circle are like the row at the pole.
     #[must_use]
     pub fn source_column(&self, column: f64, row: f64) -> f64 {
         ProjectedRow::new(self, row).source(column)
     }
 
-    /// The grid of shape `shape` that follows the exact projection, by formula: the quadratic spline that takes its values at
+    /// The grid of shape `shape` that follows the exact projection, by formula: the quadratic spline made from its values at
     /// the middles of the grid's cells.
     #[must_use]
     pub fn grid_by_formula(&self, shape: GridShape) -> TableSet {

@@ -1,5 +1,5 @@
-//! The grid whose largest error is least: weighted least squares, in which what is far off weighs more every time (Lawson's
-//! algorithm), from the closed form on.
+//! The grid with the least largest error: weighted least squares, starting from the closed form, in which the weights of large
+//! errors grow from round to round (Lawson's algorithm).
 
 use std::collections::BTreeSet;
 
@@ -9,19 +9,19 @@ use super::normal::Normal;
 use super::rows::fractions;
 use crate::{Camera, GridShape, TableSet};
 
-/// Times that errors are weighed anew.
+/// How often the errors are weighed anew.
 const ROUNDS: usize = 16;
 
-/// The weight of outputs next to the rim or to a pole, which is not made greater: no grid follows there.
+/// The weight of outputs next to the rim or to a pole. It does not grow, since no grid can follow the projection there.
 const RIM: f64 = 0.01;
 
-/// What keeps coefficients that no output depends on at the closed form.
+/// Keeps coefficients that no output depends on at the closed form's values.
 const DAMPING: f64 = 1e-6;
 
-/// The least weight of an inner output: what is right on still weighs something, or it would be lost for good.
+/// The least weight of an inner output. Without it, an output without error would get the weight 0 and never count again.
 const LEAST: f64 = 3e-3;
 
-/// The weight of a node whose factor would be cut at 1, and is therefore held there: what is cut moves the rest of the row.
+/// The weight that holds a node at a factor of 1 where its factor would be clamped, since clamping shifts the rest of the row.
 const HELD: f64 = 30.0;
 
 /// A fit of one shape to the outputs of a lattice.
@@ -30,12 +30,12 @@ struct Fit<'a> {
     shape: GridShape,
     spline: Spline,
     weights: Vec<f64>,
-    /// Nodes that are held at 1, with the rows of the lattice.
+    /// Nodes that are held at 1, each with its row of the lattice.
     held: BTreeSet<(usize, usize)>,
 }
 
 impl Fit<'_> {
-    /// The coefficients that the output at `column` of `row` is made of, rising, and their weights.
+    /// The coefficients that make the output at `column` of `row`, in rising order, and their weights.
     fn terms(&self, column: usize, row: usize) -> [(usize, f64); 9] {
         let pitch = self.shape.column_pitch();
         let (segment, u) = (column / pitch, (column % pitch) as f64 / pitch as f64);
@@ -48,7 +48,7 @@ impl Fit<'_> {
         })
     }
 
-    /// Takes from every output how far it is off, in the lattice's order.
+    /// The error of every output, wanted − found, in columns and in the lattice's order.
     fn misses(&self) -> Vec<f64> {
         let found = |(column, row)| -> f64 {
             let terms = self.terms(column, row);
@@ -64,7 +64,7 @@ impl Fit<'_> {
         self.lattice.rows.iter().flat_map(move |&row| columns.iter().map(move |&column| (column, row)))
     }
 
-    /// Brings the spline as near to the outputs as their weights say.
+    /// Moves the spline towards the outputs, by least squares with their weights.
     fn solve(&mut self) {
         let misses = self.misses();
         let mut normal = Normal::new(self.spline.coefficients.len(), 2 * self.spline.rows + 2, DAMPING);
@@ -79,7 +79,7 @@ impl Fit<'_> {
         }
     }
 
-    /// Adds to `normal` that nodes whose factor is above 1, or has been, shall have 1.
+    /// Adds to `normal` that every node whose factor is above 1, or was in an earlier round, shall have 1.
     fn hold(&mut self, normal: &mut Normal) {
         let pitch = self.shape.column_pitch() as f64;
         let nodes = 0..self.spline.coefficients.len() / self.spline.rows - 1;
@@ -98,7 +98,7 @@ impl Fit<'_> {
         }
     }
 
-    /// The coefficients that h times the factor of `node` on `row` is made of, rising, and their weights.
+    /// The coefficients that make h times the factor of `node` on `row`, in rising order, and their weights.
     fn step_terms(&self, node: usize, row: usize) -> [(usize, f64); 6] {
         let (first, down) = fractions(self.shape, row);
         std::array::from_fn(|term| {
@@ -107,7 +107,7 @@ impl Fit<'_> {
         })
     }
 
-    /// Has outputs of the inner part weigh as much more as they are farther off.
+    /// Multiplies the weights of inner outputs by their share of the largest error.
     fn weigh(&mut self) {
         let misses = self.misses();
         let inner = || misses.iter().zip(&self.lattice.wanted).filter(|(_, (_, part))| *part == Part::Inner);
@@ -121,7 +121,7 @@ impl Fit<'_> {
         self.scale();
     }
 
-    /// Has the inner outputs weigh one each on the average.
+    /// Scales the weights of inner outputs to a mean of one.
     fn scale(&mut self) {
         let parts = || self.lattice.wanted.iter().map(|(_, part)| *part == Part::Inner);
         let inner = self.weights.iter().zip(parts()).filter(|(_, inner)| *inner);
@@ -133,8 +133,8 @@ impl Fit<'_> {
     }
 }
 
-/// The table of shape `shape` that takes the outputs of `lattice` from places nearest to the right ones: of the closed form
-/// and all rounds' fits, as integers, the one whose largest error in the inner part is least.
+/// The table of shape `shape` that takes the outputs of `lattice` from nearest to the right places: out of the closed form and
+/// every round's fit, as integers, the one with the least largest error in the inner part.
 pub(super) fn fitted(camera: &Camera, shape: GridShape, lattice: &Lattice) -> TableSet {
     let closed = Spline::of_camera(camera, shape);
     let table = closed.table(camera);

@@ -1,4 +1,4 @@
-//! The exact projection at a lattice of outputs, and how far tables are from it.
+//! The exact projection at a lattice of outputs, and how far tables deviate from it.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -6,29 +6,29 @@ use super::projection::{POLE, ProjectedRow};
 use super::residual_sum::{GridResidual, ResidualSum};
 use crate::{Camera, RowValues, TableSet};
 
-/// cos θ up to which an output counts as inner: 85 degrees off the axis.
+/// The least cos θ at which an output counts as inner: 85 degrees off the axis.
 const INNER: f64 = 0.087_155_742_747_658_17;
 
-/// The part of the circle's height in which rows count as inner.
+/// The share of the circle's height within which rows count as inner.
 const INNER_ROWS: f64 = 0.9;
 
-/// What tables leave of the exact projection.
+/// The errors that tables leave, against the exact projection.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GridResiduals {
-    /// In the whole image circle: up to 90 degrees off the axis, but for the 500th part of its height next to the poles.
+    /// In the whole image circle: up to 90 degrees off the axis, except the 500th part of its height next to the poles.
     pub circle: GridResidual,
-    /// In its inner part: up to 85 degrees off the axis, and 0.9 of the circle's height.
+    /// In its inner part: up to 85 degrees off the axis and within 0.9 of the circle's height.
     pub inner: GridResidual,
-    /// In the rest of it: the rim and what is next to the poles.
+    /// In the rest of the circle: the rim and what is next to the poles.
     pub rim: GridResidual,
-    /// The share of the frame's outputs that show neither, 0 to 1: what is beyond 90 degrees, and the poles.
+    /// The share of the frame's outputs outside the circle, 0 to 1: those that show what is beyond 90 degrees, or a pole.
     pub beyond: f64,
 }
 
-/// Where in the picture an output is.
+/// Where in the picture an output lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
-    /// It shows nothing within 90 degrees, or a pole.
+    /// It shows nothing within 90 degrees of the axis, or it shows a pole.
     Outside,
     /// Next to the rim or to a pole.
     Rim,
@@ -39,12 +39,12 @@ pub(super) enum Part {
 pub(super) struct Lattice {
     pub(super) columns: Vec<usize>,
     pub(super) rows: Vec<usize>,
-    /// f and the part of each, row by row.
+    /// The right source and the part of each output, row by row.
     pub(super) wanted: Vec<(f64, Part)>,
 }
 
 impl Lattice {
-    /// Every so many columns and rows of `camera`'s frame, the last ones among them.
+    /// The outputs at every `column_step`th column and every `row_step`th row of `camera`'s frame, and at the last ones.
     pub(super) fn new(camera: &Camera, column_step: usize, row_step: usize) -> Self {
         let (columns, rows) =
             (steps(camera.geometry().width(), column_step), steps(camera.geometry().height(), row_step));
@@ -59,13 +59,13 @@ impl Lattice {
         Self { wanted: wanted.collect(), columns, rows }
     }
 
-    /// The largest error of the inner part; infinite where no ring can serve `tables`.
+    /// The largest error of the inner part; infinite when the smallest ring for this width cannot serve `tables`.
     pub(super) fn error(&self, tables: &TableSet) -> f64 {
         let shortest = tables.geometry().width().next_power_of_two();
         if tables.check_ring(shortest).is_ok() { self.residuals(tables).inner.max } else { f64::INFINITY }
     }
 
-    /// What `tables` leave.
+    /// The errors that `tables` leave.
     pub(super) fn residuals(&self, tables: &TableSet) -> GridResiduals {
         let (mut inner, mut rim, mut beyond) = (ResidualSum::default(), ResidualSum::default(), 0);
         for (&row, wanted) in self.rows.iter().zip(self.wanted.chunks_exact(self.columns.len())) {
@@ -89,18 +89,18 @@ impl Lattice {
     }
 }
 
-/// The source of `column` in columns.
+/// The source of `column`, in columns.
 fn found(values: &RowValues, column: usize) -> f64 {
     values.coordinate(column) as f64 / f64::from(1 << 28)
 }
 
-/// 0 to `count` − 1 in steps, and the last.
+/// 0 to `count` − 1 in steps, and the last number.
 fn steps(count: usize, step: usize) -> Vec<usize> {
     let last = Some(count - 1).filter(|last| !last.is_multiple_of(step.max(1)));
     (0..count).step_by(step.max(1)).chain(last).collect()
 }
 
-/// The part in which the output that comes from column `source` of row `row` is.
+/// The part of the picture for the output that comes from column `source` of row `row`.
 fn part(camera: &Camera, source: f64, row: usize) -> Part {
     let (x, y) = (source - camera.centre().0, row as f64 - camera.centre().1);
     let height = height_in_circle(camera, row);
@@ -111,26 +111,26 @@ fn part(camera: &Camera, source: f64, row: usize) -> Part {
     }
 }
 
-/// How far row `row` is from the axis, in parts of the height of the circle of 180 degrees.
+/// The distance of row `row` from the axis, relative to the height of the circle of 180 degrees.
 pub(crate) fn height_in_circle(camera: &Camera, row: usize) -> f64 {
     (row as f64 - camera.centre().1).abs() / camera.lens().lowest_row(FRAC_PI_2)
 }
 
-/// Whether what is seen with cos θ = `ahead` in a row at `height` of [`height_in_circle`] is inner.
+/// Whether a source with cos θ = `ahead`, in a row at the [`height_in_circle`] `height`, is inner.
 pub(crate) fn is_inner(ahead: f64, height: f64) -> bool {
     ahead >= INNER && height <= INNER_ROWS
 }
 
 impl Camera {
-    /// What `tables` leave of the exact projection at every `step`th column and row of the frame: columns by which outputs are
-    /// taken from a wrong place of their row. The tables are of the camera's geometry; a row or column that they do not have counts
-    /// for nothing.
+    /// The errors that `tables` leave against the exact projection at every `step`th column and row of the frame: how many
+    /// columns away from the right place outputs are taken. The tables must be of the camera's geometry; rows and columns that
+    /// they do not have do not count.
     #[must_use]
     pub fn grid_residuals(&self, tables: &TableSet, step: usize) -> GridResiduals {
         Lattice::new(self, step, step).residuals(tables)
     }
 
-    /// [`Self::grid_residuals`] of several tables, which takes little longer than that of one.
+    /// [`Self::grid_residuals`] of several tables, in little more time than for one.
     #[must_use]
     pub fn each_grid_residuals<const N: usize>(
         &self,
@@ -141,7 +141,7 @@ impl Camera {
         tables.map(|tables| lattice.residuals(tables))
     }
 
-    /// The share of the frame's outputs that show what is beyond 90 degrees off the axis, or a pole, 0 to 1.
+    /// The share of the frame's outputs, 0 to 1, that show what is beyond 90 degrees off the axis, or a pole.
     #[must_use]
     pub fn share_beyond(&self) -> f64 {
         let (width, height) = (self.geometry().width(), self.geometry().height());

@@ -1,4 +1,4 @@
-//! The grid: factors that depend on the column, too (DATAPATH.md, "Datapath 2: a grid of factors").
+//! The grid: factors that depend on the column as well (DATAPATH.md, "Datapath 2: a grid of factors").
 
 mod choice;
 mod closed_form;
@@ -24,29 +24,29 @@ use crate::{Geometry, RowFactor};
 /// Bits of an entry.
 pub(crate) const ENTRY_BITS: u32 = 25;
 
-/// Weights of the B-spline add up to 2^13.
+/// The bits of the sum of the B-spline's weights, 2^13.
 const WEIGHT_BITS: u32 = 13;
 
-/// The entries of a grid. They are kept grid row by grid row, since a row is made of three of those.
+/// The entries of a grid. They are stored grid row by grid row, since each row is made of three of those.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Grid {
     shape: GridShape,
-    /// (c, b) at b · `columns` + c.
+    /// Entry (c, b), at b · `columns` + c.
     entries: Vec<u32>,
     /// N + 2.
     columns: usize,
 }
 
-/// Entries that make no grid.
+/// Entries that are no grid.
 pub(crate) enum GridFault {
-    /// So many, not (N + 2)·Z.
+    /// This number of entries, which is not (N + 2)·Z.
     Count(usize),
-    /// One of more than [`ENTRY_BITS`] bits, and its place.
+    /// An entry with more than [`ENTRY_BITS`] bits, and its place.
     Entry { place: usize, units: u32 },
 }
 
 impl Grid {
-    /// The grid of `entries` in a board's order.
+    /// The grid of `entries`, which are in a board's order.
     pub(crate) fn new(geometry: &Geometry, shape: GridShape, entries: &[u32]) -> Result<Self, GridFault> {
         if entries.len() != shape.entries(geometry) {
             return Err(GridFault::Count(entries.len()));
@@ -58,7 +58,7 @@ impl Grid {
         }
     }
 
-    /// The grid of `entries`, as many as it has, in a board's order.
+    /// The grid of `entries`, which are in a board's order and of the right number.
     fn of_columns(geometry: &Geometry, shape: GridShape, entries: &[u32]) -> Self {
         let rows = shape.rows(geometry);
         let row = |row| entries.iter().skip(row).step_by(rows).copied();
@@ -85,7 +85,7 @@ impl Grid {
         &mut self.entries[row * self.columns]
     }
 
-    /// The upper grid rows, as many as `geometry` has, which is as wide as the grid's own and not higher.
+    /// The upper grid rows, as many as `geometry` has. It must be as wide as the grid's own geometry and at most as high.
     pub(crate) fn upper(&self, geometry: &Geometry) -> Option<Self> {
         let entries = self.entries.get(..self.shape.entries(geometry))?.to_vec();
         Some(Self { entries, ..*self })
@@ -97,13 +97,13 @@ impl Grid {
         Self { entries: self.entries.iter().map(halved).collect(), ..*self }
     }
 
-    /// The values of row `row`, which the frame has, in the place of those that `values` held.
+    /// Replaces `values` by those of row `row`, which the frame must have.
     pub(crate) fn values(&self, geometry: &Geometry, row: usize, values: &mut RowValues) {
         self.nodes(geometry, row, values.nodes_mut());
         values.lay_out();
     }
 
-    /// What they are made of.
+    /// What those values are made of.
     pub(crate) fn nodes(&self, geometry: &Geometry, row: usize, values: &mut RowNodes) {
         let (first, weights) = spline(self.shape, row);
         let [above, own, below] = weights.map(u64::from);
@@ -116,7 +116,7 @@ impl Grid {
         let one = RowFactor::ONE.get();
         let offset = value([upper[0], middle[0], lower[0]]) as i32 - one as i32;
         let nodes = upper[1..].iter().zip(&middle[1..]).zip(&lower[1..]);
-        // A loop over slices, of which compilers make vectors.
+        // A loop over slices, which compilers vectorise.
         for (factor, ((&upper, &middle), &lower)) in
             values.factors_mut(self.columns - 1).iter_mut().zip(nodes)
         {
@@ -126,7 +126,7 @@ impl Grid {
     }
 }
 
-/// The first of the three grid rows that a row is made of, and their weights.
+/// The first of the three grid rows that make a row, and their weights.
 pub(crate) fn spline(shape: GridShape, row: usize) -> (usize, [u32; 3]) {
     let t = ((row % shape.row_pitch()) << (6 - shape.v())) as u32;
     let (above, below) = ((64 - t).pow(2), t.pow(2));

@@ -1,6 +1,6 @@
-//! Normal equations of the tensor spline: symmetric, with few diagonals.
+//! The normal equations of the tensor spline: symmetric and banded.
 
-/// The lower half of a symmetric matrix: entry (i, i − d) at i · (`band` + 1) + d.
+/// The lower half of a symmetric band matrix, entry (i, i − d) at i · (`band` + 1) + d, and the right side.
 pub(super) struct Normal {
     band: usize,
     entries: Vec<f64>,
@@ -8,14 +8,14 @@ pub(super) struct Normal {
 }
 
 impl Normal {
-    /// Of `count` unknowns, of which those that meet are at most `band` apart; `damping` keeps each near 0.
+    /// For `count` unknowns. Those that meet in an equation are at most `band` apart. `damping` keeps each near 0.
     pub(super) fn new(count: usize, band: usize, damping: f64) -> Self {
         let mut entries = vec![0.0; count * (band + 1)];
         entries.iter_mut().step_by(band + 1).for_each(|diagonal| *diagonal = damping);
         Self { band, entries, right: vec![0.0; count] }
     }
 
-    /// Adds the equation that these unknowns, in rising order, with these factors make `value`, so many times.
+    /// Adds the equation that these unknowns, in rising order, times these factors add up to `value`, with the weight `weight`.
     pub(super) fn add(&mut self, terms: &[(usize, f64)], value: f64, weight: f64) {
         for (place, &(row, factor)) in terms.iter().enumerate() {
             let weighted = weight * factor;
@@ -26,13 +26,13 @@ impl Normal {
         }
     }
 
-    /// The unknowns.
+    /// Solves for the unknowns.
     pub(super) fn solved(mut self) -> Vec<f64> {
         let right = std::mem::take(&mut self.right);
         self.factored().solved(right)
     }
 
-    /// Cholesky's factor L of the matrix.
+    /// The Cholesky factor L of the matrix.
     pub(super) fn factored(mut self) -> Factor {
         for row in 0..self.entries.len() / (self.band + 1) {
             self.factor_row(row);
@@ -40,12 +40,12 @@ impl Normal {
         Factor { band: self.band, l: self.entries }
     }
 
-    /// A row of L from those above it.
+    /// Computes a row of L from those above it.
     fn factor_row(&mut self, row: usize) {
         let stride = self.band + 1;
         for back in (0..=row.min(self.band)).rev() {
             let column = row - back;
-            // Of both rows, what lies left of the column and within the band of this one.
+            // How much of both rows lies left of the column and within the band of this row.
             let reach = (self.band - back).min(column);
             let own = &self.entries[row * stride + back + 1..][..reach];
             let above = &self.entries[column * stride + 1..][..reach];
@@ -65,12 +65,12 @@ pub(super) struct Factor {
 }
 
 impl Factor {
-    /// How many unknowns there are.
+    /// The number of unknowns.
     pub(super) fn count(&self) -> usize {
         self.l.len() / (self.band + 1)
     }
 
-    /// The unknowns with which the matrix makes the right side `x`.
+    /// The unknowns for the right side `x`.
     pub(super) fn solved(&self, mut x: Vec<f64>) -> Vec<f64> {
         let (stride, l) = (self.band + 1, &self.l);
         for row in 0..x.len() {

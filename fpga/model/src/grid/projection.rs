@@ -4,31 +4,33 @@ use std::f64::consts::FRAC_PI_2;
 
 use crate::{Camera, Spherical};
 
-/// Rows nearer to a pole than this, in parts of the circle's height, are as the one there: at the pole itself a whole row's
-/// picture is a point.
+/// Rows nearer to a pole than this, relative to the circle's height, are treated like the row there: at the pole itself the
+/// picture of a whole row is a point.
 pub(crate) const POLE: f64 = 0.998;
 
-/// Beyond 90 degrees the projection goes on as a parabola, through three points so far apart, in parts of the circle's width.
+/// Beyond 90 degrees the projection continues as a parabola through three points this far apart, relative to the circle's
+/// width.
 const STEP: f64 = 1.0 / 64.0;
 
-/// The most columns a column that it goes on with, in the mean: far out, and next to a pole, the parabola is much steeper.
+/// The largest mean slope with which it continues, in columns a column: far out, and next to a pole, the parabola is much
+/// steeper.
 const STEEPEST: f64 = 1.5;
 
 /// One row of the exact projection, in columns and rows from the optical centre.
 pub(crate) struct ProjectedRow<'a> {
     camera: &'a Camera,
     y: f64,
-    /// Sources of the row's first and last output that the lens sees before it.
+    /// The sources of the row's first and last output that show something in front of the lens.
     sources: [f64; 2],
     /// Those outputs.
     outputs: [f64; 2],
 }
 
 impl<'a> ProjectedRow<'a> {
-    /// Row `row` of `camera`'s frame, which need not be one of it.
+    /// Row `row` of `camera`'s frame, or of its continuation above and below.
     pub(crate) fn new(camera: &'a Camera, row: f64) -> Self {
         let lens = camera.lens();
-        // A little inside, where the profile ends before 90 degrees.
+        // A little further in, for a profile that ends before 90 degrees.
         let widest = FRAC_PI_2.min(lens.widest() * (1.0 - 1e-6));
         let pole = POLE * lens.lowest_row(widest);
         let y = (row - camera.centre().1).clamp(-pole, pole);
@@ -37,7 +39,7 @@ impl<'a> ProjectedRow<'a> {
         projected
     }
 
-    /// f: the column that the output at `column` comes from, both as the frame counts.
+    /// f: the column that the output at `column` comes from, both in the frame's columns.
     pub(crate) fn source(&self, column: f64) -> f64 {
         let centre = self.camera.centre().0;
         let output = column - centre;
@@ -52,20 +54,22 @@ impl<'a> ProjectedRow<'a> {
             }
     }
 
-    /// How many of the outputs at columns 0 to `width` − 1 the lens sees before it.
+    /// How many of the outputs at columns 0 to `width` − 1 show something in front of the lens.
     pub(super) fn shown(&self, width: usize) -> usize {
         let [first, last] = self.outputs.map(|output| output + self.camera.centre().0);
         (0..width).filter(|&column| (first..=last).contains(&(column as f64))).count()
     }
 
-    /// The column where the exact projection puts the source at `source`: where the lens images its longitude on the horizon.
+    /// The column where the exact projection puts the source at column `source`: where the lens images its longitude on the
+    /// horizon.
     fn output(&self, source: f64) -> f64 {
         let lens = self.camera.lens();
         let longitude = lens.ray(source, self.y).map_or(0.0, |ray| Spherical::of(ray).longitude);
         lens.column(longitude.abs()).unwrap_or(0.0).copysign(longitude)
     }
 
-    /// The source of an output between both ends: regula falsi, where an end that stays counts half (the Illinois method).
+    /// The source of an output between both ends, by regula falsi that halves the value at an end that stays (the Illinois
+    /// method).
     fn inside(&self, output: f64) -> f64 {
         let [mut kept, mut newest] = self.sources;
         let [mut kept_miss, mut miss] = self.outputs.map(|end| end - output);

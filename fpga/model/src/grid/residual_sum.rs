@@ -1,20 +1,20 @@
-//! Amounts by which samples are in wrong places, added up.
+//! The errors of the sources, added up.
 
-/// An amount in columns that can be seen.
+/// The least error that can be seen, in columns.
 const VISIBLE: f64 = 0.05;
 
-/// Columns by which outputs are taken from wrong places, of one part of the frame.
+/// How many columns away from the right place outputs are taken, for one part of the frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GridResidual {
-    /// The mean amount; 0 of no output.
+    /// The mean error; 0 without outputs.
     pub mean: f64,
-    /// The largest.
+    /// The largest error.
     pub max: f64,
-    /// The share of outputs for which it is above 0.05, 0 to 1.
+    /// The share of outputs with an error above 0.05, 0 to 1.
     pub share: f64,
 }
 
-/// Amounts, 0 and more, added up one after the other.
+/// A running sum of errors, each 0 or more, in columns.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ResidualSum {
     count: usize,
@@ -32,7 +32,7 @@ impl ResidualSum {
         self.visible += usize::from(amount > VISIBLE);
     }
 
-    /// These and those of `other`.
+    /// The sum of these and those of `other`.
     #[must_use]
     pub fn and(&self, other: &Self) -> Self {
         Self {
@@ -43,13 +43,13 @@ impl ResidualSum {
         }
     }
 
-    /// How many there are.
+    /// How many errors have been added.
     #[must_use]
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Their mean, the largest, and the share of those that can be seen.
+    /// The mean, the largest, and the share of those that can be seen.
     #[must_use]
     pub fn residual(&self) -> GridResidual {
         let count = self.count.max(1) as f64;

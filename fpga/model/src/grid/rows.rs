@@ -4,7 +4,7 @@ use super::normal::{Factor, Normal};
 use super::spline;
 use crate::{Geometry, GridShape};
 
-/// What keeps an entry that next to no row depends on from growing, in parts of a row.
+/// Keeps an entry that hardly any row depends on from growing; relative to the weight of one row.
 const DAMPING: f64 = 1e-3;
 
 /// The normal equations of all rows of a frame, factored.
@@ -24,7 +24,7 @@ impl RowSpline {
         Self { shape, factor: normal.factored() }
     }
 
-    /// The entries whose spline is nearest to `values`, one a row from the top.
+    /// The entries whose spline is nearest to `values`, one per row from the top.
     pub(super) fn fitted(&self, values: impl Iterator<Item = f64>) -> Vec<f64> {
         let mut sides = vec![0.0; self.factor.count()];
         for (row, value) in values.enumerate() {
@@ -37,7 +37,7 @@ impl RowSpline {
     }
 }
 
-/// The weights of a row as fractions.
+/// The first grid row of a row, and its weights as fractions.
 pub(super) fn fractions(shape: GridShape, row: usize) -> (usize, [f64; 3]) {
     let (first, weights) = spline(shape, row);
     (first, weights.map(|weight| f64::from(weight) / 8192.0))

@@ -1,4 +1,4 @@
-//! The shape of a grid: how far its nodes lie apart.
+//! The shape of a grid: how far apart its nodes are.
 
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -27,18 +27,18 @@ pub struct GridShapeError {
 }
 
 impl GridShape {
-    /// All v of a grid; 0 is one factor a row.
+    /// All v of a grid. 0 would be one factor per row.
     pub const V: RangeInclusive<u32> = 1..=6;
     /// All k of a grid.
     pub const K: RangeInclusive<u32> = 5..=6;
 
-    /// The fewest nodes and grid rows.
+    /// The shape with the fewest nodes and grid rows.
     pub(crate) const COARSEST: Self = Self { v: 6, k: 6 };
 
-    /// The most nodes and grid rows.
+    /// The shape with the most nodes and grid rows.
     pub(crate) const FINEST: Self = Self { v: 1, k: 5 };
 
-    /// The shape of 2^`v` rows and 2^`k` columns.
+    /// The shape with 2^`v` rows from one grid row to the next and 2^`k` columns from one node to the next.
     ///
     /// # Errors
     /// [`GridShapeError`] when `v` is outside [`Self::V`] or `k` outside [`Self::K`].
@@ -50,7 +50,7 @@ impl GridShape {
         }
     }
 
-    /// All shapes, those of the fewest entries first.
+    /// All shapes, the coarsest first.
     pub fn all() -> impl Iterator<Item = Self> {
         Self::V.rev().flat_map(|v| Self::K.rev().map(move |k| Self { v, k }))
     }
@@ -85,7 +85,7 @@ impl GridShape {
         geometry.width().div_ceil(self.column_pitch())
     }
 
-    /// N + 2: columns of the grid, one of offsets and one of each node.
+    /// N + 2: columns of the grid, one of offsets and one for each node.
     #[must_use]
     pub fn columns(self, geometry: &Geometry) -> usize {
         self.segments(geometry) + 2

@@ -1,4 +1,4 @@
-//! The values of a row: what the datapath finds of a table before the row leaves (DATAPATH.md, "Values of a row").
+//! The values of a row: what the datapath computes from a table before the row leaves (DATAPATH.md, "Values of a row").
 
 use crate::corrector::{Source, locate};
 use crate::{Geometry, GridShape, RowFactor};
@@ -6,14 +6,15 @@ use crate::{Geometry, GridShape, RowFactor};
 /// Bits of a source coordinate: a board keeps S modulo 2^40.
 const COORDINATE_BITS: u32 = 40;
 
-/// Bits of S below those of q.
+/// Bits of S below q.
 const BELOW: u32 = 15;
 
-/// O and Q\[0\] to Q\[N\] of a row, and where its segments start. One factor a row is O = 0 and that factor at every node.
+/// O and Q\[0\] to Q\[N\] of a row, and where its segments start. For one factor per row, O is 0 and every node has that
+/// factor.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RowValues {
     nodes: RowNodes,
-    /// How S goes in each segment, 0 to N − 1.
+    /// The course of S in each segment, 0 to N − 1.
     segments: Vec<Parabola>,
 }
 
@@ -36,7 +37,7 @@ impl RowNodes {
         &mut self.factors
     }
 
-    /// Takes the offset `offset`, for factors that are those of nodes 2^`k` columns apart.
+    /// Takes the offset `offset`. The factors must already be those of nodes 2^`k` columns apart.
     pub(crate) fn take(&mut self, geometry: &Geometry, k: u32, offset: i32) {
         let short = RowFactor::ONE.get() - self.factors.first().copied().unwrap_or(0);
         let start = 8 * i64::from(geometry.centre2()) * i64::from(short) + (i64::from(offset) << BELOW);
@@ -44,7 +45,7 @@ impl RowNodes {
     }
 }
 
-/// G of the segment between nodes of these factors.
+/// G of the segment between two nodes with these factors.
 #[inline]
 pub(crate) fn curve([left, right]: [u32; 2], k: u32) -> i64 {
     ((i64::from(right) - i64::from(left)) >> 3) << (6 - k)
@@ -62,7 +63,7 @@ struct Parabola {
 }
 
 impl RowValues {
-    /// What the values are made of, to be filled in; there are none of them then until [`Self::lay_out`].
+    /// What the values are made of, to be filled in. Until [`Self::lay_out`] there are no values.
     pub(crate) fn nodes_mut(&mut self) -> &mut RowNodes {
         self.segments.clear();
         &mut self.nodes
@@ -72,7 +73,7 @@ impl RowValues {
         &self.nodes
     }
 
-    /// Finds where the segments start.
+    /// Computes where the segments start.
     pub(crate) fn lay_out(&mut self) {
         let RowNodes { k, mut start, ref factors, .. } = self.nodes;
         self.segments.clear();
@@ -84,7 +85,7 @@ impl RowValues {
         }));
     }
 
-    /// Takes the one factor of a row.
+    /// Takes the single factor of a row.
     pub(crate) fn take_factor(&mut self, geometry: &Geometry, row_factor: RowFactor) {
         let shape = GridShape::FINEST;
         let nodes = shape.segments(geometry) + 1;
@@ -93,22 +94,22 @@ impl RowValues {
         self.lay_out();
     }
 
-    /// O: how much farther right the row begins than the factors alone tell, in units of 2^-13 column.
+    /// O: how much farther right the row begins than with the factors alone, in units of 2^-13 column.
     #[must_use]
     pub fn offset(&self) -> i32 {
         self.nodes.offset
     }
 
-    /// Q of every node from the left in units of 2^-24, 0 to 2^24.
+    /// Q of every node, from the left, in units of 2^-24: 0 to 2^24.
     #[must_use]
     pub fn factors(&self) -> &[u32] {
         &self.nodes.factors
     }
 
-    /// S of column `column`, 0 to W − 1, in units of 2^-28 column; exactly, where a board keeps it modulo 2^40.
+    /// S of column `column`, 0 to W − 1, in units of 2^-28 column. It is exact; a board keeps it modulo 2^40.
     ///
     /// # Panics
-    /// When the row has no such column.
+    /// May panic when the row has no such column.
     #[must_use]
     pub fn coordinate(&self, column: usize) -> i64 {
         let Parabola { start, slope, curve } = self.segments[column >> self.nodes.k];
@@ -116,17 +117,17 @@ impl RowValues {
         start + i * (slope + i * curve)
     }
 
-    /// Where the output of column `column`, 0 to W − 1, comes from. Of a grid that no ring could serve n is what a board
-    /// has, modulo 2^12.
+    /// Where the output of column `column`, 0 to W − 1, comes from. For a grid that no ring could serve, n is taken modulo
+    /// 2^12, as on a board.
     ///
     /// # Panics
-    /// When the row has no such column.
+    /// May panic when the row has no such column.
     #[must_use]
     pub fn source(&self, column: usize) -> Source {
         locate(rounded(self.coordinate(column)) & ((1 << (COORDINATE_BITS - BELOW)) - 1), column)
     }
 
-    /// Where the output lies that comes from the column `source`: between two columns, or beyond the row's end at the rate
+    /// The output column at which the source column `source` appears: between two columns, or beyond the row's end at the rate
     /// there.
     pub(crate) fn output(&self, source: f64) -> f64 {
         let columns = self.segments.len() << self.nodes.k;
@@ -137,7 +138,7 @@ impl RowValues {
             *(if at(middle) <= source { &mut low } else { &mut high }) = middle;
         }
         let rate = at(high) - at(low);
-        // A row that does not move at all shows no other source anywhere.
+        // A row whose source does not move shows no other source anywhere.
         low as f64 + if rate > 0.0 { (source - at(low)) / rate } else { 0.0 }
     }
 }

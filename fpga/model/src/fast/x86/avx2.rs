@@ -1,7 +1,7 @@
 //! The datapath in vectors of 256 bits: 32 columns at a time, 16 a vector, one 16-bit lane each.
 //!
-//! AVX2 looks up bytes, 16 entries at a time and in each half of a vector for itself. So the tables are kept as bytes, 64
-//! entries in four parts, and each half, eight columns, takes its samples from a window of its own.
+//! AVX2 looks up bytes, in tables of 16 entries and in each half of a vector on its own. So the tables are kept as bytes, 64
+//! entries in four parts, and each half, eight columns, takes its samples from its own window.
 
 use std::arch::x86_64::*;
 
@@ -20,7 +20,7 @@ const VECTOR: usize = 16;
 /// One byte of a table's 64 words.
 type Plane = [[u8; 16]; INTERVALS / 16];
 
-/// One tap's tables, byte by byte: low, rise, and the sign of what rise wraps.
+/// One tap's tables, byte by byte: low, rise, and the sign of the wrap.
 struct TapPlanes {
     low: [Plane; 2],
     rise: [Plane; 2],
@@ -50,10 +50,10 @@ fn bytes(words: &[i16; INTERVALS]) -> [Plane; 2] {
     })
 }
 
-/// Where the outputs of 16 columns come from, in 16-bit lanes.
+/// The sources of 16 columns, in 16-bit lanes.
 #[derive(Clone, Copy)]
 struct Places {
-    /// The least a of each half from the block's least one on, below 32.
+    /// The least a of each half, counted from the block's least one: below 32.
     least: [usize; 2],
     /// a − the half's least a, 0 to 7.
     base: __m256i,
@@ -61,16 +61,16 @@ struct Places {
     x: __m256i,
 }
 
-/// What the lanes of a row of one factor have in common.
+/// What the lanes of a row with a single factor have in common.
 #[derive(Clone, Copy)]
 struct Lanes {
-    /// The way from the first column to the even ones of each vector, in 32-bit lanes.
+    /// The change from the first column to the even ones of each vector, in 32-bit lanes.
     even: [__m256i; 2],
-    /// The way from one column to the next.
+    /// The change from one column to the next.
     step: __m256i,
 }
 
-/// Corrects the rows with the kernel's own combination of taps and wildness.
+/// Corrects the rows with code for just the taps and the wildness that the kernel has.
 #[target_feature(enable = "avx2")]
 pub(super) fn correct<W: Walk, const ROWS: usize>(planes: &Planes, rows: Rows<'_, W, ROWS>) {
     match (planes.outer, planes.wild) {
@@ -89,7 +89,7 @@ fn correct_as<W: Walk, const ROWS: usize, const WEIGHTS: usize, const WILD: bool
     let Rows { mut walk, width, max, inputs, mut outputs } = rows;
     let lanes = lanes(&walk);
     let max = _mm256_set1_epi16(max as i16);
-    // A processor waits for the steps of a block less long when it has located it while the one in front was corrected.
+    // Locating a block while the one before it is corrected hides most of the latency of its steps.
     let mut ahead = locate(&mut walk, &lanes);
     for column in blocks(width) {
         let (first, places) = std::mem::replace(&mut ahead, locate(&mut walk, &lanes));
@@ -98,7 +98,7 @@ fn correct_as<W: Walk, const ROWS: usize, const WEIGHTS: usize, const WILD: bool
             let window = row.window(first);
             for (part, output) in output.block(column).as_chunks_mut().0.iter_mut().enumerate() {
                 let [low, high] = places[part].least;
-                // Both below 32 as they are; that the compiler sees it saves checking.
+                // Both are below 32 anyway; the modulo lets the compiler see it and leave out its checks.
                 let halves = [&window[low % BLOCK..], &window[high % BLOCK..]];
                 let samples = blend::<WEIGHTS, WILD>(&weights[part], halves, places[part].base, max);
                 store_16_samples(output, samples);
@@ -108,7 +108,7 @@ fn correct_as<W: Walk, const ROWS: usize, const WEIGHTS: usize, const WILD: bool
     outputs.into_iter().for_each(Outputs::finish);
 }
 
-/// The sources of the next block, for those who check them.
+/// The sources of the next block, for checks.
 #[target_feature(enable = "avx2")]
 pub(super) fn locate_block<W: Walk>(walk: &mut W) -> Located {
     let lanes = lanes(walk);
@@ -172,7 +172,7 @@ fn place([even, odd]: [__m256i; 2], leads: __m256i) -> Places {
     let moved = _mm256_blend_epi16::<0xAA>(_mm256_srai_epi32::<26>(even), _mm256_srai_epi32::<10>(odd));
     let x = _mm256_blend_epi16::<0xAA>(_mm256_srli_epi32::<13>(even), _mm256_slli_epi32::<3>(odd));
     let from_block = _mm256_add_epi16(_mm256_and_si256(moved, _mm256_set1_epi16(!1)), leads);
-    // The lesser of a half's first two is its least.
+    // The lesser of a half's first two bases is its least.
     let first = _mm256_shuffle_epi8(from_block, _mm256_set1_epi16(0x0100));
     let second = _mm256_shuffle_epi8(from_block, _mm256_set1_epi16(0x0302));
     let least = _mm256_min_epu16(first, second);
@@ -181,7 +181,8 @@ fn place([even, odd]: [__m256i; 2], leads: __m256i) -> Places {
     Places { least: [halves[0] as usize, halves[1] as usize], base, x }
 }
 
-/// The weights of 32 columns: w = low + ((rise · t + 2^7) >> 8), which is what a rounding multiplication by t · 2^7 gives.
+/// The weights of 32 columns: w = low + ((rise · t + 2^7) >> 8). A rounding multiplication of rise by t · 2^7 gives the second
+/// term.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn weights<const WEIGHTS: usize, const WILD: bool>(
@@ -208,7 +209,7 @@ fn weights<const WEIGHTS: usize, const WILD: bool>(
     weights
 }
 
-/// The places in each of a plane's four parts; bit 7, which looks up 0, where the node is in another part.
+/// The indices into each of a plane's four parts. Where the node is in another part, bit 7 is set, which looks up 0.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn parts(node: __m256i) -> [__m256i; 4] {
@@ -230,21 +231,21 @@ fn look_up(plane: &Plane, nodes: [__m256i; 4]) -> __m256i {
     _mm256_or_si256(_mm256_or_si256(part(0), part(1)), _mm256_or_si256(part(2), part(3)))
 }
 
-/// The words of both planes' bytes at the nodes, the first 16 columns' and the second's.
+/// The words at the nodes, from their low and high bytes in the two planes: for the first 16 columns and for the second.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn look_up_words(planes: &[Plane; 2], nodes: [__m256i; 4]) -> [__m256i; 2] {
     words(look_up(&planes[0], nodes), look_up(&planes[1], nodes))
 }
 
-/// Words of low and high bytes.
+/// The words with these low and high bytes.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn words(low: __m256i, high: __m256i) -> [__m256i; 2] {
     [_mm256_unpacklo_epi8(low, high), _mm256_unpackhi_epi8(low, high)]
 }
 
-/// acc in 32-bit lanes, two products at a time, then the output.
+/// Computes acc in 32-bit lanes, two products at a time, then the output.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn blend<const WEIGHTS: usize, const WILD: bool>(
@@ -253,7 +254,7 @@ fn blend<const WEIGHTS: usize, const WILD: bool>(
     base: __m256i,
     max: __m256i,
 ) -> __m256i {
-    // A word's two bytes, 2i and 2i + 1.
+    // The indices of a word's two bytes, 2i and 2i + 1.
     let bytes =
         _mm256_add_epi16(_mm256_mullo_epi16(base, _mm256_set1_epi16(0x202)), _mm256_set1_epi16(0x100));
     let tap = |tap: usize| {
@@ -285,7 +286,7 @@ fn blend<const WEIGHTS: usize, const WILD: bool>(
     _mm256_min_epu16(rounded, max)
 }
 
-/// Adds both products to the sums of each half's lower and upper four lanes.
+/// Adds both products to the sums, which hold each half's lower and upper four lanes.
 #[target_feature(enable = "avx2")]
 #[inline]
 fn add_products(sums: &mut [__m256i; 2], weights: [__m256i; 2], values: [__m256i; 2]) {

@@ -15,15 +15,15 @@ use crate::frame;
 /// Lanes of the odd columns.
 const ODD: u32 = 0xAAAA_AAAA;
 
-/// What the lanes of a row of one factor have in common.
+/// What the lanes of a row with a single factor have in common.
 struct Lanes {
-    /// The way from the first column to the even ones, in 32-bit lanes.
+    /// The change from the first column to the even ones, in 32-bit lanes.
     even: __m512i,
-    /// The way from one column to the next.
+    /// The change from one column to the next.
     step: __m512i,
 }
 
-/// Where the outputs of a block come from, in 16-bit lanes.
+/// The sources of a block, in 16-bit lanes.
 struct Places {
     /// [`Start::first`].
     first: isize,
@@ -33,7 +33,7 @@ struct Places {
     x: __m512i,
 }
 
-/// The table of one tap, 64 words in two vectors each.
+/// The tables of one tap, each 64 words in two vectors.
 #[derive(Clone, Copy)]
 struct Table {
     low: [__m512i; 2],
@@ -41,7 +41,7 @@ struct Table {
     wrap: [__m512i; 2],
 }
 
-/// Corrects the rows with the kernel's own combination of taps and wildness.
+/// Corrects the rows with code for just the taps and the wildness that the kernel has.
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
 pub(super) fn correct<W: Walk, const ROWS: usize>(nodes: &Nodes, rows: Rows<'_, W, ROWS>) {
     match (nodes.outer, nodes.wild) {
@@ -64,7 +64,7 @@ fn correct_as<W: Walk, const ROWS: usize, const WEIGHTS: usize, const WILD: bool
     }
     let lanes = lanes(&walk);
     let max = _mm512_set1_epi16(max as i16);
-    // A processor waits for the steps of a block less long when it has located it while the one in front was corrected.
+    // Locating a block while the one before it is corrected hides most of the latency of its steps.
     let mut ahead = locate(&mut walk, &lanes);
     for column in blocks(width) {
         let places = std::mem::replace(&mut ahead, locate(&mut walk, &lanes));
@@ -77,7 +77,7 @@ fn correct_as<W: Walk, const ROWS: usize, const WEIGHTS: usize, const WILD: bool
     outputs.into_iter().for_each(Outputs::finish);
 }
 
-/// The sources of the next block, for those who check them.
+/// The sources of the next block, for checks.
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
 pub(super) fn locate_block(walk: &mut impl Walk) -> Located {
     let lanes = lanes(walk);
@@ -139,7 +139,7 @@ fn locate<W: Walk>(walk: &mut W, lanes: &Lanes) -> Places {
     Places { first: start.first, base, x }
 }
 
-/// w = low + ((rise · t + 2^7) >> 8), which is what a rounding multiplication by t · 2^7 gives.
+/// w = low + ((rise · t + 2^7) >> 8). A rounding multiplication of rise by t · 2^7 gives the second term.
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
 #[inline]
 fn weights<const WEIGHTS: usize, const WILD: bool>(
@@ -160,7 +160,7 @@ fn weights<const WEIGHTS: usize, const WILD: bool>(
     weights
 }
 
-/// acc in 32-bit lanes, two products at a time, then the output.
+/// Computes acc in 32-bit lanes, two products at a time, then the output.
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
 #[inline]
 fn blend<const WEIGHTS: usize, const WILD: bool>(
@@ -194,7 +194,7 @@ fn blend<const WEIGHTS: usize, const WILD: bool>(
     _mm512_min_epu16(rounded, max)
 }
 
-/// Adds both products to the sums of each 128 bits' lower and upper four lanes.
+/// Adds both products to the sums, which hold the lower and upper four lanes of each 128 bits.
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
 #[inline]
 fn add_products(sums: &mut [__m512i; 2], weights: [__m512i; 2], values: [__m512i; 2]) {
@@ -210,8 +210,8 @@ pub(super) fn bits_of(samples: &[u16]) -> u16 {
     frame::bits_of(samples)
 }
 
-/// [`content::hold`]. Each column looks for the nearest step up to it: among two columns, then among those of the column two to
-/// the left as well, and so on up to a block.
+/// [`content::hold`]. Each column finds the nearest step at or left of it by doubling: among two columns, then among four, and
+/// so on up to a block.
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
 pub(super) fn hold(draws: &[u16], max: u16, samples: &mut [u16]) {
     let columns: [u16; BLOCK] = std::array::from_fn(|column| column as u16);

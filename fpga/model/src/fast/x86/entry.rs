@@ -1,7 +1,7 @@
-//! All that is `unsafe` in this crate: calling what needs a processor's features, and moving vectors to and from memory.
+//! All the `unsafe` code of this crate: calls of functions that need processor features, and moving vectors from and to memory.
 //!
-//! Vector arithmetic is safe inside a function that is compiled for the feature. A call from outside of such a function is
-//! not, since a processor without the feature would do anything: it takes a token that only detection gives out. Loads and
+//! Vector arithmetic is safe inside a function that is compiled for the feature. A call from any other function is not, since
+//! on a processor without the feature the behaviour is undefined. So it takes a token that only detection hands out. Loads and
 //! stores take pointers, so they are wrapped here to take arrays of the vector's size, which are valid at every address.
 #![allow(unsafe_code)]
 
@@ -16,11 +16,11 @@ use crate::fast::located::Located;
 use crate::fast::nodes::Nodes;
 use crate::fast::walk::Walk;
 
-/// The proof that this processor has AVX2.
+/// Proof that this processor has AVX2.
 #[derive(Clone, Copy)]
 pub(in crate::fast) struct Avx2(());
 
-/// The proof that this processor has AVX-512 F, BW and VL.
+/// Proof that this processor has AVX-512 F, BW and VL.
 #[derive(Clone, Copy)]
 pub(in crate::fast) struct Avx512(());
 
@@ -78,7 +78,7 @@ impl Avx512 {
     }
 }
 
-/// 16 bytes.
+/// Loads 16 bytes.
 #[target_feature(enable = "avx2")]
 #[inline]
 pub(super) fn load_16_bytes(bytes: &[u8; 16]) -> __m128i {
@@ -86,16 +86,16 @@ pub(super) fn load_16_bytes(bytes: &[u8; 16]) -> __m128i {
     unsafe { _mm_loadu_si128(bytes.as_ptr().cast()) }
 }
 
-/// Eight samples from `from` on.
+/// Loads eight samples, starting with sample `from`.
 #[target_feature(enable = "avx2")]
 #[inline]
 pub(super) fn load_8_samples(samples: &[u16], from: usize) -> __m128i {
     let samples = &samples[from..from + 8];
-    // SAFETY: as above, 8 samples are 16 bytes.
+    // SAFETY: as above; 8 samples are 16 bytes.
     unsafe { _mm_loadu_si128(samples.as_ptr().cast()) }
 }
 
-/// Sixteen samples from `from` on.
+/// Loads sixteen samples, starting with sample `from`.
 #[target_feature(enable = "avx2")]
 #[inline]
 pub(super) fn load_16_samples(samples: &[u16], from: usize) -> __m256i {
@@ -104,7 +104,7 @@ pub(super) fn load_16_samples(samples: &[u16], from: usize) -> __m256i {
     unsafe { _mm256_loadu_si256(samples.as_ptr().cast()) }
 }
 
-/// Sixteen samples.
+/// Stores sixteen samples.
 #[target_feature(enable = "avx2")]
 #[inline]
 pub(super) fn store_16_samples(samples: &mut [u16; 16], vector: __m256i) {
@@ -112,7 +112,7 @@ pub(super) fn store_16_samples(samples: &mut [u16; 16], vector: __m256i) {
     unsafe { _mm256_storeu_si256(samples.as_mut_ptr().cast(), vector) }
 }
 
-/// 32 samples from `from` on.
+/// Loads 32 samples, starting with sample `from`.
 #[target_feature(enable = "avx512f")]
 #[inline]
 pub(super) fn load_32_samples(samples: &[u16], from: usize) -> __m512i {
@@ -121,7 +121,7 @@ pub(super) fn load_32_samples(samples: &[u16], from: usize) -> __m512i {
     unsafe { _mm512_loadu_si512(samples.as_ptr().cast()) }
 }
 
-/// 32 16-bit words, signed.
+/// Loads 32 signed words of 16 bits.
 #[target_feature(enable = "avx512f")]
 #[inline]
 pub(super) fn load_32_weights(words: &[i16; 32]) -> __m512i {
@@ -129,7 +129,7 @@ pub(super) fn load_32_weights(words: &[i16; 32]) -> __m512i {
     unsafe { _mm512_loadu_si512(words.as_ptr().cast()) }
 }
 
-/// 32 samples.
+/// Stores 32 samples.
 #[target_feature(enable = "avx512f")]
 #[inline]
 pub(super) fn store_32_samples(samples: &mut [u16; 32], vector: __m512i) {
