@@ -1,5 +1,5 @@
-//! The golden values of AT-SPEED.md, computed outside the project, and the fast content against the one that is written to be
-//! read. When a golden value fails, do not change the test: every board in the field disagrees.
+//! The golden values of AT-SPEED.md, computed outside the project, and the fast content against the one that is written for
+//! clarity. When a golden value fails, do not change the test: every board in the field would disagree.
 
 use halfrow_model::{
     BitDepth, Content, Corrector, Equidistant, Frame, Geometry, Interpolant, Kernel, MAX_WIDTH, Phase,
@@ -20,7 +20,7 @@ const ROWS: [([u16; 12], u32, u32); 4] = [
 /// The signature of a frame of those four rows.
 const FRAME_OF_ROWS: u32 = 0xc40b_35b2;
 
-/// A frame behind the table of R = 1106.697, the CRC-32 of its samples, if the page has it, and its signature.
+/// A frame corrected with the table of R = 1106.697: the CRC-32 of its samples, if the page has it, and its signature.
 struct Golden {
     content: Content,
     geometry: Geometry,
@@ -49,7 +49,7 @@ fn golden_frames() -> [Golden; 4] {
     ]
 }
 
-/// What the oracles make of a frame.
+/// The signatures of the rows that the oracles give for a frame.
 fn rows_of(content: Content, tables: &TableSet, kernel: &Kernel) -> Vec<u32> {
     let (width, depth) = (tables.geometry().width(), tables.geometry().depth());
     let mut samples = vec![0; width * tables.geometry().height()];

@@ -10,7 +10,7 @@ pub(crate) fn kannala_brandt(scale: f64) -> CalibratedLens {
     CalibratedLens::new(Profile::KannalaBrandt([-0.0125, 0.0031, -0.0042, 0.0007]), pixels).unwrap()
 }
 
-/// A Sunex DSL215 before a sensor of 752 x 480, as measured and published in BSD-3 licensed ctu-mrs/uvdar_core.
+/// A Sunex DSL215 in front of a sensor of 752 x 480, as measured and published in BSD-3 licensed ctu-mrs/uvdar_core.
 pub(crate) fn dsl215() -> CalibratedLens {
     let coefficients = vec![-2.595395e+02, 0.0, 1.626945e-03, -2.328091e-06, 6.601777e-09];
     let pixels = [[1.0, -0.000_158], [-0.000_012, 1.000_314]];
@@ -41,7 +41,7 @@ fn rays_land_where_opencv_puts_them() {
     assert_eq!(kannala_brandt(1.0).image_point([0.0, 0.0, 2.0]), Some((0.0, 0.0)));
 }
 
-/// `cv2.fisheye.undistortPoints` of OpenCV 5.0.0, which knows no skew, to the precision at which it stops.
+/// `cv2.fisheye.undistortPoints` of OpenCV 5.0.0, which knows no skew, to the precision at which it stops iterating.
 #[test]
 fn pixels_see_what_opencv_says() {
     let profile = Profile::KannalaBrandt([-0.0125, 0.0031, -0.0042, 0.0007]);
@@ -58,7 +58,7 @@ fn pixels_see_what_opencv_says() {
     }
 }
 
-/// OCamCalib's world2cam with `numpy.roots` of NumPy 2.4.6 on the direct polynomial: row and column, here column and row.
+/// OCamCalib's world2cam with `numpy.roots` of NumPy 2.4.6 on the direct polynomial: its row and column are our column and row.
 #[test]
 fn rays_land_where_ocamcalib_puts_them() {
     let expected = [
@@ -88,7 +88,8 @@ fn pixels_see_what_ocamcalib_says() {
     }
 }
 
-/// From the same NumPy program: r at 45°, 60° and 90°; 259.54 · π/2 would be 407.7, so the lens falls 4.7 % short of it.
+/// From the same NumPy program: r at 45°, 60° and 90°. An equidistant lens would have 259.54 · π/2 = 407.7 at 90°; this one is
+/// 4.7 % short of it.
 #[test]
 fn the_dsl215_images_90_degrees_short_of_equidistant() {
     let radii = [(PI / 4.0, 201.591_605_288_144_34), (PI / 3.0, 267.114_339_895_304_98)];
@@ -120,7 +121,7 @@ fn on_the_horizon_and_on_the_axis_s_meridian_nothing_moves() {
     }
 }
 
-/// `numpy.polynomial` of NumPy 2.4.6 finds the slope of r at 0 for θ = 64.778 470 316°.
+/// By `numpy.polynomial` of NumPy 2.4.6, the slope of r is 0 at θ = 64.778 470 316°.
 #[test]
 fn a_profile_ends_where_it_turns_back() {
     let profile = Profile::KannalaBrandt([0.1, -0.2, 0.05, -0.02]);

@@ -1,4 +1,5 @@
-//! Row factors of calibrated lenses against linear programming: SciPy 1.17.1 (HiGHS) and NumPy 2.4.6, from the definitions.
+//! Row factors of calibrated lenses against linear programming: SciPy 1.17.1 (HiGHS) and NumPy 2.4.6, written from the
+//! definitions.
 
 use halfrow_model::{
     BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, LensError, Profile, Residual,
@@ -18,7 +19,7 @@ fn paper() -> Camera {
     camera((1920, 1080), lens.into(), (959.5, 539.5))
 }
 
-/// The other lenses on frames so small that a test sees every pixel.
+/// The other lenses, on frames so small that a test can visit every pixel.
 fn tenth() -> Camera {
     camera((128, 72), kannala_brandt(0.1), (60.3, 30.8))
 }
@@ -28,7 +29,7 @@ fn fifth() -> Camera {
     camera((150, 96), dsl215().scaled(0.2).unwrap(), ((column + 0.5) * 0.2 - 0.5, (row + 0.5) * 0.2 - 0.5))
 }
 
-/// Every row factor of `tables` named by its row is within 2 of `expected`: Q is rounded, and the program stops at 1e-7.
+/// Checks that the row factors of the rows named in `expected` are within 2 of it: Q is rounded, and the program stops at 1e-7.
 #[track_caller]
 fn assert_row_factors(tables: &TableSet, expected: &[(usize, f64)]) {
     for &(row, factor) in expected {
@@ -37,7 +38,7 @@ fn assert_row_factors(tables: &TableSet, expected: &[(usize, f64)]) {
     }
 }
 
-/// Mean and largest amount.
+/// The mean and the largest absolute value.
 fn spread(residuals: &[f64]) -> (f64, f64) {
     let amounts = residuals.iter().map(|residual| residual.abs());
     (amounts.clone().sum::<f64>() / residuals.len() as f64, amounts.fold(0.0, f64::max))
@@ -89,7 +90,7 @@ fn the_rows_of_measured_lenses_are_fitted_as_linear_programming_fits_them() {
     assert_row_factors(&full.fitted(), &[(0, 13_125_603.730), (150, 16_374_260.952), (479, 12_368_952.034)]);
 }
 
-/// Oblong pixels make the circle an ellipse: R counts columns, and y counts in widths of a pixel.
+/// Oblong pixels make the circle an ellipse: R is in columns, and y is counted in pixel widths.
 #[test]
 fn eq_9_of_measured_lenses_takes_r_from_90_degrees() {
     assert!((tenth().radius() - 82.486_596_644_624_63).abs() < 1e-9);
@@ -116,7 +117,7 @@ fn what_remains_is_what_numpy_finds_at_every_pixel() {
 fn rows_without_a_sample_in_the_circle_are_not_stretched() {
     let lens = Equidistant::from_radius(40.0).unwrap();
     let camera = camera((64, 100), lens.into(), (31.5, 49.5));
-    // |y| is 0.5, 1.5, … 49.5; ten of the 50 rows on either side have |y| of 40.5 or more.
+    // |y| is 0.5, 1.5, … 49.5; ten of the 50 rows on either side have a |y| of 40.5 or more.
     assert_eq!(camera.rows_outside_circle(), 20);
     assert!((0..10).all(
         |row| camera.fitted().row_factor(row) == Some(RowFactor::ONE) && camera.targets(row).count() == 0
@@ -152,8 +153,8 @@ fn a_profile_that_turns_back_inside_the_frame_is_refused_and_outside_of_it_taken
     assert!(far.fitted().row_factors().unwrap().iter().all(|&factor| factor < RowFactor::ONE));
 }
 
-/// The profile rises to 0.963353 f, by its values in steps of 1e-5. From an axis 100.5 columns and 80.5 rows inside one corner of
-/// the frame the others are 411, 544 and 670 pixels away.
+/// The profile rises to 0.963353 f, by its values in steps of 1e-5. From an axis 100.5 columns and 80.5 rows inside one corner
+/// of the frame, the other corners are 411, 544 and 670 pixels away.
 #[test]
 fn a_profile_that_turns_back_before_one_corner_alone_is_refused() {
     let geometry = Geometry::centred(640, 480, BitDepth::Eight).unwrap();

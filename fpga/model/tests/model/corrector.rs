@@ -1,4 +1,4 @@
-//! The integer datapath by hand, and what holds of it always.
+//! The integer datapath against values by hand, and its invariants.
 
 use halfrow_model::{
     BitDepth, Colour, CorrectError, Frame, Geometry, Interpolant, Kernel, NODES, Phase, Source, TableSet,
@@ -20,7 +20,7 @@ fn double(geometry: &Geometry, interpolant: Interpolant, row: &[u16]) -> [u16; 6
     output
 }
 
-/// A row of zeros but for the samples named.
+/// A row of zeros except for these samples.
 fn row_of(samples: &[(usize, u16)]) -> [u16; 64] {
     let mut row = [0; 64];
     samples.iter().for_each(|&(column, sample)| row[column] = sample);
@@ -56,7 +56,7 @@ fn an_unstretched_row_passes_through() {
 #[test]
 fn a_ramp_doubled_has_half_the_slope() {
     let row: [u16; 64] = std::array::from_fn(|column| 16 * column as u16);
-    // The source of column j is 15.75 + j/2, all of it inside the row and on a node.
+    // The source of column j is 15.75 + j/2. All sources are inside the row and on a node.
     let expected: [u16; 64] = std::array::from_fn(|column| 252 + 8 * column as u16);
     for interpolant in [Interpolant::Linear, Interpolant::Keys, Interpolant::Hermite] {
         assert_eq!(double(&geometry(63), interpolant, &row), expected, "{interpolant}");
@@ -81,7 +81,7 @@ fn right_of_the_row_its_last_samples_stand_in() {
 fn what_leaves_the_range_of_the_depth_is_clamped() {
     for depth in BitDepth::ALL {
         let geometry = Geometry::new(64, 1, depth, 64).unwrap();
-        // Column 34 comes from 33, half-way between 32 and 34, where Keys weighs −1, 9, 9, −1 sixteenths.
+        // Column 34 comes from column 33, half-way between 32 and 34, where Keys has the weights −1, 9, 9, −1 sixteenths.
         let dark = row_of(&[(30, depth.max()), (36, depth.max())]);
         let bright = row_of(&[(32, depth.max()), (34, depth.max())]);
         assert_eq!(double(&geometry, Interpolant::Keys, &dark)[34], 0);
@@ -91,7 +91,7 @@ fn what_leaves_the_range_of_the_depth_is_clamped() {
 
 #[test]
 fn the_clamp_takes_back_only_what_leaves_the_range() {
-    // 9/16 of 4080 and of 3200 is 4095; with 3201 it is 4095.56, which the clamp takes back.
+    // 9/16 of 4080 and 9/16 of 3200 add up to 4095; with 3201 it is 4095.56, which is clamped.
     for (sample, expected) in [(3198, 4094), (3200, 4095), (3201, 4095)] {
         let row = row_of(&[(32, 4080), (34, sample)]);
         assert_eq!(double(&geometry(64), Interpolant::Keys, &row)[34], expected);
@@ -106,14 +106,14 @@ fn half_a_unit_is_rounded_up() {
 
 #[test]
 fn weights_are_interpolated_between_nodes_with_rounding() {
-    // C = 0, Q = 2^24 − 3·2^17: column 2 comes from 2 − 0.046875, so x = 1.953125 from 0, half-way from node 62 to 63.
+    // C = 0, Q = 2^24 − 3·2^17: column 2 comes from 2 − 0.046875. So x = 1.953125 from base 0, half-way from node 62 to 63.
     let mut nodes = vec![[0; 5]; NODES];
     (nodes[62][2], nodes[63][2]) = (4095, 4096);
     let kernel = Kernel::from_nodes(nodes).unwrap();
     let row = row_of(&[(2, 2)]);
     let mut output = [0; 64];
     correct_row(&geometry(0), row_factor(ONE - 3 * (1 << 17)), &kernel, &row, &mut output);
-    // The weight is 4096, not 4095.5 or 4095: only then is 2 · 4096 / 2^14 the half that rounds to 1.
+    // The weight is 4096, not 4095.5 or 4095: only with 4096 is 2 · weight / 2^14 the half that rounds up to 1.
     assert_eq!(output[2], 1);
 }
 

@@ -1,4 +1,4 @@
-//! All factors: what random cases would hardly meet. Ignored, for scripts/soak.
+//! All factors, which random cases would hardly reach. Ignored by default; scripts/soak runs them.
 
 use std::iter::{StepBy, Take};
 use std::ops::RangeInclusive;
@@ -12,16 +12,16 @@ use halfrow_model::{
 use crate::fast::{paths, sources};
 use crate::{ONE, row_factor};
 
-/// Coprime to 2^24, so that the factors it goes through have every ending.
+/// Coprime to 2^24, so that every low part of a factor occurs.
 const STRIDE: usize = 101;
 
-/// Every so many factors, one share of them.
+/// Factors a stride apart, one thread's share at a time.
 type Share = Take<StepBy<RangeInclusive<u32>>>;
 
-/// Widths of whole blocks and not.
+/// Widths that are whole blocks and widths that are not.
 const WIDTHS: [usize; 4] = [MAX_WIDTH, 1920, 1086, 64];
 
-/// Runs `check` for all factors from 1 on, `stride` apart, a share at a time on all processors, and says how long it took.
+/// Runs `check` for all factors from 1 on, `stride` apart, share by share on all processors, and prints how long it took.
 #[allow(clippy::print_stdout)]
 fn over_factors(what: &str, stride: usize, check: impl Fn(Share) + Sync) {
     const SHARE: usize = 1 << 10;
@@ -47,7 +47,7 @@ fn named() -> String {
     paths().map(ModelPath::name).collect::<Vec<_>>().join(", ")
 }
 
-/// Checks that all paths find the oracle's sources, every column's.
+/// Checks that all paths find the oracle's source of every column.
 fn check_sources(correctors: &[Corrector], geometry: &Geometry, factor: u32) {
     let expected = sources(geometry, factor);
     let mut found = (vec![0; geometry.width()], vec![0; geometry.width()]);
@@ -71,7 +71,7 @@ fn every_path_finds_the_sources_of_all_factors_at_all_columns() {
     });
 }
 
-/// Centres at and off the edges, widths of whole blocks and not, on a stride of the factors.
+/// Centres at and off the edges, and widths that are whole blocks or not, for factors a stride apart.
 #[test]
 #[ignore = "minutes; scripts/soak factors"]
 fn every_path_finds_the_sources_about_any_centre() {
@@ -90,7 +90,7 @@ fn every_path_finds_the_sources_about_any_centre() {
     });
 }
 
-/// Five and seven taps, tame and with every size and sign of weight.
+/// Kernels of five and of seven taps: the usual ones, and ones with weights of every size and sign.
 fn kernels() -> [Kernel; 4] {
     let wild = |place: usize| ((place as u32).wrapping_mul(2_654_435_761) >> 16) as i16;
     let seven = (0..NODES).map(|node| [0, 1, 2, 3, 4].map(|tap| wild(5 * node + tap)));

@@ -11,8 +11,8 @@ use proptest::prelude::*;
 
 use crate::{ONE, row_factor};
 
-/// The paths to be held against the oracle. Says which ones this processor cannot try, past the harness, which keeps what
-/// passing tests print.
+/// The paths to compare with the oracle. Writes to stderr past the test harness, which hides what passing tests print, which
+/// paths this processor cannot run.
 #[allow(clippy::disallowed_methods)]
 pub(crate) fn paths() -> impl Iterator<Item = ModelPath> {
     static SAID: Once = Once::new();
@@ -25,7 +25,7 @@ pub(crate) fn paths() -> impl Iterator<Item = ModelPath> {
     ModelPath::available().filter(|&path| path != ModelPath::Reference)
 }
 
-/// Weights of every size, of the limits alone, and of a size that leaves g2 and r3 within 16 bits.
+/// Maps weights to weights of every size, to the limits only, or to sizes that keep g2 and r3 within 16 bits.
 fn any_weight() -> impl Strategy<Value = fn(i16) -> i16> {
     prop::sample::select(vec![
         (|weight| weight) as fn(i16) -> i16,
@@ -46,12 +46,12 @@ pub(crate) fn any_kernel() -> impl Strategy<Value = Kernel> {
     prop_oneof![3 => random, 1 => prop::sample::select(Interpolant::ALL.to_vec()).prop_map(Kernel::from)]
 }
 
-/// Factors, the least and the greatest among them often.
+/// Factors, with the least and the greatest drawn often.
 fn any_factor() -> impl Strategy<Value = u32> {
     prop_oneof![6 => 1..=ONE, 1 => Just(1), 1 => Just(ONE), 1 => ONE - 64..=ONE]
 }
 
-/// Widths up to `widest`, whole blocks or not, and centres, the outermost among them often.
+/// Widths up to `widest`, whole blocks or not, and centres, with the outermost drawn often.
 fn any_geometry(heights: std::ops::RangeInclusive<usize>, widest: usize) -> impl Strategy<Value = Geometry> {
     let depth = prop::sample::select(BitDepth::ALL.to_vec());
     (MIN_WIDTH / 2..=widest / 2, heights, depth, 0..=4_u32, any::<u32>()).prop_map(
@@ -68,7 +68,7 @@ fn any_geometry(heights: std::ops::RangeInclusive<usize>, widest: usize) -> impl
     )
 }
 
-/// Samples of a seed: of every size, or the least and the greatest alone.
+/// Samples from a seed: of every size, or only the least and the greatest.
 pub(crate) fn samples(geometry: &Geometry, seed: u32) -> Vec<u16> {
     let max = geometry.depth().max();
     let count = (geometry.width() * geometry.height()) as u32;
@@ -99,7 +99,7 @@ proptest! {
         kernel in any_kernel(), seed in any::<u32>(),
     ) {
         let height = geometry.height();
-        // Each row's own, the mirrored row's, or next to it.
+        // Each row's own factor, the mirrored row's, or one next to the mirrored row's.
         let factor = |row: usize| {
             let other = row.min(height - 1 - row);
             match mirrored {
@@ -135,7 +135,7 @@ proptest! {
     }
 }
 
-/// The oracle's a and x of every column; x tells n, too.
+/// The oracle's a and x of every column; x also determines n.
 pub(crate) fn sources(geometry: &Geometry, factor: u32) -> (Vec<i16>, Vec<u16>) {
     let of = |column| {
         let source = source(geometry, row_factor(factor), column);
@@ -146,22 +146,22 @@ pub(crate) fn sources(geometry: &Geometry, factor: u32) -> (Vec<i16>, Vec<u16>) 
     (0..geometry.width()).map(of).unzip()
 }
 
-/// Neighbouring nodes from one limit to the other and back, whose differences take 17 bits, at every distance between them.
+/// Neighbouring nodes that jump from one limit to the other, so that their differences take 17 bits, at every distance between.
 #[test]
 fn every_path_follows_the_steepest_kernels() {
     let node = |node: usize| {
         [0, 1, 2, 3, 4].map(|tap| if (node + tap).is_multiple_of(2) { i16::MIN } else { i16::MAX })
     };
     let all = (0..NODES).map(node);
-    // Differences of 17 bits, though r3 fits 16.
+    // Differences of 17 bits, while r3 fits 16.
     let fitting = (0..NODES).map(|node| [0, if node % 2 == 0 { -16_400 } else { 16_400 }, 0, 0, 0]);
     let five = all.clone().map(|[_, r1, g4, r5, _]| [0, r1, g4, r5, 0]);
-    // The other way round: r3 is 3.
+    // The opposite: no differences, but r3 is 3.
     let level = (0..NODES).map(|_| [0, -24_576, 0, -24_576, 0]);
     for kernel in [all.collect(), five.collect(), fitting.collect(), level.collect()]
         .map(|nodes| Kernel::from_nodes(nodes).unwrap())
     {
-        // Q = 2^24 − 2^12 moves x by one a column pair.
+        // Q = 2^24 − 2^12 moves x by one every two columns.
         for factor in [ONE - (1 << 12), ONE / 3] {
             let geometry = Geometry::new(MAX_WIDTH, 1, BitDepth::Twelve, 0).unwrap();
             for seed in [0, 1] {
@@ -183,7 +183,7 @@ fn every_path_follows_the_steepest_kernels() {
     }
 }
 
-/// A corrector carries nothing from one row to the next, be it narrower or wider.
+/// A corrector carries nothing over from one row to the next, whether that is narrower or wider.
 #[test]
 fn a_corrector_goes_on_with_other_widths() {
     let kernel = Kernel::from(Interpolant::Keys);
@@ -211,7 +211,7 @@ fn a_frame_that_the_tables_are_not_for_is_refused_by_every_path() {
     }
 }
 
-/// Wherever the first of two such samples is: rows are taken from the top and from the bottom by turns.
+/// Wherever the first of two such samples is: rows are taken alternately from the top and from the bottom.
 #[test]
 fn a_sample_that_the_depth_cannot_hold_is_named_by_every_path() {
     let geometry = Geometry::centred(64, 5, BitDepth::Ten).unwrap();

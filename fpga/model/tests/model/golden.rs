@@ -1,5 +1,5 @@
 //! Golden values from programs outside the project. When one of these fails, do not change the test: the arithmetic has
-//! changed, and every board in the field disagrees.
+//! changed, and every board in the field would disagree.
 
 use crate::row_factor;
 use crate::scenes::{frame, golden_samples};
@@ -7,7 +7,7 @@ use halfrow_model::{
     BitDepth, Equidistant, Frame, Geometry, Interpolant, Kernel, Phase, TableSet, correct, correct_row,
 };
 
-/// DATAPATH.md, "Golden values": one row of 64, C = 63, Q = 14648488.
+/// DATAPATH.md, "Golden values": one row of 64 samples, C = 63, Q = 14648488.
 const HERMITE_ROW: [u16; 64] = [
     1938, 356, 2717, 1150, 3620, 2600, 1707, 2388, 1715, 2078, 1454, 432, 2901, 1378, 3607, 1945, 497, 2939,
     1338, 3808, 2772, 1621, 2637, 1949, 1971, 1662, 619, 3089, 1621, 3657, 1989, 686, 3147, 1845, 176, 2213,
@@ -34,7 +34,7 @@ fn crc32_of_samples(samples: &[u16]) -> u32 {
     crc32fast::hash(&bytes)
 }
 
-/// A kernel of all sizes and signs of weights, up to the limits of 16 bits: ((5 · node + tap) · 2654435761) >> 16.
+/// A kernel with weights of all sizes and signs, up to the limits: ((5 · node + tap) · 2654435761 mod 2^32 >> 16) − 32768.
 fn wild_kernel() -> Kernel {
     let weight = |index: usize| ((index as u32).wrapping_mul(2_654_435_761) >> 16) as u16 ^ 0x8000;
     let node = |node: usize| std::array::from_fn(|tap| weight(5 * node + tap) as i16);
@@ -74,8 +74,8 @@ fn the_full_frame_is_corrected_to_the_golden_one() {
     }
 }
 
-/// Corners of the datapath, computed by a Python program written from DATAPATH.md: centres at and off the edges, the
-/// extreme row factors, the smaller depths, and weights up to the limits.
+/// Corners of the arithmetic, computed by a Python program written from DATAPATH.md: centres at and off the edges, extreme row
+/// factors, the smaller depths, and weights up to the limits.
 #[test]
 fn the_corners_of_the_datapath_agree_with_a_second_program() {
     let [keys, linear, hermite] =

@@ -1,4 +1,4 @@
-//! Grids: their arithmetic by hand and by the adders that a board has.
+//! Grids: their arithmetic by hand and by the additions that a board makes.
 
 use std::error::Error as _;
 
@@ -19,7 +19,7 @@ pub(crate) fn identity(geometry: Geometry, shape: GridShape) -> TableSet {
     TableSet::from_grid(geometry, shape, &vec![ONE; shape.entries(&geometry)]).unwrap()
 }
 
-/// Grids of a seed: of every size of entry, of the limits alone, or as gentle as those of a lens.
+/// Grids from a seed: with entries of every size, only the limits, or as smooth as those of a lens.
 pub(crate) fn any_grid(widest: usize) -> impl Strategy<Value = TableSet> {
     let geometry =
         (32..=widest / 2, 1..=70_usize, any::<u32>(), prop::sample::select(BitDepth::ALL.to_vec()));
@@ -49,7 +49,7 @@ pub(crate) fn any_grid(widest: usize) -> impl Strategy<Value = TableSet> {
     })
 }
 
-/// S modulo 2^40 of a row as a board adds it up, 40 bits of S and 29 of D.
+/// S modulo 2^40 along a row as a board adds it up, with 40 bits for S and 29 for D.
 fn added_up(tables: &TableSet, row: usize) -> Vec<u64> {
     const S: u64 = (1 << 40) - 1;
     let (geometry, shape) = (tables.geometry(), tables.shape().unwrap());
@@ -78,7 +78,7 @@ fn added_up(tables: &TableSet, row: usize) -> Vec<u64> {
     found
 }
 
-/// What the page makes of q.
+/// The source that DATAPATH.md derives from q.
 fn located(q: u64, column: usize) -> Source {
     let n = (q >> 13) as i64;
     let base = if n % 2 == column as i64 % 2 { n } else { n - 1 };
@@ -102,7 +102,7 @@ fn a_row_has_the_values_of_the_worked_example() {
         [0, 5, 32].map(|column| values.coordinate(column)),
         [2_393_939_968, 3_569_135_488, 9_928_351_744]
     );
-    // q = 108921 is n = 13, and column 5 is odd, too; 108921 − 13·8192 = 2425 = 9·256 + 121.
+    // q = 108921 gives n = 13, and column 5 is odd too; 108921 − 13·8192 = 2425 = 9·256 + 121.
     assert_eq!(values.source(5), Source { base: 13, column: 13, node: 9, fraction: 121 });
 }
 

@@ -1,4 +1,4 @@
-//! Every path of the model behind grids, against the oracle, bit for bit.
+//! Every path of the model with grids, against the oracle, bit for bit.
 
 use halfrow_model::{
     BitDepth, Camera, Corrector, Equidistant, Frame, Geometry, Interpolant, Kernel, MAX_WIDTH, ModelPath,
@@ -10,7 +10,7 @@ use crate::fast::{any_kernel, paths, samples};
 use crate::grid::{any_grid, shape};
 use crate::grid_golden::drawn;
 
-/// Where the oracle takes a row from, and where `corrector` does: a and x of every column.
+/// The sources of a row, a and x of every column: those of the oracle and those of `corrector`.
 fn both(corrector: &Corrector, tables: &TableSet, row: usize) -> [(Vec<i16>, Vec<u16>); 2] {
     let (values, width) = (tables.values(row).unwrap(), tables.geometry().width());
     let of = |column| {
@@ -45,7 +45,7 @@ proptest! {
     fn every_path_corrects_a_frame_behind_a_grid_as_the_oracle_does(
         tables in any_grid(260), kernel in any_kernel(), seed in any::<u32>(), halvings in 0..12_u32,
     ) {
-        // Of a grid that no ring can serve the samples mean nothing, but no path may fail on one.
+        // With a grid that no ring can serve the samples mean nothing, but no path may fail on it.
         let tables = (0..halvings).fold(tables, |tables, _| tables.halved());
         let geometry = tables.geometry();
         let frame = Frame::new(geometry.width(), geometry.depth(), Phase::Grbg, samples(geometry, seed)).unwrap();
@@ -64,7 +64,7 @@ proptest! {
     }
 }
 
-/// The last block of a row ends with it, wherever a segment ends.
+/// The last block ends with the row, wherever a segment ends.
 #[test]
 fn every_path_finds_the_sources_at_all_ends_of_a_row() {
     for width in (64..=260).step_by(2) {
@@ -77,7 +77,7 @@ fn every_path_finds_the_sources_at_all_ends_of_a_row() {
     }
 }
 
-/// One corrector goes from grids to factors, and from wide rows to narrow ones.
+/// A corrector carries nothing over from grids to factors and back, or from wide rows to narrow ones.
 #[test]
 fn a_corrector_goes_from_grids_to_factors_and_back() {
     let kernel = Kernel::from(Interpolant::Keys);

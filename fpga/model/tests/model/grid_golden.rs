@@ -1,5 +1,5 @@
 //! Golden values of datapath 2 from programs outside the project (DATAPATH.md, "Golden values of datapath 2"). When one of
-//! these fails, do not change the test: the arithmetic has changed, and every board in the field disagrees.
+//! these fails, do not change the test: the arithmetic has changed, and every board in the field would disagree.
 
 use halfrow_model::{
     BitDepth, Camera, Corrector, Equidistant, Geometry, GridShape, Interpolant, Kernel, ModelPath, TableSet,
@@ -14,12 +14,13 @@ fn paper() -> Camera {
     Camera::new(Geometry::default(), lens.into(), (959.5, 539.5), 180.0).unwrap()
 }
 
-/// The table of the page.
+/// The table of DATAPATH.md.
 pub(crate) fn golden_table() -> TableSet {
     paper().grid_by_formula(GridShape::new(5, 6).unwrap())
 }
 
-/// The grid of entries x >> 7, or 14680064 + (x >> 12) if it is narrow, with x = (e + seed) · 2654435761 mod 2^32.
+/// A drawn grid of DATAPATH.md: entry e is x >> 7, or 14680064 + (x >> 12) if narrow, with x = (e + seed) · 2654435761 mod
+/// 2^32.
 pub(crate) fn drawn(geometry: Geometry, shape: GridShape, seed: u32, narrow: bool) -> TableSet {
     let drawn = |place: u32| (place + seed).wrapping_mul(2_654_435_761);
     let entry = |place| if narrow { 14_680_064 + (drawn(place) >> 12) } else { drawn(place) >> 7 };
@@ -46,7 +47,7 @@ fn the_table_of_the_paper_s_lens_is_the_golden_one() {
     let tables = golden_table();
     let entries: Vec<_> = tables.entries().collect();
     assert_eq!(entries.len(), 1152);
-    // (0, 0), (0, 18), then nodes (0, 0), (15, 0) and (0, 18).
+    // The offsets (0, 0) and (0, 18), then the nodes (0, 0), (15, 0) and (0, 18).
     assert_eq!(
         [0, 18, 36, 36 + 15 * 36, 36 + 18].map(|place| entries[place]),
         [17_658_292, 16_777_664, 16_098_102, 13_148_591, 16_776_904]

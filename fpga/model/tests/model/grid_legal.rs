@@ -1,4 +1,4 @@
-//! Which grids a ring can serve, at the edges of each condition.
+//! Which grids a ring can serve, at the limit of each condition.
 
 use halfrow_model::{BitDepth, Geometry, TableError, TableSet};
 use proptest::prelude::*;
@@ -6,23 +6,22 @@ use proptest::prelude::*;
 use crate::ONE;
 use crate::grid::{any_grid, shape};
 
-/// A grid of W = 64 and 128 rows whose row 64, alone on the middle of the spline, is made of these entries, offset and the
-/// two nodes; every other grid row is the identity.
+/// A grid of W = 64 and 128 rows that gives every row the same values: the offset and the factors of the two nodes.
 fn bent(centre2: u32, [offset, left, right]: [u32; 3]) -> TableSet {
     let geometry = Geometry::new(64, 128, BitDepth::Twelve, centre2).unwrap();
-    // Z = 4: row 32 is made of the grid rows 0 to 2 with 1/8, 3/4 and 1/8.
+    // Z = 4, and all grid rows are equal.
     let column = |entry| [entry; 4];
     TableSet::from_grid(geometry, shape(6, 6), &[offset, left, right].map(column).concat()).unwrap()
 }
 
-/// The grid's entry for an offset of `units` times 2^-13 column.
+/// The entry for an offset of `units` times 2^-13 column.
 fn offset(units: i32) -> u32 {
     ONE.wrapping_add_signed(units)
 }
 
 #[test]
 fn a_row_may_begin_half_a_unit_left_of_the_frame() {
-    // S[0] = 2^15·O: an O of −1 is two halves of a unit.
+    // S[0] = 2^15·O: an O of −1 is a whole unit of q, and only half a unit is allowed.
     assert_eq!(bent(63, [offset(0), ONE, ONE]).check_ring(64), Ok(()));
     let refused = bent(63, [offset(-1), ONE, ONE]).check_ring(64).unwrap_err();
     assert_eq!(refused, TableError::BeforeFirst { row: 0, raise: 1 });
@@ -50,7 +49,7 @@ fn a_row_may_end_anywhere_in_its_last_column() {
         bent(63, [offset(8192), ONE, ONE]).check_ring(64),
         Err(TableError::BehindLast { row: 0, excess: 1 })
     );
-    // An end that would be in the row again modulo 2^12 columns is still behind it.
+    // Modulo 2^12 columns this end would lie in the row again, but it is still refused.
     let far = bent(0, [(1 << 25) - 1, 0, 0]).check_ring(64).unwrap_err();
     assert!(matches!(far, TableError::BehindLast { row: 0, excess: 1984 }), "{far:?}");
 }
@@ -61,7 +60,7 @@ fn look_ahead_and_look_back_are_those_of_one_factor() {
     assert_eq!(bent(0, [offset(31 * 8192), 0, 0]).check_ring(64), Ok(()));
     let refused = bent(0, [offset(32 * 8192), 0, 0]).check_ring(64);
     assert_eq!(refused, Err(TableError::LookAhead { row: 0, excess: 1 }));
-    // n[63] = 31 leaves 63 − 31 + 31 = 63 samples behind; 30 leaves one more than a ring of 64 still holds.
+    // n[63] = 31 needs 63 − 31 + 31 = 63 samples of look-back; 30 needs one more than a ring of 64 still holds.
     assert_eq!(
         bent(0, [offset(30 * 8192), 0, 0]).check_ring(64),
         Err(TableError::LookBack { row: 0, excess: 1, ring: 64 })
@@ -73,7 +72,8 @@ fn look_ahead_and_look_back_are_those_of_one_factor() {
 fn the_row_that_is_illegal_is_named() {
     let geometry = Geometry::new(64, 200, BitDepth::Twelve, 63).unwrap();
     let mut entries = vec![ONE; 3 * 6];
-    // Grid row 4 is met from row 128 on; there t = 0, so row 129 is the first that it weighs in, with t² = 1 of 2^13.
+    // Grid row 4 is first used by row 128, with the weight t² = 0. So row 129, with t² = 1 of 2^13, is the first that it
+    // changes.
     entries[4] = ONE - 8 * 8192;
     let tables = TableSet::from_grid(geometry, shape(6, 6), &entries).unwrap();
     assert_eq!(tables.check_ring(64), Err(TableError::BeforeFirst { row: 129, raise: 8 }));
@@ -82,7 +82,7 @@ fn the_row_that_is_illegal_is_named() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
-    /// The conditions as the page has them, over all columns.
+    /// The conditions of DATAPATH.md, checked at every column.
     #[test]
     fn a_grid_is_legal_where_all_its_columns_are(tables in any_grid(400), halvings in 0..12_u32) {
         let tables = (0..halvings).fold(tables, |tables, _| tables.halved());

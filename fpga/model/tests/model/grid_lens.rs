@@ -1,4 +1,4 @@
-//! Grids from lenses: the projection against its inverse, what grids leave of it, and which grid is chosen.
+//! Grids from lenses: the projection against its inverse, the errors that grids leave, and which grid is chosen.
 
 use halfrow_model::{
     BitDepth, CalibratedLens, Camera, Equidistant, Geometry, GridResidual, GridResiduals, GridShape,
@@ -20,7 +20,7 @@ fn paper(size: (usize, usize), scale: f64) -> Camera {
     camera(size, lens, ((size.0 - 1) as f64 / 2.0, (size.1 - 1) as f64 / 2.0))
 }
 
-/// The DSL215 on half as many pixels as it was measured on, of which a grid needs few.
+/// The DSL215 on half as many pixels as it was measured with, for which a small grid is enough.
 fn half_dsl215() -> Camera {
     let centre = (DSL215_CENTRE.0 / 2.0, DSL215_CENTRE.1 / 2.0);
     camera((376, 240), dsl215().scaled(0.5).unwrap(), centre)
@@ -58,7 +58,7 @@ fn what_a_source_shows_belongs_at_its_output() {
     }
 }
 
-/// From DATAPATH.md's design figures: 0.0013 columns at most and 0.0002 on the average, at every fifth column and row.
+/// Computed outside the project: 0.0013 columns at most and 0.0002 on average, at every fifth column and row.
 #[test]
 fn the_golden_table_leaves_what_was_computed_elsewhere() {
     let camera = paper((1920, 1080), 1.0);
@@ -68,10 +68,10 @@ fn the_golden_table_leaves_what_was_computed_elsewhere() {
         (0.001_25..0.001_35).contains(&circle.max) && (0.000_15..0.000_25).contains(&circle.mean),
         "{circle:?}"
     );
-    // The frame ends within 85 degrees and 0.9 of the circle's height.
+    // The frame ends within 85 degrees and within 0.9 of the circle's height.
     assert_eq!((inner, rim, beyond), (circle, GridResidual::default(), 0.0));
     assert!(circle.share.abs() < f64::EPSILON);
-    // Eq. 9 leaves 35 columns in the corrected frame.
+    // Eq. 9 leaves errors of up to 35 columns in the corrected frame.
     let by_rows = camera.grid_residuals(&camera.equation_9(), 5);
     assert!(by_rows.circle.max > 10.0 && by_rows.circle.share > 0.9, "{by_rows:?}");
 }
@@ -123,23 +123,23 @@ fn too_few_entries_are_refused_with_what_fits() {
     );
 }
 
-/// A frame with poles and rim of the circle of 180 degrees inside.
+/// A frame that contains the poles and the rim of the circle of 180 degrees.
 fn around_the_circle() -> (Equidistant, Camera) {
     let lens = Equidistant::from_radius(80.0).unwrap();
     (lens, camera((256, 200), lens, (127.5, 99.5)))
 }
 
-/// Places of [`around_the_circle`]'s frame from its axis.
+/// The samples of [`around_the_circle`]'s frame, relative to its axis.
 fn places() -> impl Iterator<Item = (f64, f64)> {
     (0..200).flat_map(|row| (0..256).map(move |column| (f64::from(column) - 127.5, f64::from(row) - 99.5)))
 }
 
-/// Whether a place is inner: 85 degrees off the axis are 80 · 85/90 pixels, and 0.9 of the circle's height are 72.
+/// Whether a sample is inner: 85 degrees off the axis are 80 · 85/90 pixels, and 0.9 of the circle's height is 72.
 fn is_inner(x: f64, y: f64) -> bool {
     x.hypot(y) <= 80.0 * 85.0 / 90.0 && y.abs() <= 72.0
 }
 
-/// What a table leaves that moves nothing, at every output of 90 degrees at most: there x of Eq. 6 is 80 columns from the axis.
+/// The errors of a table that moves nothing, at every output within 90 degrees: there x of Eq. 6 is 80 columns from the axis.
 #[test]
 fn what_no_table_leaves_is_the_projection_itself() {
     let (lens, camera) = around_the_circle();
@@ -169,8 +169,9 @@ fn targets_are_inner_where_the_page_says() {
     assert_eq!(found, places().filter(|&(x, y)| is_inner(x, y)).count());
 }
 
-/// A row that does not move shows one column, and where it is. By hand: sample (165, 137) is 53.0330 pixels off the axis, on the
-/// diagonal, so θ = 59.6621 degrees, latitude asin(sin θ/√2) = 37.6095 degrees, and its right row 33.4307 below the axis.
+/// A row that does not move shows a single column. Its residuals must still be numbers. By hand: sample (165, 137) is 53.0330
+/// pixels off the axis, on the diagonal. So θ = 59.6621 degrees, the latitude is asin(sin θ/√2) = 37.6095 degrees, and the
+/// right row is 33.4307 below the axis.
 #[test]
 fn a_grid_that_moves_nothing_leaves_residuals_that_are_numbers() {
     let (_, camera) = around_the_circle();
@@ -184,7 +185,8 @@ fn a_grid_that_moves_nothing_leaves_residuals_that_are_numbers() {
     }
 }
 
-/// Rows beyond a pole are as the one there, and outputs beyond 90 degrees a column a column, or as many as 1.5 next to a pole.
+/// Rows beyond a pole are like the row at the pole. Beyond 90 degrees sources are a column apart, or up to 1.5 columns next to
+/// a pole.
 #[test]
 fn a_frame_that_shows_more_than_the_circle_has_a_grid() {
     let (lens, camera) = around_the_circle();
@@ -195,7 +197,7 @@ fn a_frame_that_shows_more_than_the_circle_has_a_grid() {
     }
     let beyond = [250.0, 251.0].map(|column| camera.source_column(column, 99.5));
     assert!((beyond[1] - beyond[0] - 1.0).abs() < 0.05, "{beyond:?}");
-    // In row 20 the circle ends √(80² − 79.5²) = 8.9303 columns from the axis, which belong 80 columns from it.
+    // In row 20 the circle ends √(80² − 79.5²) = 8.9303 columns from the axis, and that place belongs 80 columns from it.
     let (last, far) = (127.5 + 8.9303, camera.source_column(255.0, 20.0));
     assert!((last..=last + 1.5 * 47.5).contains(&far), "{far}");
     let best = camera.best_grid(2048).unwrap();
@@ -207,7 +209,7 @@ fn a_frame_that_shows_more_than_the_circle_has_a_grid() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// Nothing that a lens may be makes a grid impossible; where it is legal the row's ends lie in the row.
+    /// Every lens that is accepted has a grid. Where the grid is legal, the row's ends lie in the row.
     #[test]
     fn every_lens_has_a_grid(
         half in 32..=100_usize, height in 1..=120_usize, radius in prop_oneof![1.0..20.0, 20.0..400.0, 400.0..1e9],
@@ -222,7 +224,7 @@ proptest! {
             prop_assert_eq!(tables.entries().len(), shape(v, k).entries(&geometry));
             let residuals = camera.grid_residuals(&tables, 7);
             prop_assert!(residuals.circle.max.is_finite());
-            // Every row begins in the frame or right of it.
+            // Every row begins inside the frame or to the right of it.
             let begins = |row| tables.values(row).unwrap().coordinate(0) >= -(1 << 14);
             prop_assert!((0..height).all(begins));
         }

@@ -3,12 +3,12 @@
 use halfrow_model::{Interpolant, Kernel, KernelError, NODES, Taps};
 use proptest::prelude::*;
 
-/// What `interpolant` makes of the function `p` of the distance from G2, the same for both colours.
+/// What `interpolant` makes of the function `p` of the distance from G2, for both colours alike.
 fn interpolate(interpolant: Interpolant, x: f64, p: impl Fn(f64) -> f64) -> f64 {
     interpolant.weights(x).iter().zip(-2_i8..).map(|(weight, m)| weight * p(f64::from(m))).sum()
 }
 
-/// A kernel that is zero but for `weight` at node 9, tap r5.
+/// A kernel of zeros except for `weight` at node 9, tap r5.
 fn one_weight(weight: f64) -> Result<Kernel, KernelError> {
     let mut weights = vec![[0.0; 5]; NODES];
     weights[9][3] = weight;

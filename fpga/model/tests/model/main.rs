@@ -1,6 +1,6 @@
 //! The reference model against hand calculation, the paper's figures and values from other programs.
 
-// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
+// clippy.toml allows `unwrap` inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used)]
 
 mod at_speed;
@@ -29,7 +29,7 @@ use halfrow_model::RowFactor;
 /// A row factor of 1, in units of 2^-24.
 const ONE: u32 = 1 << 24;
 
-/// The row factor of `units`, which are 1 to 2^24.
+/// The row factor of `units`, which must be 1 to 2^24.
 fn row_factor(units: u32) -> RowFactor {
     RowFactor::new(units).unwrap()
 }

@@ -10,8 +10,8 @@ fn lens() -> Equidistant {
     Equidistant::from_radius(50.0 * PI).unwrap()
 }
 
-/// Fig. 5: |exact − simplified| at R = 100 on the rows up to `rows` from the centre, averaged over 201 columns, with 0
-/// outside the image circle and on its top and bottom point.
+/// Fig. 5: |exact − simplified| at R = 100 on the rows up to `rows` from the centre, averaged over 201 columns. Outside the
+/// image circle and at its top and bottom points it counts as 0.
 fn mean_error(rows: i32) -> f64 {
     let lens = Equidistant::from_radius(100.0).unwrap();
     let error = |x: i32, y: i32| {

@@ -7,7 +7,8 @@ use halfrow_model::{
     correct_real, round_to_frame,
 };
 
-/// Rows 440 to 540 above the axis of a full frame, where the paper's lens stretches most.
+/// The row of the axis, below the 100 rows of the frame: they are 441 to 540 rows above it, where the paper's lens stretches
+/// most.
 const TOP: Option<f64> = Some(540.0);
 
 fn top() -> Geometry {

@@ -1,4 +1,4 @@
-//! The row factor: what is one, and how it is shown.
+//! The row factor: which words are one, and how it is displayed.
 
 use halfrow_model::{RowFactor, RowFactorError};
 
@@ -17,7 +17,7 @@ fn a_row_factor_is_above_zero_and_at_most_one() {
     assert!(refused.starts_with("0 is no row factor, which is 1 to 16777216; give 2^24 / k"), "{refused}");
 }
 
-/// Decimals of `units` / 2^24 as `bc` prints them.
+/// The decimals are `units` / 2^24 as `bc` prints them.
 #[test]
 fn a_row_factor_is_shown_as_its_fraction() {
     let shown = |units| RowFactor::new(units).unwrap().to_string();

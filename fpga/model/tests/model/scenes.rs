@@ -2,7 +2,8 @@
 
 use halfrow_model::{BitDepth, Frame, Geometry, Phase};
 
-/// The samples of DATAPATH.md's golden frame, 12 bits, without any structure: the hardest content for an interpolant.
+/// The samples of DATAPATH.md's golden frame, 12 bits. They have no structure, so they are the hardest content for an
+/// interpolant.
 pub(crate) fn golden_samples(geometry: &Geometry) -> Vec<u16> {
     let samples = (geometry.width() * geometry.height()) as u32;
     (0..samples).map(|index| (index.wrapping_mul(2_654_435_761) >> 20) as u16).collect()

@@ -11,7 +11,7 @@ fn geometry(height: usize, centre2: u32) -> Geometry {
     Geometry::new(64, height, BitDepth::Twelve, centre2).unwrap()
 }
 
-/// A table whose row 2 of 4 has `factor` and whose other rows are not stretched, against a ring of `ring` samples.
+/// Checks a ring of `ring` samples against a table whose row 2 of 4 has `factor` and whose other rows are not stretched.
 fn check_ring(centre2: u32, factor: u32, ring: usize) -> Result<(), TableError> {
     let factors = [ONE, ONE, factor, ONE];
     TableSet::from_units(geometry(4, centre2), &factors).unwrap().check_ring(ring)
@@ -89,7 +89,7 @@ fn look_back_is_legal_up_to_the_ring() {
 
 #[test]
 fn the_strongest_stretch_at_an_edge_misses_by_half_a_row() {
-    // n stays at 63 (the coordinate's rounding lifts it there) or at 0 all along the row.
+    // All along the row n stays at 63 (where the rounding of q lifts it) or at 0.
     assert_eq!(check_ring(126, 1, 64), Err(TableError::LookAhead { row: 2, excess: 32 }));
     assert_eq!(check_ring(0, 1, 64), Err(TableError::LookBack { row: 2, excess: 31, ring: 64 }));
 }
