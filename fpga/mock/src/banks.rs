@@ -1,13 +1,13 @@
-//! The banks that corrected rows are collected in, until they are fetched.
+//! The banks in which corrected rows are collected until they are fetched.
 
 use std::collections::VecDeque;
 
 use crate::core::Leaving;
 
-/// Which row it is, and what it was made with.
+/// Which row it is, and which tables made it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RowName {
-    /// The row sequence number: counts rows through all frames.
+    /// The row sequence number, which counts rows through all frames.
     pub sequence: u32,
     /// The frame's number.
     pub frame: u16,
@@ -34,7 +34,7 @@ pub struct RowOut {
     pub entered: u32,
 }
 
-/// A row of which not every sample has left yet.
+/// A row that has not left completely yet.
 #[derive(Debug)]
 struct Filling {
     row: RowOut,
@@ -53,12 +53,12 @@ pub struct OutBanks {
 }
 
 impl OutBanks {
-    /// `count` free banks. A row with the number `lost_row` frees its bank itself, and nobody gets it.
+    /// `count` free banks. A row with the number `lost_row` frees its bank by itself and is never returned.
     pub(crate) fn new(count: u8, lost_row: Option<u16>) -> Self {
         Self { count: count.into(), filling: VecDeque::new(), full: VecDeque::new(), lost_row }
     }
 
-    /// Whether a bank is free for one more row.
+    /// Whether a bank is free for another row.
     #[must_use]
     pub fn has_room(&self) -> bool {
         self.filling.len() + self.full.len() < self.count
@@ -76,7 +76,7 @@ impl OutBanks {
         self.filling.is_empty()
     }
 
-    /// Whether a row is being collected that was made with the tables of this generation.
+    /// Whether a row that was made with the tables of this generation is being collected.
     #[must_use]
     pub(crate) fn holds_generation(&self, generation: u8) -> bool {
         self.filling.iter().any(|filling| filling.row.name.generation == generation)
@@ -87,7 +87,7 @@ impl OutBanks {
         self.full.iter()
     }
 
-    /// The oldest complete row from the number `sequence` on.
+    /// The oldest complete row with a sequence number of at least `sequence`.
     #[must_use]
     pub fn first_from(&self, sequence: u32) -> Option<&RowOut> {
         self.full.iter().find(|row| row.name.sequence >= sequence)
@@ -98,14 +98,14 @@ impl OutBanks {
         self.full.pop_front()
     }
 
-    /// Takes a bank for a row of `width` samples whose first one enters at the pixel clock `now`.
+    /// Takes a bank for a row of `width` samples, the first of which enters at the pixel clock `now`.
     pub(crate) fn open(&mut self, name: RowName, width: usize, now: u64) {
         let samples = Vec::with_capacity(width);
         let row = RowOut { name, samples, first_latency: 0, last_latency: 0, pauses: 0, entered: 0 };
         self.filling.push_back(Filling { row, width, first_in: now, last_in: now });
     }
 
-    /// Notes that the newest row's last sample entered at the pixel clock `now`, and the CRC-32 of all that did.
+    /// Notes that the newest row's last sample entered at the pixel clock `now`, and the CRC-32 of all its samples.
     pub(crate) fn entered(&mut self, crc: u32, pauses: u16, now: u64) {
         if let Some(filling) = self.filling.back_mut() {
             filling.last_in = now;
@@ -113,7 +113,7 @@ impl OutBanks {
         }
     }
 
-    /// Adds a sample that left at the pixel clock `now` to the oldest row.
+    /// Adds a sample that left at the pixel clock `now` to the oldest row that is being collected.
     pub(crate) fn collect(&mut self, leaving: Leaving, now: u64) {
         let Some(Filling { row, width, first_in, last_in }) = self.filling.front_mut() else { return };
         if row.samples.is_empty() {

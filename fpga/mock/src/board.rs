@@ -29,7 +29,7 @@ use session::Session;
 
 pub(crate) use identity::WrongClaims;
 
-/// Why a request is refused, with the detail that goes with the reason.
+/// The reason why a request is refused, and its detail.
 type Refused = (RefusalCode, u16);
 
 /// A board. It takes no time of its own: everything that can be done is done when bytes arrive.
@@ -46,13 +46,13 @@ pub struct Board {
     configured: bool,
     rows: RowBanks,
     bursts: Bursts,
-    /// Pixel clocks that a burst goes on for with every packet.
+    /// Pixel clocks that a burst advances with every packet.
     clocks_a_packet: u64,
     status: Status,
 }
 
 impl Board {
-    /// A board of the build `options` that was just switched on.
+    /// A board of the build `options`, just switched on.
     ///
     /// # Errors
     /// If the options do not describe a build that can exist.
@@ -74,8 +74,8 @@ impl Board {
         })
     }
 
-    /// Takes bytes from the host that arrive together, at the time `now` since the board was switched on. A frame's last
-    /// row leaves behind them, so that a next frame among them enters while it leaves.
+    /// Takes bytes that arrive together from the host, at the time `now` since the board was switched on. The rest of a frame's
+    /// last row leaves only after all of them, so that the next frame may enter meanwhile if it is among them.
     pub fn receive(&mut self, bytes: &[u8], now: Duration) {
         self.end_silence(now);
         let mut decoder = std::mem::take(&mut self.decoder);
@@ -128,12 +128,12 @@ impl Board {
         }
     }
 
-    /// Whether this is what is wrong with the board.
+    /// Whether the board has this fault.
     fn has(&self, conduct: Conduct) -> bool {
         self.fault == Some(BoardFault::Conduct(conduct))
     }
 
-    /// Counts a packet of a session that is not open, and says so.
+    /// Counts a packet of a session that is not open, and refuses it.
     fn turn_away(&mut self, header: &Header) {
         count(&mut self.status.foreign_packets);
         if header.kind != Kind::RowAck.code() {
@@ -193,7 +193,7 @@ impl Board {
         self.send(&header, reply);
     }
 
-    /// Refuses under the request's own session number, so that a host of another session knows that it is meant.
+    /// Refuses with the request's own session number, so that a host of another session can tell that it is meant.
     fn refuse(&mut self, request: &Header, (code, detail): Refused) {
         count(&mut self.status.refusals);
         let refusal = Reply::Refusal(Refusal { code, kind: request.kind, detail });
@@ -201,7 +201,7 @@ impl Board {
     }
 
     fn send(&mut self, header: &Header, reply: &Reply<'_>) {
-        // Nothing that a board says is longer than a packet, and what it cannot say it leaves unsaid.
+        // Nothing that a board says is longer than a packet. What could not be encoded would be left unsaid.
         let _ = self.encoder.encode(header, |payload| reply.write(payload), &mut self.outgoing);
     }
 }
@@ -219,7 +219,7 @@ impl Endpoint for Board {
     }
 }
 
-/// Counts one more, up to the counter's end.
+/// Counts one more, up to the counter's limit.
 fn count(counter: &mut u32) {
     *counter = counter.saturating_add(1);
 }

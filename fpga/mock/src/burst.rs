@@ -1,4 +1,4 @@
-//! Frames that the board makes, sends through the core without a pause, and signs: `fpga/AT-SPEED.md`.
+//! Frames that the board makes itself, sends through the core without a pause, and signs: `fpga/AT-SPEED.md`.
 
 mod defects;
 mod signer;
@@ -30,7 +30,7 @@ pub(crate) struct Plan {
     pub(crate) first_frame: u16,
     /// Pixel clocks between two frames.
     pub(crate) frame_blanking: u16,
-    /// Content and tables.
+    /// Decides the content and the tables of each frame.
     pub(crate) mode: BurstMode,
 }
 
@@ -39,20 +39,20 @@ pub(crate) struct Plan {
 struct Burst {
     plan: Plan,
     frames: u32,
-    /// Frames of which the first sample has entered.
+    /// Frames whose first sample has entered.
     begun: u32,
-    /// The next row of the frame that enters; none between frames.
+    /// The next row of the frame that is entering; none between frames.
     row: Option<u16>,
     /// Pixel clocks since the last sample entered.
     since_row: u64,
     /// Whether the next frame has had to wait for a record.
     held_back: bool,
     ended: bool,
-    /// The first frame whose record the host has not got.
+    /// The first frame whose record the host does not have yet.
     unread: u32,
 }
 
-/// All that makes bursts.
+/// Everything that makes bursts.
 #[derive(Debug)]
 pub(crate) struct Bursts {
     /// The most records that are kept.
@@ -89,7 +89,7 @@ impl Bursts {
         self.state() == BurstState::UnderWay
     }
 
-    /// Whether rows of the shadow's tables may be inside the core.
+    /// Whether rows inside the core may be using the shadow bank's tables.
     pub(crate) fn uses_shadow(&self) -> bool {
         self.is_under_way() && self.burst.as_ref().is_some_and(|it| it.plan.mode == BurstMode::Alternating)
     }
@@ -99,14 +99,14 @@ impl Bursts {
         self.burst.as_ref().map_or(0, |burst| burst.plan.burst)
     }
 
-    /// The last burst has so many frames, unless it has ended.
+    /// Sets the number of frames of the last burst, which has no effect if it has ended.
     pub(crate) fn set_frames(&mut self, frames: u32) {
         if let Some(burst) = &mut self.burst {
             burst.frames = frames;
         }
     }
 
-    /// Starts a burst. All records are dropped, and in mode 3 what the trap holds.
+    /// Starts a burst. Drops all records and, in mode 3, what the trap holds.
     pub(crate) fn start(&mut self, plan: Plan, frames: u32) {
         self.signer.start(plan.mode);
         self.burst = Some(Burst {
@@ -121,7 +121,7 @@ impl Bursts {
         });
     }
 
-    /// Ends the burst at once, without a record of what is inside, and empties the trap.
+    /// Ends the burst at once, without records of the frames inside, and empties the trap.
     pub(crate) fn abort(&mut self) {
         if let Some(burst) = &mut self.burst {
             burst.ended = true;
@@ -129,14 +129,14 @@ impl Bursts {
         self.signer.drop_inside();
     }
 
-    /// Forgets the burst, as a new session does.
+    /// Forgets the burst, for a new session.
     pub(crate) fn forget(&mut self) {
         self.abort();
         self.signer.records.clear();
         self.burst = None;
     }
 
-    /// Frees the records before `from`. Returns those that are left, or none if there cannot be such a frame.
+    /// Frees the records before `from` and returns the others; none if there can be no such record.
     pub(crate) fn records_from(&mut self, from: u32) -> Option<impl Iterator<Item = &FrameRecord>> {
         let unread = self.burst.as_ref().map_or(0, |burst| burst.unread);
         let freed = usize::try_from(from.checked_sub(unread)?).ok()?;
@@ -150,18 +150,18 @@ impl Bursts {
         Some(self.signer.records.iter())
     }
 
-    /// Expects these signatures of the rows from `first` on, as far as there are such rows.
+    /// Sets the expected signatures of the rows from `first` on, as far as such rows exist.
     pub(crate) fn expect(&mut self, first: u16, signatures: impl Iterator<Item = u32>) {
         let rows = self.signer.trap.expected.iter_mut().skip(first.into());
         rows.zip(signatures).for_each(|(row, signature)| *row = signature);
     }
 
-    /// The row that was trapped.
+    /// The trapped row, if there is one.
     pub(crate) fn trapped(&self) -> Option<&Trapped> {
         self.signer.trap.kept.as_ref()
     }
 
-    /// Goes on with a burst that is under way: for about so many pixel clocks, to a whole row, or until it ends or waits
+    /// Advances a burst that is under way: by about `clocks` pixel clocks, up to the end of a row, or until it ends or waits
     /// for a record.
     pub(crate) fn run(&mut self, player: &mut Player, tables: &mut Tables, clocks: u64) {
         let end = player.now().saturating_add(clocks);
@@ -178,7 +178,7 @@ impl Bursts {
                 burst.begun += 1;
                 self.blank(player, blanking);
             } else {
-                // The rest of the last frame leaves meanwhile.
+                // Meanwhile the rest of the last frame leaves.
                 (burst.held_back, burst.ended) = (wanted, !wanted);
                 let rest = u64::from(player.delay()).saturating_sub(burst.since_row);
                 self.blank(player, rest);
@@ -187,7 +187,7 @@ impl Bursts {
         }
     }
 
-    /// Plays a row of the frame under way, with the blanking before it.
+    /// Plays a row of the frame under way, after its blanking.
     fn play(&mut self, row: u16, player: &mut Player, tables: &mut Tables) {
         let settings = player.settings().clone();
         let Settings { width, height, centre2, depth, blanking, .. } = settings;
@@ -232,7 +232,7 @@ impl Bursts {
 }
 
 impl Burst {
-    /// The bank that a row of a frame is to be made with, and the one that it is made with.
+    /// The bank that a row of a frame should be made with, and the one that it is made with.
     fn banks(&self, frame: u32, row: u16, defects: BurstDefects, least_blanking: u16) -> (Bank, Bank) {
         let Plan { mode, frame_blanking, .. } = self.plan;
         let bank = |frame: u32| match mode {
@@ -245,7 +245,7 @@ impl Burst {
 }
 
 impl Plan {
-    /// The number of a frame, on which its content depends.
+    /// The frame's number, which decides its content.
     fn number(&self, frame: u32) -> u16 {
         match self.mode {
             BurstMode::Fresh | BurstMode::Alternating => self.first_frame.wrapping_add(frame as u16),
@@ -259,7 +259,8 @@ mod tests {
     use super::*;
     use crate::depth::Depth;
 
-    /// Pixel clocks that a burst of three frames of four rows of 64 samples takes, which the core leaves after 44.
+    /// Pixel clocks of a burst of three frames of four rows of 64 samples. The last sample leaves the core 44 clocks after it
+    /// entered.
     fn clocks(blanking: u16, frame_blanking: u16) -> u64 {
         let options = Options::default();
         let (mut player, mut tables) = (Player::new(&options, None).unwrap(), Tables::new(&options, None));
@@ -273,7 +274,7 @@ mod tests {
         player.now()
     }
 
-    /// Neither is seen from outside, where a frame counts for its samples and latencies alone.
+    /// Neither blanking is visible from outside, where a frame shows only its samples and latencies.
     #[test]
     fn between_rows_and_frames_pass_exactly_their_blankings() {
         assert_eq!(clocks(0, 8), 3 * 4 * 64 + 2 * 8 + 44);

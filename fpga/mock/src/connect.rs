@@ -1,4 +1,4 @@
-//! From the options of a target string to a mock board behind a pipe.
+//! Turns the options of a target string into a mock board behind a pipe.
 
 use halfrow_pipe::{Pipe, PipeSetup, TargetError};
 
@@ -6,7 +6,7 @@ use crate::board::Board;
 use crate::faults::BoardFault;
 use crate::options::{OptionError, Options};
 
-/// Options that make no mock board, or no pipe to it.
+/// Options that describe no mock board, or no pipe to it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConnectError {
     /// An option is unknown or has a wrong value.
@@ -23,8 +23,8 @@ pub enum ConnectError {
 /// [`crate::FAULTS`]).
 ///
 /// # Errors
-/// [`ConnectError`] when a key is unknown, given twice or taken by both faults, a value is out of range, or the build cannot
-/// exist or has not got the part that the fault is of.
+/// [`ConnectError`] when a key is unknown, given twice or used by both faults, when a value is out of range, or when the build
+/// cannot exist or lacks the part that the fault would break.
 pub fn connect(options: &[(&str, &str)]) -> Result<Pipe<Board>, ConnectError> {
     let mut build = Options::default();
     let (setup, fault) = PipeSetup::with_board(options, &mut build)?;
@@ -33,10 +33,10 @@ pub fn connect(options: &[(&str, &str)]) -> Result<Pipe<Board>, ConnectError> {
     Ok(setup.connect(board))
 }
 
-/// The fault of the board that [`connect`] would build from the same options, if it has one.
+/// The board's fault that [`connect`] would build in for these options, if there is one.
 ///
 /// # Errors
-/// [`TargetError`] as there, but for a build that cannot exist.
+/// [`TargetError`] as there. Whether the build can exist is not checked.
 pub fn board_fault(options: &[(&str, &str)]) -> Result<Option<BoardFault>, TargetError> {
     PipeSetup::with_board(options, &mut Options::default()).map(|(_, fault)| fault)
 }

@@ -3,10 +3,10 @@
 use crate::depth::Depth;
 use crate::gaps::draw;
 
-/// The content id of the page.
+/// The content id that AT-SPEED.md defines.
 pub(crate) const CONTENT: u16 = 1;
 
-/// Puts the samples of a row in place of what `samples` held: as many, of `depth` bits.
+/// Fills `samples` with those of a row, each of `depth` bits.
 pub(crate) fn fill(samples: &mut [u16], depth: Depth, seed: u32, frame: u16, row: u16) {
     let first = draw((seed ^ ((u32::from(frame) << 12) + u32::from(row))) | 1 << 31);
     let max = depth.largest();

@@ -25,7 +25,7 @@ pub use kernel::{Kernel, NODES, Node, Weight};
 pub use reader::RowBinding;
 pub use values::{GridShape, RowValues, UNSTRETCHED};
 
-/// Samples that must have entered beyond half a row before a column can be read; part of the latency L.
+/// Samples beyond half a row that must have entered before a column can be read; part of the latency L.
 const LOOK_AHEAD: u32 = 3;
 
 /// A sample that enters.
@@ -37,7 +37,7 @@ pub struct Entering<'a> {
     pub begins: Option<&'a RowBinding>,
 }
 
-/// A row that has begun to enter and has not yet begun to be read.
+/// A row that has begun to enter and is not being read yet.
 #[derive(Debug)]
 struct Waiting {
     binding: RowBinding,
@@ -78,7 +78,7 @@ impl Core {
         })
     }
 
-    /// Pixel clocks D = W/2 + L between a sample and its output in rows of `width` columns, as the core really is.
+    /// Pixel clocks D = W/2 + L between a sample and its output in rows of `width` columns, with the core's real latency.
     #[must_use]
     pub fn delay(&self, width: u16) -> u32 {
         u32::from(width) / 2 + self.latency
@@ -95,7 +95,7 @@ impl Core {
         self.delay.step(made)
     }
 
-    /// Writes a sample into the ring; a row's first one sets the time of its first read.
+    /// Writes a sample into the ring. A row's first sample also sets the time of the row's first read.
     #[inline]
     fn enter(&mut self, entering: Entering<'_>) {
         if let Some(binding) = entering.begins {
@@ -105,7 +105,7 @@ impl Core {
         self.ring.write(entering.sample);
     }
 
-    /// Lets the waiting row follow the one that leaves, once its time has come.
+    /// Starts to read the waiting row, once its time has come.
     #[inline]
     fn begin_reading(&mut self) {
         match &mut self.waiting {

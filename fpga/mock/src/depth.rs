@@ -1,6 +1,6 @@
 //! The bit depths of a sample.
 
-/// Bits of a sample (B in the datapath's specification).
+/// Bits of a sample (B in DATAPATH.md).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Depth {
     /// 8 bits, 0 to 255.
@@ -15,7 +15,7 @@ impl Depth {
     /// All depths, ascending.
     pub const ALL: [Self; 3] = [Self::Eight, Self::Ten, Self::Twelve];
 
-    /// The depth of `bits` bits; none but 8, 10 and 12 exist.
+    /// The depth of `bits` bits; none unless that is 8, 10 or 12.
     #[must_use]
     pub fn from_bits(bits: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|depth| depth.bits() == bits)

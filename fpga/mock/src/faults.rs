@@ -1,4 +1,4 @@
-//! Faults by name: one part of the board out of order, on purpose.
+//! Faults by name: each breaks one part of the board on purpose.
 
 mod conduct;
 mod defects;
@@ -14,7 +14,7 @@ pub(crate) use defects::Defects;
 pub use effect::Streamed;
 pub use part::BoardFault;
 
-/// A row that small frames have too is the default.
+/// The default is a row that small frames have too.
 const ROW: Parameter = Parameter::new("row", Range::Whole(0, 2047), Some("3"), "the row");
 const ENTRY: Parameter =
     Parameter::new("row", Range::Whole(0, 65534), Some("3"), "the row, or the number of a grid's entry");
@@ -264,7 +264,7 @@ const fn fault(
     Fault::new(name, Place::Board, what, parameters, make)
 }
 
-/// All faults that a mock board and the pipe to it can have, those of the pipe first.
+/// All faults that a mock board and the pipe to it can have; those of the pipe come first.
 pub fn catalogue() -> impl Iterator<Item = FaultInfo> {
     let pipe = halfrow_pipe::FAULTS.iter().map(|fault| fault.info);
     pipe.chain(FAULTS.iter().map(|fault| fault.info))

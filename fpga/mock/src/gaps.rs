@@ -1,13 +1,13 @@
-//! The pattern of pauses that a seed stands for. The RTL draws the same numbers.
+//! The pattern of pauses that a seed gives. The RTL draws the same numbers.
 
-/// A seeded pattern of pauses; none at all with the seed 0.
+/// A seeded pattern of pauses; the seed 0 gives none.
 #[derive(Debug, Default)]
 pub(crate) struct Gaps {
     state: u32,
 }
 
 impl Gaps {
-    /// Starts the pattern, as at the first row of every frame.
+    /// Starts the pattern, as before row 0 of every frame.
     pub(crate) fn start(&mut self, seed: u32) {
         self.state = seed;
     }
@@ -19,7 +19,7 @@ impl Gaps {
 
     /// Whether the pixel enable is off for one board clock before a sample. One draw.
     pub(crate) fn pauses(&mut self) -> bool {
-        // Zero is the one state that the generator neither reaches nor leaves, so it can stand for "no gaps".
+        // 0 is the one state that the generator neither reaches nor leaves, so it can stand for "no gaps".
         self.state != 0 && self.draw() & 0x7 == 0
     }
 
@@ -29,7 +29,7 @@ impl Gaps {
     }
 }
 
-/// The number behind `x` of Marsaglia's xorshift32.
+/// The number after `x` in Marsaglia's xorshift32.
 pub(crate) fn draw(mut x: u32) -> u32 {
     x ^= x << 13;
     x ^= x >> 17;

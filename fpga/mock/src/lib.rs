@@ -6,11 +6,11 @@
 //! Tables (two banks) ──┘   blanking, gaps, flush               ring, window, weights
 //! ```
 //!
-//! [`Core`] is the datapath with its one ring of samples and its timing. [`Player`] feeds it rows and measures how
-//! long each takes. [`Tables`] hold the row factors or a grid of them, and the kernel, in a shadow bank and a committed one.
-//! Behind the wire a board also makes frames itself and signs them, as `fpga/AT-SPEED.md` says: about one of 1920 x 1080 with
-//! every packet that it gets, so that it takes no time of its own there either.
-//! [`BoardFault`] breaks one part of the board on purpose, so that a judge of boards can be judged.
+//! [`Core`] is the datapath with its one ring of samples and its timing. [`Player`] feeds it rows and measures how long each
+//! takes. [`Tables`] hold the row factors, or a grid of factors, and the kernel, in a shadow bank and an active one. Behind the
+//! wire a board also makes and signs frames of its own, as `fpga/AT-SPEED.md` says. It makes about one of 1920 x 1080 with
+//! every packet that it gets, so that this takes no time of its own either. [`BoardFault`] breaks one part of the board on
+//! purpose, so that a judge of boards can be judged.
 //!
 //! The crate shares no arithmetic with the reference model: both follow `fpga/DATAPATH.md` on their own.
 

@@ -17,12 +17,12 @@ const PIXEL_CLOCK: Limits = Limits::new("pixel-clock", 1, 1_000_000_000);
 const RECORDS: Limits = Limits::new("records", 2, 1024);
 const LEAST_FRAME_BLANKING: Limits = Limits::new("least-frame-blanking", 0, 4095);
 const ENTRIES: Limits = Limits::new("entries", LEAST_ENTRIES as i64, 65535);
-/// The fewest entries of a bank that may hold a grid.
+/// The fewest entries of a bank that can hold a grid.
 const LEAST_ENTRIES: u16 = 2048;
-/// As wide as the number that a Spartan-6 has, which is of 57 bits.
+/// As wide as the number of a Spartan-6, which has 57 bits.
 const SERIAL: Limits = Limits::new("serial", 0, (1 << 57) - 1);
 
-/// The name of the option that says how many taps there are.
+/// The name of the option that sets the number of taps.
 const TAPS: &str = "taps";
 
 /// The name of the option that lists the depths, as in `depths=8+12`.
@@ -48,7 +48,7 @@ pub enum OptionError {
     /// One option by itself is wrong.
     #[error(transparent)]
     Value(#[from] ValueError),
-    /// The ring's addresses would not wrap.
+    /// The ring's addresses would not wrap correctly.
     #[error("ring={ring} is not a power of two; give one from 64 to 16384")]
     RingNotPowerOfTwo {
         /// Samples in the ring.
@@ -73,31 +73,31 @@ pub enum OptionError {
     /// No depth is left.
     #[error("depths is empty; give at least one of 8, 10 and 12")]
     NoDepth,
-    /// A fault of an address line that the ring has not got.
+    /// A fault of an address line that the ring does not have.
     #[error("the ring has no address line bit={bit}; give one from 0 to {last}, or a longer ring")]
     NoAddressLine {
-        /// The line that the fault is of.
+        /// The line that the fault would break.
         bit: u8,
-        /// The highest line that there is.
+        /// The highest line of the ring.
         last: u32,
     },
-    /// A fault of a tap that a build of five taps has not got.
+    /// A fault of a tap that a build of five taps does not have.
     #[error("a build of five taps has no tap={tap}; give one from 1 to 5, or leave taps=five out")]
     NoTap {
-        /// The tap that the fault is of.
+        /// The tap that the fault would break.
         tap: u8,
     },
-    /// A fault of the choice between two banks of tables, where there is one.
+    /// A fault in the choice between two banks of tables, on a build with one bank.
     #[error("the fault takes the wrong one of two banks of tables; give table-banks=2, or another fault")]
     NoOtherBank,
-    /// A fault of frames that the board makes, where it makes none.
+    /// A fault in frames that the board makes itself, on a build that makes none.
     #[error(
         "the fault strikes in frames that the board makes itself; leave bursts=no out, or give another fault"
     )]
     NoBursts,
 }
 
-/// How many taps a build weighs.
+/// How many taps a build has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TapCount {
     /// R1 to R5: enough for Hermite, linear and nearest, not for Keys.
@@ -111,7 +111,7 @@ pub enum TapCount {
 pub enum BurstBuild {
     /// It does not.
     None,
-    /// It does, and keeps no row that is wrong.
+    /// It does, but without a trap.
     Untrapped,
     /// It does, with a trap.
     Trapped,
@@ -120,27 +120,27 @@ pub enum BurstBuild {
 /// The constants of a build.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Pixel clocks L that an output leaves after half a row, 4 to 32; three are look-ahead, the rest pipeline.
+    /// L: pixel clocks beyond half a row until an output leaves, 4 to 32; three are look-ahead, the rest is the pipeline.
     pub latency: u8,
-    /// Samples M in the ring, a power of two; none for the least that holds the widest row.
+    /// M: samples in the ring, a power of two; none for the smallest that holds the widest row.
     pub ring: Option<u16>,
     /// Pixel clocks that the build needs between rows, 0 to 4095.
     pub least_blanking: u16,
-    /// Rows that wait to be played, 2 to 255.
+    /// Rows that can wait to be played, 2 to 255.
     pub row_banks_in: u8,
-    /// Rows that were played and wait to be fetched, 2 to 255.
+    /// Rows that have been played and can wait to be fetched, 2 to 255.
     pub row_banks_out: u8,
-    /// Banks of tables, 1 or 2: with one, what is written is what rows use.
+    /// Banks of tables, 1 or 2. With one bank, rows use the same tables that are written.
     pub table_banks: u8,
     /// Taps of the core.
     pub taps: TapCount,
     /// Columns of the widest row, even, 64 to 2592.
     pub max_width: u16,
-    /// Rows of the highest frame, 1 to 2048.
+    /// Rows of the tallest frame, 1 to 2048.
     pub max_height: u16,
-    /// Bits a sample that the board can be set to.
+    /// The depths that the board can be set to.
     pub depths: Vec<Depth>,
-    /// Pixel clock in Hz, 1 to 10^9. Told to the host, not kept to.
+    /// The pixel clock in Hz, 1 to 10^9. It is told to the host but has no other effect.
     pub pixel_clock: u32,
     /// The FPGA's own number, below 2^57; 0 for none.
     pub serial: u64,
@@ -154,7 +154,7 @@ pub struct Options {
     pub entered: bool,
     /// Whether the board takes grids: `fpga/DATAPATH.md`, *Datapath 2*.
     pub datapath2: bool,
-    /// Entries T of a bank, 2048 to 65535; those beyond the highest frame are of use to grids alone.
+    /// Entries of a bank, 2048 to 65535, raised to the height of the tallest frame. Those beyond that height serve only grids.
     pub entries: u16,
 }
 
@@ -190,16 +190,16 @@ impl Options {
         self.ring.unwrap_or_else(|| self.max_width.checked_next_power_of_two().unwrap_or(u16::MAX))
     }
 
-    /// Entries of a bank, in which the highest frame finds its row factors.
+    /// T: entries of a bank, at least one for each row of the tallest frame.
     #[must_use]
     pub(crate) fn bank_entries(&self) -> u16 {
         self.entries.max(self.max_height)
     }
 
-    /// Whether a build with these options can exist.
+    /// Checks whether a build with these options can exist.
     ///
     /// # Errors
-    /// Names the first option that is out of range or does not fit another.
+    /// The first option that is out of range or does not fit another.
     pub fn check(&self) -> Result<(), OptionError> {
         LATENCY.check(self.latency.into())?;
         LEAST_BLANKING.check(self.least_blanking.into())?;
@@ -254,7 +254,7 @@ impl BoardOptions for Options {
 
     const FAULTS: &'static [Fault<BoardFault>] = FAULTS;
 
-    /// Whether options fit each other is for [`Options::check`] to say, so that their order does not matter.
+    /// Only [`Options::check`] says whether options fit each other, so their order does not matter.
     fn set(&mut self, key: &str, value: &str) -> Result<bool, ValueError> {
         let is = |limits: &Limits| limits.key() == key;
         match key {

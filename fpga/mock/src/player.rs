@@ -13,19 +13,19 @@ use crate::tables::Tables;
 /// A row to be played.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RowIn {
-    /// The row sequence number, handed on to the row's output.
+    /// The row sequence number, passed on to the row's output.
     pub sequence: u32,
     /// The frame's number.
     pub frame: u16,
     /// The row in its frame, from 0.
     pub row: u16,
-    /// Whether it is the last of its frame, so that the core is flushed behind it.
+    /// Whether it is the last of its frame, so that the core is flushed after it.
     pub last: bool,
     /// Its samples, W of them.
     pub samples: Vec<u16>,
 }
 
-/// A row that the player does not take.
+/// A row that the player refuses.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlayError {
     /// All out-banks are in use.
@@ -58,7 +58,7 @@ pub(crate) struct PlayerDefects {
     pub(crate) spoilt: Option<SpoiltSample>,
 }
 
-/// A sample of every frame of which a bit flips between the in-bank and the core.
+/// A sample of every frame that has one bit flipped between the in-bank and the core.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpoiltSample {
     /// Its row.
@@ -70,7 +70,7 @@ pub(crate) struct SpoiltSample {
 }
 
 impl SpoiltSample {
-    /// A row as the core gets it.
+    /// Turns a row into what the core gets.
     fn spoil(self, row: u16, samples: &mut [u16]) {
         if row == self.row
             && let Some(sample) = samples.get_mut(self.column.map_or(samples.len() / 2, usize::from))
@@ -82,8 +82,8 @@ impl SpoiltSample {
 
 /// Plays rows through the core, one sample a pixel clock.
 ///
-/// Between rows it stops the pixel enable, so the time until the next row is there adds no pixel clock. The output of
-/// a row is complete when half of the next one has entered, or when the core was flushed behind the last of a frame.
+/// Between rows it stops the pixel enable, so that waiting for the next row adds no pixel clock. The output of a row is
+/// complete when half of the next one has entered, or when the core was flushed after the last row of a frame.
 #[derive(Debug)]
 pub struct Player {
     core: Core,
@@ -117,7 +117,7 @@ impl Player {
         })
     }
 
-    /// The present settings.
+    /// The current settings.
     #[must_use]
     pub fn settings(&self) -> &Settings {
         &self.settings
@@ -136,12 +136,12 @@ impl Player {
         Ok(())
     }
 
-    /// Plays a row: the blanking before it, then its samples with the gaps between them. Row 0 starts a frame: the pattern
-    /// of gaps starts anew, and a commit for this frame takes effect. If the last row of the frame before has not left
-    /// yet, its rest leaves meanwhile.
+    /// Plays a row: the blanking before it, then its samples with the gaps between them. Row 0 starts a frame: the pattern of
+    /// gaps restarts, and a commit for this frame takes effect. If the last row of the previous frame has not left completely,
+    /// its rest leaves meanwhile.
     ///
     /// # Errors
-    /// If no out-bank is free or the row does not fit the settings. Nothing is played then.
+    /// If no out-bank is free or the row does not fit the settings. In that case nothing is played.
     pub fn play(&mut self, row: &RowIn, tables: &mut Tables) -> Result<(), PlayError> {
         self.check(row)?;
         let mut blanking = u32::from(self.settings.blanking);
@@ -159,23 +159,23 @@ impl Player {
         Ok(())
     }
 
-    /// Brings the rest of a frame's last row out, if that is the row that was played last.
+    /// Brings out the rest of a frame's last row, if that was the row played last.
     pub fn flush(&mut self) {
         self.blank(self.flush);
         self.flush = 0;
     }
 
-    /// Pixel clocks D between a sample and its output with the present settings, as the core really is.
+    /// Pixel clocks D between a sample and its output with the current settings, with the core's real latency.
     pub(crate) fn delay(&self) -> u32 {
         self.core.delay(self.settings.width)
     }
 
-    /// The pixel clock that comes next.
+    /// The number of the next pixel clock.
     pub(crate) fn now(&self) -> u64 {
         self.pixel_clock
     }
 
-    /// One pixel clock of a burst, whose outputs go to no bank: what leaves, and at which clock.
+    /// One pixel clock of a burst, whose outputs go to no bank: the output, if any, and the clock's number.
     #[inline(always)]
     pub(crate) fn clock(&mut self, input: Option<Entering<'_>>) -> (Option<Leaving>, u64) {
         let now = self.pixel_clock;
@@ -194,7 +194,7 @@ impl Player {
         if self.banks.has_room() { Ok(()) } else { Err(PlayError::NoBank) }
     }
 
-    /// Lets the samples of a row enter, bound to what the tables hold now.
+    /// Feeds the samples of a row to the core, bound to the current contents of the tables.
     fn enter(&mut self, row: &RowIn, tables: &mut Tables) {
         let bound = tables.bind(row.row, &self.settings);
         let &RowIn { sequence, frame, row: number, .. } = row;
@@ -236,7 +236,7 @@ impl Player {
 mod tests {
     use super::*;
 
-    /// Pixel clocks of a frame of four rows of 2048 samples, which the core leaves after 1036.
+    /// Pixel clocks of a frame of four rows of 2048 samples. The last sample leaves the core 1036 clocks after it entered.
     fn clocks_of_a_frame(blanking: u16, gap_seed: u32) -> u64 {
         let options = Options::default();
         let mut player = Player::new(&options, None).unwrap();
@@ -257,7 +257,7 @@ mod tests {
         assert_eq!(clocks_of_a_frame(100, 0), 4 * 2048 + 1036 + 3 * 100);
     }
 
-    /// The seed 1 adds 7, 7 and 6 clocks before the rows 1 to 3; drawn in Python.
+    /// The seed 1 adds 7, 7 and 6 clocks before rows 1 to 3, as drawn in Python.
     #[test]
     fn a_seed_adds_blanking_before_every_row_but_the_first() {
         assert_eq!(clocks_of_a_frame(100, 1), clocks_of_a_frame(100, 0) + 7 + 7 + 6);

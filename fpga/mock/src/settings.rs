@@ -3,7 +3,7 @@
 use crate::depth::Depth;
 use crate::options::Options;
 
-/// Columns of the narrowest row. In narrower ones a third row could be in flight.
+/// Columns of the narrowest row. With narrower ones a third row could be under way.
 const LEAST_WIDTH: u16 = 64;
 
 /// Settings that a board does not accept.
@@ -44,7 +44,7 @@ pub enum SettingsError {
         /// Bits a sample.
         bits: u8,
     },
-    /// The build needs more time between rows.
+    /// The build needs more blanking between rows.
     #[error("{blanking} blank pixel clocks between rows are too few; give at least {least}")]
     Blanking {
         /// Pixel clocks asked for.
@@ -65,7 +65,7 @@ pub struct Settings {
     pub centre2: u16,
     /// Bits a sample.
     pub depth: Depth,
-    /// Pixel clocks without a sample before every row of a frame but its first.
+    /// Pixel clocks without a sample before every row of a frame except its first.
     pub blanking: u16,
     /// Seed of the pattern of gaps; 0 for none.
     pub gap_seed: u32,
@@ -85,10 +85,10 @@ impl Settings {
         }
     }
 
-    /// Whether a build can run with these settings.
+    /// Checks whether a build can run with these settings.
     ///
     /// # Errors
-    /// Names the first setting that the build cannot run with.
+    /// The first setting that the build cannot run with.
     pub fn check(&self, options: &Options) -> Result<(), SettingsError> {
         let &Self { width, height, centre2, depth, blanking, .. } = self;
         if !options.depths.contains(&depth) {

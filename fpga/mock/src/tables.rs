@@ -1,5 +1,5 @@
-//! The tables that rows are made with, in two banks: one is written while rows use the other. A small build has one
-//! bank, which is both.
+//! The tables that rows are made with, in two banks: one is written while rows use the other. A small build has a single bank
+//! that serves as both.
 
 mod defects;
 mod error;
@@ -44,7 +44,7 @@ pub struct Bound {
     pub values: RowValues,
     /// The kernel.
     pub kernel: Arc<Kernel>,
-    /// The generation that the row will be named after.
+    /// The generation that the row will name.
     pub generation: u8,
 }
 
@@ -53,7 +53,7 @@ pub struct Bound {
 struct Contents {
     /// Row factors or a grid.
     entries: Vec<u32>,
-    /// How a grid lies; none for row factors.
+    /// The shape of a grid; none for row factors.
     shape: Option<GridShape>,
     kernel: Arc<Kernel>,
     generation: u8,
@@ -69,12 +69,12 @@ struct Commit {
 /// The banks of tables, and what is wrong with them.
 #[derive(Debug)]
 pub struct Tables {
-    /// None where the active bank itself is written.
+    /// None if there is one bank: then the active bank itself is written.
     shadow: Option<Contents>,
     active: Contents,
     commit: Option<Commit>,
     taps: TapCount,
-    /// Entries that hold row factors.
+    /// The number of entries that can hold row factors.
     max_height: usize,
     defects: TableDefects,
     rows_bound: u32,
@@ -101,11 +101,12 @@ impl Tables {
         }
     }
 
-    /// Writes factors into the shadow bank, from the row `first` on: all of them or, on an error, none. With one of them it holds
-    /// row factors, whatever it held before.
+    /// Writes factors into the shadow bank, starting with row `first`: all of them or, on an error, none. If there is at least
+    /// one, the bank then holds row factors, whatever it held before.
     ///
     /// # Errors
-    /// If a row is not in the table, a factor is not from 1 to 2^24, or the shadow bank waits for its frame.
+    /// If a row is not in the table, a factor is outside 1 to 2^24, or the shadow bank has been committed and waits for its
+    /// frame.
     pub fn write_factors(&mut self, first: usize, factors: &[u32]) -> Result<(), TableError> {
         self.check_writable()?;
         let max_height = self.max_height;
@@ -120,11 +121,12 @@ impl Tables {
         Ok(())
     }
 
-    /// Writes entries of a grid into the shadow bank, where the row factors are, from the entry `first` on: all of them or,
-    /// on an error, none.
+    /// Writes entries of a grid into the shadow bank, into the same memory as row factors, starting with entry `first`: all of
+    /// them or, on an error, none.
     ///
     /// # Errors
-    /// If an entry is not in the bank, a value is above 2^25 − 1, or the shadow bank waits for its frame.
+    /// If an entry is not in the bank, a value is above 2^25 − 1, or the shadow bank has been committed and waits for its
+    /// frame.
     pub fn write_grid(&mut self, first: usize, values: &[u32]) -> Result<(), TableError> {
         self.check_writable()?;
         let entries = span(&mut self.shadow_mut().entries, first, values.len())?;
@@ -135,10 +137,11 @@ impl Tables {
         Ok(())
     }
 
-    /// Writes kernel nodes into the shadow bank, from the node `first` on: all of them or, on an error, none.
+    /// Writes kernel nodes into the shadow bank, starting with node `first`: all of them or, on an error, none.
     ///
     /// # Errors
-    /// If a node is not in the kernel, needs taps that the build lacks, or the shadow bank waits for its frame.
+    /// If a node is not in the kernel or needs taps that the build lacks, or the shadow bank has been committed and waits for
+    /// its frame.
     pub fn write_nodes(&mut self, first: usize, nodes: &[Node]) -> Result<(), TableError> {
         self.check_writable()?;
         let five = self.taps == TapCount::Five;
@@ -150,8 +153,8 @@ impl Tables {
         Ok(())
     }
 
-    /// Commits the row factors of the shadow bank: from row 0 of `first_frame` on it is the active one and has this
-    /// generation. With one bank it has it at once.
+    /// Commits the row factors of the shadow bank: from row 0 of `first_frame` on it is the active bank with this generation.
+    /// With a single bank this takes effect at once.
     ///
     /// # Errors
     /// If an earlier commit has not taken effect yet.
@@ -159,7 +162,7 @@ impl Tables {
         self.commit_shape(generation, first_frame, None)
     }
 
-    /// Commits the shadow bank as [`Self::commit`] does, as a grid of this shape or, without one, as row factors.
+    /// Commits the shadow bank like [`Self::commit`], as a grid of this shape or, without a shape, as row factors.
     ///
     /// # Errors
     /// If an earlier commit has not taken effect yet.
@@ -179,7 +182,7 @@ impl Tables {
         Ok(())
     }
 
-    /// Row 0 of `frame` begins: a commit for this frame takes effect.
+    /// Starts row 0 of `frame`: a commit for this frame takes effect.
     pub fn start_frame(&mut self, frame: u16) {
         if let Some(commit) = self.commit.take_if(|commit| commit.first_frame == frame) {
             if let Some(shadow) = &mut self.shadow {
@@ -189,12 +192,12 @@ impl Tables {
         }
     }
 
-    /// What the row that begins now is bound to, in a frame of these settings.
+    /// What the row that begins now is bound to, in a frame with these settings.
     pub fn bind(&mut self, row: u16, settings: &Settings) -> Bound {
         self.bind_from(Bank::Active, row, settings)
     }
 
-    /// What a row that begins now with the tables of a bank is bound to.
+    /// What a row that begins now is bound to, with the tables of this bank.
     pub(crate) fn bind_from(&mut self, bank: Bank, row: u16, settings: &Settings) -> Bound {
         self.drift();
         let (bank, named_after) = match self.defects.stale {
@@ -209,10 +212,10 @@ impl Tables {
         }
     }
 
-    /// The values of a row of a frame of these settings, as the datapath makes them of a bank.
+    /// The values of a row in a frame with these settings, as the datapath makes them from a bank.
     fn values(&self, bank: Bank, row: u16, settings: &Settings) -> RowValues {
         let Contents { entries, shape, .. } = self.contents(bank);
-        // An address beyond the bank wraps: a frame may have become larger since its grid was committed.
+        // An address beyond the bank wraps: the frame may have become larger since its grid was committed.
         let read = |index: usize| {
             let wrapped = index.checked_rem(entries.len());
             wrapped.and_then(|index| self.entry(bank, index, Port::Datapath)).unwrap_or(UNSTRETCHED)
@@ -223,7 +226,7 @@ impl Tables {
         }
     }
 
-    /// An entry of a bank as a port sees it, whatever it holds; none beyond its end.
+    /// An entry of a bank as a port sees it, whether it is a row factor or a grid's; none beyond the end of the bank.
     #[must_use]
     pub fn entry(&self, bank: Bank, index: usize, port: Port) -> Option<u32> {
         let stored = *self.contents(bank).entries.get(index)?;
@@ -245,13 +248,13 @@ impl Tables {
         kernel
     }
 
-    /// The generation of the active bank, 0 before the first commit took effect.
+    /// The generation of the active bank; 0 before the first commit takes effect.
     #[must_use]
     pub fn generation(&self) -> u8 {
         self.active.generation
     }
 
-    /// The generation of the shadow bank: of rows that entered before the last commit took effect.
+    /// The generation of the shadow bank, which rows have that entered before the last commit took effect.
     #[must_use]
     pub(crate) fn shadow_generation(&self) -> u8 {
         self.contents(Bank::Shadow).generation
@@ -263,25 +266,25 @@ impl Tables {
         self.commit.is_some()
     }
 
-    /// Whether a commit is taken whatever they read back as.
+    /// Whether a commit is accepted whatever the tables read back as.
     pub(crate) fn is_unchecked(&self) -> bool {
         self.defects.unchecked
     }
 
-    /// Whether this generation is the active one, or waits for its frame.
+    /// Whether this generation is the active one or belongs to the pending commit.
     #[must_use]
     pub(crate) fn has_generation(&self, generation: u8) -> bool {
         let waits = self.commit.as_ref().is_some_and(|commit| commit.generation == generation);
         waits || generation != 0 && self.active.generation == generation
     }
 
-    /// Whether row 0 of `frame` finds committed tables.
+    /// Whether there will be committed tables when row 0 of `frame` enters.
     #[must_use]
     pub(crate) fn are_ready_for(&self, frame: u16) -> bool {
         self.active.generation != 0 || self.commit.as_ref().is_some_and(|commit| commit.first_frame == frame)
     }
 
-    /// Forgets a commit that has not taken effect. Its tables stay in the shadow bank.
+    /// Drops a commit that has not taken effect. Its tables stay in the shadow bank.
     pub(crate) fn forget_commit(&mut self) {
         self.commit = None;
     }
@@ -297,7 +300,7 @@ impl Tables {
         self.shadow.as_mut().unwrap_or(&mut self.active)
     }
 
-    /// What the active bank holds is a new generation.
+    /// Makes the contents of the active bank a new generation.
     fn begin(&mut self, generation: u8) {
         self.active.generation = generation;
         self.rows_bound = 0;
@@ -310,7 +313,7 @@ impl Tables {
         }
     }
 
-    /// Lets a drifting entry flip once its time has come.
+    /// Flips a drifting entry's bit once its time has come.
     fn drift(&mut self) {
         if let Some(Drift { after, entry, bit }) = self.defects.drift
             && after == self.rows_bound

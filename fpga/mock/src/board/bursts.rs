@@ -1,4 +1,4 @@
-//! Bursts, as a host asks for them.
+//! Bursts as a host requests them.
 
 use std::time::Duration;
 
@@ -12,11 +12,11 @@ use crate::burst::Plan;
 use crate::content::CONTENT;
 use crate::options::{BurstBuild, Options};
 
-/// Pixel clocks that a burst goes on for with every packet: a frame of 1920 x 1080, so that none waits for its reply for the
-/// length of a burst, and small frames are many.
+/// Pixel clocks that a burst advances with every packet: a frame of 1920 x 1080. So no packet waits for its reply as long as a
+/// whole burst takes, and of small frames there are many at once.
 pub(super) const CLOCKS_A_PACKET: u64 = 2_400_000;
 
-/// The capability of a build.
+/// The capability that a build advertises for bursts.
 pub(super) fn capability(options: &Options) -> Option<message::Bursts> {
     (options.bursts != BurstBuild::None).then_some(message::Bursts {
         content: CONTENT,
@@ -36,23 +36,23 @@ impl Board {
         }
     }
 
-    /// Whether a row is inside the core.
+    /// Whether a row is inside the core. While a burst is under way, one counts as inside.
     pub(super) fn is_busy(&self) -> bool {
         !self.player.banks.is_idle() || self.bursts.is_under_way()
     }
 
-    /// Has a burst go on with every packet until it ends or waits for a record, as one does on a board that is clocked until
-    /// it is at rest.
+    /// From now on lets a burst advance with every packet until it ends or waits for a record, like a board that is clocked
+    /// until it comes to rest.
     pub fn go_on_to_rest(&mut self) {
         self.clocks_a_packet = u64::MAX;
     }
 
-    /// Lets a burst go on.
+    /// Lets a burst advance.
     pub(super) fn go_on(&mut self) {
         self.bursts.run(&mut self.player, &mut self.tables, self.clocks_a_packet);
     }
 
-    /// Ends a burst whose host has been silent for too long, and its session.
+    /// Ends a burst whose host has been silent for too long, and closes its session.
     pub(super) fn end_silence(&mut self, now: Duration) {
         if self.bursts.is_under_way() && self.session.is_silent(now) {
             self.bursts.abort();
@@ -61,7 +61,7 @@ impl Board {
         }
     }
 
-    /// Carries out one of the requests that bursts have.
+    /// Carries out one of the requests that concern bursts.
     pub(super) fn carry_out_at_speed(
         &mut self,
         header: &Header,
@@ -86,7 +86,7 @@ impl Board {
         Ok(())
     }
 
-    /// Starts a burst, or sets how many frames the last one has.
+    /// Starts a burst, or sets the number of frames of the last one.
     fn burst(&mut self, burst: &Burst) -> Result<(), Refused> {
         let &Burst { burst: name, frames, seed, first_frame, frame_blanking, mode } = burst;
         if name != 0 && name == self.bursts.name() {
@@ -115,7 +115,7 @@ impl Board {
         Ok(())
     }
 
-    /// Answers with the records from a frame on, those that fit a packet.
+    /// Answers with the records from the frame `from` on, as many as fit a packet.
     fn send_records(&mut self, header: &Header, from: u32) -> Result<(), Refused> {
         let (burst, state) = (self.bursts.name(), self.bursts.state());
         let records = self.bursts.records_from(from).ok_or((RefusalCode::Range, 0))?;
@@ -125,7 +125,7 @@ impl Board {
         Ok(())
     }
 
-    /// Takes the signatures that rows must have.
+    /// Takes the signatures that rows are expected to have.
     fn expect(&mut self, expect: &Expect<'_>) -> Result<(), Refused> {
         if self.bursts.is_under_way() {
             return Err((RefusalCode::Busy, 0));
@@ -137,7 +137,7 @@ impl Board {
         Ok(())
     }
 
-    /// Answers with the row that was trapped.
+    /// Answers with the trapped row, if there is one.
     fn send_trap(&mut self, header: &Header) {
         let mut packed = Vec::new();
         let trapped = self.bursts.trapped().map(|trapped| {

@@ -1,4 +1,4 @@
-//! What the board says of itself.
+//! What the board says about itself.
 
 use halfrow_protocol::message::{BoardNature, Capabilities, Grids, Status};
 
@@ -8,11 +8,11 @@ use crate::core::GridShape;
 use crate::faults::Defects;
 use crate::options::{Options, TapCount};
 
-/// The arithmetic of fpga/DATAPATH.md.
+/// The datapath of fpga/DATAPATH.md.
 const DATAPATH: u16 = 1;
-/// Its section of grids.
+/// The datapath of its section on grids.
 const FURTHER_DATAPATH: u16 = 2;
-/// What the Verilog needs between rows of a grid that are narrower than so many columns. The mock needs no time.
+/// The claimed blanking between rows of a grid that are narrower than the claimed width. The mock needs none.
 const GRID_BLANKING: u8 = 32;
 const GRID_WIDTH: u16 = 192;
 /// Ports by which the datapath reads row factors.
@@ -20,21 +20,21 @@ pub(super) const ROW_FACTOR_PORTS: u8 = 1;
 /// Ports by which it reads nodes: i and i + 1 at once.
 pub(super) const KERNEL_PORTS: u8 = 2;
 
-/// A `clock_source` of WIRE.md.
+/// The `clock_source` of WIRE.md for a PLL.
 const PLL: u8 = 2;
 
-/// By how much the board's claims are over the truth; by nothing by default.
+/// How much the board's claims differ from the truth; not at all by default.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct WrongClaims {
     /// The datapath id.
     pub(crate) datapath: u16,
     /// L, in pixel clocks.
     pub(crate) latency: u8,
-    /// The pixel clock of a PLL that it has not got, in hertz.
+    /// The pixel clock in hertz of a PLL that the board does not have.
     pub(crate) pll_hz: Option<u32>,
 }
 
-/// What a build says of the grids that it takes.
+/// What a build says about the grids that it takes.
 fn grids(options: &Options) -> Option<Grids> {
     options.datapath2.then(|| Grids {
         further_datapath: FURTHER_DATAPATH,
@@ -76,7 +76,7 @@ impl Board {
         }
     }
 
-    /// The counters, which `clear` sets back.
+    /// The counters; `clear` resets them afterwards.
     pub(super) fn report(&mut self, clear: bool) -> Status {
         let status = Status {
             next_row_in: self.rows.next_row_in(),

@@ -1,4 +1,4 @@
-//! Rows: credit, order, and sending again what got lost.
+//! Rows: credit, order, and sending again what was lost.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use super::{Board, Refused, count};
 use crate::faults::Conduct;
 use crate::player;
 
-/// Rows that wait to be played, and the numbers that credit and acknowledgement are counted by.
+/// Rows that wait to be played, and the row sequence numbers from which credit and acknowledgements follow.
 #[derive(Debug)]
 pub(super) struct RowBanks {
     banks: u8,
@@ -18,9 +18,9 @@ pub(super) struct RowBanks {
     acknowledged: u32,
     /// The first row that has never been sent back.
     unsent: u32,
-    /// How often rows in the out-banks were sent again.
+    /// How often each row in an out-bank was sent again.
     repeats: BTreeMap<u32, u16>,
-    /// ROW_OUT packets of the session.
+    /// ROW_OUT packets sent in this session.
     packets: u16,
     last_played: Option<RowPlace>,
 }
@@ -39,7 +39,7 @@ impl RowBanks {
         }
     }
 
-    /// The same banks in the same session, empty, waiting for `next_row`, behind so many ROW_OUT packets.
+    /// The same banks in the same session, emptied and waiting for `next_row`, after `packets` ROW_OUT packets.
     pub(super) fn restarted(&self, next_row: u32, packets: u16) -> Self {
         Self {
             next_to_play: next_row,
@@ -50,7 +50,7 @@ impl RowBanks {
         }
     }
 
-    /// ROW_OUT packets of the session.
+    /// ROW_OUT packets sent in this session.
     pub(super) fn packets(&self) -> u16 {
         self.packets
     }
@@ -64,7 +64,7 @@ impl RowBanks {
         self.acknowledged
     }
 
-    /// The host has every row before `window`. It cannot have one that was never sent.
+    /// Notes that the host has every row before `window`. It cannot have one that was never sent.
     fn acknowledge(&mut self, window: u32) {
         self.acknowledged = self.acknowledged.max(window.min(self.unsent));
     }
@@ -78,7 +78,7 @@ impl RowBanks {
         (self.next_to_play..=u32::MAX).find(|row| !self.waiting.contains_key(row)).unwrap_or(u32::MAX)
     }
 
-    /// The row in front of `row_sequence`, as far as it is known.
+    /// The place of the row before `row_sequence`, if it is known.
     fn predecessor(&self, row_sequence: u32) -> Option<RowPlace> {
         let before = row_sequence.checked_sub(1)?;
         let waiting = self.waiting.get(&before).map(|(place, _)| *place);
@@ -87,7 +87,7 @@ impl RowBanks {
 }
 
 impl Board {
-    /// Takes a row into its bank, or deals with one that came again.
+    /// Takes a row into its bank, or handles one that was sent again.
     pub(super) fn row_in(&mut self, row: &RowIn<'_>) -> Result<(), Refused> {
         if self.bursts.is_under_way() {
             return Err((RefusalCode::Busy, 0));
@@ -128,14 +128,15 @@ impl Board {
         }
     }
 
-    /// Whether committed tables will be there when the row enters; without a configuration there are none. While a row in front of it is missing, that may be the
-    /// one that a commit waits for.
+    /// Whether there will be committed tables when the row enters; without a configuration there are none. While an earlier row
+    /// is missing, that row may be the one that a pending commit waits for.
     fn finds_tables(&self, place: &RowPlace) -> bool {
         let is_next = place.row_sequence == self.rows.next_to_play;
         self.tables.are_ready_for(place.frame) || !is_next && self.tables.has_commit()
     }
 
-    /// Whether the row begins a frame or is the one behind its predecessor. One that has not arrived may be the right one.
+    /// Whether the row begins a frame or follows its predecessor. A predecessor that has not arrived may turn out to be the
+    /// right one.
     fn follows(&self, place: &RowPlace) -> bool {
         place.row == 0
             || match self.rows.predecessor(place.row_sequence) {
@@ -144,7 +145,7 @@ impl Board {
             }
     }
 
-    /// A row that is known: if its result is in an out-bank, the host has not got it.
+    /// Handles a row that is known. If its result is in an out-bank, the host has not received it, and it is sent again.
     fn row_again(&mut self, row_sequence: u32) {
         if self.player.banks.first_from(row_sequence).is_some_and(|row| row.name.sequence == row_sequence) {
             count(&mut self.status.rows_repeated);
@@ -168,7 +169,7 @@ impl Board {
         self.rows.repeats.retain(|&row, _| row >= acknowledged);
     }
 
-    /// Plays every row that is there and has a free out-bank, in order.
+    /// Plays every row that has arrived and finds a free out-bank, in order.
     pub(super) fn play(&mut self) {
         while self.player.banks.has_room() {
             let Some((place, samples)) = self.rows.waiting.remove(&self.rows.next_to_play) else { break };
@@ -179,7 +180,7 @@ impl Board {
                 last: place.last,
                 samples,
             };
-            // The row was checked when it arrived, and a bank is free.
+            // This cannot fail: the row was checked when it arrived, and a bank is free.
             if self.player.play(&row, &mut self.tables).is_err() {
                 break;
             }

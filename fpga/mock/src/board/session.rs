@@ -1,4 +1,4 @@
-//! Who talks to the board.
+//! Which host talks to the board.
 
 use std::time::Duration;
 
@@ -11,10 +11,10 @@ use crate::faults::Conduct;
 use crate::player::Player;
 use crate::tables::Tables;
 
-/// After this silence another host may have the board.
+/// After this time of silence another host may take the board.
 const SILENCE: Duration = Duration::from_secs(10);
 
-/// The unit in which a host is told how long the board is held.
+/// The unit in which a host is told how long the board is still held.
 const TENTH: Duration = Duration::from_millis(100);
 
 /// The open session, if there is one.
@@ -41,21 +41,21 @@ impl Session {
         number != 0 && number == self.number()
     }
 
-    /// The holder was heard.
+    /// Notes that the holder was heard.
     pub(super) fn heard(&mut self, now: Duration) {
         if let Some(holder) = &mut self.holder {
             holder.heard = now;
         }
     }
 
-    /// A host was heard that may be the holder.
+    /// Notes that a host was heard, which may be the holder.
     fn heard_from(&mut self, host: u32, now: Duration) {
         if self.holder.as_ref().is_some_and(|holder| holder.host == host) {
             self.heard(now);
         }
     }
 
-    /// Whether a session is open whose holder was not heard for too long.
+    /// Whether the holder of an open session has been silent for too long.
     pub(super) fn is_silent(&self, now: Duration) -> bool {
         self.holder.as_ref().is_some_and(|holder| now.saturating_sub(holder.heard) >= SILENCE)
     }
@@ -64,7 +64,7 @@ impl Session {
         self.holder = None;
     }
 
-    /// What is left of the silence that a host other than `host` has to wait for.
+    /// How much of the silence a host other than the holder still has to wait for.
     fn held_for(&self, host: u32, now: Duration) -> Duration {
         match &self.holder {
             Some(holder) if holder.host != host => SILENCE.saturating_sub(now.saturating_sub(holder.heard)),
@@ -83,7 +83,7 @@ impl Session {
 }
 
 impl Board {
-    /// Opens a session, or answers again the greeting that opened it.
+    /// Opens a session, or repeats the answer to the greeting that opened it.
     pub(super) fn greet(&mut self, hello: &Hello, now: Duration) -> Result<Welcome, Refused> {
         self.session.heard_from(hello.host, now);
         if !(hello.version_min..=hello.version_max).contains(&VERSION) {
@@ -91,7 +91,7 @@ impl Board {
         }
         let left = self.session.held_for(hello.host, now);
         if !left.is_zero() && !hello.take_over && !self.has(Conduct::NeverHeld) {
-            // Rounded up, so that the board is free once the host has waited for so long.
+            // Rounded up, so that the board is free once the host has waited that long.
             let tenths = left.as_nanos().div_ceil(TENTH.as_nanos());
             return Err((RefusalCode::Held, u16::try_from(tenths).unwrap_or(u16::MAX)));
         }
@@ -112,7 +112,7 @@ impl Board {
         })
     }
 
-    /// Drops what `reset` says. The session itself is closed when the reply is out.
+    /// Drops what `reset` names. The session itself is closed after the reply.
     pub(super) fn reset(&mut self, reset: &Reset) {
         self.bursts.abort();
         let packets = if self.has(Conduct::PacketsAnew) { 0 } else { self.rows.packets() };
@@ -124,18 +124,17 @@ impl Board {
         }
     }
 
-    /// Drops the rows in the banks and in the core, and a commit that waits for one of them. `rows` are the banks from then
-    /// on.
+    /// Drops the rows in the banks and in the core, and a pending commit. `rows` are the banks from then on.
     fn drop_rows(&mut self, rows: RowBanks) {
         self.rows = rows;
         self.tables.forget_commit();
         self.empty_core();
     }
 
-    /// Makes the core as it was before any row entered.
+    /// Returns the core to its state before any row entered.
     pub(super) fn empty_core(&mut self) {
         let settings = self.player.settings().clone();
-        // The same build with the same settings stood before, so it can be made again.
+        // A player of this build has already run with these settings, so this cannot fail.
         if let Ok(mut player) = Player::new(&self.options, self.fault)
             && player.configure(settings).is_ok()
         {

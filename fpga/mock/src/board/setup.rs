@@ -1,4 +1,4 @@
-//! Geometry and tables: written, read back through the datapath's ports, committed.
+//! Configuration and tables: written, read back through the datapath's ports, committed.
 
 use halfrow_protocol::MAX_PAYLOAD;
 use halfrow_protocol::message::{
@@ -73,7 +73,7 @@ impl Board {
         })
     }
 
-    /// The bytes of entries for a reply, as the datapath's port reads them.
+    /// The bytes of entries for a reply, as the datapath's port reads them, if they fit a packet.
     pub(super) fn read_packet(&self, span: &Span) -> Result<Vec<u8>, Refused> {
         let bytes = self.read_entries(span)?;
         let fits = Span::BYTES + bytes.len() <= MAX_PAYLOAD;
@@ -145,7 +145,7 @@ impl Board {
         committed.map_err(|_| (RefusalCode::Busy, 0))
     }
 
-    /// The shape of the grid that is committed, if it is one. A board that takes none does not look at it.
+    /// The shape of the committed grid, if it is a grid. A board without grids ignores the shape.
     fn shape(&self, commit: &Commit) -> Result<Option<GridShape>, Refused> {
         let Some(Shape { v, k }) = commit.shape.filter(|shape| self.options.datapath2 && shape.v > 0) else {
             return Ok(None);
@@ -158,7 +158,7 @@ impl Board {
         GridShape::new(v, k).filter(fits).map(Some).ok_or((RefusalCode::Range, 2))
     }
 
-    /// Whether the board knows the table that a request is about.
+    /// Whether the board has the table that a request concerns.
     pub(super) fn has_table(&self, request: &Request<'_>) -> bool {
         let table = match request {
             Request::TableWrite(entries) => entries.span.table,

@@ -1,4 +1,4 @@
-//! What would take four thousand million packets to see from outside.
+//! What could be seen from outside only after four thousand million packets.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! What a fault does to a board that runs at full speed, and to no other.
+//! What a fault does to a board that runs at full speed, and only then.
 
 use super::signer::RowInside;
 use crate::gaps::draw;
@@ -8,7 +8,7 @@ use crate::gaps::draw;
 pub(crate) struct SlowPath {
     /// The output bit that flips.
     pub(crate) bit: u8,
-    /// Outputs of which one flips, on average.
+    /// One in this many outputs flips, on average.
     pub(crate) one_in: u32,
     /// The seed of the draws.
     pub(crate) seed: u32,
@@ -17,9 +17,9 @@ pub(crate) struct SlowPath {
 /// An output bit that flips once the board is warm.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WarmBit {
-    /// Frames that warm it, since it was switched on.
+    /// Frames since power-up that warm it.
     pub(crate) after: u32,
-    /// The row whose first output it is.
+    /// The row whose first output has the flipped bit.
     pub(crate) row: u16,
     /// The bit.
     pub(crate) bit: u8,
@@ -28,17 +28,17 @@ pub(crate) struct WarmBit {
 /// What is wrong at full speed; nothing by default.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct BurstDefects {
-    /// A bit flips at a rate in rows that follow another without a pause.
+    /// A bit flips at a given rate, in rows that follow another without a pause.
     pub(crate) slow_path: Option<SlowPath>,
     /// A bit flips once the board is warm.
     pub(crate) warm_bit: Option<WarmBit>,
-    /// Row 0 is made with the tables of the frame in front, when that is as close as it may be.
+    /// When frames follow each other as closely as they may, row 0 is made with the tables of the frame before.
     pub(crate) late_swap: bool,
     /// The row of every frame in which the output stands still for a clock that is not counted as a pause.
     pub(crate) hidden_pause: Option<u16>,
 }
 
-/// The defects of the outputs, as far as they have come.
+/// The state of the defects that spoil outputs.
 #[derive(Debug)]
 pub(super) struct Wear {
     defects: BurstDefects,
@@ -50,13 +50,13 @@ pub(super) struct Wear {
 
 impl Wear {
     pub(super) fn new(defects: BurstDefects) -> Self {
-        // The one state that the generator does not leave is 0.
+        // 0 is the one state that the generator never leaves.
         let random = defects.slow_path.map_or(0, |path| path.seed).max(1);
         let spoils = defects.slow_path.is_some() || defects.warm_bit.is_some();
         Self { defects, spoils, random, frames: 0 }
     }
 
-    /// A frame has left.
+    /// Counts a frame that has left.
     pub(super) fn count_frame(&mut self) {
         self.frames = self.frames.saturating_add(1);
     }
@@ -67,7 +67,7 @@ impl Wear {
         self.spoils
     }
 
-    /// An output of `row` as it leaves the board; `is_first` of its row.
+    /// An output of `row` as it leaves the board. `is_first` says whether it is the row's first.
     pub(super) fn spoil(&mut self, row: &RowInside, is_first: bool, sample: u16) -> u16 {
         let mut flips = 0;
         if let Some(SlowPath { bit, one_in, .. }) = self.defects.slow_path {

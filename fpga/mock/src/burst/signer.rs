@@ -1,4 +1,4 @@
-//! What leaves of a burst: signed row by row, and counted frame by frame.
+//! The outputs of a burst: signed row by row, and counted frame by frame.
 
 use std::collections::VecDeque;
 
@@ -8,24 +8,24 @@ use super::defects::{BurstDefects, Wear};
 use super::trap::Trap;
 use crate::core::Leaving;
 
-/// A row of which not every output has left.
+/// A row that has not left completely yet.
 #[derive(Debug)]
 pub(super) struct RowInside {
     /// The pixel clock of its first sample.
     pub(super) first_in: u64,
-    /// That of its last one.
+    /// The pixel clock of its last sample.
     pub(super) last_in: u64,
     /// Its number in the frame.
     pub(super) row: u16,
-    /// Samples.
+    /// Its samples.
     pub(super) width: u16,
-    /// Whether another row entered in front of it.
+    /// Whether another row entered before it.
     pub(super) follows: bool,
     /// Whether it is the last of its frame.
     pub(super) ends_frame: bool,
 }
 
-/// A frame of which not every row has left.
+/// A frame that has not left completely yet.
 #[derive(Debug)]
 struct FrameInside {
     number: u32,
@@ -33,19 +33,20 @@ struct FrameInside {
     record: FrameRecord,
 }
 
-/// Signs what leaves.
+/// Signs the outputs.
 #[derive(Debug)]
 pub(super) struct Signer {
     rows: VecDeque<RowInside>,
     frames: VecDeque<FrameInside>,
-    /// The outputs of the row that leaves, as they are signed: W of them, of which the first `left` have left.
+    /// The outputs of the row that is leaving, in the form in which they are signed: W of them, of which the first `left` have
+    /// left.
     outputs: Vec<[u8; 2]>,
     left: usize,
-    /// So many have left when there is something to be done: the first, or all.
+    /// The value of `left` at which there is something to do: after the first output, or after all.
     edge: usize,
     lost_row: Option<u16>,
     wear: Wear,
-    /// The trap behind the signatures.
+    /// The trap, which sees every signature.
     pub(super) trap: Trap,
     /// The records of the frames that have left.
     pub(super) records: VecDeque<FrameRecord>,
@@ -66,7 +67,7 @@ impl Signer {
         }
     }
 
-    /// A burst starts.
+    /// Starts a burst.
     pub(super) fn start(&mut self, mode: BurstMode) {
         self.records.clear();
         self.trap.is_set = mode == BurstMode::Trapped;
@@ -75,7 +76,7 @@ impl Signer {
         }
     }
 
-    /// Nothing that is inside leaves any more, and the trap is empty.
+    /// Forgets everything inside, so that nothing more leaves, and empties the trap.
     pub(super) fn drop_inside(&mut self) {
         self.rows.clear();
         self.frames.clear();
@@ -84,13 +85,13 @@ impl Signer {
         self.trap.kept = None;
     }
 
-    /// The frame `number` of the burst begins.
+    /// Begins frame `number` of the burst.
     pub(super) fn begin_frame(&mut self, number: u32, held_back: bool) {
         let record = FrameRecord { held_back, ..FrameRecord::default() };
         self.frames.push_back(FrameInside { number, hasher: crc32fast::Hasher::new(), record });
     }
 
-    /// A row of the frame that began last enters, made with tables of this generation.
+    /// A row of the newest frame enters, made with tables of this generation.
     pub(super) fn enter(&mut self, row: RowInside, generation: u8) {
         if let Some(frame) = self.frames.back_mut() {
             frame.record.generation = generation;
@@ -106,7 +107,7 @@ impl Signer {
         if self.wear.spoils() {
             sample = self.spoil(sample);
         }
-        // Nothing leaves but rows that have entered, which are all as wide.
+        // Only rows that have entered leave, and all have the same width.
         let Some(output) = self.outputs.get_mut(self.left) else { return };
         *output = sample.to_le_bytes();
         self.left += 1;
@@ -120,7 +121,7 @@ impl Signer {
         self.rows.front().map_or(sample, |row| self.wear.spoil(row, self.left == 0, sample))
     }
 
-    /// The first or the last output of a row has left.
+    /// Handles the first or the last output of a row.
     #[cold]
     fn row_edge(&mut self, now: u64) {
         let (Some(row), Some(frame)) = (self.rows.front(), self.frames.front_mut()) else { return };
@@ -163,7 +164,7 @@ impl FrameInside {
         *most_latency = latency.max(*most_latency);
     }
 
-    /// Adds a row with this signature.
+    /// Adds a row with this signature to the frame.
     fn sign(&mut self, signature: u32, width: u16) {
         self.hasher.update(&signature.to_le_bytes());
         self.record.rows = self.record.rows.saturating_add(1);

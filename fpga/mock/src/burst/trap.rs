@@ -1,11 +1,11 @@
-//! The first row of a burst whose signature is not the expected one.
+//! The first row of a burst whose signature differs from the expected one.
 
-/// A row that was trapped.
+/// A trapped row.
 #[derive(Debug)]
 pub(crate) struct Trapped {
-    /// The frame of the burst.
+    /// The number of the frame in the burst.
     pub(crate) frame: u32,
-    /// The row, as it was counted when it left.
+    /// The row's number, as counted when it left.
     pub(crate) row: u16,
     /// Its signature.
     pub(crate) signature: u32,
@@ -17,7 +17,7 @@ pub(crate) struct Trapped {
 #[derive(Debug)]
 pub(super) struct Trap {
     pub(super) is_set: bool,
-    /// The signature of each row; 0 where none was uploaded.
+    /// The expected signature of each row; 0 where none was uploaded.
     pub(super) expected: Vec<u32>,
     pub(super) kept: Option<Trapped>,
 }
@@ -27,7 +27,7 @@ impl Trap {
         Self { is_set: false, expected: vec![0; max_height.into()], kept: None }
     }
 
-    /// Looks at a row that has left, and keeps it if it is the first that is wrong.
+    /// Checks a row that has left, and keeps it if it is the first wrong one.
     pub(super) fn look(&mut self, frame: u32, row: u16, signature: u32, samples: &[[u8; 2]]) {
         if self.is_set
             && self.kept.is_none()

@@ -3,7 +3,7 @@
 use super::weights::ROUNDING;
 use super::window::TAPS;
 
-/// Lines of a bus that are stuck at 0 or at 1. The default is none.
+/// Lines of a bus that are stuck at 0 or at 1; none by default.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StuckBits {
     free: u16,
@@ -34,7 +34,7 @@ impl StuckBits {
 pub(crate) struct DeadTap {
     /// The tap, 0 for G0 to 6 for G6.
     pub(crate) tap: u8,
-    /// The tap whose sample it carries; none for zero.
+    /// The tap whose sample it carries instead; none for zero.
     pub(crate) reads: Option<u8>,
 }
 
@@ -49,7 +49,7 @@ impl DeadTap {
     }
 }
 
-/// The core's wiring: as specified by default, with one part out of order under a fault.
+/// The core's wiring: as specified by default; a fault breaks one part of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CoreDefects {
     /// Address lines of the line memory, for reading and for writing.
@@ -73,7 +73,7 @@ impl CoreDefects {
         self.dead_tap.map_or(taps, |dead| dead.apply(taps))
     }
 
-    /// The sample that leaves for a weighted sum.
+    /// The output for a weighted sum.
     pub(crate) fn output(&self, sum: i32, largest: i32) -> u16 {
         sum.clamp(0, largest) as u16
     }

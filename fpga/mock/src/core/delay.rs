@@ -1,6 +1,6 @@
 //! The pipeline between the ring's read and the output.
 
-/// A sample that leaves.
+/// A sample that leaves the core.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Leaving {
     /// The corrected sample.
@@ -9,7 +9,7 @@ pub struct Leaving {
     pub column: u16,
 }
 
-/// Samples on their way out. The line moves on every pixel clock, whether a sample entered it or not.
+/// Samples on their way out. The line moves on every pixel clock, whether or not a sample entered it.
 #[derive(Debug)]
 pub(crate) struct DelayLine {
     stages: Vec<Option<Leaving>>,

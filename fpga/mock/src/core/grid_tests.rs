@@ -1,4 +1,4 @@
-//! The source coordinates that two adders make, beside the golden values of `fpga/DATAPATH.md`, *Datapath 2*.
+//! The source coordinates that the two adders make, against the golden values of `fpga/DATAPATH.md`, *Datapath 2*.
 
 use halfrow_conformance::material;
 use proptest::prelude::*;
@@ -7,7 +7,7 @@ use proptest::sample::Index;
 use super::source::Source;
 use super::values::{GridShape, RowValues, UNSTRETCHED};
 
-/// Frames of this width, height and twice the centre's column, with a grid or without.
+/// Frames of this geometry with this grid.
 struct Case {
     width: u16,
     height: u16,
@@ -26,7 +26,7 @@ impl Case {
         RowValues::of_grid(self.shape, (self.width, self.height), row, |entry| grid[entry])
     }
 
-    /// The grid that is drawn from a seed: entries a little below 1, or any.
+    /// The grid drawn from a seed: entries a little below 1, or of any size.
     fn drawn(&self, seed: u32, kind: Drawn) -> Vec<u32> {
         let entries = 0..self.shape.entries(self.width, self.height) as u32;
         let value = |entry: u32| {
@@ -63,7 +63,8 @@ fn the_coordinates_of_drawn_grids_are_the_golden_ones() {
         ((128, 70, 100, 6, 6), (1, Narrow), 0xdb24_8d53, 0x2617_fe6d),
         ((130, 40, 31, 3, 5), (2, Wide), 0x27d8_4e57, 0x21b5_19cd),
         ((192, 5, 382, 2, 6), (3, Wide), 0x9f8f_1aa6, 0xc53e_6168),
-        // No row of the page: the greatest C, where the factor of column 0 is no 1. From its formulas, by Python's integers.
+        // Not on the page: the greatest C, with a factor other than 1 at column 0. From the page's formulas, by Python's
+        // integers.
         ((192, 5, 382, 2, 6), (3, Narrow), 0x1340_8ac9, 0x551d_fae1),
     ] {
         let case = Case { width, height, centre2, shape: GridShape::new(v, k).unwrap() };
@@ -82,7 +83,7 @@ fn the_coordinates_of_row_factors_are_the_golden_ones() {
     assert_eq!(crc_of_coordinates(rows), 0x2074_7eed);
 }
 
-/// Row 3 of the worked example, with what stands around it drawn.
+/// Row 3 of the worked example; all other entries are drawn.
 fn worked_row() -> RowValues {
     let case = Case { width: 128, height: 9, centre2: 127, shape: GridShape::new(1, 5).unwrap() };
     let mut grid = case.drawn(9, Drawn::Wide);
@@ -108,7 +109,7 @@ fn the_worked_example_holds() {
     assert_eq!((position.n, position.fraction), (13, 108_921 - (13 << 13)));
 }
 
-/// Entries of 2^24 leave every column where it is, in every shape, and larger factors are cut to that.
+/// Entries of 2^24 leave every column where it is, in every shape, and larger factors are cut to 2^24.
 #[test]
 fn the_largest_factor_is_one() {
     for (v, k) in (1..=6).flat_map(|v| [(v, 5), (v, 6)]) {
@@ -136,8 +137,7 @@ fn closed_form(centre2: u16, values: &RowValues, column: u16) -> i128 {
 }
 
 proptest! {
-    /// Whatever the entries, and whether they are legal or not: the coordinates wrap, and none is more than a column from
-    /// the one before.
+    /// Whatever the entries, legal or not: the coordinates wrap, and none is more than a column after the one before.
     #[test]
     fn two_adders_make_the_closed_form_of_any_grid(
         v in 1_u8..=6, k in 5_u8..=6, half in 32_u16..=200, height in 1_u16..=80, row: Index, centre: Index, seed: u32,

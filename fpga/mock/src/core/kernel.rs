@@ -1,4 +1,4 @@
-//! The interpolation kernel as the table holds it: nodes of five words.
+//! The interpolation kernel as the tables store it: nodes of five words.
 
 /// Nodes of a kernel, at x = 0, 1/32, … 2 columns.
 pub const NODES: usize = 65;
@@ -77,7 +77,7 @@ pub struct Kernel {
 }
 
 impl Default for Kernel {
-    /// The kernel of a board that was just switched on: all words zero, so that an output is its base sample.
+    /// The kernel of a board that was just switched on: all words are zero, so that each output is its base sample.
     fn default() -> Self {
         Self { nodes: [Node::default(); NODES] }
     }

@@ -1,4 +1,4 @@
-//! One row on its way out: every pixel clock makes one output sample from the ring.
+//! A row on its way out: every pixel clock makes one output sample from the ring.
 
 use std::sync::Arc;
 
@@ -12,14 +12,14 @@ use super::weights::Weights;
 use super::window::Window;
 use crate::depth::Depth;
 
-/// What a row is bound to when its first sample enters. It keeps it until its last sample has left.
+/// What a row is bound to when its first sample enters. It is kept until the last sample has left.
 #[derive(Clone, Debug)]
 pub struct RowBinding {
     /// Columns W.
     pub width: u16,
     /// Twice the optical centre's column, C.
     pub centre2: u16,
-    /// Bits a sample; outputs are clamped to it.
+    /// Bits of a sample; outputs are clamped to them.
     pub depth: Depth,
     /// Where its columns come from.
     pub values: RowValues,
@@ -27,7 +27,7 @@ pub struct RowBinding {
     pub kernel: Arc<Kernel>,
 }
 
-/// The state of the row that leaves.
+/// The state of the row that is leaving.
 #[derive(Debug)]
 pub(crate) struct Reader {
     row: RowInRing,
@@ -39,7 +39,7 @@ pub(crate) struct Reader {
 }
 
 impl Reader {
-    /// Starts to read a row whose first sample went to the address `base`, loading the whole window.
+    /// Starts to read a row whose first sample went to the address `base`, and loads the whole window.
     #[cold]
     pub(crate) fn start(binding: &RowBinding, base: usize, ring: &Ring, defects: &CoreDefects) -> Self {
         let row = RowInRing { base, width: i32::from(binding.width), offset: defects.tap_offset };
@@ -49,7 +49,7 @@ impl Reader {
         Self { row, kernel: Arc::clone(&binding.kernel), largest, column: 0, source, window }
     }
 
-    /// One pixel clock: the sample of the next column, until the row is through.
+    /// One pixel clock: the sample of the next column, until the row ends.
     #[inline(always)]
     pub(crate) fn make(&mut self, ring: &Ring, defects: &CoreDefects) -> Option<Leaving> {
         let column = self.column;
@@ -78,7 +78,7 @@ struct RowInRing {
 }
 
 impl RowInRing {
-    /// P(m): the row's sample at a column, or outside the row the nearest one of the same colour.
+    /// P(m): the row's sample at a column or, outside the row, the nearest one of the same colour.
     #[inline]
     fn sample(&self, ring: &Ring, column: i32) -> u16 {
         let column = column + self.offset;

@@ -5,7 +5,7 @@ use super::defects::StuckBits;
 /// Width of the line memory in bits. Narrower samples leave the upper bits zero.
 const SAMPLE_MASK: u16 = 0x0FFF;
 
-/// A ring of M samples, written at a running address that no row resets.
+/// A ring of M samples, written at a running address that is not reset between rows.
 #[derive(Debug)]
 pub(crate) struct Ring {
     memory: Vec<u16>,
@@ -20,12 +20,12 @@ impl Ring {
         Self { memory: vec![0; size], next: 0, address_lines, data_lines }
     }
 
-    /// The address that the next sample will be written to: a row's base when its first sample enters.
+    /// The address of the next write. When a row's first sample enters, it is the row's base.
     pub(crate) fn next_address(&self) -> usize {
         self.next
     }
 
-    /// Writes one sample and moves on.
+    /// Writes one sample and advances the address.
     #[inline]
     pub(crate) fn write(&mut self, sample: u16) {
         let cell = self.cell(self.next);
@@ -33,13 +33,13 @@ impl Ring {
         self.next = (self.next + 1) & (self.memory.len() - 1);
     }
 
-    /// The sample `column` columns after the address `base`, or what has been written over it since.
+    /// The sample `column` columns after the address `base`, or whatever has overwritten it since.
     #[inline]
     pub(crate) fn read(&self, base: usize, column: usize) -> u16 {
         self.memory[self.cell(base + column)]
     }
 
-    /// The memory cell behind an address; addresses wrap at M.
+    /// The memory cell of an address; addresses wrap at M.
     fn cell(&self, address: usize) -> usize {
         usize::from(self.address_lines.apply(address as u16)) & (self.memory.len() - 1)
     }

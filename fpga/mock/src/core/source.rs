@@ -1,31 +1,31 @@
-//! Where in the row an output column comes from.
+//! The source of each output column in the row.
 
 use super::values::{RowValues, UNSTRETCHED};
 
-/// The source coordinate has 40 bits, unsigned; that of an illegal table wraps as the register does.
+/// The source coordinate has 40 bits, unsigned. With an illegal table it wraps, as the register does.
 const COORDINATE_MASK: u64 = (1 << 40) - 1;
 
-/// The step from one coordinate to the next has 29.
+/// The step from one coordinate to the next has 29 bits.
 const STEP_MASK: u64 = (1 << 29) - 1;
 
-/// Fractional bits dropped before the kernel's position is formed, and their half.
+/// Fractional bits that are dropped before the kernel's position is formed, and half a unit of what remains.
 const DROPPED_BITS: u32 = 15;
 const DROPPED_HALF: u64 = 1 << (DROPPED_BITS - 1);
 
 /// Fractional bits of the position: five choose the node, eight interpolate.
 pub(crate) const FRACTION_BITS: u32 = 13;
 
-/// The source coordinate S of one output column after the other, in units of 2^-28 column, by two adders.
+/// The source coordinate S of one output column after another, in units of 2^-28 column, made by two adders.
 #[derive(Debug)]
 pub(crate) struct Source {
     coordinate: u64,
-    /// D: from this coordinate to the next.
+    /// D, the step from this coordinate to the next.
     step: u64,
-    /// 2·G: from this step to the next, within a segment.
+    /// 2·G, the change from this step to the next within a segment.
     bend: u64,
-    /// Columns that are left of the segment.
+    /// Columns that remain of the segment.
     left: u32,
-    /// The node at the segment's end.
+    /// The node at the end of the segment.
     node: usize,
     values: RowValues,
 }
@@ -35,12 +35,12 @@ pub(crate) struct Source {
 pub(crate) struct Position {
     /// The column at or left of the source, 0 to 4095.
     pub(crate) n: i32,
-    /// What lies beyond it, in units of 2^-13 column.
+    /// The distance from that column to the source, in units of 2^-13 column.
     pub(crate) fraction: u32,
 }
 
 impl Source {
-    /// S[0] = 8·C·(2^24 − Q[0]) + 2^15·O, from twice the centre's column and the row's values.
+    /// S[0] = 8·C·(2^24 − Q[0]) + 2^15·O, from twice the column of the centre and the row's values.
     pub(crate) fn new(centre2: u16, values: &RowValues) -> Self {
         let first = values.factors.first().copied().unwrap_or(UNSTRETCHED);
         let shortfall = u64::from(UNSTRETCHED).wrapping_sub(first.into());
@@ -58,13 +58,13 @@ impl Source {
         source
     }
 
-    /// S of the present column.
+    /// S of the current column.
     #[cfg(test)]
     pub(super) fn coordinate(&self) -> u64 {
         self.coordinate
     }
 
-    /// The position of the present column; moves on to the next.
+    /// The position of the current column. Moves on to the next column.
     #[inline]
     pub(crate) fn advance(&mut self) -> Position {
         let position = self.position();
@@ -77,14 +77,14 @@ impl Source {
         position
     }
 
-    /// The position of the present column.
+    /// The position of the current column.
     pub(crate) fn position(&self) -> Position {
         let rounded = ((self.coordinate + DROPPED_HALF) & COORDINATE_MASK) >> DROPPED_BITS;
         let fraction = rounded as u32 & ((1 << FRACTION_BITS) - 1);
         Position { n: (rounded >> FRACTION_BITS) as i32, fraction }
     }
 
-    /// D = 16·Q[s] + G[s]. Behind the last node, which is where a row with one factor begins, the steps are all alike.
+    /// Sets D = 16·Q[s] + G[s]. After the last node, where a row with a single factor already begins, all steps are equal.
     #[cold]
     fn begin_segment(&mut self) {
         let RowValues { factors, k, .. } = &self.values;

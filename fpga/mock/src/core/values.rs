@@ -1,14 +1,14 @@
-//! A row's values: its offset and its factors, as the tables give them (`fpga/DATAPATH.md`, *Values of a row*).
+//! A row's values: its offset and its factors, from the tables (`fpga/DATAPATH.md`, *Values of a row*).
 
 use std::sync::Arc;
 
 /// The table entry of a row that is not stretched, 1.0; also the largest row factor.
 pub const UNSTRETCHED: u32 = 1 << 24;
 
-/// Fractional bits of the place between two grid rows, of which a grid with 2^v rows between them has v.
+/// Fractional bits of a row's place between two grid rows. With 2^v rows from one to the next, v of them are used.
 const PLACE_BITS: u8 = 6;
 
-/// The B-spline's weights are whole numbers whose sum is 2^13.
+/// The B-spline's weights are integers whose sum is 2^13.
 const WEIGHT_BITS: u32 = 13;
 
 /// How a grid lies over a frame: a grid row every 2^v rows, a node every 2^k columns.
@@ -22,7 +22,7 @@ impl GridShape {
     /// The greatest v.
     pub(crate) const MOST_V: u8 = PLACE_BITS;
 
-    /// The ks that the mock's core takes.
+    /// The values of k that the mock's core takes.
     pub(crate) const KS: [u8; 2] = [5, 6];
 
     /// A grid row every 2^`v` rows, 1 to 6, and a node every 2^`k` columns, 5 or 6; none for other numbers.
@@ -31,7 +31,7 @@ impl GridShape {
         ((1..=Self::MOST_V).contains(&v) && Self::KS.contains(&k)).then_some(Self { v, k })
     }
 
-    /// N: segments of a row, which has one node more.
+    /// N: segments of a row. It has one node more than segments.
     #[must_use]
     pub fn segments(self, width: u16) -> usize {
         usize::from(width).div_ceil(1 << self.k)
@@ -43,19 +43,19 @@ impl GridShape {
         usize::from(height.saturating_sub(1) >> self.v) + 3
     }
 
-    /// Entries that a frame takes: those of the offsets, then those of one node after the other.
+    /// Entries for a frame: the offsets, then the factors of one node after another.
     #[must_use]
     pub fn entries(self, width: u16, height: u16) -> usize {
         (self.segments(width) + 2) * self.grid_rows(height)
     }
 }
 
-/// What the source coordinates of a row are made of.
+/// What determines the source coordinates of a row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RowValues {
     /// O, in units of 2^-13 column, signed.
     pub(super) offset: i32,
-    /// Q[0] to Q[N] in units of 2^-24, one at each end of a segment; a single one where it is the whole row's.
+    /// Q[0] to Q[N] in units of 2^-24, one at each end of a segment; a single one if the whole row has the same factor.
     pub(super) factors: Arc<[u32]>,
     /// k: a segment has 2^k columns.
     pub(super) k: u8,
@@ -69,7 +69,7 @@ impl From<u32> for RowValues {
 }
 
 impl RowValues {
-    /// The values of `row` of a frame of this width and height. `entry` reads the grid.
+    /// The values of `row` in a frame of this width and height. `entry` reads the grid.
     #[must_use]
     pub fn of_grid(
         shape: GridShape,
@@ -95,7 +95,7 @@ impl RowValues {
     }
 }
 
-/// The weights w0, w1 and w2 of three grid rows, `place`/64 of the way from the first one's row to the next one's.
+/// The weights w0, w1 and w2 of three grid rows, `place`/64 of the way from one grid row to the next.
 fn weights(place: u16) -> [u64; 3] {
     let (right, left) = (u64::from(place), u64::from(64 - place));
     let (first, last) = (left * left, right * right);

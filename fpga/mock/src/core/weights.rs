@@ -1,4 +1,4 @@
-//! The weighted sum: weights between the kernel's nodes, times the taps.
+//! The weighted sum: weights interpolated between the kernel's nodes, times the taps.
 
 use super::kernel::{Kernel, NODES};
 use super::source::FRACTION_BITS;
@@ -23,7 +23,7 @@ pub(crate) struct Weights {
 }
 
 impl Weights {
-    /// The kernel's weights at `x` of 2^-13 column, 0 ≤ x < 2^14, between those of the two nodes around it.
+    /// The kernel's weights at `x` of 2^-13 column, 0 ≤ x < 2^14, interpolated between the two nodes around it.
     #[inline]
     pub(crate) fn at(kernel: &Kernel, x: u32) -> Self {
         let node = (x >> BETWEEN_BITS) as usize % (NODES - 1);
@@ -42,8 +42,8 @@ impl Weights {
         }
     }
 
-    /// The weighted sum of the taps, plus `rounding`, as a whole number. Five products suffice, since the weights of
-    /// the output's own colour add up to one and those of the other to nothing.
+    /// The weighted sum of the taps, plus `rounding`, without its fraction. Five products suffice, since the weights of the
+    /// output's own colour add up to one and those of the other colour to zero.
     #[inline]
     pub(crate) fn sum(&self, taps: [i32; TAPS], rounding: i32) -> i32 {
         let [g0, r1, g2, r3, g4, r5, g6] = taps;

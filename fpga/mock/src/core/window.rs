@@ -1,28 +1,28 @@
-//! The window of samples that serves all taps of one output.
+//! The window of samples that holds all taps of one output.
 
-/// Samples in the window: columns n − 3 to n + 4, so that a tap set at a = n and one at a = n − 1 both fit.
+/// Samples in the window: columns n − 3 to n + 4, so that the taps for a = n and those for a = n − 1 both fit.
 const SAMPLES: usize = 8;
 
 /// Columns of the window left of n.
 const LEFT: i32 = 3;
 
-/// Columns of the window right of n. The sample that enters when n moves is this far ahead of it.
+/// Columns of the window right of n. The sample that enters when n moves is the rightmost of them.
 const RIGHT: i32 = 4;
 
 /// Taps of an output, G0 to G6.
 pub(crate) const TAPS: usize = 7;
 
-/// The eight samples around the source column n. One enters when n moves on by one, in place of the leftmost.
+/// The eight samples around the source column n. When n moves by one, a new sample replaces the leftmost.
 #[derive(Debug)]
 pub(crate) struct Window {
-    /// Each sample twice, so that all of them stand side by side from the leftmost one on.
+    /// Every sample is stored twice, so that all eight always lie side by side, starting with the leftmost.
     samples: [i32; 2 * SAMPLES],
     leftmost: usize,
     n: i32,
 }
 
 impl Window {
-    /// The window at a row's start, loaded whole; `read` gives the row's sample at a column.
+    /// The window at the start of a row, loaded as a whole. `read` returns the row's sample at a column.
     pub(crate) fn load(n: i32, read: impl Fn(i32) -> u16) -> Self {
         let mut window = Self { samples: [0; 2 * SAMPLES], leftmost: 0, n };
         for column in n - LEFT..=n + RIGHT {
@@ -31,7 +31,7 @@ impl Window {
         window
     }
 
-    /// Moves the window to the source column `n`, reading at most one sample. The port has no time for a second.
+    /// Moves the window to the source column `n` and reads at most one sample: the port has no time for a second.
     #[inline]
     pub(crate) fn follow(&mut self, n: i32, read: impl Fn(i32) -> u16) {
         if n != self.n {

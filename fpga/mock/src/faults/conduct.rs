@@ -1,22 +1,22 @@
-//! What a board can do with packets that the wire does not have.
+//! Misconduct with packets, against the wire's rules.
 
-/// What a board does with packets that it must not.
+/// What a board wrongly does with packets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Conduct {
-    /// It carries them out whatever session they name.
+    /// It carries them out whichever session they name.
     AnySession,
-    /// It is taken by another host whoever holds it.
+    /// It lets another host take it, whoever holds it.
     NeverHeld,
-    /// It goes on with the counters of the session before.
+    /// It keeps the counters of the previous session.
     CountersKept,
-    /// It begins the count of ROW_OUT packets anew behind a RESET.
+    /// It restarts the count of ROW_OUT packets after a RESET.
     PacketsAnew,
     /// It takes rows in any place of their frame.
     RowsAnywhere,
-    /// It frees every output bank at a ROW_ACK, whatever rows that names.
+    /// It frees every output bank on a ROW_ACK, whichever rows that names.
     GreedyAck,
-    /// It frees every output bank at a packet whose CRC is wrong.
+    /// It frees every output bank on a packet whose CRC is wrong.
     DamagedAck,
-    /// It says of each row that is sent again that it was never sent before.
+    /// It says of every row that is sent again that it was never sent before.
     StuckRepeats,
 }

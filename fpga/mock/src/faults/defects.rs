@@ -14,16 +14,16 @@ pub(crate) struct Defects {
     pub(crate) core: CoreDefects,
     /// The tables.
     pub(crate) tables: TableDefects,
-    /// What plays rows and collects them.
+    /// The player and the out-banks.
     pub(crate) player: PlayerDefects,
-    /// What makes frames and signs them.
+    /// The maker and the signer of the board's own frames.
     pub(crate) burst: BurstDefects,
-    /// What the board says of itself.
+    /// What the board says about itself.
     pub(crate) claims: WrongClaims,
 }
 
 impl Defects {
-    /// What is wrong with a board with `fault`.
+    /// What is wrong with a board that has `fault`.
     pub(crate) fn of(fault: Option<BoardFault>) -> Self {
         let Some(fault) = fault else { return Self::default() };
         let mut defects = Self { claims: wrong_claims(fault), ..Self::default() };
@@ -66,7 +66,7 @@ impl Defects {
     }
 }
 
-/// What a board says of itself that is not so.
+/// The false claims of a board that has this fault.
 fn wrong_claims(fault: Fault) -> WrongClaims {
     match fault {
         Fault::WrongLatencyClaim => WrongClaims { latency: 1, ..WrongClaims::default() },

@@ -1,9 +1,9 @@
-//! Faults that a run never comes upon or a build cannot have, so that who asks for one is told.
+//! Faults that a run never reaches or a build cannot have, so that whoever asks for one can be told.
 
 use super::BoardFault;
 use crate::options::{BurstBuild, OptionError, Options, TapCount};
 
-/// What a board is given under one generation of tables.
+/// What a board is given with one generation of tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Streamed {
     /// Samples of a row.
@@ -12,15 +12,15 @@ pub struct Streamed {
     pub height: usize,
     /// Entries of the grid that its rows are made with; none for row factors.
     pub grid: Option<usize>,
-    /// Frames, some of them behind a CONFIGURE of their own.
+    /// Frames, some of them after a CONFIGURE of their own.
     pub frames: usize,
-    /// Whether the board makes frames of its own behind them.
+    /// Whether the board then makes frames of its own.
     pub at_speed: bool,
 }
 
 impl BoardFault {
-    /// Why the fault changes nothing when a board plays the `streamed` frames, and what would; none when it may change
-    /// something.
+    /// Why the fault changes nothing when a board plays the frames of `streamed`, and what would make it take effect; none when
+    /// it may change something.
     #[must_use]
     pub fn without_effect(&self, streamed: &Streamed) -> Option<String> {
         match *self {
@@ -46,7 +46,7 @@ impl BoardFault {
         }
     }
 
-    /// Whether a build has the part that the fault puts out of order.
+    /// Checks that a build has the part that the fault breaks.
     pub(crate) fn check_part(&self, build: &Options) -> Result<(), OptionError> {
         let lines = build.ring_size().ilog2();
         match *self {
@@ -98,7 +98,7 @@ impl Streamed {
         })
     }
 
-    /// An entry is a row's or a grid's.
+    /// An entry belongs to a row or to a grid.
     fn lacks_entry(&self, row: u16) -> Option<String> {
         let Some(entries) = self.grid else { return self.lacks_row(row) };
         let last = entries.saturating_sub(1);
@@ -106,7 +106,8 @@ impl Streamed {
             .then(|| format!("there is no entry row={row} in a grid of {entries}; give one from 0 to {last}"))
     }
 
-    /// What flips behind so many rows flips too late. The host reads a grid back when the last row has been played.
+    /// A bit that flips only after more rows than are played flips too late. The host reads a grid back once the last row has
+    /// been played.
     fn ends_before(&self, after: u32, row: u16) -> Option<String> {
         let (row, what) = match self.grid {
             None => (usize::from(row), format!("row {row}")),

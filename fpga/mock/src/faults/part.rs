@@ -1,9 +1,9 @@
-//! What can be out of order.
+//! The parts that can be broken.
 
 use super::Conduct;
 use crate::core::Weight;
 
-/// A fault inside the board, with the part that it is in.
+/// A fault inside the board, and the part that it breaks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoardFault {
     /// A data line of the line memory is stuck.
@@ -20,7 +20,7 @@ pub enum BoardFault {
         /// The level that it is stuck at.
         value: bool,
     },
-    /// A bit of a table entry is flipped, in both banks: of a row factor, or of what a grid has in its place.
+    /// A bit of a table entry is flipped in both banks: of a row factor, or of the grid's entry in its place.
     RowFactor {
         /// The row, or the number of the grid's entry.
         row: u16,
@@ -63,27 +63,27 @@ pub enum BoardFault {
         /// The row of every frame that is lost.
         row: u16,
     },
-    /// A commit is confirmed, and rows are still made with the tables of the one before.
+    /// A commit is confirmed, but rows are still made with the tables of the commit before.
     StaleTable {
-        /// Whether the rows are named after the new generation all the same.
+        /// Whether the rows nevertheless name the new generation.
         hidden: bool,
     },
-    /// A commit is taken whatever the tables read back as.
+    /// A commit is accepted whatever the tables read back as.
     UncheckedCommit,
-    /// A bit of a table entry flips while the board runs, under every generation.
+    /// A bit of a table entry flips while the board runs, in every generation.
     DriftingTable {
-        /// Rows of the generation that are played before.
+        /// Rows of the generation that are played before that.
         after: u32,
         /// The row, or the number of the grid's entry.
         row: u16,
         /// The bit, 0 to 24.
         bit: u8,
     },
-    /// Packets are treated otherwise than the wire has it.
+    /// Packets are treated against the wire's rules.
     Conduct(Conduct),
     /// The board claims another datapath id.
     WrongDatapath,
-    /// The board claims that a PLL clocks it, far slower than it is.
+    /// The board claims that a PLL clocks it, far slower than it really runs.
     WrongClockClaim,
     /// A bit of a row flips between its packet and the core.
     SpoiltRow {
@@ -94,27 +94,27 @@ pub enum BoardFault {
         /// The bit, 0 to 11.
         bit: u8,
     },
-    /// A bit of the output flips at a rate in rows that follow another without a pause.
+    /// A bit of the output flips at a given rate, in rows that follow another without a pause.
     SlowPath {
         /// The bit, 0 to 11.
         bit: u8,
-        /// Outputs of which one flips, on average.
+        /// One in this many outputs flips, on average.
         one_in: u32,
         /// The seed of the draws.
         seed: u32,
     },
-    /// A bit of the output flips once the board has made so many frames on its own.
+    /// A bit of the output flips once the board has made this many frames on its own.
     WarmBit {
-        /// Frames that it has made before.
+        /// Frames that it has made before that.
         after: u32,
         /// The row whose first output flips.
         row: u16,
         /// The bit, 0 to 11.
         bit: u8,
     },
-    /// Between frames that follow each other as closely as they may, the table bank changes a row late.
+    /// When frames follow each other as closely as they may, the table bank changes a row late.
     LateSwap,
-    /// The output stands still for a clock in a row of every frame that the board makes, and that is not counted.
+    /// In one row of every frame that the board makes, the output stands still for a clock that is not counted.
     HiddenPause {
         /// The row.
         row: u16,

@@ -6,7 +6,7 @@ use crate::core::Weight;
 /// What is wrong with tables; nothing by default.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct TableDefects {
-    /// A bit of a row factor, or of the entry of a grid that lies there, is flipped at some ports, in both banks.
+    /// A bit of an entry, whether row factor or grid entry, is flipped at some ports, in both banks.
     pub(crate) entry: Option<FlippedBit<u16>>,
     /// A bit of a kernel word is flipped at some ports, in both banks.
     pub(crate) word: Option<FlippedBit<(u8, Weight)>>,
@@ -14,11 +14,11 @@ pub(crate) struct TableDefects {
     pub(crate) stale: Option<Stale>,
     /// A bit of an entry flips while the board runs.
     pub(crate) drift: Option<Drift>,
-    /// A commit is taken whatever the tables read back as.
+    /// A commit is accepted whatever the tables read back as.
     pub(crate) unchecked: bool,
 }
 
-/// A bit of an entry that is not as it was written.
+/// A bit of an entry that does not read as it was written.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FlippedBit<Entry> {
     /// Which entry.
@@ -29,10 +29,10 @@ pub(crate) struct FlippedBit<Entry> {
     pub(crate) hidden: bool,
 }
 
-/// What rows that are made with the tables before the last commit are named after.
+/// The generation that rows name when they are made with the tables before the last commit.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Stale {
-    /// The generation that they are made with.
+    /// The old one, with which they are really made.
     Admitted,
     /// The new one.
     Hidden,
@@ -41,7 +41,7 @@ pub(crate) enum Stale {
 /// A bit of an entry that flips while the board runs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drift {
-    /// Rows of the generation that are played before.
+    /// Rows of the generation that are played before that.
     pub(crate) after: u32,
     /// The row of the factor, or the number of the grid's entry.
     pub(crate) entry: u16,
@@ -50,13 +50,13 @@ pub(crate) struct Drift {
 }
 
 impl<Entry> FlippedBit<Entry> {
-    /// Whether the bit is flipped at a port: at every one, or only at the datapath's.
+    /// Whether the bit is flipped at a port: at every port, or at the datapath's only.
     pub(super) fn shows(&self, port: Port) -> bool {
         !self.hidden || port == Port::Datapath
     }
 }
 
-/// A word with one bit flipped. A bit beyond the word leaves it as it is.
+/// A word with one bit flipped. A bit outside the word changes nothing.
 pub(super) fn flipped(word: u32, bit: u8) -> u32 {
     word ^ 1_u32.checked_shl(bit.into()).unwrap_or(0)
 }

@@ -39,7 +39,7 @@ pub enum TableError {
     /// The shadow bank has been committed and no row has used it yet.
     #[error("the shadow bank waits for row 0 of frame {first_frame}; play that row first")]
     CommitPending {
-        /// The frame that the commit takes effect with.
+        /// The frame at which the commit takes effect.
         first_frame: u16,
     },
 }
