@@ -26,8 +26,8 @@ fn the_last_two_columns_stand_in_on_the_right() {
     assert_eq!(corrected(&samples, binding(64, 1 << 24, four_right)), expected);
 }
 
-/// With C = 0 and Q = 1/4, columns 0 to 3 come from n = 0. The odd ones have their base at column −1, which column 1
-/// stands for; so do the taps two columns left of it.
+/// With C = 0 and Q = 1/4, columns 0 to 3 come from n = 0. The base of the odd ones is column −1, for which column 1 stands in;
+/// so it does for the taps two columns left of that base.
 #[test]
 fn a_base_left_of_the_row_takes_the_second_column() {
     let samples = noise_row(0, 64);

@@ -7,7 +7,7 @@ use halfrow_pipe::{FaultError, Parameters, Range, ValueError};
 
 use crate::support::{binding, constant, core, fault, hermite, noise_row, row_out, run, unchanged};
 
-/// What a row of these samples, unstretched, becomes on a core with a fault.
+/// What a core with a fault makes of a row of these samples, unstretched.
 fn row_with(fault: BoardFault, kernel: Kernel, samples: Vec<u16>) -> Vec<u16> {
     let rows = [(samples, binding(64, 1 << 24, kernel))];
     row_out(&run(&mut core(12, 64, Some(fault)), &rows, 0), 64, 0)
@@ -22,7 +22,7 @@ fn a_stuck_data_line_forces_a_bit() {
     assert_eq!(row_with(fault("stuck-data", &[("bit", "11"), ("value", "0")]), hermite(), samples), low);
 }
 
-/// With address line 3 stuck, columns that differ in it only share a cell, and the later one stays there.
+/// With address line 3 stuck, columns that differ only in it share a cell, and the later one stays there.
 #[test]
 fn a_stuck_address_line_makes_columns_share_a_cell() {
     let samples = noise_row(0, 64);
@@ -30,7 +30,7 @@ fn a_stuck_address_line_makes_columns_share_a_cell() {
     assert_eq!(row_with(fault("stuck-address", &[]), hermite(), samples), expected);
 }
 
-/// The last column would come from column 64, which column 62 stands for.
+/// The last column would come from column 64, for which column 62 stands in.
 #[test]
 fn a_tap_offset_shifts_the_row() {
     let samples = noise_row(0, 64);
@@ -79,7 +79,7 @@ fn faults_outside_the_core_leave_it_as_it_is() {
     }
 }
 
-/// Values of a parameter, among them one that is not its default.
+/// Values of a parameter, at least one of which is not its default.
 fn samples_of(range: Range) -> Vec<String> {
     match range {
         Range::Whole(least, most) => vec![least.to_string(), most.to_string()],

@@ -1,4 +1,4 @@
-//! Values that a program outside the project computed.
+//! Values that were computed by a program outside the project.
 
 use halfrow_mock::{Depth, Kernel, Options, Player, RowOut, Settings, Tables, UNSTRETCHED};
 

@@ -1,6 +1,6 @@
-//! Tables that ask for samples the ring does not have: what was in its cells comes out instead.
+//! Tables that ask for samples that the ring does not hold: whatever is in its cells comes out instead.
 //!
-//! All cases have W = M = 64 and rows whose samples are all alike, so that an output tells which row it came from.
+//! All cases have W = M = 64 and rows of equal samples, so that an output tells which row it came from.
 
 use halfrow_mock::{Kernel, Node, RowBinding};
 
@@ -19,10 +19,10 @@ fn rows_out(binding: &RowBinding, samples: &[u16], blanking: usize) -> Vec<Vec<u
     (0..samples.len()).map(|index| row_out(&outputs, 64, index)).collect()
 }
 
-/// C = 126 and Q = 1/4: column j comes from 47.25 + j/4. When it is read, columns up to j + 35 have entered. So the
-/// window of column 0, which is loaded at once, holds no sample later than column 35, and column 57 (n = 53, at
-/// j = 23) is the first that enters the window in time. An output whose weights are all zero is the base column's
-/// sample: 57 for j = 39, 56 for j = 40, 57 for j = 41, 56 for j = 42, and 57 or more from j = 43 on.
+/// C = 126 and Q = 1/4: column j comes from 47.25 + j/4. When it is read, columns up to j + 35 have entered. So the window of
+/// column 0, which is loaded at once, holds no sample later than column 35, and column 57 (n = 53, at j = 23) is the first that
+/// enters the window in time. An output whose weights are all zero is the sample of its base column: 57 for j = 39, 56 for j =
+/// 40, 57 for j = 41, 56 for j = 42, and 57 or more from j = 43 on.
 #[test]
 fn looking_too_far_ahead_shows_the_row_before() {
     let rows = rows_out(&stretched(126, Kernel::default()), &[100, 200], 0);
@@ -37,10 +37,10 @@ fn looking_too_far_ahead_shows_an_empty_memory_in_the_first_row() {
     assert_eq!(rows[0], expected);
 }
 
-/// C = 0 and Q = 1/4: column j comes from j/4. When it is read, the newest sample is j + 35 columns into this row or
-/// the next, so column j − 28 is the oldest left. Column n + 4 enters the window at j = 4n: columns 15 and on (n = 11,
-/// j = 44) come too late and are the next row's. With g4 = 1 an output is the sample two columns right of its base:
-/// column 15 for j = 53 and 55, column 14 for j = 54, 15 or more from j = 56 on.
+/// C = 0 and Q = 1/4: column j comes from j/4. When it is read, the newest sample is j + 35 columns into this row or the next,
+/// so column j − 28 is the oldest that is left. Column n + 4 enters the window at j = 4n: from column 15 (n = 11, j = 44) on
+/// they come too late and are the next row's. With g4 = 1 an output is the sample two columns right of its base: column 15 for
+/// j = 53 and 55, column 14 for j = 54, 15 or more from j = 56 on.
 #[test]
 fn looking_too_far_back_shows_the_row_behind() {
     let right = constant(Node { g4: 1 << 14, ..Node::default() });

@@ -1,4 +1,4 @@
-//! What the tests feed the board with, made from the paper's formulas and the specification's sample formula.
+//! What the tests feed to the board, made by the paper's formulas and the sample formula of DATAPATH.md.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -42,14 +42,14 @@ pub(crate) fn unchanged(width: u16) -> RowBinding {
     binding(width, UNSTRETCHED, hermite())
 }
 
-/// A core of this latency and ring, with a fault or without.
+/// A core with this latency and this ring, with or without a fault.
 pub(crate) fn core(latency: u8, ring: u16, fault: Option<BoardFault>) -> Core {
     let options = Options { latency, ring: Some(ring), max_width: ring.min(2592), ..Options::default() };
     Core::new(&options, fault).unwrap()
 }
 
-/// Feeds rows into a core with `blanking` clocks between them and flushes it. Returns every output with the pixel
-/// clock that it was taken at; the first sample enters at clock 0.
+/// Feeds rows into a core with `blanking` clocks between them, and flushes it. Returns every output with the pixel clock at
+/// which it was given; the first sample enters at clock 0.
 pub(crate) fn run(
     core: &mut Core,
     rows: &[(Vec<u16>, RowBinding)],
@@ -76,12 +76,12 @@ pub(crate) fn run(
         .collect()
 }
 
-/// The samples of the row that leaves `index`th.
+/// The samples of the row that leaves as number `index`, counted from 0.
 pub(crate) fn row_out(outputs: &[(usize, Leaving)], width: u16, index: usize) -> Vec<u16> {
     outputs.chunks(width.into()).nth(index).unwrap().iter().map(|(_, leaving)| leaving.sample).collect()
 }
 
-/// The fault called `name` with parameters as in a target string.
+/// The fault called `name`, with parameters in a target string's spelling.
 pub(crate) fn fault(name: &str, parameters: &[(&str, &str)]) -> BoardFault {
     let mut parameters: BTreeMap<_, _> =
         parameters.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
@@ -90,7 +90,7 @@ pub(crate) fn fault(name: &str, parameters: &[(&str, &str)]) -> BoardFault {
     fault
 }
 
-/// A player and its tables, set to 64 columns and as many rows as there are factors, the tables committed for frame 0.
+/// A player and its tables for 64 columns and as many rows as there are factors, with the tables committed for frame 0.
 pub(crate) fn small_board(fault: Option<BoardFault>, factors: &[u32], kernel: &Kernel) -> (Player, Tables) {
     let options = Options::default();
     let mut player = Player::new(&options, fault).unwrap();
@@ -107,7 +107,7 @@ pub(crate) fn small_settings(height: u16, blanking: u16, gap_seed: u32) -> Setti
     Settings { width: 64, height, centre2: 63, depth: Depth::Twelve, blanking, gap_seed }
 }
 
-/// Plays a frame of the specification's samples, flushes it and fetches what comes out.
+/// Plays a frame of DATAPATH.md's golden samples, flushes it and fetches what comes out.
 pub(crate) fn play_frame(player: &mut Player, tables: &mut Tables, frame: u16) -> Vec<RowOut> {
     let &Settings { width, height, .. } = player.settings();
     let mut corrected = Vec::new();

@@ -1,11 +1,12 @@
-//! Faults of the tables. A table that is wrong by the faulty bit comes out right, so the golden row shows the fault.
+//! Faults of the tables. A table that is written with the faulty bit wrong is put right by the fault, so a golden row shows
+//! that the fault acts.
 
 use halfrow_mock::{Bank, BoardFault, Port, Tables, UNSTRETCHED, Weight};
 
 use crate::support::{GOLDEN_FACTOR, fault, hermite, noise_row, play_frame, small_board};
 use halfrow_conformance::golden_rows::HERMITE;
 
-/// The first row that a board with a fault makes of the golden samples, and its tables after that.
+/// The first row that a board with a fault makes of the golden samples, and its tables afterwards.
 fn first_row(fault: BoardFault, factor: u32, kernel: &halfrow_mock::Kernel) -> (Vec<u16>, Tables) {
     let (mut player, mut tables) = small_board(Some(fault), &[factor], kernel);
     let mut rows = play_frame(&mut player, &mut tables, 0);
@@ -65,8 +66,8 @@ fn a_drifting_entry_flips_once_while_the_board_runs() {
     assert_eq!(tables.entry(Bank::Active, 0, Port::ReadBack), Some(GOLDEN_FACTOR));
 }
 
-/// Plays a frame with unstretched rows, commits the golden factor, and plays a second one. Returns whether its row was
-/// made with the new table, and the generation that it names.
+/// Plays a frame of one unstretched row, commits the golden factor, and plays a second frame. Returns whether its row was made
+/// with the new table, and the generation that it names.
 fn second_frame(fault: BoardFault) -> (bool, u8) {
     let (mut player, mut tables) = small_board(Some(fault), &[UNSTRETCHED], &hermite());
     play_frame(&mut player, &mut tables, 0);

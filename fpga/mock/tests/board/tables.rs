@@ -1,4 +1,4 @@
-//! Two banks of tables: writing one, committing it, refusing what cannot be.
+//! Two banks of tables: writing one, committing it, and what is refused.
 
 use halfrow_mock::{Bank, Node, Options, Port, TableError, Tables, TapCount, UNSTRETCHED};
 

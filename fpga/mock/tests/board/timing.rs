@@ -1,4 +1,4 @@
-//! Half a row of delay, to the clock.
+//! A delay of half a row, exact to the clock.
 
 use halfrow_mock::{Depth, Entering, GridShape, Options, RowBinding, RowValues};
 use proptest::prelude::*;

@@ -24,8 +24,8 @@ fn answered_at(wire: &mut Pipe<Board>, bytes: &[u8]) -> Duration {
 
 #[test]
 fn an_answer_takes_the_time_of_its_bytes_and_the_delay_both_ways() {
-    // HELLO: 12 + 11 + 4 bytes, COBS adds 1, a zero on either side: 30. Its reply has 22 bytes of payload: 41. At 100
-    // bytes/s the board has the request at 0.3 + 0.5 s and the host the reply at 0.8 + 0.41 + 0.5 s.
+    // HELLO has 12 + 11 + 4 bytes; COBS adds 1 and there is a zero on either side: 30. Its reply has 22 bytes of payload: 41.
+    // At 100 bytes/s the board has the request after 0.3 + 0.5 s, and the host the reply after 0.8 + 0.41 + 0.5 s.
     let mut wire = wire(&[("speed", "100"), ("delay", "0.5")]);
     assert_eq!(hello().len(), 30);
     assert_eq!(answered_at(&mut wire, &hello()), Duration::from_millis(1710));
@@ -85,8 +85,8 @@ fn two_hours_on_the_wire_pass_in_no_time() {
     let begun = Instant::now();
     let mut wire = wire(&[("speed", "1")]);
     answer(&mut wire, &hello());
-    // 4016 bytes, with a run of 4004 that takes 15 codes more than the first, between zeros: 4034 s there and 4034 s
-    // back.
+    // 4016 bytes. The run of 4004 bytes without a zero needs 15 codes besides the first; with a zero on either side that makes
+    // 4034 s there and 4034 s back.
     let (sent, before) = (echo(1, &[3; 4000]), wire.now());
     assert_eq!(sent.len(), 4034);
     assert_eq!(answered_at(&mut wire, &sent) - before, Duration::from_secs(8068));

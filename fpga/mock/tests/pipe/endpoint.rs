@@ -1,4 +1,4 @@
-//! A board at the end of the wire that is not the mock.
+//! A board other than the mock at the end of the wire.
 
 use std::time::Duration;
 

@@ -8,7 +8,7 @@ use proptest::prelude::*;
 
 use crate::support::{answer, echo, echo_reply, hello, wire};
 
-/// Twenty requests of which the board's answers are as long as the requests.
+/// Twenty requests whose answers are as long as they are, and those answers.
 fn requests() -> (Vec<u8>, Vec<u8>) {
     let texts: Vec<Vec<u8>> =
         (1..=20_u16).map(|number| (0..100 * number).map(|byte| byte as u8).collect()).collect();
@@ -52,7 +52,7 @@ fn without_a_buffer_nothing_is_taken_while_the_board_has_something_to_say() {
     let mut wire = wire(&[("buffer", "0"), ("speed", "1000")]);
     let (mut incoming, second) = (Vec::new(), [1; 20]);
     assert_eq!(wire.exchange(&hello(), &mut incoming, Duration::ZERO), Ok(30));
-    // The board has it at 30 ms, and its 41 bytes are with the host at 71 ms.
+    // The board has it at 30 ms, and the host has its 41 bytes at 71 ms.
     assert_eq!(wire.exchange(&second, &mut incoming, Duration::from_millis(70)), Ok(0));
     assert_eq!(incoming.len(), 0);
     assert_eq!(wire.exchange(&second, &mut incoming, Duration::from_millis(1)), Ok(0));
@@ -64,8 +64,8 @@ fn without_a_buffer_nothing_is_taken_while_the_board_has_something_to_say() {
 fn without_a_buffer_a_wire_without_limit_takes_bytes_only_up_to_an_answer() {
     let mut wire = wire(&[("buffer", "0")]);
     answer(&mut wire, &hello());
-    // Two requests of 516 bytes, which COBS makes 518, between zeros: 520. The board answers in the second slice of
-    // 512, and then the host has to listen.
+    // Two requests of 516 bytes, which COBS makes 518; with a zero on either side, 520. The board answers during the second
+    // slice of 512, and then the host has to listen.
     let sent = [echo(1, &[1; 500]), echo(2, &[2; 500])].concat();
     assert_eq!(sent.len(), 2 * 520);
     let (mut incoming, before) = (Vec::new(), wire.now());
@@ -88,7 +88,7 @@ fn without_a_buffer_the_board_is_listened_to_even_if_its_words_get_lost() {
     let mut incoming = Vec::new();
     assert_eq!(wire.exchange(&sent, &mut incoming, Duration::ZERO), Ok(512));
     assert_eq!(wire.exchange(&sent[512..], &mut incoming, Duration::from_secs(1)), Ok(510));
-    // It is with the board at 1.022 s. The zero in front of the answer comes in its first slice, the one behind it in the
+    // The request reaches the board at 1.022 s. The zero before the answer comes in its first slice, the one after it in the
     // second.
     assert_eq!(wire.exchange(&[2], &mut incoming, Duration::from_secs(9)), Ok(0));
     assert_eq!((wire.now() - before, incoming.len()), (Duration::from_millis(1534), 1));

@@ -12,7 +12,7 @@ fn conversation() -> Vec<u8> {
     hello().into_iter().chain(requests).collect()
 }
 
-/// What the host hears of it, after HELLO's answer, on a sound wire.
+/// What the host hears in reply on a sound wire, after the answer to HELLO.
 fn replies() -> Vec<Vec<u8>> {
     (1..=10).map(|number| echo_reply(number, &[number as u8; 50])).collect()
 }
@@ -53,7 +53,7 @@ fn packets_towards_the_board_suffer_before_it_answers() {
 
 #[test]
 fn both_directions_suffer_by_default() {
-    // The request of packet 3 is lost, and so is the fourth answer that the board makes, the one to packet 4.
+    // The request of packet 3 is lost, and so is the fourth answer from the board, which is the one to packet 4.
     assert_eq!(heard(&[("fault", "drop"), ("packet", "3")]), [0, 1, 2, 5, 6, 7, 8, 9, 10]);
 }
 
@@ -62,7 +62,7 @@ fn the_board_counts_what_reached_it_damaged() {
     let mut wire = wire(&[("fault", "flip"), ("packet", "3"), ("toward", "board")]);
     answer(&mut wire, &conversation());
     let status = status(&mut wire);
-    // A new session clears the counters, so HELLO itself is not counted: nine requests, and STATUS.
+    // A new session clears the counters, so HELLO itself is not counted: nine requests and STATUS are.
     assert_eq!((status.packets, status.crc_errors + status.framing_errors), (10, 1));
 }
 
@@ -85,8 +85,8 @@ fn a_broken_wire_stays_broken() {
     let options = [("fault", "disconnect"), ("packet", "3"), ("toward", "board"), ("speed", "1000")];
     let mut wire = wire(&options);
     let (incoming, done) = talk(&mut wire, &conversation());
-    // HELLO has 30 bytes and an ECHO of 50 has 69. In the slice that breaks the wire, at 512 ms, two requests came
-    // before; their answers are on the way when it breaks.
+    // HELLO has 30 bytes and an ECHO of 50 bytes has 69. Two requests arrive earlier in the slice that breaks the wire, at 512
+    // ms; their answers are under way when it breaks.
     let broken = done.unwrap_err();
     let at = Duration::from_millis(512);
     assert_eq!((sequences(&incoming), &broken), (vec![], &Broken::Disconnected { at }));

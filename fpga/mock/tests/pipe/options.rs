@@ -1,4 +1,4 @@
-//! Target strings, taken apart by the host, that describe a wire or do not.
+//! Target strings, already split by the host, that describe a wire, and others that do not.
 
 use std::num::NonZeroU64;
 use std::time::Duration;
@@ -81,7 +81,7 @@ fn a_parameter_without_its_fault_is_refused() {
 
 #[test]
 fn every_key_of_the_board_that_an_error_names_exists() {
-    // What is refused is known, as what is taken.
+    // A key with a refused value exists just as much as one with an accepted value.
     assert!(Options::KEYS.iter().all(|key| Options::default().set(key, "none") != Ok(false)));
     assert_eq!(Options::default().set("moon", "none"), Ok(false));
 }

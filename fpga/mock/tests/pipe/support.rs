@@ -1,4 +1,4 @@
-//! A host's side of the wire, as thin as it can be.
+//! A host's side of the wire, as thin as possible.
 
 use std::convert::Infallible;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use halfrow_pipe::{Broken, Pipe, TargetError};
 use halfrow_protocol::message::{Hello, Status};
 use halfrow_protocol::{Decoder, Encoder, Header, Reply, Request};
 
-/// Longer than anything on the wires of these tests takes.
+/// Longer than anything takes on the wires of these tests.
 pub(crate) const SILENCE: Duration = Duration::from_secs(10_000);
 
 /// The session that a board opens first.
@@ -18,7 +18,7 @@ pub(crate) fn wire(options: &[(&str, &str)]) -> Pipe<Board> {
     connect(options).unwrap()
 }
 
-/// The error of options that make no wire, with its causes.
+/// The error for options that describe no wire, and its text with all causes.
 pub(crate) fn refusal(options: &[(&str, &str)]) -> (TargetError, String) {
     let ConnectError::Target(error) = connect(options).unwrap_err() else {
         panic!("{options:?} do not fit each other")
@@ -42,7 +42,7 @@ pub(crate) fn packet(sequence: u16, request: &Request<'_>) -> Vec<u8> {
     wire
 }
 
-/// The answer to ECHO of a board with four banks that has seen no row.
+/// The answer to ECHO from a board with four banks that has received no row.
 pub(crate) fn echo_reply(sequence: u16, bytes: &[u8]) -> Vec<u8> {
     let reply = Reply::Echo(bytes);
     let kind = reply.kind().code();
@@ -61,7 +61,7 @@ pub(crate) fn hello() -> Vec<u8> {
     packet(0, &Request::Hello(hello))
 }
 
-/// Sends `bytes` and listens until the wire is silent. Returns what came, or with the error what came before it.
+/// Sends `bytes` and listens until the wire is silent. Returns what came; on an error, what came before it.
 pub(crate) fn talk(wire: &mut Pipe<Board>, bytes: &[u8]) -> (Vec<u8>, Result<(), Broken<Infallible>>) {
     let (mut rest, mut incoming) = (bytes, Vec::new());
     loop {
@@ -84,7 +84,7 @@ pub(crate) fn answer(wire: &mut Pipe<Board>, bytes: &[u8]) -> Vec<u8> {
     incoming
 }
 
-/// Sequence numbers of the packets among `bytes` that are whole.
+/// Sequence numbers of the undamaged packets in `bytes`.
 pub(crate) fn sequences(mut bytes: &[u8]) -> Vec<u16> {
     let mut decoder = Decoder::new();
     let mut sequences = Vec::new();

@@ -1,4 +1,5 @@
-//! AT-SPEED.md on the mock: the frames that take a fast board, builds that no other board has, and faults that only speed shows.
+//! AT-SPEED.md on the mock: the frames that need a fast board, builds that no other board has, and faults that show only at
+//! speed.
 
 use halfrow_conformance::at_speed::{ENDLESS, FRAME, HEIGHT, ONE, golden_tables, ready_with};
 use halfrow_conformance::frames::{configuration, make_ready, row};
@@ -11,7 +12,7 @@ use halfrow_protocol::message::{
 };
 use halfrow_protocol::samples;
 
-/// Mocks of one build, with this fault or none.
+/// Mocks of one build, with or without a fault.
 pub(crate) struct Built(pub(crate) Options, pub(crate) Option<BoardFault>);
 
 impl Boards for Built {
@@ -114,12 +115,12 @@ fn a_mock_may_be_without_a_trap_and_keep_few_records() {
     halfrow_conformance::suite::burst_refusals::a_board_that_makes_none_refuses_the_kinds(&few);
 }
 
-/// The signatures of a burst of so many golden frames.
+/// The signatures of a burst of `frames` golden frames.
 fn signatures(bench: &mut Bench, frames: u32) -> Vec<u32> {
     bench.signed(&Burst { frames, ..ENDLESS }).iter().map(|record| record.signature).collect()
 }
 
-/// Rows that a host sends come back as they went, with the CRC-32 that they had.
+/// Whether rows that a host sends come back unchanged and in time, with the CRC-32 of what was sent.
 fn is_right_row_by_row(fault: BoardFault) -> bool {
     let mut bench = Bench::greeted(&Built(Options::default(), Some(fault)));
     make_ready(&mut bench, 8);
@@ -151,7 +152,7 @@ fn faults_that_only_speed_shows_do_not_show_row_by_row() {
     assert!(!is_right_row_by_row(BoardFault::SpoiltRow { row: 3, column: None, bit: 5 }));
 }
 
-/// One row in 256 outputs, of which the burst's first row never is one.
+/// One output in 256 flips, but none in the burst's first row.
 #[test]
 fn a_slow_path_flips_outputs_of_rows_that_follow_without_a_pause() {
     let found = signatures(&mut broken(BoardFault::SlowPath { bit: 5, one_in: 256, seed: 2 }), 40);
@@ -177,7 +178,7 @@ fn a_warm_board_flips_a_bit_behind_so_many_frames_of_all_bursts() {
     );
 }
 
-/// What is signed when row 0 alone has the tables of the frame in front.
+/// What is signed when row 0 alone has the tables of the frame before.
 #[test]
 fn a_late_swap_shows_when_frames_are_as_close_as_they_may_be() {
     let mut bench = broken(BoardFault::LateSwap);
@@ -200,7 +201,8 @@ fn a_hidden_pause_shows_in_the_latency_alone() {
     assert_eq!((record.signature, record.samples), (FRAME, 256));
 }
 
-/// Row 3, column 7: what entered is told with the row, so a wrong way in is not taken for a wrong core.
+/// Row 3, column 7: the row comes back with the CRC-32 of what entered, so that a fault on the way in is not taken for one of
+/// the core.
 #[test]
 fn a_row_that_is_spoilt_on_its_way_in_says_what_entered() {
     let mut bench = Bench::greeted(&Built(

@@ -1,4 +1,5 @@
-//! Grids on the mock: builds that no other board has, and its faults, each of which shows in rows that go through a grid, too.
+//! Grids on the mock: builds that no other board has, and the mock's faults, each of which also shows in rows that go through a
+//! grid.
 
 use halfrow_conformance::at_speed::ONE;
 use halfrow_conformance::capabilities::values;
@@ -25,7 +26,7 @@ fn with_entries(entries: u16) -> Built {
     Built(Options { entries, ..Options::default() }, None)
 }
 
-/// The first four bytes of what the board says of its grids: the datapath's id and T.
+/// The first four bytes that the board sends about its grids: the datapath's id and T.
 fn said(options: &Options) -> Option<u32> {
     values(&mut Bench::of(Box::new(Board::new(options, None).unwrap()))).get(&0x12).copied()
 }
@@ -56,7 +57,7 @@ fn a_mock_of_more_entries_takes_larger_grids() {
     }
 }
 
-/// A mock with this fault or none that waits for tables for frames of `height` rows of 64 samples.
+/// A mock, with or without a fault, that waits for tables for frames of `height` rows of 64 samples.
 fn configured(fault: Option<BoardFault>, height: u16) -> Bench {
     let (mut bench, grids) = greeted(&Built(Options::default(), fault), &Build::default()).unwrap();
     bench.done(&Request::Configure(narrow(&grids, height)));
@@ -67,15 +68,15 @@ fn grid(height: u16, seed: u32) -> TableSet {
     TableSet::grid(SHAPE, &drawn_grid(SHAPE, 64, height, seed), &hermite())
 }
 
-/// The fault of this name, with parameters that show it in small frames.
+/// The fault of this name, with parameters that make it show in small frames.
 fn fault(name: &str, given: &[(&str, &str)]) -> BoardFault {
     let mut given: Parameters =
         given.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
     BoardFault::from_name(name, &mut given).unwrap()
 }
 
-/// All that a host hears of a board that plays frames of four rows through grids, makes frames itself, is given a damaged packet, a commit and a
-/// row that it must refuse, and is greeted by another host.
+/// All that a host hears from a board that plays frames of four rows through grids and makes frames itself, is given a damaged
+/// packet, a commit and a row that it must refuse, and is greeted by another host.
 fn heard_of(fault: Option<BoardFault>) -> Vec<Heard> {
     let mut bench = configured(fault, 4);
     let mut heard = bench.say(&Request::Capabilities);
@@ -97,7 +98,7 @@ fn heard_of(fault: Option<BoardFault>) -> Vec<Heard> {
             bench.acknowledge(0);
             heard.extend(bench.send_all(4, [0, 0]));
             let mut damaged = bench.packet(&Request::Echo(&[1; 4]));
-            // In the payload, behind twelve bytes of header, a zero and the stuffing's first byte.
+            // In the payload, after a zero, the stuffing's first byte and twelve bytes of header.
             damaged[15] ^= 2;
             heard.extend(bench.receive(&damaged));
             heard.extend(bench.send_all(4, [0]));
@@ -124,13 +125,13 @@ fn every_fault_of_the_board_shows_in_what_is_made_with_grids() {
     let sound = heard_of(None);
     assert_eq!(heard_of(None), sound);
     for info in FAULTS.iter().map(|fault| fault.info) {
-        // One output in 100,000 is fewer than there are.
+        // By default one output in 100,000 flips, and there are fewer than that.
         let often: &[_] = if info.name == "slow-path" { &[("one-in", "50")] } else { &[] };
         assert_ne!(heard_of(Some(fault(info.name, often))), sound, "{}", info.name);
     }
 }
 
-/// The rows of a frame of twelve that a board with this fault or none makes with these tables.
+/// The rows of a frame of twelve that a board, with or without a fault, makes with these tables.
 fn rows_of(fault: Option<BoardFault>, tables: &TableSet) -> Vec<Vec<u16>> {
     let mut bench = configured(fault, 12);
     tables.upload(&mut bench);
@@ -143,8 +144,8 @@ fn rows_of(fault: Option<BoardFault>, tables: &TableSet) -> Vec<Vec<u16>> {
     rows
 }
 
-/// Of eight grid rows, entry 11 is that of node 0 in grid row 3. The rows 2 to 7 have it among their three, of which row 2
-/// gives it no weight.
+/// With eight grid rows, entry 11 is that of node 0 in grid row 3. Rows 2 to 7 have it among their three, but row 2 gives it no
+/// weight.
 #[test]
 fn a_hidden_bit_of_an_entry_changes_the_rows_around_its_grid_row_as_another_entry_would() {
     let hidden = fault("row-factor", &[("row", "11"), ("bit", "20"), ("hidden", "true")]);
@@ -167,7 +168,7 @@ fn a_bit_of_an_entry_that_reads_back_wrong_is_not_committed() {
     assert_eq!(bench.refused(&grid(12, 7).commit(1, 0)), (RefusalCode::TableCrc, Table::Grid as u16));
 }
 
-/// It flips behind the first of two frames.
+/// It flips after the first of two frames.
 #[test]
 fn a_drifting_entry_of_a_grid_spoils_the_rows_that_use_it_from_then_on() {
     let drifting = fault("drifting-table", &[("after", "12"), ("row", "11"), ("bit", "20")]);

@@ -1,4 +1,4 @@
-//! What is true of the mock alone: builds and faults that no other board has, and that it takes no time of its own.
+//! What holds for the mock alone: builds and faults that no other board has, and that it takes no time of its own.
 
 use halfrow_mock::{Board, BoardFault, Depth, Options, TapCount, Weight};
 use halfrow_protocol::message::{Bank, Datapath, RefusalCode, Reply, Request, Table};
@@ -12,7 +12,7 @@ fn switched_on(options: &Options, fault: Option<BoardFault>) -> Bench {
     Bench::of(Box::new(Board::new(options, fault).unwrap()))
 }
 
-/// A board of the default build with this fault or none that is ready for frames of `height` rows and changes no sample.
+/// A board of the default build, with or without a fault, that is ready for frames of `height` rows and changes no sample.
 fn ready_with(fault: Option<BoardFault>, height: u16) -> Bench {
     let mut bench = switched_on(&Options::default(), fault);
     bench.greet(&HELLO);
@@ -85,7 +85,7 @@ fn a_table_that_reads_back_wrong_is_not_committed() {
     assert_eq!(bench.refused(&commit), (RefusalCode::TableCrc, 0));
 }
 
-/// Its one fault is that it does not look at the CRCs.
+/// Its only fault is that it does not check the CRCs.
 #[test]
 fn a_board_that_checks_no_commit_is_busy_while_a_row_is_inside() {
     is_busy_while_a_row_is_inside(&mut ready_with(Some(BoardFault::UncheckedCommit), 2));
@@ -124,11 +124,11 @@ fn a_read_shows_what_the_datapath_gets_not_what_was_written() {
     let flipped = BoardFault::KernelWord { node: 16, weight: Weight::G4, bit: 12, hidden: false };
     let mut bench = with_hermite(flipped);
     let payload = bench.done(&Request::TableRead(span(Table::Kernel, Bank::Shadow, 0, 16, 1))).payload;
-    // Hermite at x = 1/2: g4 = 5/32, 2560 in units of 2^-14; with bit 12 it is 6656.
+    // Hermite at x = 1/2: g4 = 5/32, which is 2560 in units of 2^-14; with bit 12 set it is 6656.
     assert_eq!(payload[11..13], 6656_u16.to_le_bytes());
 }
 
-/// A board with this fault and Hermite's kernel in its shadow bank.
+/// A board with this fault and with Hermite's kernel in its shadow bank.
 fn with_hermite(fault: BoardFault) -> Bench {
     let mut bench = switched_on(&Options::default(), Some(fault));
     bench.greet(&HELLO);
