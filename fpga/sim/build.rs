@@ -8,9 +8,9 @@ use std::process::{Command, exit};
 
 /// A top module with its parameters.
 struct Model {
-    /// The C++ class that it becomes.
+    /// The C++ class that Verilator makes of it.
     class: &'static str,
-    /// What src/ffi.rs knows it by, behind `halfrow_`.
+    /// Its name in src/ffi.rs, after `halfrow_`.
     name: &'static str,
     top: Top,
     parameters: &'static [&'static str],
@@ -19,7 +19,7 @@ struct Model {
 /// A top module.
 struct Top {
     module: &'static str,
-    /// The header in `shim` that knows its ports.
+    /// The header in `shim` that describes its ports.
     ports: &'static str,
 }
 
@@ -34,7 +34,7 @@ const BOARDS: [Model; 3] = [
     Model { class: "FifoBridge", name: "fifo", top: FIFO, parameters: &[] },
 ];
 
-/// What tests alone need.
+/// Models that only tests need.
 const BUILDS: [Model; 7] = [
     Model { class: "Core7", name: "core7", top: CORE, parameters: &["TAPS=7"] },
     Model { class: "Core5", name: "core5", top: CORE, parameters: &["TAPS=5"] },
@@ -55,9 +55,9 @@ const BUILDS: [Model; 7] = [
     },
 ];
 
-/// What every board under simulation is, a parameter a line; those with faults in them are the same (fpga/checks/coverage.py).
+/// The parameters of every simulated board, one a line; boards with faults in them have the same (fpga/checks/coverage.py).
 const PARAMETERS: &str = include_str!("parameters.txt");
-/// What it calls itself.
+/// The name that it reports.
 const NAME: &str = "NAME=\"halfrow simulated board\"";
 
 const REMEDY: &str = "install it with `apt-get install verilator g++`, or build without `--features sim`";
@@ -69,7 +69,7 @@ fn main() {
     println!("cargo::rerun-if-changed=shim");
     println!("cargo::rerun-if-env-changed=VERILATOR");
     println!("cargo::rerun-if-env-changed=HALFROW_UNLINKED");
-    // What only looks at sources, as clippy does, needs nothing that is compiled for minutes.
+    // A run that only reads the sources, such as clippy's, needs nothing that takes minutes to compile.
     if env::var_os("HALFROW_UNLINKED").is_some() {
         return;
     }
@@ -105,9 +105,10 @@ impl Verilator {
         Self { program, include: Path::new(root.trim()).join("include") }
     }
 
-    /// Translates one model into `folder`, with what a waveform needs if it `is_traced`: more code than all the rest.
+    /// Translates one model into `folder`. If it `is_traced`, it gets what a waveform needs, which is more code than all the
+    /// rest.
     fn translate(&self, model: &Model, is_traced: bool, rtl: &Path, folder: &Path) {
-        // What a module that is gone left behind would be compiled as well.
+        // Files of a module that no longer exists would be compiled as well.
         let _ = fs::remove_dir_all(folder);
         let mut command = Command::new(&self.program);
         command.args(["--cc", "-O3", "--x-assign", "fast", "--x-initial", "unique", "-Wno-fatal"]);
@@ -138,7 +139,7 @@ impl Verilator {
         for model in models {
             let (slow, fast): (Vec<_>, Vec<_>) =
                 cpp_files(&out.join(model.class)).into_iter().partition(|file| runs_seldom(file));
-            // In one unit with what calls it, a model's parts are inlined into each other.
+            // In one unit with its caller, the parts of a model are inlined into each other.
             let design = format!("DESIGN({}, {})", model.name, model.class);
             often.push(unit(out, model.class, &[&[model.top.ports.into()], &fast[..]].concat(), &design));
             seldom.push(unit(out, &format!("{}Seldom", model.class), &slow, ""));
@@ -154,7 +155,7 @@ impl Verilator {
     fn compiler(&self, models: &[&Model], out: &Path) -> cc::Build {
         let mut build = cc::Build::new();
         build.cpp(true).std("c++17").debug(false).warnings(false).define("VL_TIME_CONTEXT", None);
-        // Nobody replaces a function of this library, so they may be inlined although its code is position-independent.
+        // Nothing replaces a function of this library, so functions may be inlined although the code is position-independent.
         build.flag_if_supported("-fno-semantic-interposition");
         build.define("VM_TRACE", "1").define("VM_TRACE_VCD", "1").define("VM_TRACE_FST", "0");
         build.include(&self.include).include(self.include.join("vltstd")).include("shim");
@@ -165,7 +166,7 @@ impl Verilator {
     }
 }
 
-/// Writes the source `name` in `out` that includes these files and ends with `last`.
+/// Writes the source `name` to `out`: it includes these files and ends with `last`.
 fn unit(out: &Path, name: &str, files: &[PathBuf], last: &str) -> PathBuf {
     let includes = files.iter().map(|file| format!("#include \"{}\"\n", file.display()));
     let unit = out.join(name).with_extension("cpp");
@@ -176,7 +177,7 @@ fn unit(out: &Path, name: &str, files: &[PathBuf], last: &str) -> PathBuf {
     unit
 }
 
-/// The folders in a folder, in the order of their names.
+/// The folders in a folder, sorted by name.
 fn folders(within: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(within).into_iter().flatten().flatten();
     let mut folders: Vec<_> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
@@ -184,7 +185,7 @@ fn folders(within: &Path) -> Vec<PathBuf> {
     folders
 }
 
-/// The CRC-32 of the Verilog and of what every board is, by which a simulated board's build is known (fpga/checks/table.py).
+/// The CRC-32 of the Verilog and of the parameters, which identifies a simulated board's build (fpga/checks/table.py).
 fn checksum(rtl: &Path) -> u32 {
     let folders = folders(rtl);
     let files_in =
@@ -204,7 +205,7 @@ fn said(command: &mut Command) -> Option<String> {
     String::from_utf8(output.stdout).ok()
 }
 
-/// Whether Verilator keeps code apart there that runs at the start, or for a waveform.
+/// Whether this is a file in which Verilator keeps code that runs only at the start or for a waveform.
 fn runs_seldom(file: &Path) -> bool {
     let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
     name.contains("__Slow") || name.contains("__Trace")

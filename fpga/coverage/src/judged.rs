@@ -1,4 +1,4 @@
-//! One board with one fault, judged: by the whole run, and by parts of it.
+//! One board with one fault, judged by the whole run and by parts of it.
 
 use anyhow::Result;
 use halfrow::link::WireLink;
@@ -11,9 +11,10 @@ use halfrow_pipe::{Pipe, PipeOptions};
 use halfrow_sim::FaultyBoard;
 use serde::Serialize;
 
-/// What registers and memories hold at power-up is drawn by this number.
+/// Draws what registers and memories hold at power-up.
 const SEED: u32 = 1;
-/// Clocks behind the last byte after which a board hangs: more than a burst of all its records takes at the sizes that are judged.
+/// Clocks after the last byte after which a board is taken to hang: more than a burst that uses up all records takes at the
+/// sizes that are judged.
 const PATIENCE: u32 = 400_000;
 
 /// How a board with a fault was judged.
@@ -23,23 +24,23 @@ pub(crate) struct Judged {
     verdict: Verdict,
     /// The code of the verdict's finding.
     finding: String,
-    /// Every check that did not pass, the first one first.
+    /// Every check that did not pass, in the order of the run.
     checks: Vec<CheckName>,
-    /// The streamed frames that differ, by number, each with its first row that does.
+    /// The numbers of the streamed frames that differ, each with its first differing row.
     frames: Vec<(u16, usize)>,
-    /// Whether the least that can be selected finds it.
+    /// Whether the smallest selection of parts finds it.
     least: bool,
     /// Whether frames at speed alone find it.
     at_speed: bool,
-    /// Whether corners alone do.
+    /// Whether corners alone find it.
     corners: bool,
-    /// Whether the wire's rules alone do.
+    /// Whether the wire's rules alone find it.
     rules: bool,
-    /// How long the whole run took by the wall's clock.
+    /// How long the whole run took, in seconds of wall-clock time.
     seconds: f64,
 }
 
-/// Judges the board with this fault, 0 for none, by `plan` and, if that finds it, by parts of it.
+/// Judges the board with this fault, 0 for none, by `plan` and, if that finds the fault, by parts of it.
 pub(crate) fn judge(plan: &Plan, board: &mut FaultyBoard, fault: u16) -> Result<Judged> {
     let whole = report(plan, board, fault)?;
     let mut by = |selection: Selection, is_asked: bool| {
@@ -47,7 +48,7 @@ pub(crate) fn judge(plan: &Plan, board: &mut FaultyBoard, fault: u16) -> Result<
         is_asked.then(|| report(&plan, board, fault)).transpose()
     };
     let least = by(Selection::least(), whole.verdict() != Verdict::Pass)?.is_some_and(|part| is_found(&part));
-    // A board that hangs does so for minutes, each time.
+    // A board that hangs would take minutes each time, so only a FAIL is judged by parts.
     let is_asked = whole.verdict() == Verdict::Fail && !least;
     let at_speed = by(Selection::all([Part::AtSpeed]), is_asked)?.is_some_and(|part| is_found(&part));
     let corners = by(Selection::all([Part::Corners]), is_asked)?.is_some_and(|part| is_in_corner(&part));
@@ -86,7 +87,7 @@ fn first_that_differs(frame: &FrameReport) -> Option<(u16, usize)> {
     Some((frame.number, frame.comparison.first.as_ref()?.row))
 }
 
-/// Whether it was found in a corner, which comes behind the frames at speed.
+/// Whether it was found in a corner. The run tries corners only after the frames at speed.
 fn is_in_corner(report: &Report) -> bool {
     matches!(report.finding, Finding::InCorner { .. })
 }

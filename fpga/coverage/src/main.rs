@@ -1,5 +1,5 @@
-//! Judges a board that has one fault in its Verilog by verify's own plan, and prints what found it.
-//! `scripts/hardware coverage` builds the boards and collects what this prints; fpga/checks/README.md says what comes of it.
+//! Judges a board that has one fault in its Verilog by verify's own plan, and prints what found it. `scripts/hardware coverage`
+//! builds the boards and collects what this prints; fpga/checks/README.md says what results.
 
 mod judged;
 
@@ -15,7 +15,7 @@ use judged::judge;
 
 const USAGE: &str = "halfrow-coverage LIBRARY WIDTH HEIGHT RADIUS FAULT";
 
-// It is a tool of the project's own scripts, which read what it prints.
+// A tool of the project's own scripts, which read what it prints.
 #[allow(clippy::print_stdout)]
 fn main() -> Result<()> {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -26,14 +26,14 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// The boards of the library that the call names.
+/// The board in this library.
 #[allow(unsafe_code)]
 fn loaded(library: &Path) -> Result<FaultyBoard> {
-    // SAFETY: `scripts/hardware coverage`, which alone calls this program, names what it has built; and it is called once.
+    // SAFETY: only `scripts/hardware coverage` calls this program, with a library that it has built; and this is called once.
     Ok(unsafe { FaultyBoard::load(library) }?)
 }
 
-/// What `halfrow verify --width W --height H --radius R` does.
+/// The plan of `halfrow verify --width W --height H --radius R`.
 fn plan(width: usize, height: usize, radius: f64) -> Result<Plan> {
     let lens = Equidistant::from_radius(radius)?;
     let tables = TableSet::from_lens(Geometry::centred(width, height, BitDepth::Twelve)?, &lens, None)?;

@@ -1,7 +1,7 @@
 //! How fast the simulation is: `cargo run --release -p halfrow-sim --features builds --example speed`.
 //!
-//! The times are those that this thread had a processor, where the system tells (Linux), so that other work on the machine
-//! does not count.
+//! Times are the processor time of this thread where the system reports it (Linux), so that other work on the machine does not
+//! count.
 
 use std::time::{Duration, Instant};
 
@@ -67,7 +67,7 @@ fn timed(work: impl FnOnce()) -> Duration {
     }
 }
 
-/// What this thread has had of a processor.
+/// The processor time that this thread has used.
 fn processor_time() -> Option<Duration> {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     text.split_whitespace().next()?.parse().ok().map(Duration::from_nanos)

@@ -3,7 +3,7 @@
 
 #include "design.h"
 
-// The same structures stand in src/ffi.rs.
+// src/ffi.rs has the same structures.
 struct BridgeInputs {
     bool rst, rx_valid;
     uint8_t rx_data;

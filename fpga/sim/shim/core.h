@@ -3,7 +3,7 @@
 
 #include "design.h"
 
-// The same structures stand in src/ffi.rs.
+// src/ffi.rs has the same structures.
 struct CoreInputs {
     bool rst, enable;
     uint8_t depth;

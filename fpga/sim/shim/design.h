@@ -45,7 +45,8 @@ struct Design {
         return false;
     }
 
-    // Settles what hangs on the inputs, with all clocks low. Outputs are now what a register sees at the next edge.
+    // Settles everything that depends on the inputs. With all clocks low, the outputs are then what a register samples at the
+    // next edge.
     void settle() {
         model->eval();
         if (VL_UNLIKELY(trace)) trace->dump(context.time());
@@ -53,7 +54,7 @@ struct Design {
     }
 };
 
-// A board that nobody gives a clock, a number or a picture.
+// Ties off the inputs of a board without a clock to report, a serial number or a camera.
 template <class Model>
 void tie_off(Model& model) {
     model.clock_source = 0;
@@ -64,7 +65,7 @@ void tie_off(Model& model) {
     model.camera_data = 0;
 }
 
-// What Rust calls of a design.
+// The functions of a design that Rust calls.
 template <class Inputs, class Outputs>
 struct Functions {
     void* (*create)(uint32_t seed);

@@ -1,9 +1,9 @@
-// The board with its byte ports, in which a number chooses a fault.
+// The board with its byte ports, with faults of which a number chooses one.
 #pragma once
 
 #include "bridge.h"
 
-// The fault of the next board of this library, which reads it at its power-up; 0 is none.
+// The fault of the next board of this library, which reads it at power-up; 0 for none.
 extern "C" uint16_t halfrow_fault;
 uint16_t halfrow_fault = 0;
 

@@ -3,7 +3,7 @@
 
 #include "pins.h"
 
-// The same structures stand in src/ffi.rs.
+// src/ffi.rs has the same structures.
 struct FifoInputs {
     bool link_edge, core_edge, rst, rxf_n, txe_n;
     uint8_t data;

@@ -1,10 +1,10 @@
-// What boards with pins have in common.
+// What all boards with pins have in common.
 #pragma once
 
 #include "design.h"
 
-// One step of both clocks, of which those rise that `in` names. Unlike elsewhere the outputs are then those behind the
-// edge, which is when pins change.
+// One step of both clocks: those that `in` names rise. Unlike elsewhere, the outputs are then those after the edge, since that
+// is when pins change.
 template <class Model, class Inputs>
 void clock_edges(Design<Model>& design, const Inputs& in) {
     Model& model = *design.model;

@@ -3,7 +3,7 @@
 
 #include "pins.h"
 
-// The same structures stand in src/ffi.rs.
+// src/ffi.rs has the same structures.
 struct UartInputs {
     bool link_edge, core_edge, rst, rxd, cts_n, millisecond;
 };

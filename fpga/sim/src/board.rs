@@ -11,31 +11,31 @@ use crate::ft2232h::Ft2232h;
 use crate::port::{Port, Step};
 use crate::uart::Uart;
 
-/// Clocks of the core without a byte taken after which a design that is not at rest never will be. The longest that it may work of
-/// itself is a burst up to its last free record: 16 frames of the greatest size, with blankings of a thousand clocks.
+/// Clocks of the core without a byte taken after which a design that is not at rest never will be. The longest that it may work
+/// on its own is a burst that uses up all its records: 16 frames of the greatest size, with blankings of a thousand clocks.
 const PATIENCE: u32 = 150_000_000;
 
-/// The same at pins, where a step is an edge of either clock, and 2.3 of them come in a clock of the core.
+/// The same for boards with pins. There a step is an edge of either clock, and 2.3 edges come in a clock of the core.
 const PATIENCE_AT_PINS: u32 = PATIENCE / 10 * 23;
 
-/// The 10 s rule is the only thing that time is for.
+/// Only the 10 s rule depends on time, so a longer silence is cut to this.
 const MOST_MILLISECONDS: u64 = 11_000;
 
-/// The way bytes take into the board.
+/// The way by which bytes enter the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Front {
     /// None: the bridge's own byte ports.
     Bytes,
     /// A UART with RTS and CTS, 8 clocks a bit.
     Uart,
-    /// An FT2232H as asynchronous FIFO.
+    /// An FT2232H as an asynchronous FIFO.
     Fifo,
 }
 
 /// A build of the board with byte ports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Build {
-    /// The one that ships: seven taps, two banks of everything.
+    /// The build that ships: seven taps, two banks of everything.
     Shipped,
     /// Four row banks each way.
     #[cfg(feature = "builds")]
@@ -51,18 +51,18 @@ pub enum Build {
 /// Why a simulated board will not answer any more.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Failure {
-    /// It works for ever.
+    /// It never comes to rest.
     #[error(
         "the design was not at rest {clocks} clocks behind the last byte that it took; look at its waveform with trace=FILE"
     )]
     Hung {
-        /// That many, of either clock.
+        /// The number of clocks, of either clock.
         clocks: u32,
     },
-    /// It does what a chip at its pins does not allow.
+    /// It does something that the chip at its pins does not allow.
     #[error("the design breaks the FT2232H's rules at {} ns: {rule}", picoseconds / 1000)]
     Rule {
-        /// What is broken.
+        /// The rule that it breaks.
         rule: &'static str,
         /// When, in simulated time.
         picoseconds: u64,
@@ -72,7 +72,7 @@ pub enum Failure {
 /// A waveform that cannot be written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TraceError {
-    /// Something has that name.
+    /// A file of that name exists.
     #[error("{0} is there already; remove it, or choose another place for the waveform with trace=FILE")]
     Exists(PathBuf),
     /// The file cannot be opened.
@@ -80,18 +80,19 @@ pub enum TraceError {
     Unwritable(PathBuf),
 }
 
-/// The Verilog under simulation. It takes no time of its own, as the mock does not: when bytes arrive it is clocked until it is at
+/// The Verilog under simulation. Like the mock it takes no time of its own: when bytes arrive, it is clocked until it is at
 /// rest.
 pub struct Board {
     machine: Box<dyn Machine>,
     outgoing: Vec<u8>,
-    /// Milliseconds that the design was told of.
+    /// Milliseconds that the design has been told of.
     milliseconds: u64,
     failure: Option<Failure>,
 }
 
 impl Board {
-    /// The build that ships behind `front`, switched on and reset. `seed` draws what its memories hold then.
+    /// The build that ships, behind `front`, switched on and reset. `seed` draws the initial contents of its registers and
+    /// memories.
     #[must_use]
     pub fn new(front: Front, seed: u32) -> Self {
         match front {
@@ -101,7 +102,7 @@ impl Board {
         }
     }
 
-    /// A build with byte ports, switched on and reset.
+    /// A build with byte ports, switched on and reset; `seed` as in [`Self::new`].
     #[must_use]
     pub fn of_build(build: Build, seed: u32) -> Self {
         let functions = match build {
@@ -116,17 +117,17 @@ impl Board {
         Self::with(BytePort::new(functions, seed), PATIENCE)
     }
 
-    /// A design behind `port`, given up after `patience` steps, reset.
+    /// The design behind `port`, reset. After `patience` steps without a byte taken it is given up.
     pub(crate) fn with<P: Port + 'static>(mut port: P, patience: u32) -> Self {
         port.reset();
         let machine = Box::new(Clocked { port, patience });
         Self { machine, outgoing: Vec::new(), milliseconds: 0, failure: None }
     }
 
-    /// Writes a waveform of the whole design, from now on, to `path` in VCD. Builds for tests have none.
+    /// From now on writes a waveform of the whole design to `path`, in VCD. Builds for tests have none.
     ///
     /// # Errors
-    /// [`TraceError`] if there is such a file already, or it cannot be opened.
+    /// [`TraceError`] if the file already exists or cannot be opened.
     pub fn trace(&mut self, path: &Path) -> Result<(), TraceError> {
         if path.exists() {
             return Err(TraceError::Exists(path.to_owned()));
@@ -134,7 +135,7 @@ impl Board {
         if self.machine.trace(path) { Ok(()) } else { Err(TraceError::Unwritable(path.to_owned())) }
     }
 
-    /// Milliseconds that have passed since the design was told of any.
+    /// Milliseconds that have passed since those that the design was last told of.
     fn pass(&mut self, now: Duration) -> u64 {
         let now = u64::try_from(now.as_millis()).unwrap_or(u64::MAX);
         let passed = now.saturating_sub(self.milliseconds);
@@ -161,9 +162,9 @@ impl Endpoint for Board {
     }
 }
 
-/// A design and the far end of its link, whichever they are.
+/// A design and the far end of its link, of whatever kind.
 trait Machine: Send {
-    /// Lets milliseconds pass, then hands over bytes, then clocks the design until it is at rest. Appends what it says.
+    /// Lets milliseconds pass, hands over bytes, and clocks the design until it is at rest. Appends to `said` what it says.
     fn run(&mut self, milliseconds: u64, bytes: &[u8], said: &mut Vec<u8>) -> Result<(), Failure>;
 
     fn trace(&mut self, path: &Path) -> bool;

@@ -1,4 +1,4 @@
-//! Bytes at the bridge's own ports: the board without a front end, as fast as it takes them.
+//! Bytes at the bridge's own ports: the board without a front end, as fast as it takes bytes.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use crate::board::Failure;
 use crate::ffi::{BridgeInputs, BridgeOutputs, Design, Functions};
 use crate::port::{Port, Step};
 
-/// `halfrow_bridge`, a byte a clock each way.
+/// `halfrow_bridge`, with a byte per clock each way.
 pub(crate) struct BytePort(Design<BridgeInputs, BridgeOutputs>);
 
 impl BytePort {

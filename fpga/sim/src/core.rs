@@ -16,22 +16,22 @@ pub enum CoreBuild {
 }
 
 impl CoreBuild {
-    /// All of them.
+    /// All builds.
     pub const ALL: [Self; 4] = [Self::SevenTaps, Self::FiveTaps, Self::ShortRing, Self::ShortRingFiveTaps];
 
-    /// Whether the outer taps are there.
+    /// Whether the build has the outer taps.
     #[must_use]
     pub fn has_outer_taps(self) -> bool {
         matches!(self, Self::SevenTaps | Self::ShortRing)
     }
 
-    /// Pixel clocks L that an output leaves after half a row.
+    /// L: pixel clocks beyond half a row until an output leaves.
     #[must_use]
     pub fn latency(self) -> u8 {
         if self.has_outer_taps() { 12 } else { 11 }
     }
 
-    /// Samples M in the ring.
+    /// M: samples in the ring.
     #[must_use]
     pub fn ring(self) -> u16 {
         if matches!(self, Self::ShortRing | Self::ShortRingFiveTaps) { 128 } else { 2048 }
@@ -42,7 +42,7 @@ impl CoreBuild {
 pub struct Core(Design<CoreInputs, CoreOutputs>);
 
 impl Core {
-    /// A core whose registers and memories hold what `seed` draws, and which was not reset.
+    /// A core that has not been reset. `seed` draws the contents of its registers and memories.
     #[must_use]
     pub fn new(build: CoreBuild, seed: u32) -> Self {
         let functions = match build {
@@ -54,7 +54,7 @@ impl Core {
         Self(Design::new(functions, seed))
     }
 
-    /// One clock. Returns what a register at the core's outputs samples at its edge.
+    /// One clock. Returns what registers at the core's outputs sample at its edge.
     pub fn clock(&mut self, inputs: &CoreInputs) -> CoreOutputs {
         self.0.clock(inputs)
     }

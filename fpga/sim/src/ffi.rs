@@ -1,9 +1,9 @@
-//! The verilated designs, as C++ offers them.
+//! The verilated designs, through their C interface.
 //!
-//! `unsafe` is allowed here and nowhere else: a design is a C++ object, and only C can be called from Rust. What makes it
-//! sound: a [`Design`] owns its object from `create` to `destroy`, hands no pointer out, and every call goes through
-//! `&mut self`; the structures are `repr(C)`, of integers alone, field for field those in `shim/`, whose `bool` is one byte
-//! of 0 or 1 as Rust's is.
+//! In this crate `unsafe` is allowed only here: a design is a C++ object, and only C can be called from Rust. Why it is sound:
+//! a [`Design`] owns its object from `create` to `destroy`, hands out no pointer, and every call goes through `&mut self`. The
+//! structures are `repr(C)` and consist of integers and `bool`, field for field like those in `shim/`, whose `bool` is one byte
+//! of 0 or 1, as Rust's is.
 #![allow(unsafe_code)]
 
 use std::ffi::{CString, c_char, c_void};
@@ -13,7 +13,7 @@ use std::path::Path;
 #[cfg(feature = "library")]
 use crate::library::{FaultyBoard, LibraryError};
 
-/// The inputs of `halfrow_bridge` that a board under simulation has a use for.
+/// The inputs of `halfrow_bridge` that a simulated board uses.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct BridgeInputs {
@@ -75,7 +75,7 @@ pub(crate) struct FifoOutputs {
     pub(crate) rd_n: bool,
     pub(crate) wr_n: bool,
     pub(crate) siwu_n: bool,
-    /// WR# and SIWU# are driven.
+    /// Whether WR# and SIWU# are driven.
     pub(crate) control_drive: bool,
     pub(crate) data: u8,
     pub(crate) data_drive: bool,
@@ -125,11 +125,11 @@ pub struct CoreOutputs {
     pub step_port: u32,
     /// 80 bits in 32-bit words, least significant first.
     pub node_port_0: [u32; 3],
-    /// The same at the other port.
+    /// The same for the other port.
     pub node_port_1: [u32; 3],
 }
 
-/// What can be done with one design.
+/// The functions of one design.
 #[repr(C)]
 pub(crate) struct Functions<I, O> {
     create: unsafe extern "C" fn(u32) -> *mut c_void,
@@ -155,7 +155,7 @@ unsafe extern "C" {
     pub(crate) safe static halfrow_core_short5: Functions<CoreInputs, CoreOutputs>;
 }
 
-/// A board that was compiled apart, and which of its faults it has.
+/// The functions of a board that was compiled separately, and the variable that chooses its fault.
 #[cfg(feature = "library")]
 pub(crate) struct FaultyFunctions {
     functions: &'static Functions<BridgeInputs, BridgeOutputs>,
@@ -164,14 +164,15 @@ pub(crate) struct FaultyFunctions {
 
 #[cfg(feature = "library")]
 impl FaultyBoard {
-    /// The build in the shared library `path`.
+    /// The board in the shared library `path`.
     ///
     /// # Safety
-    /// The library, whose own code runs when it is loaded, must be one that `scripts/hardware coverage` has built with this crate's
-    /// shim, and be loaded once in a process: the number of the fault is a variable of the library's, which all would share.
+    /// Loading the library runs code of its own. So it must be one that `scripts/hardware coverage` has built with this crate's
+    /// shim. It must be loaded only once in a process: the number of the fault is a variable of the library, which all would
+    /// share.
     ///
     /// # Errors
-    /// [`LibraryError`] when there is none.
+    /// [`LibraryError`] when the file is no such library.
     pub unsafe fn load(path: &Path) -> Result<Self, LibraryError> {
         // SAFETY: the caller makes the same promise.
         Self::of(unsafe { FaultyFunctions::load(path) }, path)
@@ -180,13 +181,13 @@ impl FaultyBoard {
 
 #[cfg(feature = "library")]
 impl FaultyFunctions {
-    /// Of the library `path`, which stays loaded.
+    /// Loads the library `path`, which then stays loaded.
     ///
     /// # Safety
-    /// As [`FaultyBoard::load`].
+    /// Like [`FaultyBoard::load`].
     unsafe fn load(path: &Path) -> Result<Self, libloading::Error> {
-        // SAFETY: what runs when it is loaded is the start of Verilator's own library, as the caller promises; it is never
-        // unloaded, so that what it offers is there for good; its two names stand in shim/faulty.h with these types.
+        // SAFETY: what runs on loading is the start of Verilator's own library, as the caller promises. It is never unloaded,
+        // so what it offers stays valid. Its two names are declared in shim/faulty.h with these types.
         unsafe {
             let library = Box::leak(Box::new(libloading::Library::new(path)?));
             let functions =
@@ -196,10 +197,10 @@ impl FaultyFunctions {
         }
     }
 
-    /// Its functions, with this fault for what is switched on next.
+    /// Its functions, for a board that is switched on with this fault.
     pub(crate) fn choose(&mut self, fault: u16) -> &'static Functions<BridgeInputs, BridgeOutputs> {
-        // SAFETY: it is a variable of the library's, which nothing reads but `create`, and that is called by whoever has this
-        // object to itself: the caller of `load` promises that there is no other of the library.
+        // SAFETY: it is a variable of the library that only `create` reads, and only the owner of this object calls `create`:
+        // the caller of `load` promises that the library is loaded once.
         unsafe { *self.fault = fault };
         self.functions
     }
@@ -211,37 +212,37 @@ pub(crate) struct Design<I: 'static, O: 'static> {
     functions: &'static Functions<I, O>,
 }
 
-// SAFETY: an object is used by whoever owns it and by nobody else; Verilator keeps what belongs to a model in its own
-// context, and no part of it belongs to a thread.
+// SAFETY: an object is used only by its owner. Verilator keeps everything that belongs to a model in the model's own context,
+// and no part of it is bound to a thread.
 unsafe impl<I, O> Send for Design<I, O> {}
 
 impl<I, O: Default> Design<I, O> {
-    /// A design whose registers and memories hold what `seed` draws.
+    /// A design with registers and memories that hold what `seed` draws.
     pub(crate) fn new(functions: &'static Functions<I, O>, seed: u32) -> Self {
-        // SAFETY: the function takes any number and returns an object that is ours.
+        // SAFETY: the function takes any number and returns an object that belongs to the caller.
         Self { object: unsafe { (functions.create)(seed) }, functions }
     }
 
-    /// Lets the inputs settle, and then the clock rise. The outputs are those that a register samples at this edge; of a
-    /// design with pins, those behind it.
+    /// Lets the inputs settle, then lets the clock rise. The outputs are those that a register samples at this edge; for a
+    /// design with pins, those after the edge.
     pub(crate) fn clock(&mut self, inputs: &I) -> O {
         let mut outputs = O::default();
-        // SAFETY: the object is alive, and both structures are for as long as the call takes.
+        // SAFETY: the object is alive, and both structures outlive the call.
         unsafe { (self.functions.clock)(self.object, inputs, &raw mut outputs) };
         outputs
     }
 
-    /// Writes all that happens from now on to a waveform in VCD. Returns whether the file could be opened.
+    /// From now on writes a waveform to `path`, in VCD. Returns whether the file could be opened.
     pub(crate) fn trace(&mut self, path: &Path) -> bool {
         let Ok(path) = CString::new(path.as_os_str().as_bytes()) else { return false };
-        // SAFETY: the object is alive, and the string is for as long as the call takes.
+        // SAFETY: the object is alive, and the string outlives the call.
         unsafe { (self.functions.trace)(self.object, path.as_ptr()) }
     }
 }
 
 impl<I, O> Drop for Design<I, O> {
     fn drop(&mut self) {
-        // SAFETY: the object came from this design's `create` and is destroyed once.
+        // SAFETY: the object came from this design's `create`, and is destroyed once.
         unsafe { (self.functions.destroy)(self.object) };
     }
 }

@@ -1,5 +1,5 @@
-//! An FT2232H as asynchronous FIFO, with the times of its data sheet (version 2.x, section 4.4), on the pins of the board. It
-//! checks what the design does to them.
+//! An FT2232H as an asynchronous FIFO at the board's pins, with the times of its data sheet (version 2.x, section 4.4). It
+//! checks what the design does at the pins.
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -11,26 +11,26 @@ use crate::port::{Clocks, Port, Step};
 /// Picoseconds in a nanosecond.
 const NS: u64 = 1000;
 
-/// The slowest that the chip answers: RXF# and TXE# behind RD# and WR#, and the data behind RD#.
+/// The longest that the chip takes: RXF# and TXE# after RD# and WR#, and the data after RD#.
 const ANSWER: u64 = 14 * NS;
-/// The least that RXF# and TXE# stay high between two bytes.
+/// The shortest time for which RXF# and TXE# stay high between two bytes.
 const PAUSE: u64 = 49 * NS;
-/// From the rise of RD# or WR# to where RXF# or TXE# may be low again.
+/// From the rise of RD# or WR# until RXF# or TXE# may be low again.
 const PAUSE_OVER: u64 = ANSWER + PAUSE;
-/// The least that RD# and WR# are low.
+/// The shortest time for which RD# and WR# must be low.
 const PULSE: u64 = 30 * NS;
-/// The least that data stands before WR# falls, and after it has risen.
+/// The shortest time for which data must be stable before WR# falls, and after it has risen.
 const SETUP: u64 = 5 * NS;
 const HOLD: u64 = 5 * NS;
-/// The least that SIWU# is low.
+/// The shortest time for which SIWU# must be low.
 const STROBE: u64 = 250 * NS;
 
-/// What the chip gathers for a USB packet: 512 bytes less the two of its status. It sends what is less when SIWU# tells it to.
+/// Bytes that the chip collects for a USB packet: 512 less the two of its status. SIWU# makes it send fewer.
 const PACKET: usize = 510;
-/// What it holds for the board.
+/// Bytes that it holds for the board.
 const BUFFER: usize = 512;
 
-/// A level and when it was last another one.
+/// A level, and when it last changed.
 #[derive(Clone, Copy, Debug)]
 struct Line {
     high: bool,
@@ -38,7 +38,7 @@ struct Line {
 }
 
 impl Line {
-    /// Follows the pin. Returns for how long it was what it was, if it changed.
+    /// Follows the pin. Returns how long the previous level lasted, if the level changed.
     fn follow(&mut self, high: bool, at: u64) -> Option<u64> {
         let lasted = at - self.since;
         (self.high != high).then(|| {
@@ -53,19 +53,19 @@ impl Line {
 struct Chip {
     /// Bytes from USB.
     to_board: VecDeque<u8>,
-    /// Bytes that were written and not sent off.
+    /// Bytes that were written and not yet sent off.
     gathered: Vec<u8>,
     /// Bytes on their way over USB.
     sent: VecDeque<u8>,
     rd: Line,
     wr: Line,
     siwu: Line,
-    /// What the board drives the data pins to, and since when.
+    /// The value that the board drives the data pins to, if it does, and since when.
     driven: Option<u8>,
     driven_since: u64,
-    /// When the present byte is on the data pins; none while RD# is high.
+    /// From when on the current byte is on the data pins; none while RD# is high.
     readable: Option<u64>,
-    /// Whether a byte was ever read, or written: RXF# and TXE# answer to that.
+    /// Whether a byte was ever read, or written: RXF# and TXE# react only to that.
     read: bool,
     written: bool,
     broken: Option<Failure>,
@@ -96,7 +96,7 @@ impl Chip {
         }
     }
 
-    /// RXF# at `at`: behind a byte it goes high late and comes back early.
+    /// RXF# at the time `at`: after a byte it goes high as late, and comes back as early, as the data sheet allows.
     fn rxf_n(&self, at: u64) -> bool {
         match at - self.rd.since {
             _ if !self.rd.high => false,
@@ -106,12 +106,12 @@ impl Chip {
         }
     }
 
-    /// TXE# at `at`. USB always has room.
+    /// TXE# at the time `at`. USB always has room.
     fn txe_n(&self, at: u64) -> bool {
         self.written && self.wr.high && (ANSWER..PAUSE_OVER).contains(&(at - self.wr.since))
     }
 
-    /// What stands on the data pins: a byte, or nothing good.
+    /// What is on the data pins: a byte, or garbage.
     fn data(&self, at: u64) -> u8 {
         match (self.readable, self.to_board.front()) {
             (Some(from), Some(&byte)) if at >= from => byte,
@@ -119,7 +119,7 @@ impl Chip {
         }
     }
 
-    /// Takes what the pins are at `at`.
+    /// Takes the levels of the pins at the time `at`.
     fn follow(&mut self, pins: &FifoOutputs, at: u64) {
         let driven = pins.data_drive.then_some(pins.data);
         self.rule(driven.is_none() || pins.rd_n, "both sides drive the data while RD# is low", at);
@@ -180,12 +180,12 @@ impl Chip {
     }
 }
 
-/// `halfrow_fifo_bridge` and the chip that its pins lead to.
+/// `halfrow_fifo_bridge` and the chip at its pins.
 pub(crate) struct Ft2232h {
     design: Design<FifoInputs, FifoOutputs>,
     clocks: Clocks,
     chip: Chip,
-    /// Milliseconds that the core has not been told of.
+    /// Milliseconds that the core has not been told of yet.
     milliseconds: u64,
 }
 
@@ -197,7 +197,7 @@ impl Ft2232h {
 }
 
 impl Port for Ft2232h {
-    /// SIWU# comes 200 clocks behind the last byte.
+    /// SIWU# comes 200 clocks after the last byte.
     const REST: u32 = 1000;
 
     fn step(&mut self, offered: Option<u8>, millisecond: bool) -> Result<Step, Failure> {

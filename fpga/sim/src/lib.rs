@@ -6,11 +6,11 @@
 //!                             └─ an FT2232H ── rd wr rxf txe siwu data ► halfrow_fifo_bridge
 //! ```
 //!
-//! [`Board`] is what stands at the end of a pipe, so the pipe's options and faults are the same for both. The
-//! clock of the pipe stands still while the design is simulated, as it does while the mock computes.
+//! [`Board`] is an end of a pipe, like the mock, so the pipe's options and faults are the same for both. The pipe's clock
+//! stands still while the design is simulated, as it does while the mock computes.
 //!
-//! [`Core`] is the corrector alone, clock by clock, for tests (feature `builds`). [`FaultyBoard`] is a build with faults in it, of
-//! which a number chooses one (feature `library`).
+//! [`Core`] is the corrector alone, clock by clock, for tests (feature `builds`). [`FaultyBoard`] is a build that contains many
+//! faults, one of which is chosen by its number (feature `library`).
 
 #[cfg(not(target_os = "linux"))]
 compile_error!("halfrow-sim is for Linux alone; docs/portable.md says what works elsewhere");

@@ -1,4 +1,4 @@
-//! A board with faults in it, compiled apart from this program (shim/faulty.h).
+//! A board with faults in it, compiled separately from this program (shim/faulty.h).
 
 use std::path::Path;
 
@@ -14,11 +14,11 @@ pub struct LibraryError {
     source: libloading::Error,
 }
 
-/// A build of the board with faults in it, of which a number chooses one.
+/// A build of the board that contains many faults, one of which is chosen by its number.
 pub struct FaultyBoard(FaultyFunctions);
 
 impl FaultyBoard {
-    /// What `loaded` holds, which came of loading `path`.
+    /// The board in `loaded`, the result of loading `path`.
     pub(crate) fn of(
         loaded: Result<FaultyFunctions, libloading::Error>,
         path: &Path,
@@ -26,9 +26,9 @@ impl FaultyBoard {
         loaded.map(Self).map_err(|source| LibraryError { path: path.display().to_string(), source })
     }
 
-    /// The board with this fault, 0 for none, switched on and reset. `seed` draws what its memories hold then; a board that is
-    /// not at rest `patience` clocks behind the last byte that it took never will be. Each board of the library keeps the fault
-    /// that it was switched on with.
+    /// The board with this fault, 0 for none, switched on and reset. `seed` draws the initial contents of its registers and
+    /// memories. A board that is not at rest `patience` clocks after the last byte that it took is given up. Each board keeps
+    /// the fault that it was switched on with.
     pub fn switch_on(&mut self, fault: u16, seed: u32, patience: u32) -> Board {
         let functions = self.0.choose(fault);
         Board::with(BytePort::new(functions, seed), patience)

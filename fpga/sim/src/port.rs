@@ -1,36 +1,36 @@
-//! A simulated board's link, whatever it is made of.
+//! The link of a simulated board, of whatever kind.
 
 use std::path::Path;
 
 use crate::board::Failure;
 
-/// What came of a step.
+/// The result of a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Step {
-    /// The byte that was offered is on its way.
+    /// Whether the byte that was offered has been taken.
     pub(crate) taken: bool,
     /// A byte from the board.
     pub(crate) sent: Option<u8>,
-    /// Nothing is under way, as far as can be seen from outside.
+    /// Whether nothing is under way, as far as can be seen from outside.
     pub(crate) quiet: bool,
 }
 
-/// A design with the far end of its link.
+/// A design and the far end of its link.
 pub(crate) trait Port: Send {
-    /// Steps without anything under way after which nothing more will come of itself.
+    /// After this many quiet steps in a row the design says nothing more on its own.
     const REST: u32;
 
-    /// Lets some clock rise. `offered` is the next byte for the board; `millisecond` says that one has passed.
+    /// Lets one or both clocks rise. `offered` is the next byte for the board; `millisecond` says that one has passed.
     fn step(&mut self, offered: Option<u8>, millisecond: bool) -> Result<Step, Failure>;
 
     /// Resets the design.
     fn reset(&mut self);
 
-    /// Writes a waveform from now on. Returns whether the file could be opened.
+    /// From now on writes a waveform to `path`. Returns whether the file could be opened.
     fn trace(&mut self, path: &Path) -> bool;
 }
 
-/// Two clocks that know nothing of each other.
+/// Two unrelated clocks.
 #[derive(Debug)]
 pub(crate) struct Clocks {
     link: Clock,
@@ -54,7 +54,7 @@ pub(crate) struct Edge {
 }
 
 impl Clocks {
-    /// 96 MHz for the link, and the core's as a sensor would give it: 74.25 MHz.
+    /// 96 MHz for the link, and 74.25 MHz for the core, as a sensor might give it.
     pub(crate) fn new() -> Self {
         Self { link: Clock { period: 10_417, next: 0 }, core: Clock { period: 13_468, next: 0 } }
     }

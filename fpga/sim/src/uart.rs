@@ -1,4 +1,4 @@
-//! The other end of a UART, with RTS and CTS, on the pins of the board.
+//! The other end of a UART at the board's pins, with RTS and CTS.
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -10,13 +10,13 @@ use crate::port::{Clocks, Port, Step};
 /// Clocks a bit: 12 Mbaud at 96 MHz.
 const DIVIDER: u32 = 8;
 
-/// Bytes that come behind a raised RTS all the same, as an FTDI chip's may.
+/// Bytes that still come after RTS was raised, as may happen with an FTDI chip.
 const OVERRUN: u32 = 3;
 
-/// A byte on a line, bit for bit.
+/// A byte on its way over a line, bit by bit.
 #[derive(Debug, Default)]
 struct Sending {
-    /// Levels to come, each for so many clocks.
+    /// Levels to come, each for [`DIVIDER`] clocks.
     bits: VecDeque<bool>,
     clocks: u32,
 }
@@ -46,10 +46,10 @@ impl Sending {
     }
 }
 
-/// What comes over a line.
+/// The receiver of a line.
 #[derive(Debug, Default)]
 struct Receiving {
-    /// Clocks since the start bit fell; none between bytes.
+    /// Clocks since the start bit began; none between bytes.
     clocks: Option<u32>,
     byte: u8,
 }
@@ -67,7 +67,7 @@ impl Receiving {
             return None;
         }
         match clocks / DIVIDER {
-            // What is no start bit any more in its middle was none.
+            // If the line is high again in the middle of the start bit, it was none.
             0 => self.clocks = self.clocks.filter(|_| !level),
             1..=8 => self.byte = self.byte >> 1 | u8::from(level) << 7,
             _ => {
@@ -79,7 +79,7 @@ impl Receiving {
     }
 }
 
-/// `halfrow_uart_bridge` and the chip that its pins lead to.
+/// `halfrow_uart_bridge` and the chip at its pins.
 pub(crate) struct Uart {
     design: Design<UartInputs, UartOutputs>,
     clocks: Clocks,
@@ -88,7 +88,7 @@ pub(crate) struct Uart {
     /// Bytes that may still be sent although the board has raised RTS.
     overrun: u32,
     rxd: bool,
-    /// Milliseconds that the core has not been told of.
+    /// Milliseconds that the core has not been told of yet.
     milliseconds: u64,
 }
 

@@ -1,4 +1,4 @@
-//! The Verilog with the mock as its judge: both get the same bytes, and must say the same.
+//! The Verilog judged by the mock: both get the same bytes and must say the same.
 
 use std::time::Duration;
 
@@ -7,10 +7,10 @@ use halfrow_pipe::Endpoint;
 use halfrow_protocol::{Decoder, Header, Kind};
 use halfrow_sim::{Board, Failure};
 
-/// Where the reply to HELLO has its four bytes of build (WIRE.md).
+/// The offset of the four bytes of build in the reply to HELLO (WIRE.md).
 const BUILD_AT: usize = 10;
 
-/// A board, and the mock that was built as it is.
+/// A board, and a mock of the same build.
 pub(crate) struct Judged {
     board: Board,
     judge: halfrow_mock::Board,
@@ -43,8 +43,8 @@ impl Endpoint for Judged {
     }
 }
 
-/// Both must be the same packets in the same order. A row that leaves the Verilog while the next one enters names a smaller
-/// window than the mock's, which has no such while.
+/// Both must have sent the same packets in the same order. When a row leaves the Verilog while the next one enters, its window
+/// is smaller than the mock's, whose rows enter in an instant.
 fn compare(said: &[(Header, Vec<u8>)], expected: &[(Header, Vec<u8>)]) {
     let headers = |packets: &[(Header, Vec<u8>)]| packets.iter().map(|it| it.0).collect::<Vec<_>>();
     assert_eq!(said.len(), expected.len(), "{:?}, expected {:?}", headers(said), headers(expected));
@@ -55,7 +55,7 @@ fn compare(said: &[(Header, Vec<u8>)], expected: &[(Header, Vec<u8>)]) {
     }
 }
 
-/// What is said in these bytes, without what a board says of itself.
+/// The packets in these bytes, without what a board says about itself.
 fn packets(mut wire: &[u8]) -> Vec<(Header, Vec<u8>)> {
     let (mut decoder, mut packets) = (Decoder::new(), Vec::new());
     while let Some(packet) = decoder.next(&mut wire) {

@@ -1,4 +1,4 @@
-//! The Verilog against `protocol/WIRE.md`, in the builds that there are. Beside every board stands the mock, which gets the same
+//! The Verilog against `protocol/WIRE.md`, in all builds that exist for it. Next to every board runs a mock that gets the same
 //! bytes and must answer the same.
 
 #![expect(clippy::unwrap_used, reason = "a test helper that cannot go on fails the test")]
@@ -65,7 +65,7 @@ impl Boards for Simulated {
 
 halfrow_conformance::conformance!(&crate::Simulated);
 
-/// The suite leaves out what a board says that it has not got.
+/// The suite skips what a board says that it lacks, so this makes sure that no other build lacks it.
 #[test]
 fn every_build_but_the_lean_one_has_the_trap_that_the_suite_tries() {
     for (_, build, options) in builds() {
