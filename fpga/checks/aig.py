@@ -6,7 +6,7 @@ import re
 
 
 class Graph:
-    """A graph that is built up. Nodes that would be equal are one."""
+    """A graph under construction. Equal nodes are shared."""
 
     def __init__(self):
         self.nodes, self.known, self.inputs, self.latches = [None], {}, [], {}
@@ -20,7 +20,7 @@ class Graph:
         return self.inputs[-1]
 
     def latch(self):
-        """A latch that begins at 0 and stays there until `latches` says what comes next."""
+        """A latch that starts at 0 and stays there until `latches` gives its next value."""
         made = self._free()
         self.latches[made] = 0
         return made
@@ -43,13 +43,13 @@ class Graph:
         return self.either(self.both(a, b ^ 1), self.both(a ^ 1, b))
 
     def ever(self, a):
-        """Whether `a` was true at a clock before."""
+        """Whether `a` was true at any earlier clock."""
         made = self.latch()
         self.latches[made] = self.either(made, a)
         return made
 
     def cone(self, literal):
-        """The numbers of all nodes that decide it."""
+        """The numbers of all nodes that decide a literal."""
         seen, todo = set(), [literal >> 1]
         while todo:
             node = todo.pop()
@@ -62,7 +62,7 @@ class Graph:
         return seen
 
     def write(self, path, bad):
-        """Writes what decides `bad` in AIGER's binary form."""
+        """Writes all nodes that decide `bad` in AIGER's binary form."""
         seen = self.cone(bad)
         inputs = [made for made in self.inputs if made >> 1 in seen]
         latches = [made for made in self.latches if made >> 1 in seen]
@@ -84,7 +84,7 @@ class Graph:
 
 
 def packed(value):
-    """AIGER's form of a number: seven bits a byte, the lowest first."""
+    """A number in AIGER's form: seven bits a byte, the lowest first."""
     made = bytearray()
     while value > 127:
         made.append(value & 127 | 128)
@@ -93,7 +93,7 @@ def packed(value):
 
 
 class Design:
-    """A design that yosys wrote with `write_aiger -ascii -symbols`, in which the input `fault` chooses a fault."""
+    """A design that yosys wrote with `write_aiger -ascii -symbols`. Its input `fault` chooses a fault."""
 
     def __init__(self, path):
         with open(path) as text:
@@ -107,7 +107,8 @@ class Design:
         self.ands = sorted(rows[outputs_from + outputs:])
 
     def copy(self, graph, inputs, latches, fault):
-        """What each literal of the design is in `graph`, with these inputs and latches and this fault."""
+        """Adds the design to `graph`, with these inputs and latches and this fault. Returns the function that gives each
+        literal there."""
         value = {0: 0}
         for (literal, name), given in zip(self.inputs, inputs):
             chosen = re.fullmatch(r"fault\[(\d+)\]", name)
@@ -118,8 +119,8 @@ class Design:
         return lambda literal: value[literal >> 1] ^ literal & 1
 
     def pair(self, graph, fault):
-        """The design without a fault and with this one: what the outputs are in each. Whatever the fault cannot reach is one
-        and the same in both."""
+        """The design without a fault and with this one: the pair of each output's literals. Nodes that the fault cannot reach
+        are shared by both."""
         inputs = [graph.input() for _ in self.inputs]
         sound = [graph.latch() for _ in self.latches]
         good = self.copy(graph, inputs, sound, 0)

@@ -1,4 +1,4 @@
-"""Reads budget.ini, and refuses a key that nothing would look at and a limit in another unit."""
+"""Reads budget.ini, and refuses keys that no check uses and limits in the wrong unit."""
 
 import configparser
 import pathlib
@@ -7,11 +7,11 @@ import sys
 
 import tops as boards
 
-# What a build is; a board's top has the last three.
+# The keys that describe a build; a board's top has the last three.
 BUILD = {"top", "parameters", "board", "kind", "sensor"}
 NUMBER, SHARE = r"[0-9]+(\.[0-9]+)?", r"[0-9]+(\.[0-9]+)?%"
 EITHER = f"{NUMBER}|{SHARE}"
-# Each limit's unit: a number, a share of the chip, or either.
+# The unit of each limit: a number, a share of the chip, or either.
 LIMITS = {"luts": EITHER, "registers": EITHER, "block_rams": EITHER, "dsps": EITHER, "mean": SHARE, "whole_rams": NUMBER,
           "arithmetic": NUMBER, "carry_bits": NUMBER, "lut_levels": NUMBER, "mhz": NUMBER, "crossing_ns": NUMBER}
 
@@ -24,7 +24,7 @@ def read(text):
 
 
 def faults(builds):
-    """What no check would hold a build to."""
+    """Keys and limits that no check could hold a build to."""
     for name, build in builds.items():
         for key, value in build.items():
             if key not in BUILD and key not in LIMITS:
@@ -44,10 +44,10 @@ def sections():
 
 
 def top_of(build):
-    """The board's top that a build is, or None where it is a module of fpga/rtl."""
+    """The board's top that the build is, or None for a module of fpga/rtl."""
     return boards.Top(build["board"], build["kind"], build.getboolean("sensor")) if "board" in build else None
 
 
 def tops():
-    """The builds that are a board's tops: (top, limits)."""
+    """The builds that are tops of boards: (top, limits)."""
     return [(top_of(build), build) for build in sections().values() if top_of(build)]

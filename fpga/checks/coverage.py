@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Says which single faults of the Verilog a run of `halfrow verify` finds, and by what.
+"""Reports which single faults of the Verilog a run of `halfrow verify` finds, and how.
     fpga/checks/coverage.py WORK RUNNER COUNT [BLOCK...]
-coverage.ini says where faults are put. yosys draws them into the netlist of the whole board, a library a block, in which a number
-chooses one; RUNNER (halfrow-coverage) judges the board with each. What was found is kept in WORK, and a run that was stopped goes on.
+coverage.ini says where faults are put. yosys puts them into the netlist of the whole board. For each block this makes a library in which a
+number chooses the fault; RUNNER (halfrow-coverage) judges the board with each. Results are kept in WORK, and an interrupted run resumes.
 """
 import collections
 import concurrent.futures
@@ -26,23 +26,25 @@ HERE = pathlib.Path(__file__).resolve().parent
 SHIM = HERE.parent / "sim" / "shim"
 SEED = 1
 TOP = "halfrow_bridge"
-# Width, height and the lens's radius in pixels.
+# Width, height and radius of the lens, in pixels.
 SIZES = ["64", "16", "40"]
-# The same of a board with a fault that is proven to make no difference, for so many of those.
+# The same for judging faults that are proven to make no difference, and how many of those are judged.
 LONG = ["96", "24", "60"]
 CHECKED = 100
-# So many faults of a block that are found must not be proven.
+# This many faults of a block that are found are tried too; they must not be proven.
 CONTROLS = 5
-# Only of so many is the table in the repository.
+# The table in the repository is only written for this many faults.
 FAULTS = 2100
 CLASSES = {"frames": "samples", "at-speed": "signature", "latency": "latency", "counters": "counters", "read-back": "read-back",
            "tables-after": "read-back", "identity": "read-back", "upload": "read-back", "link": "counters",
            "rules": "rules"}
 AT_ONCE = 2
 BOARD = "uniquify; prep -top {top}; wreduce; opt -full; opt_clean -purge; write_ilang {base}"
-# Contents of memories are no fault of the design, and yosys 0.23 cannot put a fault into a memory's port. Nor is a clock that is turned.
+# The contents of memories are not faults of the design, and yosys 0.23 cannot put a fault into a memory's port. A clock is not
+# inverted either.
 DRAW = "read_ilang {base}; select -set block {modules}; select @block t:$mem* %d; mutate -list {count} -seed {seed} -ctrl fault 16 1 -o {faults}"
-# What chooses a fault is no input of the simulated board: what hangs on it would be computed anew at each clock.
+# The choice of the fault is not an input of the simulated board: all that depends on an input would be computed again at each
+# clock.
 CHOICE = 'reg [15:0] fault;\n  initial fault = $c("halfrow_fault");'
 WITH_FAULTS = "read_ilang {base}\n{faults}\nhierarchy -top {top}\nsplitnets\nwrite_verilog -noattr {made}\n"
 
@@ -56,13 +58,13 @@ def key(paths, words=""):
 
 
 def judging_key(count, runner):
-    """A hash of all that decides what a fault is and who finds it."""
+    """A hash of everything that decides what a fault is and which check finds it."""
     own = [HERE / "coverage.py", HERE / "coverage.ini", HERE / "mutants.py", HERE / "rtl.py", table.PARAMETERS, pathlib.Path(runner)]
     return key([*own, *sorted(SHIM.iterdir()), *sorted(rtl.RTL.glob("**/*.v*"))], f"{count} {SEED} {SIZES}")
 
 
 def board(work):
-    """The board's netlist, each instance a module of its own, and the names of those."""
+    """The file of the board's netlist, in which each instance is a module of its own, and the names of these modules."""
     base = work / "board.il"
     if not base.exists():
         commands = rtl.read(TOP, table.PARAMETERS.read_text().split()) + BOARD.format(top=TOP, base=base.with_suffix(".new"))
@@ -84,21 +86,21 @@ def chosen(section, modules):
 
 
 def draw(place, base, modules, count):
-    """The commands of yosys that put a block's faults in, one a fault."""
+    """The yosys commands that put a block's faults in, one a fault."""
     words = DRAW.format(base=base, modules=" ".join(modules), count=mutants.more(count), seed=SEED, faults=place / "faults.txt")
     mutants.run(["yosys", "-q", "-p", words], place / "draw.log")
     return mutants.numbered(place / "faults.txt", count)
 
 
 def choosing(text):
-    """yosys' text of the board with faults, in which the shim's number chooses one in place of a port."""
+    """yosys' text of the board with faults, with the port that chooses one replaced by the shim's number."""
     before, top = re.split(rf"(?=^module {TOP}\()", text, maxsplit=1, flags=re.MULTILINE)
     top = re.sub(r",\s*fault\);", ");", top, count=1)
     return before + re.sub(r"input \[15:0\] fault;\s*wire \[15:0\] fault;", lambda _: CHOICE, top, count=1)
 
 
 def library(place, base, faults):
-    """The board with a block's faults, as a library."""
+    """The board with a block's faults, as a shared library."""
     made, library = place / "board.v", place / "board.so"
     if library.exists():
         return library
@@ -122,7 +124,7 @@ def library(place, base, faults):
 
 
 def judge(runner, library, number, sizes=SIZES):
-    """What RUNNER says of the board with this fault."""
+    """What RUNNER reports for the board with this fault."""
     said = subprocess.run([runner, library, *sizes, str(number)], capture_output=True, text=True)
     if said.returncode != 0:
         sys.exit(f"coverage: fault {number} of {library}: {said.stderr.strip()}")
@@ -130,7 +132,7 @@ def judge(runner, library, number, sizes=SIZES):
 
 
 def judged(runner, place, base, faults):
-    """What is known of each fault of a block, by number; 0 is none, which must pass before the others are tried."""
+    """The result for each fault of a block, by number. 0 is no fault, and must pass before the others are tried."""
     results = place / "results"
     lines = results.read_text().splitlines() if results.exists() else []
     known = {found["fault"]: found for found in map(json.loads, lines)}
@@ -153,8 +155,8 @@ def judged(runner, place, base, faults):
 
 
 def known_proofs(place, base, faults, found):
-    """For each fault that nothing finds, the module in which it is proven to make no difference, or none; by number. Some of those that are
-    found must not be."""
+    """For each fault that no check finds, by number: the module in which it is proven to make no difference, or None. Some
+    faults that are found serve as controls: they must not be proven."""
     kept = place / f"proofs_{key([HERE / 'proofs.py', HERE / 'aig.py'])[:8]}"
     lines = kept.read_text().splitlines() if kept.exists() else []
     known = {line["fault"]: line["proof"] for line in map(json.loads, lines)}
@@ -175,7 +177,7 @@ def known_proofs(place, base, faults, found):
 
 
 def check_proofs(work, runner, blocks):
-    """Judges some boards with faults that are proven to make no difference for longer, at another size."""
+    """Judges some faults that are proven to make no difference once more, in a longer run at another size."""
     proven = [(block.name, number) for block in blocks for number, proof in block.proofs.items() if proof]
     drawn = random.Random(SEED).sample(proven, min(CHECKED, len(proven)))
     kept = work / "checked"
@@ -191,7 +193,7 @@ def check_proofs(work, runner, blocks):
 
 
 def by(found, proof):
-    """What finds a fault: a class of table.py."""
+    """How a fault is found: a class of table.py."""
     if found["verdict"] == "ERROR":
         return "error"
     return CLASSES[found["checks"][0]] if found["checks"] else "equivalent" if proof else "left"
@@ -199,7 +201,7 @@ def by(found, proof):
 
 @dataclasses.dataclass
 class Block:
-    """A block's faults, and what is known of each by its number."""
+    """A block's faults, and the results for each by its number."""
 
     name: str
     faults: list
@@ -207,7 +209,7 @@ class Block:
     proofs: dict
 
     def classes(self):
-        """The class of each fault."""
+        """The class of each fault, by number."""
         return {number: by(self.found[number], self.proofs.get(number)) for number in range(1, len(self.faults) + 1)}
 
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""The clock crossings of the boards' tops, by yosys' netlists in front of mapping. Every bit that a register takes from another clock, or
-from a pin, must go straight into two registers that nothing else reads between and that are marked ASYNC_REG; the bits of one word that
-cross must count in Gray code; a reset may begin at once when it ends in two registers; a memory takes nothing from another clock than its
-port's. What is none of these stands in crossings.ini with its reason, and what stands there must be found. crossings.txt has faults that
+"""The clock crossings of the boards' tops, in yosys' netlists before mapping. Every bit that a register takes from another clock, or
+from a pin, must go straight into two registers that are marked ASYNC_REG, and nothing else may read the first; the bits of a word that
+crosses must count in Gray code; a reset may begin at any time if its end passes two registers; a memory takes nothing from a clock other
+than its port's. Every exception is in crossings.ini with its reason, and every entry there must be found. crossings.txt has faults that
 this must refuse.
 """
 import concurrent.futures
@@ -29,7 +29,7 @@ class Crossings:
         return {leaf for leaf in self.netlist.leaves(bit) if leaf[0] != register.clock}
 
     def all(self):
-        """(register, port, bit, what comes from elsewhere) of each."""
+        """(register, port, bit, where it comes from) of each bit that comes from elsewhere."""
         inputs = [(register, *taken) for register in self.by_bit.values() for taken in self.netlist.inputs(register)]
         for register, port, bit in [*inputs, *self.netlist.memory_inputs()]:
             others = self.foreign(register, bit)
@@ -37,7 +37,7 @@ class Crossings:
                 yield register, port, bit, others
 
     def second(self, register):
-        """The register that alone reads this one, in the same clock."""
+        """The register that is the only reader of this one, in the same clock."""
         readers = self.netlist.readers[register.bit]
         if len(readers) != 1 or readers[0][1] != "D":
             return None
@@ -48,7 +48,7 @@ class Crossings:
         return after if after and after.clock == register.clock else None
 
     def fault(self, register, port, bit):
-        """Why this is no synchroniser, or None."""
+        """Why this is not a synchroniser, or None."""
         if register.bit is None:
             return f"reaches the memory's {port}"
         if port == "ARST":
@@ -65,7 +65,8 @@ class Crossings:
         return None
 
     def fault_of_reset(self, register, bit):
-        """A reset may begin without the clock: its end has to pass two registers in a row, all held by it, before it is read."""
+        """A reset may begin without the clock. Its end has to pass two registers in a row, both held by it, before it is
+        read."""
         chain = [r for r in self.by_bit.values() if r.cell == register.cell]
         first = [r for r in chain if not isinstance(self.netlist.inputs(r)[0][1], int)]
         if len(first) != 1 or any(r.bit not in self.netlist.marked for r in chain):
@@ -76,7 +77,7 @@ class Crossings:
         return None if length == len(chain) >= 2 else "is a reset that is read before two registers"
 
     def is_gray(self, bits):
-        """Whether these bits are one cell's, and each is loaded with n[k] ^ n[k+1] where n counts up by one."""
+        """Whether these bits are one cell's, and each is loaded with n[k] ^ n[k+1] of a count n that goes up by one."""
         data = sorted((self.by_bit[bit].place, self.netlist.inputs(self.by_bit[bit])[0][1]) for bit in bits)
         counts = {}
         for place, bit in data:
@@ -105,7 +106,7 @@ class Crossings:
 
 
 def judge(crossings, listed):
-    """Faults, the entries of the list that were met, and how many bits were found sound."""
+    """Faults, the entries of the list that were found, and the number of sound bits."""
     faults, met, sound, crossed = set(), set(), 0, []
     for register, port, bit, others in crossings.all():
         why = crossings.fault(register, port, bit)
@@ -120,7 +121,7 @@ def judge(crossings, listed):
                 met.add(entry)
             else:
                 faults.add(f"{source} ({clock}) -> {register.name} ({register.clock}) {why}")
-    # Bits of one word that cross into one clock, each by synchronisers of its own or not, may be seen at different times.
+    # Bits of one word that cross into the same clock may arrive at different times, even if each has a synchroniser of its own.
     for word in words(crossings, crossed):
         if len(word) > 1 and not crossings.is_gray(word):
             name = min(crossings.by_bit[bit].name for bit in word)
@@ -129,8 +130,9 @@ def judge(crossings, listed):
 
 
 def words(crossings, crossed):
-    """The bits that cross, (first register, bit) each, by what they are in the source: those of one clock that share a vector where they are
-    written, or where their synchronisers are read. yosys' cells do not tell: one vector is several when its bits are written apart."""
+    """Groups the bits that cross, (first register, bit) each, into the words of the source: bits of one clock that share a
+    vector where they are written, or where their synchronisers are read. yosys' cells do not show this: a vector whose bits are
+    written separately becomes several cells."""
     found = []
     for register, bit in crossed:
         read = crossings.second(register)
@@ -149,7 +151,7 @@ def matches(key, source, register):
 
 
 def faults_of(top, tree=edits.ROOT):
-    """Faults of a top, and a line about one that has none."""
+    """The faults of a top, and a line for the case that it has none."""
     name = tops.name_of(top)
     config = configparser.ConfigParser(delimiters=(":",), interpolation=None)
     config.optionxform = str
@@ -161,7 +163,8 @@ def faults_of(top, tree=edits.ROOT):
 
 
 def missed(top, mutants):
-    """Those faults, put all into one copy of the sources, that are not refused by the name of what they spoil."""
+    """Puts all these faults into one copy of the sources; returns those that are not refused with the name of what they
+    spoil."""
     with tempfile.TemporaryDirectory() as scratch:
         tree = pathlib.Path(scratch)
         edits.spoil(tree, mutants)

@@ -2,17 +2,17 @@
 
 import collections
 
-# What a block RAM and a DSP slice take longer than a register until their output is there, in LUTs.
+# How much longer a block RAM and a DSP slice take than a register until their output is valid, in LUTs.
 STARTS_AS_LUTS = {"block_ram": 2, "dsp": 1}
 
 
 class Depth:
-    """Arithmetic steps are carry chains that are entered, and pre-adders, multipliers and post-adders. They and the LUTs of the same path
-    are counted apart."""
+    """Arithmetic steps are entries into a carry chain, pre-adders, multipliers and post-adders. The LUTs of the same path are
+    counted separately."""
 
     def __init__(self, graph):
         self.graph = graph
-        # For every bit and number of arithmetic steps on the way to it: the most LUTs, and the bit before.
+        # For every bit and number of arithmetic steps on the way to it: the most LUTs, the bit before, and the cell.
         self.before = collections.defaultdict(dict)
         for bit in graph.sorted():
             self.go_on_from(bit)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Holds fpga/rtl and the boards' sources to what XST of ISE 14.7 reads for certain, where Verilog-2001 as other tools know it allows more.
-A rule is a function; the file of its name in fpga/checks/dialect breaks it, and must be refused by it alone.
+"""Holds fpga/rtl and the boards' sources to what XST of ISE 14.7 is sure to read, which is less than the Verilog-2001 that other tools
+accept. A rule is a function. The file of its name in fpga/checks/dialect breaks it, and must be refused by this rule alone.
 """
 import itertools
 import pathlib
@@ -15,13 +15,13 @@ HERE = pathlib.Path(__file__).resolve().parent
 MEMORY = re.compile(r"^ *(\(\*.*?\*\) *)?reg\b[^;=\n]*?\b(\w+) \[[^\]]*:[^\]]*\];", re.MULTILINE)
 # The names of a declaration, without its attributes and range.
 REGISTERS = re.compile(r"^ *(?:\(\*.*?\*\) *)?reg\b(?: signed)?(?: *\[[^\]]*\])* ([^;]*);", re.MULTILINE)
-# A replication whose count is no plain number.
+# A replication whose count is not a plain number.
 REPLICATION = re.compile(r"\{ *([^{},;\"]*[A-Za-z_][^{},;\"]*)\{")
 ACTIVE = "may be active from the configuration to its first clock; give its register an initial value"
 
 
 def bare(text):
-    """Without comments and strings, and with as many lines."""
+    """The text without comments and strings, with the same number of lines."""
     return re.sub(r'//[^\n]*|"[^"\n]*"', "", text)
 
 
@@ -30,19 +30,19 @@ def line_of(text, place):
 
 
 def memories(text):
-    """Name, attributes, line."""
+    """Name, attributes and line of each memory."""
     return [(found[2], found[1] or "", line_of(text, found.start(2))) for found in MEMORY.finditer(text)]
 
 
 def ram_style_missing(text):
-    """A memory's kind is said and not left to a size that XST decides by."""
+    """The kind of a memory must be given, and not left to XST, which decides by size."""
     for name, attributes, line in memories(text):
         if "ram_style" not in attributes:
             yield line, f"the memory {name} has no ram_style"
 
 
 def memory_of_many_writers(text):
-    """XST may take elements that are driven from several always blocks for several drivers of one memory."""
+    """XST might take elements that are driven from several always blocks for several drivers of one memory."""
     code = bare(text)
     loops = [found.start() for found in re.finditer(r"\bfor \(\w+ = .*?\) begin :", code)]
     for name, _, line in memories(text):
@@ -53,7 +53,7 @@ def memory_of_many_writers(text):
 
 
 def initial_value_missing(text):
-    """A register without one starts as 0, which is active at a pin whose name ends in _n."""
+    """A register without an initial value starts as 0, which is active at a pin whose name ends in _n."""
     code = bare(text)
     for found in re.finditer(r"^ *output +reg +(?:\[[^\]]+\] +)?(\w+_n)\b(?! = )", code, re.MULTILINE):
         yield line_of(text, found.start(1)), f"{found[1]} {ACTIVE}"
@@ -65,7 +65,8 @@ def initial_value_missing(text):
 
 
 def probes(path, text):
-    """Looks at what only a build has: (rule, where it fails, what to say, its values). A pin's register may stand in another module."""
+    """Conditions that only an elaborated build can show: (rule, condition of a fault, message, its values). The register of a
+    pin may be in another module."""
     code = bare(text)
     for found in REPLICATION.finditer(code):
         yield "zero_replications", f"({found[1]}) < 1", f"{path}:{line_of(code, found.start())}: a replication of {found[1].strip()} = %0d", found[1]
@@ -74,14 +75,15 @@ def probes(path, text):
 
 
 def probed(path, text):
-    """The module with its probes at its end."""
+    """The module with its probes added at its end."""
     looks = [f'    initial #0 if ({fails}) $display("{rule} {what}", {values});' for rule, fails, what, values in probes(path, text)]
     return re.sub(r"^endmodule", "\n".join([*looks, "endmodule"]), text, flags=re.MULTILINE)
 
 
 def judged_build(sources, top, parameters=()):
-    """What a build breaks, as (rule, what), and the modules in it. It is elaborated, since counts and pins are the build's: no
-    replication of none, which is legal from Verilog-2005 on, and no pin that is active in front of the first clock."""
+    """What a build breaks, as (rule, what), and the modules in it. The build is elaborated, since counts and pins depend on it.
+    It must have no replication with a count of 0, which is legal only from Verilog-2005 on, and no pin that is active before
+    the first clock."""
     with tempfile.TemporaryDirectory() as work:
         folder = pathlib.Path(work)
         for path in sources:
@@ -115,7 +117,8 @@ def refuses_its_cases():
 
 
 def of_builds(modules):
-    """What the builds of both bridges break, and the modules that none of them has, which nothing here has looked at whole."""
+    """What the builds of both bridges break, and the modules that are in none of them, so that nothing here has checked them in
+    a whole build."""
     wrong, missing = [], {path.stem for path in modules}
     links, sizes = ("halfrow_fifo_bridge", "halfrow_uart_bridge"), {"TAPS": (5, 7), "TABLE_BANKS": (1, 2), "TRAP": (0, 1), "GRID": (0, 1)}
     for top, *values in itertools.product(links, *sizes.values()):

@@ -20,7 +20,7 @@ TOKEN = re.compile(r'"[^"]*"|[()]|[^\s()"]+')
 
 
 def parsed(text):
-    """Nested lists of an EDIF file's words."""
+    """An EDIF file as nested lists of words."""
     stack = [[]]
     for word in TOKEN.findall(text):
         if word == "(":
@@ -34,12 +34,12 @@ def parsed(text):
 
 
 def named(word):
-    """(identifier, name) of what may be renamed."""
+    """(identifier, name) of something that may be renamed."""
     return (word[1], word[2]) if isinstance(word, list) else (word, word)
 
 
 def all_below(tree, kind):
-    """The lists of a kind in a tree, but not those inside one."""
+    """The lists of a kind in a tree, without those nested in another of that kind."""
     for part in tree:
         if isinstance(part, list) and part:
             if part[0] == kind:
@@ -49,7 +49,8 @@ def all_below(tree, kind):
 
 
 class Edif:
-    """Cells by name, and what each net joins: (cell, port, place of the bit from the highest) with an empty cell for the top's own ports."""
+    """The kinds of the cells by name, and the ends that each net joins: (cell, port, place of the bit from the highest). The
+    cell is empty for the top's own ports."""
 
     def __init__(self, text, module):
         library = next(part for part in parsed(text) if isinstance(part, list) and part[:2] == ["library", "DESIGN"])
@@ -78,12 +79,12 @@ class Edif:
 
 
 def ise_name(name):
-    """A name with ISE's separator of the hierarchy, unless it is one that yosys made up."""
+    """A name with ISE's separator of the hierarchy, unless yosys made it up."""
     return name if name.startswith("$") else name.replace(".", "/")
 
 
 def joined_by(module):
-    """What each bit of a netlist joins, as Edif has it. Those of constants are "0" and "1"."""
+    """The ends that each bit of a netlist joins, in the form of Edif. Those of constants are "0" and "1"."""
     joined = collections.defaultdict(set)
     ends = [(ise_name(name), cell["connections"]) for name, cell in module["cells"].items()]
     ends.append(("", {name: port["bits"] for name, port in module["ports"].items()}))
@@ -96,7 +97,7 @@ def joined_by(module):
 
 
 def with_kept_names(text, edif, module, ucf):
-    """EDIF whose nets have the names that the UCF knows them by. A net has several, of which yosys writes one."""
+    """The EDIF with nets renamed to the names that the UCF uses. A net has several names, of which yosys writes one."""
     joined, written = joined_by(module), {ends: name for name, ends in edif.nets.items()}
     for place, name in enumerate(sorted(set(missing(edif, ucf)))):
         bits = next((net["bits"] for own, net in module["netnames"].items() if ise_name(own) == name), [None])
@@ -107,7 +108,7 @@ def with_kept_names(text, edif, module, ucf):
 
 
 def differences(edif, module):
-    """What an EDIF file has otherwise than the netlist that it was written from."""
+    """Where an EDIF file differs from the netlist that it was written from."""
     kinds = collections.Counter(kind for kind in edif.cells.values() if kind not in ("GND", "VCC"))
     wanted = collections.Counter(cell["type"] for cell in module["cells"].values())
     if kinds != wanted:
@@ -124,7 +125,7 @@ def differences(edif, module):
 
 
 def missing(edif, ucf):
-    """Nets and pins that UCF files name and an EDIF file has not."""
+    """Nets and pins that the UCF names and the EDIF file lacks."""
     there = set(edif.nets) | {name if width == 1 else f"{name}<{place}>" for name, width in edif.ports.items() for place in range(width)}
     for name in re.findall(r'^NET\s+"([^"*]+)"', ucf, re.MULTILINE):
         if name not in there:
@@ -137,7 +138,7 @@ def ucf_of(top):
 
 
 def written(top, netlist):
-    """The EDIF of a netlist in JSON, and the module that it was written from. What is unknown becomes 0."""
+    """The EDIF of a netlist in JSON, and the module that it was written from. Unknown bits become 0."""
     with tempfile.TemporaryDirectory() as work:
         aside, settled = pathlib.Path(work) / "top.edif", pathlib.Path(work) / "top.json"
         script = f"read_json {netlist}; setundef -zero; write_json {settled}; write_edif -pvector ang {aside}"
@@ -159,13 +160,14 @@ def told(top, text):
     return f"PASS EDIF of {tops.name_of(top)}: {len(edif.cells)} cells and {len(edif.nets)} nets, as yosys has them, and all that the UCF names"
 
 
-# Edits of an EDIF file that must be found: another cell, a pin on another net, bits in another order, another constant, a lost name.
+# Edits of an EDIF file that must be found: another cell, a pin on another net, bits in another order, another constant, a lost
+# name.
 SPOILT = [("cellRef FDRE", "cellRef FDSE"), ("(portRef D ", "(portRef CE "), ("(member DOA 1)", "(member DOA 2)"),
           ("cellRef GND", "cellRef VCC"), ("clk32", "clock")]
 
 
 def check():
-    """Every top, and what must be found in the first."""
+    """Checks every top and, for the first, that each edit is found."""
     for top in tops.all_of(BOARD):
         text, module = written(top, tops.made(top, "cells"))
         wrong = faults(top, text, module)

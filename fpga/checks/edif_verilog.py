@@ -11,7 +11,7 @@ import sys
 import edif
 
 SIZED = re.compile(r"(\d+)'h[0-9a-f]+$")
-# What the models of block RAMs do not have: their contents, and resets, which none uses.
+# Parameters that the models of block RAMs do not have: contents, and resets, which nothing uses.
 CONTENTS, RESETS = re.compile(r"(INITP?_\w\w?|SRVAL_[AB])$"), re.compile(r"(EN_RSTRAM_[AB]|RSTTYPE|RST_PRIORITY_[AB])$")
 
 
@@ -31,7 +31,7 @@ class Netlist(edif.Edif):
 
     @staticmethod
     def interface(cell):
-        """(port, (width, direction)) of each."""
+        """(port, (width, direction)) of each port."""
         for port in edif.all_below(next(edif.all_below(cell, "interface")), "port"):
             array = isinstance(port[1], list) and port[1][0] == "array"
             _, name = edif.named(port[1][1] if array else port[1])
@@ -44,7 +44,7 @@ class Netlist(edif.Edif):
 
 
 def kept(netlist, cell):
-    """The parameters that a model has."""
+    """The parameters that the cell's model has."""
     for name, value in netlist.parameters[cell].items():
         ram = netlist.cells[cell].startswith("RAMB")
         if ram and CONTENTS.match(name) and not re.match(r"\d+'h0+$", value):
@@ -54,8 +54,8 @@ def kept(netlist, cell):
 
 
 def connections(netlist, cell, joined, spare):
-    """A cell's pins. An output that leads nowhere gets a net of its own; an input that nothing drives what would harm most, so that no result
-    hangs on what the chip makes of it: a clock enable is low, all else high."""
+    """A cell's pins. An unconnected output gets a net of its own. An undriven input gets the level that would do the most harm,
+    so that no result depends on what the chip makes of it: a clock enable is low, everything else is high."""
     for port, (width, direction) in netlist.cell_ports[netlist.cells[cell]].items():
         bits = [joined.get((cell, port, place)) for place in range(width)]
         if direction == "OUTPUT" and not any(bits):
@@ -73,7 +73,7 @@ def verilog(netlist):
     joined, wires, passed, spare = {}, [], [], []
     directions = {"INPUT": "input wire", "OUTPUT": "output wire", "INOUT": "inout wire"}
     for number, ends in enumerate(netlist.nets.values()):
-        # A net is called as the first of the top's ports that it joins, unless it is a constant.
+        # A net is named after the first of the top's ports that it joins, unless it is a constant.
         own = sorted(ends_of_top(netlist, ends))
         constant = {CONSTANTS.get(netlist.cells.get(cell)) for cell, _, _ in ends} - {None}
         name = min(constant) if constant else own.pop(0)[1] if own else f"n{number}"
@@ -93,7 +93,7 @@ def verilog(netlist):
 
 
 def ends_of_top(netlist, ends):
-    """(whether it is an output, its name) of the top's own port bits among a net's ends."""
+    """(whether it is an output, its name) of each of the top's own port bits among a net's ends."""
     for cell, port, place in ends:
         if cell == "":
             width, direction = netlist.own_ports[port]

@@ -1,4 +1,4 @@
-"""Edits of the sources that a check must refuse: a file of them, and a copy of the sources with them."""
+"""Edits of the sources that a check must refuse: how their files are read, and a copy of the sources with the edits made."""
 
 import pathlib
 import re
@@ -11,13 +11,13 @@ IGNORED = shutil.ignore_patterns("target", "model", "mock", "sim", "coverage", "
 
 
 def of_kind(file, kind):
-    """(file in the project, edit for `sed -E`, what the check must say) of each line whose first column is the kind."""
+    """(file in the project, edit for `sed -E`, what the check must say) of each line whose first column is this kind."""
     lines = [line.strip() for line in file.read_text().splitlines() if line and not line.startswith("#")]
     return [tuple(rest) for first, *rest in (re.split(r"\s{2,}", line, maxsplit=3) for line in lines) if first == kind]
 
 
 def spoil(tree, edits):
-    """Makes that folder a copy of fpga and of protocol/WIRE.md, with all these edits."""
+    """Makes the folder `tree` a copy of fpga and of protocol/WIRE.md with all these edits."""
     shutil.copytree(ROOT / "fpga", tree / "fpga", ignore=IGNORED)
     (tree / "protocol").mkdir()
     shutil.copy(ROOT / "protocol/WIRE.md", tree / "protocol")

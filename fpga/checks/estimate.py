@@ -2,9 +2,9 @@
 """How fast the boards' tops may run on a Spartan-6 of speed grade -3: the worst paths by the names of their registers, and the MHz of
 each clock. Fails below the mhz of budget.ini.
     estimate.py [PATHS]      PATHS: how many paths of each clock to print (5)
-It is an estimate and no vendor's figure: the delays below are a reader's, in ns, and no cell has a place. Take the order of the paths,
-and what a change does to it. Pins and a clock's way are left out, asynchronous resets too. A path between a rising and a falling edge
-has half a period, so it counts twice; one between two clocks is told by itself, since sensor.ucf bounds it in ns."""
+It is an estimate, not a vendor's figure: the delays below, in ns, are educated guesses, and no cell has a place. What counts is the
+order of the paths, and how a change moves it. Pins, the clocks' own routing and asynchronous resets are left out. A path between a rising
+and a falling edge has half a period, so it counts twice. Paths between two clocks are listed separately, since sensor.ucf bounds them in ns."""
 
 import collections
 import concurrent.futures
@@ -17,19 +17,19 @@ import budget
 import netlist
 import tops
 
-# From the clock to a register's output, to a block RAM's, to a DSP slice's; distributed RAM is a register with a LUT behind it.
+# From the clock to the output of a register, a block RAM or a DSP slice. Distributed RAM is a register followed by a LUT.
 CLOCK_TO_OUT = {"register": 0.45, "memory": 0.45 + 0.22, "block_ram": 2.1, "dsp": 1.2}
-# Through a cell: a ripple is four bits of a carry chain. MUXF7 and MUXF8 count as LUTs.
+# Through a cell; a ripple is four bits of a carry chain. MUXF7 and MUXF8 count as LUTs.
 THROUGH = {"lut": 0.22, "wide": 0.22, "carry": 0.40, "ripple": 0.09, "dsp": 3.0, None: 0.0}
 SET_UP = 0.35
 ASYNCHRONOUS = {"CLR", "PRE"}
 
-# The slowest way from an edge of `clock` to the pin `end`: the ns that it needs, the last bit in front of the pin.
+# The slowest way from an edge of `clock` to the pin `end`: its delay in ns, and the last bit before the pin.
 Path = collections.namedtuple("Path", "delay bit clock end")
 
 
 def wire(readers):
-    """The delay of a net by how many pins it leads to."""
+    """The delay of a net that leads to this many pins."""
     return 0.55 + 0.22 * math.log2(max(readers, 1))
 
 
@@ -43,7 +43,7 @@ class Estimate:
         self.arrival = self.arrivals()
 
     def arrivals(self):
-        """For every bit and clock: the latest time behind the clock's edge, and the bit before."""
+        """For every bit and clock: the latest time after the clock's edge, and the bit before."""
         latest = collections.defaultdict(dict)
         for bit in self.graph.sorted():
             start = self.graph.starts.get(bit)
@@ -71,7 +71,7 @@ class Estimate:
         return sorted(found, key=lambda path: (-path.delay, self.start_name(path), self.graph.end_name(path.end)))
 
     def bits(self, path):
-        """Those on the way, from the register on."""
+        """The bits along a path, starting at the register."""
         bits, bit = [], path.bit
         while bit is not None:
             bits.append(bit)
@@ -84,14 +84,14 @@ class Estimate:
         return start.cell if start.kind in ("block_ram", "dsp") else self.graph.names.of(first)
 
     def described(self, path):
-        """From register to register by the nets on the way that have a name, each with how many pins it leads to."""
+        """A path from register to register by the named nets along it, each with the number of pins that it leads to."""
         bits = [bit for bit in self.bits(path) if bit >= 0]
         named = [f"{self.graph.names.of(bit)} x{self.graph.readers[bit]}" for bit in bits[1:] if bit in self.graph.names.known]
         first = f"{self.start_name(path)} x{self.graph.readers[bits[0]]}"
         return f"{path.delay:5.2f} ns  " + " -> ".join([first, *named, self.graph.end_name(path.end)])
 
     def worst(self, paths, count):
-        """The slowest of each register and each module that it leads to."""
+        """The slowest path for each pair of a register and a module that it leads to."""
         told = {}
         for path in paths:
             module = self.graph.end_name(path.end).split(" ")[0].rpartition(".")[0]
@@ -102,7 +102,7 @@ class Estimate:
 
 
 def judge(name, module, limits, count):
-    """What is to be said of a netlist, and what of it is too slow."""
+    """The lines to print about a netlist, and those of its paths that are too slow."""
     estimate = Estimate(module)
     by_clocks = collections.defaultdict(list)
     for path in estimate.paths():

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Holds the files of fpga/rtl to one form: a module a file of its name, in a folder; under 400 lines of at most 120 columns; no
-tabs, no spaces at ends of lines; `default_nettype none at the top and wire at the end; every parameter and
-every port on a line of its own, ports in columns; no other alignment in code, so that a changed line leaves its neighbours alone.
+"""Holds the files of fpga/rtl to one form: one module a file, named like the file, in a folder; under 400 lines of at most 120 columns; no
+tabs, no spaces at the ends of lines; `default_nettype none at the top and wire at the end; every parameter and every port on a line of its
+own, ports in columns; no other alignment in code, so that a changed line leaves its neighbours alone.
 """
 import re
 import sys
@@ -13,7 +13,7 @@ PORT = re.compile(r"    (input |output|inout ) (wire|reg ) (signed )?(\[[^]]+\])
 
 
 def parameters(lines):
-    """A module's parameters stand in its head, one a line, so that rtl.py reads them all."""
+    """A module's parameters must be in its head, one a line, so that rtl.py finds them all."""
     in_head = False
     for number, line in enumerate(lines, 1):
         code = re.sub(r'"[^"]*"', '""', line.split("//")[0].rstrip())

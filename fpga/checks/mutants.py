@@ -1,4 +1,5 @@
-"""Modules of fpga/rtl as yosys' netlists with many faults in each, of which +fault=N turns one on, and the checks that try them."""
+"""Modules of fpga/rtl as yosys' netlists with many faults in each, one of which +fault=N turns on, and the checks that try
+them."""
 import json
 import pathlib
 import re
@@ -12,18 +13,20 @@ HERE = pathlib.Path(__file__).resolve().parent
 BENCH = HERE.parent / "bench"
 FEW = ["golden", "random", "200", "1", "hostile", "100", "2"]
 MANY = ["random", "3000", "3", "hostile", "1500", "4", "frame", "hermite"]
-# What a check is: the bench's C++ file, the top, and the words that it is called with.
+# Compiled checks: the bench's C++ file, the model's prefix, the top, and the arguments of the call.
 COMPILED = {
     "core": ("core_bench.cpp", "core", "halfrow_core", FEW),
     "core_long": ("core_bench.cpp", "core", "halfrow_core", MANY),
     "rows_of_board": ("board_bench.cpp", "board", "halfrow_bridge", ["40", "1"]),
 }
 
-# Contents of memories are no fault of the design, and yosys 0.23 cannot put a fault into a memory's port. Nor is a clock that is turned.
+# The contents of memories are not faults of the design, and yosys 0.23 cannot put a fault into a memory's port. A clock is not
+# inverted either.
 DRAW = """{read} rename -top {module}; prep; wreduce; opt -full; opt_clean -purge; write_ilang {place}/base.il; select c:* t:$mem* %d{without};
 mutate -list {count} -seed {seed} -ctrl mutsel 16 1 -o {place}/faults.txt"""
 
-# In place of the port that chooses: the number of the fault, and an end for a module that never comes to one.
+# What replaces the port that chooses the fault: its number from the command line, and a limit of clocks for a module that never
+# finishes.
 CHOICE = """reg [15:0] mutsel;
   reg [63:0] clocks, most;
   initial begin
@@ -48,24 +51,25 @@ def run(command, log):
 
 
 def more(count):
-    """Faults to draw so that `count` are left without those of clocks."""
+    """How many faults to draw so that `count` remain without those of clocks."""
     return count + count // 4 + 10
 
 
 def numbered(drawn, count):
-    """The first `count` of yosys' commands in the file `drawn`, without those that turn a clock; each is chosen by its number from 1 on."""
+    """The first `count` of yosys' commands in the file `drawn`, without those that invert a clock. Each is chosen by its
+    number, from 1 on."""
     faults = [fault for fault in drawn.read_text().splitlines() if "-port CLK " not in fault][:count]
     return [re.sub(r"(-ctrl \S+ \d+) \d+", rf"\g<1> {number}", fault) for number, fault in enumerate(faults, 1)]
 
 
 def header(module):
-    """A module's text up to its ports' end, with its own parameters."""
+    """A module's whole text, and the part of it up to the end of its ports."""
     text = rtl.modules()[module].read_text()
     return text, re.search(r"^module .*?^\);$", text, re.MULTILINE | re.DOTALL)[0]
 
 
 def netlist(place, module, section, faults):
-    """Writes the module with all faults in it, in place of the one that was written."""
+    """Writes the module with all faults in it, as a replacement of the original one."""
     made = place / "netlist.v"
     (place / "faults.ys").write_text(f"read_ilang {place}/base.il\n" + "\n".join(faults) + f"\nwrite_verilog -noattr {made}\n")
     run(["yosys", "-q", "-s", place / "faults.ys"], place / "yosys.log")
@@ -93,13 +97,13 @@ def netlist(place, module, section, faults):
 
 
 def json_ports(place, module):
-    """Names of a module's ports."""
+    """The names of a module's ports."""
     run(["yosys", "-q", "-p", f"read_ilang {place}/base.il; write_json {place}/base.json"], place / "json.log")
     return list(json.loads((place / "base.json").read_text())["modules"][module]["ports"])
 
 
 def draw(place, module, section, count, seed):
-    """The commands of yosys that put faults in, one a fault."""
+    """The yosys commands that put faults in, one a fault."""
     without = "".join(f" *{name}*/* %d" for name in section.get("without", "").split())
     read = rtl.read(module, section.get("parameters", "").split())
     commands = DRAW.format(read=read, module=module, place=place, without=without, count=more(count), seed=seed)
@@ -108,7 +112,7 @@ def draw(place, module, section, count, seed):
 
 
 def build(place, check, made, section):
-    """The program that plays a check with this netlist, and its words."""
+    """The command that runs a check with this netlist: the program and its arguments."""
     folder = place / check.removesuffix("_long")
     search = [f"-I{rtl.RTL}", f"-I{BENCH}", *(word for path in sorted({path.parent for path in rtl.modules().values()}) for word in ("-y", path))]
     common = ["verilator", "--cc", "--exe", "--build", "-O3", "-Wno-fatal", "-Wno-lint", "--language", "1364-2005", "--Mdir", folder, "-o", "bench",
@@ -133,7 +137,8 @@ def build(place, check, made, section):
 
 
 def play(command, fault, clocks):
-    """Whether a check passes with a fault, and what it said last of the clocks. It is stopped at its first word of a fault."""
+    """Whether a check passes with a fault, and the last count of clocks that it printed. It is stopped as soon as it reports a
+    fault."""
     command = ["stdbuf", "-oL", *map(str, command), f"+fault={fault}", f"+clocks={clocks}"]
     done, told = False, 0
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, errors="replace") as process:
@@ -148,14 +153,15 @@ def play(command, fault, clocks):
 
 
 class Check:
-    """A check of one module's faults, built when it is first needed."""
+    """A check that is tried on the faults of one module. It is built when it is first needed."""
 
     def __init__(self, name, place, made, section):
         self.name, self.place, self.made, self.section = name, place, made, section
         self.lock, self.command, self.clocks = threading.Lock(), None, 0
 
     def refuses(self, fault):
-        """Whether it does. A module that comes to no end gets twice the clocks of the one without a fault, or up to four times."""
+        """Whether the check refuses the fault. A module that never finishes is stopped after two to four times the clocks of
+        the sound one."""
         with self.lock:
             if not self.command:
                 command = build(self.place, self.name, self.made, self.section)

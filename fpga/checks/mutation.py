@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Puts faults into the Verilog, one at a time, and says which check finds which.
+"""Puts faults into the Verilog, one at a time, and reports which check finds which.
     fpga/checks/mutation.py WORK COUNT [MODULE...]
-mutation.ini says where and what tries them. yosys draws all faults of a module into one netlist, where a number chooses which is on, so
-a check is compiled once a module. What was found is kept in WORK; a run that was stopped goes on while sources, COUNT and SEED are the same.
-What survives is listed with its place, whether or not it makes a difference.
+mutation.ini says where the faults are and what tries them. yosys puts all faults of a module into one netlist, in which a number turns one
+on, so a check is compiled once per module. Results are kept in WORK; an interrupted run resumes while sources, COUNT and SEED are the same.
+Survivors are listed with their place, whether or not they make a difference.
 """
 import collections
 import concurrent.futures
@@ -18,13 +18,13 @@ import mutants
 import rtl
 
 HERE = pathlib.Path(__file__).resolve().parent
-FLOOR = 85                                   # per cent found of all; some of what survives is no fault
+FLOOR = 85                                   # per cent of all that must be found; some survivors are no faults
 SEED = 1
 SURVIVES = "survives"
 
 
 def key(count):
-    """A hash of all that decides what a fault is and who finds it."""
+    """A hash of everything that decides what a fault is and which check finds it."""
     told = hashlib.sha256(f"{count} {SEED}".encode())
     files = [*rtl.RTL.glob("**/*.v*"), *mutants.BENCH.iterdir(), *HERE.glob("mut*"), *HERE.glob("*_bench.cpp"), *HERE.glob("*.hpp"),
              HERE / "rtl.py"]
@@ -39,7 +39,7 @@ def judge(fault, checks):
 
 
 def try_all(module, section, place, count):
-    """Number, fault and who found it, of each fault of a module; what is known is read."""
+    """Number, fault and finder of each fault of a module; known results are read."""
     faults = mutants.draw(place, module, section, count, SEED)
     made = mutants.netlist(place, module, section, faults)
     results = place / "results"
@@ -58,7 +58,7 @@ def try_all(module, section, place, count):
 
 
 def described(number, fault):
-    """A fault in words: what it does to which cell or wire, and the line that this comes from."""
+    """A fault in words: what it does to which cell or wire, and the source line of that."""
     wire = re.search(r"-wire (\S+) -wirebit (\d+)", fault)
     mode, cell, port = (re.search(rf"-{word} (\S+)", fault)[1] for word in ("mode", "cell", "port"))
     source = " ".join(dict.fromkeys(re.findall(r"-src \S*?(halfrow_\w+\.v:\d+)", fault)))
@@ -66,12 +66,12 @@ def described(number, fault):
 
 
 def inner(fault, module):
-    """The module that a fault is in, by its name in fpga/rtl."""
+    """The module that contains a fault, by its name in fpga/rtl."""
     return re.search(r"-module \S*?(halfrow_\w+)", fault)[1] if re.search(r"-module \S*?halfrow_", fault) else module
 
 
 def table(found, order):
-    """Lines: a module, its faults, and how many each check found first."""
+    """Lines: a module, its faults, and how many of them each check was the first to find."""
     rows = collections.defaultdict(collections.Counter)
     for module, part, finder in found:
         rows[module, part][finder] += 1

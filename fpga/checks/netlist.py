@@ -1,25 +1,27 @@
-"""A flat netlist of Spartan-6 cells, as yosys writes it in JSON: what it takes, and the ways of its logic from register to register."""
+"""A flat netlist of Spartan-6 cells, in yosys' JSON: the resources that it takes, and the paths of its logic from register to
+register."""
 
 import collections
 import re
 
 LUT = re.compile(r"LUT([1-6])$")
-# LUTs that a distributed RAM or shift register takes.
+# LUTs of a distributed RAM or shift register.
 MEMORY_LUTS = {"SRL16E": 1, "SRLC16E": 1, "SRLC32E": 1, "RAM32X1S": 1, "RAM64X1S": 1, "RAM16X1D": 2, "RAM32X1D": 2, "RAM64X1D": 2,
                "RAM128X1D": 4, "RAM32M": 4, "RAM64M": 4}
 REGISTER = re.compile(r"FD[RSCP]E?(_1)?$")
-# Where a path begins and ends that is not from register to register of the chip's fabric: pins, clocks and what else the vendor has.
+# Where a path begins or ends at something other than a register of the fabric: pins, clocks and other cells of the vendor.
 BOUNDARY = {"BUFG", "BUFGMUX", "IBUF", "IBUFG", "OBUF", "OBUFT", "IOBUF", "PLL_BASE", "ODDR2", "DNA_PORT"}
 # Pins of registers, block RAMs and DSP slices.
 ENABLE, RESET = re.compile("CE|EN|REGCE"), re.compile("R$|S$|CLR|PRE|RST")
 MEMORY_ADDRESS = re.compile(r"A\d|DPRA\d|A$|ADDR")
 
-# An edge of a clock. `falling` is whether its registers take what they take when it falls.
+# An edge of a clock. `falling` says whether its registers sample when it falls.
 Clock = collections.namedtuple("Clock", "name falling")
 # Where a path begins: 'register', 'memory' (distributed RAM), 'block_ram', 'dsp' or 'pin', which has no clock.
 Start = collections.namedtuple("Start", "kind cell clock")
-# A combinational way to a bit. Kind: 'lut', 'carry' (entering a chain), 'ripple' (on along one), 'wide' (MUXF7, MUXF8), 'dsp' (a
-# pre-adder, a multiplier or a post-adder) or None (no logic). `routed` is whether the chip's general routing leads to the cell.
+# A combinational path to a bit. Its kind: 'lut', 'carry' (into a chain), 'ripple' (along a chain), 'wide' (MUXF7, MUXF8), 'dsp'
+# (a pre-adder, a multiplier or a post-adder) or None (no logic). `routed` says whether the chip's general routing leads to the
+# cell.
 Arc = collections.namedtuple("Arc", "bit kind cell routed")
 End = collections.namedtuple("End", "cell pin clock")
 
@@ -38,17 +40,17 @@ def resources(module):
 
 
 def number(text):
-    """A parameter as yosys writes it: binary digits."""
+    """A parameter in yosys' form: binary digits."""
     return int(text, 2) if isinstance(text, str) else text
 
 
 def nets(bits):
-    """Those of a pin's bits that are no constants."""
+    """The bits of a pin that are not constants."""
     return [bit for bit in bits if isinstance(bit, int)]
 
 
 class Names:
-    """What the source calls the bits of a netlist."""
+    """The names in the source for the bits of a netlist."""
 
     def __init__(self, module):
         self.known = {}
@@ -67,14 +69,14 @@ class Names:
 
 
 class Graph:
-    """The logic between registers. A bit is a number; those inside a DSP slice are below 0."""
+    """The logic between registers. A bit is a number; bits inside a DSP slice are below 0."""
 
     def __init__(self, module):
         self.names = Names(module)
-        self.arcs = collections.defaultdict(list)     # by the bit that they come from
+        self.arcs = collections.defaultdict(list)     # by the bit that they start from
         self.starts = {}
         self.ends = collections.defaultdict(list)
-        self.readers = collections.Counter()          # pins that each bit leads to
+        self.readers = collections.Counter()          # the number of pins that each bit leads to
         self.outputs = {name: cell["connections"]["Q"][0] for name, cell in module["cells"].items() if REGISTER.match(cell["type"])}
         self.inner = 0
         for name, cell in module["cells"].items():
@@ -97,7 +99,7 @@ class Graph:
         if LUT.match(kind):
             self.join(sources, results, "lut", name)
         elif kind == "INV":
-            # It goes into the cell behind it.
+            # It is absorbed by the cell after it.
             self.join(sources, results, None, name, routed=False)
         elif kind.startswith("MUXF"):
             self.join(into["S"], results, "wide", name)
@@ -127,7 +129,7 @@ class Graph:
             raise SystemExit(f"netlist: unknown cell {kind}")
 
     def clock(self, bits, cell):
-        """By the clock's pin; an inverter that is the register's own turns the edge."""
+        """The clock of a pin. An inverter inside the register selects the other edge."""
         falling = cell["type"].endswith("_1") or number(cell["parameters"].get("IS_C_INVERTED", 0)) == 1
         return Clock(self.names.of(bits[0]), falling)
 
@@ -138,7 +140,7 @@ class Graph:
         return self.clock(list(clocks), cell)
 
     def add_carry(self, name, pins):
-        entries = nets(pins.get("CYINIT", []))             # all that a sum depends on, but for what arrives by CI
+        entries = nets(pins.get("CYINIT", []))             # everything that a sum depends on except what arrives at CI
         for place in range(4):
             sums, carries, select, data = (nets(pins.get(pin, [])[place:place + 1]) for pin in ("O", "CO", "S", "DI"))
             self.join(nets(pins["CI"]), sums + carries, "ripple", name, routed=False)
@@ -147,7 +149,7 @@ class Graph:
             self.join(entries, carries, "carry", name)
 
     def add_dsp(self, name, cell, into, out):
-        """A DSP slice as its stages with the registers that it uses."""
+        """A DSP slice as its stages, with the registers that it uses."""
         registers = {key: number(value) for key, value in cell["parameters"].items() if key.endswith("REG")}
         mode = cell["connections"]["OPMODE"]
         if any(bit not in ("0", "1") for bit in mode):
@@ -178,7 +180,7 @@ class Graph:
         self.join(inner, [bit for pin in ("P", "PCOUT") for bit in out.get(pin, [])], None, name)
 
     def cascaded(self, bits, name):
-        """From the DSP slice below, by a way of its own."""
+        """From the DSP slice below, over dedicated wires."""
         self.inner -= 1
         self.join(bits, [self.inner], None, name, routed=False)
         return [self.inner]
@@ -199,13 +201,14 @@ class Graph:
             self.ends[bit].append(End(cell, pin, clock))
 
     def end_name(self, end):
-        """A register by what it holds, any other cell by its own name; the pin, unless it is the register's data."""
+        """A register is named after its output, any other cell by its own name; the pin is added unless it is the register's
+        data."""
         name = self.names.of(self.outputs[end.cell]) if end.cell in self.outputs else end.cell
         return name if end.cell in self.outputs and end.pin == "D" else f"{name} ({end.pin})"
 
     def fan_outs(self, pins):
-        """The nets that lead to clocked cells' pins of these names, by how many they lead to: (pins, name), the most first. One without a
-        name is called by the first pin that it leads to."""
+        """The nets that lead to pins of these names of clocked cells, with the number of such pins: (pins, name), the most
+        first. A net without a name is named after the first pin that it leads to."""
         led_to = {bit: [end for end in ends if end.clock and pins.match(end.pin)] for bit, ends in self.ends.items()}
         for bit, ends in sorted(led_to.items(), key=lambda item: (-len(item[1]), item[0])):
             if ends:
@@ -224,7 +227,7 @@ class Graph:
         return longest
 
     def sorted(self):
-        """All bits, each behind those that it depends on. A loop without a register is refused."""
+        """All bits, each after those that it depends on. A loop without a register is refused."""
         waiting = collections.Counter(arc.bit for arcs in self.arcs.values() for arc in arcs)
         ready = [bit for bit in set(self.arcs) | set(self.starts) | set(self.ends) if not waiting[bit]]
         order = []

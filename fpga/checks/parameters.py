@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Elaborates what parameters.ini says with Icarus Verilog, which is the quickest: a build that cannot be must fail and the failure
-must name the parameter; those at the ends of what is legal must pass. Every parameter of fpga/rtl is to be found there.
-    fpga/checks/parameters.py [long] [MODULE...]     long: by Verilator and yosys, too
+"""Elaborates the builds of parameters.ini with Icarus Verilog, which is the quickest. An illegal build must fail, and the failure must name
+the parameter; builds at the ends of the legal range must pass. Every parameter of fpga/rtl must be listed there.
+    fpga/checks/parameters.py [long] [MODULE...]     long: with Verilator and yosys as well
 """
 import concurrent.futures
 import configparser
@@ -20,7 +20,7 @@ TOOLS = ("iverilog", "verilator", "yosys")
 
 
 def unlisted(cases):
-    """Parameters that no section has, and sections' keys that are none."""
+    """Parameters that no section lists, and keys of sections that are not parameters."""
     inside = {f"halfrow_{name}" for name in cases["inside"]["modules"].split()}
     for module, path in rtl.modules().items():
         names = set(rtl.parameters(path.read_text()))
@@ -32,7 +32,7 @@ def unlisted(cases):
 
 
 def undeclared():
-    """Parameters of the builds that faults are put into, which their modules have not."""
+    """Parameters that mutation.ini gives to modules that do not have them."""
     builds = configparser.ConfigParser(interpolation=None)
     builds.read(HERE / "mutation.ini")
     for module in builds.sections():
@@ -63,7 +63,7 @@ def commands(source, folder):
 
 
 def judged(module, parameter, values, tools, work):
-    """What is wrong with a case by some of TOOLS: of an illegal one `parameter` is the parameter's name, of a legal one None."""
+    """What is wrong with a case by these of TOOLS. `parameter` names the illegal parameter; it is None for a legal case."""
     with tempfile.TemporaryDirectory(dir=work) as folder:
         source = pathlib.Path(folder) / "elaborated.v"
         source.write_text(wrapper(module, values))

@@ -1,11 +1,11 @@
-"""Whether a single fault makes no difference: yosys and yosys-abc prove the design with it equal to the one without.
+"""Whether a single fault makes no difference: yosys and yosys-abc prove that the design with it equals the one without.
 
-A fault is tried in the module that it is in, then in each one above it but the whole board. At the module's ports anything may come at any
-clock, and the outputs of both must be equal at every clock. Assumptions:
+A fault is tried in the module that it is in, then in each module above it except the whole board. At the module's ports anything may come
+at any clock, and the outputs of both designs must be equal at every clock. Assumptions:
     - registers begin at 0, as the FPGA's do;
-    - a memory gives the same in both as long as the same goes into it, and at its ports what is not written or read may differ;
-    - LEGAL: where a proof says so, only until a row is flagged that is short or long. The player makes none
-      (fpga/formal, player), so only a camera's can be.
+    - a memory returns the same in both as long as the same goes into it; at its ports, what is not written or read may differ;
+    - LEGAL: where a proof says so, only until a row is flagged as short or long. The player makes no such row
+      (fpga/formal, player), so only a camera can.
 """
 import re
 import subprocess
@@ -16,15 +16,15 @@ import mutants
 
 TOP = "halfrow_bridge"
 SECONDS = 5
-# Clocks within which a difference is looked for in front of any proof.
+# Clocks within which a difference is searched for before any proof.
 NEAR = 30
-# By module, the outputs of the sound design that tell of a row that no host can play.
+# By module, the outputs of the sound design that flag a row that no host can play.
 LEGAL = {
     "halfrow_bridge.core.entry": ["row_short", "row_long"],
 }
-# Registers of a module beyond which it is not tried: what has taken minutes there was hardly ever proven.
+# A module with more registers than this is not tried: attempts there took minutes and hardly ever proved anything.
 MOST = 1500
-# A fault is flagged and seen within so many clocks.
+# A row is flagged within this many clocks after the fault's difference is seen.
 LATE = 2
 MEMORY = re.compile(r"^  cell \$mem_v2 (\S+)\n((?:    .*\n)*?)  end\n", re.MULTILINE)
 PORTS = {"RD_ADDR": ("RD_PORTS", "ABITS"), "RD_EN": ("RD_PORTS", None), "RD_ARST": ("RD_PORTS", None), "RD_SRST": ("RD_PORTS", None),
@@ -50,7 +50,7 @@ write_aiger -ascii -zinit -symbols {made}
 
 
 def boxed(board):
-    """The board in yosys' text form, each memory a module without content."""
+    """The board in yosys' text form, with each memory replaced by a module without contents."""
     boxes = []
 
     def box(found):
@@ -63,7 +63,7 @@ def boxed(board):
                 ports.append(f"  wire width {bits} {direction} {place} \\{port}\n")
                 wires.append(re.search(rf"^    connect \\{port} .*\n", found[2], re.MULTILINE)[0])
         boxes.append(f"attribute \\blackbox 1\nmodule \\memory_{len(boxes)}\n{''.join(ports)}end\n")
-        # A port can be made of a cell with a public name alone.
+        # Only a cell with a public name can be exposed as ports.
         name = found[1] if found[1].startswith("\\") else f"\\unnamed_{len(boxes)}"
         return f"  cell \\memory_{len(boxes) - 1} {name}\n{''.join(wires)}  end\n"
 
@@ -75,7 +75,7 @@ def module_of(fault):
 
 
 def gate(name, good, graph):
-    """When the memory's port of this name is looked at, 1 for any other output."""
+    """When the memory's port of this name is in use; 1 for any other output."""
     memory, _, port = name.rpartition(".")
     port, bit = re.fullmatch(r"(\w+)(\[\d+\])?", port).groups()
     enables = {"WR_DATA": [f"{memory}.WR_EN{bit or ''}"], "RD_ADDR": [key for key in good if key.startswith(f"{memory}.RD_EN")],
@@ -89,7 +89,7 @@ def gate(name, good, graph):
 
 
 class Prover:
-    """Proves faults of one board to make no difference, with `work` for its files."""
+    """Proves that faults of one board make no difference. `work` is the folder for its files."""
 
     def __init__(self, work, board, faults):
         self.work, self.faults, self.designs, self.lock = work, faults, {}, threading.Lock()
@@ -100,14 +100,14 @@ class Prover:
         self.modules = set(re.findall(r"^module \\(\S+)", text, re.MULTILINE))
 
     def above(self, module):
-        """The module, and those that it stands in."""
+        """The module and those that contain it, from the inside out, without the board."""
         while module and module != TOP:
             if module in self.modules:
                 yield module
             module = module.rpartition(".")[0]
 
     def design(self, root):
-        """What is below `root`, with the faults in it."""
+        """The design from `root` down, with the faults in it."""
         with self.lock:
             if root not in self.designs:
                 inside = [fault for fault in self.faults.values() if root in self.above(module_of(fault))]
@@ -118,7 +118,7 @@ class Prover:
             return self.designs[root]
 
     def difference(self, graph, root, number, is_legal):
-        """When the fault has made a difference, as long as all was legal if it must be."""
+        """When the fault has made a difference; with `is_legal`, only as long as all was legal."""
         outputs = self.design(root).pair(graph, number)
         seen = 0
         for name, (good, bad) in outputs.items():
@@ -147,7 +147,7 @@ class Prover:
         return "was asserted" not in said and ("Property proved" in said or "are equivalent" in said)
 
     def abc(self, made, words):
-        """What yosys-abc says of an AIGER file; nothing when it takes too long."""
+        """The output of yosys-abc for an AIGER file; empty when it takes too long."""
         command = ["yosys-abc", "-c", f"read_aiger {made}; strash; {words}"]
         try:
             return subprocess.run(command, capture_output=True, text=True, timeout=2 * SECONDS).stdout
@@ -155,7 +155,8 @@ class Prover:
             return ""
 
     def proof(self, number):
-        """The module in which the fault with this number is proven, with ` legal` behind it under that assumption; none if it is not."""
+        """The module in which the fault of this number is proven, followed by ` legal` if that assumption is needed; None if it
+        is not proven."""
         for root in self.above(module_of(self.faults[number])):
             if len(self.design(root).latches) > MOST:
                 break

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Sees judges refuse: all edits of refused.txt that are one's, put into a copy of the sources, must be named by it.
-    refused.py JUDGE...     JUDGE: a program of fpga, as checks/form.py
+"""Checks that judges refuse: all edits of refused.txt that belong to a judge, made in a copy of the sources, must be named by it.
+    refused.py JUDGE...     JUDGE: a program of fpga, such as checks/form.py
 """
 import pathlib
 import subprocess

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Synthesises the builds of budget.ini with yosys for the Spartan-6 LX25, prints what each takes in percent of it, how much logic
-stands between its registers and how many pins the busiest clock enables and resets of a board's top lead to, and fails where budget.ini is
+"""Synthesises the builds of budget.ini with yosys for the Spartan-6 LX25. Prints the share of it that each takes, how much logic lies
+between its registers, and the pins that the busiest clock enables and resets of a board's top lead to. Fails where budget.ini is
 exceeded. `halfrow paper` reads WORK/report.json.
-    resources.py WORK [tops]     WORK: a directory for logs and netlists; tops: the boards' tops, too, which takes two minutes"""
+    resources.py WORK [tops]     WORK: a directory for logs and netlists; tops: the boards' tops as well, which takes two minutes"""
 
 import concurrent.futures
 import itertools
@@ -22,7 +22,7 @@ LX25 = {"luts": 15032, "registers": 30064, "block_rams": 52, "dsps": 38}
 
 
 def synthesise(work, name, build):
-    """The flat netlist of a build, as yosys writes it in JSON."""
+    """The flat netlist of a build, in yosys' JSON."""
     if budget.top_of(build):
         return tops.netlist(budget.top_of(build), "cells")
     stem = work / "".join(c if c.isalnum() else "_" for c in name)
@@ -55,19 +55,19 @@ def excesses(build, counts, shares):
             continue
         limit = build[name]
         value = shares.get(name, counts[name]) if limit.endswith("%") else counts[name]
-        # The mean has to stay below its limit, all else may reach it.
+        # The mean has to stay below its limit; everything else may reach it.
         if value > float(limit.rstrip("%")) or (name == "mean" and value >= float(limit.rstrip("%"))):
             yield f"{name} {value:g}, allowed {limit}"
 
 
 def described(name, counts, shares):
-    """A build as report.json has it."""
+    """A build in the form of report.json."""
     parts = {part: {"used": counts[part], "percent": shares[part]} for part in LX25}
     return {"name": name, **parts, "mean": counts["mean"]}
 
 
 def fan_outs(name, graph):
-    """The busiest clock enables and resets, three each."""
+    """The three busiest clock enables and the three busiest resets."""
     for what, pins in (("clock enables", netlist.ENABLE), ("resets", netlist.RESET)):
         busiest = ", ".join(f"{net} x{count}" for count, net in itertools.islice(graph.fan_outs(pins), 3))
         yield f"{name}: pins behind {what}: {busiest}"

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes what nextpnr-ecp5 made of a design as Verilog that ecp5_routed.v and ecp5_cells.v simulate.
-    routed.py ROUTED.json OUT.v [ROUTED.sdf]     ROUTED: what nextpnr's --write and --sdf gave; with the delays if they are given
-A delay stands in front of the pin that it leads to: that of the wire to it, and the longest through its cell from there. Icarus 11
-leaves the INTERCONNECT of an SDF out, which is half of the delay, so nothing is annotated."""
+"""Writes the design that nextpnr-ecp5 made as Verilog that can be simulated with ecp5_routed.v and ecp5_cells.v.
+    routed.py ROUTED.json OUT.v [ROUTED.sdf]     ROUTED: the files of nextpnr's --write and --sdf; with the SDF the delays are included
+A delay is put in front of the pin that it belongs to: the delay of the wire to it plus the longest one from there through its cell.
+Nothing is annotated, since Icarus 11 ignores the INTERCONNECT of an SDF, which is half of the delay."""
 import collections
 import json
 import pathlib
@@ -15,17 +15,18 @@ PARAMETERS = {"TRELLIS_COMB": ("MODE", "INITVAL", "CCU2_INJECT1"), "TRELLIS_FF":
 PINS = {"TRELLIS_COMB": "A B C D M F1 FXA FXB FCI WD WAD0 WAD1 WAD2 WAD3 WRE WCK F FCO OFX", "TRELLIS_FF": "CLK LSR CE DI M Q",
         "DCCA": "CLKI CLKO"}
 OUTPUTS = {"F", "FCO", "OFX", "Q", "CLKO"}
-# What a pin reads that nothing is connected to and no parameter ties.
+# What an unconnected pin reads when no parameter ties it.
 OPEN = {"LSR": "1'b0", "FCI": "1'b0", "WRE": "1'b0", "WCK": "1'b0"}
 
 
 def literal(value):
-    """A parameter as nextpnr writes it: digits of a number, or a text that ends in a space if it looks like one."""
+    """A parameter as nextpnr writes it: the digits of a number, or a text, which ends in a space if it could be taken for a
+    number."""
     return f"{len(value)}'b{value}" if re.fullmatch("[01xz]+", value) else f'"{value.strip()}"'
 
 
 def tied(cell, pin):
-    """The level of an input that nothing drives."""
+    """The level of an undriven input."""
     mux = cell["parameters"].get(f"{pin}MUX", pin).strip()
     if mux in ("0", "1"):
         return f"1'b{mux}"
@@ -33,7 +34,7 @@ def tied(cell, pin):
 
 
 class Delays:
-    """Picoseconds by (instance, pin): of the wire that leads there, and through the cell from there."""
+    """Picoseconds by (instance, pin): of the wire that leads there, and from there through the cell."""
 
     def __init__(self, path):
         self.wires, self.cells = {}, collections.defaultdict(int)
@@ -48,7 +49,7 @@ class Delays:
 
 
 def plain(name):
-    """A name of an SDF without its escapes."""
+    """A name from an SDF without its escapes."""
     return name.replace("\\", "")
 
 
@@ -80,7 +81,7 @@ def instance(name, cell, delays, bits):
 
 
 def pad(name, cell, bits):
-    """A pin: what stands between its port and the fabric."""
+    """A pad: what lies between a port and the fabric."""
     direction, ends = cell["parameters"]["DIR"], cell["connections"]
     if direction not in ("INPUT", "OUTPUT"):
         sys.exit(f"routed: {name} is a pin of the kind {direction}, which is not simulated")

@@ -1,15 +1,15 @@
-"""Where a module of fpga/rtl stands, and how yosys is told to read it."""
+"""Where the modules of fpga/rtl are, and the yosys commands that read them."""
 
 import pathlib
 import re
 
 RTL = pathlib.Path(__file__).resolve().parent.parent / "rtl"
-# A parameter of a module's head, of whatever type. form.py refuses every other form, so none is missed.
+# A parameter in a module's head, of any type. form.py refuses every other form, so none is missed.
 PARAMETER = re.compile(r"^    parameter (?:(?:signed|integer|real|realtime|time) )?(?:\[[^]]+\] )?(\w+) = ", re.MULTILINE)
 
 
 def modules(rtl=RTL):
-    """All modules' files, by name."""
+    """The files of all modules, by name."""
     return {path.stem: path for path in sorted(rtl.glob("*/*.v"))}
 
 
@@ -20,17 +20,17 @@ def parameters(text):
 
 
 def includes(rtl=RTL):
-    """Has every later read_verilog find the include files."""
+    """Lets every later read_verilog find the include files."""
     return f"verilog_defaults -add -I{rtl}; "
 
 
 def libraries(rtl=RTL):
-    """For yosys' `hierarchy`: the folders of modules."""
+    """For yosys' `hierarchy`: the folders with the modules."""
     return " ".join(f"-libdir {folder}" for folder in sorted({path.parent for path in modules(rtl).values()}))
 
 
 def read(module, parameters=(), rtl=RTL):
-    """yosys commands that read a module with these NAME=VALUE, and all below it."""
+    """yosys commands that read a module with these NAME=VALUE parameters, and everything below it."""
     chosen = "".join(f" -chparam {name} {value}" for name, value in (word.split("=", 1) for word in parameters))
     return (f"{includes(rtl)}read_verilog {modules(rtl)[module]}; "
             f"hierarchy -check {libraries(rtl)} -top {module}{chosen}; ")

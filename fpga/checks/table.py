@@ -1,4 +1,4 @@
-"""The table of faults by what finds them: fpga/checks/coverage.md for people, host/judge/src/coverage/faults.json for runs."""
+"""The table of faults by what finds them: fpga/checks/coverage.md for readers, host/judge/src/coverage/faults.json for runs."""
 import collections
 import json
 import pathlib
@@ -8,7 +8,7 @@ import zlib
 import rtl
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
-# What every simulated board is.
+# The parameters of every simulated board.
 PARAMETERS = ROOT / "fpga" / "sim" / "parameters.txt"
 PAGE = ROOT / "fpga" / "checks" / "coverage.md"
 FAULTS = ROOT / "host" / "judge" / "src" / "coverage" / "faults.json"
@@ -33,7 +33,7 @@ What no run finds and no proof settles, by where it is, and what would find it.
 
 
 def build():
-    """What the simulated board says it was built from: the CRC-32 of the Verilog and of its parameters (fpga/sim/build.rs)."""
+    """The build that the simulated board reports: the CRC-32 of the Verilog and of its parameters (fpga/sim/build.rs)."""
     check = 0
     verilog = sorted(path for path in rtl.RTL.glob("**/*") if path.suffix in (".v", ".vh"))
     for path in [*verilog, PARAMETERS]:
@@ -42,7 +42,7 @@ def build():
 
 
 def line(block, number):
-    """A fault as runs read it."""
+    """A fault in the form that runs read."""
     found = block.found[number]
     frames = [] if found["least"] else found["frames"]
     return {"block": block.name, "frames": frames, "at_speed": found["at_speed"], "corners": found["corners"], "rules": found["rules"],
@@ -50,7 +50,7 @@ def line(block, number):
 
 
 def where(fault):
-    """A fault's place: file and line, or line 0 of its instance's where yosys does not say."""
+    """A fault's place: file and line, or line 0 of its instance's file where yosys does not give one."""
     source = re.search(r"-src \S*/(\w+\.v):(\d+)", fault)
     if source:
         return source[1], int(source[2])
@@ -66,7 +66,7 @@ def name(fault):
 
 
 def remedy(section, fault):
-    """What would find it, as coverage.ini has it by file."""
+    """What would find the fault, as coverage.ini says by file."""
     words = dict(entry.strip().split(" ", 1) for entry in section["left"].strip().splitlines())
     return words.get(where(fault)[0], "not known")
 
@@ -83,7 +83,7 @@ def left(block, section):
 
 
 def write(blocks, checked, sections, seed, sizes):
-    """Both files, anew."""
+    """Writes both files anew."""
     total = collections.Counter()
     rows = []
     for block in blocks:
@@ -93,7 +93,7 @@ def write(blocks, checked, sections, seed, sizes):
     rows.append(("all", total))
     numbers = {"count": total.total(), "equivalent": total["equivalent"], "open": total.total() - total["equivalent"]}
     numbers["found"] = numbers["open"] - total["left"]
-    # Never more than was measured, as a run says it.
+    # Rounded down, so that a run never claims more than was measured.
     numbers["share"] = 1000 * numbers["found"] // numbers["open"] / 10
     width, height, radius = sizes
     page = HEAD.format(seed=seed, build=build(), width=width, height=height, radius=radius, checked=checked, **numbers)

@@ -27,11 +27,11 @@ WORDS = "hierarchy -check {libraries} -top {top}; proc; check -assert; flatten; 
 CELLS_OF = {
     # No shift registers: yosys 0.23 forgets the clock enable of those that it extracts from registers.
     "minispartan6plus": "synth_xilinx -family xc6s -ise -flatten -nosrl -top {top}",
-    # Names and the last checks take a third of the time.
+    # Names and the final checks would take a third of the time.
     "ulx3s": "opt_clean -purge; setattr -unset src */w:* */c:* */m:*; synth_ecp5 -top {top} -run begin:check; delete =A:blackbox =A:whitebox",
 }
 STAGES = ("words", "cells")
-# What yosys says of a top that is no fault of it.
+# Messages of yosys about a top that are not faults of it.
 EXPECTED = ["tri-state", "floating point", "Replacing memory"]
 
 Top = collections.namedtuple("Top", "board kind sensor")
@@ -50,7 +50,7 @@ def name_of(top):
 
 
 def sources(top, tree=ROOT):
-    """What is read: all that a vendor's project lists, or the top alone where yosys finds the rest in `libraries`."""
+    """The files to read: all that a vendor's project lists, or the top alone if yosys finds the rest in `libraries`."""
     board = tree / "fpga/boards" / top.board
     listed = board / f"{top.kind}.prj"
     if not listed.exists():
@@ -59,7 +59,7 @@ def sources(top, tree=ROOT):
 
 
 def libraries(top, tree=ROOT):
-    """For yosys' `hierarchy`: the folders in which modules are found that were not read."""
+    """For yosys' `hierarchy`: the folders with the modules that were not read."""
     if len(sources(top, tree)) > 1:
         return ""
     of_board = f"-libdir fpga/boards/{top.board} -libdir fpga/boards/common"
@@ -73,12 +73,12 @@ def build_header(build, sensor, serial=1):
 
 
 def netlist(top, stage, tree=ROOT):
-    """The top's flat module, as yosys writes it in JSON."""
+    """The top's flat module, in yosys' JSON."""
     return json.loads(made(top, stage, tree).read_text())["modules"][module_of(top)]
 
 
 def made(top, stage, tree=ROOT):
-    """The file of that netlist. A tree that is not the project's own keeps its file itself."""
+    """The file of that netlist. A tree other than the project's own keeps its file inside it."""
     kept = KEPT if tree == ROOT else tree / "netlists"
     stem = kept / (name_of(top).replace(" ", "_") + f"-{stage}")
     file, mark = stem.with_suffix(".json"), stem.with_suffix(".key")
@@ -92,7 +92,7 @@ def made(top, stage, tree=ROOT):
 
 
 def key_of(top, stage, tree):
-    """What the netlist depends on."""
+    """A hash of everything that the netlist depends on."""
     digest = hashlib.sha256()
     folders = [tree / "fpga/rtl", tree / "fpga/boards" / top.board, tree / "fpga/boards/common"]
     found = {path for folder in folders for kind in ("*.v", "*.vh", "*.prj") for path in folder.rglob(kind)}
@@ -104,8 +104,8 @@ def key_of(top, stage, tree):
 
 
 def script(top, stage, header, tree=ROOT):
-    """yosys commands, for the folder `tree`, that make the netlist of a top; `header` is the folder of halfrow_build.vh. Names in a netlist
-    have the sources' paths in them, so these must not depend on where the project lies."""
+    """yosys commands, for the folder `tree`, that make the netlist of a top; `header` is the folder of halfrow_build.vh. Names
+    in a netlist contain the sources' paths, so these must not depend on where the project is."""
     found = " ".join(f"-I{folder}" for folder in (header, "fpga/rtl", "fpga/boards/common"))
     reading = "; ".join(f"read_verilog {path.relative_to(tree)}" for path in sources(top, tree))
     if stage == "cells" and top.board == "ulx3s":
@@ -115,11 +115,11 @@ def script(top, stage, header, tree=ROOT):
 
 
 def run(top, stage, tree, file, build="12345678"):
-    """Has yosys make the netlist anew."""
+    """Makes the netlist anew with yosys."""
     with tempfile.TemporaryDirectory(dir=file.parent) as work:
         (pathlib.Path(work) / "halfrow_build.vh").write_text(build_header(build, top.sensor))
         aside = pathlib.Path(work) / file.name
-        # Mapping warns of each block RAM whose ports are narrower than the vendor's.
+        # Mapping warns about each block RAM whose ports are narrower than the vendor's.
         strict = ["-e", "."] if stage == "words" else []
         expected = [word for text in EXPECTED for word in ("-w", text)]
         commands = f"{script(top, stage, work, tree)}; write_json {aside}"

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Holds the numbers of fpga/rtl/halfrow_wire.vh to the tables of protocol/WIRE.md, both ways: none missing, none else."""
+"""Holds the numbers of fpga/rtl/halfrow_wire.vh to the tables of protocol/WIRE.md, both ways: none is missing, none is
+extra."""
 import re
 import sys
 
@@ -23,7 +24,7 @@ def section(page, begin, end):
 
 
 def expected(page):
-    """The page's numbers by the include file's names."""
+    """The page's numbers by their names in the include file."""
     numbers = {}
     for heading in re.findall(r"^### ([0-9a-f]{2} [A-Z].*)$", page, re.MULTILINE):
         for code, name in re.findall(r"([0-9a-f]{2}) ([A-Z_]+)", heading):
@@ -50,7 +51,7 @@ def expected(page):
 
 
 def alone(page):
-    """Numbers that stand in the page's sentences."""
+    """Numbers from the page's sentences."""
     flat = " ".join(page.split())
 
     def said(pattern, base=10):
@@ -93,7 +94,7 @@ def main():
     tables = expected(page)
     groups = {group: sum(name.startswith(group + "_") for name in tables) for group in
               ("KIND", "REFUSAL", "TAG", "CLOCK", "NATURE", "COUNTER")}
-    # Fewer than version 1 has: the page's form has changed, and is not understood.
+    # Fewer than version 1 has means that the page's form has changed and is no longer understood.
     least = {"KIND": 18, "REFUSAL": 12, "TAG": 20, "CLOCK": 3, "NATURE": 3, "COUNTER": 16}
     if any(groups[group] < least[group] for group in least):
         sys.exit(f"wire: found only {groups} in {PAGE.name}; has the form of its tables changed?")

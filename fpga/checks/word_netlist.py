@@ -1,17 +1,17 @@
-"""A flat netlist of yosys' word-level cells, in front of mapping: what each bit is driven by, read by, and comes from."""
+"""A flat netlist of yosys' word-level cells, before mapping: what drives each bit, what reads it, and where it comes from."""
 
 import collections
 
 BITWISE = {"$not", "$and", "$or", "$xor", "$xnor", "$mux"}
 REGISTERS = {"$dff", "$dffe", "$sdff", "$sdffe", "$sdffce", "$adff", "$adffe"}
 CONTROLS = ("EN", "SRST", "ARST")
-# What a memory takes with each of these clocks; reads that have no clock take nothing.
+# What a memory samples with each of these clocks; a read port without a clock samples nothing.
 MEMORY_INPUTS = {"WR_CLK": ("WR_ADDR", "WR_DATA", "WR_EN"), "RD_CLK": ("RD_ADDR", "RD_EN", "RD_SRST", "RD_ARST")}
 Register = collections.namedtuple("Register", "name bit clock cell place")
 
 
 class Netlist:
-    """Who drives each bit and who reads it. A bit is a number; constants are left out."""
+    """What drives each bit and what reads it. A bit is a number; constants are left out."""
 
     def __init__(self, module):
         self.cells = module["cells"]
@@ -56,7 +56,7 @@ class Netlist:
                     yield Register(self.name(bit), bit, self.clock(name), name, place)
 
     def memory_inputs(self):
-        """What memories take from a clock: the memory as a register without a bit, the port, its bit."""
+        """What memories sample with a clock: the memory as a register without a bit, the port, its bit."""
         for name, cell in self.cells.items():
             if cell["type"] != "$mem_v2":
                 continue
@@ -71,7 +71,7 @@ class Netlist:
                         yield from ((memory, port, bit) for bit in pins[port][place * width:][:width])
 
     def sources_of(self, cell, port, place):
-        """The bits of a cell's inputs that its output depends on without a clock."""
+        """The bits of a cell's inputs that its output depends on combinationally."""
         pins, kind = self.cells[cell]["connections"], self.cells[cell]["type"]
         if kind == "$mux":
             return [pins["A"][place], pins["B"][place], pins["S"][0]]
@@ -80,7 +80,8 @@ class Netlist:
         return [bit for name, bits in pins.items() if self.cells[cell]["port_directions"][name] == "input" for bit in bits]
 
     def leaves(self, bit):
-        """Where a bit comes from, as pairs of (clock, name); a pin's clock is `pin`, that of a cell of the vendor its type."""
+        """Where a bit comes from, as pairs of (clock, name). The clock of a pin is `pin`; for a cell of the vendor it is the
+        cell's type."""
         if not isinstance(bit, int):
             return frozenset()
         if bit in self.leaves_of:
