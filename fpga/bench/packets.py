@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes what the receiver's and the sender's bench play: every frozen packet, then packets and damages drawn by a seed.
+"""Writes the cases of the receiver's and the sender's bench: every frozen packet, then packets and damages drawn by a seed.
 
 packets.py receiver|sender FILE [SEED]
 
@@ -40,13 +40,13 @@ def numbers(packet):
 
 
 def event(piece):
-    """What must come of the bytes between two zeros, by the reader that shares nothing with the Verilog."""
+    """The event for the bytes between two zeros, by a reader that shares nothing with the Verilog."""
     damage = receive(piece, {}).get("damage")
     return [1] if damage == "crc" else [2] if damage else [0, *numbers(unstuff(piece))]
 
 
 def vectors():
-    """Name, bytes, what the head says of each packet, and whether a sender makes these bytes."""
+    """Name, bytes, each packet's head, and whether a sender makes these bytes."""
     for path in sorted((PROTOCOL / "vectors").glob("*.hex")):
         text = path.read_text(encoding="utf-8")
         data = bytes.fromhex("".join(line for line in text.splitlines() if not line.startswith("//")))
@@ -54,7 +54,7 @@ def vectors():
 
 
 def judged_by_head(name, data, heads):
-    """The events of a vector; a head that the packet's own bytes do not bear out ends the run."""
+    """The events of a vector. A head that does not match the packet's own bytes ends the run."""
     pieces = [piece for piece in data.split(b"\0")[:-1] if piece]
     for piece, head in zip(pieces, heads, strict=True):
         found = event(piece)
@@ -78,7 +78,7 @@ def draw_payload(draw, size):
 
 
 def draw_packet(draw, size, version=1, excess=0):
-    """A packet that may have a version of its own, and more bytes than its header says."""
+    """A packet, which may have another version, or more bytes than its header says."""
     body = struct.pack("<BBHHBBI", version, draw.choice((4, 0x20, 0x21)), draw.getrandbits(16), size - excess,
                        draw.getrandbits(1), draw.getrandbits(8), draw.choice((0, draw.getrandbits(32))))
     body += draw_payload(draw, size)
@@ -86,7 +86,7 @@ def draw_packet(draw, size, version=1, excess=0):
 
 
 def draw_damage(draw, packet):
-    """The stuffed packet after what a link may do to it."""
+    """The stuffed packet after damage that a link may do to it."""
     wire = bytearray(stuff(packet))
     at = draw.randrange(len(wire))
     return bytes(draw.choice((
@@ -97,7 +97,7 @@ def draw_damage(draw, packet):
 
 
 def draw_stream(draw):
-    """Packets and damages with one zero between, or more, and none lost in front of the first."""
+    """Packets and damages with one or more zeros after each. The first has no zero before it."""
     size = draw.choice((draw.choice(SIZES), draw.randrange(300)))
     pieces = [draw.choice((
         lambda: stuff(draw_packet(draw, size)), lambda: stuff(draw_packet(draw, size)),
@@ -109,7 +109,7 @@ def draw_stream(draw):
 
 
 def receiver_cases(draw):
-    """Name, bytes, events."""
+    """Name, bytes and events of each case."""
     for name, data, heads, _ in vectors():
         yield name, data, list(judged_by_head(name, data, heads))
     after = b"\0" + stuff(draw_packet(draw, 5)) + b"\0"
@@ -122,7 +122,7 @@ def receiver_cases(draw):
 
 
 def sender_cases(draw):
-    """Name, packet, bytes."""
+    """Name, packet and bytes of each case."""
     for name, data, _, canonical in vectors():
         if canonical and numbers(unstuff(data[1:-1]))[3] < 2:
             yield name, numbers(unstuff(data[1:-1])), data
@@ -132,7 +132,7 @@ def sender_cases(draw):
 
 
 def main(side, path, seed="1"):
-    """Writes a line a case."""
+    """Writes one line per case."""
     draw = random.Random(int(seed))
     with open(path, "w", encoding="ascii") as out:
         for name, first, second in {"receiver": receiver_cases, "sender": sender_cases}[side](draw):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The commit that a bitstream is built from, as git says it.
+"""The commit that a bitstream is built from, from git.
     commit.py     prints its first eight digits, or zeros where there is no git or no repository"""
 
 import pathlib
@@ -10,7 +10,7 @@ NONE = "0" * 40
 
 
 def git(*arguments):
-    """What git says of the project, or None where there is no git or no repository."""
+    """The output of git for the project, or None where there is no git or no repository."""
     try:
         done = subprocess.run(["git", "-C", FPGA.parent, *arguments], capture_output=True, text=True)
     except OSError:
@@ -19,17 +19,17 @@ def git(*arguments):
 
 
 def whole():
-    """Forty digits."""
+    """All forty digits."""
     return git("rev-parse", "HEAD") or NONE
 
 
 def start():
-    """Eight digits, HALFROW_BUILD of the sources."""
+    """The first eight digits: HALFROW_BUILD of the sources."""
     return whole()[:8]
 
 
 def modified(*but):
-    """Whether the folder `fpga`, but for these files, is not as the commit has it, or nobody knows."""
+    """Whether the folder `fpga`, without these files, differs from the commit. True also if git cannot tell."""
     excluded = (f":!{path.relative_to(FPGA.parent)}" for path in but)
     return git("status", "--porcelain", "--", FPGA.name, *excluded) != ""
 

@@ -1,23 +1,24 @@
-"""Holds the timing constraints of a UCF to what the board needs. ISE says "met" of one that asks too little, too.
-The OFFSETs are left to whoever wires a sensor: they are its data sheet's, as sensor.ucf says."""
+"""Holds the timing constraints of a UCF to what the board needs, since ISE also reports constraints as met that ask too little.
+The OFFSETs are left to whoever wires a sensor: they come from its data sheet, as sensor.ucf says."""
 
 import pathlib
 import re
 
 CLOCKS = pathlib.Path(__file__).resolve().parent / "board_clocks.v"
-# MHz of PIXCLK that sensor.ucf is written for, which the link's clock has as well.
+# The PIXCLK in MHz that sensor.ucf is written for; the link's clock has the same rate.
 PIXCLK_MHZ = 96
-# README.md adds up the write cycle of the FT245 from the first; of a read the chip's 14 ns and the second have four clocks.
+# README.md adds up the write cycle of the FT245 with the first. For a read, the chip's 14 ns and the second fit into four
+# clocks.
 FT_OUT_NS, FT_IN_NS = 6, 9
-# From where the clock's choice is made to the BUFGMUX: within half a clock, which is low.
+# From the choice of the clock to the BUFGMUX: within half a clock, in which the clock is low.
 CHOICE_NS = 4
-# What no clock looks at in time: lamps, and a UART's bits, which last 83 ns.
+# Pins that no clock samples at a certain time: lamps, and a UART's bits, which last 83 ns.
 IGNORED = {'NET "led<*>"', 'NET "uart_*"'}
 STATEMENT = re.compile(r'^(TIMESPEC\s+"\w+"\s*=|NET\s+"[^"]+"\s+MAXDELAY\s*=)\s*([^;]*);', re.MULTILINE)
 
 
 def limits(kind, sensor, crossing_ns):
-    """Nanoseconds that each constraint may ask for at most."""
+    """The most nanoseconds that each constraint may ask for."""
     oscillator = float(re.search(r"\.CLKIN_PERIOD\(([0-9.]+)\)", CLOCKS.read_text())[1])
     most = {"TS_clk32": oscillator}
     if kind == "fifo":
@@ -29,7 +30,7 @@ def limits(kind, sensor, crossing_ns):
 
 
 def asked(ucf):
-    """(name, nanoseconds or None) of each constraint; ISE takes the last of one name."""
+    """(name, nanoseconds or None) of each constraint; of constraints with the same name ISE takes the last."""
     for head, words in STATEMENT.findall(ucf):
         name = re.search(r'"([^"]+)"', head)[1]
         told = re.fullmatch(r"(?:PERIOD\s+\S+\s+|FROM\s+\S+\s+TO\s+\S+\s+)?([0-9.]+) ns(?: HIGH 50%| DATAPATHONLY)?", words)

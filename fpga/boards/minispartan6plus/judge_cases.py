@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""judge_reports.py on the reports of reports/: as they are, which it must take, and with each fault of reports/bad.txt, which it must refuse
-by the name that stands there; and without one of them. The constraints of all four tops are held to constraints.py."""
+"""Tests judge_reports.py on the reports of reports/: as they are it must accept them; with each fault of reports/bad.txt it must refuse
+them and say what is given there; and without one of them. The constraints of all four tops are held to constraints.py."""
 
 import pathlib
 import re
@@ -21,19 +21,19 @@ def judged(folder):
 
 
 def laid(folder):
-    """The good reports, and the constraints that they belong to."""
+    """Copies the good reports to the folder, and the constraints that belong to them."""
     for name in REPORTS:
         shutil.copy(HERE / "reports" / name, folder)
     (folder / "top.ucf").write_text(ucf_of("fifo", True))
 
 
 def ucf_of(kind, sensor):
-    """The constraints of a top, as `build` puts them together."""
+    """The constraints of a top, put together as `build` does it."""
     return "".join((HERE / f"{name}.ucf").read_text() for name in ("common", kind, *["sensor"] * sensor))
 
 
 def too_slack():
-    """What a top's constraints ask too little of."""
+    """Where a top's constraints ask too little."""
     for top, limits in judge_reports.budget.tops():
         if top.board == judge_reports.BOARD:
             yield from constraints.faults(ucf_of(top.kind, top.sensor), top.kind, top.sensor, float(limits["crossing_ns"]))

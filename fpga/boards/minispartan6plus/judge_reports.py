@@ -16,7 +16,7 @@ import budget
 import constraints
 
 BOARD = pathlib.Path(__file__).resolve().parent.name
-# Registers of a path that need no constraint, and why.
+# Registers of paths that need no constraint, and why.
 UNCONSTRAINED = {
     "board/number/*": "the FPGA's own number is shifted by a clock of 1.5 MHz that a register makes, half a period away from its data",
 }
@@ -29,14 +29,14 @@ def first(pattern, text):
 
 
 def errors(report, text, form=r"Number of errors:\s*([\d,]+)"):
-    """What a report's own count of errors tells."""
+    """Faults by a report's own count of errors."""
     count = first(form, text)
     if count != 0:
         yield f"{report}: {'no count of errors' if count is None else f'{count} errors'}"
 
 
 def synthesis(text):
-    """top.syr, by XST."""
+    """Faults in top.syr, by XST."""
     for latch in re.findall(r"Found \d+-bit latch for signal <[^\n]*?>(?=\.)", text):
         yield f"top.syr: {latch}"
     for kind, count in re.findall(r"^#\s+(LD[A-Z]*(?:_1)?)\s+: (\d+)", text, re.MULTILINE):
@@ -47,7 +47,7 @@ def synthesis(text):
 
 
 def translation(text):
-    """top.bld, by ngdbuild."""
+    """Faults in top.bld, by ngdbuild."""
     for line in re.findall(r"^(?:WARNING|ERROR):ConstraintSystem.*$", text, re.MULTILINE):
         yield f"top.bld: {line.strip()}"
     for line in re.findall(r"^.*multiple drivers.*$", text, re.MULTILINE):
@@ -56,7 +56,7 @@ def translation(text):
 
 
 def mapping(text, expected):
-    """top_map.mrp, by map."""
+    """Faults in top_map.mrp, by map."""
     yield from errors("top_map.mrp", text)
     latches = first(r"Number used as Latches:\s*([\d,]+)", text)
     if latches != 0:
@@ -70,14 +70,14 @@ def mapping(text, expected):
 
 
 def routing(text):
-    """top.par, by par."""
+    """Faults in top.par, by par."""
     for wanted in ("All signals are completely routed", "All constraints were met"):
         if wanted not in text:
             yield f"top.par does not say: {wanted}"
 
 
 def wanted_constraints(ucf):
-    """What identifies each timing constraint of a UCF that is no TIG, as a pattern of what trce calls it."""
+    """The name of each timing constraint of a UCF that is no TIG, with a pattern for the name that trce gives it."""
     lines = re.sub(r"^\s*#.*$", "", ucf, flags=re.MULTILINE)
     for name in re.findall(r'^TIMESPEC\s+"(\w+)"', lines, re.MULTILINE):
         yield name, rf"{name} ="
@@ -88,7 +88,7 @@ def wanted_constraints(ucf):
 
 
 def sections(text):
-    """The constraints of a trce report: (its words in one line, what stands below them)."""
+    """The constraints of a trce report: (its text in one line, what follows below it)."""
     parts = re.split(r"^Timing constraint:\s*", text, flags=re.MULTILINE)[1:]
     for part in parts:
         words, rest = (re.split(r"For more information|\n\s*\n", part, maxsplit=1) + [""])[:2]
@@ -96,18 +96,18 @@ def sections(text):
 
 
 def covered(rest):
-    """How many paths or nets a constraint was tried on."""
+    """How many paths or nets a constraint was checked on."""
     return first(r"([\d,]+) (?:paths?|nets?|items?) analyzed", rest) or 0
 
 
 def timing(text, ucf):
-    """top.twr, by trce -v -u."""
+    """Faults in top.twr, by trce -v -u."""
     if not re.search(r"^Timing errors: 0 ", text, re.MULTILINE):
         yield "top.twr: a timing constraint is not met, or none was tried"
     found = list(sections(text))
     for name, pattern in wanted_constraints(ucf):
         of_it = [rest for words, rest in found if re.match(pattern, words)]
-        # That of a PLL's input goes on as one of its own for each output, which names it.
+        # trce turns the constraint of a PLL's input into one for each output, which names it.
         derived = [rest for words, rest in found if re.search(rf"\b{re.escape(name)}\b [*/]", words)]
         if not of_it:
             yield f"top.twr: the constraint {name} is missing"

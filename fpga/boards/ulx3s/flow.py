@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """From the ULX3S's Verilog to a routed design: the pinned tools, yosys, nextpnr-ecp5, and what its report says of the clocks.
 
-A design is a top of this folder, or the core alone. All runs in a work folder of its own where everything is built, in ulx3s. The tools, which are
-WebAssembly, find files by paths relative to it.
-    flow.py TAPS FOLDER           makes the netlist of the UART's top with so many taps, and prints the folder of yosys' models of its cells
-    flow.py TAPS FOLDER routed    places and routes it for an LFE5U-25F, too: FOLDER/routed/routed.json
+A design is a top of this folder, or the core alone. Everything runs in a work folder of its own under target, in ulx3s. The tools are
+WebAssembly, and find files by paths relative to it.
+    flow.py TAPS FOLDER           makes the netlist of the UART's top with TAPS taps, and prints the folder of yosys' models of its cells
+    flow.py TAPS FOLDER routed    also places and routes it for an LFE5U-25F: FOLDER/routed/routed.json
 """
 import collections
 import json
@@ -26,7 +26,7 @@ TARGET = tops.TARGET / "ulx3s"
 TOOLS = TARGET / "tools"
 
 DEVICES = {"12": "--12k", "25": "--25k", "45": "--45k", "85": "--85k"}
-# What every clock of a bitstream must reach, and the core where nothing but its own paths holds it back.
+# What every clock of a bitstream must reach, and the core alone, which is limited only by its own paths.
 LEAST_MHZ = 96.0
 LEAST_CORE_MHZ = 110.0
 
@@ -34,11 +34,11 @@ Design = collections.namedtuple("Design", "kind sensor build serial taps", defau
 
 
 class Stopped(Exception):
-    """A sentence that says what stopped, and what to do."""
+    """A sentence that says what stopped the run, and what to do."""
 
 
 def tools():
-    """Installs what requirements.txt names, once."""
+    """Installs the tools of requirements.txt, if that has not been done."""
     wanted = (BOARD / "requirements.txt").read_text()
     kept = TOOLS / "requirements.txt"
     if kept.is_file() and kept.read_text() == wanted:
@@ -51,7 +51,7 @@ def tools():
 
 
 def run(tool, arguments, work):
-    """Runs a tool in its work folder; all that it says goes to TOOL.log there."""
+    """Runs a tool in its work folder; all its output goes to TOOL.log there."""
     log = work / f"{tool}.log"
     with log.open("w") as said:
         command = [TOOLS / "bin" / f"yowasp-{tool}", *map(str, arguments)]
@@ -61,7 +61,7 @@ def run(tool, arguments, work):
 
 
 def versions():
-    """What made the design, as requirements.txt pins it."""
+    """The tools that made the design, and their versions, as pinned in requirements.txt."""
     return re.findall(r"^(yowasp-(?:yosys|nextpnr-ecp5))==(\S+)", (BOARD / "requirements.txt").read_text(), re.MULTILINE)
 
 
@@ -90,19 +90,19 @@ def read(design, work):
 
 
 def synthesis(design, work):
-    """yosys commands that make the netlist for place and route, top.json, and for simulation, top.v."""
+    """yosys commands that make the netlists: top.json for place and route, top.v for simulation."""
     return read(design, work) + "synth_ecp5 -top top -json top.json; write_verilog -noattr top.v"
 
 
 def synthesise(design, work):
-    """Makes the netlist in a work folder."""
+    """Makes the netlists in a work folder."""
     work.mkdir(parents=True, exist_ok=True)
     define(design, work)
     run("yosys", ["-p", synthesis(design, work)], work)
 
 
 def routing(design, device):
-    """nextpnr's arguments, but for its files and the seed."""
+    """nextpnr's arguments, except for its files and the seed."""
     arguments = [DEVICES[device], "--package", "CABGA381", "--speed", "6", "--timing-allow-fail", "--report", "report.json"]
     if design.kind == "core":
         return [*arguments, "--out-of-context", "--freq", LEAST_CORE_MHZ]
@@ -110,7 +110,7 @@ def routing(design, device):
 
 
 def route(design, netlist, device, seed, work, *more):
-    """Places and routes a netlist, and returns nextpnr's report. That a clock is too slow is the caller's to judge."""
+    """Places and routes a netlist, and returns nextpnr's report. The caller must judge whether a clock is too slow."""
     work.mkdir(parents=True, exist_ok=True)
     (work / "top.lpf").write_text("".join(path.read_text() for path in constraints(design)))
     run("nextpnr-ecp5", [*routing(design, device), "--seed", seed, "--json", os.path.relpath(netlist, work), *more], work)
@@ -122,7 +122,7 @@ def least(design):
 
 
 def too_slow(design, report):
-    """What is wrong with the clocks of a report. One without its constraint would pass at any frequency."""
+    """What is wrong with the clocks of a report. A clock without its constraint would pass at any frequency."""
     if not report["fmax"]:
         return ["nextpnr found no clock at all"]
     wrong = []

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Synthesises tops for an ECP5 with the yosys that is on the path, prints what they take of an LFE5U-25F, and fails beyond
-budget.ini. It is what can be seen of a bitstream without placing it."""
+"""Synthesises tops for an ECP5 with the yosys on the path, prints the share of an LFE5U-25F that they take, and fails beyond
+budget.ini. This is what can be known about a bitstream without placing it."""
 import collections
 import concurrent.futures
 import configparser
@@ -9,15 +9,15 @@ import sys
 import flow
 
 LFE5U_25F = {"luts": 24288, "registers": 24288, "block_rams": 56, "multipliers": 28}
-# Cells of yosys, and how many of what they take.
+# yosys' cells, and which resource each takes, how many times.
 TAKES = {"LUT4": ("luts", 1), "CCU2C": ("luts", 2), "TRELLIS_DPR16X4": ("luts", 4), "TRELLIS_FF": ("registers", 1),
          "DP16KD": ("block_rams", 1), "MULT18X18D": ("multipliers", 1)}
-# Multiplexers beside the LUTs that they join, and what there is one of.
+# Multiplexers that belong to the LUTs that they join, and cells of which there is only one.
 FREE = {"PFUMX", "L6MUX21", "EHXPLLL", "$_TBUF_"}
 
 
 def synthesised(kind):
-    """How many of each cell."""
+    """The number of cells of each kind."""
     module = flow.tops.netlist(flow.tops.Top("ulx3s", kind, False), "cells")
     return collections.Counter(cell["type"] for cell in module["cells"].values())
 
