@@ -1,8 +1,9 @@
-// Drives a whole board, as written or as synthesised, at the pins of its link: HELLO, tables, rows, and compares what comes back with
-// datapath.hpp and grid.hpp, every sample and every latency; behind each frame a burst, if the board makes some, with its signatures. Every second
-// frame is corrected by a grid, if the board takes some. It ends at the first difference, with status 1.
+// Drives a whole board, as written or as synthesised, at the pins of its link: HELLO, tables, rows. Compares every sample and
+// every latency that comes back with datapath.hpp and grid.hpp. After each frame it has the board make a burst, if the board
+// can, and compares its signatures. Every second frame is corrected by a grid, if the board takes grids. It ends at the first
+// difference, with status 1.
 //   board_bench FRAMES SEED
-// Words with a + are the model's.
+// Arguments that start with + are for the model.
 #include "board_link.hpp"
 #include "grid.hpp"
 #include <algorithm>
@@ -16,7 +17,7 @@
 #endif
 constexpr int LATENCY = TAPS == 7 ? 12 : 11, RING = 2048;
 
-// What rows are made with: a factor each, or a grid.
+// What rows are made with: a factor for each, or a grid.
 struct Tables {
     Frame frame;
     std::vector<int64_t> steps;
@@ -38,7 +39,7 @@ struct Tables {
 
     Row burst_row(uint32_t seed, uint16_t number, int row) const { return outputs(row, content(seed, number, row, frame.width, frame.bits)); }
 
-    // Of a frame of a burst.
+    // The signature of a burst's frame.
     uint32_t signature_of(uint32_t seed, uint16_t number) const {
         uint32_t all = 0;
         for (unsigned row = 0; row < height(); row++)
@@ -54,9 +55,9 @@ struct Host {
     uint8_t session = 0, generation = 0;
     uint32_t window = 0, have = 0;           // rows that may be sent, rows that came back
     uint64_t outputs = 0, signatures = 0, trapped = 0, grids = 0;
-    int frame_blanking = -1;                 // the least of a burst; none if the board makes no bursts
+    int frame_blanking = -1;                 // the least of a burst; negative if the board makes no bursts
     bool has_trap = false, takes_grids = false;
-    int narrow_blanking = 0;                 // of a grid; all frames here are narrow
+    int narrow_blanking = 0;                 // for grids; all frames here are narrow
     std::deque<Bytes> rows;                  // ROW_OUT packets
 
     int draw(int count) { return random() % count; }
@@ -76,7 +77,7 @@ struct Host {
             link.lines.to_board.push_back(byte);
     }
 
-    // One packet of the board's; rows are put aside.
+    // Returns one packet from the board. Rows are also put aside.
     Bytes hear() {
         Bytes packet = link.next_packet();
         if (packet[1] == 0x7f)
@@ -141,7 +142,7 @@ struct Host {
         return 1 << 24;
     }
 
-    // One whose rows lie in the frame: anywhere between 1 and a factor, and moved to where it allows.
+    // A grid whose rows lie in the frame: factors between a drawn least one and 1, and offsets drawn until it is legal.
     Grid grid(const Frame &frame, int height) {
         Grid drawn{{1 + draw(6), 5 + draw(2)}, frame.width, height, {}};
         for (int tries = 0; tries < 200; tries++) {
@@ -237,7 +238,7 @@ struct Host {
         send(0x22, {});
     }
 
-    // A record of frame n, AT-SPEED.md's Record.
+    // Checks the record of a frame (AT-SPEED.md, "Record").
     void check_record(const Bytes &record, const Tables &tables, uint32_t due) {
         unsigned latency = tables.frame.width / 2 + LATENCY;
         if (get(record, 0, 4) != due)
@@ -251,7 +252,7 @@ struct Host {
         signatures++;
     }
 
-    // Fresh content has other frames each time, trapped content the same.
+    // Fresh content has another frame each time; trapped content repeats one frame.
     void burst(const Tables &tables, uint32_t seed, uint16_t number, bool fresh) {
         constexpr unsigned FRAMES = 3, RECORD = 18, HEAD = 10;
         Bytes start;
@@ -273,7 +274,7 @@ struct Host {
         }
     }
 
-    // A burst of which one row is expected to be another.
+    // Runs a burst with a wrong expected signature for one row, and checks that this row is trapped.
     void trap(const Tables &tables) {
         const int width = tables.frame.width;
         uint32_t seed = random();

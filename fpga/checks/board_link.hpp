@@ -1,5 +1,5 @@
-// A board at the pins of its link, as Verilator made it of a netlist or of its sources: packets to it and from it. LINK_FIFO: the board of
-// edif_board.v; LINK_BYTES: halfrow_bridge; else a UART.
+// A board at the pins of its link, as Verilator made it from a netlist or from its sources: packets to it and from it.
+// LINK_FIFO: the board of edif_board.v; LINK_BYTES: halfrow_bridge; otherwise a UART.
 #pragma once
 #include "Vboard.h"
 #include "datapath.hpp"
@@ -63,12 +63,13 @@ static Bytes unstuffed(const Bytes &piece) {
     return out;
 }
 
-// The link's pins, one class a kind of link: `to_board` goes out there, and what comes is handed to `heard_byte`.
+// The link's pins; there is a class for each kind of link. It sends the bytes in `to_board` and passes those that arrive to
+// `heard_byte`.
 struct Pins {
     Vboard board;
     std::deque<uint8_t> to_board;
     Bytes piece;
-    std::deque<Bytes> packets;               // that came whole
+    std::deque<Bytes> packets;               // complete ones
     uint64_t clocks = 0;
 
     void heard_byte(uint8_t byte) {
@@ -82,8 +83,8 @@ struct Pins {
 };
 
 #ifdef LINK_FIFO
-// An FT2232H as asynchronous FIFO, in clocks of 10.4 ns: a byte is good two clocks behind the fall of RD#, and neither queue has another
-// one for six behind its strobe. Where neither side drives the data they are those of a bus that nobody holds.
+// An FT2232H as an asynchronous FIFO, in clocks of 10.4 ns: a byte is valid two clocks after RD# falls, and after a strobe its
+// queue is not ready for six clocks. When neither side drives the data, they are those of a floating bus.
 struct Lines : Pins {
     int reading = 0, read_rest = 6, write_rest = 0;
     bool wrote = false;
@@ -132,7 +133,7 @@ struct Lines : Pins {
     }
 };
 #elif defined(LINK_BYTES)
-// Bytes as they are. Either side is held up now and then.
+// Plain bytes. Either side is held up now and then.
 struct Lines : Pins {
     static constexpr int CLOCKS_TO_START = 4;
 
@@ -204,7 +205,7 @@ struct Lines : Pins {
 };
 #endif
 
-// The same with packets.
+// The packets over those lines.
 struct Link {
     Lines lines;
 

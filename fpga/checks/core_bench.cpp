@@ -2,9 +2,9 @@
 // bit and the clock. It ends at the first difference, with status 1.
 //   golden          the golden values of DATAPATH.md, W = 64
 //   random N SEED   N cases: widths, depths, centres, steps, kernels, blankings, gaps, tables changed between rows
-//   hostile N SEED  the same behind rows too short and too long, rows unprepared, resets in mid row
+//   hostile N SEED  the same after rows that are too short, too long or unprepared, and after resets in mid row
 //   frame KERNEL    the golden frame of 1920 x 1080 by its CRC-32: hermite or keys
-// Words with a + are the model's.
+// Arguments that start with + are for the model.
 #include "core_driver.hpp"
 
 static void golden(Bench &bench) {
@@ -38,7 +38,7 @@ static void golden(Bench &bench) {
     }
 }
 
-// One case: some rows through both banks, often with no clock between them.
+// One case: some rows through both banks, often without a clock between them.
 static void rows(Bench &bench, int count) {
     const int first = bench.draw(2048);
     auto entry = [first](int row) { return (first + 37 * row) % 2048; };
@@ -67,7 +67,7 @@ static void rows(Bench &bench, int count) {
             bench.play(samples, bench.frame.width);
             break;
         }
-        // At once behind the start, somewhere in the row, or behind it, as late as the next one can wait for.
+        // The next row is requested right after the start, somewhere in the row, or after it, as late as it can be waited for.
         int columns = bench.frame.width, moment = bench.draw(3), next_bank = bench.draw(TABLE_BANKS), next_row = entry(row + 1);
         bench.next = {moment == 0 ? 1 : 1 + bench.draw(columns - 1), next_bank, next_row};
         if (moment == 2)
@@ -91,7 +91,7 @@ static void random_cases(Bench &bench, int cases, int widest) {
         bench.configure(bench.drawn_frame(bench.draw(4) ? std::min(100, widest) : widest));
         bench.gaps = bench.draw(2) ? 0 : 2 + bench.draw(6);
         bench.shorts = bench.longs = bench.unprepared = 0;
-        rows(bench, bench.draw(30) ? 2 + bench.draw(3) : 40); // enough for any ring to go round
+        rows(bench, bench.draw(30) ? 2 + bench.draw(3) : 40); // enough to go round any ring
         if (bench.shorts || bench.longs || bench.unprepared)
             bench.fail("a good row is flagged");
     }
@@ -109,7 +109,7 @@ static void disturb(Bench &bench) {
     bench.play(samples, kind == 0 ? 1 + bench.draw(width - 1) : kind == 1 ? width + 1 + bench.draw(width) : width);
     for (int k = bench.draw(3); k > 0; k--)
         bench.pixel(false, false, 0);
-    if (kind == 0)                           // a short row is seen at the clock behind it
+    if (kind == 0)                           // a short row is noticed at the clock after it
         bench.pixel(false, false, 0);
     if ((bench.shorts > 0) != (kind == 0) || (bench.longs > 0) != (kind == 1) || (bench.unprepared > 0) != (kind == 2))
         bench.fail("a bad row is not flagged, or a good one is");

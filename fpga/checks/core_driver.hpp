@@ -1,4 +1,4 @@
-// Drives halfrow_core clock by clock, for core_bench.cpp, and holds each output against what is expected of it.
+// Drives halfrow_core clock by clock, for core_bench.cpp and grid_bench.cpp, and compares each output with what is expected.
 #pragma once
 #include "Vcore.h"
 #include "datapath.hpp"
@@ -25,7 +25,7 @@ struct Bench {
     Vcore core;
     std::mt19937 random;
     Frame frame{64, 12, 63};
-    int gaps = 0;                            // one edge in so many has the enable off
+    int gaps = 0;                            // at one edge in this many, on average, the enable is off; 0 for none
     struct Expected { uint64_t clock; int sample; bool first, last; };
     std::deque<Expected> expected;
     uint64_t pixel_clock = 0, strict_from = 0, outputs = 0;
@@ -33,9 +33,9 @@ struct Bench {
     int64_t clock = 0, prepared_since = 0;
     int shorts = 0, longs = 0, unprepared = 0;
     static constexpr int NEVER = -1;
-    int shapes[2] = {0, 0};                  // of the banks, as prepare_shape has them
+    int shapes[2] = {0, 0};                  // of the banks, in the form of prepare_shape
     int patience = 24;                       // clocks that a row may take to be prepared
-    struct { int column = NEVER, bank, row; } next; // the row behind is prepared with this column of the one that is played
+    struct { int column = NEVER, bank, row; } next; // the next row, requested with this column of the one that is played
 
     int draw(int count) { return random() % count; }
 
@@ -86,7 +86,8 @@ struct Bench {
         pixel_clock++;
     }
 
-    // What a cut row leaves behind may come out until the next row does; from then on nothing but what is expected.
+    // What a cut row leaves behind may come out until the outputs of the next row begin; from then on only expected outputs
+    // may.
     void look() {
         if (!expected.empty() && expected.front().clock == pixel_clock) {
             Expected want = expected.front();
@@ -132,7 +133,7 @@ struct Bench {
         }
     }
 
-    // Reads back through the datapath's ports; the core is empty.
+    // Reads back through the datapath's ports. The core must be empty.
     void check_kernel(int bank, const Kernel &kernel) {
         for (int node = 0; node < 65; node++) {
             show(bank, node);
@@ -180,7 +181,7 @@ struct Bench {
         }
     }
 
-    // Clocks by which the row was prepared later than now.
+    // Waits until the row is prepared. Returns minus the number of clocks since then.
     int64_t late() {
         await_prepared();
         return prepared_since - clock;

@@ -1,5 +1,5 @@
-// fpga/DATAPATH.md and fpga/AT-SPEED.md once more, for the checks of the netlist: the table, the kernels, the output sample, and what
-// a burst enters and signs.
+// A further implementation of fpga/DATAPATH.md and fpga/AT-SPEED.md, for the checks of the netlist: the table, the kernels, the
+// output sample, and the content and the signatures of a burst.
 #pragma once
 #include <array>
 #include <cmath>
@@ -25,7 +25,7 @@ inline int64_t source_column(const Frame &frame, int64_t step, int64_t column) {
     return floor_shift(source(frame, step, column) + 2048, 25);
 }
 
-// The two conditions of the section "Ring".
+// The two conditions of DATAPATH.md's section "Ring".
 inline bool legal(const Frame &frame, int64_t step, int ring) {
     int64_t half = frame.width / 2, last = frame.width - 1;
     return source_column(frame, step, 0) + 4 <= half + 3 && last - source_column(frame, step, last) + half - 1 < ring;
@@ -36,7 +36,7 @@ inline int64_t tap(const Row &row, int64_t column) {
     return row[column < 0 ? parity : column >= width ? width - 2 + parity : column];
 }
 
-// The output of a column whose kernel position is q.
+// The output of a column whose source is at q.
 inline int output_at(const Frame &frame, int64_t q, const Kernel &kernel, const Row &row, int64_t column) {
     int64_t n = floor_shift(q, 13);
     int64_t base = (n - column) % 2 == 0 ? n : n - 1, x = q - base * 8192, node = x / 256, fraction = x % 256;
@@ -98,7 +98,7 @@ inline uint32_t drawn_after(uint32_t x) {
     return x ^ x << 5;
 }
 
-// A row of a burst, AT-SPEED.md's Content.
+// A row of a burst (AT-SPEED.md, "Content").
 inline Row content(uint32_t seed, uint16_t frame, int row, int width, int bits) {
     uint32_t first = drawn_after((seed ^ (uint32_t(frame) * 4096 + row)) | 0x80000000), x = first;
     int largest = (1 << bits) - 1, period = first >> 2 & 3, phase = first >> 4;
@@ -116,7 +116,7 @@ inline Row content(uint32_t seed, uint16_t frame, int row, int width, int bits) 
     return samples;
 }
 
-// The outputs of a row of a burst with such a factor.
+// The outputs of a row with the factor `step`.
 inline Row corrected(const Frame &frame, int64_t step, const Kernel &kernel, const Row &samples) {
     Row outputs;
     for (int j = 0; j < frame.width; j++)
@@ -131,7 +131,7 @@ inline uint32_t signature(const Row &row) {
     return crc;
 }
 
-// The signature of a frame of a burst whose row y has the factor steps[y].
+// The signature of a burst's frame whose row y has the factor steps[y].
 inline uint32_t signature(const Frame &frame, const std::vector<int64_t> &steps, const Kernel &kernel, uint32_t seed, uint16_t number) {
     uint32_t all = 0;
     for (size_t row = 0; row < steps.size(); row++) {

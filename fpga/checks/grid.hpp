@@ -1,11 +1,11 @@
-// Datapath 2 of fpga/DATAPATH.md once more, by its closed form, for the checks of the core.
+// A further implementation of datapath 2 of fpga/DATAPATH.md, by its closed form, for the checks of the core.
 #pragma once
 #include "datapath.hpp"
 #include <algorithm>
 
 struct Shape {
     int v, k;
-    int port() const { return v | (k == 6) << 3; } // as the core is told
+    int port() const { return v | (k == 6) << 3; } // in the form of the core's port
 };
 
 struct Grid {
@@ -17,7 +17,7 @@ struct Grid {
     int rows() const { return ((height - 1) >> shape.v) + 3; }
     int size() const { return (segments() + 2) * rows(); }
 
-    // P[c] of the page.
+    // P[c] of DATAPATH.md.
     int64_t spline(int column, int row) const {
         int64_t t = (row % (1 << shape.v)) << (6 - shape.v), w0 = (64 - t) * (64 - t), w2 = t * t;
         const uint32_t *entry = &entries[column * rows() + (row >> shape.v)];
@@ -26,7 +26,7 @@ struct Grid {
 
     int64_t factor(int node, int row) const { return 8 * std::min<int64_t>(spline(1 + node, row) >> 3, 1 << 21); }
 
-    // S of each column, not modulo anything.
+    // S of each column, without a modulus.
     std::vector<int64_t> sources(int64_t centre, int row) const {
         int64_t start = 8 * centre * ((1 << 24) - factor(0, row)) + (spline(0, row) - (1 << 24)) * (1 << 15);
         std::vector<int64_t> all;
@@ -44,7 +44,7 @@ struct Grid {
 inline uint64_t modulo_40(int64_t source) { return uint64_t(source) & ((1ull << 40) - 1); }
 inline int64_t position_of(int64_t source) { return modulo_40(source + (1 << 14)) >> 15; }
 
-// Legal for a ring, on a row with these sources.
+// Whether a row with these sources is legal for a ring.
 inline bool legal(const std::vector<int64_t> &sources, int ring) {
     int64_t half = sources.size() / 2, last = sources.size() - 1;
     int64_t first_column = position_of(sources[0]) >> 13, last_column = position_of(sources[last]) >> 13;
@@ -52,7 +52,7 @@ inline bool legal(const std::vector<int64_t> &sources, int ring) {
         && last - last_column + half - 1 < ring;
 }
 
-// A drawn grid of the page.
+// A drawn grid of DATAPATH.md.
 inline Grid drawn_grid(int width, int height, Shape shape, uint32_t seed, bool wide) {
     Grid grid{shape, width, height, {}};
     for (int e = 0; e < grid.size(); e++) {

@@ -1,21 +1,21 @@
 // Drives halfrow_core with GRID, as written, as synthesised or with a fault put in, and compares each output of rows with and
 // without a grid with datapath.hpp and grid.hpp, to the bit and the clock. It ends at the first difference, with status 1.
 //   random N SEED   N cases: shapes, grids, widths, depths, centres, kernels, blankings, gaps, both datapaths from row to row
-//   hostile N SEED  the same behind grids that are not legal, rows too short and too long, resets in mid row
-//   frame FILE      all rows of a frame behind the grid that `halfrow tables` wrote into FILE, without a pause between them
-// Words with a + are the model's.
+//   hostile N SEED  the same after grids that are not legal, rows that are too short or too long, and resets in mid row
+//   frame FILE      all rows of a frame with the grid that `halfrow tables` wrote to FILE, without a pause between them
+// Arguments that start with + are for the model.
 #include "core_driver.hpp"
 #include "grid.hpp"
 #include <fstream>
 #include <map>
 #include <numeric>
 
-// What the build advertises (halfrow_board.vh).
+// As the build advertises them (halfrow_board.vh).
 constexpr int GRID_WIDTH = 144, GRID_BLANKING = 32;
 #ifndef ENTRIES
 #define ENTRIES 2048
 #endif
-// Clocks in front of a row's start by which it must be prepared, so that nothing waits for it.
+// This many clocks before its start a row must be prepared, so that nothing has to wait for it.
 constexpr int HEAD_START = 3;
 
 static void golden(Bench &bench) {
@@ -41,7 +41,7 @@ static void golden(Bench &bench) {
     }
 }
 
-// What a bank holds: a grid, or a factor for each row that is played.
+// The contents of a bank: a grid, or a factor for each row that is played.
 struct Tables {
     Grid grid{{0, 6}, 0, 0, {}};
     std::map<int, int64_t> steps;            // of the rows that are played
@@ -49,7 +49,7 @@ struct Tables {
     bool has_grid() const { return grid.shape.v != 0; }
 };
 
-// Entries whose rows lie anywhere in the frame, mostly legal.
+// Draws entries whose rows lie anywhere in the frame and are mostly legal.
 static Grid draw_entries(Bench &bench, Grid grid) {
     const int Z = grid.rows(), width = grid.width, kind = bench.draw(5);
     const int64_t whole = 1 << 24, least = kind == 0 ? 0 : kind == 1 ? whole / 2 : whole - (1 << (10 + bench.draw(13)));
@@ -68,7 +68,7 @@ static Grid draw_entries(Bench &bench, Grid grid) {
 
 static Grid draw_grid(Bench &bench, const std::vector<int> &rows, int height) {
     Grid grid{{1 + bench.draw(6), 5 + bench.draw(2)}, bench.frame.width, height, {}};
-    // The coarsest rows need wider segments where the frame is as large.
+    // If the frame is too large even for the coarsest rows, the segments become wider.
     while (grid.size() > ENTRIES)
         (grid.shape.v < 6 ? grid.shape.v : grid.shape.k)++;
     for (int tries = 0; tries < 200; tries++) {
@@ -115,8 +115,8 @@ static Row outputs(const Bench &bench, const Tables &tables, int row, const Row 
     return all;
 }
 
-// Plays a row and the clocks behind it; the one behind that is asked for with the column `asked`, or behind it. One that is
-// asked for as soon as it may be must be ready when its turn comes.
+// Plays a row and the blanking after it. The next row is requested with the column `asked`, or after the blanking. A row that
+// is requested as early as possible must be ready when its turn comes.
 static void play_row(Bench &bench, const Row &samples, int asked, int bank, int row, int blanking) {
     bench.next = {asked, bank, row};
     bench.play(samples, bench.frame.width);
@@ -147,7 +147,7 @@ static void play(Bench &bench, const Tables *tables, const std::vector<int> &row
     bench.flush();
 }
 
-// `held_up`: clocks for which a row in front may still keep the grid's reader busy for nothing.
+// `held_up`: clocks for which an earlier row may still keep the grid's reader busy in vain.
 static void one_case(Bench &bench, int held_up) {
     int height = 2 + bench.draw(bench.draw(2) ? 20 : 2047), count = 2 + bench.draw(4);
     std::vector<int> rows{bench.draw(height)};
@@ -161,7 +161,7 @@ static void one_case(Bench &bench, int held_up) {
     play(bench, tables, rows, narrow + (bench.draw(2) ? bench.draw(9) : 0));
 }
 
-// A row of a grid of any entries, whole, cut, too long, or cut by a reset; what it gives is not defined.
+// A row of a grid with any entries: whole, cut, too long, or cut by a reset. Its output is not defined.
 static void disturb(Bench &bench) {
     int kind = bench.draw(4), width = bench.frame.width, height = 1 + bench.draw(40), bits = 20 + bench.draw(6);
     Tables tables;
