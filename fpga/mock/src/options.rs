@@ -140,7 +140,7 @@ pub struct Options {
     pub max_height: u16,
     /// The depths that the board can be set to.
     pub depths: Vec<Depth>,
-    /// The pixel clock in Hz, 1 to 10^9. It is told to the host but has no other effect.
+    /// The pixel clock in Hz, 1 to 10^9. It is reported to the host but has no other effect.
     pub pixel_clock: u32,
     /// The FPGA's own number, below 2^57; 0 for none.
     pub serial: u64,

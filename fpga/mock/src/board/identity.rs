@@ -23,7 +23,7 @@ pub(super) const KERNEL_PORTS: u8 = 2;
 /// The `clock_source` of WIRE.md for a PLL.
 const PLL: u8 = 2;
 
-/// How much the board's claims differ from the truth; not at all by default.
+/// How far the board's claims are above the truth; not at all by default.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct WrongClaims {
     /// The datapath id.

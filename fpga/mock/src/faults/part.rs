@@ -40,7 +40,7 @@ pub enum BoardFault {
         /// Whether only the datapath sees it and reading back shows the right value.
         hidden: bool,
     },
-    /// All taps come from beside their columns.
+    /// All taps come from columns next to their own.
     TapOffset {
         /// Columns to the right, −3 to 3.
         columns: i8,

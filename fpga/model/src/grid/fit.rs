@@ -9,7 +9,7 @@ use super::normal::Normal;
 use super::rows::fractions;
 use crate::{Camera, GridShape, TableSet};
 
-/// How often the errors are weighed anew.
+/// How often the weights are adapted to the errors.
 const ROUNDS: usize = 16;
 
 /// The weight of outputs next to the rim or to a pole. It does not grow, since no grid can follow the projection there.
@@ -64,7 +64,7 @@ impl Fit<'_> {
         self.lattice.rows.iter().flat_map(move |&row| columns.iter().map(move |&column| (column, row)))
     }
 
-    /// Moves the spline towards the outputs, by least squares with their weights.
+    /// Fits the spline to the outputs, by least squares with their weights.
     fn solve(&mut self) {
         let misses = self.misses();
         let mut normal = Normal::new(self.spline.coefficients.len(), 2 * self.spline.rows + 2, DAMPING);
@@ -107,7 +107,7 @@ impl Fit<'_> {
         })
     }
 
-    /// Multiplies the weights of inner outputs by their share of the largest error.
+    /// Multiplies the weight of each inner output by its error, relative to the largest error.
     fn weigh(&mut self) {
         let misses = self.misses();
         let inner = || misses.iter().zip(&self.lattice.wanted).filter(|(_, (_, part))| *part == Part::Inner);
