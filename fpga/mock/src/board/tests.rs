@@ -1,4 +1,4 @@
-//! What could be seen from outside only after four thousand million packets.
+//! What could be seen from outside only after 2^32 packets.
 
 use std::time::Duration;
 
