@@ -1,4 +1,4 @@
-//! What a run came to, and why.
+//! The verdict of a run, and its cause.
 
 use std::fmt;
 
@@ -28,7 +28,7 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// Why a run ended as it did, in classes that call for different acts. In JSON its [`Cause::name`].
+/// Why a run ended as it did, in classes that call for different actions. In JSON it is its [`Cause::name`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
     /// PASS: all that was judged is equal.
@@ -54,13 +54,13 @@ pub enum StoppedBy {
     Person,
     /// The system, or whatever supervises the program.
     System,
-    /// Nobody: the terminal or connection that it was watched from is gone.
+    /// Nobody: the terminal or connection that it was watched from went away.
     Disconnection,
     /// The program that calls this library.
     Caller,
 }
 
-/// Why a run ends whose board cannot be opened.
+/// The cause of a run whose board cannot be opened.
 impl From<Class> for Cause {
     fn from(class: Class) -> Self {
         match class {
@@ -71,7 +71,7 @@ impl From<Class> for Cause {
 }
 
 impl Cause {
-    /// All of them.
+    /// All causes.
     pub const ALL: [Self; 10] = [
         Self::Equal,
         Self::Different,
@@ -85,7 +85,7 @@ impl Cause {
         Self::Stopped(StoppedBy::Caller),
     ];
 
-    /// The verdict that it stands behind.
+    /// The verdict that follows from it.
     #[must_use]
     pub const fn verdict(self) -> Verdict {
         match self {

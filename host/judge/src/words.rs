@@ -1,4 +1,4 @@
-//! Numbers and names as people read them, without what could drive a terminal.
+//! Numbers and names for people to read, free of control characters that a terminal would obey.
 
 use std::borrow::Cow;
 
@@ -10,7 +10,7 @@ pub fn count(number: impl Copy + ToString, what: &str) -> String {
     format!("{number} {what}{ending}")
 }
 
-/// The verb behind a count of things.
+/// The verb that follows a count of things.
 pub(crate) fn differ(number: impl Copy + ToString) -> &'static str {
     if number.to_string() == "1" { "differs" } else { "differ" }
 }
@@ -40,7 +40,7 @@ pub fn bytes(number: u64) -> String {
     }
 }
 
-/// A share of 0 to 1 in percent; only the whole is called 100 %.
+/// A share of 0 to 1 as a percentage; anything short of the whole is at most 99.9 %.
 #[must_use]
 pub fn percent(share: f64) -> String {
     match share * 100.0 {
@@ -65,7 +65,7 @@ pub fn hertz(frequency: u32) -> String {
 /// A time in the two largest units that it has: `3.0 s`, `13 min 20 s`, `6 h 48 min`.
 #[must_use]
 pub fn span(seconds: f64) -> String {
-    // A time that is no number is none.
+    // NaN becomes 0 here and is written as `NaN s`.
     let whole = seconds.round().max(0.0) as u64;
     match whole {
         0..60 if seconds > 0.0 && seconds < 1e-3 => format!("{:.1} µs", seconds * 1e6),
@@ -82,11 +82,11 @@ pub fn board_name(name: &str) -> Cow<'_, str> {
     if name.trim().is_empty() { Cow::Borrowed("unnamed") } else { plain(name) }
 }
 
-/// Text from outside with its control characters spelt out, since boards and file names can hold any, and terminals
-/// obey some.
+/// Text from outside with its control characters escaped: names of boards and files can hold any, and terminals obey
+/// some.
 #[must_use]
 pub fn plain(text: &str) -> Cow<'_, str> {
-    // What turns the direction of text round makes it another one.
+    // Line separators, noncharacters and the marks of text direction, which make text read as another.
     let unfit = |letter: char| {
         letter.is_control()
             || matches!(letter, '\u{fffe}' | '\u{ffff}' | '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

@@ -18,7 +18,7 @@ use halfrow_files::written_aside::{WriteAsideError, write_aside};
 /// A table file: everything that a board is given before frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableFile {
-    /// The row factors and the geometry they are for.
+    /// The row factors or the grid, and the geometry they are for.
     pub tables: TableSet,
     /// The interpolation weights.
     pub kernel: Kernel,
@@ -36,7 +36,7 @@ pub struct KernelFile {
 }
 
 impl TableFile {
-    /// The keys of row factors, in the order of the file.
+    /// The keys of a file with row factors, in the order of the file.
     pub(super) const KEYS: [Place; 8] = [
         Place::Datapath,
         Place::About,
@@ -47,7 +47,7 @@ impl TableFile {
         Place::RowFactors,
         Place::Kernel,
     ];
-    /// The keys of a grid.
+    /// The keys of a file with a grid, in the order of the file.
     pub(super) const GRID_KEYS: [Place; 10] = [
         Place::Datapath,
         Place::About,
@@ -72,12 +72,12 @@ impl TableFile {
     /// The table file with the content `text`.
     ///
     /// # Errors
-    /// [`ContentError`] for the first thing that is wrong: the JSON, then the datapath, the keys, the geometry, the row
-    /// factors from the top, the nodes from x = 0.
+    /// [`ContentError`] for the first thing that is wrong: the JSON, the datapath, the keys, the geometry, the row factors from
+    /// the top or the grid, then the nodes from x = 0.
     pub fn parse(text: &str) -> Result<Self, ContentError> {
         let members = Members::parse(text)?;
         match members.datapath()? {
-            // Without a datapath it is missed in its turn.
+            // A missing datapath is reported after unknown keys.
             None | Some(Datapath::RowFactors) => Self::of_row_factors(members),
             Some(Datapath::Grids) => Self::of_grid(members),
         }
@@ -116,10 +116,10 @@ impl TableFile {
         layout::table_file(self)
     }
 
-    /// Writes the file `path`, which is whole or as it was.
+    /// Writes the file `path`. When that fails, the file is left as it was.
     ///
     /// # Errors
-    /// [`WriteAsideError`] when the file is there and `overwrite` is false, or it cannot be written.
+    /// [`WriteAsideError`] when the file exists and `overwrite` is false, or it cannot be written.
     pub fn write(&self, path: &Path, overwrite: bool) -> Result<(), WriteAsideError> {
         write_text(path, overwrite, &self.to_json())
     }
@@ -140,11 +140,11 @@ impl KernelFile {
     /// The kernel file with the content `text`.
     ///
     /// # Errors
-    /// [`ContentError`] for the first thing that is wrong, as [`TableFile::parse`]; `datapath` may be missing.
+    /// [`ContentError`] for the first thing that is wrong, like [`TableFile::parse`]; `datapath` may be missing.
     pub fn parse(text: &str) -> Result<Self, ContentError> {
         let mut members = Members::parse(text)?;
         match members.datapath()? {
-            // A kernel is the same in both.
+            // A kernel is the same for both.
             None | Some(Datapath::RowFactors | Datapath::Grids) => members.check_keys(&Self::KEYS)?,
         }
         Ok(Self { kernel: kernel(&members.take(Place::Kernel)?)?, about: members.take_about()? })
@@ -156,10 +156,10 @@ impl KernelFile {
         layout::kernel_file(self)
     }
 
-    /// Writes the file `path`, which is whole or as it was.
+    /// Writes the file `path`. When that fails, the file is left as it was.
     ///
     /// # Errors
-    /// [`WriteAsideError`] when the file is there and `overwrite` is false, or it cannot be written.
+    /// [`WriteAsideError`] when the file exists and `overwrite` is false, or it cannot be written.
     pub fn write(&self, path: &Path, overwrite: bool) -> Result<(), WriteAsideError> {
         write_text(path, overwrite, &self.to_json())
     }
@@ -172,7 +172,7 @@ fn read<T>(path: &Path, parse: fn(&str) -> Result<T, ContentError>) -> Result<(T
     })
 }
 
-/// Whether there is a file that may not be read, or begins as JSON does, whatever its name.
+/// Whether the file begins like JSON, whatever its name, or exists and may not be read.
 fn is_of_json(path: &Path) -> bool {
     match text::read(path, text::MAX_BYTES) {
         Ok(text) => text.trim_start().starts_with('{'),

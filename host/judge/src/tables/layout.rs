@@ -1,14 +1,14 @@
-//! How table files look: a key a line, some entries a line, a node a line.
+//! The layout of table files: one key, several entries or one node a line.
 
 use halfrow_model::Kernel;
 use serde_json::{Map, Value};
 
 use super::{DATAPATH, KernelFile, Place, TableFile, datapath_of};
 
-/// Entries on a line: 8 digits and a comma each fill about a hundred columns.
+/// Entries a line: at 8 digits and a comma each they fill about a hundred columns.
 const ENTRIES_A_LINE: usize = 10;
 
-/// The text of a table file, its members in the order of [`TableFile::KEYS`] or of [`TableFile::GRID_KEYS`].
+/// The text of a table file, with its members in the order of [`TableFile::KEYS`] or [`TableFile::GRID_KEYS`].
 pub(super) fn table_file(file: &TableFile) -> String {
     let geometry = file.tables.geometry();
     let entries: Vec<_> = file.tables.entries().map(|units| units.to_string()).collect();
@@ -28,7 +28,7 @@ pub(super) fn table_file(file: &TableFile) -> String {
     object(members)
 }
 
-/// The text of a kernel file, its members in the order of [`KernelFile::KEYS`].
+/// The text of a kernel file, with its members in the order of [`KernelFile::KEYS`].
 pub(super) fn kernel_file(file: &KernelFile) -> String {
     let member = |place| shared_member(place, &file.kernel, file.about.as_ref());
     object(KernelFile::KEYS.into_iter().filter_map(member))

@@ -1,8 +1,8 @@
 //! Memory images for Verilog's `$readmemh`: NAME.steps.mem and NAME.kernel.mem.
 //!
-//! A row factor, or an entry of a grid, is a word of 25 bits, written as 7 hexadecimal digits. A node is a word of 80 bits, 20 digits: g0 r1 g4 r5 g6,
-//! 16 bits each in two's complement, g0 the most significant. Comments at the top say so, and give the geometry that
-//! reading needs.
+//! A row factor, or an entry of a grid, is a word of 25 bits, written as 7 hexadecimal digits. A node is a word of 80 bits, 20
+//! digits: g0 r1 g4 r5 g6, 16 bits each in two's complement, g0 the most significant. Comments at the top say so, and give the
+//! geometry that [`read`] needs.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -24,10 +24,10 @@ const WEIGHT_DIGITS: usize = 4;
 /// Hexadecimal digits of a node.
 const NODE_DIGITS: usize = WEIGHT_DIGITS * WEIGHT_NAMES.len();
 
-/// What stands in the names of the two files.
+/// The parts of the two files' names that tell them apart.
 const PARTS: [&str; 2] = ["steps", "kernel"];
 
-/// The files that stand for `path`: NAME.steps.mem and NAME.kernel.mem for NAME.mem or NAME.
+/// The two files meant by `path`: NAME.steps.mem and NAME.kernel.mem for NAME.mem or NAME.
 #[must_use]
 pub fn paths(path: &Path) -> [PathBuf; 2] {
     let name = if is_name(path) { path.with_extension("") } else { path.to_owned() };
@@ -38,23 +38,23 @@ pub fn paths(path: &Path) -> [PathBuf; 2] {
     })
 }
 
-/// Whether memory images are called so.
+/// Whether `path` ends in `.mem`.
 pub(super) fn is_name(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mem"))
 }
 
-/// What `path` stands for if it is one of two files that are there, and both are read by it.
+/// The name that both files share if `path` is one of them and exists; otherwise `path` itself.
 fn name_of_both(path: &Path) -> PathBuf {
     let name = path.with_extension("");
     let is_one = is_name(path) && PARTS.iter().any(|part| name.extension().is_some_and(|it| it == *part));
     if is_one && path.exists() { name.with_extension("") } else { path.to_owned() }
 }
 
-/// Writes both files for `path`, as [`paths`] names them, and returns their names. Neither is put in place before both
-/// are written.
+/// Writes both files for `path`, named by [`paths`], and returns their names. Neither is put in place before both are
+/// written.
 ///
 /// # Errors
-/// [`WriteAsideError`] when one of them is there and `overwrite` is false, or cannot be written.
+/// [`WriteAsideError`] when one of them exists and `overwrite` is false, or cannot be written.
 pub fn write(
     path: &Path,
     tables: &TableSet,
@@ -62,7 +62,7 @@ pub fn write(
     overwrite: bool,
 ) -> Result<Vec<PathBuf>, WriteAsideError> {
     let [rows, nodes] = paths(path);
-    // Of two runs that overwrite each other, both files are those of the one or of the other.
+    // So that two runs that overwrite each other leave both files of one run, not one file of each.
     let _turn = Claim::wait(path)?;
     let written = [
         Aside::written(&rows, overwrite, |out| out.write_all(row_factors_text(tables).as_bytes()))?,
@@ -72,7 +72,8 @@ pub fn write(
     Ok(vec![rows, nodes])
 }
 
-/// Reads both files for `path`, as [`paths`] names them, or for the name of one of them, and says what they were read from.
+/// Reads both files for `path`, which is a path as [`paths`] takes it or the name of one of them, and returns what was read
+/// from where.
 ///
 /// # Errors
 /// [`TableFileError`] when one of them cannot be read or is no memory image of tables.
@@ -137,7 +138,7 @@ fn lines(lines: impl Iterator<Item = String>) -> String {
     lines.flat_map(|line| [line, "\n".to_owned()]).collect()
 }
 
-/// The table set with the memory image `text`. The comments must give its geometry, as those of [`row_factors_text`] do.
+/// The table set of the memory image `text`. Its comments must give the geometry, like those of [`row_factors_text`].
 ///
 /// # Errors
 /// [`MemError`] for the first thing that is wrong: the datapath, the geometry, the words from the top.
@@ -162,20 +163,20 @@ fn units(text: &str) -> Result<Vec<u32>, MemError> {
     words::<ENTRY_DIGITS>(text).map(|word| word.map(|units| units as u32)).collect()
 }
 
-/// The kernel with the memory image `text`.
+/// The kernel of the memory image `text`.
 ///
 /// # Errors
 /// [`MemError`] for the first thing that is wrong: the datapath, the words from x = 0.
 pub fn parse_kernel(text: &str) -> Result<Kernel, MemError> {
     match datapath(text)? {
-        // It is the same in both.
+        // A kernel is the same for both.
         Datapath::RowFactors | Datapath::Grids => {}
     }
     let nodes: Result<_, _> = words::<NODE_DIGITS>(text).map(|word| word.map(weights)).collect();
     Ok(Kernel::from_nodes(nodes?)?)
 }
 
-/// g0 r1 g4 r5 g6 of a node's word.
+/// The weights g0 r1 g4 r5 g6 in a node's word.
 fn weights(word: u128) -> [i16; 5] {
     [64, 48, 32, 16, 0].map(|shift| (word >> shift) as i16)
 }
@@ -194,12 +195,12 @@ fn comment(line: &str) -> Option<&str> {
     line.trim().strip_prefix("//")
 }
 
-/// The datapath that the comments name.
+/// The datapath named in the comments.
 fn datapath(text: &str) -> Result<Datapath, MemError> {
     Ok(WrongDatapath::check(noted(text, Place::Datapath)?)?)
 }
 
-/// The number that the comments note as `key=number`.
+/// The number given in the comments as `key=number`.
 fn noted<T: FromStr>(text: &str, place: Place) -> Result<T, MemError> {
     let notes = text.lines().filter_map(comment).flat_map(str::split_whitespace);
     let mut values = notes.filter_map(|note| note.strip_prefix(place.key())?.strip_prefix('='));

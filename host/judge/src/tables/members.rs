@@ -1,4 +1,4 @@
-//! The members of a JSON object, taken out one by one and checked as they are.
+//! The members of a JSON object, which are checked as they are taken out one by one.
 
 use std::collections::HashSet;
 use std::fmt::{self, Display};
@@ -11,7 +11,7 @@ use serde_json::{Map, Value};
 use super::text::{quoted, without_mark};
 use super::{ContentError, Place, WrongDatapath};
 
-/// An object's members as they stand in the text: a key that comes twice is there twice.
+/// An object's members as they stand in the text, repeated keys included.
 pub(super) struct Members(Vec<(String, Value)>);
 
 impl<'de> Deserialize<'de> for Members {
@@ -39,7 +39,7 @@ impl<'de> Deserialize<'de> for Members {
 }
 
 impl Members {
-    /// The members of the JSON object `text`, each once.
+    /// The members of the JSON object `text`, in which no key may be repeated.
     pub(super) fn parse(text: &str) -> Result<Self, ContentError> {
         let members: Self = serde_json::from_str(without_mark(text)).map_err(json_error)?;
         let mut seen = HashSet::new();
@@ -49,9 +49,9 @@ impl Members {
         }
     }
 
-    /// The datapath that the tables are for, if they say which.
+    /// The datapath that the tables are for, if the text says which.
     ///
-    /// To be asked first: another datapath's file may have other keys.
+    /// Ask for it first: a file for another datapath may have other keys.
     pub(super) fn datapath(&self) -> Result<Option<Datapath>, ContentError> {
         let Some((_, value)) = self.0.iter().find(|(key, _)| key == Place::Datapath.key()) else {
             return Ok(None);
@@ -60,7 +60,7 @@ impl Members {
         Ok(Some(WrongDatapath::check(found)?))
     }
 
-    /// Whether there are no members beside `places`.
+    /// Refuses members other than `places`.
     pub(super) fn check_keys(&self, places: &[Place]) -> Result<(), ContentError> {
         let known: Vec<_> = places.iter().map(|place| place.key()).collect();
         match self.0.iter().find(|(key, _)| !known.contains(&key.as_str())) {
@@ -69,12 +69,12 @@ impl Members {
         }
     }
 
-    /// Takes the value of `place`, which must be there.
+    /// Takes the value of `place`, which must exist.
     pub(super) fn take(&mut self, place: Place) -> Result<Value, ContentError> {
         self.take_optional(place).ok_or(ContentError::MissingKey(place))
     }
 
-    /// Takes the number of `place`, which must be there and within `allowed`.
+    /// Takes the number of `place`, which must exist and be within `allowed`.
     pub(super) fn take_number<T>(
         &mut self,
         place: Place,
@@ -101,7 +101,7 @@ impl Members {
     }
 }
 
-/// The whole number that `value` is, within `allowed`.
+/// `value` as a whole number within `allowed`.
 pub(super) fn number<T>(place: Place, value: &Value, allowed: &RangeInclusive<T>) -> Result<T, ContentError>
 where
     T: TryFrom<i128> + PartialOrd + Display,
@@ -114,7 +114,7 @@ where
     })
 }
 
-/// The entries of the list that `value` is, of which there must be `wanted`.
+/// The entries of the list `value`, of which there must be `wanted`.
 pub(super) fn list(place: Place, value: &Value, wanted: usize) -> Result<&[Value], ContentError> {
     let entries = value.as_array().ok_or_else(|| kind(place, value, "a list"))?;
     if entries.len() == wanted {

@@ -1,4 +1,4 @@
-//! The places of a table file that a fault can be at.
+//! The places in a table file that an error can name.
 
 use std::fmt;
 
@@ -32,7 +32,7 @@ pub enum Place {
     Grid,
     /// One entry of the grid.
     GridEntry {
-        /// Its place in the list, from 0.
+        /// Its index in the list, from 0.
         entry: usize,
     },
     /// `kernel`: the list of all nodes.
@@ -52,7 +52,7 @@ pub enum Place {
 }
 
 impl Place {
-    /// The file's key that the place is under.
+    /// The key of the file under which the place lies.
     #[must_use]
     pub fn key(self) -> &'static str {
         match self {
@@ -70,7 +70,7 @@ impl Place {
         }
     }
 
-    /// What belongs there, as an instruction.
+    /// An instruction that says what belongs there.
     pub(super) fn remedy(self) -> &'static str {
         match self {
             Self::Datapath => "give the id of the datapath that the tables are for",

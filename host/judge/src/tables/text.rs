@@ -4,20 +4,20 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The longest table file, settings file or other small file that is read: many times the largest tables there can be, and notes.
+/// The longest table file, settings file or other small file that is read, in bytes: many times the largest possible tables with
+/// notes.
 pub const MAX_BYTES: u64 = 1 << 20;
 
-/// Characters of a foreign value that an error quotes.
+/// Characters of a value from a file that an error quotes.
 const QUOTED: usize = 40;
 
-/// Characters of what a reader of TOML or JSON says.
+/// Characters of a TOML or JSON parser's message that an error quotes.
 const TOLD: usize = 200;
 
-/// The whole text of the file `path`.
+/// The whole text of the file `path`, of at most `most` bytes.
 ///
 /// # Errors
-/// The system's, [`io::ErrorKind::InvalidData`] when it is not UTF-8, or longer than
-/// `most` bytes.
+/// The system's, or [`io::ErrorKind::InvalidData`] when it is not UTF-8 or is longer than `most` bytes.
 pub fn read(path: &Path, most: u64) -> io::Result<String> {
     let mut bytes = Vec::new();
     File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
@@ -33,17 +33,17 @@ pub fn read(path: &Path, most: u64) -> io::Result<String> {
     })
 }
 
-/// `text` without the byte order mark that editors of Windows put before it and show nobody.
+/// `text` without the byte order mark that Windows editors put before it without showing it.
 pub(crate) fn without_mark(text: &str) -> &str {
     text.trim_start_matches('\u{feff}')
 }
 
-/// The beginning of `text`, short enough to stand in a sentence.
+/// The beginning of `text`, short enough for a sentence.
 pub fn quoted(text: &str) -> String {
     beginning(text, QUOTED)
 }
 
-/// The beginning of what a reader of TOML or JSON says, which quotes keys and values whole.
+/// The beginning of a TOML or JSON parser's message, which quotes keys and values in full.
 pub fn told(text: &str) -> String {
     beginning(text, TOLD)
 }
