@@ -1,4 +1,4 @@
-//! Values that stand in JSON as the words they are written with elsewhere. For `#[serde(with = …)]`.
+//! Values that JSON holds as their text. For `#[serde(with = …)]`.
 
 use std::fmt::Display;
 use std::str::FromStr;

@@ -1,4 +1,4 @@
-//! What findings on bursts, frames that the board makes on its own, say beside their figures.
+//! What findings on bursts (frames that the board makes itself) hold besides plain figures.
 
 use halfrow_model::TableSet;
 use serde::{Deserialize, Serialize};
@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 pub enum NoBurst {
     /// Nobody asked for one.
     NotAskedFor {},
-    /// It is none of the parts that the run was to judge.
+    /// It is not among the parts that the run was to judge.
     LeftOut {},
-    /// The board makes no frames on its own.
+    /// The board does not make frames itself.
     BoardMakesNone {},
-    /// It makes others than this program knows.
+    /// It makes frames whose content this program does not know.
     ContentUnknown {
         /// Its content id.
         content: u16,
@@ -22,7 +22,7 @@ pub enum NoBurst {
     },
 }
 
-/// Settings that no plan has, at which a board made frames on its own.
+/// Settings that no streamed frame has, with which a board made frames itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Corner {
     /// W.
@@ -33,7 +33,7 @@ pub struct Corner {
     pub bits: u32,
     /// C, twice the column of the centre.
     pub centre2: u32,
-    /// Whether its tables are a grid by turns with row factors, not row factors alone.
+    /// Whether its tables are by turns a grid and row factors, not row factors alone.
     #[serde(default)]
     pub grid: bool,
 }
@@ -46,39 +46,39 @@ impl From<&TableSet> for Corner {
     }
 }
 
-/// Frames that the board made on its own, all of them right.
+/// Frames that the board made itself, all of them right.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EqualAtSpeed {
     /// Frames.
     pub frames: u32,
     /// The pixel clock that the board names, in hertz; 0 when it names none.
     pub clock_hz: u32,
-    /// What was seen of that clock.
+    /// What that clock was measured to be.
     #[serde(default)]
     pub seen: ClockSeen,
-    /// How long they took on that clock, in seconds.
+    /// How long the frames took on that clock, in seconds.
     pub seconds: Option<f64>,
     /// Frames that waited until the host had the records of earlier ones.
     pub held_back: u32,
-    /// Other settings at which frames were equal as well.
+    /// Other settings with which frames were equal too.
     #[serde(default)]
     pub corners: u32,
 }
 
-/// Between what a pixel clock was seen to be. No delay of host or link moves a bound past the truth.
+/// The bounds that were measured for a pixel clock. No delay of host or link moves a bound past the truth.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClockSeen {
-    /// The least that it can be, in hertz; none if that was not seen.
+    /// The least that it can be, in hertz; none if not measured.
     pub least_hz: Option<u32>,
-    /// The most that it can be, in hertz; none if that was not seen.
+    /// The most that it can be, in hertz; none if not measured.
     pub most_hz: Option<u32>,
 }
 
 impl ClockSeen {
-    /// By how many parts of it a named clock may be off, which is far more than crystals are.
+    /// A named clock may be off by one part in this many, which is far more than crystals are off.
     const TOLERANCE: u64 = 5;
 
-    /// Whether a clock of `named` hertz can be meant by what was seen.
+    /// Whether the bounds allow a clock of `named` hertz, within the tolerance.
     pub(crate) fn allows(self, named: u32) -> bool {
         let more = |hertz: u32| u64::from(hertz) * (Self::TOLERANCE + 1);
         let times = |hertz: u32| u64::from(hertz) * Self::TOLERANCE;
@@ -86,12 +86,12 @@ impl ClockSeen {
             && self.most_hz.is_none_or(|most| times(named) <= more(most))
     }
 
-    /// Whether both bounds are as near to `named` hertz as a clock of that may be seen.
+    /// Whether both bounds exist and are within the tolerance of `named` hertz.
     pub(crate) fn confirms(self, named: u32) -> bool {
         is_near(self.least_hz, named) && is_near(self.most_hz, named)
     }
 
-    /// Whether each bound by which `wrong` rules out a clock of `named` hertz was seen here, as near to that as it may be.
+    /// Whether each bound by which `wrong` rules out a clock of `named` hertz was measured here within the tolerance.
     pub(crate) fn clears(self, wrong: Self, named: u32) -> bool {
         let is_fast = !Self { most_hz: None, ..wrong }.allows(named);
         let is_slow = !Self { least_hz: None, ..wrong }.allows(named);
@@ -101,18 +101,18 @@ impl ClockSeen {
     }
 }
 
-/// Whether there is a `bound`, and a clock of `named` hertz may be that.
+/// Whether `bound` exists and is within the tolerance of a clock of `named` hertz.
 fn is_near(bound: Option<u32>, named: u32) -> bool {
     bound.is_some_and(|hertz| ClockSeen { least_hz: Some(hertz), most_hz: Some(hertz) }.allows(named))
 }
 
-/// What making a frame again has shown that was wrong at speed.
+/// What was shown by making a frame again that had been wrong at speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "of", rename_all = "kebab-case")]
 pub enum Repetition {
-    /// Its signature told enough.
+    /// Its signature was enough.
     NotNeeded {},
-    /// The board cannot keep a row that differs.
+    /// The board has no trap: it cannot keep a row that differs.
     NoTrap {},
     /// It was right every time.
     AllRight {
@@ -121,17 +121,17 @@ pub enum Repetition {
     },
     /// It was wrong again, and a row of it was kept.
     Trapped {
-        /// Frames up to the first that was wrong.
+        /// Frames up to and including the first wrong one.
         frames: u32,
-        /// The row.
+        /// The row that was kept.
         row: usize,
-        /// What came back of the frame up to it where that was streamed.
+        /// What came back when the frame was streamed up to that row.
         #[serde(default)]
         streamed: Streamed,
     },
-    /// It was wrong again, and no row that differs was kept.
+    /// It was wrong again, and no differing row was kept.
     NothingTrapped {
-        /// Frames up to the first that was wrong.
+        /// Frames up to and including the first wrong one.
         frames: u32,
     },
     /// It could not be made again.
@@ -139,7 +139,7 @@ pub enum Repetition {
 }
 
 impl Repetition {
-    /// What is known of the frame at any other clock.
+    /// What is known of the frame when it does not run at the full pixel clock.
     pub(crate) fn streamed(self) -> Streamed {
         match self {
             Self::Trapped { streamed, .. } => streamed,
@@ -148,7 +148,7 @@ impl Repetition {
     }
 }
 
-/// What came back where a frame was streamed, row by row, that is wrong at speed.
+/// What came back when a frame that is wrong at speed was streamed row by row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Streamed {
@@ -161,7 +161,7 @@ pub enum Streamed {
     Wrong,
 }
 
-/// What a board counts of a frame that it made on its own.
+/// What a board counts of a frame that it made itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BurstCount {
@@ -169,12 +169,12 @@ pub enum BurstCount {
     Samples,
     /// Rows.
     Rows,
-    /// The smallest latency.
+    /// The smallest latency, in pixel clocks.
     LeastLatency,
-    /// The largest.
+    /// The largest latency, in pixel clocks.
     MostLatency,
     /// The generation of its tables.
     Generation,
-    /// Records of the burst, of which each frame has one.
+    /// Records of the burst, one for each frame.
     Records,
 }

@@ -1,4 +1,4 @@
-//! What was checked, and how it came out.
+//! The checks of a run and their outcomes.
 
 use std::fmt;
 
@@ -36,7 +36,7 @@ pub enum CheckName {
 }
 
 impl CheckName {
-    /// All of them, in the order of a run.
+    /// All checks, in the order of a run.
     pub const ALL: [Self; 11] = [
         Self::Judge,
         Self::Identity,
@@ -51,7 +51,7 @@ impl CheckName {
         Self::Rules,
     ];
 
-    /// As people and JSON write it.
+    /// The name that people and JSON use.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -79,18 +79,18 @@ impl fmt::Display for CheckName {
 /// One thing that was checked.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct Check {
-    /// Which.
+    /// Which check it is.
     pub name: CheckName,
     /// How it came out.
     pub outcome: Outcome,
-    /// What was seen.
+    /// What was found.
     pub finding: Finding,
-    /// How long it took by the wall's clock, in seconds, the frames' own time not counted.
+    /// How long it took on the wall clock, in seconds, without the frames' own time.
     pub seconds: f64,
 }
 
 impl Check {
-    /// What was seen, in one sentence.
+    /// What was found, in one sentence.
     #[must_use]
     pub fn detail(&self) -> String {
         self.finding.sentence()

@@ -1,8 +1,8 @@
-//! Counts by row and by column in JSON: `1x5 1079x0` for a 5 and then 1079 zeros, since most of them are alike.
+//! Counts by row and by column in JSON: `1x5 1079x0` for one 5 and then 1079 zeros, since most counts are equal.
 
 use serde::{Deserialize, Deserializer, Serializer, de};
 
-/// The most rows or columns that a count is read for: frame sizes have 16 bits.
+/// The most counts that are read: frame sizes have 16 bits.
 const MOST: usize = 1 << 16;
 
 pub(crate) fn serialize<S: Serializer>(counts: &[u32], serializer: S) -> Result<S::Ok, S::Error> {

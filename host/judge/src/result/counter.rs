@@ -1,32 +1,32 @@
-//! Counters of a board, by name.
+//! The names of a board's counters.
 
 use serde::{Deserialize, Serialize};
 
-/// What a board counts and the host knows as well: mostly STATUS in `protocol/WIRE.md`.
+/// What a board counts and the host also knows: mostly the counters of STATUS in `protocol/WIRE.md`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Counter {
-    /// Rows that went in.
+    /// Rows that were accepted.
     RowsIn,
     /// Rows that came out.
     RowsOut,
     /// Samples above the depth.
     SamplesOver,
-    /// The number of the first row that has not arrived.
+    /// The sequence number of the first row that has not arrived.
     NextRowIn,
-    /// The number of the first row that is not acknowledged.
+    /// The sequence number of the first row that is not acknowledged.
     NextRowOut,
     /// The generation of the tables in use.
     Generation,
     /// Rows sent again.
     RowsRepeated,
-    /// Rows that came although they were not needed.
+    /// Rows that arrived without being needed.
     RowsUnneeded,
     /// Requests that were refused.
     Refusals,
     /// ROW_OUT packets, by the numbers in their headers.
     RowsNumbered,
-    /// Packets that came to the board whole.
+    /// Packets that reached the board whole.
     Packets,
     /// Packets of another session.
     ForeignPackets,
@@ -38,12 +38,12 @@ pub enum Counter {
     FramingErrors,
     /// The least latency of a row, in pixel clocks.
     LeastLatency,
-    /// The greatest, in pixel clocks.
+    /// The greatest latency of a row, in pixel clocks.
     MostLatency,
 }
 
 impl Counter {
-    /// What stands behind its figure in a sentence.
+    /// The words that follow its figure in a sentence.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
@@ -67,7 +67,7 @@ impl Counter {
         }
     }
 
-    /// What stands before the right figure in a sentence, where the host knows only a bound.
+    /// The words before the right figure in a sentence, for counters of which the host knows only a bound.
     #[must_use]
     pub(super) const fn bound(self) -> &'static str {
         match self {

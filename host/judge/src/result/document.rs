@@ -6,10 +6,10 @@ use super::{BoardReport, Problem};
 use crate::exit::Exit;
 use crate::verdict::Verdict;
 
-/// The number of the present shape of all documents. It rises when a key goes or changes its meaning; keys may come.
+/// The version of the shape of all documents. It goes up when a key is removed or changes its meaning, not when one is added.
 pub const SCHEMA: u32 = 1;
 
-/// Which shape a document has: [`SCHEMA`]. Another one is not read.
+/// The version of a document's shape. It is [`SCHEMA`]; a document with any other is not read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Schema;
 
@@ -30,16 +30,16 @@ impl<'de> Deserialize<'de> for Schema {
     }
 }
 
-/// A result of a command, or why there is none.
+/// The result of a command, or the reason why there is none.
 #[derive(Clone, Debug, Serialize)]
 pub struct Document<'a, T> {
     /// The shape.
     pub schema: Schema,
     /// The command that was given.
     pub command: &'a str,
-    /// The judgement; none where nothing was to be judged.
+    /// The judgement; none for a command that judges nothing.
     pub verdict: Option<Verdict>,
-    /// The exit code of the program that ends with it.
+    /// The exit code of a program that ends with this document.
     pub exit_code: Exit,
     /// The board, if one was used.
     pub board: Option<&'a BoardReport>,

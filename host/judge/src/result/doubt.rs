@@ -1,48 +1,48 @@
-//! Why what was found may not be the board's.
+//! Why a difference may not be the board's fault.
 
 use serde::{Deserialize, Serialize};
 
 use super::{Finding, wording};
 
-/// Why a board may not be as the host made it, although it is sound.
+/// Why a sound board may not be in the state that the host put it into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "of", rename_all = "kebab-case")]
 pub enum Doubt {
-    /// Requests that change the board may have come to it twice.
+    /// Requests that change the board may have reached it twice.
     RequestsTwice {
         /// How many.
         requests: u64,
     },
-    /// The board counts other packets than can have come to it, or than were sent.
+    /// The board counts a number of packets that cannot have reached it, or that was not sent.
     PacketsMiscounted {
         /// What it counts.
         counted: u64,
-        /// What was sent, without what is known to be lost.
+        /// How many were sent, without those known to be lost.
         sent: u64,
     },
-    /// Nothing but counters is wrong that a link moves as well, which brings one packet twice and loses another.
+    /// Only such counters are wrong as a link changes too, when it brings one packet twice and loses another.
     CountersOfLinks {},
-    /// The board does not tell how many packets came to it.
+    /// The board does not say how many packets reached it.
     PacketsUncounted {},
-    /// What the board was asked and must have said did not come back, however often it was asked for.
+    /// An answer that the board must give did not come back, however often it was asked for.
     AnswerLost {},
 }
 
 impl Doubt {
-    /// It as a part of a sentence.
+    /// The doubt as a clause after "because".
     #[must_use]
     pub fn sentence(self) -> String {
         wording::because(self)
     }
 }
 
-/// What was to be looked at again, and why that came to nothing.
+/// What was to be looked at a second time, and why that broke off.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BrokenOff {
     /// What was wrong.
     pub found: Finding,
-    /// Why it may come from the link.
+    /// Why the link may have caused it.
     pub doubt: Doubt,
-    /// What the look in another session ended with.
+    /// What ended the second look, in another session.
     pub reason: Finding,
 }

@@ -1,27 +1,27 @@
-//! Frames that were kept.
+//! Frames that were kept for diagnosis and pictures.
 
 use halfrow_model::Frame;
 use serde::{Deserialize, Serialize};
 
-/// A frame kept for pictures: how it went in, what came out, what should have.
+/// A frame that was kept: what went in, what came out and what should have.
 #[derive(Clone, Debug)]
 pub struct Evidence {
     /// Index into [`Report::frames`](super::Report::frames).
     pub index: usize,
-    /// What went in.
+    /// The frame that was sent.
     pub input: Frame,
-    /// What the board gave; rows that did not come back are black.
+    /// The frame that came back; missing rows are black.
     pub found: Frame,
-    /// What the reference gives.
+    /// The frame that the reference gives.
     pub expected: Frame,
 }
 
-/// Frames kept for diagnosis and pictures: what went in, what came out and what should have.
+/// How many frames were kept for diagnosis and pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EvidenceReport {
     /// Frames kept.
     pub kept: usize,
-    /// Their bytes in memory.
+    /// The bytes of memory that they take.
     pub bytes: u64,
     /// Frames for which there was no room.
     pub left_out: usize,

@@ -1,4 +1,4 @@
-//! One of every finding and of every defect, for the page of codes and for tests.
+//! An example of every finding and every defect, for the page of codes and for tests.
 
 use super::{
     Account, Answer, BoardKind, BrokenOff, BurstCount, ClampEnd, ClockSeen, Corner, Counter, Counting,
@@ -8,13 +8,13 @@ use super::{
 };
 use crate::verdict::Verdict;
 
-/// One of every finding that is no error.
+/// An example of every finding that is no error.
 #[must_use]
 pub fn findings() -> Vec<Finding> {
     findings_with_verdicts().into_iter().map(|(_, finding)| finding).collect()
 }
 
-/// One of every finding that is no error, with the verdict that it leads to; none of what was not done.
+/// An example of every finding that is no error, with the verdict that it leads to; none for what was not done.
 #[must_use]
 pub fn findings_with_verdicts() -> Vec<(Option<Verdict>, Finding)> {
     let with = |verdict| move |finding| (verdict, finding);
@@ -117,7 +117,7 @@ fn late_row() -> Finding {
     })
 }
 
-/// What is wrong about the wire's rules.
+/// Findings on the rules of the wire.
 fn on_rules() -> [Finding; 1] {
     [Finding::RuleBroken {
         rule: Rule::CommitCrc,
@@ -129,10 +129,10 @@ fn on_rules() -> [Finding; 1] {
 
 /// A bit that was flipped on its way in.
 const FLIPPED: FlippedBit = FlippedBit { column: 5, bit: 11 };
-/// A quarter of 96 MHz.
+/// Bounds around a quarter of 96 MHz.
 const SLOW_CLOCK: ClockSeen = ClockSeen { least_hz: Some(22_100_000), most_hz: Some(24_600_000) };
 
-/// On what entered the core, and on frames that the board made on its own.
+/// Findings on what entered the core, and on frames that the board made itself.
 fn on_entry_and_at_speed() -> [Finding; 6] {
     [
         Finding::ClockNotAsNamed { clock_hz: 96_000_000, seen: SLOW_CLOCK },
@@ -187,7 +187,7 @@ fn unjudged() -> [Finding; 12] {
     ]
 }
 
-/// One of everything that a run may leave untouched.
+/// An example of everything that a run may not exercise.
 #[must_use]
 pub fn not_exercised() -> Vec<NotExercised> {
     vec![
@@ -214,7 +214,7 @@ pub fn not_exercised() -> Vec<NotExercised> {
     ]
 }
 
-/// One suspect of every defect.
+/// A suspect for every defect.
 #[must_use]
 pub fn suspects() -> Vec<Suspect> {
     let samples =

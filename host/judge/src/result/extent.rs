@@ -1,24 +1,24 @@
-//! Where differences lie.
+//! The rows or columns in which differences lie.
 
 use serde::{Deserialize, Serialize};
 
-/// Which rows or columns.
+/// A set of rows or columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Extent {
     /// A single one.
     One {
-        /// Which.
+        /// Its number.
         at: usize,
     },
     /// All.
     Every {},
-    /// All from one on.
+    /// All from a given one on.
     From {
-        /// That one.
+        /// The first.
         first: usize,
     },
-    /// All between two, these included.
+    /// All between two, both included.
     Between {
         /// The first.
         first: usize,
@@ -39,7 +39,7 @@ pub enum Extent {
     Some {
         /// How many.
         count: usize,
-        /// Of so many.
+        /// Of how many.
         total: usize,
         /// The first.
         first: usize,

@@ -1,4 +1,4 @@
-//! What is told of frames and rows.
+//! What a report says about frames and rows.
 
 use std::fmt;
 
@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 use super::as_text;
 use crate::compare::Comparison;
 
-/// How frames compare, taken together.
+/// The comparisons of several frames, added up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrameTotals {
     /// How many there are.
     pub frames: usize,
-    /// How many of them differ.
+    /// How many of them have differences.
     pub differing_frames: usize,
     /// Samples that were compared.
     pub samples: usize,
@@ -22,7 +22,7 @@ pub struct FrameTotals {
 }
 
 impl FrameTotals {
-    /// Of these frames.
+    /// The totals of `frames`.
     #[must_use]
     pub fn of(frames: &[FrameReport]) -> Self {
         let compared = || frames.iter().map(|frame| &frame.comparison);
@@ -42,30 +42,30 @@ pub struct FrameReport {
     pub name: String,
     /// The frame's number on the wire.
     pub number: u16,
-    /// SHA-256 of the samples that went in, 16 bits little endian.
+    /// SHA-256 of the samples that went in, 16 bits each, little endian.
     pub sha256: String,
     /// Bayer phase.
     #[serde(with = "as_text")]
     pub phase: Phase,
-    /// Which tables made it: a generation.
+    /// The generation of the tables that it was made with.
     pub generation: u8,
     /// How its rows were played.
     pub timing: FrameTiming,
-    /// What was set otherwise for it than the tables have it.
+    /// The setting in which it differs from the plan's tables.
     #[serde(default)]
     pub variation: Option<Variation>,
-    /// How it compares.
+    /// How its samples compare with the reference.
     pub comparison: Comparison,
-    /// How many rows were streamed, from the first one on, of a frame that was not streamed whole.
+    /// How many rows from the top were streamed, if the frame was not streamed whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_rows: Option<usize>,
     /// Rows that came back.
     pub rows: usize,
-    /// From when the frame before it had come back until it had, by the wall's clock, in seconds.
+    /// Seconds on the wall clock from when the frame before it had come back until this one had.
     pub seconds: f64,
 }
 
-/// What a frame of its own is for: a setting that no other frame has.
+/// The setting that a frame of its own tries and no other frame has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum Variation {
@@ -94,17 +94,17 @@ impl fmt::Display for Variation {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum FrameTiming {
-    /// The fewest pixel clocks between rows that the board can do.
+    /// The fewest pixel clocks between rows that the board allows.
     LeastBlanking {
-        /// How many those are.
+        /// Their number.
         clocks: u16,
     },
-    /// So many pixel clocks between rows.
+    /// A given number of pixel clocks between rows.
     Blanking {
-        /// How many.
+        /// Their number.
         clocks: u16,
     },
-    /// Gaps in and between rows.
+    /// Random gaps in and between rows.
     Gaps {
         /// Their seed.
         seed: u32,

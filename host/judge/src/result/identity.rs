@@ -1,18 +1,18 @@
-//! What a board says of itself, as reports carry it.
+//! What a board says about itself, as reports carry it.
 
 use serde::{Deserialize, Serialize};
 
 use crate::board::{Bursts, Capabilities, Welcome, grids};
 use crate::words::count;
 
-/// What a board says of itself.
+/// What a board says about itself.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     /// Its name.
     pub name: String,
     /// Its serial number, in hexadecimal.
     pub serial: String,
-    /// The commit of its build, in hexadecimal.
+    /// The start of the commit that it was built from, in hexadecimal.
     pub build: String,
     /// The wire's version.
     pub protocol: u8,
@@ -20,33 +20,33 @@ pub struct Identity {
     pub datapath: u16,
     /// The widest row.
     pub max_width: u16,
-    /// The most rows.
+    /// The most rows in a frame.
     pub max_height: u16,
     /// Sample depths, in bits.
     pub depths: Vec<u8>,
-    /// 5 or 7.
+    /// Taps: 5 or 7.
     pub taps: u8,
-    /// L.
+    /// L, in pixel clocks.
     pub latency: u8,
-    /// M.
+    /// M, in samples.
     pub ring: u16,
     /// Fewest pixel clocks between rows.
     pub least_blanking: u16,
     /// Banks of tables.
     pub table_banks: u8,
-    /// Row banks towards the core.
+    /// Banks for rows on their way into the core.
     pub row_banks_in: u8,
-    /// Row banks from the core.
+    /// Banks for rows that come out of the core.
     pub row_banks_out: u8,
-    /// The pixel clock in hertz, 0 when it stands for no real time.
+    /// The pixel clock in hertz; 0 when it stands for no real time.
     pub clock_hz: u32,
-    /// The frames that it makes on its own; none if it makes none.
+    /// The frames that it makes itself; none if it makes none.
     #[serde(default)]
     pub bursts: Option<BurstsReport>,
     /// Whether each row comes back with the CRC-32 of what entered the core.
     #[serde(default)]
     pub entered: bool,
-    /// The grids of datapath 2 that it takes; none if it takes one factor a row alone.
+    /// The grids of datapath 2 that it takes; none if it takes only one factor a row.
     #[serde(default)]
     pub grids: Option<GridsReport>,
 }
@@ -54,15 +54,15 @@ pub struct Identity {
 /// The grids that a board takes (DATAPATH.md, datapath 2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct GridsReport {
-    /// T: entries of a bank.
+    /// T: the entries that a bank holds.
     pub entries: u16,
     /// Fewest pixel clocks between rows of a grid that are narrower than `width`.
     pub least_blanking: u8,
-    /// Columns from which on rows of a grid need no more blanking than others.
+    /// The width in columns from which rows of a grid need no more blanking than others.
     pub width: u16,
 }
 
-/// What a board makes on its own at the full pixel clock (AT-SPEED.md).
+/// The frames that a board makes itself at the full pixel clock (AT-SPEED.md).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BurstsReport {
     /// The content id.
@@ -71,7 +71,7 @@ pub struct BurstsReport {
     pub records: u16,
     /// Fewest pixel clocks between two frames.
     pub least_frame_blanking: u16,
-    /// Whether it keeps a row whose signature is not the expected one.
+    /// Whether it has a trap, which keeps a row whose signature is not the expected one.
     pub trap: bool,
 }
 
@@ -81,7 +81,7 @@ impl BurstsReport {
         Self { content, records, least_frame_blanking, trap }
     }
 
-    /// For people.
+    /// A line for people.
     fn text(&self) -> String {
         let trap = if self.trap { "a trap" } else { "no trap" };
         format!("content {}, {}, {trap}", self.content, count(self.records, "record"))
@@ -89,7 +89,7 @@ impl BurstsReport {
 }
 
 impl GridsReport {
-    /// For people.
+    /// A line for people.
     fn text(&self) -> String {
         format!(
             "at most {} entries; {} pixel clocks between rows of less than {} columns",
@@ -99,7 +99,7 @@ impl GridsReport {
 }
 
 impl Identity {
-    /// From the board's answers.
+    /// The identity in the board's answers.
     #[must_use]
     pub fn of(welcome: &Welcome, capabilities: &Capabilities) -> Self {
         let depths = capabilities.sample_depths();
@@ -130,14 +130,14 @@ impl Identity {
         }
     }
 
-    /// The datapaths that it has: `1`, `1 and 2`.
+    /// The datapaths that it has: `1` or `1 and 2`.
     #[must_use]
     pub fn datapaths(&self) -> String {
         let further = if self.grids.is_some() { " and 2" } else { "" };
         format!("{}{further}", self.datapath)
     }
 
-    /// For people: name and value, line by line.
+    /// Names and values for people, line by line.
     #[must_use]
     pub fn lines(&self) -> Vec<(&'static str, String)> {
         let depths: Vec<String> = self.depths.iter().map(u8::to_string).collect();

@@ -1,12 +1,12 @@
-//! What a run came to, as data: a [`Report`] that can be stored, read back and compared.
+//! The result of a run as data: a [`Report`] that can be stored, read back and compared.
 //!
 //! ```text
 //! Report ─► checks ─► Finding  ─┐
 //!        ─► suspects ► Defect  ─┴─► wording ─► sentences, which the views print and the JSON carries
 //! ```
 //!
-//! A finding is a code with parameters. Its sentence is made from them in [`wording`] and nowhere else; what is read back
-//! is the code and its parameters, never the sentence.
+//! A finding is a code with parameters. Its sentence is made from them in [`wording`] and nowhere else. Reading a report back
+//! takes the code and its parameters, never the sentence.
 
 mod as_text;
 mod bursts;
@@ -71,57 +71,57 @@ pub use within::{CoveragePoint, WithinPart, WithinReport};
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(remote = "Self")]
 pub struct Report {
-    /// Which shape of JSON it has.
+    /// The version of its JSON's shape.
     pub schema: Schema,
     /// The board.
     pub board: BoardReport,
-    /// Why it ended as it did. The verdict follows from it.
+    /// Why the run ended as it did. The verdict follows from it.
     pub cause: Cause,
     /// The result.
     pub finding: Finding,
-    /// The parts that the pattern of differences points at, the likeliest first.
+    /// The parts to which the pattern of differences points, the likeliest first.
     pub suspects: Vec<Suspect>,
     /// Every check, in the order of the run.
     pub checks: Vec<Check>,
     /// Every frame that was streamed, in order.
     pub frames: Vec<FrameReport>,
-    /// What the frames left untouched of the board, under PASS; empty under FAIL and ERROR.
+    /// What the run did not exercise of the board, under PASS; empty under FAIL and ERROR.
     #[serde(default)]
     pub not_exercised: Vec<NotExercised>,
     /// The latency of all rows.
     pub latency: Option<LatencyReport>,
-    /// How façade edges of the built-in street stand before and after.
+    /// How straight the façade edges of the built-in street are, before and after correction.
     pub street: Option<StreetReport>,
     /// What was kept for diagnosis and pictures.
     pub evidence: EvidenceReport,
-    /// Frames at the full pixel clock for hours; none but where they were asked for.
+    /// Hours of frames at the full pixel clock; none unless the run was a soak.
     #[serde(default)]
     pub soak: Option<SoakReport>,
-    /// What was taken of the run, where it had to keep within a time.
+    /// What was taken of a run that had to keep within a time.
     #[serde(default)]
     pub within: Option<WithinReport>,
-    /// What share of the Verilog's faults the run finds, under PASS; none when that was not measured.
+    /// What share of the Verilog's faults the run finds, under PASS; none when it was not measured.
     #[serde(default)]
     pub coverage: Option<CoverageReport>,
-    /// What was asked for and could not be written, under a verdict that stands without it.
+    /// What was asked for and could not be written; the verdict stands without it.
     #[serde(default)]
     pub lacks: Vec<Problem>,
     /// The link.
     pub link: LinkReport,
     /// What was uploaded.
     pub tables: TablesReport,
-    /// The run itself: enough to repeat it.
+    /// The run itself, with enough to repeat it.
     pub run: RunReport,
 }
 
 impl Report {
-    /// The judgement.
+    /// The verdict, which follows from the cause.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         self.cause.verdict()
     }
 
-    /// The command that makes such a report.
+    /// The command that made the report.
     #[must_use]
     pub fn command(&self) -> &'static str {
         if self.soak.is_some() { "soak" } else { "verify" }
@@ -133,7 +133,8 @@ impl Report {
         self.finding.sentence()
     }
 
-    /// What to do next, when there is something to do: what the likeliest suspect asks for, or else the finding.
+    /// What to do next, if anything: as the likeliest suspect says, or else the finding. Under ERROR, errors on the line say it
+    /// first.
     #[must_use]
     pub fn remedy(&self) -> Option<String> {
         let of_suspect = || self.suspects.first().map(Suspect::designer);
@@ -145,7 +146,7 @@ impl Report {
         }
     }
 
-    /// What a technician does with a board that is wrong, in one sentence: by the likeliest suspect, or else by the finding. None under
+    /// What a technician should do with a board that is wrong: as the likeliest suspect says, or else the finding. None under
     /// PASS and ERROR.
     #[must_use]
     pub fn technician(&self) -> Option<String> {
@@ -154,7 +155,7 @@ impl Report {
         is_wrong.then(|| of_suspect().or_else(|| self.finding.technician())).flatten()
     }
 
-    /// Why there is no judgement; none under PASS and FAIL.
+    /// Why the board could not be judged; none under PASS and FAIL.
     #[must_use]
     pub fn error(&self) -> Option<Problem> {
         (self.verdict() == Verdict::Error)
@@ -162,7 +163,7 @@ impl Report {
     }
 }
 
-/// What a report has behind what every document of the program begins with, with its sentences.
+/// The keys of a report that follow those with which every document begins, with its sentences.
 #[derive(Serialize)]
 struct Rest<'a> {
     cause: Cause,
@@ -232,7 +233,7 @@ impl Serialize for Report {
 
 impl<'de> Deserialize<'de> for Report {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        /// The document has the verdict as well, which nobody may have written anew.
+        /// The document also has the verdict, which must be that of the cause.
         #[derive(Deserialize)]
         struct Read {
             verdict: Verdict,
@@ -250,19 +251,19 @@ impl<'de> Deserialize<'de> for Report {
     }
 }
 
-/// Which board it was.
+/// The board that was judged.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BoardReport {
     /// `mock`, `sim`, `replay` or `hardware`.
     pub kind: BoardKind,
     /// The target string.
     pub target: String,
-    /// What the board says of itself; none when it never answered.
+    /// What the board says about itself; none when it never answered.
     pub identity: Option<Identity>,
 }
 
 impl BoardReport {
-    /// Of a board that answers, behind a target of this kind.
+    /// The report on a board that answers at a `target` of this kind.
     #[must_use]
     pub fn of(board: &Board, kind: BoardKind, target: String) -> Self {
         let kind = kind.confirmed_by(board.capabilities.nature);
@@ -270,7 +271,7 @@ impl BoardReport {
     }
 }
 
-/// Façade edges of the built-in street.
+/// How straight the façade edges of the built-in street are.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StreetReport {
     /// As the lens bends them.
@@ -282,7 +283,7 @@ pub struct StreetReport {
 /// What was uploaded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TablesReport {
-    /// Where they came from: a file, or the lens and kernel in words.
+    /// Where the tables came from: a file, or the lens and kernel in words.
     pub source: String,
     /// Columns.
     pub width: usize,
@@ -292,9 +293,10 @@ pub struct TablesReport {
     pub bits: u32,
     /// C, twice the optical centre's column.
     pub centre2: u32,
-    /// Rows outside the image circle, which row factors do not stretch, and a grid not exactly; none when the tables are a file, which does not say.
+    /// Rows outside the image circle, which row factors do not stretch and a grid stretches only approximately; none for tables
+    /// from a file, which does not say.
     pub rows_outside_circle: Option<usize>,
-    /// CRC-32 of the row factors or of the grid's entries, as on the wire. Earlier reports say `steps_crc32`.
+    /// CRC-32 of the row factors or of the grid's entries, as on the wire. Earlier reports call it `steps_crc32`.
     #[serde(alias = "steps_crc32")]
     pub tables_crc32: String,
     /// CRC-32 of the kernel's nodes, as on the wire.
@@ -310,20 +312,21 @@ pub struct RunReport {
     pub commit: String,
     /// The command line.
     pub arguments: Vec<String>,
-    /// Seed of noise, gaps, the link test, the rules and what the board makes on its own. The session's numbers are drawn without it.
+    /// Seed of noise, gaps, the link test, the rules and the frames that the board makes itself. The session's numbers do not
+    /// depend on it.
     pub seed: u64,
     /// When it began, RFC 3339, UTC.
     pub started: String,
     /// When it ended.
     pub ended: String,
-    /// How long it took by the wall's clock, in seconds.
+    /// How long it took on the wall clock, in seconds.
     pub seconds: f64,
     /// The host it ran on.
     pub host: String,
-    /// Who tested, if anybody was named.
+    /// Who tested, if a name was given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub operator: Option<String>,
-    /// Files that were read, with their SHA-256.
+    /// The files that were read, with their SHA-256.
     pub files: Vec<FileHash>,
 }
 

@@ -1,10 +1,10 @@
-//! What a PASS says nothing about, as codes with parameters.
+//! What a PASS does not cover, as codes with parameters.
 
 use serde::{Deserialize, Serialize};
 
 use super::{ClockSeen, Parameters, wording};
 
-/// A part of the board, or a setting, that no frame of the run put to the test: a fault there would have gone unseen.
+/// A part of the board, or a setting, that no frame of the run exercised: a fault there would have gone unseen.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "code", content = "parameters", rename_all = "kebab-case")]
 pub enum NotExercised {
@@ -97,20 +97,20 @@ pub enum NotExercised {
 }
 
 impl NotExercised {
-    /// It in words, without a full stop, so that "not exercised: …" makes a sentence.
+    /// The part in words, without a full stop, to complete the sentence "not exercised: …".
     #[must_use]
     pub fn words(&self) -> String {
         wording::not_exercised(self)
     }
 
-    /// Its code and its parameters.
+    /// The code and its parameters.
     #[must_use]
     pub fn tagged(&self) -> (String, Parameters) {
         super::problem::tagged(self)
     }
 }
 
-/// One in JSON, with its words.
+/// A part in JSON, with its words.
 #[derive(Serialize)]
 pub(super) struct InWords<'a> {
     #[serde(flatten)]

@@ -9,21 +9,21 @@ use serde_json::{Map, Value};
 use super::codes::{self, Coded};
 use super::{Finding, wording};
 
-/// Parameters by name.
+/// Parameters, by name.
 pub type Parameters = Map<String, Value>;
 
 /// Why something could not be done.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Problem {
-    /// What it is: stable, for programs.
+    /// The code: stable, for programs.
     pub code: String,
-    /// Its figures and names.
+    /// The figures and names in its message.
     pub parameters: Parameters,
     /// It in one sentence.
     pub message: String,
-    /// What to do about it, if that is known.
+    /// What to do about it, if known.
     pub remedy: Option<String>,
-    /// What led to it, the nearest first; these have no causes of their own.
+    /// What led to it, the nearest cause first; causes have none of their own.
     #[serde(default)]
     pub causes: Vec<Problem>,
 }
@@ -40,14 +40,14 @@ impl Problem {
         Self { code: code.to_owned(), parameters, message, remedy, causes: Vec::new() }
     }
 
-    /// An error of this library with its causes.
+    /// The problem that an error of this library stands for, with its causes.
     #[must_use]
     pub fn of(error: &(dyn Error + 'static)) -> Self {
         Self::by(error, codes::lookup)
     }
 
-    /// An error with its causes, whose codes `lookup` knows. What wraps a known error without a code of its own has its
-    /// code; what nobody knows is a [`codes::FOREIGN`] cause.
+    /// The problem that an error stands for, with its causes and the codes that `lookup` finds. An error without a code that
+    /// wraps one with a code takes that code; any other without a code gets [`codes::FOREIGN`].
     #[must_use]
     pub fn by(error: &(dyn Error + 'static), lookup: codes::Lookup) -> Self {
         let mut chain: Vec<_> = std::iter::successors(Some(error), |&error| error.source())
@@ -64,7 +64,7 @@ impl Problem {
         Self { remedy, causes: chain.collect(), ..first }
     }
 
-    /// It without what to do about it.
+    /// The problem without what to do about it.
     #[must_use]
     pub(crate) fn unasked(mut self) -> Self {
         let causes = self.causes.iter_mut().map(|cause| (&mut cause.message, &cause.parameters));
@@ -77,14 +77,14 @@ impl Problem {
         self
     }
 
-    /// It and its causes, none of which has causes of its own.
+    /// The problem and its causes, none of which has causes of its own.
     #[must_use]
     pub fn chain(mut self) -> Vec<Self> {
         let causes = std::mem::take(&mut self.causes);
         std::iter::once(self).chain(causes).collect()
     }
 
-    /// It and its causes in one sentence.
+    /// The problem and its causes in one sentence.
     #[must_use]
     pub fn sentence(&self) -> String {
         let causes = self.causes.iter().map(|cause| cause.message.as_str());
@@ -105,8 +105,8 @@ impl fmt::Display for Problem {
 
 impl Error for Problem {}
 
-/// What a message says, and what it asks for: messages of this program say what is wrong and, behind the last semicolon that stands in
-/// none of their names, what to do.
+/// Splits a message into what is wrong and what to do. The latter follows the last semicolon that is not part of a name in
+/// `parameters`.
 fn asked<'a>(message: &'a str, parameters: &Parameters) -> Option<(&'a str, &'a str)> {
     let names = parameters.values().filter_map(Value::as_str).filter(|name| name.contains("; "));
     let masked = names.fold(message.to_owned(), |text, name| text.replace(name, &name.replace("; ", ", ")));
@@ -121,31 +121,31 @@ fn remedy(asked: &str) -> Option<String> {
 }
 
 impl Finding {
-    /// It in one sentence, without a full stop.
+    /// The finding in one sentence, without a full stop.
     #[must_use]
     pub fn sentence(&self) -> String {
         wording::sentence(self)
     }
 
-    /// What to do about it, if there is something to do.
+    /// What to do about it, if anything.
     #[must_use]
     pub fn remedy(&self) -> Option<String> {
         wording::remedy(self)
     }
 
-    /// What a technician does with a board of which it was found, in one sentence; none where it is nothing against the board.
+    /// What a technician should do with the board; none for findings that are not against the board.
     #[must_use]
     pub fn technician(&self) -> Option<String> {
         wording::at_the_bench(self)
     }
 
-    /// Its code.
+    /// The finding's code.
     #[must_use]
     pub fn code(&self) -> String {
         tagged(self).0
     }
 
-    /// It as the reason why there is no result.
+    /// The finding as a problem: the reason why there is no result.
     #[must_use]
     pub fn as_problem(&self) -> Problem {
         if let Self::Problem(problem) = self {

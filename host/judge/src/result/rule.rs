@@ -1,4 +1,4 @@
-//! The wire's rules that a run tries on purpose, and what a board says to it.
+//! The rules of the wire that a run tries on purpose, and the board's answers.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,19 +6,19 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rule {
-    /// A request that is cut short, or has a field without meaning, is refused.
+    /// A request that is cut short or has a field without meaning is refused.
     Payload,
-    /// A kind that is no request is refused.
+    /// A packet whose kind is not a request is refused.
     Kind,
-    /// Bytes behind a request's fields are skipped, and what means nothing in a row's place is not looked at.
+    /// Bytes after a request's fields are skipped, and bits of a row's place that mean nothing are ignored.
     Skipped,
-    /// A configuration out of range is refused, and the field named; the one in front stays as it was.
+    /// A configuration out of range is refused, naming the field; the earlier configuration stays as it was.
     Configuration,
-    /// A span that is not in a table is refused.
+    /// A span outside a table is refused.
     Span,
-    /// A table's entry out of range is refused, and nothing of its packet is written.
+    /// A table entry out of range is refused, and nothing of its packet is written.
     Entry,
-    /// An entry is written where it belongs, and read from there.
+    /// An entry is written where it belongs and read from there.
     Address,
     /// A packet with a flipped bit, of another version or of another length than it names has no effect.
     Damage,
@@ -26,57 +26,57 @@ pub enum Rule {
     Once,
     /// A packet of another session is refused, and has no effect.
     Session,
-    /// A board that another host holds refuses a greeting, and says for how long.
+    /// A board that another host holds refuses HELLO, and says for how long.
     Held,
-    /// A greeting opens the next session, once, in which nothing is left of the one before but tables and configuration.
+    /// HELLO opens the next session, once; only tables and configuration are left of the one before.
     NewSession,
-    /// A RESET with level 1 closes the session, one with another level does not, and neither of the first two drops tables.
+    /// RESET closes the session with level 1 alone, and drops tables with level 2 alone.
     Closed,
-    /// A commit of tables that read back otherwise is refused.
+    /// A commit with another CRC than the tables read back with is refused.
     CommitCrc,
-    /// A commit that names tables which are active or pending is answered, generation 0 is refused, and another is not both.
+    /// Which generations a commit may name: those of active and pending tables are answered, and 0 is refused.
     Generation,
-    /// A commit whose grid the board cannot have is refused, and one whose grid reads back otherwise.
+    /// A commit is refused if the board cannot have its grid, or if its grid reads back otherwise.
     Shape,
-    /// A commit takes effect with its frame, and not before.
+    /// A commit takes effect with its frame, not before.
     CommitFrame,
-    /// What would touch tables of a pending commit is refused.
+    /// What would change the tables of a pending commit is refused.
     Pending,
     /// RESET forgets a pending commit.
     Forgotten,
     /// A row out of place is refused.
     RowPlace,
-    /// The window is as far ahead as a board has banks for rows.
+    /// The window is as many rows ahead as the board has input banks.
     Window,
     /// A row beyond the window is refused.
     Credit,
-    /// What must not be done with rows inside is refused.
+    /// What must not be done while rows are inside is refused.
     Inside,
-    /// Rows come back in place whatever was refused between them.
+    /// Rows come back in place, whatever was refused between them.
     Rows,
-    /// Samples that are greater than their depth are counted, and go in as they are.
+    /// Samples above their depth are counted, and go in as they are.
     Samples,
-    /// A row comes again as often as it is asked for, until it is acknowledged.
+    /// A row is sent again as often as it is asked for, until it is acknowledged.
     Again,
-    /// As many rows come as there are banks for them, and each is kept until it is acknowledged.
+    /// As many rows come out as there are output banks, and each is kept until it is acknowledged.
     Banks,
     /// Rows of the greatest width come back right.
     Wide,
-    /// Rows have their number, however great.
+    /// Rows keep their number, however large it is.
     RowNumber,
-    /// A burst that cannot be is refused.
+    /// An impossible burst is refused.
     Burst,
     /// What must not be done while a burst is under way is refused.
     UnderWay,
-    /// Records are kept until the host has them, and told again.
+    /// Records are kept until the host has them, and sent again when asked for.
     Records,
     /// A burst ends where it is told to.
     Ended,
     /// A RESET ends a burst wherever it is.
     Cut,
-    /// Every frame repeats the first where a burst is to.
+    /// Every frame repeats the first in a burst that asks for it.
     Repeated,
-    /// The first row with another signature than expected is kept.
+    /// The first row whose signature is not the expected one is kept.
     Trap,
     /// A board without configuration or tables is not ready.
     NotReady,
@@ -84,7 +84,7 @@ pub enum Rule {
     PowerUp,
 }
 
-/// What is said to a request.
+/// An answer to a request.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Answer {
@@ -97,12 +97,12 @@ pub enum Answer {
     },
     /// A reply.
     Replied {
-        /// Its payload in hexadecimal, the first bytes.
+        /// The first bytes of its payload, in hexadecimal.
         payload: String,
     },
     /// Credit for rows.
     Credit {
-        /// How many beyond the row that is waited for.
+        /// How many, from the row that the board waits for.
         rows: u32,
     },
     /// A session.
@@ -110,34 +110,34 @@ pub enum Answer {
         /// Its number.
         number: u8,
     },
-    /// It took what it was given.
+    /// The board took what it was given.
     Taken {},
-    /// How far a burst is.
+    /// The state of a burst.
     Burst {
         /// Whether it has ended.
         ended: bool,
-        /// The records that are there.
+        /// How many records there are.
         records: usize,
     },
-    /// A row as it must be.
+    /// The right row.
     Row {
-        /// Its place in its frame.
+        /// Its number in its frame.
         row: usize,
-        /// The frame.
+        /// The frame's number.
         frame: u16,
     },
-    /// A row that is not as it must be, in samples, latency, pauses or generation.
+    /// A row with wrong samples, latency, pauses or generation.
     OtherRow {},
     /// An answer that came twice.
     Twice {},
-    /// Nothing, although requests behind it are answered.
+    /// No answer, although later requests are answered.
     Nothing {},
 }
 
-/// One of two `ROW_OUT` packets that have the same number.
+/// Two `ROW_OUT` packets that have the same number, named by the second one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct NumberedRow {
-    /// The row of the second one.
+    /// The second one's row.
     pub row: u16,
     /// Its frame.
     pub frame: u16,
@@ -152,6 +152,6 @@ pub struct RepeatedRow {
     pub row: u16,
     /// Its frame.
     pub frame: u16,
-    /// Its `repeats`, both times.
+    /// Its `repeats`, the same both times.
     pub repeats: u16,
 }

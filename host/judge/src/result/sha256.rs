@@ -1,8 +1,8 @@
-//! What files and frames are known again by.
+//! The hash that identifies files and frames.
 
 use sha2::{Digest, Sha256};
 
-/// SHA-256 of all `parts`, one behind the other, in hexadecimal.
+/// SHA-256 of all `parts`, one after the other, in hexadecimal.
 pub fn sha256<P: AsRef<[u8]>>(parts: impl IntoIterator<Item = P>) -> String {
     let mut hash = Sha256::new();
     parts.into_iter().for_each(|part| hash.update(part));

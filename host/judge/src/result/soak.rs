@@ -1,4 +1,4 @@
-//! What frames that a board made at its full pixel clock for hours came to.
+//! The results of a soak: hours of frames that a board makes at its full pixel clock.
 
 use std::time::Duration;
 
@@ -6,53 +6,54 @@ use serde::{Deserialize, Serialize};
 
 use super::{Finding, Suspect};
 
-/// Intervals of a [`SoakChart`].
+/// The most intervals of a [`SoakChart`].
 const MOST_INTERVALS: usize = 240;
 
-/// How long a soak is to be.
+/// The requested length of a soak.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "of", rename_all = "kebab-case")]
 pub enum SoakLength {
     /// A time on the link's clock.
     Time {
-        /// It, in seconds. None above 0, as what is no number, is over before there is anything to judge, and infinity never.
+        /// The time in seconds. With 0, a negative number or NaN the soak is over before anything is judged; with infinity it
+        /// never ends.
         seconds: f64,
     },
     /// Frames.
     Frames {
-        /// So many.
+        /// Their number.
         frames: u64,
     },
 }
 
-/// What a soak came to, up to where it ended.
+/// The result of a soak, up to where it ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SoakReport {
     /// What was asked for.
     pub asked: SoakLength,
     /// How long it took on the link's clock, in seconds.
     pub seconds: f64,
-    /// Bursts, each with content of its own.
+    /// Bursts, each with its own content.
     pub bursts: u32,
     /// Frames judged.
     pub frames: u64,
-    /// Those with another signature than the reference's.
+    /// Frames whose signature is not the reference's.
     pub wrong: u64,
-    /// Those in which the enable was off, so that they were not at speed.
+    /// Frames in which the enable was off at times, so that they were not at speed.
     pub paused: u64,
-    /// Those that waited until the host had the records of earlier ones.
+    /// Frames that waited until the host had the records of earlier ones.
     pub held_back: u64,
-    /// What differed, the first of each burst, in order; behind the first [`SoakReport::MOST_DIFFERENCES`] of them none is kept.
+    /// The first difference of each burst, in order; only the first [`SoakReport::MOST_DIFFERENCES`] are kept.
     pub differences: Vec<SoakDifference>,
     /// When frames were judged.
     pub chart: SoakChart,
 }
 
 impl SoakReport {
-    /// Differences that are kept.
+    /// The most differences that are kept.
     pub const MOST_DIFFERENCES: usize = 32;
 
-    /// Of a soak that has judged nothing yet.
+    /// The report of a soak that has judged nothing yet.
     pub(crate) fn new(asked: SoakLength) -> Self {
         Self {
             asked,
@@ -75,11 +76,11 @@ pub struct SoakDifference {
     pub seconds: f64,
     /// Seed of the burst's content (AT-SPEED.md).
     pub seed: u32,
-    /// The generation of the tables that were active; every other frame of a burst may have those of the other bank.
+    /// The generation of the tables active when the burst began; every other frame of a burst may have those of the other bank.
     pub generation: u8,
     /// What was seen.
     pub finding: Finding,
-    /// The parts that it points at, the likeliest first.
+    /// The parts to which it points, the likeliest first.
     pub suspects: Vec<Suspect>,
 }
 
@@ -88,7 +89,7 @@ pub struct SoakDifference {
 pub struct SoakChart {
     /// How long an interval is, in seconds.
     pub interval_seconds: f64,
-    /// The intervals from the beginning on. One without a frame is one in which the board was away, or its tables were changed.
+    /// The intervals from the beginning on. In one without frames the board was away, or its tables were being changed.
     pub intervals: Vec<SoakInterval>,
 }
 
@@ -97,7 +98,7 @@ pub struct SoakChart {
 pub struct SoakInterval {
     /// Frames.
     pub frames: u64,
-    /// Those with another signature.
+    /// How many of them have another signature than the reference's.
     pub wrong: u64,
 }
 
@@ -108,7 +109,8 @@ impl Default for SoakChart {
 }
 
 impl SoakChart {
-    /// Counts frames that were judged when `time` of the soak had passed. Intervals become twice as long when there are too many.
+    /// Counts frames that were judged `time` after the soak began. When there would be too many intervals, they are merged in
+    /// pairs.
     pub(crate) fn add(&mut self, time: Duration, judged: SoakInterval) {
         let mut index = (time.as_secs_f64() / self.interval_seconds) as usize;
         while index >= MOST_INTERVALS {

@@ -1,11 +1,11 @@
-//! A defect that is suspected, and how well it explains what was seen.
+//! A suspected defect, and how well it explains what was seen.
 
 use serde::ser::SerializeStruct;
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::{Defect, wording};
 
-/// The part that a pattern of differences points at.
+/// The part to which a pattern of differences points.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct Suspect {
     /// What is suspected, and where.
@@ -22,39 +22,39 @@ pub struct Suspect {
 pub enum Account {
     /// Samples that were examined.
     Samples {
-        /// Those that differ from the reference.
+        /// How many differ from the reference.
         differing: usize,
-        /// Those of them that the defect gives, to the bit.
+        /// How many of these the defect gives, to the bit.
         explained: usize,
         /// Samples that the defect would change and that are right.
         contradicted: usize,
-        /// Other defects that explain everything as well.
+        /// How many other defects explain everything equally well.
         others: usize,
-        /// Whether rows before the first difference came back right that it would have changed.
+        /// Whether the defect would also have changed earlier rows, which came back right: it began during the run.
         set_in: bool,
     },
     /// Words of a table that was read back.
     Words {
-        /// Those that read back as others.
+        /// How many read back as another word.
         wrong: usize,
-        /// Those of them that the defect gives.
+        /// How many of these the defect gives.
         explained: usize,
-        /// Other lines that would read alike.
+        /// How many other stuck lines would read the same.
         others: usize,
     },
-    /// Signatures of frames that the board made on its own.
+    /// Signatures of frames that the board made itself.
     Signatures {
-        /// Frames whose signature is another than the reference's.
+        /// Frames whose signature is not the reference's.
         wrong: usize,
-        /// Those of them that the defect gives.
+        /// How many of these the defect gives.
         explained: usize,
     },
-    /// The defect says where differences lie, and explains none.
+    /// The defect says where the differences lie, and explains none of them.
     Nothing,
 }
 
 impl Suspect {
-    /// How many other defects explain everything as well, beside which it is no certain one.
+    /// How many other defects explain everything equally well; with any, this one is not certain.
     #[must_use]
     pub fn others(&self) -> usize {
         match self.account {
@@ -63,37 +63,37 @@ impl Suspect {
         }
     }
 
-    /// Whether it is a defect that is known, and not only where the differences lie.
+    /// Whether it is a known defect, rather than only a description of where the differences lie.
     #[must_use]
     pub fn is_known(&self) -> bool {
         !matches!(self.defect, Defect::NoneKnown { .. })
     }
 
-    /// The kind of part, in lower case.
+    /// The kind of the suspected part, in lower case.
     #[must_use]
     pub fn part(&self) -> &'static str {
         wording::part(&self.defect)
     }
 
-    /// Where: row, node and weight, bit, as far as it can be told.
+    /// Where it is: row, node and weight, bit, as far as it is known.
     #[must_use]
     pub fn place(&self) -> String {
         wording::place(&self.defect)
     }
 
-    /// Why, in one sentence without a full stop.
+    /// Why it is suspected, in one sentence without a full stop.
     #[must_use]
     pub fn evidence(&self) -> String {
         wording::evidence(&self.defect, &self.account)
     }
 
-    /// Where the designer of the board looks next, in one sentence.
+    /// Where the designer of the board should look next, in one sentence.
     #[must_use]
     pub fn designer(&self) -> String {
         wording::designer(&self.defect)
     }
 
-    /// What a technician does with this board, in one sentence.
+    /// What a technician should do with this board.
     #[must_use]
     pub fn technician(&self) -> String {
         wording::technician(&self.defect)

@@ -1,5 +1,5 @@
-//! The codes of all errors of the library. A code is never changed and never given to another error; a new error gets a
-//! new one. [`lookup`] finds the code of an error, [`LISTS`] has them all.
+//! The codes of all errors of the library. A code is never changed and never given to another error; a new error gets a new
+//! one. [`lookup`] finds the code of an error, and [`LISTS`] has all codes.
 
 mod files;
 mod links;
@@ -15,30 +15,30 @@ pub use parameter::Parameter;
 /// The code of a cause that no part of the program has a code for: another library's error.
 pub const FOREIGN: &str = "foreign-cause";
 
-/// The code of an error, and its figures and names.
+/// The code of an error, with its figures and names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coded {
     /// The code.
     pub code: String,
-    /// The parameters.
+    /// The figures and names, by name.
     pub parameters: Parameters,
 }
 
 impl Coded {
-    /// Of an error that nobody knows.
+    /// The code of an error that has none: [`FOREIGN`].
     #[must_use]
     pub fn foreign() -> Self {
         Self { code: FOREIGN.to_owned(), parameters: Parameters::new() }
     }
 }
 
-/// Finds the code of an error.
+/// A function that finds the code of an error.
 pub(crate) type Lookup = fn(&(dyn Error + 'static)) -> Option<Coded>;
 
 /// The codes of one type of error.
 #[derive(Clone, Copy, Debug)]
 pub struct CodeList {
-    /// The type.
+    /// The type's name.
     pub error: &'static str,
     /// Each code with the names of its parameters.
     pub codes: &'static [(&'static str, &'static [&'static str])],
@@ -120,7 +120,7 @@ macro_rules! codes {
         ) -> Option<$crate::result::codes::Coded> {
             #[allow(unused_imports, reason = "codes without parameters")]
             use $crate::result::codes::Parameter as _;
-            // A source that is boxed is the box.
+            // A boxed source downcasts to the box, not to what is in it.
             $( let boxed = || error.downcast_ref::<Box<$error>>().map(|error| &**error);
             if let Some(error) = error.downcast_ref::<$error>().or_else(boxed) {
                 return match error {

@@ -1,4 +1,4 @@
-//! What figures and names of errors are in JSON.
+//! The figures and names of errors in JSON.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -15,11 +15,11 @@ use crate::verdict::StoppedBy;
 
 /// A figure or a name of an error.
 pub trait Parameter {
-    /// It in JSON. A time is in seconds.
+    /// The value in JSON. Times are in seconds.
     fn parameter(&self) -> Value;
 }
 
-/// Implements [`Parameter`] for types that JSON has.
+/// Implements [`Parameter`] for types that JSON can hold.
 macro_rules! as_they_are {
     ($($kind:ty),+) => { $(impl Parameter for $kind {
         fn parameter(&self) -> Value {
@@ -29,7 +29,7 @@ macro_rules! as_they_are {
 }
 as_they_are!(u8, u16, u32, u64, usize, i32, i64, f64, bool, String, &'static str);
 
-/// Implements [`Parameter`] for types that are written in words.
+/// Implements [`Parameter`] for types that are written as their text.
 macro_rules! by_words {
     ($($kind:ty),+ $(,)?) => { $(impl $crate::result::codes::Parameter for $kind {
         fn parameter(&self) -> serde_json::Value {

@@ -1,38 +1,38 @@
-//! What defects say beside their codes and figures.
+//! What defects hold besides plain figures.
 
 use serde::{Deserialize, Serialize};
 
-/// What a broken bit makes of a word.
+/// How a word with a broken bit is read.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reading {
-    /// What was uploaded, in the tables of `generation`.
+    /// The word uploaded in the tables of `generation`.
     pub uploaded: i64,
-    /// What is read instead.
+    /// The word read instead.
     pub read: i64,
-    /// The tables.
+    /// The generation of the tables.
     pub generation: u8,
-    /// Whether the other tables are read right.
+    /// Whether the word is read right in the other tables.
     pub only: bool,
-    /// Other bits of the word of which each, broken alone, gives the same samples.
+    /// Other bits of the word, any of which would give the same samples if it alone were broken.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub alike: Vec<u32>,
 }
 
-/// From where the addresses of the line memory are counted.
+/// Where the addresses of the line memory are counted from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Counting {
     /// From the run's first sample.
     Run,
-    /// From each frame's.
+    /// From each frame's first sample.
     Frame,
-    /// From each row's.
+    /// From each row's first sample.
     Row,
-    /// From before the run.
+    /// From some time before the run.
     Before,
 }
 
-/// Where outputs are not clamped.
+/// The end at which outputs are not clamped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClampEnd {
@@ -44,19 +44,19 @@ pub enum ClampEnd {
     Both,
 }
 
-/// What stands in the place of a setting that the board does not take.
+/// What the board uses instead of a setting that it ignores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Instead {
-    /// The middle of the row, or 12 bits.
+    /// The usual: the middle of the row as the centre, 12 bits as the depth.
     Usual,
-    /// That of the run's first frame.
+    /// The setting of the run's first frame.
     FirstFrame,
-    /// That of the frame before.
+    /// The setting of the frame before.
     FrameBefore,
 }
 
-/// Which memory holds a table.
+/// The memory that holds a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Memory {
@@ -66,23 +66,23 @@ pub enum Memory {
     Kernel,
 }
 
-/// A frame that was made with other tables than it should.
+/// A frame that was made with tables other than those committed for it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StaleFrames {
-    /// Its number.
+    /// The frame's number.
     pub frame: u16,
     /// The generation that was committed for it.
     pub committed: u8,
-    /// What its rows were made with.
+    /// The possible generations that its rows were made with.
     pub made_with: Vec<MadeWith>,
 }
 
-/// Generations that a row was made with, or none for what a board holds when it was just switched on.
+/// The generations that a row was made with; none for the contents at power-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct MadeWith {
-    /// That of the row factors.
+    /// The generation of the row factors.
     pub factors: Option<u8>,
-    /// That of the kernel.
+    /// The generation of the kernel.
     pub kernel: Option<u8>,
 }
 
@@ -90,25 +90,25 @@ pub struct MadeWith {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum RowSource {
-    /// The corrected row so many rows below, in the frame so many later.
+    /// The corrected row `rows` below, of the frame `frames` later.
     Output {
-        /// Frames later.
+        /// Frames later; negative for earlier.
         frames: isize,
-        /// Rows below.
+        /// Rows below; negative for above.
         rows: isize,
     },
-    /// The row that went in so many rows below, made with this row's factor.
+    /// The row that went in `rows` below, made with the factor of the row whose place it takes.
     Input {
-        /// Rows below.
+        /// Rows below; negative for above.
         rows: isize,
     },
 }
 
-/// A bit of a sample that is another one than was sent.
+/// A bit of a sample that is not as it was sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FlippedBit {
     /// The sample's column.
     pub column: usize,
-    /// The bit, 0 the least.
+    /// The bit; 0 is the least significant.
     pub bit: u32,
 }

@@ -1,4 +1,4 @@
-//! What frames at the full pixel clock have shown, and what enters the core.
+//! Words for what frames at the full pixel clock have shown, and for samples that change on their way into the core.
 
 use super::places;
 use super::{LOGIC, TIMING, Words, suspicion};
@@ -72,7 +72,7 @@ pub(super) fn seen_at_speed(row: Option<usize>, samples: usize, bits: &[u32]) ->
     }
 }
 
-/// The bits in which a path was seen to fail, and the row.
+/// The bits in which a path was seen to fail, and the row that was kept.
 fn seen(row: Option<usize>, samples: usize, bits: &[u32]) -> (String, String) {
     let Some(row) = row else { return (String::new(), String::new()) };
     (
@@ -81,7 +81,7 @@ fn seen(row: Option<usize>, samples: usize, bits: &[u32]) -> (String, String) {
     )
 }
 
-/// A finding on frames at speed, if it is one.
+/// The sentence of a finding on frames at speed, if it is one.
 pub(super) fn sentence(finding: &Finding) -> Option<String> {
     Some(match finding {
         Finding::EqualAtSpeed(at_speed) => equal(at_speed) + &elsewhere(at_speed.corners),
@@ -141,7 +141,7 @@ fn differs(
     )
 }
 
-/// What to do about such a finding, or about rows that entered the core changed.
+/// What to do about such a finding, or about rows that changed before they entered the core.
 pub(super) fn remedy(finding: &Finding) -> Option<String> {
     let asked = match finding {
         Finding::RowsEnteredChanged { .. } => {
@@ -179,7 +179,7 @@ fn equal(at_speed: &EqualAtSpeed) -> String {
     format!("{}{clock}{time}, every sample equal{bounds}{waited}", count(frames, "frame"))
 }
 
-/// `96.0 MHz` if it was `seen` to be that, else `a claimed 96.0 MHz`.
+/// `96.0 MHz` if what was `seen` confirms it, otherwise `a claimed 96.0 MHz`.
 pub(crate) fn named_clock(clock_hz: u32, seen: ClockSeen) -> String {
     let claimed = if seen.confirms(clock_hz) { "" } else { "a claimed " };
     format!("{claimed}{}", hertz(clock_hz))
@@ -192,7 +192,7 @@ pub(crate) fn seen_of_clock(seen: ClockSeen) -> String {
             return "its clock was seen not to be steady".to_owned();
         }
         (Some(least), Some(most)) => format!("{} to {}", hertz(least), hertz(most)),
-        // The end of the count, which no clock is.
+        // The bound saturated: it is no measurement.
         (Some(u32::MAX), None) => "faster than any that can be measured".to_owned(),
         (Some(least), None) => format!("{} or more", hertz(least)),
         (None, Some(most)) => format!("{} or less", hertz(most)),

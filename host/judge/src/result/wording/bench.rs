@@ -1,9 +1,9 @@
-//! What a technician does about what was found, where no suspect says it.
+//! What a technician should do about a finding where no suspect says it.
 
 use super::{LOGIC, MEMORY, REPORT, TIMING, technician};
 use crate::result::{BurstCount, Finding};
 
-/// What a technician does with a board of which this was found, in one sentence; none where it is nothing against the board.
+/// What a technician should do with a board that has this finding; none for findings that are not against the board.
 #[must_use]
 pub fn at_the_bench(finding: &Finding) -> Option<String> {
     let asked = match finding {
@@ -53,7 +53,7 @@ mod tests {
         }
     }
 
-    /// What one board does now and then, another board of the same logic does not tell about.
+    /// A second board says nothing about a fault that comes and goes on the first.
     #[test]
     fn rows_that_are_late_now_and_then_send_nobody_to_another_board() {
         let late = |rows, of_rows, is_one_row| {
@@ -61,7 +61,7 @@ mod tests {
             let late = LateRows { rows, of_rows, is_one_row, row, frame, first, last, claimed };
             at_the_bench(&Finding::LatencyWrong(late)).unwrap()
         };
-        // All rows, as a report of an earlier program has them too, and one row of every frame.
+        // All rows, also as an earlier program's report counts them, and the same row of every frame.
         for told in [late(96, 96, false), late(9, 0, false), late(16, 96, true)] {
             assert_eq!(told, LOGIC);
         }

@@ -1,10 +1,10 @@
-//! Why a defect is suspected.
+//! Words for why a defect is suspected.
 
 use super::words;
 use crate::result::{Account, Defect};
 use crate::words::{count, grouped};
 
-/// What speaks for a defect, in one sentence without a full stop.
+/// The evidence for a defect, in one sentence without a full stop.
 #[must_use]
 pub fn evidence(defect: &Defect, account: &Account) -> String {
     match defect {
@@ -47,7 +47,7 @@ fn word(read: i64, uploaded: i64, wrong: usize) -> String {
     format!("{read} was read where {uploaded} was uploaded{first}")
 }
 
-/// What the defect gives, as the rest of a sentence. `others` explain everything as well.
+/// What the defect gives, as the rest of a sentence. `others` is how many more defects explain everything.
 fn samples(differing: usize, explained: usize, contradicted: usize, others: usize) -> String {
     if explained < differing || contradicted > 0 {
         let rest = match contradicted {

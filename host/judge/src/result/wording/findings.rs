@@ -1,4 +1,4 @@
-//! What a finding says, and what it asks for.
+//! The sentence of a finding, and what to do about it.
 
 use super::{at_speed, designer, evidence, place, rules, suspicion};
 use crate::result::{Account, BoardKind, Defect, Doubt, Finding, LateRows, NumberedRow, RepeatedRow};
@@ -81,7 +81,7 @@ fn counters_right(rows: usize, damaged: u32) -> String {
     format!("{rows} in, {rows} out{unseen}")
 }
 
-/// What is wrong with a board.
+/// The sentences of findings on a board.
 fn of_board(finding: &Finding) -> String {
     match finding {
         Finding::CapabilityImpossible { capability, value, legal } => format!(
@@ -123,7 +123,7 @@ fn of_board(finding: &Finding) -> String {
     }
 }
 
-/// How many samples and frames differ, of how many.
+/// How many samples and frames of how many differ.
 fn samples_differ(
     (differences, samples): (usize, usize),
     (differing_frames, frames): (usize, usize),
@@ -138,7 +138,7 @@ fn samples_differ(
     )
 }
 
-/// That so many of the samples and frames differ, and `why` a run broke off behind them.
+/// How many of the samples and frames differ, and `why` the run then broke off.
 pub(crate) fn broken_off(samples: (usize, usize), frames: (usize, usize), why: &str) -> String {
     format!("{}, and the run broke off before that was looked into: {why}", samples_differ(samples, frames))
 }
@@ -147,7 +147,7 @@ fn table(defect: &Defect, account: &Account) -> String {
     format!("{}: {}", place(defect), evidence(defect, account))
 }
 
-/// What is wrong with single rows.
+/// The sentences of findings on single rows.
 fn of_rows(finding: &Finding) -> String {
     match finding {
         Finding::GenerationWrong { row, frame, named, committed } => format!(
@@ -180,7 +180,7 @@ fn of_rows(finding: &Finding) -> String {
     }
 }
 
-/// What no link does to rows.
+/// The sentences of findings on rows that no link can cause.
 fn of_conduct(finding: &Finding) -> String {
     match finding {
         Finding::RowCopyDiffers { row, frame } => format!(
@@ -205,7 +205,7 @@ fn of_conduct(finding: &Finding) -> String {
     }
 }
 
-/// What may be the board's or the link's.
+/// The sentences of findings that board or link may have caused.
 fn perhaps_of_link(finding: &Finding) -> String {
     let missing = |row: &u16, frame: &u16| {
         format!("row {row} of frame {frame} did not come back, although it was asked for again and again")
@@ -241,7 +241,7 @@ fn perhaps_of_link(finding: &Finding) -> String {
     }
 }
 
-/// Why what is wrong may come from the link, as a part of a sentence.
+/// Why the link may have caused what is wrong, as a clause after "because".
 pub(crate) fn because(doubt: Doubt) -> String {
     match doubt {
         Doubt::RequestsTwice { requests } => {
@@ -262,7 +262,7 @@ pub(crate) fn because(doubt: Doubt) -> String {
     }
 }
 
-/// Why there is no judgement, where that is no error.
+/// Why nothing was judged, where that is not an error value.
 fn unjudged(finding: &Finding) -> String {
     match finding {
         Finding::NothingJudged {} => "nothing was judged: no frame came back".to_owned(),
@@ -280,7 +280,7 @@ fn unjudged(finding: &Finding) -> String {
         Finding::BoardStayedAway { reason, seconds } => {
             format!("{}; the board did not come back in {seconds} s", reason.sentence())
         }
-        // A sentence that is still to be written: never an empty one.
+        // A finding that has no sentence yet: better its code than nothing.
         other => other.code(),
     }
 }
@@ -298,7 +298,7 @@ fn late_rows(late: &LateRows) -> String {
     )
 }
 
-/// What to do about a finding, if there is something to do.
+/// What to do about a finding, if anything.
 #[must_use]
 pub fn remedy(finding: &Finding) -> Option<String> {
     let asked = match finding {

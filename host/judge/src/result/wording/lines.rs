@@ -1,4 +1,4 @@
-//! Lines that are stuck, as the samples show it.
+//! Words for stuck lines, as the samples show them.
 
 use super::{LOGIC, MEMORY, Words, stuck};
 use crate::result::Counting;

@@ -1,4 +1,4 @@
-//! Logic that computes something else.
+//! Words for logic that computes something else.
 
 use super::{LOGIC, Words};
 use crate::result::{ClampEnd, Instead};

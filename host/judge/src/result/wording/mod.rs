@@ -1,4 +1,4 @@
-//! The sentences of all findings and defects, made here from their codes and parameters, and nowhere else.
+//! The sentences of all findings and defects, made from their codes and parameters here and nowhere else.
 
 mod at_speed;
 mod bench;
@@ -21,37 +21,37 @@ pub(crate) use findings::broken_off;
 pub use findings::{remedy, sentence};
 pub use not_exercised::not_exercised;
 
-/// What there is to say of a defect.
+/// What there is to say about a defect.
 pub(super) struct Words {
     /// The kind of part, in lower case.
     part: &'static str,
-    /// Where.
+    /// Where it is.
     place: String,
-    /// What is wrong there, so that "… gives these samples" makes a sentence.
+    /// What is wrong there, as the subject of a sentence: "… gives these samples".
     defect: String,
-    /// Where the designer looks next.
+    /// Where the designer should look next.
     designer: String,
-    /// What a technician does.
+    /// What a technician should do.
     technician: &'static str,
 }
 
-/// Memory may be upset once, or be broken.
+/// For memory, which may have been upset once or may be broken.
 const MEMORY: &str = "Reload the bitstream and run again. If the fault comes back, set the board aside: a memory or a line of its FPGA \
                       is broken.";
-/// Wrong logic is wrong on every board that it is loaded into.
+/// For logic: if the design is wrong, every board with it is.
 const LOGIC: &str = "Make sure that the right bitstream is loaded, and run again. If the fault comes back, try another board: if that \
                      one fails the same way, the design is wrong; otherwise set this board aside.";
-/// What depends on when things happen may come and go with supply and temperature.
+/// For timing, whose faults may come and go with supply and temperature.
 const TIMING: &str = "Switch the board off and on, reload the bitstream and run three times. If the fault comes back even once, set \
                       the board aside with its reports.";
-/// What is asked for where no defect explains what differs.
+/// What to do where no defect explains the differences.
 pub(crate) const MAPS: &str = "Look at the difference maps of a report.";
-/// The same where a report has no map of it.
+/// The same where a report has no map of them.
 pub(crate) const NO_MAPS: &str = "No map shows the differences: every frame that has a map is right, and samples differ only at full speed \
                                   or after the frames.";
-/// What is said of differences that no defect explains.
+/// What is said about differences that no defect explains.
 const UNEXPLAINED: &str = "no single known defect explains them";
-/// Nothing is known.
+/// For faults of which nothing is known.
 const REPORT: &str = "Reload the bitstream and run again with a report. If the fault comes back, set the board aside, and give the \
                       report to the designer.";
 
@@ -61,13 +61,14 @@ pub fn part(defect: &Defect) -> &'static str {
     words(defect).part
 }
 
-/// Where it is: row, node and weight, bit, as far as it can be told.
+/// Where it is: row, node and weight, bit, as far as it is known.
 #[must_use]
 pub fn place(defect: &Defect) -> String {
     words(defect).place
 }
 
-/// Which defect is behind samples that differ, as the end of a sentence. `others` explain all of it as well.
+/// The defect that is suspected behind differing samples, as the end of a sentence. `others` is how many more explain all of
+/// them.
 fn suspicion(suspect: Option<&Defect>, others: usize) -> String {
     let unsure = match others {
         0 => String::new(),
@@ -84,13 +85,13 @@ fn suspicion(suspect: Option<&Defect>, others: usize) -> String {
     }
 }
 
-/// Where the designer of the board looks next, in one sentence.
+/// Where the designer of the board should look next, in one sentence.
 #[must_use]
 pub fn designer(defect: &Defect) -> String {
     words(defect).designer
 }
 
-/// What a technician does with this board, in one sentence.
+/// What a technician should do with this board.
 #[must_use]
 pub fn technician(defect: &Defect) -> String {
     words(defect).technician.to_owned()
@@ -100,7 +101,7 @@ fn words(defect: &Defect) -> Words {
     tables::as_seen(defect).unwrap_or_else(|| elsewhere(defect))
 }
 
-/// The words of defects that are in no single word of a table.
+/// The words of defects that do not lie in a single word of a table.
 fn elsewhere(defect: &Defect) -> Words {
     match defect {
         Defect::LineMemoryDataStuck { bit, value } => lines::line_memory_data(*bit, *value),

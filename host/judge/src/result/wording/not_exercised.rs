@@ -1,11 +1,11 @@
-//! What no frame put to the test.
+//! What no frame exercised.
 
 use super::at_speed::seen_of_clock;
 use super::places::{named, numbered};
 use crate::result::NotExercised;
 use crate::words::hertz;
 
-/// It in words, so that "not exercised: …" makes a sentence.
+/// The part in words, to complete the sentence "not exercised: …".
 #[must_use]
 pub fn not_exercised(part: &NotExercised) -> String {
     match part {

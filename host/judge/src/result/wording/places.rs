@@ -1,4 +1,4 @@
-//! Rows in other places than their own, rows of other tables, and what no known defect explains.
+//! Rows in the wrong place, rows made with other tables, and what no known defect explains.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use super::{LOGIC, REPORT, TIMING, Words, tables};
 use crate::result::{Defect, Extent, MadeWith, RowSource, StaleFrames};
 use crate::words::{count, grouped};
 
-/// Bits that are told when nothing differs in another.
+/// The most bits that are named when all differences are in them alone.
 const FEW_BITS: usize = 2;
 
 pub(super) fn words(defect: &Defect) -> Words {
@@ -81,12 +81,12 @@ pub(super) fn bits(numbers: &[u32]) -> String {
     numbered("bit", &numbers.iter().map(|&bit| bit as usize).collect::<Vec<_>>())
 }
 
-/// The same of other things that have numbers, which ascend.
+/// The same for other numbered things, in ascending order.
 pub(super) fn numbered(what: &str, numbers: &[usize]) -> String {
     named(what, numbers.len(), &list(numbers))
 }
 
-/// The same of things whose names are put together already.
+/// The same for things whose names are already joined.
 pub(super) fn named(what: &str, count: usize, names: &str) -> String {
     let ending = if count == 1 { "" } else { "s" };
     format!("{what}{ending} {names}")
@@ -163,12 +163,12 @@ fn is_unstreamed(defect: &Defect) -> bool {
 
 fn clauses(defect: &Defect) -> Vec<String> {
     let Defect::NoneKnown { frames, of_frames, .. } = defect else { return Vec::new() };
-    // Rows that were not streamed are of a single frame.
+    // A row that was not streamed is the one that a trap kept, of a single frame.
     let within = format!("in {} of {}", grouped(*frames), count(*of_frames, "frame"));
     where_and_how(defect).into_iter().chain((!is_unstreamed(defect)).then_some(within)).collect()
 }
 
-/// Where differences lie in their frames, and what they are.
+/// Where differences lie in their frames, and how large they are.
 pub(super) fn where_and_how(defect: &Defect) -> Vec<String> {
     let Defect::NoneKnown { rows, columns, least, most, bright, bits, .. } = defect else {
         return Vec::new();
@@ -194,7 +194,7 @@ pub(super) fn where_and_how(defect: &Defect) -> Vec<String> {
     .collect()
 }
 
-/// Few bits, which single lines may be behind.
+/// The bits, if they are so few that single lines may be the cause.
 fn bits_alone(numbers: &[u32]) -> Option<String> {
     (1..=FEW_BITS).contains(&numbers.len()).then(|| format!("{} alone", bits(numbers)))
 }

@@ -1,15 +1,15 @@
-//! What the wire's rules have shown.
+//! Words for what the rules of the wire have shown.
 
 use halfrow_protocol::message::RefusalCode;
 
 use crate::result::{Answer, Finding, Rule};
 use crate::words::count;
 
-/// What to do about any of them.
+/// What to do about any broken rule.
 pub(super) const REMEDY: &str = "Check how the board decodes requests, and try it with the conformance tests; \
                                  protocol/WIRE.md says what it must refuse.";
 
-/// A finding on rules, if it is one.
+/// The sentence of a finding on rules, if it is one.
 pub(super) fn sentence(finding: &Finding) -> Option<String> {
     Some(match finding {
         Finding::RulesKept { requests } => {
@@ -63,7 +63,7 @@ fn did(found: &Answer) -> String {
     }
 }
 
-/// The reason's name in WIRE.md, section 6.
+/// The refusal's name in WIRE.md, section 6.
 fn reason(code: u8) -> String {
     RefusalCode::from_code(code).map_or_else(|| format!("code {code}"), |reason| reason.name().to_owned())
 }

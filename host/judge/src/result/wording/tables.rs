@@ -1,10 +1,10 @@
-//! Words of tables that are wrong: as the samples show it, and as they read back.
+//! Words for wrong tables: as the samples show it, and as they read back.
 
 use super::places;
 use super::{LOGIC, MEMORY, Words, memory};
 use crate::result::{Defect, Memory, Reading};
 
-/// The words of what samples show of single words of tables.
+/// The words for what samples show about single words of tables.
 pub(super) fn as_seen(defect: &Defect) -> Option<Words> {
     Some(match defect {
         Defect::RowFactorBitWrong { row, bit, reading, above_one } => {
@@ -93,7 +93,7 @@ fn kernel_word(node: usize, weight: &str, bit: &str, defect: String) -> Words {
     }
 }
 
-/// "reading 5 for 7", with the generation when others are right.
+/// "reading 5 for 7", with the generation when the other tables are right.
 fn read(reading: &Reading) -> String {
     let Reading { uploaded, read, generation, only, alike } = reading;
     let tables = in_tables(only.then_some(*generation));
@@ -103,7 +103,7 @@ fn read(reading: &Reading) -> String {
     }
 }
 
-/// "bit 3", or all that come to the same.
+/// "bit 3", or all bits that would have the same effect.
 fn bits(bit: u32, reading: &Reading) -> String {
     if reading.alike.is_empty() {
         return format!("bit {bit}");
@@ -119,12 +119,12 @@ fn read_value((least, most): (i64, i64), uploaded: i64, only: Option<u8>) -> Str
     format!("reading {least}{others} for {uploaded}{}", in_tables(only))
 }
 
-/// The one generation of tables, if others are right.
+/// The generation, if the other tables are right.
 fn in_tables(only: Option<u8>) -> String {
     only.map_or_else(String::new, |generation| format!(" in the tables of generation {generation} only"))
 }
 
-/// The words of what was seen when a table was read back.
+/// The words for what was seen when a table was read back.
 pub(super) fn read_back(defect: &Defect) -> Option<Words> {
     let (table, place, defect) = match defect {
         Defect::TableLengthWrong { table, .. } => {
