@@ -1,4 +1,4 @@
-//! The folder of a report: its JSON and its other views, all of one run or none.
+//! The folder of a report: its JSON and its other views, all of them of the same run.
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
@@ -89,45 +89,45 @@ pub enum ReportError {
     Pictures(#[from] png::EncodingError),
 }
 
-/// The place of a report to come. The folder is written aside and renamed at the end, so that readers find the earlier
-/// report, or none, until the new one is whole.
+/// The place of a report that is still to be written. The folder is written aside and renamed at the end, so that until the new
+/// report is whole readers find the earlier one, or none.
 #[derive(Debug)]
 pub struct ReportFolder {
     path: PathBuf,
     overwrite: bool,
     aside: AsideFolder,
-    /// Until the report is in its place, so that two that may not overwrite cannot both begin.
+    /// Held until the report is in its place, so that of two runs that may not overwrite only one can begin.
     _claim: Option<Claim>,
 }
 
 impl ReportFolder {
-    /// Makes sure that a report can be written to `path`, before a board is opened for it.
+    /// Makes sure that a report can be written to `path`. Call it before a board is opened.
     ///
     /// # Errors
-    /// [`ReportError`] when the folder above does not exist or is not writable, when there is something at `path` that
-    /// is no earlier report or, without `overwrite`, anything but an empty folder, or when another run is about to put a report
+    /// [`ReportError`] when the folder above does not exist or is not writable, when something at `path` is neither an earlier
+    /// report nor an empty folder or, without `overwrite`, is not an empty folder, or when another run is about to put a report
     /// there.
     pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, ReportError> {
         let path = &named(path);
         check(path, overwrite)?;
         let claim = if overwrite { None } else { Some(claim(path)?) };
-        // Whoever had the claim before may have put a report in place.
+        // The run that held the claim before may have put a report in place.
         check(path, overwrite)?;
         let failed = |source| ReportError::Prepare { path: path.to_owned(), source };
         let aside = AsideFolder::new(path).map_err(failed)?;
         Ok(Self { path: path.to_owned(), overwrite, aside, _claim: claim })
     }
 
-    /// The folder, if an earlier report is in it.
+    /// The folder, if it holds an earlier report.
     #[must_use]
     pub fn earlier(&self) -> Option<&Path> {
         self.path.join(JSON).exists().then_some(&self.path)
     }
 
-    /// Writes the report and puts it in its place. When that fails, an earlier report stays as it was.
+    /// Writes the report and puts it in its place. When that fails, an earlier report is left as it was.
     ///
     /// # Errors
-    /// [`ReportError`] when a view cannot be encoded, a file cannot be written, or something came to be in the way.
+    /// [`ReportError`] when a view cannot be encoded, a file cannot be written, or something has got in the way meanwhile.
     pub fn commit(self, report: &Report, evidence: &[Evidence]) -> Result<(), ReportError> {
         self.write(JSON, &json::render(report)?)?;
         for view in &VIEWS {
@@ -157,15 +157,15 @@ fn claim(path: &Path) -> Result<Claim, ReportError> {
     })
 }
 
-/// The path without a slash at its end, behind which a link would not be seen.
+/// The path without a slash at its end, with which a symbolic link would be followed unnoticed.
 fn named(path: &Path) -> PathBuf {
     path.components().collect()
 }
 
-/// Whether a report may go to `path` as things are.
+/// Checks that a report may be written to `path` at present.
 ///
 /// # Errors
-/// [`ReportError`] when `path` names no folder of its own, or when something is there that may not be replaced.
+/// [`ReportError`] when `path` does not end in a name, or when something there may not be replaced.
 pub fn check(path: &Path, overwrite: bool) -> Result<(), ReportError> {
     let path = &named(path);
     if path.file_name().is_none() {
@@ -186,14 +186,14 @@ pub fn check(path: &Path, overwrite: bool) -> Result<(), ReportError> {
     }
 }
 
-/// Whether `path` is a folder with nothing in it, as scripts make one before a run.
+/// Whether `path` is an empty folder, such as scripts make before a run.
 fn is_empty(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|found| found.is_dir())
         && fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_none())
 }
 
-/// What shows that `path` is neither an empty folder nor just a report of halfrow's; none when it is. Replacing a folder removes
-/// all that is in it, so it may hold nothing else.
+/// What shows that `path` is neither an empty folder nor a folder with only a report in it; none if it is. Replacing a folder
+/// removes everything in it, so it may hold nothing else.
 fn foreign(path: &Path) -> Option<String> {
     if !fs::symlink_metadata(path).is_ok_and(|found| found.is_dir()) {
         return Some("it is no folder".to_owned());
@@ -213,7 +213,7 @@ fn foreign(path: &Path) -> Option<String> {
     (!entries.is_empty() && !is_report(&path.join(JSON))).then(|| format!("it holds no {JSON} of halfrow's"))
 }
 
-/// Whether a file is a report's JSON, by what every report begins with, of whatever shape.
+/// Whether a file is a report's JSON of any version, by the keys with which every report begins.
 fn is_report(path: &Path) -> bool {
     #[derive(Deserialize)]
     struct Head {

@@ -1,4 +1,4 @@
-//! The report as one page that stands alone: pictures and style inside, no script, nothing loaded.
+//! The report as one self-contained page: pictures and style are inside, there is no script, and nothing is loaded.
 
 mod charts;
 mod evidence;
@@ -17,11 +17,11 @@ use crate::words::{board_name, plain};
 
 const STYLE: &str = include_str!("style.css");
 
-/// Forbids the page to load or run anything, whatever gets into it.
+/// Forbids the page to load or run anything, whatever text gets into it.
 const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inline'";
 
-/// The report as a page of under 2 MB for a PASS, and under 4 MB for anything else. Frames of `evidence` have a section each, as far as there is room, with pictures, which
-/// shrink, or give way from the last on, when they are too many.
+/// The report as a page of under 2 MB for a PASS, and under 4 MB for anything else. Frames of `evidence` have a section with
+/// pictures each, as far as there is room. When they are too many, pictures are made smaller, and the last ones are left out.
 ///
 /// # Errors
 /// The PNG encoder's.
@@ -47,7 +47,7 @@ pub fn render(report: &Report, evidence: &[Evidence]) -> Result<String, Encoding
     Ok(document(&title, &body).into_string())
 }
 
-/// A page around `body` that loads nothing: its style is inside.
+/// A page around `body` that contains its style and loads nothing.
 pub fn document(title: &str, body: &Markup) -> Markup {
     html! {
         (DOCTYPE)
@@ -65,7 +65,7 @@ pub fn document(title: &str, body: &Markup) -> Markup {
     }
 }
 
-/// The verdict and what it rests on: for PASS the figures say it all, for the others the headline comes first.
+/// The verdict and what it rests on: for PASS only the figures, otherwise the headline first.
 fn banner(report: &Report) -> Markup {
     let facts = wording::facts(report);
     html! {
@@ -88,7 +88,7 @@ fn banner(report: &Report) -> Markup {
     }
 }
 
-/// Which board it was: its name, its serial number, and where it was reached.
+/// The board: its name, its serial number, and the target by which it was reached.
 fn unit(report: &Report) -> Markup {
     let target = plain(&report.board.target);
     html! {
@@ -99,9 +99,9 @@ fn unit(report: &Report) -> Markup {
     }
 }
 
-/// What is suspected and what to do about it.
+/// The suspects, and what to do.
 fn next(report: &Report) -> Markup {
-    // The headline may say it, and stands apart here.
+    // Without suspects the remedy is repeated even if the headline says it, because the headline is elsewhere on this page.
     let remedy = wording::remedy(report).or_else(|| report.remedy().filter(|_| report.suspects.is_empty()));
     let bench = wording::technician(report);
     let codes = wording::codes(report);
@@ -122,7 +122,7 @@ fn next(report: &Report) -> Markup {
     }
 }
 
-/// What is suspected, on a page that has maps of what differs or has none. That nothing known explains it is no news beside what does.
+/// The list of suspects, on a page with or without difference maps. An unknown defect is left out where there is a known one.
 pub(super) fn suspects(suspects: &[Suspect], has_maps: bool) -> Markup {
     let has_known = suspects.iter().any(Suspect::is_known);
     let shown = |suspect: &&Suspect| suspect.is_known() || !has_known;
@@ -133,7 +133,7 @@ pub(super) fn suspects(suspects: &[Suspect], has_maps: bool) -> Markup {
     }
 }
 
-/// What is asked for of whoever reads the report.
+/// What the reader is asked to do, where it refers to the maps in words that suit this page.
 fn asked(asked: &str, has_maps: bool) -> &str {
     match (asked == MAPS, has_maps) {
         (false, _) => asked,

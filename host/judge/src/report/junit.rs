@@ -1,7 +1,7 @@
 //! The report as JUnit XML, for CI systems and test stations.
 //!
-//! One suite: the verdict, then every check, then every frame. A verdict that is not PASS is a failure or an error of its
-//! own, so that no run turns green for want of a check.
+//! One suite: the verdict, then every check, then every frame. A verdict other than PASS is a failure or an error of its own,
+//! so that no run turns green for lack of a failed check.
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ use crate::words::{count, differ, grouped, plain};
 /// The report as an XML document.
 ///
 /// # Errors
-/// The XML writer's. No value that a [`Report`] can hold brings one about.
+/// The XML writer's. No value that a [`Report`] can hold causes one.
 pub fn render(report: &Report) -> Result<String, SerializeError> {
     let mut suite = TestSuite::new(format!("halfrow {}", report.command()));
     suite.timestamp = report.run.started.parse().ok();
@@ -33,10 +33,10 @@ pub fn render(report: &Report) -> Result<String, SerializeError> {
     document(suite)
 }
 
-/// The document of one suite, as Jenkins' schema has it.
+/// The document of one suite, valid by Jenkins' schema.
 ///
 /// # Errors
-/// The XML writer's, for text that XML has no letters for; [`plain`](crate::words::plain) leaves none.
+/// The XML writer's, for characters that XML does not allow; [`plain`](crate::words::plain) escapes them.
 pub fn document(suite: TestSuite) -> Result<String, SerializeError> {
     let mut document = Document::new(suite.name.as_str());
     document.time = suite.time;
@@ -44,7 +44,7 @@ pub fn document(suite: TestSuite) -> Result<String, SerializeError> {
     Ok(without_skipped(&document.to_string()?))
 }
 
-/// The document without the count of skipped cases in its root, where Jenkins' schema has none; the suite has it.
+/// The document without the count of skipped cases in its root, where Jenkins' schema does not allow it; the suite keeps it.
 fn without_skipped(document: &str) -> String {
     let Some((head, rest)) = document.split_once("<testsuites ") else { return document.to_owned() };
     let (root, rest) = rest.split_once('>').unwrap_or((rest, ""));
@@ -55,7 +55,7 @@ fn without_skipped(document: &str) -> String {
     format!("{head}<testsuites {}>{rest}", kept.concat())
 }
 
-/// What the run was, by name.
+/// The properties of the run, by name.
 fn properties(report: &Report) -> Vec<(&'static str, String)> {
     let mut list = vec![
         ("verdict", report.verdict().to_string()),
@@ -103,13 +103,13 @@ fn frame_case(report: &Report, frame: &FrameReport) -> TestCase {
             first.row, first.column, first.expected, first.found, comparison.largest
         )
     });
-    // The number keeps apart two frames of one name.
+    // The number tells frames of the same name apart.
     let name =
         format!("{} (frame {}, {}, {})", wording::frame_name(frame), frame.number, frame.phase, frame.timing);
     case("frame", &name, frame.seconds, status(wording::frame_outcome(report, frame), &message, &first))
 }
 
-/// A case that took so many seconds.
+/// A test case that took `seconds`.
 fn case(class: &str, name: &str, seconds: f64, status: Status) -> TestCase {
     let mut case = TestCase::new(plain(name), status);
     case.time = Duration::try_from_secs_f64(seconds).ok();

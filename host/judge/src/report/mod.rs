@@ -1,4 +1,4 @@
-//! The views of a [`Report`]: text, JSON, JUnit and HTML with pictures, and the folder of them all.
+//! The views of a [`Report`]: text, JSON, JUnit and HTML with pictures, and the folder that holds them.
 
 mod folder;
 mod html;
@@ -19,15 +19,14 @@ pub use shell::shell_word;
 
 use crate::result::{Evidence, Report};
 
-/// A view in the folder of a report.
+/// A view in a report's folder.
 struct View {
-    /// Its file's name.
+    /// The name of its file.
     name: &'static str,
     render: fn(&Report, &[Evidence]) -> Result<String, ReportError>,
 }
 
-/// The views in the folder of a report beside its JSON, by which the folder is known. A new one is a module and a line
-/// here.
+/// The views in a report's folder besides its JSON, by which the folder is recognised. A new one is a module and a line here.
 const VIEWS: [View; 2] = [
     View { name: "report.xml", render: |report, _| Ok(junit::render(report)?) },
     View { name: "report.html", render: |report, evidence| Ok(html::render(report, evidence)?) },

@@ -1,4 +1,4 @@
-//! Pictures for the page: frames made small, and where and how they differ.
+//! Pictures for the page: small frames, and maps and crops of their differences.
 
 mod crop;
 mod map;
@@ -16,7 +16,7 @@ pub(super) use map::difference_map;
 pub use map::side;
 pub use scale::{Step, steps_up_to};
 
-/// The narrowest preview that still shows something.
+/// The width of the narrowest preview that still shows something.
 const MIN_WIDTH: usize = 64;
 
 /// A picture as a PNG.
@@ -41,13 +41,13 @@ impl Picture {
         self.png.len()
     }
 
-    /// The PNG as a `data:` address, four characters for every three bytes.
+    /// The PNG as a `data:` URI, four characters for every three bytes.
     pub(super) fn data_uri(&self) -> String {
         format!("data:image/png;base64,{}", STANDARD.encode(&self.png))
     }
 }
 
-/// A frame developed for the screen, at most `max_width` columns wide, as a PNG.
+/// A PNG of a frame developed for the screen, at most `max_width` columns wide.
 ///
 /// # Errors
 /// The PNG encoder's.
@@ -55,8 +55,8 @@ pub fn developed(frame: &Frame, max_width: usize) -> Result<Vec<u8>, EncodingErr
     Ok(Picture::new(&preview::thumbnail(frame, max_width))?.png)
 }
 
-/// A map of where two frames of one size differ and by how much, as a PNG: a pixel for each square of [`side`] samples, in the colours of
-/// [`steps_up_to`] the largest difference.
+/// A PNG that maps where and by how much two frames of one size differ: one pixel for each square of [`side`] by [`side`]
+/// samples, in the colours of [`steps_up_to`] the largest difference.
 ///
 /// # Errors
 /// The PNG encoder's.
@@ -64,7 +64,7 @@ pub fn differences(expected: &Frame, found: &Frame) -> Result<Vec<u8>, EncodingE
     Ok(difference_map(expected, found)?.png)
 }
 
-/// The frame as a picture of at most `max_width` columns and `most_bytes`, as large as that allows; none when not even
+/// The frame as a picture of at most `max_width` columns and `most_bytes` bytes, as large as that allows; none if not even
 /// [`MIN_WIDTH`] columns fit.
 ///
 /// # Errors
@@ -83,7 +83,7 @@ pub(super) fn preview(
         if picture.width <= MIN_WIDTH {
             return Ok(None);
         }
-        // The bytes go down with the square of the side.
+        // The bytes fall with the square of the side.
         let excess = picture.len() as f64 / most_bytes.max(1) as f64;
         side = (side + 1).max((side as f64 * excess.sqrt()) as usize);
     }

@@ -1,6 +1,6 @@
-//! Commands that a reader can call again.
+//! Commands that a reader can run again.
 
-/// A word of a command as a POSIX shell takes it: quoted where it would not stand for itself.
+/// A word of a command for a POSIX shell: quoted if the shell would change it.
 pub fn shell_word(word: &str) -> String {
     let tame = |letter: char| letter.is_ascii_alphanumeric() || "_-./:=,@%+".contains(letter);
     if !word.is_empty() && word.chars().all(tame) {

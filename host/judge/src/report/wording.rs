@@ -1,4 +1,4 @@
-//! What a report says in words, which the views share, here and in programs, so that all of them say the same.
+//! The words of a report. All views share them, here and in programs, so that they say the same.
 
 mod coverage;
 mod summary;
@@ -22,7 +22,7 @@ pub(super) use summary::advice;
 pub use summary::{codes, summary};
 pub use within::within;
 
-/// What a check's outcome is called. The loud ones are those to act on.
+/// The word for a check's outcome. Those that call for action are in capitals.
 #[must_use]
 pub const fn mark(outcome: Outcome) -> &'static str {
     match outcome {
@@ -33,7 +33,7 @@ pub const fn mark(outcome: Outcome) -> &'static str {
     }
 }
 
-/// What a board's kind is called.
+/// The words for a board's kind.
 #[must_use]
 pub const fn kind(kind: BoardKind) -> &'static str {
     match kind {
@@ -44,7 +44,7 @@ pub const fn kind(kind: BoardKind) -> &'static str {
     }
 }
 
-/// What a result on this board is worth: only hardware is a test of hardware.
+/// What kind of board a result is for; unless it is hardware, it says that no hardware was tested.
 #[must_use]
 pub fn remark(board: &BoardReport) -> String {
     match (board.kind, &board.identity) {
@@ -65,7 +65,7 @@ pub fn verdict_line(report: &Report) -> String {
     }
 }
 
-/// What to do, unless a suspect or the headline already says so.
+/// What to do, unless a suspect or the headline already says it.
 #[must_use]
 pub fn remedy(report: &Report) -> Option<String> {
     let headline = report.headline();
@@ -73,20 +73,20 @@ pub fn remedy(report: &Report) -> Option<String> {
     report.remedy().filter(|remedy| !said(remedy) && !says(&headline, remedy))
 }
 
-/// What a technician does, where no suspect says it.
+/// What a technician should do, where no suspect says it.
 #[must_use]
 pub fn technician(report: &Report) -> Option<String> {
     report.technician().filter(|_| report.suspects.is_empty())
 }
 
-/// Whether a headline says already what to do.
+/// Whether a headline already contains a remedy.
 #[must_use]
 pub fn says(headline: &str, remedy: &str) -> bool {
     headline.to_lowercase().contains(remedy.trim_end_matches('.').to_lowercase().as_str())
 }
 
-/// A frame's name, with what is told of its tables where they are not those to judge with, and how much of it was streamed
-/// where that is not all.
+/// A frame's name, followed by its tables and settings if they are not those to judge with, and by the number of rows that
+/// were streamed if not all were.
 #[must_use]
 pub fn frame_name(frame: &FrameReport) -> Cow<'_, str> {
     let mut name = plain(&frame.name);
@@ -103,7 +103,7 @@ pub fn frame_name(frame: &FrameReport) -> Cow<'_, str> {
     }
 }
 
-/// What a PASS says nothing about, in one sentence without a full stop; none where nothing of the kind is known.
+/// What a PASS does not cover, in one sentence without a full stop; none where nothing of the kind is known.
 #[must_use]
 pub fn not_exercised(report: &Report) -> Option<String> {
     let words: Vec<_> = report.not_exercised.iter().map(NotExercised::words).collect();
@@ -126,7 +126,7 @@ pub fn facts(report: &Report) -> String {
     facts.join(", ")
 }
 
-/// What was judged at the full pixel clock; none where the run did not come to that.
+/// What was judged at the full pixel clock; none where the run did not get that far.
 fn at_speed(report: &Report) -> Option<String> {
     report.checks.iter().find_map(|check| match check.finding {
         Finding::EqualAtSpeed(EqualAtSpeed { frames, clock_hz: 0, .. }) => {
@@ -140,7 +140,7 @@ fn at_speed(report: &Report) -> Option<String> {
     })
 }
 
-/// The latency of all rows in one sentence, without a full stop.
+/// The latency of all rows, in one sentence without a full stop.
 #[must_use]
 pub fn latency(latency: &LatencyReport) -> String {
     let rows = count(latency.rows, "row");
@@ -151,7 +151,7 @@ pub fn latency(latency: &LatencyReport) -> String {
     }
 }
 
-/// `972 = 960 + 12 pixel clocks`: half a row and the build's own L; or what came instead.
+/// `972 = 960 + 12 pixel clocks`: half a row plus the build's own L; or what was measured instead.
 fn measured(latency: &LatencyReport) -> String {
     let half_row = latency.limit.saturating_sub(MAX_LATENCY.into());
     let claim = match latency.claimed.checked_sub(half_row) {
@@ -171,7 +171,7 @@ fn measured(latency: &LatencyReport) -> String {
 #[must_use]
 pub fn street(report: &Report) -> Option<String> {
     let StreetReport { before, after } = report.street.as_ref()?;
-    // Tables that a lens made tell of its circle.
+    // Only tables that were made from a lens know its image circle.
     let lens = match report.tables.rows_outside_circle {
         Some(_) => "",
         None => "; it is seen through a lens that the tables may not be for",
@@ -186,7 +186,7 @@ pub fn street(report: &Report) -> Option<String> {
     ))
 }
 
-/// What the link did in one sentence, without a full stop. Trouble is named only when there was some.
+/// What the link did, in one sentence without a full stop. Trouble is named only if there was any.
 #[must_use]
 pub fn link(link: &LinkReport) -> String {
     let mut parts = vec![
@@ -211,7 +211,7 @@ pub fn link(link: &LinkReport) -> String {
     if link.line_errors.sum() > 0 {
         parts.push(format!("errors on the line: {}", link.line_errors));
     }
-    // A virtual clock may stand still over a round trip.
+    // A virtual clock may stand still during a round trip.
     parts.extend(
         link.round_trip_us.filter(|&time| time > 0).map(|time| format!("round trip {} µs", grouped(time))),
     );
@@ -221,7 +221,7 @@ pub fn link(link: &LinkReport) -> String {
     format!("{}: {}", link.name, parts.join(", "))
 }
 
-/// How much a suspect explains; none where there is nothing to count.
+/// The share of the differences that a suspect explains; none where there is nothing to count.
 #[must_use]
 pub fn share(suspect: &Suspect) -> Option<String> {
     let counted = !matches!(suspect.account, Account::Nothing);
@@ -239,7 +239,7 @@ pub fn away(away: &Reconnection) -> String {
     format!("for {:.1} s: {}{kept}", away.seconds_away, away.reason)
 }
 
-/// How a board went away as often, each time [`away`] alike.
+/// How a board went away several times in the same way: [`away`] gives the same words for each.
 pub(super) fn away_together(together: &[Reconnection]) -> String {
     let Some(first) = together.first() else { return String::new() };
     match together.len() {
@@ -248,7 +248,7 @@ pub(super) fn away_together(together: &[Reconnection]) -> String {
     }
 }
 
-/// How much of a soak was judged, in one sentence without a full stop.
+/// What a soak judged, in one sentence without a full stop.
 #[must_use]
 pub fn soak(soak: &SoakReport) -> String {
     let time = span(soak.seconds);
@@ -279,7 +279,7 @@ pub fn soak_difference(difference: &SoakDifference) -> String {
     )
 }
 
-/// How a frame came out. Under the verdict ERROR nothing is the board's fault.
+/// A frame's outcome. Under the verdict ERROR nothing is the board's fault.
 #[must_use]
 pub(crate) fn frame_outcome(report: &Report, frame: &FrameReport) -> Outcome {
     let judged = frame.rows >= frame.comparison.by_row.len() && frame.comparison.samples > 0;
@@ -290,7 +290,7 @@ pub(crate) fn frame_outcome(report: &Report, frame: &FrameReport) -> Outcome {
     }
 }
 
-/// How many samples of a frame differ. None is only said of a frame that came back whole.
+/// How many samples of a frame differ. `0` is only said of a frame that came back whole.
 #[must_use]
 pub fn differences(report: &Report, frame: &FrameReport) -> String {
     match (frame.comparison.differences, frame_outcome(report, frame)) {
@@ -299,8 +299,8 @@ pub fn differences(report: &Report, frame: &FrameReport) -> String {
     }
 }
 
-/// The frames to list when there is room for `most`: all, or else those that are not equal, in order. The number left
-/// out comes with them.
+/// The frames to list when there is room for `most`, and the number of frames left out: all if they fit, otherwise those that
+/// are not equal, in order.
 #[must_use]
 pub fn worth_listing(report: &Report, most: usize) -> (Vec<&FrameReport>, usize) {
     let all = report.frames.len();

@@ -1,4 +1,4 @@
-//! Small bar charts beside the map of differences, drawn with its scale.
+//! Small bar charts next to the map of differences, drawn to its scale.
 
 use std::fmt::Write as _;
 
@@ -6,10 +6,10 @@ use maud::{Markup, html};
 
 /// The length of the longest bar.
 const LONGEST: u64 = 100;
-/// The length of the shortest, so that one difference is seen beside many.
+/// The length of the shortest bar, so that a single difference is visible next to many.
 const SHORTEST: u64 = 3;
 
-/// Bars that run to the right, one under the other: differences by row.
+/// Differences by row: horizontal bars, one below the other.
 pub(super) fn by_row(counts: &[u32], together: usize) -> Markup {
     let (bars, most) = bars(counts, together);
     let path = bars.iter().fold(String::new(), |mut path, (place, length)| {
@@ -20,7 +20,7 @@ pub(super) fn by_row(counts: &[u32], together: usize) -> Markup {
     chart("rows", &view, &path, &caption(most, together, "row"))
 }
 
-/// Bars that hang down side by side: differences by column.
+/// Differences by column: bars that hang down, side by side.
 pub(super) fn by_column(counts: &[u32], together: usize) -> Markup {
     let (bars, most) = bars(counts, together);
     let path = bars.iter().fold(String::new(), |mut path, (place, length)| {
@@ -31,7 +31,7 @@ pub(super) fn by_column(counts: &[u32], together: usize) -> Markup {
     chart("columns", &view, &path, &caption(most, together, "column"))
 }
 
-/// Place and length of the bars that are not empty, a bar for each `together` counts; and the largest sum.
+/// Place and length of the bars that are not empty, with one bar for every `together` counts; and the largest sum.
 fn bars(counts: &[u32], together: usize) -> (Vec<(usize, u64)>, u64) {
     let sums: Vec<u64> =
         counts.chunks(together).map(|chunk| chunk.iter().copied().map(u64::from).sum()).collect();

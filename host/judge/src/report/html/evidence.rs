@@ -14,25 +14,25 @@ use crate::result::{Evidence, FrameReport, Report, sha256};
 use crate::verdict::Verdict;
 use crate::words::{count, grouped, percent};
 
-/// Bytes of all pictures together, of a PASS and of anything else. Base 64 makes 1.5 and 3.4 MB of them, which leaves half a megabyte of
-/// 2 and of 4 to text and charts.
+/// Bytes of all pictures together, for a PASS and for anything else. In Base64 they are 1.5 and 3.4 MB, which leaves half a
+/// megabyte of 2 and 4 MB for text and charts.
 const MOST_BYTES: (usize, usize) = (1_100_000, 2_550_000);
-/// Bytes of all maps and crops together, which leave the previews of sixteen frames 20 kB each.
+/// Bytes of all maps and crops together. They leave 20 kB for the previews of each of sixteen frames.
 const MOST_OF_DETAILS: usize = MOST_BYTES.1 - 16 * 20_000;
-/// The widest preview of a frame that is wrong, and of one that is right, in pixels.
+/// The widest preview of a wrong frame and of a right one, in pixels.
 const MAX_WIDTH: (usize, usize) = (960, 480);
-/// Frames that have a section.
+/// The most frames that have a section.
 const MOST_SECTIONS: usize = 400;
-/// Windows of a frame that are shown sample by sample.
+/// The most windows of a frame that are shown sample by sample.
 const MOST_WINDOWS: usize = 3;
-/// Screen pixels to a sample there.
+/// The side of a sample there, in screen pixels.
 const ZOOM: usize = 8;
 
-/// What was kept of a frame, and what is known of it.
+/// The samples that were kept of a frame, and the report on it.
 type Kept<'a> = (&'a Evidence, &'a FrameReport);
 
-/// A section for each frame of `evidence` for which there is room, in order. Those that differ have it first, and of those the first ones
-/// have maps and crops.
+/// A section for each frame of `evidence`, in order, as far as there is room. Frames that differ come first when room is
+/// short, and the first ones of these have maps and crops.
 ///
 /// # Errors
 /// The PNG encoder's.
@@ -58,7 +58,7 @@ pub(super) fn sections(report: &Report, evidence: &[Evidence]) -> Result<Markup,
     })
 }
 
-/// The frames that have a section, and how many have none.
+/// The frames that get a section, and how many do not.
 fn shown(mut known: Vec<Kept<'_>>) -> (Vec<Kept<'_>>, usize) {
     let all = known.len();
     let wrong = known.iter().filter(|kept| differs(kept)).count();
@@ -91,7 +91,7 @@ fn all_details(shown: &[Kept<'_>]) -> Result<(impl Iterator<Item = Markup>, usiz
     Ok((all.into_iter(), used))
 }
 
-/// One frame's section of at most `most_bytes` of previews, and the bytes that they took.
+/// One frame's section with at most `most_bytes` of previews, and the bytes that they took.
 fn section(
     report: &Report,
     shown: &Kept<'_>,
@@ -121,7 +121,7 @@ fn section(
     Ok((markup, used))
 }
 
-/// What came out, with the white of what should have; what lies beyond its depth is white.
+/// The frame that came out, developed with the white level of the expected one; samples above its depth become white.
 fn as_bright(kept: &Evidence) -> Cow<'_, Frame> {
     let Evidence { found, expected, .. } = kept;
     let white = expected.depth().max();
@@ -163,7 +163,7 @@ fn summary(frame: &FrameReport, kept: &Evidence) -> Markup {
     }
 }
 
-/// As the hash of what went in has them.
+/// The samples as bytes, like in the hash of what went in.
 fn little_endian(samples: &[u16]) -> Vec<u8> {
     samples.iter().map(|sample| sample.to_le_bytes()).collect::<Vec<_>>().into_flattened()
 }
@@ -210,7 +210,7 @@ fn details(frame: &FrameReport, kept: &Evidence) -> Result<(Markup, usize), Enco
     Ok((markup, used))
 }
 
-/// One window of all three frames, and the bytes of its pictures.
+/// One window in all three frames, and the bytes of its pictures.
 fn crops(window: Window, kept: &Evidence) -> Result<(Markup, usize), EncodingError> {
     let crops = window.crops(kept)?;
     let Window { around, top, left, height, width } = window;

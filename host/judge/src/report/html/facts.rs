@@ -1,4 +1,4 @@
-//! The parts of the page that are tables and lists.
+//! The tables and lists of the page.
 
 use maud::{Markup, html};
 
@@ -7,7 +7,7 @@ use crate::report::wording;
 use crate::result::{FrameReport, LinkReport, Outcome, Report, TablesReport};
 use crate::words::{count, grouped, plain};
 
-/// Rows of the table of frames.
+/// The most rows of the table of frames.
 const MOST_FRAMES: usize = 400;
 
 /// The word of an outcome, in its colour.
@@ -58,7 +58,7 @@ fn frame_row(report: &Report, frame: &FrameReport) -> Markup {
     }
 }
 
-/// What a run measured, and what that is worth.
+/// What a run measured, and its coverage.
 pub(super) fn figures(report: &Report) -> Markup {
     let figures = [
         ("Latency", report.latency.as_ref().map(wording::latency)),
@@ -72,7 +72,7 @@ pub(super) fn figures(report: &Report) -> Markup {
     html! { section { h2 { "Figures" } dl { @for pair in pairs { (pair) } } } }
 }
 
-/// What a PASS says nothing about.
+/// What a PASS does not cover.
 pub(super) fn not_exercised(report: &Report) -> Markup {
     if report.not_exercised.is_empty() {
         return Markup::default();

@@ -1,4 +1,4 @@
-//! Frames judged over the hours of a soak, and what differed in them.
+//! The frames judged over the hours of a soak, and what differed in them.
 
 use std::fmt::Write as _;
 
@@ -11,12 +11,12 @@ use crate::words::{grouped, plain, span};
 
 /// The height of the tallest bar.
 const TALLEST: u64 = 100;
-/// The height of the lowest, so that few frames are seen beside many.
+/// The height of the lowest bar, so that a few frames are visible next to many.
 const LOWEST: u64 = 2;
-/// The same of those that differ, which must strike the eye.
+/// The height of the lowest bar of frames that differ, which must catch the eye.
 const LOWEST_WRONG: u64 = 15;
 
-/// The part of the page.
+/// The section of a soak.
 pub(super) fn section(soak: &SoakReport) -> Markup {
     html! {
         section {
@@ -28,7 +28,7 @@ pub(super) fn section(soak: &SoakReport) -> Markup {
     }
 }
 
-/// A bar for each interval, as tall as its frames are many, pale, and red from below where frames differ.
+/// A pale bar for each interval, as tall as the number of its frames, with a red one over it for those that differ.
 fn chart(chart: &SoakChart) -> Markup {
     let most = chart.intervals.iter().map(|interval| interval.frames).max().unwrap_or(0);
     let bars = |count: fn(&SoakInterval) -> u64, lowest: u64| {

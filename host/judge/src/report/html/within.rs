@@ -1,4 +1,4 @@
-//! What was taken of a run that had to keep within a time, and what longer ones find.
+//! What was taken of a run that had to keep within a time, and what other times would find.
 
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ use crate::words::{grouped, span};
 const WIDE: f64 = 240.0;
 const HIGH: f64 = 100.0;
 
-/// The part of the page.
+/// The section of a run within a time.
 pub(super) fn section(within: &WithinReport) -> Markup {
     html! {
         section {
@@ -23,8 +23,8 @@ pub(super) fn section(within: &WithinReport) -> Markup {
     }
 }
 
-/// Faults found over time, a step for each part that is taken, up to where nothing more is found or the time is over,
-/// whichever is later.
+/// The faults found over time, with a step for each part that is taken. It ends where nothing more is found or the allowed
+/// time is over, whichever is later.
 fn chart(within: &WithinReport) -> Markup {
     let (Some(last), most) = (within.curve.last(), within.faults.max(1)) else { return Markup::default() };
     let longest = last.seconds.max(within.seconds).max(f64::MIN_POSITIVE);

@@ -12,7 +12,7 @@ use crate::result::Evidence;
 /// A part of a frame, around a difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::report) struct Window {
-    /// The first difference in it that no window above has.
+    /// The first difference in it that no earlier window shows.
     pub(in crate::report) around: Difference,
     /// Its first row.
     pub(in crate::report) top: usize,
@@ -24,7 +24,7 @@ pub(in crate::report) struct Window {
     pub(in crate::report) width: usize,
 }
 
-/// The same window of all three frames.
+/// A window's pictures in all three frames.
 #[derive(Clone, Debug)]
 pub(in crate::report) struct Crops {
     /// What went in.
@@ -33,14 +33,14 @@ pub(in crate::report) struct Crops {
     pub(in crate::report) expected: Picture,
     /// What the board gave.
     pub(in crate::report) found: Picture,
-    /// Where and how much the last two differ.
+    /// Where and by how much the last two differ.
     pub(in crate::report) difference: Picture,
-    /// The samples that are shown black and white: the least and the greatest of all three.
+    /// The sample values shown as black and as white: the least and the greatest in all three frames.
     pub(in crate::report) range: (u16, u16),
 }
 
-/// Windows around the first differences in reading order, at most `most` of them, none around a difference that an
-/// earlier one shows.
+/// Windows around the first differences in reading order, at most `most` of them, and none around a difference that an earlier
+/// window shows.
 pub(in crate::report) fn windows(expected: &Frame, found: &Frame, most: usize) -> Vec<Window> {
     let mut windows: Vec<Window> = Vec::new();
     for difference in differences(expected, found) {
@@ -68,7 +68,7 @@ impl Window {
     const WIDTH: usize = 48;
     const HEIGHT: usize = 32;
 
-    /// The window with `around` in its middle, or as near as the frame allows.
+    /// The window with `around` at its middle, or as near to it as the frame allows.
     fn around(around: Difference, frame: &Frame) -> Self {
         let (width, height) = (Self::WIDTH.min(frame.width()), Self::HEIGHT.min(frame.height()));
         let start =
@@ -91,7 +91,7 @@ impl Window {
         })
     }
 
-    /// The pictures of the window, a pixel a sample, with one contrast for all three frames.
+    /// The pictures of the window, one pixel a sample, with the same contrast for all three frames.
     ///
     /// # Errors
     /// The PNG encoder's.
@@ -115,7 +115,7 @@ impl Window {
     }
 }
 
-/// A sample's grey, from 0 for the least of the range to 255 for the most.
+/// A sample's grey level, from 0 for the least of the range to 255 for the greatest.
 fn level(sample: u16, (least, most): (u16, u16)) -> u8 {
     let span = u32::from(most.saturating_sub(least)).max(1);
     let above = u32::from(sample.saturating_sub(least)).min(span);

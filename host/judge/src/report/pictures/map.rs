@@ -7,19 +7,20 @@ use super::Picture;
 use super::scale::colour;
 use crate::frames::preview::RgbImage;
 
-/// The side of the square of samples that one pixel of the map of a large frame stands for. It keeps a single difference
-/// visible when a whole frame is shown on a telephone.
+/// The side of the square of samples that one pixel stands for in the map of a large frame. It keeps a single difference
+/// visible when a whole frame is shown on a phone.
 const BOX: usize = 8;
-/// The most samples of a frame that has a pixel for each.
+/// The most samples of a frame whose map has a pixel for each.
 const SMALL: usize = 128 * 128;
 
-/// The side of the square of samples that one pixel of the map stands for, in a frame of so many samples.
+/// The side of the square of samples that one pixel of the map stands for, for a frame of `samples` samples.
 #[must_use]
 pub fn side(samples: usize) -> usize {
     if samples <= SMALL { 1 } else { BOX }
 }
 
-/// A map of two frames of one size: each pixel has the colour of the largest difference in its square of [`side`] samples.
+/// A map of two frames of one size: each pixel has the colour of the largest difference in its square of [`side`] by [`side`]
+/// samples.
 ///
 /// # Errors
 /// The PNG encoder's.

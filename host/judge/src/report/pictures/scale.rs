@@ -1,6 +1,6 @@
 //! The colour scale of differences.
 
-/// A colour of the map, and the smallest absolute difference that has it.
+/// A colour of the map, with the smallest absolute difference that has it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
     /// The smallest absolute difference of this step.
@@ -9,8 +9,9 @@ pub struct Step {
     pub colour: [u8; 3],
 }
 
-/// Powers of four, as a fault in one bit of a sample is a power of two. The colours are the brighter part of magma, whose
-/// lightness rises evenly, so that the order shows in grey and to the colour-blind.
+/// From 2 on each step is four times the one before, because a fault in one bit of a sample differs by a power of two. The
+/// colours are the brighter part of magma, whose lightness rises evenly, so that the order also shows in grey and to
+/// colour-blind readers.
 const STEPS: [Step; 7] = [
     step(1, [0x83, 0x26, 0x81]),
     step(2, [0xb0, 0x31, 0x7b]),
@@ -21,7 +22,7 @@ const STEPS: [Step; 7] = [
     step(2048, [0xfc, 0xfd, 0xbf]),
 ];
 
-/// Where nothing differs.
+/// The colour where nothing differs.
 pub(super) const EQUAL: [u8; 3] = [0x17, 0x17, 0x20];
 
 const fn step(from: u16, colour: [u8; 3]) -> Step {

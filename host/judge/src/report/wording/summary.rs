@@ -1,11 +1,11 @@
-//! The report in lines, for views without a table.
+//! The report as lines of text, for views without a table.
 
 use super::{mark, not_exercised, remedy, technician, verdict_line};
 use crate::result::{Report, Suspect};
 use crate::verdict::Verdict;
 use crate::words::plain;
 
-/// The verdict with every check and what to do, a line each: for views without a table.
+/// The verdict, every check, what was not exercised and what to do, one line each.
 #[must_use]
 pub fn summary(report: &Report) -> String {
     let mut lines = vec![verdict_line(report)];
@@ -17,7 +17,7 @@ pub fn summary(report: &Report) -> String {
     lines.join("\n")
 }
 
-/// Who is suspected and what to do, a line each.
+/// The suspects and what to do, one line each.
 pub(in crate::report) fn advice(report: &Report) -> Vec<String> {
     let said = |suspect: &Suspect| {
         let (part, place) = (suspect.part(), suspect.place());
@@ -34,7 +34,7 @@ pub(in crate::report) fn advice(report: &Report) -> Vec<String> {
     lines.map(|line| plain(&line).into_owned()).collect()
 }
 
-/// The codes that `halfrow explain` has more of: the finding's and those of the suspects, each once; none of a PASS.
+/// The codes for `halfrow explain`: the finding's and those of the suspects, each once; none for a PASS.
 #[must_use]
 pub fn codes(report: &Report) -> Vec<String> {
     if report.verdict() == Verdict::Pass {

@@ -1,10 +1,10 @@
-//! What is said of a run that had to keep within a time.
+//! Words for a run that had to keep within a time.
 
 use crate::result::{WithinPart, WithinReport};
 use crate::words::{bytes, grouped, plain, span};
 
-/// What was taken of a run that had to keep within a time, what was left out, and what that finds: a sentence each, without a
-/// full stop.
+/// What was taken of a run that had to keep within a time, what was left out, and what it finds, in one sentence each without
+/// a full stop.
 #[must_use]
 pub fn within(within: &WithinReport) -> Vec<String> {
     let rate = within.bytes_per_second.map_or_else(
