@@ -1,4 +1,4 @@
-//! From findings to the report.
+//! Makes the report from the findings.
 
 use std::time::Instant;
 
@@ -20,9 +20,9 @@ use crate::verdict::Cause;
 /// When a run began.
 #[derive(Clone, Copy)]
 pub(super) struct Begun {
-    /// By the computer's clock, which may be set meanwhile.
+    /// By the computer's clock, which may be set during the run.
     at: Timestamp,
-    /// By one that only goes on.
+    /// By a monotonic clock.
     since: Instant,
 }
 
@@ -76,7 +76,7 @@ pub(super) fn conclude(
     Finished { report, evidence }
 }
 
-/// What the run finds of the faults that were measured in a board of this build.
+/// How many of the faults measured in a board of this build the run finds.
 fn coverage(plan: &Plan, findings: &Findings) -> Option<CoverageReport> {
     let build = &findings.board.identity.as_ref()?.build;
     let faults = Faults::all().inspect_err(|error| tracing::warn!("no coverage is told: {error}")).ok()?;
@@ -129,7 +129,7 @@ fn ending(findings: &mut Findings, end: Option<End>) -> Ending {
     }
 }
 
-/// Why the run broke off, behind what nobody looked into then.
+/// Why the run broke off, after the differences that were then not looked into.
 fn broken_off(why: Finding, seen: &Seen) -> Finding {
     let FrameTotals { frames, differing_frames, samples, differences } = seen.totals();
     let Finding::Problem(problem) = why else { return why };
@@ -162,7 +162,7 @@ fn skip_the_rest(checks: &mut Vec<Check>) {
     checks.sort_by_key(|check| check.name);
 }
 
-/// The built-in street, when it came back whole and was kept.
+/// The edges of the built-in street, when it was streamed whole and kept.
 fn street(plan: &Plan, seen: &Seen) -> Option<StreetReport> {
     let street = seen.evidence.all().iter().find(|evidence| {
         seen.frames

@@ -1,4 +1,4 @@
-//! What entered the core, by the board's own CRC of it.
+//! What entered the core, judged by the board's own CRC of it.
 
 use std::iter;
 
@@ -6,10 +6,10 @@ use halfrow_model::row_signature;
 
 use crate::result::FlippedBit;
 
-/// The polynomial of CRC-32, the least power first: what flipping the last bit of a row makes of the row's CRC.
+/// The polynomial of CRC-32, reflected. By this a row's CRC changes when the row's last bit is flipped.
 const LAST_BIT: u32 = 0xedb8_8320;
 
-/// Rows that entered the core otherwise than they were sent.
+/// Rows that entered the core with other samples than were sent.
 #[derive(Clone, Copy)]
 pub(super) struct WrongEntry {
     /// How many.
@@ -18,15 +18,15 @@ pub(super) struct WrongEntry {
     pub(super) row: usize,
     /// Its frame.
     pub(super) frame: u16,
-    /// The one bit of this row that gives the CRC when it is flipped, if there is one.
+    /// The single bit of this row which, if flipped, gives the board's CRC; none if no single bit does.
     pub(super) flipped: Option<FlippedBit>,
 }
 
-/// The one bit of the row `sent`, of samples of `bits` bits, that gives the CRC `entered` when it is flipped.
+/// The single bit of the row `sent`, of samples of `bits` bits, which gives the CRC `entered` when it is flipped.
 pub(super) fn flipped_bit(sent: &[u16], bits: u32, entered: u32) -> Option<FlippedBit> {
     let word = u16::BITS as usize;
     let wanted = row_signature(sent) ^ entered;
-    // A CRC is linear, so that a flipped bit changes it alike whatever the row is, by its distance from the end alone.
+    // A CRC is linear: how a flipped bit changes it depends only on the bit's distance from the row's end.
     let one_earlier = |effect: &u32| Some(effect >> 1 ^ if effect & 1 == 1 { LAST_BIT } else { 0 });
     let effects = iter::successors(Some(LAST_BIT), one_earlier);
     let (_, place) = effects.zip((0..sent.len() * word).rev()).find(|(effect, _)| *effect == wanted)?;

@@ -1,5 +1,5 @@
-//! What the frames of a run put to the test in a board, and what they left untouched, found on the reference's side: from
-//! what was uploaded, and from the samples that went in and should have come out.
+//! What the frames of a run exercised in a board, and what they did not. It is computed on the reference's side: from what was
+//! uploaded, and from the samples that went in and should have come out.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +8,7 @@ use halfrow_model::{Frame, NODES, RowFactor, Source, TAP_NAMES, TableSet};
 use super::plan::Generation;
 use crate::result::{Identity, NotExercised};
 
-/// The levels that bits have had.
+/// The levels that bits have had: `ones` marks each bit that was ever 1, `zeros` each that was ever 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Levels {
     ones: u32,
@@ -23,7 +23,7 @@ impl Levels {
         })
     }
 
-    /// Takes the samples of a frame, unless it could add nothing.
+    /// Adds the samples of a frame, unless they could change nothing.
     fn note(&mut self, frame: &Frame) {
         if !self.constant(frame.depth().bits()).is_empty() {
             let Self { ones, zeros } = Self::of(frame.samples().iter().copied().map(u32::from));
@@ -32,7 +32,7 @@ impl Levels {
         }
     }
 
-    /// Those of the lowest `bits` that were never both 0 and 1.
+    /// Those of the lowest `bits` bits that have not had both levels.
     fn constant(self, bits: u32) -> Vec<usize> {
         (0..bits).filter(|bit| (self.ones & self.zeros) >> bit & 1 == 0).map(|bit| bit as usize).collect()
     }
@@ -46,14 +46,14 @@ pub(super) struct SampleLevels {
 }
 
 impl SampleLevels {
-    /// Takes a frame that went in, and what should have come out.
+    /// Adds a frame that went in, and the frame that should have come out.
     pub(super) fn note(&mut self, input: &Frame, output: &Frame) {
         self.input.note(input);
         self.output.note(output);
     }
 }
 
-/// What frames corrected with `generations` left untouched of `board`.
+/// What frames that were corrected with `generations` did not exercise of `board`.
 pub(super) fn not_exercised(
     board: &Identity,
     generations: &[&Generation],
@@ -82,37 +82,37 @@ pub(super) fn not_exercised(
     .collect()
 }
 
-/// What `items` are, if there are any.
+/// `what` of `items`, if there are any.
 fn some<T>(items: Vec<T>, what: impl FnOnce(Vec<T>) -> NotExercised) -> Option<NotExercised> {
     (!items.is_empty()).then(|| what(items))
 }
 
-/// The lines that address so many entries.
+/// The address lines of a memory with this many entries.
 fn lines(entries: usize) -> std::ops::Range<usize> {
     0..entries.saturating_sub(1).checked_ilog2().map_or(0, |top| top as usize + 1)
 }
 
-/// Lines of the board's widest row that are 0 at every column of these.
+/// Address lines of the board's widest row that are 0 at every column of frames with these tables.
 fn column_lines(tables: &[&TableSet], board: &Identity) -> Vec<usize> {
     let last = tables.iter().map(|tables| tables.geometry().width() - 1).max().unwrap_or_default();
     lines(board.max_width.into()).filter(|line| last >> line == 0).collect()
 }
 
-/// Lines of the ring that may be stuck unseen. A sample's place is also that of the one 2^line later then, so it must still
-/// be needed when that one has been stored (DATAPATH.md, "Ring").
+/// Address lines of the ring that may be stuck unseen. With a stuck line a sample is overwritten by the one 2^line later, which
+/// shows only if it is still needed then (DATAPATH.md, "Ring").
 fn line_memory_lines(tables: &[&TableSet], board: &Identity) -> Vec<usize> {
     let longest = tables.iter().filter_map(|tables| look_back(tables)).max().unwrap_or_default();
     lines(board.ring.into()).filter(|line| 1_i64 << line > longest).collect()
 }
 
-/// The most samples that are stored behind one that is still needed. The end of a row decides.
+/// The most samples that are stored after one that is still needed. The end of a row decides.
 fn look_back(tables: &TableSet) -> Option<i64> {
     let (width, rows) = (tables.geometry().width(), 0..tables.geometry().height());
     let ends = rows.filter_map(|row| Some(tables.values(row)?.source(width - 1).column));
     Some(width as i64 - 1 - ends.min()? + width as i64 / 2 - 1)
 }
 
-/// Lines of the board's row table that tell no two rows of different factors apart.
+/// Address lines of the board's row table that separate no two rows of different factors.
 fn row_table_lines(tables: &[&TableSet], board: &Identity) -> Vec<usize> {
     let tells = |line: &usize| {
         tables.iter().any(|tables| {
@@ -128,7 +128,7 @@ fn factor_bits(tables: &[&TableSet]) -> Vec<usize> {
     Levels::of(tables.iter().flat_map(|tables| tables.entries())).constant(RowFactor::BITS)
 }
 
-/// Nodes that no output is made with, and taps of a board of `taps` that weigh nothing in any.
+/// The nodes with which no output is made, and the taps, of a board with `taps`, that have no weight in any output.
 fn unused_of_kernel(generations: &[&Generation], taps: u8) -> (Vec<usize>, Vec<String>) {
     let (mut used, mut weighed) = ([false; NODES], [false; TAP_NAMES.len()]);
     let alike = |one: &Generation, other: &Generation| {
@@ -155,7 +155,8 @@ fn unused_of_kernel(generations: &[&Generation], taps: u8) -> (Vec<usize>, Vec<S
     (unused, unweighed)
 }
 
-/// The nodes that outputs are made with: the one left of the source, and the next one unless it lies right on the first.
+/// The nodes with which outputs are made: the one left of the source, and the next one unless the source is exactly at
+/// the first.
 fn nodes_used(tables: &TableSet) -> [bool; NODES] {
     let (geometry, mut used) = (tables.geometry(), [false; NODES]);
     for values in (0..geometry.height()).filter_map(|row| tables.values(row)) {
@@ -215,7 +216,7 @@ mod tests {
         }
     }
 
-    /// 128 x 16 around the middle, C = 127, unless told otherwise.
+    /// A generation for frames of 128 x 16.
     fn generation(centre2: u32, interpolant: Interpolant, factor: impl Fn(u32) -> u32) -> Generation {
         let geometry = Geometry::new(128, 16, BitDepth::Twelve, centre2).unwrap();
         let factors = (0..16).map(|row| RowFactor::new(factor(row)).unwrap()).collect();
@@ -235,9 +236,9 @@ mod tests {
         NotExercised::Taps { taps: names.iter().map(|&name| name.to_owned()).collect() }
     }
 
-    /// Without stretching, every output is its own column: x = 0, so node 0 and G2 alone, and n = 127 at column 127, so that
-    /// a sample is needed while 63 more are stored, of which line 6 tells none apart. One factor for all rows tells no line
-    /// of the row table, and keeps all of its 25 bits.
+    /// Without stretching, every output is its own column: x = 0, so only node 0 and G2 are used, and n = 127 at column
+    /// 127, so that a sample is needed while 63 more are stored, too few for line 6. One factor for all rows exercises no
+    /// line of the row table, and none of the factor's 25 bits.
     #[test]
     fn a_table_that_stretches_nothing_exercises_next_to_nothing() {
         let generation = generation(127, Interpolant::Hermite, |_| 1 << 24);
@@ -256,8 +257,8 @@ mod tests {
         );
     }
 
-    /// At half the distances the sources lie at (127 + 2j)/4: a quarter or three of the way between two columns, at nodes 8,
-    /// 24, 40 and 56. That of column 127 is 95.25, so a sample is needed while 32 + 63 = 95 more are stored.
+    /// At half the distances the sources lie at (127 + 2j)/4: one or three quarters of the way between two columns, at
+    /// nodes 8, 24, 40 and 56. That of column 127 is 95.25, so a sample is needed while 32 + 63 = 95 more are stored.
     #[test]
     fn half_the_distances_use_four_nodes() {
         let half = |row| if row == 0 { 1 << 24 } else { 1 << 23 };
@@ -271,15 +272,15 @@ mod tests {
         assert!(found_linear.contains(&taps(&["G0", "R1", "R3", "R5", "G6"])));
     }
 
-    /// At 0.99 of the distances the source of column 127 is 126.365, so a sample is needed while 1 + 63 = 64 more are stored: the last
-    /// of those has its place if line 6 is stuck.
+    /// At 0.99 of the distances the source of column 127 is 126.365, so a sample is needed while 1 + 63 = 64 more are
+    /// stored: with line 6 stuck, the last of these overwrites it.
     #[test]
     fn a_line_tells_samples_apart_that_are_as_far_apart_as_it_counts() {
         let found = found(7, &[&generation(127, Interpolant::Linear, |_| 16_609_444)]);
         assert!(found.contains(&NotExercised::LineMemoryAddress { lines: (7..11).collect() }), "{found:?}");
     }
 
-    /// Beside node 0.
+    /// In addition to node 0, which the tables without stretching use.
     #[test]
     fn tables_that_differ_in_factors_alone_use_nodes_of_their_own() {
         let [none, half] = [24, 23].map(|bit| generation(127, Interpolant::Hermite, |_| 1 << bit));
@@ -287,7 +288,7 @@ mod tests {
         assert!(found(7, &[&none, &half]).contains(&NotExercised::KernelNodes { nodes: unused }));
     }
 
-    /// The kernel decides, and what the board has.
+    /// It depends on the kernel and on the board.
     #[test]
     fn five_taps_leave_the_outer_ones_of_seven_unused() {
         let five = generation(127, Interpolant::Hermite, |_| 1 << 23);
@@ -298,12 +299,12 @@ mod tests {
         };
         assert_eq!(named(7, &[&five]), [taps(&["G0", "G6"])]);
         assert_eq!(named(5, &[&five]), []);
-        // Keys' kernel weighs no R, as Hermite's does not weigh G0 and G6.
+        // Keys' kernel has no weight for R taps, and Hermite's none for G0 and G6.
         assert_eq!(named(7, &[&seven]), [taps(&["R1", "R3", "R5"])]);
         assert_eq!(named(7, &[&five, &seven]), []);
     }
 
-    /// 127 is 0000 0111 1111 and 0 is 0 in the 12 bits of C on a board of 2048 columns.
+    /// C has 12 bits on a board of 2048 columns: 127 is 0000 0111 1111, and 0 is all zeros.
     #[test]
     fn of_two_centres_the_bits_that_are_the_same_are_told() {
         let [here, there] = [127, 0].map(|centre2| generation(centre2, Interpolant::Linear, |_| 1 << 23));

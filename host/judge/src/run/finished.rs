@@ -1,4 +1,4 @@
-//! The last word on a run: its verdict, once what was asked for is written.
+//! The final verdict of a run, which also depends on whether what was asked for could be written.
 
 use std::error::Error;
 use std::path::Path;
@@ -25,7 +25,7 @@ impl Finished {
     /// Writes the report into its folder.
     ///
     /// # Errors
-    /// [`Lack`], when it cannot be written: the report is lost then, as by [`Self::lose`].
+    /// [`Lack`] when it cannot be written: the report is then noted as lost, like with [`Self::lose`].
     pub fn commit(&mut self, folder: ReportFolder) -> Result<(), Lack> {
         let earlier = folder.earlier().map(Path::to_path_buf);
         let Err(error) = folder.commit(&self.report, &self.evidence) else { return Ok(()) };
@@ -44,17 +44,17 @@ impl Finished {
         Err(self.lose(Problem { causes: Problem::of(&error).chain(), ..what }, remedy))
     }
 
-    /// Takes note that the recording of the run could not be finished, as by [`Self::lose`].
+    /// Notes that the recording of the run could not be finished, like [`Self::lose`].
     pub fn lose_recording(&mut self, why: &(dyn Error + 'static)) -> Lack {
         let what = Problem::new(RECORDING_LOST, "the recording could not be written");
-        // Its sentence says what its own causes do.
+        // Its sentence already says what its own causes say.
         let causes = vec![Problem { causes: Vec::new(), ..Problem::of(why) }];
         let remedy = "See that its folder is there and has space, or choose another place for the recording, then run again.";
         self.lose(Problem { causes, ..what }, remedy)
     }
 
-    /// Takes note that something which was asked for is not there. A PASS that lacks it is ERROR. Any other verdict stands,
-    /// for it must not be lost as well.
+    /// Notes that something that was asked for is missing. A PASS without it becomes an ERROR. Any other verdict stands,
+    /// so that it is not lost too.
     pub fn lose(&mut self, what: Problem, remedy: &str) -> Lack {
         let report = &mut self.report;
         let what = Box::new(Problem { remedy: Some(remedy.to_owned()), ..what });
@@ -74,6 +74,6 @@ impl Finished {
 pub struct Lack {
     /// What, and why.
     pub what: Box<Problem>,
-    /// Whether the report tells it, as its finding; otherwise its verdict stands, and somebody must be told.
+    /// Whether the report says it, as its finding. Otherwise the verdict stands, and the caller must say what is missing.
     pub is_told: bool,
 }

@@ -1,8 +1,8 @@
-//! A row that did not come back: whether the board swallowed it.
+//! Finds out whether the board swallowed a row that did not come back.
 //!
-//! A row can be lost on either way and late on both, so what did not come back proves nothing. It is the board's only if
-//! the frame is played again with nothing else amiss, a row goes missing again, and the board itself says that it took that row,
-//! and does not give it out when it is asked.
+//! A row can be lost or late on the way there and on the way back, so a missing row alone proves nothing. It is the
+//! board's fault only if the frame is played again with no other trouble, a row goes missing again, and the board itself
+//! says that it took that row, and does not send it when asked.
 
 use std::iter;
 
@@ -17,25 +17,26 @@ use crate::board::{BoardError, NumberedFrame, Status, Tally, Unjudged, Unreturne
 use crate::result::{CheckName, Finding};
 use crate::verdict::Cause;
 
-/// How often a frame is played again until nothing else is amiss.
+/// How often a frame is played again until there is no other trouble.
 const REPLAYS: usize = 4;
-/// How often a row that went missing is asked for, one time after the other.
+/// How often in succession a missing row is asked for.
 const ASKED: u32 = 3;
-/// Echoes as long as the longest packet, before and behind that.
+/// Echoes of the longest packet, before and again after that.
 const ECHOES: usize = 4;
 
-/// What playing a frame again has shown.
+/// What playing a frame again showed.
 enum Replay {
     /// All rows came back.
     Complete,
-    /// A row went missing, and so may other packets have.
+    /// A row went missing, but other packets may be missing too.
     Troubled,
     /// The board swallowed a row.
     Swallowed { row: u16 },
 }
 
 impl Run<'_> {
-    /// Why the run ends when the row at `place` of `frame`, which has `geometry`, did not come back however often it was asked for.
+    /// Why the run ends when the row at `place` of `frame`, which has `geometry`, did not come back, however often it was
+    /// asked for.
     pub(super) fn row_lost(&mut self, frame: &ScheduledFrame, geometry: &Geometry, place: RowPlace) -> End {
         let RowPlace { frame: number, row: lost, .. } = place;
         let unclear = |finding| End::error(CheckName::Frames, Cause::Station, finding);
@@ -91,21 +92,21 @@ impl Run<'_> {
     }
 }
 
-/// Whether nothing was lost, damaged, late or doubled between two counts, as far as the host can see.
+/// Whether, as far as the host can see, nothing was lost, damaged, late or doubled between two tallies.
 fn is_calm(before: Tally, after: Tally) -> bool {
     let troubles = |tally: Tally| (tally.retries, tally.strays, tally.damaged_in, tally.line_errors.sum());
     troubles(before) == troubles(after)
 }
 
-/// Whether the board says that it took the row, and has all that it needs to bring it out: a row's second half leaves
-/// while the next one enters, or behind the last of a frame.
+/// Whether the board says that it took the row, and has everything that it needs to bring it out: a row's second half
+/// leaves while the next one enters, or after the last row of a frame.
 fn was_taken(status: &Status, first_row: u32, row: &Unreturned) -> bool {
     let is_pushed_out = row.place.last || first_row + row.sent > row.place.row_sequence + 1;
     status.rows_in == row.sent && status.next_row_in == first_row + row.sent && is_pushed_out
 }
 
-/// Whether the board says that nobody acknowledged the row, and gives it out all the same neither by itself nor when it is
-/// sent again: it counts no row out beside those that came, or calls it unneeded.
+/// Whether the board says that the row was not acknowledged, and still gives it out neither by itself nor when it is sent
+/// again: it counts no rows out besides those that came, or counts each further copy of the row as unneeded.
 fn is_withheld(status: &Status, row: &Unreturned) -> bool {
     status.next_row_out == row.place.row_sequence
         && status.rows_repeated == 0

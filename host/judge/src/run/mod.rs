@@ -1,6 +1,6 @@
 //! A run of `verify`: from the plan to the report.
 //!
-//! `steps` has the order; each step adds its check to the findings or ends the run. Where a check is made:
+//! `steps` has the order. Each step adds its check to the findings or ends the run. Where each check is made:
 //!
 //! | check | in |
 //! |---|---|
@@ -8,14 +8,14 @@
 //! | `identity` | `steps`, `misfit` |
 //! | `link` | `steps`, with the bytes of `patterns` |
 //! | `upload`, `read-back` | `upload` |
-//! | `frames`, `latency` | made ready in `prepared`, streamed in `streaming`, row by row in `row_judge`, judged in `what_came`; `lost_row` if one does not come |
+//! | `frames`, `latency` | prepared in `prepared`, streamed in `streaming`, row by row in `row_judge`, judged in `what_came`; `lost_row` if a row does not come |
 //! | `tables-after` | `what_came` |
 //! | `counters` | `counters` |
 //! | `at-speed` | `at_speed` |
 //! | `rules` | `rules` |
 //!
-//! Beside them: everything once more in `second_look`, a board that goes away in `reconnect`, a run that must keep within a time in
-//! `within`, and the report in `conclude` and `finished`.
+//! In addition: `second_look` does everything once more, `reconnect` waits for a board that goes away, `within` keeps a
+//! run within a time, and `conclude` and `finished` make the report.
 
 mod at_speed;
 mod conclude;
@@ -82,7 +82,7 @@ pub(crate) use threads::NoThread;
 pub use variations::{Build, Vary};
 pub use within::WithinError;
 
-/// What the report says of the run beside its findings. The default draws its numbers.
+/// What the report says about the run besides its findings. The default draws its numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Circumstances {
     /// The command line.
@@ -91,16 +91,16 @@ pub struct Circumstances {
     pub files: Vec<FileHash>,
     /// Numbers drawn for this run; a replay has those of the recorded one.
     pub draws: Draws,
-    /// Who tests, if anybody is named.
+    /// Who tests, if a name is given.
     pub operator: Option<String>,
 }
 
-/// Judges the board behind `candidate` by `plan`, and tells `progress` what it does. What is logged meanwhile carries the
-/// target, so that the lines of two runs on two threads can be told apart.
+/// Judges the board of `candidate` by `plan`, and reports to `progress` what it does. Log lines of the run carry the target, so
+/// that those of two runs on two threads can be told apart.
 ///
 /// # Errors
-/// [`Misfit`] when the board cannot have what `plan` uploads, or a frame is not for its tables: there is no verdict then, and nothing to report on. Whatever else
-/// goes wrong stands in the report.
+/// [`Misfit`] when the board cannot take what `plan` uploads, or a frame does not fit the plan's tables: then there is no
+/// verdict and no report. Whatever else goes wrong is in the report.
 pub fn verify(
     plan: &Plan,
     candidate: Candidate,
@@ -111,8 +111,8 @@ pub fn verify(
     span.in_scope(|| run_to_report(plan, candidate, options, progress))
 }
 
-/// The report of a run by `plan` that never began for a `cause`, which `problem` tells, as when the board of `target` cannot be
-/// opened.
+/// The report of a run by `plan` that never began, for instance because the board of `target` cannot be opened. `problem` says
+/// why, and `cause` is its class.
 #[must_use]
 pub fn not_begun(
     plan: &Plan,
@@ -183,7 +183,7 @@ fn drive(
         run.all_steps()
     });
     findings.note_link(&board);
-    // Whatever happened, the next run must find the board free; a board that is gone need not be asked again.
+    // Whatever happened, the next run must find the board free. A board that is gone need not be asked.
     let reachable = !matches!(&end, Err(end) if end.is_unreachable());
     if reachable {
         board.close();

@@ -1,4 +1,4 @@
-//! The parts that a run is made of, and a selection of them.
+//! The parts of a run, and selections of them.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -14,12 +14,12 @@ use super::variations::Build;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Part {
-    /// Noise that the decoy's tables correct.
+    /// Noise that is corrected by the decoy tables.
     Decoy,
-    /// The same once more, with frames to judge close behind it, so that tables change between rows that follow each other.
-    /// A board with one bank of tables has none.
+    /// The same again, directly followed by frames to judge, so that tables change between consecutive rows. A board with
+    /// one bank of tables has no such part.
     Swap,
-    /// The frame of the plan at this place, as often as the plan repeats it.
+    /// The plan's frame with this index, as often as the plan repeats it.
     Judged(usize),
     /// Noise with the sensor's blanking.
     SensorBlanking,
@@ -27,11 +27,11 @@ pub enum Part {
     Gaps,
     /// Noise with another optical centre.
     Centre,
-    /// Noise of so many bits a sample.
+    /// Noise with this many bits a sample.
     Depth(u32),
-    /// Frames that the board makes on its own at the full pixel clock.
+    /// Frames that the board makes itself at the full pixel clock.
     AtSpeed,
-    /// The same in corners of what the board can be set to.
+    /// The same at the corners of the board's settings.
     Corners,
     /// What the board must refuse, keep and end.
     Rules,
@@ -54,9 +54,9 @@ impl fmt::Display for Part {
     }
 }
 
-/// The parts that are judged, and how much of each: rows of what is streamed, frames at speed, 1 for the corners and for the rules. A streamed
-/// frame of fewer rows than the tables have is its first ones; behind a grid it is whole. A part that the run does not have, as a
-/// frame behind the plan's last, adds nothing to what is judged.
+/// The parts that are judged, and how much of each: rows of what is streamed, frames at speed, 1 for the corners and for
+/// the rules. A streamed frame of fewer rows than the tables consists of its first ones; with a grid it is whole. A part
+/// that the run does not have, such as a frame after the plan's last, adds nothing.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "Vec<(Part, usize)>", into = "Vec<(Part, usize)>")]
 pub struct Selection(BTreeMap<Part, usize>);
@@ -74,21 +74,21 @@ impl From<Selection> for Vec<(Part, usize)> {
 }
 
 impl Selection {
-    /// The least that makes a verdict: one row of the first frame to judge. It brings the tables into effect as well, without
-    /// which a board makes no frames of its own.
+    /// The least that gives a verdict: one row of the first frame to judge. It also brings the tables into effect,
+    /// without which a board makes no frames itself.
     #[must_use]
     pub fn least() -> Self {
         Self(BTreeMap::from([(Part::Judged(0), 1)]))
     }
 
-    /// How much of `part` there is; 0 when it is not among them.
+    /// How much of `part` is selected; 0 when it is not.
     #[must_use]
     pub fn amount(&self, part: Part) -> usize {
         self.0.get(&part).copied().unwrap_or_default()
     }
 
-    /// The same with at least so much of `part`, and with what that is nothing without: a change of tables follows a
-    /// frame with the decoy and comes before as many rows to judge, and corners follow a few frames at speed.
+    /// The same selection with at least `amount` of `part`, and with what the part needs: a change of tables follows a
+    /// frame with the decoy and precedes as many rows to judge, and corners follow a few frames at speed.
     #[must_use]
     pub fn with(&self, part: Part, amount: usize) -> Self {
         let mut parts = self.0.clone();
@@ -103,7 +103,7 @@ impl Selection {
         let (judged, swapped) = (raise(Part::Judged(0), 1), self.amount(Part::Swap));
         if part == Part::Swap || swapped > 0 {
             raise(Part::Decoy, 1);
-            // One height for both, since the core runs empty between two heights.
+            // The same height for both, because the core runs empty between two heights.
             let together = raise(Part::Swap, judged);
             raise(Part::Judged(0), together);
         }
@@ -113,13 +113,13 @@ impl Selection {
         Self(parts)
     }
 
-    /// Every part of `parts`, whole.
+    /// A selection of all of every part of `parts`.
     #[must_use]
     pub fn all(parts: impl IntoIterator<Item = Part>) -> Self {
         parts.into_iter().fold(Self::least(), |selection, part| selection.with(part, usize::MAX))
     }
 
-    /// The same with whole frames of all that is streamed.
+    /// The same selection with whole frames of everything that is streamed.
     fn of_whole_frames(&self) -> Self {
         let whole = |(&part, &amount): (&Part, &usize)| {
             let is_streamed = amount > 0 && !matches!(part, Part::AtSpeed | Part::Corners | Part::Rules);
@@ -128,7 +128,7 @@ impl Selection {
         Self(self.0.iter().map(whole).collect())
     }
 
-    /// What is streamed of a whole schedule.
+    /// What this selection streams of a whole schedule.
     pub(super) fn of(&self, schedule: Vec<Segment>) -> Vec<Segment> {
         let (mut active, mut streamed) = (None, Vec::new());
         for Segment { geometry, timing, frames, .. } in schedule {
@@ -147,7 +147,7 @@ impl Selection {
     }
 }
 
-/// `frames` in runs of the same number of rows.
+/// `frames` split into runs with the same number of rows.
 fn runs(
     frames: impl Iterator<Item = ScheduledFrame>,
     rows: impl Fn(&ScheduledFrame) -> usize,
@@ -162,13 +162,13 @@ fn runs(
     runs
 }
 
-/// The same with another number of rows, if frames can have so many.
+/// `geometry` with another number of rows, if frames can have that many.
 pub(super) fn of_height(geometry: &Geometry, rows: usize) -> Geometry {
     let other = Geometry::new(geometry.width(), rows, geometry.depth(), geometry.centre2());
     other.unwrap_or(*geometry)
 }
 
-/// Every part of a run with this whole schedule, in its order.
+/// Every part of a run with this whole schedule, in order.
 pub(super) fn parts_of(schedule: &[Segment]) -> Vec<Part> {
     let frames = schedule.iter().flat_map(|segment| &segment.frames);
     let mut parts: Vec<Part> = Vec::new();
@@ -187,13 +187,13 @@ impl Plan {
         parts_of(&self.whole_schedule(build))
     }
 
-    /// `selection` as it can be streamed. A grid is uploaded whole, and in a frame of fewer rows its entries lie otherwise, so
-    /// that frames behind it are whole.
+    /// `selection` as it can be streamed. A grid is uploaded whole, and for frames of fewer rows its entries would be at other
+    /// places, so with a grid frames are whole.
     pub(super) fn streamable(&self, selection: &Selection) -> Selection {
         if self.tables.shape().is_some() { selection.of_whole_frames() } else { selection.clone() }
     }
 
-    /// The name of a part for people, a frame's own included.
+    /// The name of a part for people; for a frame of the plan, the frame's name.
     #[must_use]
     pub fn name_of(&self, part: Part) -> String {
         let source = match part {
@@ -203,7 +203,7 @@ impl Plan {
         source.unwrap_or_else(|| part.to_string())
     }
 
-    /// How much of `part` there is to be judged; everything when none are selected.
+    /// How much of `part` is to be judged; all of it when the plan has no selection.
     pub(super) fn amount(&self, part: Part) -> usize {
         self.parts.as_ref().map_or(usize::MAX, |selection| selection.amount(part))
     }

@@ -1,4 +1,4 @@
-//! What a run will do: decided, and checked, before any board is opened.
+//! What a run will do. It is decided and checked before any board is opened.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -14,10 +14,10 @@ use crate::result::{SoakLength, Variation};
 /// Pixel clocks between two rows of the paper's sensor (MT9P031) at 1080p.
 pub(crate) const SENSOR_BLANKING: u16 = 900;
 
-/// Tables and kernel under one generation.
+/// Tables and kernel that are committed as one generation.
 #[derive(Clone, Debug)]
 pub struct Generation {
-    /// 1 to 255.
+    /// The generation's number, 1 to 255.
     pub number: u8,
     /// Row factors or a grid.
     pub tables: TableSet,
@@ -26,15 +26,15 @@ pub struct Generation {
 }
 
 impl Generation {
-    /// The same for frames of the first `rows` rows.
+    /// The same generation for frames of only the first `rows` rows.
     pub(super) fn upper(&self, rows: usize) -> Option<Self> {
         let Self { number, tables, kernel } = self;
         Some(Self { number: *number, tables: tables.upper(rows)?, kernel: kernel.clone() })
     }
 }
 
-/// The most frames that a plan can have, all repetitions counted: frame numbers have 16 bits, and seven frames of noise
-/// can be the run's own.
+/// The most frames that a plan can have, repetitions counted: frame numbers have 16 bits, and a run adds up to seven frames of
+/// noise of its own.
 pub const MOST_FRAMES: usize = (1 << 16) - 7;
 
 /// A plan of more frames than can be numbered.
@@ -50,13 +50,13 @@ pub struct TooManyFrames {
 /// Where a frame comes from.
 #[derive(Clone, Debug)]
 pub enum FrameSource {
-    /// Rendered when its turn comes.
+    /// Built in, and rendered when its turn comes.
     Builtin(Builtin),
-    /// There before the board is opened: read from a file, or a calling program's own.
+    /// Given before the board is opened: read from a file, or made by the calling program.
     File {
-        /// The file, or what a frame without one is called in reports.
+        /// The file, or the name in reports of a frame without one.
         path: PathBuf,
-        /// Its frame, of the size and the depth that the plan's tables are for.
+        /// The frame. It has the size and the depth of the plan's tables.
         frame: Arc<Frame>,
     },
 }
@@ -75,25 +75,25 @@ impl FrameSource {
 /// How rows are played.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Timing {
-    /// The fewest clocks between rows that the board can do.
+    /// The fewest pixel clocks between rows that the board allows.
     Least,
-    /// As many as behind the sensor.
+    /// As many pixel clocks between rows as the paper's sensor has.
     Sensor,
-    /// Gaps in and between rows, by this seed.
+    /// Gaps in and between rows, drawn from this seed.
     Gaps(u32),
 }
 
-/// How long a board makes frames on its own, at its full pixel clock.
+/// How long a board makes frames itself, at its full pixel clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum AtSpeed {
-    /// For 3 s of its clock on hardware; some frames on any other board.
+    /// For 3 s of its clock on hardware; a few frames on any other board.
     #[default]
     Usual,
     /// Not at all.
     Off,
-    /// For so long on its clock.
+    /// For this time on its clock.
     For(Duration),
-    /// For a soak, which may take hours, and behind which no rules are tried.
+    /// For a soak, which may take hours. The rules are not tried after it.
     Soak(SoakLength),
 }
 
@@ -107,7 +107,7 @@ impl AtSpeed {
     }
 }
 
-/// What a call says of it: nothing, none at all, or a time.
+/// From the option of a call: not given is [`AtSpeed::Usual`], 0 is [`AtSpeed::Off`].
 impl From<Option<Duration>> for AtSpeed {
     fn from(asked: Option<Duration>) -> Self {
         match asked {
@@ -118,7 +118,7 @@ impl From<Option<Duration>> for AtSpeed {
     }
 }
 
-/// What a run will do. How it is done stands in [`RunOptions`](super::RunOptions).
+/// What a run will do. How it is done is in [`RunOptions`](super::RunOptions).
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The tables to judge with.
@@ -127,7 +127,8 @@ pub struct Plan {
     pub kernel: Kernel,
     /// Where they came from, for people.
     pub tables_source: String,
-    /// Rows outside the image circle of the lens that they were made for; none when only a file of tables is there.
+    /// Rows outside the image circle of the lens that the tables were made for; none for tables from a file, which does
+    /// not say.
     pub rows_outside_circle: Option<usize>,
     /// The lens that built-in frames are rendered through.
     pub lens: Equidistant,
@@ -135,47 +136,47 @@ pub struct Plan {
     pub centre_y: Option<f64>,
     /// The Bayer phase of built-in frames.
     pub phase: Phase,
-    /// The frames to stream, each `repeat` times.
+    /// The frames to stream.
     pub frames: Vec<FrameSource>,
-    /// How often.
+    /// How often each frame is streamed.
     pub repeat: u32,
-    /// What is set otherwise than `tables` have it, in frames of noise of their own.
+    /// Which settings of `tables` are varied, in additional frames of noise.
     pub vary: Vary,
     /// The parts that are judged; all of them when not given.
     pub parts: Option<Selection>,
-    /// How long the run may take on the link's clock: what finds most a second is taken of it then. None for the whole run,
-    /// or the `parts`. What is chosen depends on the link, so a recording of such a run cannot be judged again.
+    /// How long the run may take on the link's clock; it takes the parts that find the most faults a second. None for the
+    /// whole run, or the `parts`. The choice depends on the link, so a recording of such a run cannot be judged again.
     pub within: Option<Duration>,
-    /// The frames that the board makes on its own, at its full pixel clock.
+    /// The frames that the board makes itself, at its full pixel clock.
     pub at_speed: AtSpeed,
     /// End with the first frame that differs.
     pub fail_fast: bool,
-    /// The seed of noise, gaps, the link test, the rules and what the board makes on its own. The session's numbers are drawn without it:
-    /// [`Circumstances::draws`](super::Circumstances::draws).
+    /// The seed of noise, gaps, the link test, the rules and the frames that the board makes itself. The session's
+    /// numbers do not depend on it: they are [`Circumstances::draws`](super::Circumstances::draws).
     pub seed: u64,
 }
 
-/// Frames that follow each other without the core running empty, and what is set before them.
+/// Frames that follow each other without the core running empty, with the settings made before them.
 #[derive(Clone, Debug)]
 pub struct Segment {
     /// Size, depth and centre of them all.
     pub geometry: Geometry,
     /// How their rows are played.
     pub timing: Timing,
-    /// Tables that are committed before the first of them, for the frame with this number on.
+    /// The generation that is committed before the first of them, and the number of the first frame that it is for.
     pub commit: Option<(u8, u16)>,
     /// The frames.
     pub frames: Vec<ScheduledFrame>,
 }
 
 impl Segment {
-    /// Whether it has a centre or a depth of its own.
+    /// Whether its centre or depth is varied.
     pub(super) fn is_varied(&self) -> bool {
         self.commit.is_some_and(|(generation, _)| generation >= VARIED)
     }
 }
 
-/// A frame with the tables that it is to be corrected by.
+/// A frame and the generation of tables that must correct it.
 #[derive(Clone, Debug)]
 pub struct ScheduledFrame {
     /// Its number on the wire.
@@ -184,7 +185,7 @@ pub struct ScheduledFrame {
     pub source: FrameSource,
     /// The generation that must correct it.
     pub generation: u8,
-    /// The part of the run that it is.
+    /// The part of the run that it belongs to.
     pub part: Part,
 }
 
@@ -192,11 +193,11 @@ pub struct ScheduledFrame {
 pub const DECOY: u8 = 1;
 /// The generation of the tables to judge with.
 pub const JUDGED: u8 = 2;
-/// The first generation of those tables with another centre or depth; the others follow.
+/// The first generation of the tables to judge with that has another centre or depth; more may follow.
 const VARIED: u8 = 3;
 
 impl Plan {
-    /// A plan that streams each built-in frame once, as the paper's lens sees it, and judges by `tables` and `kernel`.
+    /// A plan that streams each built-in frame once, as the paper's lens sees it, and judges with `tables` and `kernel`.
     #[must_use]
     pub fn new(tables: TableSet, kernel: Kernel) -> Self {
         Self {
@@ -218,25 +219,25 @@ impl Plan {
         }
     }
 
-    /// The same with these frames.
+    /// The same plan with these frames.
     #[must_use]
     pub fn frames(self, frames: impl IntoIterator<Item = FrameSource>) -> Self {
         Self { frames: frames.into_iter().collect(), ..self }
     }
 
-    /// The same with built-in frames as `lens` sees them.
+    /// The same plan with built-in frames as `lens` sees them.
     #[must_use]
     pub fn seen_through(self, lens: Equidistant) -> Self {
         Self { lens, ..self }
     }
 
-    /// The same with other centres and depths as well.
+    /// The same plan with frames for other centres and depths.
     #[must_use]
     pub fn varying(self, vary: Vary) -> Self {
         Self { vary, ..self }
     }
 
-    /// What frames of `geometry` have otherwise than those of the plan's tables.
+    /// The setting in which `geometry` differs from the plan's tables, if any.
     #[must_use]
     pub fn variation(&self, geometry: &Geometry) -> Option<Variation> {
         let (own, centre2, depth) = (self.tables.geometry(), geometry.centre2(), geometry.depth());
@@ -246,7 +247,7 @@ impl Plan {
         (depth != own.depth()).then(|| Variation::Depth { bits: depth.bits() })
     }
 
-    /// Whether all frames can be numbered.
+    /// Checks that all frames can be numbered.
     ///
     /// # Errors
     /// [`TooManyFrames`] when they cannot.
@@ -255,30 +256,31 @@ impl Plan {
         if frames <= MOST_FRAMES { Ok(()) } else { Err(TooManyFrames { frames }) }
     }
 
-    /// The tables that a run uploads, in order, to a board of this build, each with its geometry. The first are a decoy, different in every row
-    /// that is stretched: a board that goes on using them is caught. Beside a few grids there can be none.
+    /// The tables that a run uploads to a board of this build, in order, each with its geometry. The first are a decoy,
+    /// which differs in every row that is stretched, so that a board that goes on using it is caught. For a few grids no
+    /// decoy is possible.
     #[must_use]
     pub fn generations(&self, build: &Build) -> Vec<Generation> {
         let judged = Generation { number: JUDGED, tables: self.tables.clone(), kernel: self.kernel.clone() };
         self.decoy(build).into_iter().chain([judged]).chain(self.varied(build)).collect()
     }
 
-    /// The decoy. A row factor half way to 1 reaches half as far, so the ring's limits hold; rounding may bring a row of a grid that
-    /// begins or ends at the frame's edge beyond it, and then there is none.
+    /// The decoy: tables with half the stretch. Row factors half way to 1 reach half as far, so the ring's limits hold.
+    /// In a grid rounding may bring a row that begins or ends at the frame's edge beyond it; then there is no decoy.
     pub(super) fn decoy(&self, build: &Build) -> Option<Generation> {
         let tables = self.tables.halved();
         let fits = tables.shape().is_none() || tables.check_ring(build.ring).is_ok();
         fits.then(|| Generation { number: DECOY, tables, kernel: self.decoy_kernel(build.taps) })
     }
 
-    /// The judged tables with another centre, and with other depths.
+    /// The tables to judge with, with another centre and with other depths.
     pub(super) fn varied(&self, build: &Build) -> impl Iterator<Item = Generation> {
         let tables = varied(&self.tables, self.vary, build).into_iter().zip(VARIED..);
         tables.map(|(tables, number)| Generation { number, tables, kernel: self.kernel.clone() })
     }
 
-    /// A kernel other than the one to judge with. It weighs every tap that the board has, since that one may leave some
-    /// out, and then a dead one would not be seen.
+    /// A kernel other than the one to judge with. It weighs every tap of the board, because the one to judge with may leave out
+    /// some, and a dead tap among these would go unseen.
     fn decoy_kernel(&self, taps: u8) -> Kernel {
         let hermite = Kernel::from(Interpolant::Hermite);
         let mut nodes = hermite.nodes().to_vec();
@@ -293,7 +295,7 @@ impl Plan {
         }
     }
 
-    /// What built-in frames are made for.
+    /// The scene from which built-in frames are rendered; `draw` is added to the seed.
     #[must_use]
     pub fn scene(&self, draw: u64) -> Scene {
         Scene {

@@ -1,4 +1,4 @@
-//! Frames made ready ahead of the board, with what must come back.
+//! Frames that are prepared while the board is busy, with what must come back.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
@@ -12,7 +12,7 @@ use crate::board::NumberedFrame;
 use crate::reference::correct;
 use crate::result::sha256;
 
-/// A frame that is ready to be sent, with what must come back.
+/// A frame that is ready to be sent, with the frame that must come back.
 pub(super) struct Prepared {
     pub(super) name: String,
     pub(super) number: u16,
@@ -34,11 +34,11 @@ pub(crate) enum PrepareError {
     Correct { name: String, source: CorrectError },
 }
 
-/// The frames of `schedule` in their order, each made ready on a thread of `scope` while earlier ones are on their way.
-/// That thread ends when the receiver is dropped.
+/// The frames of `schedule` in order, prepared on a thread of `scope` while earlier ones are under way. The thread ends
+/// when the receiver is dropped.
 ///
 /// # Errors
-/// [`NoThread`] when there is none.
+/// [`NoThread`] when the system gives none.
 pub(super) fn ahead<'scope, 'run: 'scope>(
     scope: &'scope Scope<'scope, '_>,
     plan: &'run Plan,
@@ -51,7 +51,7 @@ pub(super) fn ahead<'scope, 'run: 'scope>(
         let _entered = span.entered();
         let of_segment = |segment: &'run Segment| segment.frames.iter().map(move |frame| (frame, segment));
         let mut frames = schedule.iter().flat_map(of_segment);
-        // Behind a frame that cannot be made no other is sent.
+        // After a frame that cannot be made no other is sent.
         let _ = frames.try_for_each(|(frame, segment)| {
             let prepared = Prepared::new(plan, frame, &segment.geometry, &generations);
             let is_last = prepared.is_err();
@@ -93,7 +93,7 @@ impl Prepared {
     }
 }
 
-/// The samples as bytes, the lower ones first.
+/// The samples as bytes, little endian.
 pub(super) fn little_endian(samples: &[u16]) -> Vec<u8> {
     samples.iter().map(|sample| sample.to_le_bytes()).collect::<Vec<_>>().into_flattened()
 }

@@ -1,4 +1,4 @@
-//! A board that goes away during a run and comes back: waiting for it, and bringing it to where the run stood.
+//! A board that goes away during a run and comes back: waiting for it, and bringing it back to where the run was.
 
 use std::error::Error;
 use std::iter;
@@ -13,23 +13,23 @@ use crate::progress::Step;
 use crate::result::{CheckName, Finding, Problem};
 use crate::verdict::Cause;
 
-/// More often than this it is a loose contact, and waiting does not mend it.
+/// The most times that a board may come back. More often than this it is a loose contact, and waiting does not help.
 const MOST: usize = 16;
-/// How often it is tried. A system takes some tenths of a second to make a device known.
+/// The time between two tries. A system takes some tenths of a second to announce a device.
 const TICK: Duration = Duration::from_millis(100);
 
-/// How a board is opened, for the first time and again.
+/// How a board is opened, the first time and later.
 pub(super) struct WayBack {
     /// Opens the link again; none if it cannot be.
     pub(super) reopen: Option<Reopener>,
-    /// How long a board may stay away; none if the run ends when it goes.
+    /// How long a board may stay away; none if the run ends when it goes away.
     pub(super) patience: Option<Duration>,
     pub(super) options: OpenOptions,
 }
 
 impl WayBack {
-    /// Opens the board behind `link`, or behind the next one if that breaks. Whoever takes it over later came later, and is not
-    /// thrown out.
+    /// Opens the board at `link`, or at a reopened link if that one breaks. The board is taken over only now: a host that
+    /// takes it during the run came later, and is not thrown out.
     pub(super) fn open(&mut self, link: Box<dyn Link>, findings: &mut Findings) -> Result<Board, End> {
         let opened = self.open_first(link, findings);
         self.options.take_over = false;
@@ -51,7 +51,7 @@ impl WayBack {
         }
     }
 
-    /// Waits for the board, which was lost with `end`, and opens it.
+    /// Waits for the board, which went away with `end`, and opens it.
     fn open_again(&mut self, patience: Duration, end: &End, findings: &mut Findings) -> Result<Board, End> {
         let End::Error { check, cause, finding, .. } = end else { return Err(end.clone()) };
         let reason = finding.as_problem();
@@ -80,19 +80,19 @@ impl WayBack {
         }
     }
 
-    /// How long a board may stay away that can be opened again.
+    /// How long the board may stay away; none if it cannot be reopened.
     fn patience(&self) -> Option<Duration> {
         self.patience.filter(|_| self.reopen.is_some())
     }
 
-    /// Opens the board, or tells what keeps one from this run that is there; nothing if none is.
+    /// Opens the board. The error says what keeps a board that exists from this run; it is none if there is no board.
     fn try_open(&mut self, spent: Duration, times: usize) -> Result<Board, Option<End>> {
         let reopen = self.reopen.as_mut().ok_or(None)?;
         let link = reopen().map_err(|error| {
             tracing::debug!("not there yet: {error}");
             not_opened(&*error)
         })?;
-        // A board that never lost power must not take this for the greeting that it has answered.
+        // A board that never lost power must not take this HELLO for the one that it has already answered.
         let nonce = self.options.nonce.wrapping_add(1 + times as u32);
         let options = OpenOptions { nonce, stop: self.options.stop.after(spent), ..self.options.clone() };
         Board::open_any(link, &options).map_err(|OpenFailed { error, .. }| {
@@ -102,14 +102,14 @@ impl WayBack {
     }
 }
 
-/// What keeps a device from this run that is there.
+/// The end of a run from which an existing device is kept, if `error` says so.
 fn not_opened(error: &(dyn Error + Send + Sync + 'static)) -> Option<End> {
     let error = error.downcast_ref::<OpenError>().filter(|error| error.is_kept_from_us())?;
     Some(End::error(CheckName::Identity, error.class().into(), Problem::of(error)))
 }
 
 impl Run<'_> {
-    /// Does `step` again when the board went away during it and has come back.
+    /// Does `step`, and repeats it whenever the board went away during it and has come back.
     pub(super) fn persist(&mut self, step: impl Fn(&mut Self) -> Result<(), End>) -> Result<(), End> {
         while let Err(end) = step(self) {
             self.come_back(end)?;
@@ -138,14 +138,14 @@ impl Run<'_> {
         };
         self.progress.step(Step::WaitForTheBoard);
         self.findings.keep_counts(self.board);
-        // What is left of the old link would keep the new one from being opened.
+        // The old link, if still open, would keep the new one from being opened.
         self.board.hang_up();
         let board = self.way_back.open_again(patience, &end, self.findings)?;
         let is_same = board.welcome.serial == self.board.welcome.serial
             && board.welcome.build == self.board.welcome.build
             && board.capabilities == self.board.capabilities;
         *self.board = board;
-        // Two boards of one build that have no number look alike.
+        // Two boards of the same build without serial numbers look the same.
         self.findings.look.is_unknown |= self.board.welcome.serial == 0;
         if is_same {
             return Ok(());
@@ -153,7 +153,7 @@ impl Run<'_> {
         Err(End::error(CheckName::Identity, Cause::Refused, Finding::BoardExchanged {}))
     }
 
-    /// Drops what the board has of an earlier session, and takes note of whether one that came back had it still.
+    /// Drops what the board has of an earlier session, and notes whether a board that came back still had its tables.
     pub(super) fn start_afresh(&mut self) -> Result<(), BoardError> {
         let had_tables = self.board.start_afresh()?;
         if let Some(last) = self.findings.link.reconnections.last_mut() {
@@ -162,8 +162,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Sets a board that may have forgotten everything. Frames begin with their row 0, since a board takes no other
-    /// behind a greeting.
+    /// Sets up a board that may have forgotten everything. Frames begin with their row 0, because a board takes no other
+    /// row after HELLO.
     fn restore(&mut self, segment: &Segment, at: usize) -> Result<(), End> {
         self.start_afresh().during(CheckName::Link)?;
         self.configure(segment)?;
@@ -173,7 +173,7 @@ impl Run<'_> {
         self.commit(frame.generation, frame.number, rows)?;
         let later = segment.commit.filter(|(number, _)| *number != frame.generation);
         if next.is_none() || later.is_some() {
-            // Tables become the active ones when a frame enters.
+            // Tables become active only when a frame enters.
             let rendered = self.plan.render(frame, &segment.geometry);
             let rendered = rendered
                 .map_err(|error| End::error(CheckName::Frames, Cause::Station, Problem::of(&error)))?;

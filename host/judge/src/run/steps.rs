@@ -28,7 +28,7 @@ pub(super) struct Run<'a> {
     pub(super) plan: &'a Plan,
     pub(super) board: &'a mut Board,
     pub(super) generations: Vec<Generation>,
-    /// Sessions that were opened so that no copy of an old request spoils what follows.
+    /// Sessions opened so far to make copies of old requests harmless.
     pub(super) sessions: u32,
     pub(super) options: &'a RunOptions,
     pub(super) way_back: &'a mut WayBack,
@@ -48,19 +48,19 @@ pub(super) fn judge_the_judge(findings: &mut Findings) -> Result<(), End> {
 }
 
 impl Run<'_> {
-    /// All that needs an open board.
+    /// All steps that need an open board.
     pub(super) fn all_steps(&mut self) -> Result<(), End> {
         self.findings.note_identity(self.board);
         self.identity()?;
         match self.all_but_identity() {
-            // A soak has looked again at each burst by itself.
+            // A soak has already looked into each burst.
             Err(found) if self.findings.soak.is_some() => Err(found),
             Err(found) if found.is_failed() || found.is_answer() => self.look_again(found),
             ended => ended,
         }
     }
 
-    /// From the link to the counters. Whatever the board held before is nothing to it.
+    /// All steps from the link on. They do not depend on what the board held before.
     pub(super) fn all_but_identity(&mut self) -> Result<(), End> {
         let schedule = self.plan.schedule(&Build::of(&self.board.capabilities));
         let (plan, generations) = (self.plan, self.generations.clone());
@@ -81,7 +81,8 @@ impl Run<'_> {
         })
     }
 
-    /// Streams the segments, up to the first that differs when that is asked for, or whose tables have changed, and returns the last one streamed.
+    /// Streams the segments and returns the last one streamed. It ends early where tables have changed or, if the plan
+    /// says so, with the first segment that differs.
     fn stream_all<'s>(
         &mut self,
         schedule: &'s [Segment],
@@ -91,7 +92,7 @@ impl Run<'_> {
         self.progress.rows_expected(rows.sum::<usize>() as u64);
         let mut last = None;
         for segment in schedule {
-            // Tables that have changed are not replaced: they are the last that are judged.
+            // Changed tables are not replaced by the next ones, so that they are judged at the end.
             let after = if segment.is_varied() { self.tables_after().map(drop) } else { Ok(()) };
             if let Err(End::Failed { .. }) = after {
                 return Ok(last);
@@ -108,7 +109,7 @@ impl Run<'_> {
         Ok(last)
     }
 
-    /// Judges what came back, with the board back where it was after `last` if it goes away meanwhile.
+    /// Judges what came back. If the board goes away meanwhile, it is first brought back to where it was after `last`.
     fn judge_over_outages(&mut self, last: Option<&Segment>) -> Result<(), End> {
         loop {
             match (self.judge_what_came(), last) {
@@ -118,7 +119,7 @@ impl Run<'_> {
         }
     }
 
-    /// What the frames left untouched of the board, as far as that is known.
+    /// Notes what the run did not exercise of the board, as far as that is known.
     fn note_not_exercised(&mut self) {
         let at_speed = mem::take(&mut self.findings.look.untested_at_speed);
         let Findings { board, look, .. } = &*self.findings;
@@ -144,7 +145,7 @@ impl Run<'_> {
         self.findings.look.not_exercised = of_frames.into_iter().chain(at_speed).chain(left).collect();
     }
 
-    /// The rows of `generation` that frames were made with, if there were any.
+    /// The part of `generation` with which frames were made, if any were.
     fn used_of(&self, generation: &Generation) -> Option<Generation> {
         let Look { seen, whole_at_speed, .. } = &self.findings.look;
         let height = generation.tables.geometry().height();

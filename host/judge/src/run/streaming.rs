@@ -22,7 +22,7 @@ impl Run<'_> {
         source: &Receiver<Result<Prepared, PrepareError>>,
     ) -> Result<(), End> {
         let (manner, timing) = (self.manner(segment), self.timing(segment.timing));
-        // The judge has what is seen while the run has the board, and what it has to say of its link.
+        // While frames are streamed the judge owns what is seen, and the run keeps the board and its link.
         let mut seen = std::mem::take(&mut self.findings.look.seen);
         let frames = source.iter().take(segment.frames.len());
         let mut judge = RowJudge::new(frames, &mut seen, manner, timing, self.progress);
@@ -97,7 +97,7 @@ impl Run<'_> {
         }
     }
 
-    /// What the board did with rows that no link can do, if it did.
+    /// What the board did with rows that no link can cause, if anything.
     pub(super) fn misconduct(&self, check: CheckName) -> Option<End> {
         let misconduct = self.board.misconduct()?;
         let finding = match misconduct {

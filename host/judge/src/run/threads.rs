@@ -1,4 +1,4 @@
-//! Threads that work ahead of a board.
+//! Threads that compute ahead of a board.
 
 use std::io;
 use std::thread::{Builder, Scope};
@@ -16,7 +16,7 @@ use crate::verdict::Cause;
 pub(crate) struct NoThread(#[source] io::Error);
 
 impl NoThread {
-    /// Why a run ends during `check`.
+    /// The end of a run that needs a thread for `check`.
     pub(super) fn during(&self, check: CheckName) -> End {
         End::error(check, Cause::Station, Problem::of(self))
     }

@@ -8,7 +8,7 @@ use crate::diagnosis::{self, Uploaded};
 use crate::result::{CheckName, Finding, Suspect};
 
 impl Run<'_> {
-    /// Sets the board for a segment, its tables included.
+    /// Sets up the board for a segment, tables included.
     pub(super) fn prepare(&mut self, segment: &Segment) -> Result<(), End> {
         self.configure(segment)?;
         let rows = segment.geometry.height();
@@ -24,13 +24,13 @@ impl Run<'_> {
         self.board.configure(&segment.geometry, timing).during(CheckName::Upload)
     }
 
-    /// Uploads a generation, to be used from `first_frame` on, which has so many rows.
+    /// Uploads and commits a generation, to be used from `first_frame` on, for frames of `rows` rows.
     pub(super) fn commit(&mut self, number: u8, first_frame: u16, rows: usize) -> Result<(), End> {
         let generation = self.generations.iter().find(|generation| generation.number == number).cloned();
         generation.map_or(Ok(()), |generation| self.upload(&generation, first_frame, rows))
     }
 
-    /// Whole tables whatever the frames have of them, since frames at speed are whole.
+    /// Uploads whole tables, whatever part of them the frames use, because frames at speed are whole.
     fn upload(&mut self, generation: &Generation, first_frame: u16, rows: usize) -> Result<(), End> {
         let Generation { number, tables, kernel } = generation;
         self.board.upload(tables, kernel).during(CheckName::Upload)?;
@@ -50,8 +50,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Compares the CRCs of both tables through every port, and returns the number of ports. A table that reads back
-    /// otherwise is read entry by entry, to name the entry.
+    /// Compares the CRCs of both tables through every port, and returns the number of ports. A table with another CRC is
+    /// read entry by entry, to find which one is wrong.
     pub(super) fn check_read_back(
         &mut self,
         check: CheckName,
@@ -82,7 +82,8 @@ impl Run<'_> {
         let found = match self.board.read_entries(bank, wrong.port, entries) {
             Ok(found) => found,
             Err(error) => {
-                // The entry's name is lost with the link, and not that the board has other tables: it has said so itself.
+                // Without the link the entry cannot be named. That the tables are wrong is certain all the same: the
+                // board's CRC says it.
                 tracing::warn!("the table was not read entry by entry: {error}");
                 return End::failed(check, Finding::TableCrcWrong {});
             }

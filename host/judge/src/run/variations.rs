@@ -1,20 +1,20 @@
-//! Frames of their own with another optical centre and other depths, which a board could otherwise ignore unseen.
+//! Additional frames with another optical centre and other depths: a board could otherwise ignore these settings unseen.
 
 use halfrow_model::{BitDepth, Geometry, TableSet};
 use serde::{Deserialize, Serialize};
 
 use crate::board::Capabilities;
 
-/// What a run sets otherwise than its tables say, in frames of their own behind all others.
+/// Which settings of its tables a run varies, in additional frames after all others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Vary {
-    /// The column of the optical centre: one frame.
+    /// The column of the optical centre, in one frame.
     pub centre: bool,
-    /// The depth: one frame for each other one of the board.
+    /// The depth, in one frame for each other depth of the board.
     pub depth: bool,
 }
 
-/// What a build of the board can do, as far as a plan depends on it.
+/// The capabilities of a board's build on which a plan depends.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Build {
     /// Banks of tables, 1 or 2.
@@ -28,7 +28,7 @@ pub struct Build {
 }
 
 impl Build {
-    /// What a board says of itself.
+    /// The build that these capabilities describe.
     #[must_use]
     pub fn of(capabilities: &Capabilities) -> Self {
         let depths = capabilities.sample_depths();
@@ -40,7 +40,7 @@ impl Build {
         }
     }
 
-    /// One with everything that a build can have, and the shortest line memory for rows of `width` samples.
+    /// A build with everything that a build can have, and with the shortest line memory for rows of `width` samples.
     #[must_use]
     pub fn full(width: usize) -> Self {
         let ring = width.checked_next_power_of_two().unwrap_or(usize::MAX);
@@ -49,7 +49,7 @@ impl Build {
     }
 }
 
-/// The entries of `tables` with what `vary` names set otherwise, one thing at a time, each legal for `build`.
+/// The entries of `tables` under the settings that `vary` names, one changed at a time, each legal for `build`.
 pub(super) fn varied(tables: &TableSet, vary: Vary, build: &Build) -> Vec<TableSet> {
     let own = tables.geometry();
     let of = |depth, centre2| {
@@ -66,9 +66,9 @@ pub(super) fn varied(tables: &TableSet, vary: Vary, build: &Build) -> Vec<TableS
     centre.flatten().into_iter().chain(depths).collect()
 }
 
-/// Other values of C, the best first: with every bit inverted that C can have at this width, then with ever fewer of the
-/// lower ones. A board that holds a bit at either level is wrong at one of two centres that differ in it. Those less than a
-/// sixteenth of the width away come last, since tables that stretch little hardly tell them apart.
+/// Other values of C, the best first: with every bit inverted that C can have at this width, then with ever fewer of the lower
+/// ones. Of two centres that differ in a bit, one shows a board that holds this bit at either level. Centres less than a
+/// sixteenth of the width away come last, because tables that stretch little hardly tell them apart.
 fn other_centres(geometry: &Geometry) -> impl Iterator<Item = u32> {
     let (centre2, width) = (geometry.centre2(), geometry.width() as u32);
     let most = 2 * width - 2;
@@ -104,7 +104,7 @@ mod tests {
         assert_eq!(centre(&tables(2592, 2591, 1 << 24), 4096), Some(1504));
     }
 
-    /// 127 is 0111 1111 in the 8 bits of 254. With all of them inverted it is 128, half a column away; with 7 it is 0.
+    /// 127 is 0111 1111 in the 8 bits of 254. With all of them inverted it is 128, half a column away; with 7 inverted it is 0.
     #[test]
     fn a_centre_far_away_comes_before_one_beside_it() {
         assert_eq!(centre(&tables(128, 127, 1 << 24), 128), Some(0));

@@ -1,4 +1,4 @@
-//! What is judged when the last row has come back, but for the counters.
+//! What is judged when the last row has come back. The counters have a module of their own.
 
 use super::entry::WrongEntry;
 use super::findings::{During, End};
@@ -10,8 +10,8 @@ use crate::diagnosis::{self, Case, Uploaded};
 use crate::result::{Account, CheckName, Defect, Finding, Suspect};
 
 impl Run<'_> {
-    /// Judges what was seen, the tables and the counters. The first that is wrong ends the run; what else is wrong
-    /// stands among the checks.
+    /// Judges what was seen, the tables and the counters. The first fault ends the run; further faults are only listed
+    /// among the checks.
     pub(super) fn judge_what_came(&mut self) -> Result<(), End> {
         let after = self.tables_after();
         self.findings.lap(CheckName::TablesAfter);
@@ -23,7 +23,7 @@ impl Run<'_> {
         }
         let frames = self.frames(after.as_ref().err());
         self.findings.lap(CheckName::Frames);
-        // Counters are of rows that came back as they should; a run that ends early leaves rows inside.
+        // Counters are only right if all rows came back right: a run that ends early leaves rows inside.
         let counters = frames.is_ok().then(|| self.counters(&status));
         self.findings.look.leaves_counters_out = self.leaves_counters_out(&status);
         let latency = latency(&self.findings.look.seen);
@@ -47,8 +47,8 @@ impl Run<'_> {
         first.map_or(Ok(()), Err)
     }
 
-    /// The tables of the last frame must still be what was uploaded; a run that ends with its first frame does not come to
-    /// those that are judged. Tables that read back right for once are no better for it.
+    /// The tables of the last frame must still be what was uploaded; a run that ends with its first frame has not used
+    /// those to judge with. Tables that once read back wrong stay wrong, even if they read back right later.
     pub(super) fn tables_after(&mut self) -> Result<Finding, End> {
         if let Some(changed) = &self.findings.look.seen.changed_tables {
             return Err(changed.clone());
@@ -122,8 +122,9 @@ impl Run<'_> {
     }
 }
 
-/// What came in otherwise than it was sent explains what came out, however that may look. Where all that came out is right and the CRC of
-/// every row is wrong, no flipped bit is believed: a unit that begins with a wrong bit looks like one in the first two samples.
+/// Samples that changed on their way in explain whatever came out. But where everything that came out is right and the CRC of
+/// every row is wrong, no flipped bit is believed: a CRC unit that begins with a wrong bit looks like one in the first
+/// two samples.
 fn changed_on_entry(wrong: WrongEntry, differs: bool, is_every_row: bool) -> End {
     let WrongEntry { rows, row, frame, flipped } = wrong;
     if !differs && (flipped.is_none() || is_every_row) {
