@@ -1,4 +1,4 @@
-//! What the board counts, beside what the host saw.
+//! The board's counters, compared with what the host saw.
 
 use super::findings::End;
 use super::seen::Seen;
@@ -7,8 +7,8 @@ use crate::board::Status;
 use crate::result::{CheckName, Counter, Finding, LatencyReport};
 
 impl Run<'_> {
-    /// Compares what the board counts with what the host saw. What is compared over any link must agree however poor that
-    /// is; the rest only where nothing was lost or late.
+    /// Compares the board's counters with what the host saw. Some must agree over any link, however poor; the others are
+    /// compared only where nothing was lost or late.
     pub(super) fn counters(&self, status: &Status) -> Result<Finding, End> {
         let (seen, rows) = (&self.findings.look.seen, self.findings.look.rows_counted);
         let expected = u32::try_from(rows).unwrap_or(u32::MAX);
@@ -43,7 +43,7 @@ impl Run<'_> {
         Ok(Finding::CountersRight { rows, damaged_unseen })
     }
 
-    /// Whether nothing was lost or late, by the host and by the board.
+    /// Whether nothing was lost or late, as seen by the host and by the board.
     fn is_calm(&self, status: &Status) -> bool {
         self.saw_no_trouble() && damaged(status) == 0 && self.board.had_each_packet_once(status)
     }
@@ -53,24 +53,24 @@ impl Run<'_> {
         tally.retries + tally.strays + tally.damaged_in == 0
     }
 
-    /// Whether it is the board alone that says that its link is too poor for some of its counters to be compared.
+    /// Whether some counters are not compared only because the board says that its link is poor, while the host saw no trouble.
     pub(super) fn leaves_counters_out(&self, status: &Status) -> bool {
         self.saw_no_trouble() && !self.is_calm(status)
     }
 }
 
-/// Whether a board counts fewer packets than its other counters tell of, which no link brings about.
+/// Whether a board counts fewer packets than its other counters imply, which no link can cause.
 pub(super) fn is_contradictory(status: &Status) -> bool {
     packets_counted(status, 1).is_err()
 }
 
-/// Whether it counts what nothing but a link brings about where the host had no reason to.
+/// Whether it counts what only a link can have caused, since the host gave no reason for it.
 pub(super) fn is_moved_by_links(status: &Status) -> bool {
     [status.rows_repeated, status.rows_unneeded, status.refusals, status.foreign_packets] != [0; 4]
 }
 
-/// Each row that was taken or not needed, each refusal and each of the `answered` requests came in a packet of its own. What is
-/// foreign is refused, or an acknowledgement.
+/// Checks the count of packets: each row that was taken or not needed, each refusal and each of the `answered` requests
+/// came in a packet of its own. Foreign packets are refused, or are acknowledgements.
 fn packets_counted(status: &Status, answered: u64) -> Result<(), End> {
     let not_answered = [status.rows_in, status.rows_unneeded, status.refusals.max(status.foreign_packets)];
     let least = answered + not_answered.into_iter().map(u64::from).sum::<u64>();
@@ -82,8 +82,9 @@ fn packets_counted(status: &Status, answered: u64) -> Result<(), End> {
     Err(miscounted(Finding::CounterWrong { counter, counted, right }))
 }
 
-/// ROW_OUT packets are numbered from 0 on, and each one is a row that came out or one that was sent again. Since no two have one number
-/// and none is behind a later row's, over a link that loses nothing they count from 0 without a gap.
+/// Checks the numbers of ROW_OUT packets, of which the host saw `counted`. They begin at 0, and each packet is a row that
+/// came out or one that was sent again. No two packets have the same number, and a later row's packet has a greater one,
+/// so over a link that loses nothing the numbers have no gap.
 pub(super) fn rows_numbered(status: &Status, counted: u32) -> Result<(), End> {
     let right = status.rows_out.saturating_add(status.rows_repeated);
     if counted <= right {
@@ -92,7 +93,7 @@ pub(super) fn rows_numbered(status: &Status, counted: u32) -> Result<(), End> {
     Err(miscounted(Finding::CounterWrong { counter: Counter::RowsNumbered, counted, right }))
 }
 
-/// Packets that the board calls damaged.
+/// How many packets the board counts as damaged.
 pub(super) fn damaged(status: &Status) -> u32 {
     status.crc_errors.saturating_add(status.framing_errors)
 }

@@ -1,4 +1,4 @@
-//! What a run has found so far, and why it ended where it did.
+//! What a run has found so far, and why it ended.
 
 use std::collections::BTreeMap;
 use std::mem;
@@ -15,7 +15,7 @@ use crate::result::{
 use crate::target::BoardKind;
 use crate::verdict::Cause;
 
-/// Why a run ended before its last step, or with a board that is wrong.
+/// Why a run ended before its last step, or with a wrong board.
 #[derive(Clone, Debug)]
 pub(super) enum End {
     /// The board is wrong.
@@ -25,7 +25,7 @@ pub(super) enum End {
 }
 
 impl End {
-    /// The run could not go on since the board could not be driven.
+    /// The run could not go on because the board could not be driven.
     pub(super) fn board(check: CheckName, error: &BoardError) -> Self {
         let unreachable =
             matches!(error, BoardError::Link { .. } | BoardError::NoAnswer { .. } | BoardError::SessionLost);
@@ -43,7 +43,7 @@ impl End {
         Self::Failed { check, finding, suspects: Vec::new() }
     }
 
-    /// The check that ended the run.
+    /// The check that ended the run, with its outcome and finding.
     pub(super) fn check(&self) -> (CheckName, Outcome, &Finding) {
         match self {
             Self::Failed { check, finding, .. } => (*check, Outcome::Failed, finding),
@@ -55,7 +55,7 @@ impl End {
         matches!(self, Self::Failed { .. })
     }
 
-    /// Whether the board said what no sound board says behind what the run asked of it.
+    /// Whether the board gave an answer that no sound board gives after what the run asked of it.
     pub(super) fn is_answer(&self) -> bool {
         matches!(self, Self::Error { answer: true, .. })
     }
@@ -64,13 +64,13 @@ impl End {
         matches!(self, Self::Error { unreachable: true, .. })
     }
 
-    /// Whether the board is gone and may come back.
+    /// Whether the board went away and may come back.
     pub(super) fn is_outage(&self) -> bool {
         matches!(self, Self::Error { outage: true, .. })
     }
 }
 
-/// What was asked of a board in a check.
+/// The result of asking a board something in a check.
 pub(super) trait During<T> {
     /// Ends the run in `check` if the board could not be driven.
     fn during(self, check: CheckName) -> Result<T, End>;
@@ -82,40 +82,40 @@ impl<T> During<T> for Result<T, BoardError> {
     }
 }
 
-/// What went over links that broke.
+/// What went over earlier links, which broke.
 #[derive(Default)]
 pub(super) struct Earlier {
     pub(super) tally: Tally,
     pub(super) seconds: Duration,
 }
 
-/// What one look at the board has found, of which a second one knows nothing.
+/// What one look at the board has found. A second look begins with an empty one.
 #[derive(Default)]
 pub(super) struct Look {
-    /// Empty while a segment streams: its judge has what was seen until then ([`Run::stream`](super::steps::Run::stream)), so neither
-    /// a place among all frames nor a verdict follows from it there.
+    /// What was seen of all frames. It is empty while a segment is streamed, because the segment's judge has it then
+    /// ([`Run::stream`](super::steps::Run::stream)): do not take a frame's index or a verdict from it there.
     pub(super) seen: Seen,
-    /// Rows that the board should have counted since it was greeted.
+    /// Rows that the board should have counted since HELLO.
     pub(super) rows_counted: usize,
-    /// The least that it should have counted of rows that it sent again.
+    /// The least number of rows that it should have counted as sent again.
     pub(super) repeats_counted: u32,
-    /// Whether something that is not judged yet was found wrong over a link that broke.
+    /// Whether something was found wrong over a link that broke, and is not judged yet.
     pub(super) found: bool,
-    /// Why that may have come from the link.
+    /// Why the link may have caused it.
     pub(super) doubt: Option<Doubt>,
-    /// What was left untouched of a board that is right.
+    /// What was not exercised of a board that is right.
     pub(super) not_exercised: Vec<NotExercised>,
-    /// Whether counters were not compared for what the board alone says of its link.
+    /// Whether some counters were not compared only because the board, unlike the host, says that its link is poor.
     pub(super) leaves_counters_out: bool,
-    /// Whether something was found wrong that no link brings about, whatever else it has done.
+    /// Whether something was found wrong that no link can cause, whatever else the link did.
     pub(super) beyond_links: bool,
-    /// Whether a board came back that has no number to be known by.
+    /// Whether a board came back that has no serial number to identify it.
     pub(super) is_unknown: bool,
-    /// What was left untouched at the full pixel clock.
+    /// What was not exercised at the full pixel clock.
     pub(super) untested_at_speed: Vec<NotExercised>,
-    /// Tables that frames in corners were made with, at the full pixel clock.
+    /// The tables with which frames were made in corners, at the full pixel clock.
     pub(super) corners: Vec<Generation>,
-    /// Generations of the plan that whole frames were made with, at the full pixel clock.
+    /// The plan's generations with which whole frames were made at the full pixel clock.
     pub(super) whole_at_speed: Vec<u8>,
 }
 
@@ -123,22 +123,22 @@ pub(super) struct Look {
 pub(super) struct Findings {
     pub(super) board: BoardReport,
     pub(super) checks: Vec<Check>,
-    /// What every check has taken so far, and since when the next one counts.
+    /// The time that every check has taken so far.
     spent: BTreeMap<CheckName, Duration>,
     since: Instant,
     pub(super) tally: Tally,
     pub(super) link: LinkReport,
     pub(super) earlier: Earlier,
     pub(super) look: Look,
-    /// Whether the run was made again since counters were wrong that a link moves as well.
+    /// Whether the run was made again because counters were wrong that a link can also change.
     pub(super) counters_doubted: bool,
-    /// Bursts that were begun.
+    /// How many bursts were begun.
     pub(super) bursts: u32,
-    /// What was taken of a run that must keep within a time.
+    /// What was taken of a run that must keep within a time; none for any other run.
     pub(super) within: Option<WithinReport>,
-    /// What a soak came to.
+    /// The result of a soak; none for any other run.
     pub(super) soak: Option<SoakReport>,
-    /// Why the board cannot have what the plan uploads.
+    /// Why the board cannot take what the plan uploads, if it cannot.
     pub(super) misfit: Option<Misfit>,
 }
 
@@ -166,12 +166,12 @@ impl Findings {
         self.note(name, Outcome::Passed, finding);
     }
 
-    /// Whether a check was made and found nothing.
+    /// Whether a check was made and passed.
     pub(super) fn has_passed(&self, name: CheckName) -> bool {
         self.checks.iter().any(|check| check.name == name && check.outcome == Outcome::Passed)
     }
 
-    /// Takes the outcome of a check; of one that is made again the last word stands, and the times add up.
+    /// Notes the outcome of a check. If a check is made again, its last outcome stands, and its times add up.
     pub(super) fn note(&mut self, name: CheckName, outcome: Outcome, finding: Finding) {
         self.lap(name);
         let seconds = self.spent.get(&name).map_or(0.0, Duration::as_secs_f64);
@@ -179,41 +179,42 @@ impl Findings {
         self.checks.push(Check { name, outcome, finding, seconds });
     }
 
-    /// Counts the time since the last lap to a check.
+    /// Adds the time since the last lap to a check.
     pub(super) fn lap(&mut self, name: CheckName) {
         let now = Instant::now();
         *self.spent.entry(name).or_default() += now.duration_since(self.since);
         self.since = now;
     }
 
-    /// Leaves out the time since the last lap: it is told elsewhere.
+    /// Drops the time since the last lap, which is reported elsewhere.
     pub(super) fn begin_lap(&mut self) {
         self.since = Instant::now();
     }
 
-    /// Forgets what was found of the open board, for a look in another session; names of bursts do not come again.
+    /// Forgets what was found of the open board, for a look in another session. The number of bursts stays, so that none
+    /// gets the name of an earlier one.
     pub(super) fn begin_again(&mut self) {
         self.look = Look::default();
         self.checks.retain(|check| matches!(check.name, CheckName::Judge | CheckName::Identity));
     }
 
-    /// Takes the check that ended the run.
+    /// Notes the check that ended the run.
     pub(super) fn note_end(&mut self, end: &End) {
         let (name, outcome, finding) = end.check();
         self.note(name, outcome, finding.clone());
     }
 
-    /// What is wrong beside that which ends the run.
+    /// Notes what is wrong in addition to what ends the run.
     pub(super) fn also_wrong(&mut self, ends: impl Iterator<Item = End>) {
         ends.for_each(|end| self.note_end(&end));
     }
 
-    /// Takes what the board says of itself.
+    /// Notes what the board says about itself.
     pub(super) fn note_identity(&mut self, board: &Board) {
         self.board = BoardReport::of(board, self.board.kind, mem::take(&mut self.board.target));
     }
 
-    /// Takes the link's counts at the end of the run.
+    /// Notes the link's counts at the end of the run.
     pub(super) fn note_link(&mut self, board: &Board) {
         self.tally = self.earlier.tally;
         self.tally += board.tally();
@@ -221,7 +222,8 @@ impl Findings {
         self.link.seconds = (self.earlier.seconds + board.now()).as_secs_f64();
     }
 
-    /// Takes the counts of a link that broke. Of what was found wrong before, nothing else will tell what the link did.
+    /// Notes the counts of a link that broke. If something was found wrong before, nothing will show later what that link
+    /// did, so a doubt is noted too.
     pub(super) fn keep_counts(&mut self, board: &Board) {
         if self.look.found || !self.look.seen.is_right() {
             let doubt = Doubt::of_session(board).unwrap_or(Doubt::PacketsUncounted {});
@@ -232,7 +234,7 @@ impl Findings {
         (self.look.rows_counted, self.look.repeats_counted) = (0, 0);
     }
 
-    /// Takes note that the board came back that went away for this `reason`.
+    /// Notes that the board, which had gone away for this `reason`, came back.
     pub(super) fn note_return(&mut self, reason: Problem, away: Duration) {
         self.earlier.seconds += away;
         let back = Reconnection { reason, seconds_away: away.as_secs_f64(), kept_tables: None };

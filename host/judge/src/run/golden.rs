@@ -1,4 +1,4 @@
-//! The judge is judged first: values from a program outside this project, through the very path that judges boards.
+//! Judges the judge first: values from a program outside this project go through the same path as those of boards.
 
 use halfrow_model::{
     BitDepth, CorrectError, Equidistant, Frame, Geometry, Interpolant, Kernel, Phase, TableSet,
@@ -8,7 +8,7 @@ use super::prepared::little_endian;
 use crate::compare::{Comparison, Difference};
 use crate::reference::correct;
 
-/// A corrected row that another program computed: W = 64, H = 1, B = 12, C = 63.
+/// A corrected row computed by another program: W = 64, H = 1, B = 12, C = 63.
 struct GoldenRow {
     interpolant: Interpolant,
     corrected: [u16; 64],
@@ -96,7 +96,7 @@ pub(crate) enum GoldenError {
     },
 }
 
-/// The sample at `place`, counted row after row, of the frame that the other program corrected.
+/// The sample at `place`, counted row by row, of the frame that the other program corrected.
 fn sample(place: usize) -> u16 {
     ((place as u32).wrapping_mul(2_654_435_761) >> 20) as u16
 }
@@ -106,11 +106,11 @@ fn frame(width: usize, height: usize) -> Option<Frame> {
     Frame::new(width, BitDepth::Twelve, Phase::Grbg, samples).ok()
 }
 
-/// Corrects what the other program corrected and compares as boards are compared. Returns the number of samples judged,
-/// or what is wrong with this computer or this build.
+/// Corrects what the other program corrected and compares the results in the same way as those of boards. Returns the number of
+/// samples judged.
 ///
 /// # Errors
-/// [`GoldenError`], which says which golden value was missed.
+/// [`GoldenError`], which says what golden value this computer or this build missed.
 pub(crate) fn judge_the_judge() -> Result<usize, GoldenError> {
     let mut samples = 0;
     for golden in &ROWS {

@@ -1,41 +1,41 @@
-//! Frames that are kept as evidence, within a budget of bytes.
+//! The frames that are kept as evidence, within a budget of bytes.
 
 use halfrow_model::{BitDepth, Frame};
 
 use crate::compare::Comparison;
 use crate::result::{Evidence, EvidenceReport};
 
-/// The samples that came back in place of `expected` as a frame, of the greatest depth where the frame's own cannot hold what a board
-/// has made of them.
+/// The samples that came back in place of `expected`, as a frame. It has the greatest depth if the frame's own cannot
+/// hold them.
 pub(super) fn as_found(expected: &Frame, samples: Vec<u16>) -> Option<Frame> {
     let is_held = |&depth: &BitDepth| samples.iter().all(|&sample| sample <= depth.max());
     let depth = [expected.depth(), BitDepth::Twelve].into_iter().find(is_held)?;
     Frame::new(expected.width(), depth, expected.phase(), samples).ok()
 }
 
-/// The share of the budget that counts by row and column have; frames have the rest.
+/// One part in this many of the budget is for counts by row and column; the rest is for frames.
 const SHARE_OF_COUNTS: usize = 16;
 
 /// A frame that may be kept.
 pub(super) struct Offered<'a> {
-    /// Its picture's name.
+    /// The name of the picture in it.
     pub(super) name: &'a str,
     pub(super) differs: bool,
-    /// Whether it is kept for more than the diagnosis.
+    /// Whether it is wanted for more than the diagnosis.
     pub(super) is_wanted: bool,
     pub(super) is_pinned: bool,
-    /// What it, what came back and what should have take.
+    /// The bytes of what went in, what came back and what should have.
     pub(super) bytes: usize,
 }
 
-/// What is known of a frame that was kept.
+/// What is known about a frame that is kept.
 struct Label {
     name: String,
     is_wanted: bool,
 }
 
-/// What was kept of the frames that were streamed, in their order. Frames that came back right are among them whether they are wanted
-/// or not: what the diagnosis says must not depend on it.
+/// The frames that are kept of those that were streamed, in order. They include right frames whether these are wanted or not,
+/// because the diagnosis must not depend on that.
 #[derive(Default)]
 pub(super) struct KeptFrames {
     evidence: Vec<Evidence>,
@@ -43,14 +43,14 @@ pub(super) struct KeptFrames {
     bytes: usize,
     bytes_of_counts: usize,
     left_out: usize,
-    /// The frame that never makes way, by its index.
+    /// The index of the frame that is never replaced.
     pinned: Option<usize>,
 }
 
 impl KeptFrames {
-    /// Keeps a frame if it fits into `budget` bytes beside the others; only then `evidence` is asked for it. One that differs takes the
-    /// place of equal ones, the latest first, and then, if its picture is not there yet, of pictures that are there again, but not of a
-    /// frame that is pinned. The first that is pinned takes the place of equal ones, too; any other that is equal is kept only where
+    /// Keeps a frame if it fits into `budget` bytes with the others; `evidence` is only called then. A frame that differs
+    /// replaces equal ones, the latest first, and then, if its picture is not kept yet, repetitions of other pictures,
+    /// but never the pinned frame. The first pinned frame also replaces equal ones. Any other equal frame is kept only if
     /// there is room.
     pub(super) fn offer(
         &mut self,
@@ -70,7 +70,7 @@ impl KeptFrames {
         }
     }
 
-    /// Whether there is room for a frame, which others may have to make.
+    /// Whether there is room for a frame. Others are removed if they must make room for it.
     fn has_place(&mut self, offered: &Offered<'_>, budget: usize) -> bool {
         while self.bytes + offered.bytes > budget {
             let Some(place) = self.place_of_another(offered) else { return false };
@@ -81,7 +81,7 @@ impl KeptFrames {
         true
     }
 
-    /// Where the frame is that makes way for another.
+    /// The place of the frame that is replaced by the offered one, if any.
     fn place_of_another(
         &self,
         &Offered { name, differs: is_wrong, is_pinned, .. }: &Offered<'_>,
@@ -101,8 +101,9 @@ impl KeptFrames {
         })
     }
 
-    /// The comparison of a frame; of one that came back whole without its counts by row and column where these say nothing, since all
-    /// is equal, or where `budget` has no room for them. How many there are tells of any other how many rows are missing.
+    /// The comparison of a frame. For a frame that came back whole, the counts by row and column are dropped if they say
+    /// nothing, because all is equal, or if `budget` has no room for them. For any other frame they are needed: their
+    /// number shows how many rows are missing.
     pub(super) fn shorten(&mut self, comparison: Comparison, is_whole: bool, budget: usize) -> Comparison {
         let bytes = size_of_val(&*comparison.by_row) + size_of_val(&*comparison.by_column);
         let says_nothing = comparison.differences == 0;
@@ -114,12 +115,12 @@ impl KeptFrames {
         comparison
     }
 
-    /// All that are kept at present, those among them that nobody wants.
+    /// All frames that are kept at present, wanted or not.
     pub(super) fn all(&self) -> &[Evidence] {
         &self.evidence
     }
 
-    /// Takes the frames themselves that are wanted, and what is to be said of them.
+    /// The wanted frames, and what the report says about them.
     pub(super) fn finish(self) -> (Vec<Evidence>, EvidenceReport) {
         let wanted = self.evidence.into_iter().zip(self.labels).filter(|(_, label)| label.is_wanted);
         let evidence: Vec<_> = wanted.map(|(evidence, _)| evidence).collect();
@@ -132,7 +133,7 @@ fn differs(evidence: &Evidence) -> bool {
     evidence.found != evidence.expected
 }
 
-/// What the samples of a frame that is kept take.
+/// The bytes of the samples of a kept frame.
 fn bytes(evidence: &Evidence) -> usize {
     let frames = [&evidence.input, &evidence.found, &evidence.expected];
     frames.into_iter().map(|frame| size_of_val(frame.samples())).sum()
@@ -152,14 +153,15 @@ mod tests {
         Evidence { index, input: frame(1), found: frame(2 + u16::from(differs)), expected: frame(2) }
     }
 
-    /// What is kept of frames that differ or not, where there is room for `room` of them; the one at `pinned` is pinned.
+    /// The indices of the frames that are kept if there is room for `room` of them, and the number left out. `differing`
+    /// says which of them differ; the one at `pinned` is pinned.
     fn kept(room: usize, pinned: usize, differing: &[bool]) -> (Vec<usize>, usize) {
         let names: Vec<_> = (0..differing.len()).map(|index| index.to_string()).collect();
         let named: Vec<_> = names.iter().map(String::as_str).zip(differing.iter().copied()).collect();
         kept_of(room, pinned, &named)
     }
 
-    /// The same of frames of these names.
+    /// The same for frames with names.
     fn kept_of(room: usize, pinned: usize, named: &[(&str, bool)]) -> (Vec<usize>, usize) {
         let budget = room * ONE * SHARE_OF_COUNTS / (SHARE_OF_COUNTS - 1);
         let mut kept = KeptFrames::default();
@@ -189,7 +191,7 @@ mod tests {
         assert_eq!(kept_of(2, none, &twice(&["a", "a", "a", "b", "b", "c"])), (vec![0, 3], 4));
         assert_eq!(kept_of(3, none, &twice(&["a", "a", "b", "c", "a", "d"])), (vec![0, 2, 3], 3));
         assert_eq!(kept_of(2, 1, &twice(&["a", "a", "b"])), (vec![0, 1], 1));
-        // What is equal shows nothing that a repetition does not.
+        // An equal frame does not replace a repetition of one that differs.
         assert_eq!(kept_of(2, none, &[("a", true), ("a", true), ("b", false)]), (vec![0, 1], 1));
     }
 

@@ -1,4 +1,4 @@
-//! Whether a board can have what a plan uploads.
+//! Whether a board can take what a plan uploads.
 
 use halfrow_model::{CorrectError, Kernel, TableError, TableSet, Taps};
 use halfrow_protocol::message::{BoardNature, UnknownDatapath};
@@ -83,17 +83,17 @@ pub enum Misfit {
 }
 
 impl Misfit {
-    /// Whether it is the board that does not fit this program, and not the call that does not fit the board.
+    /// Whether the board does not fit this program, rather than the call the board.
     #[must_use]
     pub fn is_other_datapath(&self) -> bool {
         matches!(self, Self::Datapath(_))
     }
 }
 
-/// Whether the tables of `plan` are for all frames that it was given.
+/// Checks that the tables of `plan` fit all frames that it was given.
 ///
 /// # Errors
-/// [`Misfit::Frame`] for the first that they are not for.
+/// [`Misfit::Frame`] for the first frame that they do not fit.
 pub(super) fn check_frames(plan: &Plan) -> Result<(), Misfit> {
     plan.frames.iter().try_for_each(|own| match own {
         FrameSource::Builtin(_) => Ok(()),
@@ -103,7 +103,7 @@ pub(super) fn check_frames(plan: &Plan) -> Result<(), Misfit> {
     })
 }
 
-/// Why a board with these capabilities cannot have the tables and the kernel, if it cannot.
+/// Why a board with these capabilities cannot take the tables and the kernel, if it cannot.
 #[must_use]
 pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -> Option<Misfit> {
     if let Err(unknown) = capabilities.known_datapath() {
@@ -135,7 +135,7 @@ pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -
     tables.check_ring(usize::from(capabilities.ring)).err().map(Misfit::Ring)
 }
 
-/// Why a board cannot have the grid, if the tables are one and it cannot.
+/// Why a board cannot take the grid, if the tables are one and it cannot.
 fn grid_misfit(tables: &TableSet, capabilities: &Capabilities) -> Option<Misfit> {
     let shape = tables.shape()?;
     let Some(grids) = grids(capabilities) else { return Some(Misfit::NoGrids) };

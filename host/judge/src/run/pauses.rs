@@ -1,8 +1,8 @@
-//! How long gaps keep the enable off, by the seed that they are drawn with (`protocol/WIRE.md`, section 5).
+//! How long gaps keep the enable off, computed from the seed from which they are drawn (`protocol/WIRE.md`, section 5).
 
 use halfrow_model::xorshift32;
 
-/// The board clocks of each row of a frame of `height` rows, `width` samples each, for which gaps keep the enable off.
+/// For each row of a frame of `height` rows of `width` samples, the board clocks for which gaps keep the enable off.
 pub(super) fn pauses(gap_seed: u32, width: usize, height: usize) -> Vec<u16> {
     if gap_seed == 0 {
         return vec![0; height];
@@ -14,7 +14,7 @@ pub(super) fn pauses(gap_seed: u32, width: usize, height: usize) -> Vec<u16> {
     };
     let row = |row| {
         if row > 0 {
-            // That one adds blanking.
+            // This draw adds blanking.
             draw();
         }
         let off = (0..width).filter(|_| draw() & 7 == 0).count();
@@ -27,7 +27,7 @@ pub(super) fn pauses(gap_seed: u32, width: usize, height: usize) -> Vec<u16> {
 mod tests {
     use super::*;
 
-    /// From a program in Python.
+    /// The expected values come from a program in Python.
     #[test]
     fn pauses_are_those_that_another_program_draws() {
         assert_eq!(pauses(1, 64, 4), PYTHON);

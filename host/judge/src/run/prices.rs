@@ -1,4 +1,4 @@
-//! What the parts of a run cost on a link, in seconds.
+//! How long the parts of a run take on a link, in seconds: their prices.
 
 use std::time::Duration;
 
@@ -15,17 +15,17 @@ use super::rules;
 use super::variations::Build;
 use crate::board::{Board, BoardError, BoardNature, Bursts, Capabilities, Table};
 
-/// Payload that a row costs at least: a link stands still between shorter ones, while they are acknowledged.
+/// The least payload that a row is priced at: between shorter rows the link stands still while they are acknowledged.
 const SMALL: usize = 300;
-/// Payload of requests and replies that are neither rows nor tables, the longest of them.
+/// The longest payload of requests and replies that carry neither rows nor tables.
 const SHORT: usize = 64;
-/// The reply that tells a board's capabilities, and its name.
+/// The payload of the reply to CAPABILITIES, with the board's name.
 const CAPABILITIES: usize = 320;
-/// Clocks that a commit of the longest tables takes (WIRE.md, "Reply times").
+/// Pixel clocks that a commit of the longest tables takes (WIRE.md, "Reply times").
 const COMMIT: usize = 28_000;
-/// Round trips that are looked at.
+/// Round trips that are measured.
 const LOOKS: u32 = 3;
-/// How long packets of the longest kind go there and back where a link does not know its speed, and how many at most, since a
+/// For how long the longest packets are sent and returned where a link does not know its speed, and how many at most, since a
 /// virtual clock may stand still.
 const LONG_LOOK: Duration = Duration::from_millis(100);
 const LONG_LOOKS: u32 = 16;
@@ -35,13 +35,13 @@ const LONG_LOOKS: u32 = 16;
 pub struct Rates {
     /// Bytes a second each way.
     pub bytes_per_second: f64,
-    /// From a short request to its answer, in seconds, beside the time of its bytes.
+    /// From a short request to its answer, in seconds, without the time of the bytes.
     pub round_trip: f64,
 }
 
 impl Rates {
-    /// Those of the link to `board`, by a short look at it: the longest of a few round trips, and where the link does not
-    /// know its speed, what the longest packets take.
+    /// The rates of the link to `board`, from a short measurement: the longest of a few round trips and, if the link does
+    /// not know its speed, what the longest packets take.
     ///
     /// # Errors
     /// [`BoardError`] when an answer does not come.
@@ -55,7 +55,7 @@ impl Rates {
         Ok(Self { bytes_per_second, round_trip: round_trip.max(0.0) })
     }
 
-    /// A request with a payload of `out` bytes, and its reply with one of `back`.
+    /// The time in seconds of a request with a payload of `out` bytes and a reply with one of `back`.
     pub(super) fn request(&self, out: usize, back: usize) -> f64 {
         self.round_trip + (wire_length(out) + wire_length(back)) as f64 / self.bytes_per_second
     }
@@ -71,7 +71,7 @@ fn round_trips(board: &mut Board, bytes: &[u8]) -> Result<(f64, f64), BoardError
     Ok((shortest.as_secs_f64(), longest.as_secs_f64()))
 }
 
-/// What a round trip of the longest packet takes on average, in seconds.
+/// The average time of a round trip of the longest packet, in seconds.
 fn long_round_trip(board: &mut Board) -> Result<f64, BoardError> {
     let (mut took, mut looks) = (Duration::ZERO, 0);
     while took < LONG_LOOK && looks < LONG_LOOKS {
@@ -81,15 +81,15 @@ fn long_round_trip(board: &mut Board) -> Result<f64, BoardError> {
     Ok(took.as_secs_f64() / f64::from(looks))
 }
 
-/// The bytes a second of a link over which the shortest packet takes `short` seconds and the longest one `long`, there and
-/// back, one way after the other. Where chance hides the difference, all of `long` counts, and the link is faster than that.
+/// The bytes a second of a link over which the shortest packet takes `short` seconds and the longest one `long`, there and then
+/// back. If chance hides the difference, all of `long` counts, and the link is faster than the result.
 fn carried(short: f64, long: f64) -> f64 {
     let took = if long > short { long - short } else { long };
-    // One that carries everything at once takes no time for any byte.
+    // A link that carries everything at once takes no time for any byte.
     if took > 0.0 { 2.0 * (wire_length(MAX_PAYLOAD) - wire_length(0)) as f64 / took } else { f64::INFINITY }
 }
 
-/// What the parts of a plan cost on a board.
+/// The prices of a plan's parts on a board.
 #[derive(Debug)]
 pub struct Prices<'a> {
     pub(super) plan: &'a Plan,
@@ -100,7 +100,7 @@ pub struct Prices<'a> {
 }
 
 impl<'a> Prices<'a> {
-    /// On a board of these `capabilities`, over a link of these `rates`.
+    /// The prices on a board with these `capabilities`, over a link with these `rates`.
     #[must_use]
     pub fn new(plan: &'a Plan, capabilities: &'a Capabilities, rates: Rates) -> Self {
         let whole = plan.whole_schedule(&Build::of(capabilities));
@@ -113,7 +113,7 @@ impl<'a> Prices<'a> {
         self.plan
     }
 
-    /// Every part that there is on this board.
+    /// Every part that the plan has on this board.
     #[must_use]
     pub fn parts(&self) -> Vec<Part> {
         parts_of(&self.whole)
@@ -127,7 +127,7 @@ impl<'a> Prices<'a> {
             && self.capabilities.bursts.is_some_and(|bursts| bursts.content == at_speed::CONTENT)
     }
 
-    /// How much there is of `part`: rows, frames at speed, or 1.
+    /// The most of `part`: rows, frames at speed, or 1.
     #[must_use]
     pub fn most(&self, part: Part) -> usize {
         match part {
@@ -137,14 +137,14 @@ impl<'a> Prices<'a> {
         }
     }
 
-    /// What a run of `selection` takes, from the link test on.
+    /// How long a run of `selection` takes from the link test on, in seconds.
     #[must_use]
     pub fn seconds(&self, selection: &Selection) -> f64 {
         let rules = if selection.amount(Part::Rules) > 0 { rules::price(self) } else { 0.0 };
         self.every_run() + self.streamed(selection) + self.at_speed(selection) + rules
     }
 
-    /// What it would take at the usual pixel clock, whatever the board names.
+    /// How long it would take at the usual pixel clock, whatever clock the board names, in seconds.
     pub(super) fn at_the_usual_clock(&self, selection: &Selection) -> f64 {
         let capabilities = Capabilities { clock_hz: at_speed::USUAL_CLOCK, ..self.capabilities.clone() };
         Prices::new(self.plan, &capabilities, self.rates).seconds(selection)
@@ -155,20 +155,20 @@ impl<'a> Prices<'a> {
         self.capabilities.clock_hz
     }
 
-    /// What `part` adds to the least run, with what it is nothing without.
+    /// What all of `part`, with what the part needs, adds to the shortest run, in seconds.
     #[must_use]
     pub fn of_part(&self, part: Part) -> f64 {
         let least = Selection::least();
         self.seconds(&least.with(part, self.most(part))) - self.seconds(&least)
     }
 
-    /// Greeting and capabilities, which are over before anything can be chosen.
+    /// The time of HELLO and CAPABILITIES, which are over before anything can be chosen, in seconds.
     #[must_use]
     pub fn opening(&self) -> f64 {
         self.short_request() + self.rates.request(0, CAPABILITIES)
     }
 
-    /// The link test, the counters before and behind all rows, the end of the session.
+    /// The link test, the counters before and after all rows, and the end of the session.
     fn every_run(&self) -> f64 {
         let echoes = patterns(self.plan.seed).into_iter().map(|bytes| bytes.len());
         echoes.map(|bytes| self.rates.request(bytes, bytes)).sum::<f64>() + 5.0 * self.short_request()
@@ -185,7 +185,7 @@ impl<'a> Prices<'a> {
         let between = match segment.timing {
             Timing::Least => self.capabilities.least_blanking.into(),
             Timing::Sensor => SENSOR_BLANKING.into(),
-            // One clock in eight is off, and up to 15 come between two rows.
+            // One clock in eight is off, and up to 15 are added between two rows.
             Timing::Gaps(_) => usize::from(self.capabilities.least_blanking) + 15 + width.div_ceil(8),
         };
         let before = if segment.is_varied() { self.read_back() } else { 0.0 };
@@ -193,9 +193,9 @@ impl<'a> Prices<'a> {
         before + tables + self.short_request() + self.rows(rows, width, between)
     }
 
-    /// So many rows that follow each other. The slowest of way out, pixel clock and way back counts, or where answers take
-    /// long what the board's banks have room for meanwhile. The first two go out before anything comes back, since a row
-    /// leaves while the next one enters, and behind the last the board is asked what came to it.
+    /// `rows` rows that follow each other. The slowest of way out, pixel clock and way back counts or, where answers take
+    /// long, how many rows the board's banks hold meanwhile. The first two rows go out before anything comes back,
+    /// because a row leaves while the next one enters. After the last one the board is asked what reached it.
     pub(super) fn rows(&self, rows: usize, width: usize, between: usize) -> f64 {
         let packed = (3 * width).div_ceil(2);
         let back = RowOut::HEAD + packed + RowOut::ENTERED;
@@ -203,18 +203,18 @@ impl<'a> Prices<'a> {
         let (out, back) = (carried(RowIn::HEAD + packed), carried(back).max(carried(SMALL)));
         let played = self.clocks(width + between);
         let alone = 2.0 * (out + played) + self.rates.round_trip;
-        // One of them has the row that the next one pushes out.
+        // One bank has the row that only the next one pushes out.
         let banks = self.capabilities.row_banks_in.min(self.capabilities.row_banks_out).saturating_sub(1);
         let in_banks = (self.rates.round_trip + out + back + 2.0 * played) / f64::from(banks.max(1));
         alone + rows as f64 * back.max(played).max(in_banks) + self.short_request()
     }
 
-    /// The plan's tables, written and read back.
+    /// Writing the plan's tables and reading them back.
     pub(super) fn upload(&self) -> f64 {
         self.upload_of(self.plan.tables.geometry().height())
     }
 
-    /// Tables of so many rows, written and read back.
+    /// Writing tables of `height` rows and reading them back.
     pub(super) fn upload_of(&self, height: usize) -> f64 {
         let written = [(Table::RowFactors, height), (Table::Kernel, halfrow_model::NODES)];
         let write = |(table, entries): (Table, usize)| {
@@ -225,7 +225,7 @@ impl<'a> Prices<'a> {
         written.into_iter().map(write).sum::<f64>() + self.read_back()
     }
 
-    /// The CRC of both tables by every port.
+    /// Asking for the CRCs of both tables through every port.
     fn read_back(&self) -> f64 {
         let Capabilities { step_ports, kernel_ports, max_height, .. } = self.capabilities;
         let ports = f64::from(*step_ports) + f64::from(*kernel_ports);
@@ -255,7 +255,8 @@ impl<'a> Prices<'a> {
     }
 }
 
-/// What a board is taken to be that nobody has asked: one that has everything, for rows as wide as those of `plan` or 1920.
+/// What is assumed of a board that was not asked: that it has everything, for rows as wide as those of `plan`, or 1920 if these
+/// are narrower.
 #[must_use]
 pub fn usual_capabilities(plan: &Plan, nature: BoardNature) -> Capabilities {
     let geometry = plan.tables.geometry();
@@ -297,7 +298,7 @@ mod tests {
     use super::*;
     use crate::board::possible;
 
-    /// 2 · (4080 + 16) bytes there and back, 8,192 in 10 ms.
+    /// The longest packets differ from the shortest by 2 · (4080 + 16) = 8,192 bytes there and back, in 10 ms.
     #[test]
     fn the_speed_of_a_link_comes_of_what_its_longest_packets_take() {
         assert_eq!(carried(0.002, 0.012).round(), 819_200.0);

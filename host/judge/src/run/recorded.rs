@@ -1,4 +1,4 @@
-//! What a recording says of its run, so that the same conversation can be held again: the frames come from the rows
+//! What a recording says about its run, so that the same conversation can be held again. The frames come from the rows
 //! that were sent, since their files may be elsewhere.
 
 use std::collections::BTreeSet;
@@ -30,18 +30,18 @@ pub struct RecordedRun {
     phase: String,
     frames: Vec<String>,
     repeat: u32,
-    /// A recording that does not say so holds no such frames.
+    /// A recording without this key holds no such frames.
     #[serde(default)]
     vary: Vary,
-    /// A recording that does not say so has all of them.
+    /// A recording without this key has all of them.
     #[serde(default)]
     parts: Option<Selection>,
-    /// A recording that does not say so holds no such frames.
+    /// A recording without this key holds no such frames.
     #[serde(default = "none_at_speed")]
     at_speed: Option<Duration>,
     fail_fast: bool,
     take_over: bool,
-    /// A recording that does not say so holds no such requests.
+    /// A recording without this key holds no such requests.
     #[serde(default)]
     counts: bool,
     seed: u64,
@@ -86,7 +86,7 @@ impl RestoreError {
 }
 
 impl RecordedRun {
-    /// Of a run that is about to begin.
+    /// The plan of a run that is about to begin.
     #[must_use]
     pub fn of(plan: &Plan, options: &RunOptions) -> Self {
         let file = TableFile { tables: plan.tables.clone(), kernel: plan.kernel.clone(), about: None };
@@ -119,11 +119,11 @@ impl RecordedRun {
         }
     }
 
-    /// The plan of the run that `recording` holds, and how it was made. The files that it read are not named again; all its
-    /// frames are kept for pictures as far as there is room.
+    /// The plan and the options of the run that `recording` holds. The files that the run read are not named; all its
+    /// frames are kept for pictures, as far as there is room.
     ///
     /// # Errors
-    /// [`RestoreError`] when the recording does not hold what it takes.
+    /// [`RestoreError`] when the recording does not hold what this needs.
     pub fn restore(recording: &Recording) -> Result<(Plan, RunOptions), RestoreError> {
         let run: Self = recording.run()?;
         let file = TableFile::parse(&run.tables).map_err(RestoreError::Tables)?;

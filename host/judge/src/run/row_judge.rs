@@ -18,25 +18,25 @@ use crate::compare::Comparison;
 use crate::progress::Progress;
 use crate::result::{Evidence, Finding, FrameReport, FrameTiming, Variation};
 
-/// Kept even if it is equal: the report measures its façades.
+/// This frame is kept even if it is equal, because the report measures its façades.
 pub(super) const STREET: &str = "builtin:street";
 
-/// How strict, and what to keep.
+/// How rows are judged, and what is kept.
 pub(super) struct Manner {
     pub(super) claimed_latency: u32,
     pub(super) latency_limit: u32,
     pub(super) fail_fast: bool,
-    /// Keep equal frames for pictures, too, and not for the diagnosis alone.
+    /// Keep equal frames for pictures too, not only for the diagnosis.
     pub(super) keep_equal: bool,
-    /// Bytes of frames that are kept, at most.
+    /// The most bytes of frames that are kept.
     pub(super) evidence_bytes: usize,
-    /// Whether the board says what entered its core.
+    /// Whether the board signs what entered its core.
     pub(super) names_entered: bool,
-    /// What the segment's frames are for.
+    /// The setting that the segment's frames try, if any.
     pub(super) variation: Option<Variation>,
-    /// The rows that its frames have, if those are not all.
+    /// The number of rows of its frames, if these are not whole.
     pub(super) first_rows: Option<usize>,
-    /// Board clocks that gaps keep each row of a frame waiting.
+    /// The board clocks for which gaps keep the enable off, for each row of a frame.
     pub(super) pauses: Vec<u16>,
 }
 
@@ -60,16 +60,16 @@ pub(super) struct RowJudge<'a> {
     timing: FrameTiming,
     progress: &'a dyn Progress,
     unprepared: Option<PrepareError>,
-    /// When the last frame had come back.
+    /// When the last frame came back whole.
     since: Instant,
     in_flight: VecDeque<InFlight>,
-    /// Frames in flight that are to be sent once more.
+    /// Frames in flight that must be sent again.
     again: VecDeque<NumberedFrame>,
-    /// Frames that have come back whole.
+    /// How many frames have come back whole.
     frames_done: usize,
-    /// Rows that have come back since the stream began, or began again.
+    /// Rows that have come back since the stream last began.
     pub(super) rows: usize,
-    /// How often those had been sent before, by what they say.
+    /// How often these rows had been sent before, as they say themselves.
     pub(super) repeats: u32,
 }
 
@@ -97,7 +97,7 @@ impl<'a> RowJudge<'a> {
         }
     }
 
-    /// The segment's first frame that has not come back whole.
+    /// How many frames of the segment have come back whole: the index of the first that has not.
     pub(super) fn frames_done(&self) -> usize {
         self.frames_done
     }
@@ -107,16 +107,17 @@ impl<'a> RowJudge<'a> {
         !self.seen.is_right() || self.in_flight.iter().any(|frame| frame.comparison.differences > 0)
     }
 
-    /// Has the frames sent again that have not come back whole. Rows that did come back are not judged twice.
+    /// Makes the stream begin again with the frames that have not come back whole. Rows that did come back are not judged
+    /// twice.
     pub(super) fn begin_again(&mut self) {
         self.again = self.in_flight.iter().map(|frame| frame.prepared.numbered()).collect();
         (self.rows, self.repeats) = (0, 0);
     }
 
-    /// Takes what came back of frames that never came back whole.
+    /// Judges what came back of frames that did not come back whole.
     ///
     /// # Errors
-    /// [`PrepareError`] when a frame could not be made ready, so that none behind it was sent.
+    /// [`PrepareError`] when a frame could not be prepared, so that none after it was sent.
     pub(super) fn finish(mut self) -> Result<(), PrepareError> {
         while let Some(frame) = self.in_flight.pop_front() {
             if frame.rows > 0 {
@@ -151,7 +152,7 @@ impl<'a> RowJudge<'a> {
         }
     }
 
-    /// A frame of which samples are wrong, or none, as one that may be kept.
+    /// A frame, wrong or not, as one that may be kept.
     fn offered<'n>(&self, name: &'n str, expected: &Frame, is_whole: bool, is_wrong: bool) -> Offered<'n> {
         let is_street = name == STREET;
         Offered {
@@ -322,7 +323,7 @@ mod tests {
         [0, 1].into_iter().for_each(|row| give(&mut judge, 7, row, 7));
         judge.begin_again();
         assert_eq!((sent(&mut judge), sent(&mut judge), sent(&mut judge)), (Some(7), Some(8), None));
-        // Only what comes for the first time counts: the second row 0 is wrong, and so are the last two.
+        // Only the first copy of a row counts: the second row 0 is wrong, which is ignored, and so are the last two rows.
         for (row, sample) in [(0, 0), (1, 7), (2, 0), (3, 0)] {
             give(&mut judge, 7, row, sample);
         }

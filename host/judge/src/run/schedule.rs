@@ -1,4 +1,4 @@
-//! A plan's parts in the order in which they are streamed.
+//! The parts of a plan in the order in which they are streamed.
 
 use std::sync::Arc;
 
@@ -13,13 +13,13 @@ use crate::result::Variation;
 impl Plan {
     /// The run, segment by segment:
     ///
-    /// * a frame with the decoy, where there is one;
-    /// * another one with the decoy and, close behind it, the frames to judge. A board with one bank of tables cannot change them between
-    ///   two frames that follow closely: there, and without a decoy, this segment has the frames to judge alone;
+    /// * a frame with the decoy, if there is one;
+    /// * another frame with the decoy, directly followed by the frames to judge. A board with one bank of tables cannot
+    ///   change them between two such frames: there, and without a decoy, this segment has only the frames to judge;
     /// * noise with the sensor's blanking, and noise with gaps;
     /// * a frame for each other centre or depth.
     ///
-    /// Where only some parts are selected, frames keep the numbers that they have among all, and with them what they hold.
+    /// If only some parts are selected, frames keep the numbers that they have in the whole run, and with them their content.
     #[must_use]
     pub fn schedule(&self, build: &Build) -> Vec<Segment> {
         let whole = self.whole_schedule(build);
@@ -77,8 +77,8 @@ impl Plan {
         }
     }
 
-    /// The samples of a scheduled frame of `geometry`, that of its segment: of a frame as high as the tables the first
-    /// rows. Noise is drawn anew for every frame.
+    /// The samples of a scheduled frame, whose segment has `geometry`: the first rows of a frame as high as the tables.
+    /// Noise is different in every frame.
     ///
     /// # Errors
     /// [`FrameError`] when a built-in frame cannot be made.

@@ -1,7 +1,7 @@
-//! Everything once more, when a FAIL, or an answer that no sound board gives, may come from a packet that was late.
+//! Does everything once more when a FAIL, or an answer that no sound board gives, may come from a late packet.
 //!
-//! A link that delivers a copy of an old request behind newer ones can leave a sound board with old tables, counters or
-//! settings. In a session of its own no copy of an earlier session means anything.
+//! A link that delivers a copy of an old request after newer ones can leave a sound board with old tables, counters or
+//! settings. In a new session, copies from earlier sessions have no effect.
 
 use super::counters::{is_contradictory, is_moved_by_links};
 use super::findings::{During, End};
@@ -11,15 +11,15 @@ use crate::progress::Step;
 use crate::result::{BrokenOff, CheckName, Doubt, Finding};
 use crate::verdict::Cause;
 
-/// How often it is all done again until no request comes to the board twice.
+/// How often everything is done again until no request reaches the board twice.
 pub(super) const LOOKS: u32 = 3;
-/// How often a board is asked that may set its counters back whenever it is.
+/// How often a board is asked for its counters to see whether it resets them each time.
 const COUNTS: usize = 4;
-/// Keeps the nonces of these sessions from those of boards that came back.
+/// Keeps the nonces of these sessions apart from those of boards that came back.
 const NONCE: u32 = 1 << 16;
 
 impl Run<'_> {
-    /// Does everything again that ended in `found`, if an old copy of a request may have brought it about.
+    /// Does everything again if an old copy of a request may have caused `found`, with which the run ended.
     pub(super) fn look_again(&mut self, found: End) -> Result<(), End> {
         let mut found = found;
         for look in 1..=LOOKS {
@@ -28,7 +28,7 @@ impl Run<'_> {
             self.progress.step(Step::LookAgain);
             match self.look(look) {
                 Ok(()) => return Err(right_in_another_session(&found, doubt)),
-                // An answer that no sound board gives says less than what was found wrong.
+                // A FAIL says more than an answer that no sound board gives, so only another FAIL replaces it.
                 Err(again) if again.is_failed() || again.is_answer() && !found.is_failed() => found = again,
                 Err(again) if again.is_answer() && self.doubt_of(&again).is_some() => {}
                 Err(again) => return Err(broken_off(again, unasked(&found), doubt)),
@@ -43,8 +43,8 @@ impl Run<'_> {
         }
     }
 
-    /// Does everything in another session, `number` of those of the run, from 1. A board that goes away in front of it and comes back
-    /// is in one.
+    /// Does everything in another session, the run's `number`th, from 1. A board that goes away before that and comes
+    /// back is in a new session anyway.
     fn look(&mut self, number: u32) -> Result<(), End> {
         if let Err(end) = self.open_session(number) {
             self.come_back(end)?;
@@ -53,13 +53,13 @@ impl Run<'_> {
         self.all_but_identity()
     }
 
-    /// Why what ended the run may come from the link. That nothing is known of the link is no reason to doubt an error.
+    /// Why the link may have caused `end`. That nothing is known about the link is no reason to doubt an error.
     pub(super) fn doubt_of(&mut self, end: &End) -> Option<Doubt> {
         let doubt = self.doubt(end.check().0)?;
         (end.is_failed() || doubt != Doubt::PacketsUncounted {}).then_some(doubt)
     }
 
-    /// Opens a session in which no copy of an earlier one's requests means anything, `number` of those of the run, from 1.
+    /// Opens a session in which copies of earlier sessions' requests have no effect: the run's `number`th, from 1.
     pub(super) fn open_session(&mut self, number: u32) -> Result<(), End> {
         let nonce = self.nonce(number);
         self.board.open_another_session(nonce).during(CheckName::Link)
@@ -69,13 +69,14 @@ impl Run<'_> {
         self.way_back.options.nonce.wrapping_add(NONCE + number)
     }
 
-    /// The nonce of one more session that is opened for its own sake.
+    /// The nonce of a further session within the same look.
     pub(super) fn next_nonce(&mut self) -> u32 {
         self.sessions += 1;
         self.nonce(LOOKS + self.sessions)
     }
 
-    /// Why the board may not be as the host made it in this session, although it is sound and `check` found something.
+    /// Why `check` may have found something although the board is sound: because it is not in the state that the host put
+    /// it into in this session.
     pub(super) fn doubt(&mut self, check: CheckName) -> Option<Doubt> {
         if self.findings.look.beyond_links {
             return None;
@@ -83,12 +84,12 @@ impl Run<'_> {
         if let Some(doubt) = self.findings.look.doubt.or(Doubt::of_requests(self.board)) {
             return Some(doubt);
         }
-        // Without an answer nothing tells what the link did before, whatever keeps it away.
+        // Without an answer, whatever prevents it, nothing is known about what the link did before.
         let Ok(status) = self.board.status_although_stopped() else {
             return Some(Doubt::PacketsUncounted {});
         };
         if is_contradictory(&status) {
-            // Such a board is wrong whatever the link did.
+            // Such a board is wrong, whatever the link did.
             return None;
         }
         if let Some(doubt) = Doubt::of_packets(self.board) {
@@ -99,7 +100,7 @@ impl Run<'_> {
         if counted > sent || counters_alone && counted != sent {
             return Some(Doubt::PacketsMiscounted { counted, sent });
         }
-        // A board that miscounts does so again, and a packet that came twice does not come again.
+        // One more look decides: a board that miscounts will do it again, but a packet will hardly come twice again.
         let is_new = counters_alone && self.options.counts && !self.findings.counters_doubted;
         self.findings.counters_doubted |= counters_alone;
         (is_new && is_moved_by_links(&status)).then_some(Doubt::CountersOfLinks {})
@@ -107,8 +108,8 @@ impl Run<'_> {
 }
 
 impl Run<'_> {
-    /// Whether the board never counts more packets than when it was last asked, although that was one: no link has a late copy of
-    /// a request that clears the counters at hand each time.
+    /// Whether the board never counts more packets than when it was last asked, although asking is a packet itself. No
+    /// link delivers a late copy of a request that clears the counters every time.
     fn loses_count(&mut self) -> bool {
         let counts: Vec<_> = (0..COUNTS).map_while(|_| self.board.status(false).ok()).collect();
         counts.len() == COUNTS && counts.windows(2).all(|two| two[1].packets <= two[0].packets)
@@ -116,7 +117,7 @@ impl Run<'_> {
 }
 
 impl Doubt {
-    /// What the host knows of the open session of `board` without asking it.
+    /// The doubt that the host has about the open session of `board` without asking it.
     pub(super) fn of_session(board: &Board) -> Option<Self> {
         Self::of_requests(board).or(Self::of_packets(board))
     }
@@ -132,7 +133,7 @@ impl Doubt {
     }
 }
 
-/// What `end` found, without what it asks for where that is of a board that no link disturbs.
+/// What `end` found. From a problem the advice is removed, because it holds only for a board that no link disturbs.
 pub(super) fn unasked(end: &End) -> Finding {
     match end.check().2.clone() {
         Finding::Problem(problem) => problem.unasked().into(),
@@ -145,7 +146,7 @@ fn right_in_another_session(found: &End, doubt: Doubt) -> End {
     End::error(found.check().0, Cause::Station, finding)
 }
 
-/// What kept a second look from its end, behind what it was to clear up.
+/// Turns `end`, which broke off a second look, into a finding that also says what the look was to clear up.
 pub(super) fn broken_off(mut end: End, found: Finding, doubt: Doubt) -> End {
     if let End::Error { finding, .. } = &mut end {
         let reason = finding.clone();

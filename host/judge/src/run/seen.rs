@@ -14,33 +14,33 @@ pub(super) struct Seen {
     pub(super) evidence: KeptFrames,
     pub(super) levels: SampleLevels,
     pub(super) latency: Option<LatencyReport>,
-    /// The first row that names other tables than it should.
+    /// The first row that names the wrong generation.
     pub(super) wrong_generation: Option<Finding>,
     /// The first row with a wrong latency.
     pub(super) wrong_latency: Option<WrongLatency>,
-    /// The first row that entered the core otherwise than it was sent.
+    /// The first row that entered the core with other samples than were sent, and how many did.
     pub(super) wrong_entry: Option<WrongEntry>,
-    /// Rows whose CRC of what entered was looked at.
+    /// How many rows had their CRC of what entered compared.
     pub(super) rows_with_entry: usize,
     /// The first row whose gaps are not those of the seed.
     pub(super) wrong_pauses: Option<Finding>,
-    /// That tables had changed when they were read back.
+    /// The end of a run whose tables had changed when they were read back.
     pub(super) changed_tables: Option<End>,
 }
 
-/// A row with another latency than the board claims, in pixel clocks.
+/// A row whose latency is not the one that the board claims, in pixel clocks.
 pub(super) struct WrongLatency {
     row: usize,
     frame: u16,
     first: u32,
     last: u32,
     claimed: u32,
-    /// Whether each such row is this one of its frame.
+    /// Whether all such rows are the same row of their frames.
     is_one_row: bool,
 }
 
 impl WrongLatency {
-    /// It as the first of so many `rows` among `of_rows`.
+    /// The finding of which it is the first row: `rows` late rows of `of_rows`.
     pub(super) fn finding(&self, rows: usize, of_rows: usize) -> Finding {
         let &Self { row, frame, first, last, claimed, is_one_row } = self;
         Finding::LatencyWrong(LateRows { rows, of_rows, is_one_row, row, frame, first, last, claimed })
@@ -48,7 +48,7 @@ impl WrongLatency {
 }
 
 impl Seen {
-    /// Whether nothing of it is wrong, be it judged yet or not.
+    /// Whether nothing that was seen is wrong, judged or not.
     pub(super) fn is_right(&self) -> bool {
         let rows =
             self.wrong_generation.is_none() && self.wrong_latency.is_none() && self.wrong_entry.is_none();
@@ -71,7 +71,7 @@ impl Seen {
         self.totals().samples
     }
 
-    /// Takes the latency of a row that came back, of which the board claims `claimed` and may have `limit` pixel clocks.
+    /// Notes the latency of a row that came back. The board claims `claimed` pixel clocks, and `limit` are allowed.
     pub(super) fn note_latency(&mut self, row: &ReturnedRow<'_>, claimed: u32, limit: u32) {
         let (first, last) = (u32::from(row.first_latency), u32::from(row.last_latency));
         let seen = self.latency.get_or_insert(LatencyReport {

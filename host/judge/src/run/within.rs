@@ -1,4 +1,4 @@
-//! A run that must not take longer than it is told: what is taken of it is chosen when the board is open and the link known.
+//! A run that must keep within a time: what is taken of it is chosen once the board is open and the link is known.
 
 use std::time::Duration;
 
@@ -13,12 +13,12 @@ use crate::result::{CheckName, CoveragePoint, Problem, WithinPart, WithinReport}
 use crate::verdict::Cause;
 use crate::words::hertz;
 
-/// The share of the time that is kept for what no price knows: a retry, a host that is late.
+/// The share of the time that is kept for what has no price: a retry, a slow host.
 const KEPT: f64 = 0.05;
-/// The same over a link whose speed only a short look tells.
+/// The same for a link whose speed is only known from a short measurement.
 const KEPT_UNSURE: f64 = 0.1;
 
-/// What this computer takes beside the link where that does not wait for it, in seconds.
+/// The time that this computer needs in addition while the link's clock goes on, in seconds.
 const HOST: f64 = 0.1;
 
 /// A time in which a run cannot do what it is to.
@@ -61,7 +61,7 @@ pub enum WithinError {
     Faults(#[from] FaultsError),
 }
 
-/// Chooses what to take of `plan` on `board`, for all of its time on the link.
+/// Chooses what to take of `plan` on `board`, for the time `limit` on the link's clock.
 ///
 /// # Errors
 /// [`End`] when the board does not answer, or the time does not suffice.
@@ -71,7 +71,7 @@ pub(super) fn choose(
     board: &mut Board,
     findings: &mut Findings,
 ) -> Result<Plan, End> {
-    // A board that cannot have the plan's tables is told so where it is identified.
+    // That a board cannot take the plan's tables is reported when it is identified.
     if misfit(&plan.tables, &plan.kernel, &board.capabilities).is_some() {
         return Ok(plan.clone());
     }
@@ -80,7 +80,7 @@ pub(super) fn choose(
     let prices = Prices::new(plan, &capabilities, rates);
     let kept = if board.bytes_per_second().is_some() { KEPT } else { KEPT_UNSURE };
     let mut time = Time { seconds: limit.as_secs_f64(), spent: board.now().as_secs_f64(), kept };
-    // On a link with a clock of its own choosing takes no time. On any other it takes as long once more.
+    // By a link's virtual clock choosing takes no time. By a real one it does, and so will choosing again.
     let build = format!("{:08x}", board.welcome.build);
     let tried = chosen(&prices, &build, time);
     let took = board.now().as_secs_f64() - time.spent;
@@ -104,14 +104,14 @@ pub(super) fn choose(
     }
 }
 
-/// The time that there is.
+/// The time that the run may take.
 #[derive(Clone, Copy)]
 struct Time {
     /// All of it, in seconds.
     seconds: f64,
-    /// What is over of it.
+    /// What has passed of it, in seconds.
     spent: f64,
-    /// The share that is kept.
+    /// The share that is kept as a reserve.
     kept: f64,
 }
 
