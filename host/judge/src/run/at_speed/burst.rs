@@ -1,4 +1,4 @@
-//! What a burst will be.
+//! The plan of a burst.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -9,32 +9,32 @@ use halfrow_protocol::message::{Burst, BurstMode};
 use super::price::clock_hz;
 use crate::board::{Bursts, Capabilities};
 
-/// The pixel clock, in hertz, that a board is taken to have which names none: that of the paper's sensor.
+/// The pixel clock, in hertz, that is assumed for a board that names none: that of the paper's sensor.
 pub(in crate::run) const USUAL_CLOCK: u32 = 96_000_000;
-/// 2^64 / golden ratio: spreads a run's seeds over all seeds of bursts.
+/// 2^64 / golden ratio: spreads the seeds of runs over all seeds of bursts.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
-/// The longest between two looks at the records, so that whoever stops the run need not wait.
+/// The longest time between two looks at the records, so that a run can be stopped without delay.
 pub(super) const LONGEST_LOOK: Duration = Duration::from_millis(250);
-/// The shortest, so that a link has time for others.
+/// The shortest time, which leaves a link time for other things.
 const SHORTEST_LOOK: Duration = Duration::from_millis(10);
-/// What a board may keep a frame to itself, beside [`PATIENT_FRAMES`].
+/// The least time that a frame is waited for.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// The frames that could have been made meanwhile.
+/// A frame is waited for at least as long as this many frames take.
 const PATIENT_FRAMES: u32 = 20;
 /// The longest that a frame is waited for, however slow a clock the board claims.
 const LONGEST_PATIENCE: Duration = Duration::from_secs(300);
 
-/// What a burst will be.
+/// The plan of a burst.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BurstPlan {
-    /// Its frames.
+    /// The number of its frames.
     pub(super) frames: u32,
-    /// Content and tables of each.
+    /// Which content and which tables each frame has.
     pub(super) mode: BurstMode,
     seed: u32,
     first_frame: u16,
     bursts: Bursts,
-    /// Pixel clocks from one frame's first sample to the next one's.
+    /// Pixel clocks from the first sample of one frame to that of the next.
     clocks: u64,
     clock_hz: u32,
     /// W·H.
@@ -46,7 +46,8 @@ pub(super) struct BurstPlan {
 }
 
 impl BurstPlan {
-    /// A burst of no frame yet, as large as `geometry`, whose seed is the draw `draw` from that of the run.
+    /// A burst with no frames yet, whose frames have the size of `geometry` and whose seed is draw number `draw` from the
+    /// run's seed.
     pub(super) fn new(
         geometry: &Geometry,
         seed: u64,
@@ -72,12 +73,12 @@ impl BurstPlan {
         }
     }
 
-    /// The same content as frame `n` again and again, with the trap set.
+    /// A burst of `frames` frames, all with the content of frame `n`, with the trap set.
     pub(super) fn trapping(&self, n: u32, frames: u32) -> Self {
         Self { frames, mode: BurstMode::Trapped, first_frame: self.content(n).frame, ..*self }
     }
 
-    /// The request that starts it under the name `burst`.
+    /// The request that starts it with the name `burst`.
     pub(super) fn request(&self, burst: u32) -> Burst {
         Burst {
             burst,
@@ -89,7 +90,7 @@ impl BurstPlan {
         }
     }
 
-    /// What frame `n` holds.
+    /// The content of frame `n`.
     pub(super) fn content(&self, n: u32) -> Content {
         content(&self.request(0), n)
     }
@@ -99,12 +100,12 @@ impl BurstPlan {
         self.mode == BurstMode::Alternating && n % 2 == 1
     }
 
-    /// Whether its rows are as wide as those of `geometry`.
+    /// Whether its rows have the width of `geometry`.
     pub(super) fn has_width_of(&self, geometry: &Geometry) -> bool {
         self.samples as usize == geometry.width() * usize::from(self.rows)
     }
 
-    /// Pixel clocks of `frames` frames, with the blanking in front of another one.
+    /// Pixel clocks of `frames` frames, including the blanking before another one.
     pub(super) fn clocks_of(&self, frames: u32) -> u64 {
         self.clocks * u64::from(frames)
     }
@@ -114,20 +115,20 @@ impl BurstPlan {
         self.bursts.records.into()
     }
 
-    /// What content is drawn from.
+    /// The seed from which content is drawn.
     pub(super) fn seed(&self) -> u32 {
         self.seed
     }
 
-    /// Whether the board can keep a row that differs.
+    /// Whether the board has a trap, which keeps a row that differs.
     pub(super) fn has_trap(&self) -> bool {
         self.bursts.trap
     }
 
-    /// The frames of `time` on the board's clock, at least one for each bank of tables.
+    /// How many frames fit into `time` on the board's clock, but at least one for each bank of tables.
     pub(super) fn frames_in(&self, time: Duration) -> u32 {
         let frames = time.as_secs_f64() * f64::from(self.clock_hz) / self.clocks as f64;
-        // The greatest number stands for a burst without an end.
+        // The greatest number means a burst without an end.
         (frames as u32).clamp(2, u32::MAX - 1)
     }
 
@@ -136,32 +137,32 @@ impl BurstPlan {
         f64::from(frames) * self.clocks as f64 / f64::from(self.clock_hz)
     }
 
-    /// The same as a time.
+    /// The same as a [`Duration`].
     pub(super) fn time_of(&self, frames: u32) -> Duration {
         Duration::from_secs_f64(self.seconds(frames))
     }
 
-    /// How long to wait for more records when `left` frames are to come: until the board's memory for them is half full.
+    /// How long to wait for more records when `left` frames are to come: until half of the board's records are filled.
     pub(super) fn look_again_in(&self, left: u32) -> Duration {
         let frames = left.min(u32::from(self.bursts.records / 2)).max(1);
         self.time_of(1).saturating_mul(frames).clamp(SHORTEST_LOOK, LONGEST_LOOK)
     }
 
-    /// How long no record may come.
+    /// How long to wait for a record before the burst counts as stalled.
     pub(super) fn patience(&self) -> Duration {
         self.time_of(1).saturating_mul(PATIENT_FRAMES).clamp(PATIENCE, LONGEST_PATIENCE)
     }
 }
 
-/// What frame `n` of `burst` holds (AT-SPEED.md).
+/// The content of frame `n` of `burst` (AT-SPEED.md).
 pub(in crate::run) fn content(burst: &Burst, n: u32) -> Content {
     let own = matches!(burst.mode, BurstMode::Fresh | BurstMode::Alternating);
     let frame = burst.first_frame.wrapping_add(if own { n as u16 } else { 0 });
     Content { seed: burst.seed, frame }
 }
 
-/// Of `drawn` and its three neighbours, whose row 0 each has another kind of content, the one in which that is noise, and
-/// so it is in the first 32 frames: a toggle that is constant in each colour would hide tables that change a row late.
+/// Of `drawn` and its three neighbours, each of which has another kind of content in row 0, the one whose row 0 is noise,
+/// in all of the first 32 frames: a toggle that is constant in each colour would hide tables that change a row late.
 fn telling_seed(drawn: u32) -> u32 {
     let levels = |seed: &u32| {
         let mut row = [0; MIN_WIDTH];
@@ -190,7 +191,7 @@ mod tests {
         }
     }
 
-    /// 96 MHz / 2,073,700 clocks are 46.29 frames a second, 21.6 ms each.
+    /// 96 MHz / 2,073,700 clocks are 46.29 frames a second, of 21.6 ms each.
     #[test]
     fn a_time_on_the_boards_clock_is_a_number_of_frames() {
         let plan = plan(96_000_000);
@@ -212,7 +213,7 @@ mod tests {
         assert_eq!(plan(1).patience(), Duration::from_secs(300));
     }
 
-    /// Of 64 draws from 4096 levels some 63 are different; steps have some five levels, the others two.
+    /// Of 64 draws from 4096 levels about 63 are different. Steps have about five levels, the other kinds two.
     #[test]
     fn row_0_is_noise_wherever_a_usual_burst_changes_tables() {
         for drawn in (0..=u32::MAX).step_by(1 << 22) {

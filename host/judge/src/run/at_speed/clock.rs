@@ -1,4 +1,4 @@
-//! The pixel clock that a board names, held against the host's.
+//! Compares the pixel clock that a board names with the host's clock.
 
 use std::time::Duration;
 
@@ -15,39 +15,40 @@ use crate::run::plan::Generation;
 use crate::run::second_look::LOOKS;
 use crate::run::steps::Run;
 
-/// A `clock_source` of WIRE.md: it comes from outside.
+/// The `clock_source` in WIRE.md of a clock that comes from outside.
 const PIXCLK: u8 = 1;
-/// It is made by the board.
+/// The one of a clock that the board makes.
 const PLL: u8 = 2;
-/// The shortest time in which too few frames tell of a clock: a board takes 50 ms at most until a burst begins (WIRE.md).
+/// The shortest time from which a clock is concluded to be slow: a board may take 50 ms until a burst begins (WIRE.md).
 const TELLING: Duration = Duration::from_millis(500);
-/// Bursts in which a wrong clock is looked for at most, since some say nothing of it.
+/// The most bursts in which a wrong clock is looked for, since some say nothing about it.
 const BURSTS: u32 = 2 * LOOKS;
 
-/// What bounds the clock of a burst, by the link's.
+/// What bounds a burst's pixel clock, on the link's clock.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stopwatch {
-    /// The last packet that came before the burst was asked for.
+    /// When the last packet before the request for the burst came.
     asked: Duration,
-    /// From when on no frame waited, and how many there were by then.
+    /// Since when no frame has waited, and how many there were by then.
     since: (Duration, u32),
-    /// Frames that waited, or paused.
+    /// Frames that waited or paused.
     waited: u32,
-    /// The frame before which the host had all records, as far as the board knew when it was asked for others.
+    /// The frame before which the host had all records, as far as the board knew when it was last asked.
     freed: u32,
 }
 
 impl Stopwatch {
-    /// Of a burst that was `asked` for, and had its reply by `answered`: it began in between.
+    /// For a burst that was requested after `asked` and whose reply had come by `answered`: it began in between.
     pub(super) fn new(asked: Duration, answered: Duration) -> Self {
         Self { asked, since: (answered, 0), waited: 0, freed: 0 }
     }
 
-    /// Takes what `watched` frames say, of which the last were `fetched` from the frame `from` on, behind what came
-    /// `before`, and were there `at` a time.
+    /// Notes what `watched` says about the clock. Its last frames, from frame `from` on, were `fetched` with a request
+    /// after the packet that came at `before`, and the reply had come by `at`.
     ///
-    /// What is made cannot have taken longer than since the request, however late it is seen. What was not made when the board was
-    /// asked would have been made by then, however late the answer in front is seen to have come.
+    /// Frames that are made cannot have taken longer than the time since the request for the burst, however late they are
+    /// seen. Frames that were not made when the board was asked cannot have taken less than the time until the packet
+    /// before that request, however late that packet was seen.
     pub(super) fn note(
         &mut self,
         plan: &BurstPlan,
@@ -75,24 +76,25 @@ impl Stopwatch {
     }
 }
 
-/// As many clocks in a time, in hertz.
+/// `clocks` in `time`, in hertz.
 fn hertz(clocks: u64, time: Duration) -> u32 {
     (clocks as f64 / time.max(Duration::from_micros(1)).as_secs_f64()) as u32
 }
 
-/// What looks at a clock have come to.
+/// The result of looking at a clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Weighed {
-    /// It may be the one that is named.
+    /// It may be the named one.
     Right(ClockSeen),
-    /// It is another one.
+    /// It is not the named one.
     Wrong(ClockSeen),
-    /// It was seen to be another one, and too few looks behind that say so or otherwise.
+    /// It once was seen not to be the named one, but too few later looks confirm or refute that.
     Open(ClockSeen),
 }
 
-/// Weighs what was `first` seen of a clock of `named` hertz, and what is seen whenever it is looked at `again`. A look that says nothing
-/// of the bound that is wrong neither clears nor confirms it: a busy host sees little, and a wrong board is not right by that.
+/// Weighs what was `first` seen of a clock that is named as `named` hertz, and what is seen whenever it is looked at
+/// `again`. A look that says nothing about the wrong bound neither clears nor confirms the clock: a busy host sees
+/// little, which does not make a wrong board right.
 fn weigh<E>(
     named: u32,
     first: ClockSeen,
@@ -112,7 +114,7 @@ fn weigh<E>(
     Ok(Weighed::Open(first))
 }
 
-/// The burst in which a clock is looked at again, which need not be as long as what is asked for: a usual one tells.
+/// The burst in which a clock is looked at again. It need not be longer than a usual one.
 fn to_look_again(plan: &BurstPlan) -> BurstPlan {
     let mut usual = *plan;
     usual.frames = plan.frames.min(plan.frames_in(USUAL));
@@ -120,10 +122,11 @@ fn to_look_again(plan: &BurstPlan) -> BurstPlan {
 }
 
 impl Run<'_> {
-    /// What was seen of the clock in the burst `plan`, if it is one of its own or from outside. Ends a run whose board makes another
-    /// clock than it names.
+    /// What was seen of the clock in the burst `plan`, if the clock is the board's own or comes from outside. Ends a run
+    /// whose board makes another clock than it names.
     ///
-    /// The burst is made again where the board makes the clock: a host that was frozen with its own sees a board do more than it can.
+    /// If the board makes the clock, the burst is made again: a host that was frozen together with its own clock sees a
+    /// board do more than it can.
     pub(super) fn judge_clock(
         &mut self,
         plan: &BurstPlan,
@@ -149,7 +152,7 @@ impl Run<'_> {
         }
     }
 
-    /// The clock that the board names and that can be looked at, in hertz: its own, or one from outside.
+    /// The clock that the board names, in hertz, if it can be measured: the board's own, or one from outside.
     fn named_clock(&self) -> Option<u32> {
         let capabilities = &self.board.capabilities;
         let is_real = capabilities.nature != BoardNature::Simulation
@@ -157,12 +160,12 @@ impl Run<'_> {
         Some(capabilities.clock_hz).filter(|&clock_hz| is_real && clock_hz != 0)
     }
 
-    /// That clock, where no frames were made that would tell of it.
+    /// That clock as not exercised, for a run without frames that would show it.
     pub(super) fn clock_unseen(&self) -> Option<NotExercised> {
         self.named_clock().map(|clock_hz| NotExercised::UnseenClock { clock_hz })
     }
 
-    /// That the board's clock was seen not to be the one that it names, where that is no fault of the board's, or not certain.
+    /// The named clock as not exercised, if it was seen to be another one and that is not the board's fault, or not certain.
     pub(super) fn clock_not_exercised(&self, seen: ClockSeen) -> Option<NotExercised> {
         let clock_hz = self.board.capabilities.clock_hz;
         (!seen.allows(clock_hz)).then_some(NotExercised::NamedClock { clock_hz, seen })
@@ -178,7 +181,7 @@ mod tests {
     use crate::board::Capabilities;
     use crate::run::{Plan, usual_capabilities};
 
-    /// 64 x 8 samples and 8 clocks: 520 a frame, at 10 kHz.
+    /// 64 x 8 samples and 8 clocks, so 520 clocks a frame, at 10 kHz.
     fn plan() -> BurstPlan {
         let geometry = Geometry::centred(64, 8, BitDepth::Twelve).unwrap();
         let lens = halfrow_model::Equidistant::from_radius(10.0).unwrap();
@@ -188,8 +191,8 @@ mod tests {
         BurstPlan::new(&geometry, 1, &board, board.bursts.unwrap(), BurstMode::Fresh, 0)
     }
 
-    /// What is seen of a burst that began within the first 10 ms: records that come, those of them that waited, and when they were
-    /// asked for and had come, in milliseconds.
+    /// What is seen of a burst that began within the first 10 ms. Each look is: the records that come, how many of them
+    /// waited, and when they were asked for and had come, in milliseconds.
     fn seen(looks: &[(u32, u32, u64, u64)]) -> [Option<u32>; 2] {
         let mut stopwatch = Stopwatch::new(Duration::ZERO, Duration::from_millis(10));
         let mut watched = Watched::default();
@@ -205,22 +208,23 @@ mod tests {
         [watched.clock.least_hz, watched.clock.most_hz]
     }
 
-    /// By hand: 10 frames in 1 s are at least 9·520 clocks a second. Less than 11 of them, and D = 44 at most, were made in 990 ms.
+    /// By hand: 10 frames in 1 s are at least 9·520 clocks a second. In 990 ms fewer than 11 were made, and D = 44 at
+    /// most passed besides.
     #[test]
     fn a_clock_lies_between_what_was_made_and_what_was_not() {
         assert_eq!(seen(&[(10, 0, 1000, 1000)]), [Some(4680), Some((11 * 520 + latency()) * 1000 / 990)]);
-        // However late the host looks, and whatever takes long.
+        // The upper bound does not depend on how late the host looks, or what takes long.
         assert_eq!(seen(&[(10, 0, 1000, 9000)]), [Some(520), Some((11 * 520 + latency()) * 1000 / 990)]);
         assert_eq!(seen(&[(1, 0, 100, 110)]), [None, None]);
     }
 
     #[test]
     fn frames_that_wait_for_a_host_say_nothing_of_a_slow_clock() {
-        // 64 records are all that the board keeps, of which it knows none to be read.
+        // The board keeps 64 records, and does not know yet that any was read.
         assert_eq!(seen(&[(64, 0, 5000, 5010)])[1], None);
         assert_eq!(seen(&[(32, 0, 250, 260), (32, 0, 5000, 5010)])[1], None);
         assert_eq!(seen(&[(10, 1, 5000, 5010)])[1], None);
-        // Behind them they do again.
+        // Later frames do again.
         let behind = seen(&[(10, 1, 5000, 5010), (4, 0, 6010, 6010)]);
         assert_eq!(behind[1], Some(5 * 520 + latency()));
     }
@@ -244,11 +248,11 @@ mod tests {
     const FAST: ClockSeen = ClockSeen { least_hz: Some(1300), most_hz: None };
     const SLOW: ClockSeen = ClockSeen { least_hz: None, most_hz: Some(700) };
     const NOTHING: ClockSeen = ClockSeen { least_hz: None, most_hz: None };
-    /// By a host that was busy meanwhile.
+    /// As seen by a host that was busy meanwhile.
     const LITTLE: ClockSeen = ClockSeen { least_hz: Some(500), most_hz: Some(3000) };
     const RIGHT: ClockSeen = ClockSeen { least_hz: Some(950), most_hz: Some(1050) };
 
-    /// What comes of `first`, and of `then` behind it over and over.
+    /// The result of `first` and then of `then` over and over.
     fn weighed(first: ClockSeen, then: &[ClockSeen]) -> Weighed {
         let mut then = then.iter().copied().cycle();
         weigh(NAMED, first, || then.next().ok_or(())).unwrap()
@@ -264,7 +268,7 @@ mod tests {
             }
             assert_eq!(weighed(wrong, &[wrong]), Weighed::Wrong(wrong));
         }
-        // The other bound alone says nothing of it.
+        // The other bound alone says nothing about the wrong one.
         let least = ClockSeen { most_hz: None, ..RIGHT };
         assert_eq!(weighed(SLOW, &[least]), Weighed::Open(SLOW));
         assert_eq!(weighed(FAST, &[least]), Weighed::Right(least));

@@ -1,5 +1,6 @@
-//! Settings that no plan has, each for two frames at the full pixel clock: other sizes, depths, centres, factors and kernels, so
-//! that every bit of a setting, of an address and of a weight has a turn at both levels; and grids. A burst costs a link next to nothing.
+//! Settings that no plan has, each for two frames at the full pixel clock: other sizes, depths, centres, factors and
+//! kernels, so that every bit of a setting, of an address and of a weight has both levels once; and grids. A burst takes
+//! next to no time on a link.
 
 use halfrow_model::{Geometry, Kernel, MIN_WIDTH, NODES, RowFactor, TableSet};
 use rand_core::Rng;
@@ -10,19 +11,20 @@ use crate::board::Capabilities;
 use crate::run::Generation;
 use crate::run::variations::Build;
 
-/// Samples that a frame of a corner has about, where its rows are long.
+/// About how many samples a corner's frame with long rows has.
 const SAMPLES: usize = 1 << 15;
-/// The generation of the first corner's tables. The others follow; none of them is one of a plan's.
+/// The generation of the first corner's tables. The others follow; none of them is a plan's.
 const FIRST: u8 = 64;
 /// The generation of the first grid.
 const FIRST_OF_GRIDS: u8 = FIRST + 8;
-/// Bits of a setting, by turns 0 and 1, and the other way round.
+/// Bits of a setting, 0 and 1 by turns, and the other way round.
 pub(in crate::run) const BY_TURNS: [usize; 2] = [0x5555, 0xaaaa];
-/// Shifts that make a weight of 16 bits one with any sign and size, and one with which few samples reach the end of their range.
+/// The bits by which random weights of 16 bits are shifted down: for weights of any sign and size, and for weights with
+/// which few samples reach the end of their range.
 const WILD: u32 = 0;
 pub(in crate::run) const CALM: u32 = 3;
 
-/// Tables for each corner of what a board can be set to, for each of its banks of tables; drawn by `seed`.
+/// Tables for each corner of a board's settings, one set for each of its table banks, drawn from `seed`.
 pub(super) fn corners(capabilities: &Capabilities, seed: u64) -> Vec<Vec<Generation>> {
     let build = Build::of(capabilities);
     let mut draws = Pcg64Mcg::new(u128::from(seed) | 1 << 64);
@@ -31,7 +33,7 @@ pub(super) fn corners(capabilities: &Capabilities, seed: u64) -> Vec<Vec<Generat
     let long = |width: usize| (SAMPLES / width).min(rows);
     let by_turns = BY_TURNS.map(|bits| fit(bits, most).max(MIN_WIDTH) & !1);
     let sizes = [by_turns[0], by_turns[1], most & !1].map(|width| (width, long(width)));
-    // One row less than most has the other level in most bits.
+    // One row less than the most has the other level in most bits.
     let tall = (MIN_WIDTH, rows.saturating_sub(1).max(1));
     let corner = |(place, (width, height)): (usize, (usize, usize))| {
         let depth = *build.depths.get(place % build.depths.len().max(1))?;
@@ -51,13 +53,13 @@ pub(super) fn corners(capabilities: &Capabilities, seed: u64) -> Vec<Vec<Generat
     corners
 }
 
-/// As many low bits of `pattern` as make no more than `most`.
+/// As many low bits of `pattern` as do not exceed `most`.
 pub(in crate::run) fn fit(pattern: usize, most: usize) -> usize {
     let bits = (1..=usize::BITS - most.leading_zeros()).rev();
     bits.map(|bits| pattern & ((1 << bits) - 1)).find(|&value| value <= most).unwrap_or(0)
 }
 
-/// The largest factor, and others of every size that a board's ring of `ring` samples can have.
+/// The largest factor in row 0, then random ones of every size that a ring of `ring` samples allows.
 pub(in crate::run) fn drawn_factors(
     geometry: Geometry,
     ring: usize,
@@ -76,17 +78,17 @@ pub(in crate::run) fn drawn_factors(
     TableSet::new(geometry, std::iter::once(RowFactor::ONE).chain(others).collect()).ok()
 }
 
-/// Nodes of a wild kernel that have one thing in common.
+/// The nodes of a block of a wild kernel.
 const BLOCK: usize = 8;
 
-/// A weight at the end of its range in every other block of nodes of a wild kernel, by turns at the lower one and the upper one: only
-/// where all of them are does a weighted sum need all of its bits.
+/// In every other block of nodes of a wild kernel, a weight at the end of its range, at the lower and the upper one by turns: a
+/// weighted sum needs all of its bits only if all weights are there.
 fn at_the_end(node: usize, size: u32) -> Option<i16> {
     let (block, ends) = (node / BLOCK, [i16::MIN, i16::MAX]);
     (size == WILD && block % 2 == 1).then(|| ends[block / 2 % 2])
 }
 
-/// Weights of any sign, and any size that 16 bits shifted down by `size` have.
+/// Random weights of any sign, and of any size that 16 bits shifted down by `size` can have.
 pub(in crate::run) fn drawn_kernel(taps: u8, size: u32, draws: &mut Pcg64Mcg) -> Option<Kernel> {
     let weight = |tap: usize, node: usize, drawn: u32| {
         let is_outer = tap == 0 || tap == 4;
@@ -100,12 +102,12 @@ pub(in crate::run) fn drawn_kernel(taps: u8, size: u32, draws: &mut Pcg64Mcg) ->
 mod tests {
     use super::*;
 
-    /// DATAPATH.md, "Signed bits that hold every legal case": 31 for the sum, so that 30 are too few.
+    /// DATAPATH.md, "Signed bits that hold every legal case": the sum has 31, and 30 must be too few.
     #[test]
     fn some_sum_of_a_wild_kernel_needs_all_of_its_bits() {
         let kernel = drawn_kernel(7, WILD, &mut Pcg64Mcg::new(1)).unwrap();
         let most = |[g0, r1, g4, r5, g6]: &[i16; 5]| {
-            // G2 black and R3 white, or the other way round, and all others as they add up to most.
+            // G2 black and R3 white, or the other way round, and all others so that the sum is largest.
             let all = [g0, r1, g4, r5, g6].map(|&weight| i64::from(weight));
             let sum = |signs: [i64; 5]| {
                 all.iter().zip(signs).map(|(weight, sign)| weight * sign * 4095).sum::<i64>()

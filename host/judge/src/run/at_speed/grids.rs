@@ -1,4 +1,4 @@
-//! Grids that no plan has, for two frames at the full pixel clock each, by turns with row factors.
+//! Grids that no plan has, by turns with row factors, each for two frames at the full pixel clock.
 
 use std::iter;
 
@@ -12,23 +12,23 @@ use crate::board::{Capabilities, grids};
 use crate::run::Generation;
 use crate::run::variations::Build;
 
-/// Samples that such a frame has about. One of them goes over the link.
+/// About how many samples such a frame has. One frame of each corner goes over the link.
 const SAMPLES: usize = 1 << 13;
-/// v and k, the finest and the usual one in long rows, and all others in short ones.
+/// v and k: the finest and the usual grid in long rows, then all others in short ones.
 const SHAPES: [(u32, u32); 12] =
     [(1, 5), (5, 6), (2, 6), (3, 5), (4, 6), (6, 5), (1, 6), (2, 5), (3, 6), (4, 5), (5, 5), (6, 6)];
-/// Those of them in long rows.
+/// How many of these have long rows.
 const LONG: usize = 2;
-/// Those of them with a v that none in front has.
+/// How many of these have a v that no earlier one has.
 const FIRST_K: usize = 6;
-/// Rows behind the first grid row of frames with short ones.
+/// The rows after the first grid row in frames with short rows.
 const ROWS_BEHIND: usize = 6;
-/// How often a grid is drawn, the next time half as far from 1.
+/// How often a grid is drawn, each time half as far from 1.
 const TRIES: u32 = 8;
 
-/// For each shape a grid and row factors, under generations from `first` on; none on a board that takes no grids.
+/// For each shape a grid and row factors, as generations from `first` on; none on a board that takes no grids.
 ///
-/// The grid comes first: a bank has its shape from a commit alone.
+/// The grid comes first, because a bank gets its shape only from a commit.
 pub(super) fn grid_corners(
     capabilities: &Capabilities,
     first: u8,
@@ -44,7 +44,7 @@ pub(super) fn grid_corners(
             let width = (fit(BY_TURNS[1 - place], most) & !1).max(least);
             (width, SAMPLES / width)
         } else {
-            // What v does is seen with the first k.
+            // The effect of v is seen with its first k.
             (least, if place < FIRST_K { 1 << v } else { 0 } + ROWS_BEHIND)
         };
         let height = rows.clamp(1, capabilities.max_height.into());
@@ -64,7 +64,7 @@ pub(super) fn grid_corners(
     shapes(known).into_iter().enumerate().filter_map(corner).collect()
 }
 
-/// The shapes that a board takes, each once: of a board of one k each v with that.
+/// The shapes that a board takes, each once. If the board takes only one k, each v has that one.
 fn shapes(known: Grids) -> Vec<GridShape> {
     let mut shapes = Vec::new();
     for (v, k) in SHAPES {
@@ -75,7 +75,7 @@ fn shapes(known: Grids) -> Vec<GridShape> {
     shapes
 }
 
-/// A grid whose rows lie in the frame and in a ring of `ring` samples: factors of any size, beyond 1 some of them.
+/// A grid whose rows lie in the frame and in a ring of `ring` samples. Its factors have any size; some are above 1.
 fn drawn_grid(geometry: Geometry, shape: GridShape, ring: usize, draws: &mut Pcg64Mcg) -> Option<TableSet> {
     (0..TRIES).find_map(|halvings| {
         let entries = drawn_entries(&geometry, shape, halvings, draws);
@@ -84,8 +84,9 @@ fn drawn_grid(geometry: Geometry, shape: GridShape, ring: usize, draws: &mut Pcg
     })
 }
 
-/// Entries column by column. The first node is nearer to 1 than most others, so that no row ends behind the frame, and no
-/// offset is further to the left than it moves the row to the right. Some are to the right, by as much as a nearer one makes room for.
+/// Entries column by column. The first node is nearer to 1 than most others, so that no row ends beyond the frame, and no
+/// offset moves a row further to the left than this node moves it to the right. Where the first node is nearer still, the
+/// offset is to the right, by as much as that makes room for.
 fn drawn_entries(geometry: &Geometry, shape: GridShape, halvings: u32, draws: &mut Pcg64Mcg) -> Vec<u32> {
     let one = RowFactor::ONE.get();
     let half = one >> 1 >> halvings;
@@ -98,7 +99,7 @@ fn drawn_entries(geometry: &Geometry, shape: GridShape, halvings: u32, draws: &m
         .collect();
     let mut offset = |&(below, is_right): &(u32, bool)| {
         let drawn = u64::from(draws.next_u32());
-        // In units of 2^-13 column, of factors in units of 2^-24.
+        // In units of 2^-13 column, from factors in units of 2^-24.
         let to_left = (u64::from(geometry.centre2()) * u64::from(below)) >> 12;
         let to_right = (geometry.width() as u64 * u64::from(half)) >> 13;
         let part = |most: u64| ((most * drawn) >> 32) as u32;
@@ -108,7 +109,7 @@ fn drawn_entries(geometry: &Geometry, shape: GridShape, halvings: u32, draws: &m
     entries.extend(first.iter().map(|(below, _)| one - below));
     entries.extend((2 * rows..columns * rows).map(|place| {
         let (drawn, is_beyond) = (draws.next_u32() % half, draws.next_u32().is_multiple_of(8));
-        // Short rows have room for none as their second node.
+        // As a second node, a factor above 1 has no room in short rows.
         if is_beyond && place >= 3 * rows { one + drawn } else { one - half - drawn }
     }));
     entries
@@ -118,8 +119,8 @@ fn drawn_entries(geometry: &Geometry, shape: GridShape, halvings: u32, draws: &m
 mod tests {
     use super::*;
 
-    /// DATAPATH.md, "Legal": with every node of a row a distance d below 1 a row begins C·d/2 columns right of its first one.
-    /// What is drawn must hold the conditions of the widest and of the narrowest row at every centre.
+    /// DATAPATH.md, "Legal": if every node is d below 1, a row begins C·d/2 columns to the right of its first column.
+    /// What is drawn must be legal in the widest and in the narrowest row, at every centre.
     #[test]
     fn grids_are_legal_at_any_centre_and_stretch_far() {
         let (mut draws, mut left, mut right) = (Pcg64Mcg::new(1), 0, 0);
@@ -135,13 +136,13 @@ mod tests {
                     right += usize::from(offsets.iter().any(|&offset| offset > one));
                     left += usize::from(offsets.iter().any(|&offset| offset < one));
                     let least = tables.values(4).unwrap().factors().iter().copied().min().unwrap();
-                    // The shortest rows have room for less.
+                    // The narrowest rows have room for less.
                     let most = if width > 64 { 1 << 23 } else { 3 << 22 };
                     assert!(least < most, "{width}, {centre2}, {shape:?}: {least}");
                 }
             }
         }
-        // Of 240 grids, and a quarter has a centre at column 0 and nowhere to go to the left.
+        // Of 240 grids, a quarter of which have their centre at column 0 and no room to the left.
         assert!(right > 200 && left > 120, "{left}, {right}");
     }
 

@@ -1,7 +1,7 @@
-//! Frames that the board makes on its own, at the full pixel clock (AT-SPEED.md).
+//! Frames that the board makes itself, at the full pixel clock (AT-SPEED.md).
 //!
-//! What is streamed is played a row at a time, since no link carries a video. A burst is played as one: the board makes and
-//! signs its frames, and what is judged are the signatures.
+//! Streamed frames are played a row at a time, since no link carries a video. A burst is played without a pause: the
+//! board makes its frames and signs them, and the signatures are judged.
 
 mod burst;
 mod clock;
@@ -41,14 +41,14 @@ pub(super) use predicted::signer;
 
 /// The content id that the model makes (AT-SPEED.md).
 pub(super) const CONTENT: u16 = 1;
-/// How long a burst is on hardware when nothing is asked for, on the board's clock.
+/// How long a burst takes on hardware by default, on the board's clock.
 const USUAL: Duration = Duration::from_secs(3);
-/// Its frames on anything else.
+/// The frames of a burst on any other board by default.
 pub(crate) const FEW: u32 = 3;
-/// The draw of the first corner's content, far from those of a soak.
+/// The draw of the first corner's content, far from the draws of a soak.
 const FIRST_CORNER: u32 = 1 << 31;
 
-/// Nothing at a clock that nobody names.
+/// No frames, at a clock that is not named.
 const NONE: EqualAtSpeed = EqualAtSpeed {
     frames: 0,
     clock_hz: 0,
@@ -58,7 +58,7 @@ const NONE: EqualAtSpeed = EqualAtSpeed {
     corners: 0,
 };
 
-/// The bursts that a board makes, or why none are known.
+/// The bursts that a board makes, or why there are none that this program knows.
 pub(super) fn known_bursts(capabilities: &Capabilities) -> Result<Bursts, NoBurst> {
     match capabilities.bursts {
         None => Err(NoBurst::BoardMakesNone {}),
@@ -70,7 +70,7 @@ pub(super) fn known_bursts(capabilities: &Capabilities) -> Result<Bursts, NoBurs
 }
 
 impl Run<'_> {
-    /// Judges a burst, with the board back behind `last` if it goes away meanwhile.
+    /// Judges a burst. If the board goes away meanwhile, it is brought back to where it was after `last`.
     pub(super) fn at_speed(&mut self, last: Option<&Segment>) -> Result<(), End> {
         let bursts = match self.bursts() {
             Ok(bursts) => bursts,
@@ -91,7 +91,7 @@ impl Run<'_> {
         }
     }
 
-    /// The bursts that are to be judged, or why none are.
+    /// The bursts that this run judges, or why it judges none.
     fn bursts(&self) -> Result<Bursts, NoBurst> {
         match self.plan.amount(Part::AtSpeed) {
             0 => Err(NoBurst::LeftOut {}),
@@ -100,7 +100,7 @@ impl Run<'_> {
         }
     }
 
-    /// The bursts that the board makes, or why none are known.
+    /// The bursts that the board makes, or why there are none that this program knows.
     pub(super) fn known_bursts(&self) -> Result<Bursts, NoBurst> {
         known_bursts(&self.board.capabilities)
     }
@@ -128,14 +128,14 @@ impl Run<'_> {
         self.board.configure(geometry, RowTiming::default()).during(CheckName::AtSpeed)
     }
 
-    /// Has the board make the burst, and ends the run with a frame or a count that is wrong.
+    /// Has the board make the burst. A wrong frame or a wrong count ends the run.
     fn judge_frames(&mut self, plan: &BurstPlan, tables: &[Generation]) -> Result<Watched, End> {
         let (ends_early, progress) = (EndsEarly { when_wrong: self.plan.fail_fast, at: None }, self.progress);
         let mut told = |watched: &Watched, _| {
             progress.frame(&format!("{}, {} of {}", Step::AtSpeed, watched.frames, plan.frames));
         };
         let (watched, ended) = self.watch(plan, tables, ends_early, &mut told);
-        // What came under the board's own CRC stands, however the burst has ended.
+        // What came under the board's own CRC is valid, however the burst ended.
         if watched.wrong > 0 {
             return Err(self.wrong_at_speed(plan, tables, &watched));
         }
@@ -145,8 +145,8 @@ impl Run<'_> {
         ended.map(|()| watched)
     }
 
-    /// What ends a run with a count that is wrong in the burst `plan`. What loses or gains a clock may do so at full speed alone, and does
-    /// where rows as wide were streamed; whatever else is miscounted is the counter's own fault.
+    /// The end of a run with a wrong count in the burst `plan`. A wrong latency may occur only at full speed, and
+    /// certainly does if rows of this width were streamed right. Any other wrong count is the counter's own fault.
     fn miscounted(&self, finding: Finding, plan: &BurstPlan) -> End {
         use BurstCount::{LeastLatency, MostLatency};
         let is_late = matches!(finding, Finding::MiscountedAtSpeed { count: LeastLatency | MostLatency, .. });
@@ -157,7 +157,7 @@ impl Run<'_> {
         End::Failed { check: CheckName::AtSpeed, finding, suspects }
     }
 
-    /// Judges frames in each corner of what the board can be set to, and returns how many corners those are.
+    /// Judges frames in each corner of the board's settings, and returns the number of corners.
     fn judge_corners(&mut self, bursts: Bursts) -> Result<u32, End> {
         let capabilities = self.board.capabilities.clone();
         let corners = corners::corners(&capabilities, self.plan.seed);
@@ -189,7 +189,7 @@ impl Run<'_> {
         Ok(corners.len() as u32)
     }
 
-    /// Takes note of what the frames of `plan`, one a bank, put to the test.
+    /// Notes what the frames of `plan`, one for each bank, exercised.
     fn note_exercised(&mut self, plan: &BurstPlan, tables: &[Generation]) {
         for (n, generation) in (0..).zip(tables) {
             let input = plan.content(n).frame(generation.tables.geometry(), self.plan.phase);
@@ -200,13 +200,13 @@ impl Run<'_> {
         self.findings.look.corners.extend_from_slice(tables);
     }
 
-    /// Makes the first of `tables` the active ones and the second those of the other bank.
+    /// Makes the first of `tables` active, and puts the second into the other bank.
     fn upload_corner(&mut self, tables: &[Generation]) -> Result<(), End> {
         for (place, generation) in tables.iter().enumerate() {
             self.set(generation.tables.geometry())?;
             self.board.upload(&generation.tables, &generation.kernel).during(CheckName::AtSpeed)?;
             self.check_read_back(CheckName::AtSpeed, Bank::Shadow, generation)?;
-            // The entries of a grid lie otherwise in a frame of another height.
+            // In a frame of another height the entries of a grid are at other places.
             let rows = if generation.tables.shape().is_some() { usize::MAX } else { 1 };
             let first_rows = generation.upper(rows.min(generation.tables.geometry().height()));
             if let Some(first_rows) = first_rows.filter(|_| place == 0) {
@@ -217,8 +217,8 @@ impl Run<'_> {
         tables.first().map_or(Ok(()), |active| self.set(active.tables.geometry()))
     }
 
-    /// What frames are made with by turns: the active tables, which have the factors and the kernel to judge with whatever
-    /// else was varied, and those of the other bank, which are the decoy's.
+    /// The tables with which frames are made by turns: the active ones, which have the factors and the kernel to judge
+    /// with whatever setting was varied, and those of the other bank, which are the decoy's.
     fn tables_at_speed(&mut self) -> Result<Vec<Generation>, End> {
         let number = self.findings.look.seen.frames.last().map_or(0, |frame| frame.generation);
         let active =
@@ -244,7 +244,7 @@ impl Run<'_> {
         plan
     }
 
-    /// Takes note of frames as `plan` has them that are all right, of which `paused` had pauses.
+    /// Notes that all frames of `plan` are right, of which `paused` had pauses.
     fn note_right(&mut self, plan: &BurstPlan, paused: u32, right: EqualAtSpeed) {
         let (clock_hz, frames) = (self.board.capabilities.clock_hz, right.frames);
         let is_known = clock_hz > 0 && right.seen.allows(clock_hz);
@@ -257,7 +257,7 @@ impl Run<'_> {
     }
 }
 
-/// What bursts left untested at the full pixel clock, in which tables changed or not, and frames had pauses or not.
+/// What bursts did not exercise at the full pixel clock, by whether tables changed in them and whether frames had pauses.
 fn untested(tables_changed: bool, paused: bool) -> Vec<NotExercised> {
     if paused {
         return vec![NotExercised::FullSpeed {}];

@@ -10,14 +10,14 @@ use crate::reference;
 use crate::run::Generation;
 use crate::run::threads::{self, NoThread};
 
-/// Frames that may be predicted ahead of the board.
+/// The most frames that are predicted ahead of the board.
 const AHEAD: usize = 64;
 
-/// The signatures of the frames of `plan` in their order, each predicted on a thread of `scope`. That thread ends when the
-/// receiver is dropped.
+/// The signatures of the frames of `plan` in order, predicted on a thread of `scope`. The thread ends when the receiver
+/// is dropped.
 ///
 /// # Errors
-/// [`NoThread`] when there is none.
+/// [`NoThread`] when the system gives none.
 pub(super) fn ahead<'scope, 'run: 'scope>(
     scope: &'scope Scope<'scope, '_>,
     plan: BurstPlan,
@@ -47,7 +47,7 @@ pub(super) fn ahead<'scope, 'run: 'scope>(
     Ok(receiver)
 }
 
-/// A signer of frames that are made with `generation`.
+/// A signer for frames that are made with `generation`.
 pub(in crate::run) fn signer(generation: &Generation) -> Signer {
     Signer::new(reference::corrector(&generation.kernel))
 }

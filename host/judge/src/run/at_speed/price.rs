@@ -1,4 +1,4 @@
-//! What frames at speed cost.
+//! The prices of frames at speed.
 
 use std::time::Duration;
 
@@ -11,14 +11,14 @@ use crate::board::{BoardNature, Bursts, Capabilities};
 use crate::run::prices::Prices;
 use crate::run::{AtSpeed, Generation, Plan};
 
-/// Payload of a request for records, and of the reply beside these.
+/// The payload of a request for records, and of its reply without the records.
 const LOOK: (usize, usize) = (4, 10);
 
-/// Looks that are priced one by one. Behind so many each brings as much as those before it.
+/// The most looks that are priced one by one. After these, each frame is taken to cost as much as in the second half of them.
 const MOST_LOOKS: u32 = 1 << 14;
 const HALF_OF_THEM: u32 = MOST_LOOKS / 2;
 
-/// The burst of a usual run, with as many frames as `plan` has on a board of these `capabilities`.
+/// The burst of a usual run, with as many frames as `plan` asks for on a board with these `capabilities`.
 pub(super) fn usual_burst(
     plan: &Plan,
     capabilities: &Capabilities,
@@ -37,7 +37,7 @@ pub(super) fn usual_burst(
     burst
 }
 
-/// The pixel clock of a board, in hertz.
+/// The pixel clock of a board, in hertz; the usual one if it names none.
 pub(in crate::run) fn clock_hz(capabilities: &Capabilities) -> u32 {
     if capabilities.clock_hz == 0 { USUAL_CLOCK } else { capabilities.clock_hz }
 }
@@ -48,13 +48,14 @@ pub(in crate::run) fn most_frames(prices: &Prices<'_>) -> usize {
     prices.capabilities.bursts.map_or(0, frames) as usize
 }
 
-/// A usual burst of `frames` frames: settings, the tables of the other bank, and every look at the records.
+/// The price of a usual burst of `frames` frames: settings, the tables of the other bank, and every look at the records.
 pub(in crate::run) fn price_of_frames(prices: &Prices<'_>, frames: u32) -> f64 {
     let other_bank = if prices.capabilities.table_banks > 1 { prices.upload() } else { 0.0 };
     prices.short_request() + other_bank + watching(prices, prices.plan.tables.geometry(), frames)
 }
 
-/// All corners: tables for each bank, a row or with a grid a frame that brings the first into effect, two frames.
+/// The price of all corners: tables for each bank, a row (with a grid, a frame) that brings the first into effect, and
+/// two frames.
 pub(in crate::run) fn price_of_corners(prices: &Prices<'_>) -> f64 {
     let corner = |tables: &Vec<Generation>| {
         let Some(active) = tables.first().map(|first| &first.tables) else { return 0.0 };
@@ -68,7 +69,7 @@ pub(in crate::run) fn price_of_corners(prices: &Prices<'_>) -> f64 {
     corners::corners(prices.capabilities, prices.plan.seed).iter().map(corner).sum()
 }
 
-/// A burst of `frames` frames, from the request on: each look takes the records that are there by then, if any are.
+/// The price of a burst of `frames` frames, from the request on. Each look takes the records that exist by then, if any.
 fn watching(prices: &Prices<'_>, geometry: &Geometry, frames: u32) -> f64 {
     let Some(bursts) = prices.capabilities.bursts else { return 0.0 };
     let burst = BurstPlan::new(geometry, prices.plan.seed, prices.capabilities, bursts, BurstMode::Fresh, 0);
@@ -79,7 +80,7 @@ fn watching(prices: &Prices<'_>, geometry: &Geometry, frames: u32) -> f64 {
     let (mut looks, mut half) = (0, (seconds, had));
     loop {
         let made = (seconds / frame) as u32;
-        // Half of the board's memory is made while the other half is fetched.
+        // Half of the board's records are made while the other half are fetched.
         let come = made.saturating_sub(had).min(u32::from(bursts.records / 2).max(1)).min(frames - had);
         seconds += look(come);
         had += come;
@@ -97,7 +98,7 @@ fn watching(prices: &Prices<'_>, geometry: &Geometry, frames: u32) -> f64 {
         }
         let wait = burst.look_again_in(frames - had).as_secs_f64();
         seconds += wait;
-        // As many looks as find nothing, at once: on a slow clock there may be millions.
+        // All looks that find nothing at once: on a slow clock there may be millions.
         let in_vain = ((f64::from(had + 1) * frame - seconds) / (look(0) + wait)).ceil().max(0.0);
         seconds += in_vain * (look(0) + wait);
     }
@@ -110,8 +111,8 @@ mod tests {
     use super::*;
     use crate::run::{Rates, usual_capabilities};
 
-    /// 64·8 + 8 clocks are a frame. A link that takes no time looks every 250 ms where frames take longer, and every 10 ms
-    /// where they are shorter.
+    /// A frame takes 64·8 + 8 clocks. Over a link that takes no time, the looks are 250 ms apart if frames take longer
+    /// than that, and 10 ms if they are short.
     #[test]
     fn frames_are_looked_for_until_the_last_is_made() {
         let geometry = Geometry::centred(64, 8, BitDepth::Twelve).unwrap();
@@ -126,13 +127,13 @@ mod tests {
             (1000.0 * watching(&prices, &geometry, frames)).round()
         };
         assert_eq!([1, 2, 3].map(|frames| seconds(1, frames)), [520e3, 1040e3, 1560e3]);
-        // 52 s, 104 s: the first look behind them.
+        // 52 s, 104 s: the first look after these.
         assert_eq!(seconds(10, 2), 104e3);
         // 5.2 s: 21 looks, and 42.
         assert_eq!([seconds(100, 1), seconds(100, 2)], [5250.0, 10_500.0]);
-        // 52 us a frame: half of 64 records a look.
+        // 52 us a frame: half of the 64 records a look.
         assert_eq!([seconds(10_000_000, 32), seconds(10_000_000, 33)], [10.0, 20.0]);
-        // A day and more of such looks, which take the board less than the 10 ms between them.
+        // A day and more of such looks; the board makes their frames in less than the 10 ms between them.
         assert_eq!(seconds(10_000_000, 32 << 24), f64::from(10 << 24));
         assert_eq!(seconds(10_000_000, u32::MAX), f64::from(10 << 27));
     }

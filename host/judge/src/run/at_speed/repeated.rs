@@ -1,4 +1,4 @@
-//! A frame that was wrong at speed, made again and again until the board traps a row of it.
+//! Has a frame that was wrong at speed made again and again until the board traps a row of it.
 
 use std::iter;
 use std::slice;
@@ -26,28 +26,28 @@ use crate::run::plan::Generation;
 use crate::run::steps::Run;
 use crate::verdict::Cause;
 
-/// Differing samples below which a row is too little to tell one defect from another.
+/// The least differing samples with which a row can tell one defect from another.
 const TELLING: usize = 4;
 
-/// What making a frame again has shown.
+/// What making a frame again showed.
 struct Again {
     repetition: Repetition,
     suspects: Vec<Suspect>,
 }
 
-/// Rows, and what they were made by.
+/// Rows, and the generation that made them.
 pub(in crate::run) struct Seen {
     pub(in crate::run) made_by: Generation,
     pub(in crate::run) evidence: Evidence,
 }
 
 impl Seen {
-    /// Rows that `made_by` makes of `input`, found as they are `expected`.
+    /// Rows that `made_by` makes of `input` and that were found as `expected`.
     pub(in crate::run) fn right(made_by: Generation, input: Frame, expected: Frame) -> Self {
         Self { made_by, evidence: Evidence { index: 0, input, found: expected.clone(), expected } }
     }
 
-    /// The same with a last row of these samples; none if they are not as many as a row has.
+    /// The same with `samples` as the last row; none if they are not a row.
     pub(in crate::run) fn ending_in(mut self, samples: &[u16]) -> Option<Self> {
         let expected = &self.evidence.expected;
         let mut found = expected.samples().to_vec();
@@ -65,7 +65,7 @@ impl From<Repetition> for Again {
 }
 
 impl Run<'_> {
-    /// What ends a run whose frames are wrong at speed, and the likeliest part.
+    /// The end of a run whose frames are wrong at speed, with the suspects.
     pub(super) fn wrong_at_speed(
         &mut self,
         plan: &BurstPlan,
@@ -77,7 +77,7 @@ impl Run<'_> {
         let again = match tables_late(plan, tables, watched) {
             _ if plan.mode == BurstMode::Trapped => self.told_of_trap(plan, tables, watched),
             Some(suspect) => Ok(Again { repetition: Repetition::NotNeeded {}, suspects: vec![suspect] }),
-            // The signatures came under the board's own CRC, so the verdict stands whatever becomes of this.
+            // The signatures came under the board's own CRC, so the verdict stands, whatever making the frame again shows.
             None => self.make_again(plan, tables, first),
         };
         let again = again.unwrap_or_else(|end| {
@@ -102,7 +102,7 @@ impl Run<'_> {
         if bank > 0 {
             self.activate(generation)?;
         }
-        // Twice as far as the first time, since a board may have to become warm, and no longer than a usual burst.
+        // Twice as far as the first time, since a board may have to become warm, but no longer than two usual bursts.
         let most = plan.frames_in(2 * USUAL).max(2 * FEW);
         let plan = plan.trapping(n, n.saturating_add(1).saturating_mul(2).clamp(2 * FEW, most));
         self.expect(&plan, generation)?;
@@ -112,14 +112,14 @@ impl Run<'_> {
         self.told_of_trap(&plan, slice::from_ref(generation), &watched)
     }
 
-    /// Has the board know the signatures of the frame that `plan` repeats with `generation`.
+    /// Gives the board the signatures of the frame that `plan` repeats with `generation`.
     pub(super) fn expect(&mut self, plan: &BurstPlan, generation: &Generation) -> Result<(), End> {
         let mut signatures = Vec::new();
         signer(generation).sign(&generation.tables, plan.content(0), &mut signatures);
         self.board.expect(&signatures).during(CheckName::AtSpeed)
     }
 
-    /// What was kept of a burst in which one frame was repeated.
+    /// What the trap kept of a burst in which one frame was repeated.
     fn told_of_trap(
         &mut self,
         plan: &BurstPlan,
@@ -129,7 +129,7 @@ impl Run<'_> {
         let (Some(first), Some(generation)) = (watched.wrong_frames.first(), tables.first()) else {
             return Ok(Repetition::AllRight { frames: watched.frames }.into());
         };
-        // Records come by the handful, so that others may be there behind it.
+        // Several records come at once, so `watched` may have frames after the first wrong one.
         let frames = first.n + 1;
         let content = plan.content(0);
         let trapped = self.board.trap().during(CheckName::AtSpeed)?;
@@ -137,7 +137,7 @@ impl Run<'_> {
         let Some((row, seen)) = told else {
             return Ok(Repetition::NothingTrapped { frames }.into());
         };
-        // A soak goes on, and none of its time is for rows that a link carries.
+        // A soak goes on, and spends no time on rows that a link must carry.
         let is_soak = self.plan.at_speed.soak().is_some();
         let right = seen.evidence.expected.samples();
         let back = if is_soak { None } else { self.first_rows_streamed(generation, content, right) };
@@ -154,7 +154,7 @@ impl Run<'_> {
         Ok(Again { repetition: Repetition::Trapped { frames, row, streamed }, suspects })
     }
 
-    /// Makes the tables of the other bank the active ones, which takes a frame.
+    /// Makes the tables of the other bank active, which takes a frame.
     pub(super) fn activate(&mut self, generation: &Generation) -> Result<(), End> {
         let Generation { number, tables, kernel } = generation;
         let scene = Scene { geometry: *tables.geometry(), ..self.plan.scene(u16::MAX.into()) };
@@ -166,9 +166,10 @@ impl Run<'_> {
         self.board.stream(&mut Unjudged(iter::once(frame))).during(CheckName::AtSpeed)
     }
 
-    /// What a trapped row of a frame shows that `generation` made of `content`; none if the row is as it should be.
+    /// What a trapped row shows of a frame that `generation` made of `content`; none if the row is as it should be.
     ///
-    /// It is the first of its burst that differs, so those above it in the frame were right: the frame up to it bears witness.
+    /// It is the first row of its burst that differs, so the rows above it were right: the diagnosis gets the frame up to
+    /// this row.
     fn seen(&self, generation: &Generation, content: Content, trapped: &Trapped) -> Option<Seen> {
         let Trapped { row, signature, samples } = trapped;
         let own = generation.tables.geometry();
@@ -180,7 +181,7 @@ impl Run<'_> {
         (above.evidence.found != above.evidence.expected).then_some(above)
     }
 
-    /// What the first rows of the frame of `content` show that was streamed through `generation` and came `back`.
+    /// What the first rows of the frame of `content` show, which was streamed through `generation` and came `back`.
     fn seen_streamed(&self, generation: &Generation, content: Content, back: Vec<u16>) -> Option<Seen> {
         let rows = back.len() / generation.tables.geometry().width();
         let mut seen = correct_up_to(generation, content, rows, self.plan.phase)?;
@@ -188,27 +189,27 @@ impl Run<'_> {
         Some(seen)
     }
 
-    /// The suspects by what was `seen` of a row that a trap kept, the last of its rows.
+    /// The suspects by what was `seen`, whose last row is the one that the trap kept.
     fn suspects_of(&self, seen: &Seen, content: Content, streamed: Streamed) -> Vec<Suspect> {
         let Evidence { expected, found, .. } = &seen.evidence;
         let row = expected.height() - 1;
         let kept = (row, expected.row(row), found.row(row));
         let (differing, _) = changed(kept);
         let mut suspects = self.diagnose_seen(seen, "at speed", content.frame);
-        // What came back right through the same lines is wrong in none of them.
+        // If the same frame came back right when streamed, none of the lines that it went through is wrong.
         let is_told = streamed != Streamed::Right
             && differing >= TELLING
             && suspects.first().is_some_and(|first| first.explained >= 1.0);
         let place = usize::from(is_told);
         suspects.splice(place..place, at_speed(streamed, Some(kept)));
-        // That nothing else explains it is no news behind what does.
+        // Where something explains it, an unknown defect is not worth listing.
         if suspects.first().is_some_and(Suspect::is_known) {
             suspects.retain(Suspect::is_known);
         }
         suspects
     }
 
-    /// What rows of the frame `number` show that are no part of those that are streamed to be judged.
+    /// The suspects by rows of the frame `frame` that are not among the streamed frames to judge.
     pub(in crate::run) fn diagnose_seen(&self, seen: &Seen, name: &str, frame: u16) -> Vec<Suspect> {
         let Seen { made_by: Generation { number, tables, kernel }, evidence } = seen;
         let frame = FrameReport {
@@ -239,7 +240,7 @@ impl Run<'_> {
     }
 }
 
-/// The first `rows` rows of the frame that `generation` makes of `content`, found right.
+/// The first `rows` rows of the frame that `generation` makes of `content`, as if found right.
 fn correct_up_to(generation: &Generation, content: Content, rows: usize, phase: Phase) -> Option<Seen> {
     let made_by = generation.upper(rows)?;
     let input = content.frame(made_by.tables.geometry(), phase);
@@ -247,11 +248,11 @@ fn correct_up_to(generation: &Generation, content: Content, rows: usize, phase: 
     Some(Seen::right(made_by, input, expected))
 }
 
-/// A row of which samples differ: its number, what it should be, what it is.
+/// A row with differing samples: its number, what it should be, and what it is.
 pub(super) type TrappedRow<'a> = (usize, &'a [u16], &'a [u16]);
 
-/// What is wrong at the full pixel clock, seen in a row if one was kept, by what was seen where the same was `streamed`: none if it is
-/// wrong there as well.
+/// The suspect that something is wrong at the full pixel clock, with the row that was kept, if any. It depends on what
+/// came back when the same frame was `streamed`: none if that was wrong too.
 pub(super) fn at_speed(streamed: Streamed, kept: Option<TrappedRow<'_>>) -> Option<Suspect> {
     let (row, (samples, bits)) = (kept.map(|(row, ..)| row), kept.map(changed).unwrap_or_default());
     let defect = match streamed {

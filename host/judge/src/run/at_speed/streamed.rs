@@ -1,4 +1,4 @@
-//! A frame that was wrong at speed, streamed row by row: whether it is a matter of speed.
+//! Streams a frame that was wrong at speed row by row, to see whether speed matters.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -10,18 +10,18 @@ use crate::progress::Progress;
 use crate::run::plan::Generation;
 use crate::run::steps::Run;
 
-/// Rows behind a wrong one that tell what is wrong with it alone from what is wrong with all: more of a frame say little more, and
-/// take minutes on a slow link.
+/// Rows after a wrong one, which tell a fault of this row from one of all rows. More rows say little more, and take
+/// minutes on a slow link.
 const FURTHER: usize = 64;
 
 /// A frame whose first rows are kept as they come back.
 struct FirstRows<'a> {
     frame: Option<NumberedFrame>,
-    /// What the first of them must be; if they are, no others are wanted.
+    /// What the first rows must be. If they are, no further ones are wanted.
     right: &'a [u16],
-    /// Those wanted if they are not.
+    /// The samples of all rows that are wanted if they are not.
     samples: Vec<u16>,
-    /// Samples that have come.
+    /// How many samples have come.
     came: usize,
     progress: &'a dyn Progress,
 }
@@ -50,8 +50,8 @@ impl RowTraffic for FirstRows<'_> {
 }
 
 impl Run<'_> {
-    /// What comes back of the frame of `content`, by the tables of `generation` and the settings that the board has: the first rows,
-    /// and [`FURTHER`] ones unless these are `right`; none if they do not come.
+    /// What comes back of the frame of `content` with the tables of `generation` and the board's present settings: the
+    /// first rows and, unless these are `right`, [`FURTHER`] more; none if they do not come.
     pub(super) fn first_rows_streamed(
         &mut self,
         generation: &Generation,
@@ -65,7 +65,7 @@ impl Run<'_> {
         self.progress.rows_expected((right.len() / geometry.width()) as u64);
         let frame = Some(NumberedFrame { number: content.frame, frame: Arc::new(frame) });
         let mut rows = FirstRows { frame, right, samples: vec![0; wanted], came: 0, progress: self.progress };
-        // Others of the frame may be under way behind the last that matters.
+        // More rows of the frame may be under way after the last wanted one.
         let streamed = self.board.stream(&mut rows).and_then(|()| self.board.drop_rows());
         let streamed = streamed.inspect_err(|error| tracing::warn!("the frame was not streamed: {error}"));
         streamed.ok().map(|()| rows.samples)
@@ -81,8 +81,8 @@ mod tests {
 
     const WIDTH: usize = 4;
 
-    /// How many of nine rows of `sample` are taken where two of 1 are right and three further ones are wanted otherwise, and the further
-    /// ones that a watcher is told of.
+    /// How many of nine rows of `sample` are taken if two rows of 1 are right and three more are wanted otherwise, and
+    /// what progress reports besides the rows.
     fn taken(sample: u16) -> (usize, Vec<Event>) {
         let told = Mutex::new(Vec::new());
         let progress = |event| told.lock().unwrap().push(event);

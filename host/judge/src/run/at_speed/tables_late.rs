@@ -1,4 +1,4 @@
-//! Frames that begin with the tables of the frame in front of them, told by their signatures alone.
+//! Frames that begin with the tables of the frame before them, recognised by their signatures alone.
 
 use halfrow_model::{Signer, TableSet, frame_signature};
 
@@ -8,7 +8,8 @@ use super::watched::{Watched, WrongFrame};
 use crate::result::{Account, Defect, MadeWith, StaleFrames, Suspect};
 use crate::run::plan::Generation;
 
-/// The suspect if so many first rows of the first wrong frame, made with the tables of the other bank, give its signature.
+/// The suspect, if some number of first rows of the first wrong frame, made with the tables of the other bank, give its
+/// signature.
 pub(super) fn tables_late(plan: &BurstPlan, tables: &[Generation], watched: &Watched) -> Option<Suspect> {
     let [active, shadow] = tables else { return None };
     let mut banks = [active, shadow].map(|generation| (signer(generation), &generation.tables));
@@ -19,13 +20,13 @@ pub(super) fn tables_late(plan: &BurstPlan, tables: &[Generation], watched: &Wat
     let account = Account::Signatures { wrong, explained };
     let share = explained as f64 / wrong as f64;
     let first = watched.wrong_frames.first()?.n;
-    // In front of the first frame there is none, and no change that could come late.
+    // Before the first frame there is no other, so no change that could come late: it has the wrong tables.
     let defect =
         if first == 0 { stale(plan, [active, shadow], first) } else { Defect::TablesChangeLate { rows } };
     Some(Suspect { defect, account, explained: share })
 }
 
-/// Frame `n` made with the tables of the bank that is not its own.
+/// The defect that makes frame `n` with the tables of the other bank.
 fn stale(plan: &BurstPlan, banks: [&Generation; 2], n: u32) -> Defect {
     let [own, other] =
         if plan.is_of_shadow(n) { [banks[1], banks[0]] } else { banks }.map(|bank| bank.number);
@@ -34,7 +35,7 @@ fn stale(plan: &BurstPlan, banks: [&Generation; 2], n: u32) -> Defect {
     Defect::StaleTables { rows: Vec::new(), frames }
 }
 
-/// How many first rows those are.
+/// How many first rows of `frame`, made with the tables of the other bank, give its signature; none if no number does.
 fn rows_late(plan: &BurstPlan, banks: &mut [(Signer, &TableSet); 2], frame: &WrongFrame) -> Option<usize> {
     let content = plan.content(frame.n);
     let mut signed = banks.each_mut().map(|(signer, tables)| {

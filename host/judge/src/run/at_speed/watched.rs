@@ -1,4 +1,4 @@
-//! Records of a burst as they come, each compared with what the model predicts.
+//! Compares the records of a burst, as they come, with what the model predicts.
 
 use std::sync::mpsc::Receiver;
 use std::thread;
@@ -16,19 +16,19 @@ use crate::run::plan::Generation;
 use crate::run::steps::Run;
 use crate::verdict::Cause;
 
-/// What ends a burst before its last frame.
+/// What may end a burst before its last frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EndsEarly {
-    /// The first frame that is wrong.
+    /// It ends with the first wrong frame.
     pub(super) when_wrong: bool,
-    /// A time on the link's clock.
+    /// It ends at this time on the link's clock.
     pub(super) at: Option<Duration>,
 }
 
-/// Frames with another signature that are kept.
+/// The most wrong frames that are kept.
 const KEPT: usize = 64;
 
-/// A frame with another signature than it must have.
+/// A frame with a wrong signature.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WrongFrame {
     /// Its place in the burst.
@@ -39,27 +39,27 @@ pub(super) struct WrongFrame {
     pub(super) at: Duration,
 }
 
-/// What a burst came to.
+/// What was seen of a burst.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Watched {
     /// Frames judged.
     pub(super) frames: u32,
-    /// Those with another signature.
+    /// Frames with a wrong signature.
     pub(super) wrong: u32,
-    /// The first of those, at most [`KEPT`].
+    /// The first of these, at most [`KEPT`].
     pub(super) wrong_frames: Vec<WrongFrame>,
-    /// The first count that is not what it should be, in a frame whose signature is right.
+    /// The first wrong count in a frame whose signature is right.
     pub(super) miscounted: Option<Finding>,
-    /// Frames in which the enable was off.
+    /// Frames in which the enable was off at times.
     pub(super) paused: u32,
     /// Frames that waited for a free record.
     pub(super) held_back: u32,
-    /// What they say of the pixel clock.
+    /// What they say about the pixel clock.
     pub(super) clock: ClockSeen,
 }
 
 impl Watched {
-    /// Takes the record of the next frame, which must have the signature `expected`.
+    /// Judges the record of the next frame, which must have the signature `expected`.
     fn take(&mut self, watch: &Watch<'_>, expected: u32, record: &FrameRecord) {
         let plan = watch.plan;
         let n = self.frames;
@@ -89,7 +89,7 @@ impl Watched {
         }
     }
 
-    /// Holds the `records` that came of the burst `plan` against its frames.
+    /// Checks that there are no more `records` of the burst `plan` than it has frames.
     fn compare_count(&mut self, plan: &BurstPlan, records: u32) {
         let (frame, count) = (plan.frames, BurstCount::Records);
         if records > frame {
@@ -104,19 +104,19 @@ struct Watch<'a> {
     board: &'a mut Board,
     plan: &'a BurstPlan,
     burst: Burst,
-    /// Of the active tables.
+    /// The generation of the active tables.
     generation: u8,
     ends_early: EndsEarly,
     predicted: Receiver<u32>,
     stopwatch: Stopwatch,
-    /// Told when records have come, and when it is on the link's clock.
+    /// Called when records have come, with the time on the link's clock.
     told: &'a mut dyn FnMut(&Watched, Duration),
-    /// How long no record has come.
+    /// For how long no record has come.
     idle: Duration,
 }
 
 impl Watch<'_> {
-    /// Takes the records that are there, and says whether they were the last.
+    /// Fetches and judges the records that there are. Returns whether they were the last.
     fn look(&mut self, watched: &mut Watched) -> Result<bool, BoardError> {
         let (before, from) = (self.board.heard_at(), watched.frames);
         let fetched = self.board.records(self.burst.burst, from);
@@ -139,7 +139,7 @@ impl Watch<'_> {
         Ok(is_over || watched.frames >= self.plan.frames)
     }
 
-    /// Whether a burst that goes on is to end.
+    /// Whether a burst that is still going on should be ended.
     fn is_enough(&self, watched: &Watched) -> bool {
         let EndsEarly { when_wrong, at } = self.ends_early;
         let is_late = at.is_some_and(|at| self.board.now() >= at);
@@ -154,7 +154,7 @@ impl Watch<'_> {
                 let (frame, seconds) = (watched.frames, self.idle.as_secs_f64());
                 return Err(unclear(Finding::BurstStalled { frame, frames, seconds }));
             }
-            // By what was meant to pass, since a recording has no clock between its exchanges.
+            // Counted by the time that should pass, since a recording has no clock between its exchanges.
             let wait = self.plan.look_again_in(frames - watched.frames);
             self.board.idle(wait).during(CheckName::AtSpeed)?;
             self.idle += wait;
@@ -168,8 +168,8 @@ impl Watch<'_> {
 }
 
 impl Run<'_> {
-    /// Has the board make the burst `plan` with `tables`, and compares every frame up to where it ends. Whenever records have come,
-    /// `told` hears what they came to so far, and when it is on the link's clock.
+    /// Has the board make the burst `plan` with `tables`, and compares every frame up to its end. Whenever records have
+    /// come, `told` is called with what was seen so far and the time on the link's clock.
     pub(super) fn watch(
         &mut self,
         plan: &BurstPlan,
@@ -177,7 +177,7 @@ impl Run<'_> {
         ends_early: EndsEarly,
         told: &mut dyn FnMut(&Watched, Duration),
     ) -> (Watched, Result<(), End>) {
-        // No other burst of the run has this name.
+        // The count is a name that no other burst of the run has.
         self.findings.bursts += 1;
         let burst = plan.request(self.findings.bursts);
         let mut watched = Watched::default();

@@ -1,4 +1,4 @@
-//! What a soak has come to so far, and when it is over.
+//! What a soak has judged so far, and when it is over.
 
 use std::time::Duration;
 
@@ -16,28 +16,28 @@ use super::played::Played;
 
 /// The longest burst, on the link's clock.
 pub(super) const LONGEST_BURST: Duration = Duration::from_secs(60);
-/// Its most frames: behind them numbers of frames come again, and content with them.
+/// The most frames of a burst: after these, frame numbers repeat, and content with them.
 const MOST_FRAMES: u32 = 1 << 16;
 
-/// A soak under way.
+/// A soak that is under way.
 pub(super) struct Account {
     pub(super) report: SoakReport,
     /// When it began, on the run's clock.
     begun: Duration,
-    /// What differed first, with its frame counted from the first of the soak.
+    /// The first difference, with its frame counted from the beginning of the soak.
     first: Option<End>,
-    /// The first difference that may have come from the link, since another session did not confirm it.
+    /// The first difference that the link may have caused, since another session did not confirm it.
     first_doubtful: Option<End>,
 }
 
 impl Account {
-    /// One of length `asked` that begins at `begun` on the run's clock.
+    /// A soak of length `asked` that begins at `begun` on the run's clock.
     pub(super) fn new(asked: SoakLength, begun: Duration) -> Self {
         let report = SoakReport::new(asked);
         Self { report, begun, first: None, first_doubtful: None }
     }
 
-    /// The time that is left behind `now`, on the run's clock; none if frames are counted.
+    /// The time that is left after `now`, on the run's clock; none if the soak is so many frames long.
     fn time_left(&self, now: Duration) -> Option<Duration> {
         let SoakLength::Time { seconds } = self.report.asked else { return None };
         let beyond = if seconds > 0.0 { Duration::MAX } else { Duration::ZERO };
@@ -45,7 +45,7 @@ impl Account {
         Some(self.begun.saturating_add(length).saturating_sub(now))
     }
 
-    /// The frames that are left; none if time is what counts.
+    /// The frames that are left; none if the soak has a time.
     fn frames_left(&self) -> Option<u64> {
         let SoakLength::Frames { frames } = self.report.asked else { return None };
         Some(frames.saturating_sub(self.report.frames))
@@ -55,18 +55,18 @@ impl Account {
         self.frames_left() == Some(0) || self.time_left(now) == Some(Duration::ZERO)
     }
 
-    /// The most frames that the burst may have which is planned as `plan` and may take `time`.
+    /// The most frames of a burst that is planned as `plan` and may take `time`.
     pub(super) fn frames_of_burst(&self, plan: &BurstPlan, time: Duration) -> u32 {
         let left = self.frames_left().map_or(u32::MAX, |left| u32::try_from(left).unwrap_or(u32::MAX));
         plan.frames_in(time).min(MOST_FRAMES).min(left)
     }
 
-    /// The longest that the burst may take which begins at `now` on the run's clock.
+    /// The longest time of a burst that begins at `now` on the run's clock.
     pub(super) fn time_of_burst(&self, now: Duration) -> Duration {
         self.time_left(now).map_or(LONGEST_BURST, |left| left.min(LONGEST_BURST))
     }
 
-    /// Whether what differs is still looked into.
+    /// Whether differences are still looked into.
     pub(super) fn wants_more(&self) -> bool {
         self.first.is_none() || self.has_room()
     }
@@ -75,7 +75,7 @@ impl Account {
         self.report.differences.len() < SoakReport::MOST_DIFFERENCES
     }
 
-    /// Takes what came at `now` of a burst that stands at `watched`, and of which `before` is counted.
+    /// Adds what came up to `now` of a burst. `watched` is what was seen of it in all; `before` is what was already counted.
     pub(super) fn add(&mut self, before: &mut SoakInterval, watched: &Watched, now: Duration) -> Soaked {
         let all = SoakInterval { frames: watched.frames.into(), wrong: watched.wrong.into() };
         let new = SoakInterval { frames: all.frames - before.frames, wrong: all.wrong - before.wrong };
@@ -88,7 +88,7 @@ impl Account {
         Soaked { time, frames, wrong, of: asked }
     }
 
-    /// Takes `end`, which is what differed in a burst that was just played, at `at` on the run's clock.
+    /// Keeps `end`, the difference in the burst that was just played, seen at `at` on the run's clock.
     pub(super) fn keep(&mut self, played: &Played, at: Duration, end: End) {
         let (suspects, first) = match &end {
             End::Failed { suspects, .. } => (suspects.clone(), &mut self.first),
@@ -108,17 +108,16 @@ impl Account {
         }
     }
 
-    /// Takes a difference that may have come from the link, and that no other session could be asked about.
+    /// Keeps a difference that the link may have caused and that could not be tried in another session.
     pub(super) fn leave_open(&mut self, end: End) {
         self.first_doubtful.get_or_insert(end);
     }
 
-    /// Ends it at `now` on the run's clock with the first of these that there is:
+    /// Ends the soak at `now` on the run's clock with the first of these that applies:
     ///
-    /// 1. a difference that is the board's, since nothing that comes later makes it right;
-    /// 2. what `ended` the bursts early, behind a difference that no other session could be asked about;
-    /// 3. a difference that may have come from the link;
-    /// 4. that there was no frame to judge.
+    /// 1. a difference that is the board's, which nothing later makes right; 2. what `ended` the bursts early, together
+    /// with a difference that could not be tried in another session, if there is one; 3. a difference that the link may
+    /// have caused; 4. that there was no frame to judge.
     pub(super) fn end(&mut self, now: Duration, ended: Result<(), End>) -> Result<(), End> {
         self.report.seconds = now.saturating_sub(self.begun).as_secs_f64();
         match (self.first.take(), ended, self.first_doubtful.take()) {
@@ -136,7 +135,7 @@ impl Account {
         }
     }
 
-    /// What differed first, as one of all that differed.
+    /// The first difference, with the counts of all frames of the soak.
     fn of_all_frames(&self, end: End) -> End {
         match end {
             End::Failed {
@@ -153,7 +152,7 @@ impl Account {
     }
 }
 
-/// What differed in a burst with `before` frames of the soak in front of it.
+/// A burst's difference with its frame counted from the beginning of the soak, of which `before` frames came before the burst.
 fn counted_behind(before: u64, mut end: End) -> End {
     if let End::Failed { finding: Finding::DiffersAtSpeed { first, .. }, .. } = &mut end {
         *first = counted(before + u64::from(*first));
@@ -161,7 +160,7 @@ fn counted_behind(before: u64, mut end: End) -> End {
     end
 }
 
-/// Takes over the suspects of another difference if they were seen in a row, and those of the first were not.
+/// Takes over the suspects of another difference if a row of it was seen, and none of the first.
 fn tell_more(first: &mut End, seen: &[Suspect]) {
     let names_row = |suspects: &[Suspect]| {
         let has_none = |defect: &Defect| {
@@ -179,7 +178,7 @@ fn tell_more(first: &mut End, seen: &[Suspect]) {
     }
 }
 
-/// A count that stays at the greatest number of a finding.
+/// A count that saturates at the greatest number of a finding.
 pub(super) fn counted(count: u64) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
 }
@@ -192,7 +191,7 @@ mod tests {
         Account::new(SoakLength::Time { seconds }, Duration::ZERO).is_over(now)
     }
 
-    /// As a deadline that has passed less the time, or 0 divided by 0.
+    /// Such times come from a deadline that has already passed, or from 0 divided by 0.
     #[test]
     fn what_is_no_time_is_over_at_once_and_what_no_clock_counts_to_never() {
         for seconds in [0.0, -1.0, f64::NEG_INFINITY, f64::NAN] {

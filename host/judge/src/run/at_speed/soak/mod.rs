@@ -1,5 +1,5 @@
-//! Bursts for hours: new content in each, tables and kernel by turns, every second one with the trap set, and on behind whatever
-//! differs.
+//! Bursts for hours: each has new content, tables and kernel take turns, every second one has the trap set, and
+//! differences do not end it.
 
 mod account;
 mod played;
@@ -22,13 +22,13 @@ use crate::verdict::Cause;
 use account::{Account, LONGEST_BURST, counted};
 use played::Played;
 
-/// Whether a burst makes the same frame again and again, so that the board keeps a row of one that differs. What comes once in an
-/// hour would not come again when it is looked for.
+/// Whether a burst makes the same frame again and again, so that the board keeps a row of a frame that differs. A
+/// difference that occurs once in an hour would not occur again when the frame is made anew.
 fn is_trapped(draw: u32) -> bool {
     draw % 2 == 1
 }
 
-/// What differed in a burst, or in the tables in front of it, or what the board said of it that no sound board says.
+/// What differed in a burst or in the tables before it, or an answer that no sound board gives.
 fn difference(played: &Result<Played, End>) -> Option<End> {
     let ended = match played {
         Ok(played) => match played.finding() {
@@ -40,7 +40,8 @@ fn difference(played: &Result<Played, End>) -> Option<End> {
     ended.filter(|end| end.is_failed() || end.is_answer()).cloned()
 }
 
-/// Ends a soak whose burst as `plan` had `time` and brought no frame: with one as long as any, that would go on for ever.
+/// Ends a soak in which the burst `plan` brought no frame although `time` was that of the longest burst: it would go on
+/// for ever.
 fn brought_frames(plan: &BurstPlan, watched: &Watched, time: Duration) -> Result<(), End> {
     if watched.frames > 0 || time < LONGEST_BURST {
         return Ok(());
@@ -49,15 +50,15 @@ fn brought_frames(plan: &BurstPlan, watched: &Watched, time: Duration) -> Result
     Err(End::error(CheckName::AtSpeed, Cause::Station, finding))
 }
 
-/// What ends a soak in which something differed that may have come from the link, every time.
+/// The end of a soak with a difference that the link may have caused each time.
 fn wrong_over_doubtful_link((found, doubt): (Finding, Doubt)) -> End {
     let finding = Finding::WrongOverDoubtfulLink { found: Box::new(found), doubt };
     End::error(CheckName::AtSpeed, Cause::Station, finding)
 }
 
 impl Run<'_> {
-    /// Judges bursts for as long as `length` says, with the board back behind `last` whenever it goes away. What differs does
-    /// not end it.
+    /// Judges bursts for as long as `length` says. If the board goes away, it is brought back to where it was after
+    /// `last`. Differences do not end it.
     pub(in crate::run) fn soak(&mut self, length: SoakLength, last: Option<&Segment>) -> Result<(), End> {
         let mut account = Account::new(length, self.clock());
         let bursts = match self.bursts() {
@@ -92,7 +93,7 @@ impl Run<'_> {
         ended
     }
 
-    /// The run's clock: the link's, and those of links that broke.
+    /// The run's clock: the link's, plus the time of earlier links, which broke.
     fn clock(&self) -> Duration {
         self.findings.earlier.seconds + self.board.now()
     }
@@ -127,8 +128,8 @@ impl Run<'_> {
         settled
     }
 
-    /// Judges the burst of the draw `draw`. If something differs that may have come from the link, it is `doubtful`, and made again in
-    /// a session of its own.
+    /// Judges the burst with the draw `draw`. If something differs that the link may have caused, it is put into
+    /// `doubtful`, and the burst is made again in another session.
     fn settle(
         &mut self,
         account: &mut Account,
@@ -163,7 +164,7 @@ impl Run<'_> {
         doubtful.take().map_or(Ok(()), |doubtful| Err(wrong_over_doubtful_link(doubtful)))
     }
 
-    /// Has the board make the burst of the draw `draw`, and compares every frame.
+    /// Has the board make the burst with the draw `draw`, and compares every frame.
     fn play(&mut self, account: &mut Account, bursts: Bursts, draw: u32) -> Result<Played, End> {
         if Doubt::of_session(self.board).is_some() {
             self.open_another_session()?;
@@ -199,7 +200,7 @@ impl Run<'_> {
         Ok(Played { plan, tables, watched, ended })
     }
 
-    /// Waits until it is `then` on the link's clock. A board that is computed takes no time of that for its frames, and hours of it
+    /// Waits until it is `then` on the link's clock. With a computed board frames take no time on that clock, and hours
     /// would never pass.
     fn pass_time(&mut self, then: Duration) -> Result<(), End> {
         let mut left = then.saturating_sub(self.board.now());
@@ -229,8 +230,8 @@ impl Run<'_> {
         account.keep(played, at, end);
     }
 
-    /// The tables and the kernel to judge with and the decoy's, each the active ones in two bursts out of four; those of the other
-    /// bank come with them where there is one.
+    /// The tables and the kernel to judge with and the decoy's. Each are active in two bursts out of four; the others are
+    /// in the other bank if there is one.
     fn tables_of_burst(&mut self, draw: u32) -> Result<Vec<Generation>, End> {
         self.start_afresh().during(CheckName::AtSpeed)?;
         self.board.configure(self.plan.tables.geometry(), RowTiming::default()).during(CheckName::AtSpeed)?;

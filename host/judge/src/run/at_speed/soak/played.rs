@@ -6,7 +6,7 @@ use crate::run::at_speed::watched::Watched;
 use crate::run::findings::End;
 use crate::run::plan::Generation;
 
-/// A burst that is over, or broke.
+/// A burst that is over or broke off.
 pub(super) struct Played {
     pub(super) plan: BurstPlan,
     pub(super) tables: Vec<Generation>,
@@ -15,7 +15,7 @@ pub(super) struct Played {
 }
 
 impl Played {
-    /// What differed in it, before anybody has looked into that.
+    /// What differed in it, before it is looked into.
     pub(super) fn finding(&self) -> Option<Finding> {
         let Watched { frames, wrong, wrong_frames, miscounted, .. } = &self.watched;
         let differs = wrong_frames.first().map(|first| Finding::DiffersAtSpeed {
