@@ -1,4 +1,4 @@
-//! Rows that a board keeps in its output banks until the host has them: as many as there are banks, and no more (WIRE.md, 4).
+//! Rows that a board keeps in its output banks until the host has them: as many as there are banks, no more (WIRE.md, 4).
 
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::RowPlace;
@@ -11,33 +11,33 @@ use crate::board::{BoardError, NumberedFrame, Said, Status};
 use crate::result::{Answer, Counter, Rule};
 use crate::run::findings::End;
 
-/// Rows that wait behind full banks: the first of them takes the first bank that is free.
+/// Rows that wait because all banks are full. The first of them takes the first bank that becomes free.
 const WAITING: u32 = 2;
 
-/// Rows that fill the banks, and those behind them.
+/// The rows that fill the banks, and those that wait.
 struct FilledBanks {
     /// The row sequence number of the first one.
     first: u32,
     /// How many the banks hold.
     banks: u32,
-    /// Rows of a frame, whole frames of which fill the banks.
+    /// Rows of a frame. Whole frames fill the banks.
     height: u32,
     width: u16,
-    /// What they must be.
+    /// How they must come back.
     right: Compared,
-    /// What the board counted in front of them, the ROW_OUT packets that had come by then, and what had been sent again.
+    /// The board's counters before them, the ROW_OUT packets that had come by then, and the retries.
     before: Status,
     came: u32,
     retries: u64,
-    /// How often rows were asked for that had come, and rows that needed no answer.
+    /// How often rows were asked for again that had come, and how often rows were sent that need no answer.
     asked: u32,
     unneeded: u32,
-    /// Whether no row was given once more than that.
+    /// Whether no row was given more often than that.
     is_exact: bool,
 }
 
 impl FilledBanks {
-    /// Where row `row` belongs, counted from the first one.
+    /// The place of row `row`, counted from the first one.
     fn place(&self, row: u32) -> RowPlace {
         let (frame, row_of_it) = (row / self.height, row % self.height);
         RowPlace {
@@ -49,20 +49,20 @@ impl FilledBanks {
         }
     }
 
-    /// The frames of `rows` rows from row `from` on, which begins one.
+    /// The frames of `rows` rows from row `from` on, which is the first of its frame.
     fn frames(&self, from: u32, rows: u32) -> impl Iterator<Item = u16> + use<> {
         let last = (from + rows - 1) / self.height;
         (from / self.height..=last).map(|frame| FRAME.wrapping_add(frame as u16))
     }
 
-    /// The samples of a row that is known: none of them goes anywhere.
+    /// Samples for another copy of a row that the board has; it must not use them.
     fn black(&self) -> Vec<u16> {
         vec![0; self.width.into()]
     }
 }
 
 impl Rules<'_, '_> {
-    /// The banks are filled, each row is asked for again, one is acknowledged, and then all.
+    /// Fills the banks, asks for each row again, acknowledges one, and then all.
     pub(super) fn banks(&mut self) -> Result<(), End> {
         let mut kept = self.fill()?;
         self.stay_away(&mut kept)?;
@@ -81,7 +81,7 @@ impl Rules<'_, '_> {
         self.configure(self.small.rows())
     }
 
-    /// Fills the banks: rows that are not acknowledged come as others do until there is no bank for another one.
+    /// Fills the banks: rows that are not acknowledged must come like any others until there is no bank for another one.
     fn fill(&mut self) -> Result<FilledBanks, End> {
         let banks = u32::from(self.capabilities.row_banks_out);
         let height = (1..=self.small.tall() as u32).rev().find(|&rows| banks.is_multiple_of(rows));
@@ -114,7 +114,7 @@ impl Rules<'_, '_> {
         Ok(kept)
     }
 
-    /// What came of rows that the board has, or its silence.
+    /// The rows that `came`. If one is missing, ends with the board's silence if that is certain, otherwise with doubt.
     fn came<T>(&mut self, kept: &FilledBanks, came: Result<T, BoardError>) -> Result<T, End> {
         let place = match came {
             Ok(came) => return Ok(came),
@@ -128,14 +128,15 @@ impl Rules<'_, '_> {
         Err(of_rows(Rule::Banks, BoardError::RowMissing { place, attempts: 1 }))
     }
 
-    /// Whether the row at `place` stays away once more, although the board had all that was sent, by its own word.
+    /// Whether the row at `place` stays away when asked for again, although the board says that it had everything that
+    /// was sent.
     fn is_silent_again(&mut self, kept: &FilledBanks, place: &RowPlace) -> Result<bool, End> {
         let black = kept.black();
         let came = self.run.board.again((place, &black), None, 0);
         Ok(matches!(came, Err(BoardError::RowMissing { .. })) && self.says_nothing(kept)?)
     }
 
-    /// Whether the board had all that was sent to it, and says itself that it sent no other rows than those that came.
+    /// Whether the board had everything that was sent to it, and itself says that it sent only the rows that came.
     fn says_nothing(&mut self, kept: &FilledBanks) -> Result<bool, End> {
         let status = self.run.board.status(false).map_err(of_board)?;
         let sent = |status: &Status| status.rows_out.saturating_add(status.rows_repeated);
@@ -144,7 +145,7 @@ impl Rules<'_, '_> {
         Ok(is_all && self.run.board.had_each_packet_once(&status))
     }
 
-    /// Gives the rows behind the full banks, which must stay away, though they come twice.
+    /// Gives the rows for which no bank is free. They must not come back, even if they are given again.
     fn stay_away(&mut self, kept: &mut FilledBanks) -> Result<(), End> {
         let made = self.small.made(0, self.height, GENERATION);
         let all = kept.first + kept.banks + WAITING;
@@ -167,11 +168,11 @@ impl Rules<'_, '_> {
         Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(kept.banks), attempts: TRIES }))
     }
 
-    /// Sends a row that the board has and that needs no answer, with other samples.
+    /// Sends a row again that the board has and that needs no answer, with other samples.
     fn unneeded(&mut self, kept: &mut FilledBanks, row: u32) -> Result<(), End> {
         let number = self.run.board.give(&kept.place(row), &kept.black());
         kept.unneeded += 1;
-        // Behind its answer there is none to the row.
+        // An answer to the row would come before this one.
         self.run.board.status(false).map_err(of_board)?;
         match self.run.board.refusal_of_row(number) {
             None => Ok(()),
@@ -182,7 +183,8 @@ impl Rules<'_, '_> {
         }
     }
 
-    /// Damaged ROW_ACKs of all rows free none. What makes a damaged packet whole lets the board count fewer of them than were sent.
+    /// Damaged ROW_ACKs of all rows must free none. If something on the way makes a damaged packet whole, the board
+    /// counts fewer of them than were sent.
     fn damaged_frees_none(&mut self, kept: &FilledBanks) -> Result<(), End> {
         self.run.board.disregard_rows(WAITING);
         let before = self.run.board.status(false).map_err(of_board)?;
@@ -200,7 +202,7 @@ impl Rules<'_, '_> {
         Err(miscounted(Counter::NextRowOut, after.next_row_out, kept.first))
     }
 
-    /// Row `row` comes again as it came, for the time `repeats`.
+    /// Row `row` must come again as it came before, with this `repeats`.
     fn comes_again(&mut self, kept: &mut FilledBanks, row: u32, repeats: u16) -> Result<(), End> {
         let (place, black) = (kept.place(row), kept.black());
         let came = self.run.board.again((&place, &black), None, repeats);
@@ -214,7 +216,7 @@ impl Rules<'_, '_> {
         Ok(())
     }
 
-    /// The board's window is no further than that `freed` rows more than there are banks can have entered.
+    /// The board's window must be no further than if as many rows have entered as there are output banks, plus `freed`.
     fn window_at_most(&self, kept: &FilledBanks, freed: u32) -> Result<(), End> {
         let rows = self.run.board.window() - kept.first;
         let most = kept.banks + freed + u32::from(self.capabilities.row_banks_in);
@@ -224,7 +226,7 @@ impl Rules<'_, '_> {
         Err(broken(Rule::Banks, Kind::RowIn, Answer::Credit { rows: most }, Answer::Credit { rows }))
     }
 
-    /// A ROW_ACK of the first row, which the board frees, and no other one; another row takes its place.
+    /// Acknowledges the first row. The board must free this one and no other, and another row takes its bank.
     fn acknowledge_one(&mut self, kept: &mut FilledBanks) -> Result<(), End> {
         let is_pushed = kept.height == 1;
         self.run.board.disregard_rows(is_pushed.into());
@@ -250,7 +252,7 @@ impl Rules<'_, '_> {
         Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(0), attempts: TRIES }))
     }
 
-    /// All rows that came are acknowledged, and those that waited must come right.
+    /// Acknowledges all rows that came. Those that waited must come back right.
     fn release(&mut self, kept: &mut FilledBanks) -> Result<(), End> {
         let came = self.run.board.acknowledged();
         self.run.board.acknowledge_to(None);
@@ -261,7 +263,7 @@ impl Rules<'_, '_> {
         self.frames(Rule::Banks, compared)
     }
 
-    /// What the board counts of all that.
+    /// The board must have counted all that.
     fn kept_counted(&mut self, kept: &FilledBanks) -> Result<(), End> {
         let is_calm = kept.is_exact && self.is_calm(kept.retries)?;
         let status = self.run.board.status(false).map_err(of_board)?;
@@ -282,7 +284,8 @@ impl Rules<'_, '_> {
     }
 }
 
-/// Whether `status` says that the first row is acknowledged; that no row is may be the link's doing, and nothing else.
+/// Whether `status` says that only the first row is acknowledged. That none is may be the link's fault; anything else is the
+/// board's.
 fn is_one_acknowledged(kept: &FilledBanks, status: &Status) -> Result<bool, End> {
     match status.next_row_out.wrapping_sub(kept.first) {
         0 => Ok(false),

@@ -1,4 +1,4 @@
-//! Bursts that must be refused, that wait for the host, that end early, and what they leave behind.
+//! Bursts that must be refused, that wait for the host or that end early, and what they leave.
 
 use std::ops::Range;
 use std::time::Duration;
@@ -16,20 +16,20 @@ use crate::run::Generation;
 use crate::run::at_speed::{clock_hz, content, signer};
 use crate::run::findings::End;
 
-/// Frames of a burst that is to be right: every board has records for two.
+/// Frames of a burst that must be right: every board has records for two.
 const FEW: u32 = 2;
-/// How long a burst may take beside the time that its frames take on the board's clock, and once more for each packet of records.
+/// How long a burst may take in addition to its frames' time on the board's clock, and again for each packet of records.
 pub(super) const PATIENCE: Duration = Duration::from_secs(5);
-/// The longest time between two looks at it: no link ends a shorter wait early.
+/// The longest time between two looks at a burst: no link ends a shorter wait early.
 const LONGEST_IDLE: Duration = Duration::from_millis(250);
-/// So many blankings between frames pass in a second at least, or they are not waited for.
+/// A blanking between frames is not tried if fewer than this many pass in a second.
 const LEAST_RATE: u32 = 100;
-/// Bytes that go to the board between the beginning of a burst and its end, so that it is cut at another place each time.
+/// Bytes that are sent to the board between the beginning of a burst and its end, so that each is cut at another place.
 const BYTES_TO_CUT: [usize; 8] = [0, 5, 11, 40, 77, 130, 211, 400];
-/// Keeps the seed of bursts from that of frames.
+/// Keeps the seed of bursts apart from that of frames.
 const FAR: u32 = 0xa5a5_0000;
 
-/// What RECORDS is to say of a burst.
+/// What RECORDS must say of a burst.
 #[derive(Clone, Copy)]
 pub(super) struct Awaited {
     ended: bool,
@@ -37,12 +37,12 @@ pub(super) struct Awaited {
 }
 
 impl Awaited {
-    /// It is to have so many records, and may be under way.
+    /// It must have at least `records` records, and may be under way.
     pub(super) fn under_way(records: u32) -> Self {
         Self { ended: false, records: records as usize }
     }
 
-    /// It is to have ended. Which records there are is for whoever compares them.
+    /// It must have ended. The records are compared elsewhere.
     pub(super) fn ended(records: u32) -> Self {
         Self { ended: true, records: records as usize }
     }
@@ -58,8 +58,8 @@ impl From<Awaited> for Answer {
     }
 }
 
-/// A reply to RECORDS without what is not looked at: pauses are what a board cannot help, and of the flags one is known, which
-/// is looked at if it `tells`.
+/// A reply to RECORDS without what is not compared: pauses, which a board cannot help, and flags but the known one, which is
+/// compared if `tells` is true.
 pub(super) fn looked_at(mut payload: Vec<u8>, tells: bool) -> Vec<u8> {
     let records = payload.get_mut(Records::HEAD..).unwrap_or_default();
     for record in records.as_chunks_mut().0 {
@@ -79,7 +79,7 @@ impl Rules<'_, '_> {
         self.repeating()
     }
 
-    /// A burst of so many small frames under a name of its own; none if the board makes none.
+    /// A burst of `frames` small frames with a name of its own; none if the board makes no bursts.
     pub(super) fn small_burst(&self, frames: u32) -> Option<Burst> {
         let bursts = self.run.known_bursts().ok()?;
         Some(Burst {
@@ -122,7 +122,7 @@ impl Rules<'_, '_> {
         Ok(())
     }
 
-    /// Frames with blankings between them in which one high bit is set.
+    /// Frames with blankings between them that have one high bit set.
     fn blankings(&mut self) -> Result<(), End> {
         for bit in u8::BITS..u16::BITS {
             let Some(burst) = self.small_burst(FEW) else { return Ok(()) };
@@ -156,7 +156,7 @@ impl Rules<'_, '_> {
         }
     }
 
-    /// What must be said of `burst` to whoever asks for `frames`, of which those in `held` waited for a record.
+    /// The right reply of RECORDS with `frames` of `burst`, of which those in `held` waited for a record.
     pub(super) fn records(
         &self,
         burst: &Burst,
@@ -178,7 +178,7 @@ impl Rules<'_, '_> {
         said
     }
 
-    /// How long so many frames take on the board's clock, of the size that it is set to.
+    /// How long `frames` frames of the configured size take on the board's clock.
     pub(super) fn time_of(&self, frames: u32) -> Duration {
         let blanking = usize::from(self.capabilities.least_blanking);
         let between = self.capabilities.bursts.map_or(0, |bursts| bursts.least_frame_blanking);
@@ -186,7 +186,7 @@ impl Rules<'_, '_> {
         Duration::from_secs_f64(f64::from(frames) * clocks as f64 / f64::from(clock_hz(&self.capabilities)))
     }
 
-    /// Looks at `burst` from frame `from` on until it is as `awaited`, which takes about as long as `frames` of it.
+    /// Looks at `burst` from frame `from` on until it is as `awaited`, which takes about as long as `frames` frames.
     pub(super) fn look(
         &mut self,
         burst: &Burst,
@@ -232,7 +232,7 @@ impl Rules<'_, '_> {
         Ok(())
     }
 
-    /// One without an end, that is told to end.
+    /// A burst without an end, which is told to end.
     fn ended_early(&mut self) -> Result<(), End> {
         let Some(burst) = self.small_burst(Burst::ENDLESS) else { return Ok(()) };
         let burst = self.start(burst)?;
@@ -241,17 +241,17 @@ impl Rules<'_, '_> {
         let ended = self.look(&burst, 0, FEW, Awaited::ended(FEW))?;
         let came = ended.records.len() as u32;
         self.must_tell(Rule::Records, &burst, 0..came, BurstState::Ended, Some(&[]))?;
-        // Of more than fit a packet it is not known where they end.
+        // If there are more than fit a packet, it is not known where they end.
         if (came as usize) < Records::MOST { self.never_told(0..came) } else { Ok(()) }
     }
 
-    /// Bursts that are cut, each at another place, with rows and a burst behind each that must be right.
+    /// Bursts that are cut by a RESET, each at another place, and after each of them rows and a burst that must be right.
     fn cut(&mut self) -> Result<(), End> {
         for bytes in BYTES_TO_CUT {
             let Some(burst) = self.small_burst(Burst::ENDLESS) else { return Ok(()) };
             self.run.findings.bursts += 1;
             self.run.board.cut(&burst, bytes).map_err(of_board)?;
-            // Where the request was lost there is none.
+            // If the request was lost, there is no burst.
             if let Some(came) = self.came_of(&burst)? {
                 self.must_tell(Rule::Cut, &burst, 0..came, BurstState::Ended, Some(&[]))?;
             }
@@ -261,8 +261,8 @@ impl Rules<'_, '_> {
         Ok(())
     }
 
-    /// How many records there are of `burst`, which a RESET has ended; none if the last burst is another. A link may have delivered
-    /// the RESET in front of it, and then it takes another one.
+    /// How many records there are of `burst`, which a RESET ended; none if the last burst is another. A link may have
+    /// delivered the RESET before the burst, and then another one is needed.
     fn came_of(&mut self, burst: &Burst) -> Result<Option<u32>, End> {
         let records = match self.run.board.records(burst.burst, 0) {
             Ok(fetched) if fetched.state == BurstState::UnderWay => {

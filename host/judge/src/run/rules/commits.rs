@@ -1,4 +1,4 @@
-//! Commits that must be refused, and when those take effect that are not.
+//! Commits that must be refused, and when the others take effect.
 
 use std::mem;
 
@@ -13,9 +13,9 @@ use crate::run::findings::End;
 /// Generations that differ in every bit.
 const FIRST: u8 = 0x55;
 const SECOND: u8 = 0xaa;
-/// The frame that the second takes effect with.
+/// The frame with which the second one takes effect.
 const FRAME: u16 = 0x5a5a;
-/// The most banks of rows at which tables are changed.
+/// The most row banks at which tables are changed.
 const BANKS: u8 = 8;
 
 impl Rules<'_, '_> {
@@ -35,7 +35,7 @@ impl Rules<'_, '_> {
         Ok(())
     }
 
-    /// The request that commits the small tables at `place`, of which a frame has one row.
+    /// The commit of the small tables at `place` for frames of one row.
     fn commit_of(&self, place: usize, generation: u8, first_frame: u16) -> Commit {
         let Generation { tables, kernel, .. } = self.small.made(place, 1, generation);
         Commit {
@@ -52,14 +52,14 @@ impl Rules<'_, '_> {
         self.replied(Rule::Generation, &request, vec![generation])
     }
 
-    /// Frames of one row each, which the small tables at `place` must make as `generation`.
+    /// Frames of one row each, which must be made with the small tables at `place` as `generation`.
     fn one_rows(&mut self, rule: Rule, frames: &[u16], (generation, place): (u8, usize)) -> Result<(), End> {
         let made = self.small.made(place, 1, generation);
         let compared = Compared::default().with(&self.small, frames.iter().copied(), &made);
         self.frames(rule, compared)
     }
 
-    /// Generation 0, and each bit of both CRCs wrong.
+    /// Commits with generation 0, and with each bit of both CRCs wrong.
     fn wrong_sums(&mut self) -> Result<(), End> {
         let right = self.commit_of(1, !FIRST, FRAME);
         let unnamed = Request::Commit(Commit { generation: 0, ..right });
@@ -76,7 +76,8 @@ impl Rules<'_, '_> {
         self.others_refused(FIRST)
     }
 
-    /// With `active` tables: a commit that names them changes nothing, and one whose generation differs in a bit is another.
+    /// With `active` tables, a commit that names them must change nothing, and one whose generation differs in a bit must
+    /// count as another.
     fn others_refused(&mut self, active: u8) -> Result<(), End> {
         let wrong = Commit { steps_crc: !0, generation: active, ..self.commit_of(0, 0, FRAME) };
         self.replied(Rule::Generation, &Request::Commit(wrong), vec![active])?;
@@ -101,7 +102,7 @@ impl Rules<'_, '_> {
         self.others_refused(SECOND)
     }
 
-    /// With the commit of `generation` pending: another one, and what would touch its tables.
+    /// With the commit of `generation` pending, another one and what would change its tables must be refused.
     fn busy_with_commit(&mut self, generation: u8) -> Result<(), End> {
         for bit in 0..u8::BITS {
             let another = Commit { generation: generation ^ 1 << bit, ..self.commit_of(1, 0, FRAME) };
@@ -114,7 +115,7 @@ impl Rules<'_, '_> {
             .map_or(Ok(()), |burst| self.refused(Rule::Pending, &Request::Burst(burst), RefusalCode::Busy, 0))
     }
 
-    /// What was pending is not any more behind a RESET, and its tables are where they were.
+    /// After a RESET a commit must no longer be pending, and its tables must be where they were.
     fn forgotten(&mut self) -> Result<(), End> {
         self.commit(0, FIRST, FRAME)?;
         self.busy_with_commit(FIRST)?;
@@ -125,7 +126,7 @@ impl Rules<'_, '_> {
         self.one_rows(Rule::CommitFrame, &[FRAME], (FIRST, 0))
     }
 
-    /// Tables that change while the row in front still leaves, whichever bank that has.
+    /// Tables that change while the row before still leaves, from each output bank in turn.
     fn at_each_bank(&mut self) -> Result<(), End> {
         let (mut active, mut next) = ((FIRST, 0), (SECOND, 1));
         for before in 0..u16::from(self.capabilities.row_banks_out.min(BANKS)) {

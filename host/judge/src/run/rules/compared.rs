@@ -13,16 +13,16 @@ use crate::run::Generation;
 use crate::run::at_speed::Seen;
 use crate::run::pauses::pauses;
 
-/// What a frame must come back as.
+/// How a frame must come back.
 struct Right {
     number: u16,
-    /// What goes in, and what makes the frame of it; none of a frame that no tables make.
+    /// What goes in, and the generation that corrects it; none for a frame that no tables give.
     of: Option<(Arc<Frame>, Generation)>,
     generation: u8,
     frame: Frame,
     latency: u16,
     pauses: Vec<u16>,
-    /// The CRC-32 of each row as it enters; none if the board tells none.
+    /// The CRC-32 of each row as it enters; none if the board does not sign it.
     entered: Vec<Option<u32>>,
 }
 
@@ -33,27 +33,27 @@ pub(super) struct Compared {
     gap_seed: u32,
     frames: VecDeque<NumberedFrame>,
     right: Vec<Right>,
-    /// The first row that does not.
+    /// The first row that came back wrong.
     pub(super) wrong: Option<WrongRow>,
 }
 
-/// A row that is not as it must be.
+/// A row that came back wrong.
 pub(super) struct WrongRow {
-    /// Its place in its frame.
+    /// Its number in its frame.
     pub(super) row: usize,
     /// Its frame.
     pub(super) frame: u16,
-    /// What the frame up to it shows, if its samples alone are wrong.
+    /// What the frame up to it shows, if only its samples are wrong.
     pub(super) seen: Option<Seen>,
 }
 
 impl Compared {
-    /// None yet, with gaps drawn by `gap_seed`.
+    /// No frames yet, with gaps drawn from `gap_seed`.
     pub(super) fn with_gaps(gap_seed: u32) -> Self {
         Self { gap_seed, ..Self::default() }
     }
 
-    /// With these frames behind the others, which `made` makes.
+    /// The same with frames of these numbers added, which `made` corrects.
     pub(super) fn with(
         mut self,
         small: &Small,
@@ -72,7 +72,8 @@ impl Compared {
         self
     }
 
-    /// Frame `number` of samples of 12 bits, made with `made` by a board that is set to `depth`; and how many of them are beyond it.
+    /// Frame `number` with samples of 12 bits, corrected with `made` by a board that is set to `depth`, and the number of
+    /// its samples above that depth.
     pub(super) fn of_twelve_bits(
         small: &Small,
         number: u16,
@@ -84,7 +85,7 @@ impl Compared {
         let tables = made.tables.with_geometry(twelve).ok()?;
         let numbered = small.frame(number, &tables);
         let over = numbered.frame.samples().iter().filter(|&&sample| sample > depth.max()).count();
-        // A depth is the end of an output's range, and changes nothing in front of that.
+        // The depth only sets where outputs are clamped. It changes nothing before that.
         let whole = correct(&tables, &made.kernel, &numbered.frame).ok()?;
         let samples = whole.samples().iter().map(|&sample| sample.min(depth.max())).collect();
         let frame = Frame::new(whole.width(), whole.depth(), whole.phase(), samples).ok()?;
@@ -94,7 +95,7 @@ impl Compared {
         Some((compared, over as u32))
     }
 
-    /// With `sent` to come back as `frame`, made by a generation.
+    /// Adds that `sent` must come back as `frame`, made with a generation.
     fn expect(
         &mut self,
         small: &Small,
@@ -115,13 +116,13 @@ impl Compared {
         });
     }
 
-    /// Whether a row came back as it must, however often it was sent before.
+    /// Whether a row came back right, no matter how often it was sent before.
     pub(super) fn is_right(&self, row: &ReturnedRow<'_>) -> bool {
         let right = self.right.iter().find(|right| right.number == row.frame);
         right.is_some_and(|right| right.is_told_of(row) && right.frame.row(row.row) == row.samples)
     }
 
-    /// What is wrong with a row that is not.
+    /// What is wrong with a row that is not right. Where it has the samples of another row, only its place is wrong.
     fn wrong(&self, row: &ReturnedRow<'_>) -> WrongRow {
         let mut others = self.right.iter().flat_map(|right| right.frame.rows());
         let is_other = others.any(|other| other == row.samples);
@@ -132,7 +133,7 @@ impl Compared {
 }
 
 impl Right {
-    /// Whether all that is told of a row but its samples is as it must be.
+    /// Whether everything that comes with a row's samples is right.
     fn is_told_of(&self, row: &ReturnedRow<'_>) -> bool {
         [row.first_latency, row.last_latency] == [self.latency; 2]
             && self.generation == row.generation
@@ -140,7 +141,7 @@ impl Right {
             && self.entered[row.row].is_none_or(|entered| row.entered == Some(entered))
     }
 
-    /// The frame up to `row`, the rows in front of which were right.
+    /// The frame up to `row`, whose earlier rows were right.
     fn seen(&self, row: &ReturnedRow<'_>) -> Option<Seen> {
         let (input, made) = self.of.as_ref()?;
         let made_by = made.upper(row.row + 1)?;

@@ -1,4 +1,4 @@
-//! Configurations that must be refused, and leave the one that is used as it was.
+//! Configurations that must be refused and leave the present one as it was.
 
 use halfrow_model::BitDepth;
 use halfrow_protocol::Kind;
@@ -10,7 +10,7 @@ use super::{Rules, payload};
 use crate::result::Rule;
 use crate::run::findings::End;
 
-/// The places of CONFIGURE's fields (WIRE.md, 18).
+/// The numbers of CONFIGURE's fields (WIRE.md, 18).
 const WIDTH: u16 = 0;
 const HEIGHT: u16 = 1;
 const CENTRE: u16 = 2;
@@ -18,7 +18,7 @@ const BLANKING: u16 = 3;
 const BITS: u16 = 5;
 
 impl Rules<'_, '_> {
-    /// The small frames', with the least blanking.
+    /// The configuration for small frames, with the least blanking.
     pub(super) fn configuration(&self) -> Configuration {
         let geometry = &self.small.geometry;
         Configuration {
@@ -31,7 +31,7 @@ impl Rules<'_, '_> {
         }
     }
 
-    /// Rows and frames behind many configurations that were refused are those of the one in front.
+    /// After many refused configurations, rows and frames are still those of the configuration before them.
     pub(super) fn configurations(&mut self) -> Result<(), End> {
         let gap_seed = !self.small.seed | 1;
         let right = Configuration { gap_seed, ..self.configuration() };
@@ -44,7 +44,7 @@ impl Rules<'_, '_> {
         let other = payload(&Request::Configure(other));
         let short = &other[..other.len() - 1];
         self.bytes_refused(Rule::Configuration, Kind::Configure, short, RefusalCode::Payload, 0)?;
-        // Without a configuration it is not ready, which comes first.
+        // A board without a configuration would answer `not ready`, which comes first.
         let unnamed = Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: 0, shape: None };
         self.refused(Rule::Configuration, &Request::Commit(unnamed), RefusalCode::Range, 0)?;
         self.right_burst(Rule::Configuration, BurstMode::Fresh)?;
@@ -54,7 +54,7 @@ impl Rules<'_, '_> {
         self.configure(self.height)
     }
 
-    /// One that is right, and as far as the board can have it another in every field.
+    /// A right configuration that differs from `own` in every field, as far as the board allows.
     fn another(&self, own: Configuration) -> Configuration {
         let depths = self.capabilities.sample_depths();
         let others = BitDepth::ALL.map(|depth| depth.bits() as u8).into_iter();
@@ -69,7 +69,7 @@ impl Rules<'_, '_> {
         }
     }
 
-    /// `other` with each field out of range, by each of the bits that make it so.
+    /// `other` with each field out of range, once by each bit that makes it so.
     fn out_of_range(&self, other: Configuration) -> Vec<(u16, Configuration)> {
         let (width, height) = (self.capabilities.max_width, self.capabilities.max_height);
         let least = self.configuration();
@@ -95,7 +95,7 @@ impl Rules<'_, '_> {
         wrong
     }
 
-    /// `other` of a depth that no board has, and of no width, of which the depth is named.
+    /// `other` with a depth that no board has and a width of 0; the refusal must name the depth.
     pub(super) fn without_depth(&self, other: Configuration) -> Configuration {
         Configuration { bits: other.bits + 1, width: 0, ..other }
     }

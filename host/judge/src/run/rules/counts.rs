@@ -1,4 +1,4 @@
-//! What the board counts, behind what moves it and what must not.
+//! The board's counters after what changes them, and after what must not.
 
 use std::mem;
 
@@ -10,11 +10,11 @@ use crate::result::{Counter, Finding, Rule};
 use crate::run::counters::damaged;
 use crate::run::findings::End;
 
-/// Rows of a frame of which the first is asked for once more: the second pushes it out.
+/// Rows of a frame whose first row is asked for again: the second one pushes it out.
 const ROWS: usize = 2;
-/// How often a row is given that is not needed any more.
+/// How often a row is given that is no longer needed.
 const UNNEEDED: u32 = 4;
-/// What STATUS clears by as well as by 1.
+/// A value with which STATUS clears, like 1.
 const CLEAR: u8 = 0x80;
 
 impl Rules<'_, '_> {
@@ -25,13 +25,13 @@ impl Rules<'_, '_> {
         self.cleared()
     }
 
-    /// Neither a STATUS that is not to clear nor a RESET clears a counter.
+    /// Neither STATUS without *clear* nor RESET must clear a counter.
     pub(super) fn counts_stay(&mut self) -> Result<(), End> {
         self.always(|rules| rules.counts_on(|_| Ok(())))?;
         self.always(|rules| rules.counts_on(Self::drop_rows))
     }
 
-    /// Rows are counted that are asked for again, that are not needed and that other sessions say to have.
+    /// Rows must be counted that are asked for again and that are not needed, and none must be acknowledged by other sessions.
     fn rows_counted(&mut self) -> Result<(), End> {
         self.given = Given::default();
         self.drop_rows()?;
@@ -69,8 +69,8 @@ impl Rules<'_, '_> {
         self.configure(self.small.rows())
     }
 
-    /// A count or a session that is wrong behind `scenario` each time is so by no late copy of a request: there are not so many. Rows may
-    /// be wrong since tables are.
+    /// Tries `scenario` up to three times. A count or a session that is wrong each time is not due to late copies of
+    /// requests: there are not that many. Wrong rows may be, through wrong tables.
     pub(super) fn always(&mut self, scenario: fn(&mut Self) -> Result<(), End>) -> Result<(), End> {
         let tried = self.thrice(scenario);
         let is_of_requests = |end: &End| {
@@ -84,7 +84,7 @@ impl Rules<'_, '_> {
         tried
     }
 
-    /// What is counted of rows stays so behind `act`.
+    /// The counters of rows must not go down with `act`.
     pub(super) fn counts_on(&mut self, act: impl FnOnce(&mut Self) -> Result<(), End>) -> Result<(), End> {
         self.right_frames(&[FRAME])?;
         let before = self.run.board.status(false).map_err(of_board)?;
@@ -97,7 +97,7 @@ impl Rules<'_, '_> {
         ])
     }
 
-    /// Any number but 0 clears all of them.
+    /// STATUS with any number but 0 must clear all counters.
     fn cleared(&mut self) -> Result<(), End> {
         let said = self.run.board.clear_by(CLEAR).map_err(of_board)?;
         if let Said::Replied(_) = said {
@@ -107,7 +107,7 @@ impl Rules<'_, '_> {
         self.not_counted(&status)
     }
 
-    /// Nothing is counted by `status`, which came behind what sets all counters back.
+    /// `status`, which came after something that clears all counters, must have all of them 0.
     pub(super) fn not_counted(&mut self, status: &Status) -> Result<(), End> {
         let of_new_rows = equal([
             (Counter::RowsIn, status.rows_in, 0),
@@ -116,7 +116,7 @@ impl Rules<'_, '_> {
             (Counter::LeastLatency, status.least_latency, 0),
             (Counter::MostLatency, status.most_latency, 0),
         ]);
-        // There was no new row, and no link makes one.
+        // There was no new row, and no link can make one.
         self.run.findings.look.beyond_links |= of_new_rows.is_err();
         of_new_rows?;
         let board = &self.run.board;
@@ -134,12 +134,12 @@ impl Rules<'_, '_> {
     }
 }
 
-/// Each counter, with what the board counts and what is right, must be right; the first that is not is told.
+/// Each counter, given with what the board counts and with what is right, must be right. Ends with the first that is not.
 pub(super) fn equal<const N: usize>(counts: [(Counter, u32, u32); N]) -> Result<(), End> {
     all_right(counts, |counted, right| counted == right)
 }
 
-/// The same where a board may count more.
+/// The same for counters of which the board may count more.
 pub(super) fn at_least<const N: usize>(counts: [(Counter, u32, u32); N]) -> Result<(), End> {
     all_right(counts, |counted, right| counted >= right)
 }

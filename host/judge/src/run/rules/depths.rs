@@ -1,4 +1,4 @@
-//! Samples beyond the depth of a board's frames: they are counted, and go in as they are.
+//! Samples above the depth of a board's frames: they are counted, and go in as they are.
 
 use halfrow_model::{BitDepth, Geometry};
 
@@ -10,11 +10,11 @@ use crate::result::{Counter, Rule};
 use crate::run::findings::End;
 use crate::run::variations::Build;
 
-/// Rows of a frame: the first one is not stretched.
+/// The rows of a frame. The first one is not stretched.
 const ROWS: usize = 2;
 
 impl Rules<'_, '_> {
-    /// Samples of 12 bits at every depth that has fewer.
+    /// Samples of 12 bits at every lower depth.
     pub(super) fn depths(&mut self) -> Result<(), End> {
         for depth in Build::of(&self.capabilities).depths {
             if depth < BitDepth::Twelve {
@@ -36,7 +36,7 @@ impl Rules<'_, '_> {
         self.frames(Rule::Samples, compared)?;
         let status = self.run.board.status(false).map_err(of_board)?;
         let counted = status.samples_over.wrapping_sub(before.samples_over);
-        // An old copy of a request may have cleared them.
+        // A late copy of an old request may have cleared the counter.
         if counted == over || !self.run.board.had_each_packet_once(&status) {
             return Ok(());
         }

@@ -9,7 +9,7 @@ use crate::result::Rule;
 use crate::run::findings::End;
 use crate::run::parts::of_height;
 
-/// Places of COMMIT's fields (WIRE.md, 13).
+/// The numbers of COMMIT's fields (WIRE.md, 13).
 const V: u16 = 1;
 const K: u16 = 2;
 
@@ -18,7 +18,7 @@ impl Rules<'_, '_> {
         grids(&self.capabilities)
     }
 
-    /// Entries of a grid of a bit too many, behind one that is right and in front of it.
+    /// Grid entries with a bit too many, after a right one and before it.
     pub(super) fn grid_entries(&mut self) -> Result<(), End> {
         let most = *TableSet::GRID_RANGE.end();
         for wrong in (0..u32::BITS).map(|bit| 1_u32 << bit).filter(|&wrong| wrong > most) {
@@ -32,8 +32,8 @@ impl Rules<'_, '_> {
         Ok(())
     }
 
-    /// `right`, which is not committed yet, with each shape that a grid cannot have, with one of more entries than there are,
-    /// and as a grid that reads back otherwise.
+    /// `right`, which is not committed yet, with each shape that a grid cannot have, with a shape of more entries than a
+    /// bank holds, and as a grid that reads back otherwise.
     pub(super) fn shapes(&mut self, grids: Grids, right: Commit) -> Result<(), End> {
         let of = |v, k| Commit { shape: Some(Shape { v, k }), ..right };
         let known = (0..u8::BITS as u8).find(|&k| grids.takes(k)).unwrap_or_default();
@@ -50,7 +50,8 @@ impl Rules<'_, '_> {
         self.too_many_entries(grids, of(1, known))
     }
 
-    /// `finest` of a grid that reads back right, beside a kernel that does not. The entries are row factors, which are a grid's as well.
+    /// `finest` with the CRC of a grid that reads back right and of a kernel that does not. The grid's entries are the
+    /// row factors that the bank holds.
     fn kernel_of_grid(&mut self, finest: Commit) -> Result<(), End> {
         let shape = finest.shape.and_then(|Shape { v, k }| GridShape::new(v.into(), k.into()).ok());
         let entries = shape.map(|shape| shape.entries(&of_height(&self.small.geometry, self.height)));
@@ -61,7 +62,7 @@ impl Rules<'_, '_> {
         self.refused(Rule::Shape, &Request::Commit(other), RefusalCode::TableCrc, Table::Kernel as u16)
     }
 
-    /// The finest grid of frames as high as they can be, where a bank does not hold it.
+    /// The finest grid for frames of the greatest height, if a bank does not hold it.
     fn too_many_entries(&mut self, grids: Grids, finest: Commit) -> Result<(), End> {
         let rows = self.capabilities.max_height.into();
         let shape = finest.shape.and_then(|Shape { v, k }| GridShape::new(v.into(), k.into()).ok());

@@ -1,6 +1,7 @@
-//! What a board must refuse, keep, end and tell again (WIRE.md, AT-SPEED.md): what no frame shows, tried on purpose.
+//! Tries on purpose what no frame shows: what a board must refuse, keep, end and send again (WIRE.md, AT-SPEED.md).
 //!
-//! It is all done with rows of the least width, so that it costs a link little, and last, since it leaves a board with no tables.
+//! It is done with rows of the least width, so that it takes little time on a link, and last, because it leaves the board
+//! without tables.
 
 mod banks;
 mod bursts;
@@ -44,7 +45,7 @@ use refused::Refused;
 use small::Small;
 pub(super) use waiting::MOST_FILLED;
 
-/// Bytes of a reply that a finding tells.
+/// The most bytes of a reply that a finding quotes.
 const TOLD: usize = 32;
 /// The first row factor of the shadow bank.
 const FIRST_FACTOR: Span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
@@ -55,7 +56,7 @@ impl Run<'_> {
         self.plan.at_speed.soak().is_none() && self.plan.amount(Part::Rules) > 0
     }
 
-    /// Tries the rules, with the board back behind `last` if it goes away meanwhile.
+    /// Tries the rules. If the board goes away meanwhile, it is brought back to where it was after `last`.
     pub(super) fn rules(&mut self, last: Option<&Segment>) -> Result<(), End> {
         if !self.tries_rules() {
             self.findings.note(CheckName::Rules, Outcome::Skipped, Finding::RulesLeftOut {});
@@ -88,17 +89,17 @@ struct Rules<'a, 'run> {
     run: &'a mut Run<'run>,
     capabilities: Capabilities,
     small: Small,
-    /// Requests that were answered as they must be.
+    /// How many requests were answered as they must be.
     right: usize,
-    /// Refusals among those, of the open session.
+    /// The refusals among these, in the open session.
     refused: Refused,
-    /// What the board had counted in front of them.
+    /// The board's counters before these.
     before: Status,
-    /// Columns of a frame, as the board is set.
+    /// The columns of a frame in the board's present configuration.
     width: usize,
-    /// Rows of it.
+    /// The rows of a frame in it.
     height: usize,
-    /// Rows of the next frame that the board was given.
+    /// Rows of the next frame that were already given to the board.
     given: Given,
 }
 
@@ -119,7 +120,7 @@ impl<'a, 'run> Rules<'a, 'run> {
         })
     }
 
-    /// Tries all of them, and returns how many requests were answered as they must be.
+    /// Tries all rules, and returns how many requests were answered as they must be.
     fn all(mut self) -> Result<usize, End> {
         self.drop_rows()?;
         self.before = self.run.board.status(false).map_err(of_board)?;
@@ -145,7 +146,7 @@ impl<'a, 'run> Rules<'a, 'run> {
         Ok(self.right)
     }
 
-    /// Ends with anything `said` but the answer `right`; a reply may have more bytes than that.
+    /// Ends with anything `said` but the answer `right`. A reply may be longer than that.
     fn judge(
         &mut self,
         rule: Rule,
@@ -168,12 +169,12 @@ impl<'a, 'run> Rules<'a, 'run> {
         Err(broken(rule, kind, answer(right), found))
     }
 
-    /// Whether the board answers, and had all that was sent to it: then what it did not answer can be told.
+    /// Whether the board answers and had every packet that was sent to it: only then is it known what it did not answer.
     fn had_it_each_time(&mut self) -> bool {
         self.run.board.status(false).is_ok_and(|status| self.run.board.had_each_packet_once(&status))
     }
 
-    /// Asks what must be refused.
+    /// Sends a request that must be refused.
     fn refused(
         &mut self,
         rule: Rule,
@@ -197,14 +198,14 @@ impl<'a, 'run> Rules<'a, 'run> {
         let right = Said::Refused(Refusal { code, kind: kind.code(), detail });
         let is_unanswered = matches!(said, Err(BoardError::NoAnswer { .. }));
         if is_unanswered && kind == Kind::RowIn && self.has_taken(payload) {
-            // It is known what became of each time that it was asked for.
+            // It is known what happened to each copy of this request.
             self.run.board.excuse_changes(changes);
             return Err(broken(rule, kind, answer(&right), Answer::Taken {}));
         }
         self.judge(rule, kind, said, &right)
     }
 
-    /// Whether the board knows the row in `payload`, by what it counts when that comes once more.
+    /// Whether the board has the row in `payload`, by what it counts when that comes once more.
     fn has_taken(&mut self, payload: &[u8]) -> bool {
         let Ok(before) = self.run.board.status(false) else { return false };
         self.run.board.give_bytes(Kind::RowIn, payload);
@@ -214,7 +215,7 @@ impl<'a, 'run> Rules<'a, 'run> {
         known(&after) > known(&before) && !is_refused && self.run.board.had_each_packet_once(&after)
     }
 
-    /// Asks what must be answered with `reply`.
+    /// Sends a request that must be answered with `reply`.
     fn replied(&mut self, rule: Rule, request: &Request<'_>, reply: Vec<u8>) -> Result<(), End> {
         self.bytes_replied(rule, request.kind(), &payload(request), reply)
     }
@@ -224,7 +225,7 @@ impl<'a, 'run> Rules<'a, 'run> {
         self.judge(rule, kind, said, &Said::Replied(reply))
     }
 
-    /// Sets the board for small frames of so many rows.
+    /// Configures the board for small frames of `rows` rows.
     fn configure(&mut self, rows: usize) -> Result<(), End> {
         let geometry = of_height(&self.small.geometry, rows);
         self.set(&geometry, RowTiming::default())
@@ -239,14 +240,14 @@ impl<'a, 'run> Rules<'a, 'run> {
         self.run.board.drop_rows().map_err(of_board)
     }
 
-    /// Streams frames, which must come back as `compared` has them.
+    /// Streams the frames of `compared`, which must come back right.
     fn frames(&mut self, rule: Rule, mut compared: Compared) -> Result<(), End> {
         self.stream(&mut compared).map_err(|error| of_rows(rule, error))?;
         self.judge_rows(rule, &compared)
     }
 
-    /// Ends with the first row that is not as it must be. Where its samples alone are wrong, and a part is known that makes them so, no
-    /// rule is broken.
+    /// Ends with the first wrong row. If only its samples are wrong and a known defect explains them, the finding is that
+    /// samples differ, not that a rule is broken.
     fn judge_rows(&self, rule: Rule, compared: &Compared) -> Result<(), End> {
         let Some(WrongRow { row, frame, seen }) = &compared.wrong else { return Ok(()) };
         if let Some(seen) = seen {
@@ -278,7 +279,7 @@ fn of_board(error: BoardError) -> End {
     End::board(CheckName::Rules, &error)
 }
 
-/// Where rows are waited for that must come back.
+/// The end of waiting for rows that must come back.
 fn of_rows(rule: Rule, error: BoardError) -> End {
     match error {
         BoardError::RowMissing { place, .. } => {
@@ -297,8 +298,8 @@ fn broken(rule: Rule, kind: Kind, right: Answer, found: Answer) -> End {
     End::failed(CheckName::Rules, rule_broken(rule, kind, right, found))
 }
 
-/// What must be said did not come, however often it was asked for: of silence alone no board is wrong, since a link can lose
-/// the same packet each time, or all of them for a while.
+/// An answer that must be given did not come, however often it was asked for. Silence alone makes no board wrong, since a
+/// link can lose the same packet each time, or all packets for a while.
 fn unanswered(rule: Rule, kind: Kind, right: Answer) -> End {
     let found = Box::new(rule_broken(rule, kind, right, Answer::Nothing {}));
     let finding = Finding::WrongOverDoubtfulLink { found, doubt: Doubt::AnswerLost {} };
@@ -319,7 +320,7 @@ fn payload(request: &Request<'_>) -> Vec<u8> {
     payload
 }
 
-/// The payload of `request`, with a byte behind its fields.
+/// The payload of `request` with a byte after its fields.
 fn longer(request: &Request<'_>) -> Vec<u8> {
     let mut payload = payload(request);
     payload.push(requests::NO_MEANING);

@@ -1,4 +1,4 @@
-//! A board that has forgotten all: not ready for rows, and its tables as they are at power-up.
+//! A board that has forgotten everything: it is not ready for rows, and its tables are as they are at power-up.
 
 use halfrow_model::{NODES, RowFactor};
 use halfrow_protocol::message::{Bank, Commit, NODE_BYTES, RefusalCode, Request, RowPlace, Table};
@@ -25,7 +25,7 @@ impl Rules<'_, '_> {
         self.tallest()
     }
 
-    /// The tables of the tallest frames but one are committed whole: of almost all heights most bits are set.
+    /// The tables of frames one row less than the tallest must be committed whole. Of that height usually most bits are set.
     fn tallest(&mut self) -> Result<(), End> {
         let rows = self.capabilities.max_height.saturating_sub(1).max(1);
         self.configure(rows.into())?;
@@ -53,7 +53,7 @@ impl Rules<'_, '_> {
     }
 }
 
-/// So many row factors, as they are at power-up.
+/// `rows` row factors, as they are at power-up.
 fn row_factors(rows: u16) -> Vec<u8> {
     RowFactor::ONE.get().to_le_bytes().repeat(rows.into())
 }

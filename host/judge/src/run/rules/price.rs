@@ -1,26 +1,26 @@
-//! What trying the rules costs: it depends on what the board has, and not on the plan.
+//! The price of trying the rules. It depends on the board's capabilities, not on the plan.
 
 use crate::run::at_speed::known_bursts;
 use crate::run::prices::Prices;
 
-/// What a part of them takes.
+/// What a group of rules takes.
 struct Cost {
     /// Requests that are waited for, one after the other.
     requests: f64,
-    /// Bytes on the wire of all packets, those there and those back.
+    /// Bytes on the wire of all packets, in both directions.
     bytes: f64,
 }
 
-/// Of every board.
+/// For every board.
 const ALWAYS: Cost = Cost { requests: 853.0, bytes: 159_000.0 };
-/// Of bursts.
+/// For bursts.
 const BURSTS: Cost = Cost { requests: 454.0, bytes: 114_000.0 };
-/// Of the trap.
+/// For the trap.
 const TRAP: Cost = Cost { requests: 163.0, bytes: 27_000.0 };
-/// Of an output bank: a row that fills it, comes, and comes again.
+/// For each output bank: a row that fills it, comes back, and comes back again.
 const BANK: Cost = Cost { requests: 1.0, bytes: 560.0 };
 
-/// All of them, in seconds.
+/// The price of all rules, in seconds.
 pub(in crate::run) fn price(prices: &Prices<'_>) -> f64 {
     let capabilities = prices.capabilities;
     let bursts = known_bursts(capabilities).ok();

@@ -1,4 +1,4 @@
-//! What was refused, beside what the board counts of it.
+//! The refusals that came, compared with the board's count of them.
 
 use halfrow_protocol::message::RefusalCode;
 
@@ -8,17 +8,17 @@ use crate::board::Said;
 use crate::result::Counter;
 use crate::run::findings::End;
 
-/// Refusals that came.
+/// How many refusals came.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Refused {
-    /// Those of the open session.
+    /// Of packets of the open session.
     own: u32,
-    /// Those of others.
+    /// Of packets of other sessions.
     foreign: u32,
 }
 
 impl Refused {
-    /// Takes note of `said`, if it is a refusal.
+    /// Counts `said` if it is a refusal.
     pub(super) fn note(&mut self, said: &Said) {
         match said {
             Said::Refused(refusal) if refusal.code == RefusalCode::Session => self.foreign += 1,
@@ -29,8 +29,8 @@ impl Refused {
 }
 
 impl Rules<'_, '_> {
-    /// The board counts at least the refusals that came in this session: whatever a link loses or doubles, none of them was
-    /// sent without a request.
+    /// The board must count at least the refusals that came in this session: whatever a link loses or doubles, each was
+    /// sent for a request.
     pub(super) fn refusals_counted(&mut self) -> Result<(), End> {
         let after = self.run.board.status(false).map_err(of_board)?;
         let (Refused { own, foreign }, before) = (self.refused, self.before);

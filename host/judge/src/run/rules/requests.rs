@@ -1,4 +1,4 @@
-//! Requests that no host makes: cut short, without meaning, longer than they are.
+//! Requests that no host makes: cut short, without meaning, or too long.
 
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{
@@ -10,9 +10,9 @@ use crate::board::Said;
 use crate::result::Rule;
 use crate::run::findings::End;
 
-/// In a byte that has few values it is none of them.
+/// A value that has no meaning in any byte with few values.
 pub(super) const NO_MEANING: u8 = 0x80;
-/// From this bit on none is set in any level, table, bank or mode.
+/// From this bit on, no level, table, bank or mode has a bit set.
 const FIRST_BIT: u32 = 2;
 impl Rules<'_, '_> {
     pub(super) fn requests(&mut self) -> Result<(), End> {
@@ -24,7 +24,7 @@ impl Rules<'_, '_> {
         self.echo_of_nothing()
     }
 
-    /// What is echoed has no field behind which there may be more.
+    /// An echo must be exact: it has no fields after which more bytes might follow.
     fn echo_of_nothing(&mut self) -> Result<(), End> {
         match self.run.board.ask(Kind::Echo, &[]) {
             Ok(Said::Replied(more)) if !more.is_empty() => {
@@ -35,13 +35,13 @@ impl Rules<'_, '_> {
         }
     }
 
-    /// Requests with a byte behind their fields, which is skipped.
+    /// Requests with a byte after their fields, which must be skipped.
     fn longer(&mut self) -> Result<(), End> {
         let span = Span { count: 0, ..FIRST_FACTOR };
         let next_row = self.run.board.credit();
         let empty = Request::TableRead(span);
         let requests = [
-            // What the board is and counts is for other checks.
+            // Capabilities and counters are judged by other checks.
             (Request::Capabilities, Vec::new()),
             (Request::Status { clear: false }, Vec::new()),
             (Request::TableWrite(Entries { span, bytes: &[] }), Vec::new()),
@@ -56,7 +56,7 @@ impl Rules<'_, '_> {
         self.drop_rows()
     }
 
-    /// Every request by a byte too short, and with a field that has no meaning.
+    /// Every request a byte too short, and with a field that has no meaning.
     fn without_meaning(&mut self) -> Result<(), End> {
         let span = Span { count: 0, ..FIRST_FACTOR };
         let commit = Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: 1, shape: None };

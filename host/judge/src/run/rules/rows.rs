@@ -1,4 +1,4 @@
-//! Rows that must be refused, in front of rows that must come back right.
+//! Rows that must be refused, followed by rows that must come back right.
 
 use std::mem;
 
@@ -17,20 +17,20 @@ use crate::run::at_speed::{BY_TURNS, fit};
 use crate::run::findings::End;
 use crate::verdict::Cause;
 
-/// The generation that rows are made with.
+/// The generation with which rows are made.
 pub(super) const GENERATION: u8 = 0x96;
 /// The frame whose rows are given out of order.
 pub(super) const FRAME: u16 = 0x1234;
-/// Where the flags of a row's place stand, in front of its generation, and the one of them that has a meaning (WIRE.md, 20).
+/// Where the flags of a row's place are, just before its generation, and the one flag that has a meaning (WIRE.md, 20).
 const FLAGS: usize = 10;
 const LAST: u8 = 1;
-/// How often a row is given that is to be inside the core.
+/// How often a row is given until it is inside the core.
 pub(super) const TRIES: u32 = 8;
 /// How often a row is asked for again.
 const AGAIN: u16 = 3;
-/// The least bit of a row's number that a session does not reach by counting.
+/// The lowest bit of a row's number that a session does not reach by counting.
 const FAR: u32 = 8;
-/// Bytes that go to the board between rows and the RESET that drops them.
+/// Bytes that are sent to the board between rows and the RESET that drops them.
 const BYTES_TO_CUT: [usize; 8] = [0, 3, 9, 17, 30, 50, 77, 120];
 
 impl Rules<'_, '_> {
@@ -51,7 +51,7 @@ impl Rules<'_, '_> {
         self.numbers()
     }
 
-    /// Has the board make rows with the small tables, and tries it.
+    /// Has the board make rows with the small tables, and checks a frame.
     pub(super) fn rows_again(&mut self) -> Result<(), End> {
         let rows = self.small.rows();
         self.configure(rows)?;
@@ -61,14 +61,14 @@ impl Rules<'_, '_> {
         self.right_frames(&[FRAME])
     }
 
-    /// Frames of which every row must come back right.
+    /// Streams frames of which every row must come back right.
     pub(super) fn right_frames(&mut self, frames: &[u16]) -> Result<(), End> {
         let made = self.small.made(0, self.height, GENERATION);
         let compared = Compared::default().with(&self.small, frames.iter().copied(), &made);
         self.frames(Rule::Rows, compared)
     }
 
-    /// Row `row` of the frame, under the number that it has if the frame is the next one.
+    /// Row `row` of the frame, with the number that it has if the frame is the next one.
     pub(super) fn place(&self, row: u16) -> RowPlace {
         RowPlace {
             row_sequence: self.run.board.acknowledged() + u32::from(row),
@@ -79,12 +79,12 @@ impl Rules<'_, '_> {
         }
     }
 
-    /// Asks for a black row at `place`, which must be refused.
+    /// Sends a black row at `place`, which must be refused.
     pub(super) fn row_refused(&mut self, rule: Rule, place: RowPlace, code: RefusalCode) -> Result<(), End> {
         self.refused(rule, &Request::RowIn(RowIn { place, packed: &black(place) }), code, 0)
     }
 
-    /// The same with what is not looked at: the other flags, the generation, and a byte behind the samples.
+    /// The same with what a board must ignore: the other flags, the generation, and a byte after the samples.
     fn marked_row_refused(&mut self, place: RowPlace, code: RefusalCode) -> Result<(), End> {
         let mut bytes = longer(&Request::RowIn(RowIn { place, packed: &black(place) }));
         bytes[FLAGS] |= !LAST;
@@ -92,7 +92,7 @@ impl Rules<'_, '_> {
         self.bytes_refused(Rule::Skipped, Kind::RowIn, &bytes, code, 0)
     }
 
-    /// Behind a RESET nothing but row 0 in its place, and nothing beyond the window.
+    /// After a RESET only row 0 in its place must be taken, and nothing beyond the window.
     fn first_rows(&mut self) -> Result<(), End> {
         self.window()?;
         let first = self.place(0);
@@ -115,12 +115,12 @@ impl Rules<'_, '_> {
             self.row_refused(Rule::Credit, place, RefusalCode::Credit)?;
         }
         self.right_frames(&[FRAME])?;
-        // Behind the last row of a frame comes row 0.
+        // Only row 0 follows the last row of a frame.
         let behind = RowPlace { row_sequence: self.run.board.acknowledged(), ..self.place(1) };
         self.row_refused(Rule::RowPlace, behind, RefusalCode::Row)
     }
 
-    /// Behind a RESET no row is inside, so that the window is as far ahead as there are banks.
+    /// After a RESET no row is inside, so the window must be as far ahead as there are input banks.
     fn window(&mut self) -> Result<(), End> {
         let rows = self.run.board.credit_behind_reset().map_err(of_board)?;
         let banks = self.capabilities.row_banks_in.into();
@@ -132,7 +132,7 @@ impl Rules<'_, '_> {
         Ok(())
     }
 
-    /// Gives row `row` of the frame, which is one of the first two: for those there is credit.
+    /// Gives row `row` of the frame, one of the first two, for which there always is credit.
     pub(super) fn give(&mut self, row: u16) {
         let place = self.place(row);
         let made = self.small.made(0, self.height, GENERATION);
@@ -142,8 +142,8 @@ impl Rules<'_, '_> {
         self.given.numbers.push(number);
     }
 
-    /// Gives row 0, and waits until it is inside the core. How long a row waits in front of it is not the wire's to say, so one that
-    /// does not enter makes no board wrong.
+    /// Gives row 0, and waits until it is inside the core. The wire does not say how long a row may wait before that, so
+    /// a row that does not enter makes no board wrong.
     pub(super) fn enter(&mut self) -> Result<(), End> {
         let place = self.place(0);
         let mut has_come = false;
@@ -162,7 +162,7 @@ impl Rules<'_, '_> {
         Err(End::error(CheckName::Rules, Cause::Station, finding))
     }
 
-    /// With row 0 inside: other rows than row 1, and all that must wait until it has left.
+    /// With row 0 inside, tries rows other than row 1, and everything that must wait until row 0 has left.
     fn second_rows(&mut self) -> Result<(), End> {
         self.enter()?;
         self.busy(Rule::Inside)?;
@@ -187,7 +187,7 @@ impl Rules<'_, '_> {
         self.right_frames(&[FRAME])
     }
 
-    /// What must wait until the core is empty.
+    /// Tries what must wait until the core is empty.
     pub(super) fn busy(&mut self, rule: Rule) -> Result<(), End> {
         let commit =
             Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: !GENERATION, shape: None };
@@ -195,7 +195,7 @@ impl Rules<'_, '_> {
             Request::TableRead(FIRST_FACTOR),
             Request::TableCrc(FIRST_FACTOR),
             Request::Commit(commit),
-            // One out of range waits as well.
+            // A configuration out of range must wait too.
             Request::Configure(self.without_depth(self.configuration())),
         ];
         for request in requests {
@@ -204,7 +204,7 @@ impl Rules<'_, '_> {
         Ok(())
     }
 
-    /// A last row that is not said to be one.
+    /// A last row that is not marked as the last.
     fn last_rows(&mut self) -> Result<(), End> {
         self.configure(2)?;
         self.give(0);
@@ -214,14 +214,14 @@ impl Rules<'_, '_> {
         self.configure(self.small.rows())
     }
 
-    /// A row that comes before the one in front of it.
+    /// A row that arrives before the row above it.
     fn early_row(&mut self) -> Result<(), End> {
         self.give(1);
         self.give(0);
         self.right_frames(&[FRAME, FRAME + 1])
     }
 
-    /// A row comes as often as it is asked for, until it is acknowledged.
+    /// A row must come as often as it is asked for, until it is acknowledged.
     fn again(&mut self) -> Result<(), End> {
         self.configure(2)?;
         let Generation { tables, kernel, .. } = self.small.made(0, 2, GENERATION);
@@ -247,28 +247,28 @@ impl Rules<'_, '_> {
                 return Err(other_row(Rule::Again, 0, FRAME));
             }
         }
-        // Nothing is inside any more, but both rows are still kept.
+        // Nothing is inside now, but both rows are still kept.
         let configure = Request::Configure(self.configuration());
         self.refused(Rule::Inside, &configure, RefusalCode::Busy, 0)?;
         self.run.board.acknowledge(first.row_sequence + mem::take(&mut self.given).rows);
         self.configure(self.small.rows())
     }
 
-    /// Whether nothing was sent again behind so many `retries`, and nothing came to the board twice.
+    /// Whether nothing was sent again since there were `retries`, and nothing reached the board twice.
     pub(super) fn is_calm(&mut self, retries: u64) -> Result<bool, End> {
         let status = self.run.board.status(false).map_err(of_board)?;
         let board = &self.run.board;
         Ok(board.tally().retries == retries && board.had_each_packet_once(&status))
     }
 
-    /// Rows that are dropped while they leave, each time at another place, with rows behind them that must be right.
+    /// Rows that are dropped while they leave, each time at another place, followed by rows that must be right.
     fn cut_rows(&mut self) -> Result<(), End> {
         for bytes in BYTES_TO_CUT {
             self.give(0);
             self.give(1);
             let given = mem::take(&mut self.given).rows;
             self.run.board.drop_rows_behind(bytes, given).map_err(of_board)?;
-            // Whatever row was the last before, none but row 0 is the first.
+            // Whatever row was last before, only row 0 may be first now.
             for row in [1, 2] {
                 let place = RowPlace { row_sequence: self.run.board.acknowledged(), ..self.place(row) };
                 self.row_refused(Rule::RowPlace, place, RefusalCode::Row)?;
@@ -278,7 +278,7 @@ impl Rules<'_, '_> {
         Ok(())
     }
 
-    /// Last rows that are none, whatever bits of the height are set; the row in front of them has not come.
+    /// Rows wrongly marked as the last or not, for heights in which every bit is set once. The row before them has not come.
     fn heights(&mut self) -> Result<(), End> {
         for bits in BY_TURNS {
             let rows = fit(bits, self.capabilities.max_height.into()).max(1);
@@ -294,7 +294,7 @@ impl Rules<'_, '_> {
         self.configure(self.small.rows())
     }
 
-    /// Numbers on both sides of each power of two.
+    /// Row numbers on both sides of each power of two.
     fn numbers(&mut self) -> Result<(), End> {
         for bit in FAR..u32::BITS {
             let next_row = (1 << bit) - 2;
@@ -307,7 +307,7 @@ impl Rules<'_, '_> {
         Ok(())
     }
 
-    /// The board must count the rows that came back as the host does.
+    /// The board's row numbers must be the host's.
     fn counted(&mut self) -> Result<(), End> {
         let status = self.run.board.status(false).map_err(of_board)?;
         let right = self.run.board.acknowledged();

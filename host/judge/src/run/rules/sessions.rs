@@ -1,4 +1,4 @@
-//! What opens a session and what ends one, what is gone then, and what stays.
+//! What opens a session and what ends one, what is gone then and what stays.
 
 use std::time::Duration;
 
@@ -18,15 +18,15 @@ use crate::run::Generation;
 use crate::run::counters::rows_numbered;
 use crate::run::findings::End;
 
-/// How often a board must do what it must not, where a link or its supply can bring it about, which neither does each time: a copy of
-/// an old greeting that comes late opens a session as well.
+/// How often a board must do what it must not, where a link or the board's supply could cause it too, though not every
+/// time: a late copy of an old HELLO also opens a session.
 pub(super) const TIMES: usize = 3;
-/// The most tenths of a second that a board is held for behind its holder's last packet, and half of that.
+/// The tenths of a second for which a board is held after its holder's last packet; and half of that time.
 const HELD: u16 = 100;
 const SURELY_HELD: Duration = Duration::from_secs(5);
-/// The frame that a commit waits for when its session ends, and the generation that it would make.
+/// The frame for which a commit is pending when its session ends, and the generation that it would make.
 const PENDING: (u16, u8) = (0x4321, 0x3c);
-/// Frames of a burst that is under way when its session ends: every board has records for two.
+/// Frames of a burst that have been made when its session ends: every board has records for two.
 const FEW: u32 = 2;
 
 impl Rules<'_, '_> {
@@ -41,8 +41,8 @@ impl Rules<'_, '_> {
         self.rows_again()
     }
 
-    /// Tries `scenario` again where the board fails in it and has no tables any more, as one that has lost its power: that does not
-    /// come back each time.
+    /// Tries `scenario` again if the board fails in it and no longer has tables, like a board that has lost its power:
+    /// that does not happen every time.
     fn powered(&mut self, scenario: fn(&mut Self) -> Result<(), End>) -> Result<(), End> {
         for _ in 1..TIMES {
             let tried = scenario(self);
@@ -55,7 +55,7 @@ impl Rules<'_, '_> {
         scenario(self)
     }
 
-    /// Tries `scenario` again where the board fails in it: what a link has done to it does not come back each time.
+    /// Tries `scenario` again if the board fails in it: what a link caused does not happen every time.
     pub(super) fn thrice(&mut self, scenario: fn(&mut Self) -> Result<(), End>) -> Result<(), End> {
         let mut tried = scenario(self);
         for _ in 1..TIMES {
@@ -65,7 +65,7 @@ impl Rules<'_, '_> {
             }
             tracing::warn!("{}; trying it again", found.check().2.sentence());
             match scenario(self) {
-                // An answer that no sound board gives says less than what was found wrong.
+                // A FAIL says more than an answer that no sound board gives.
                 Err(again) if again.is_answer() => return tried,
                 again => tried = again,
             }
@@ -73,7 +73,7 @@ impl Rules<'_, '_> {
         tried
     }
 
-    /// Another host is told that the board is held, and for how long at most.
+    /// Another host must be told that the board is held, and for how long at most.
     fn held(&mut self) -> Result<(), End> {
         let begun = self.run.board.now();
         self.run.board.status(false).map_err(of_board)?;
@@ -87,7 +87,7 @@ impl Rules<'_, '_> {
         }
         let right = Refusal { code: RefusalCode::Held, kind: Kind::Hello.code(), detail: HELD };
         let said = said.map(|said| match said {
-            // Of what is left another host is told more or less.
+            // How much of the time is left depends on when the other host asks.
             Said::Refused(held @ Refusal { detail: 1..HELD, .. }) => {
                 Said::Refused(Refusal { detail: HELD, ..held })
             }
@@ -96,14 +96,14 @@ impl Rules<'_, '_> {
         self.judge(Rule::Held, Kind::Hello, said, &Said::Refused(right))
     }
 
-    /// The greeting that opened the session opens no other one.
+    /// The HELLO that opened the session, repeated, must open no other one.
     fn greeted_again(&mut self) -> Result<(), End> {
         self.rows_again()?;
         self.counts_on(|rules| {
             let own = rules.run.board.session();
             let again = rules.run.board.greet_again().map_err(of_board)?.session;
             if again != own {
-                // Its window is not known before it has answered.
+                // The window is not known until the board has answered in the new session.
                 rules.run.board.status(false).map_err(of_board)?;
                 return Err(another_session(own, again));
             }
@@ -112,7 +112,7 @@ impl Rules<'_, '_> {
         })
     }
 
-    /// The number of each session follows that of the one before.
+    /// The number of each session must follow that of the one before.
     fn numbers_of_sessions(&mut self) -> Result<(), End> {
         let mut wrong = None;
         for _ in 0..TIMES {
@@ -164,7 +164,7 @@ impl Rules<'_, '_> {
         let Some(burst) = self.small_burst(Burst::ENDLESS) else { return Ok(()) };
         let mode = if self.has_trap() { BurstMode::Trapped } else { BurstMode::Fresh };
         if self.has_trap() {
-            // No row has this signature but by a rare chance.
+            // A row has this signature only by a rare chance.
             self.run.board.expect(&vec![!0; self.height]).map_err(of_board)?;
         }
         let burst = self.start(Burst { mode, ..burst })?;
@@ -176,7 +176,7 @@ impl Rules<'_, '_> {
         self.right_burst(Rule::NewSession, BurstMode::Fresh)
     }
 
-    /// Behind all else: a RESET that closes the session, behind which the board may be another host's.
+    /// Last of all: a RESET that closes the session. After it another host may have the board.
     pub(super) fn closed(&mut self) -> Result<(), End> {
         for _ in 0..TIMES {
             self.drop_rows()?;
@@ -189,7 +189,7 @@ impl Rules<'_, '_> {
                 Err(error) => return Err(of_board(error)),
                 Ok(()) => {}
             }
-            // Otherwise another host had it meanwhile, or its supply has failed.
+            // Otherwise another host had the board meanwhile, or its supply failed.
             if self.run.board.session() == next(own) {
                 self.begun_anew(Rule::Closed, &before)?;
                 break;
@@ -206,7 +206,7 @@ impl Rules<'_, '_> {
         self.judge(Rule::Closed, Kind::Status, said, &Said::Refused(refusal))
     }
 
-    /// Drops configuration and tables, which leaves the session open.
+    /// Drops configuration and tables, which must leave the session open.
     pub(super) fn forget(&mut self) -> Result<(), End> {
         for _ in 0..TIMES {
             self.run.board.forget().map_err(of_board)?;
@@ -219,7 +219,7 @@ impl Rules<'_, '_> {
         Err(broken(Rule::Closed, Kind::Status, right, Answer::Refused { code, detail: 0 }))
     }
 
-    /// Opens the next session. What is known of the link in the one before stays a reason to doubt.
+    /// Opens the next session. A doubt about the link in the session before stays.
     pub(super) fn next_session(&mut self) -> Result<(), End> {
         self.ends_right()?;
         self.greet().map_err(of_board)
@@ -235,13 +235,13 @@ impl Rules<'_, '_> {
         Ok(())
     }
 
-    /// What was seen of the session that ends.
+    /// Ends with what the board did in the session that no link can cause.
     pub(super) fn ends_right(&mut self) -> Result<(), End> {
         self.run.misconduct(CheckName::Rules).map_or(Ok(()), Err)
     }
 
-    /// Behind a greeting no row, burst or commit is left of the session before, and no count; tables and configuration are as they
-    /// were when the board told `before`.
+    /// After HELLO no row, burst, commit or count must be left of the session before. Tables and configuration must be as
+    /// they were at the status `before`.
     fn begun_anew(&mut self, rule: Rule, before: &Status) -> Result<(), End> {
         let status = self.run.board.status(false).map_err(of_board)?;
         self.not_counted(&status)?;
@@ -268,7 +268,7 @@ impl Rules<'_, '_> {
     fn no_records(&mut self, rule: Rule) -> Result<(), End> {
         let said = self.run.board.ask(Kind::Records, &[0; 4]).map(|said| match said {
             Said::Replied(mut payload) => {
-                // Which burst was the last one is not the wire's to say.
+                // The wire does not say which burst was the last one.
                 payload.iter_mut().take(size_of::<u32>()).for_each(|byte| *byte = 0);
                 Said::Replied(payload)
             }
@@ -278,7 +278,7 @@ impl Rules<'_, '_> {
     }
 }
 
-/// The number behind `session`: 1 follows 255.
+/// The number that follows `session`: 1 after 255.
 fn next(session: u8) -> u8 {
     session % u8::MAX + 1
 }

@@ -1,4 +1,4 @@
-//! Tables and frames of the least width, made for any board.
+//! Tables and frames of the least width, for any board.
 
 use std::sync::Arc;
 
@@ -10,28 +10,28 @@ use crate::run::Generation;
 use crate::run::at_speed::{CALM, drawn_factors, drawn_kernel};
 use crate::run::variations::Build;
 
-/// Rows of a small frame, if a board can have so many.
+/// Rows of a small frame, if the board takes that many.
 const ROWS: usize = 4;
-/// Rows that the tables have, for frames in which a row must be found.
+/// Rows of the tables, for tall frames, in which a row must be found.
 const TALL: usize = 20;
 
-/// What the rules are tried with.
+/// The frames and tables with which the rules are tried.
 pub(super) struct Small {
-    /// Width, rows, depth and centre.
+    /// Width, rows, depth and centre of a small frame.
     pub(super) geometry: Geometry,
-    /// What frames are drawn from.
+    /// The seed from which frames are drawn.
     pub(super) seed: u32,
     pub(super) phase: Phase,
     /// L, in pixel clocks.
     latency: u16,
-    /// Whether the board tells of each row what entered.
+    /// Whether the board signs what entered of each row.
     pub(super) names_entered: bool,
-    /// Two that are not alike, for tall frames.
+    /// Two different generations, for tall frames.
     pub(super) tables: [Generation; 2],
 }
 
 impl Small {
-    /// For a board of these capabilities, drawn by `seed`; none if the board can have no rows at all.
+    /// For a board with these capabilities, drawn from `seed`; none if such tables cannot be made for it.
     pub(super) fn new(capabilities: &Capabilities, seed: u64, phase: Phase) -> Option<Self> {
         let build = Build::of(capabilities);
         let most = usize::from(capabilities.max_height);
@@ -59,7 +59,7 @@ impl Small {
         width as u16 / 2 + self.latency
     }
 
-    /// The tables at `place` for frames of so many rows, as generation `number`.
+    /// The tables at `place` for frames of `rows` rows, as generation `number`.
     pub(super) fn made(&self, place: usize, rows: usize, number: u8) -> Generation {
         let own = &self.tables[place];
         Generation { number, ..own.upper(rows).unwrap_or_else(|| own.clone()) }
@@ -75,7 +75,7 @@ impl Small {
         self.geometry.height()
     }
 
-    /// Frame `number`, of as many rows as `tables` have.
+    /// Frame `number`, with the size of `tables`.
     pub(super) fn frame(&self, number: u16, tables: &TableSet) -> NumberedFrame {
         let content = Content { seed: self.seed, frame: number };
         NumberedFrame { number, frame: Arc::new(content.frame(tables.geometry(), self.phase)) }

@@ -1,4 +1,4 @@
-//! Tables that must be refused, and entries at all places.
+//! Tables that must be refused, and entries at places all over a table.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -36,7 +36,7 @@ impl Rules<'_, '_> {
         self.sums_of(rule, Bank::Shadow, &row_factors, &nodes)
     }
 
-    /// Every port must read these entries, from the first one on, in `bank`.
+    /// Every port must read these entries in `bank`, from the first one on.
     pub(super) fn sums_of(
         &mut self,
         rule: Rule,
@@ -61,13 +61,13 @@ impl Rules<'_, '_> {
         }
     }
 
-    /// Every table that the board has, by its first port.
+    /// Every table that the board has.
     fn each_table(&self) -> Vec<Table> {
         let grid = self.known_grids().map(|_| Table::Grid);
         [Table::RowFactors, Table::Kernel].into_iter().chain(grid).collect()
     }
 
-    /// Spans past the end, of ports that are not there, into the active bank, of more than a packet holds.
+    /// Spans past the end, of ports that do not exist, into the active bank, and of more than a packet holds.
     fn spans(&mut self) -> Result<(), End> {
         for table in self.each_table() {
             let entries = self.entries_of(table);
@@ -101,7 +101,7 @@ impl Rules<'_, '_> {
         Ok(())
     }
 
-    /// Row factors out of range, and weights of taps that are not there, behind entries that are right and in front of them.
+    /// Row factors out of range, after a right entry and before one, and weights of taps that do not exist.
     fn entries(&mut self) -> Result<(), End> {
         let one = RowFactor::ONE.get();
         let beyond = (RowFactor::BITS..u32::BITS).map(|bit| 1 << bit);
@@ -137,10 +137,10 @@ impl Rules<'_, '_> {
         Ok(())
     }
 
-    /// Another entry at each place that has one bit of an address, all of them read, and summed up from there.
+    /// Writes a different entry at each place whose address has one bit set, then reads each back and asks for its CRC.
     fn addresses(&mut self) -> Result<(), End> {
         let mut places = Vec::new();
-        // The rows of a grid's memory are its first ones.
+        // Row factors and the first entries of a grid are the same memory.
         let grid = self.known_grids().map(|_| Table::Grid);
         for (table, from) in [(Some(Table::RowFactors), 0), (grid, self.capabilities.max_height)] {
             let Some(table) = table else { continue };
@@ -164,19 +164,19 @@ impl Rules<'_, '_> {
     }
 }
 
-/// The first and last of `entries`, and those that have one bit of an address.
+/// The first and the last of `entries`, and those whose address has one bit set.
 fn places_in(entries: Range<u16>) -> BTreeSet<u16> {
     let bits = (0..u16::BITS).map(|bit| 1 << bit);
     bits.chain([entries.start, entries.end - 1]).filter(|place| entries.contains(place)).collect()
 }
 
-/// An entry that no other place has.
+/// The entry for `place`, different from that of any other place.
 fn entry(table: Table, place: u16) -> Vec<u8> {
     let value = (u32::from(place) + 1).to_le_bytes();
     if table != Table::Kernel {
         return value.to_vec();
     }
-    // Of one of the inner taps, which every board has.
+    // The weight of an inner tap, which every board has.
     let mut node = vec![0; NODE_BYTES];
     node[2..4].copy_from_slice(&value[..2]);
     node

@@ -1,4 +1,4 @@
-//! Rows whose signatures are expected otherwise than they are, so that the board keeps them.
+//! Rows whose expected signatures are wrong on purpose, so that the board's trap keeps them.
 
 use halfrow_model::{Content, Frame, row_signature};
 use halfrow_protocol::Kind;
@@ -18,15 +18,15 @@ use crate::run::findings::End;
 use crate::run::parts::of_height;
 use crate::run::variations::Build;
 
-/// What TRAP says when no row was kept.
+/// The reply to TRAP when no row was kept.
 pub(super) const NOTHING_KEPT: [u8; 1] = [0];
-/// The most rows of the tallest frame: its tables and signatures take a link 30 ms at 3 Mbaud.
+/// The most rows of the tallest frame: its tables and signatures take 30 ms at 3 Mbaud.
 const MOST_ROWS: usize = 1023;
-/// The generation that it is made with: no other that is active in the rules.
+/// The generation with which it is made: none of the others that are active in the rules.
 const TALL: u8 = 0xc3;
 
 impl Rules<'_, '_> {
-    /// Each bit of a signature expected wrong, in one row and in another.
+    /// Expects each bit of a signature wrong once, in one row or another.
     pub(super) fn trap(&mut self) -> Result<(), End> {
         if !self.has_trap() {
             return Ok(());
@@ -46,7 +46,7 @@ impl Rules<'_, '_> {
             let row = bit as usize % rows.len();
             let mut expected = signatures.clone();
             expected[row] ^= 1 << bit;
-            // Only the first one is kept.
+            // Of two wrong rows only the first is kept.
             if let Some(last) = expected.last_mut().filter(|_| row + 1 < rows.len()) {
                 *last = !*last;
             }
@@ -56,7 +56,7 @@ impl Rules<'_, '_> {
         }
         self.drop_rows()?;
         self.replied(Rule::Trap, &Request::Trap, NOTHING_KEPT.to_vec())?;
-        // What is expected stays, whatever happens.
+        // Expected signatures stay, whatever happens.
         let last = (u32::BITS - 1) as usize % rows.len();
         self.trapping()?;
         self.kept(last, rows[last])?;
@@ -67,7 +67,7 @@ impl Rules<'_, '_> {
         self.small_burst(2).map(|burst| Burst { mode: BurstMode::Trapped, ..burst })
     }
 
-    /// The frame that is repeated, as it must leave if `made` makes it.
+    /// The frame that is repeated, as `made` must correct it.
     fn trapped_frame(&self, made: &Generation) -> Option<Frame> {
         let burst = self.trap_burst()?;
         let Generation { tables, kernel, .. } = made;
@@ -75,7 +75,7 @@ impl Rules<'_, '_> {
         correct(tables, kernel, &content.frame(tables.geometry(), self.small.phase)).ok()
     }
 
-    /// With `made` active, the last row of a frame expected otherwise.
+    /// With `made` active, expects a wrong signature for the last row of a frame, which must be kept.
     pub(super) fn last_row_trapped(&mut self, made: &Generation) -> Result<(), End> {
         let bursts = self.run.known_bursts().is_ok() && self.has_trap();
         let Some(frame) = self.trapped_frame(made).filter(|_| bursts) else { return Ok(()) };
@@ -88,7 +88,8 @@ impl Rules<'_, '_> {
         self.kept(row, frame.row(row))
     }
 
-    /// The same in a frame whose height has every bit set, below the greatest height, unless two of them take the board seconds.
+    /// The same in a frame whose height has every bit set and is at most the greatest, unless two such frames take the
+    /// board seconds.
     fn tall_trapped(&mut self) -> Result<(), End> {
         let most = usize::from(self.capabilities.max_height).min(MOST_ROWS);
         let rows = (1 << (most + 1).ilog2()) - 1;
@@ -112,7 +113,7 @@ impl Rules<'_, '_> {
         self.last_row_trapped(&made)
     }
 
-    /// Has these signatures expected, those behind the first row in a request of their own.
+    /// Gives the board these signatures, those after the first row in a request of their own.
     fn expect_apart(&mut self, signatures: &[u32]) -> Result<(), End> {
         let bytes: Vec<_> = signatures.iter().map(|signature| signature.to_le_bytes()).collect();
         let (head, rest) = bytes.split_at(1);
@@ -123,14 +124,14 @@ impl Rules<'_, '_> {
         Ok(())
     }
 
-    /// Has the board repeat a frame whose rows are expected to have the signatures that it was told.
+    /// Has the board repeat a frame, with the trap set for the signatures that it was given.
     fn trapping(&mut self) -> Result<(), End> {
         let Some(burst) = self.trap_burst() else { return Ok(()) };
         let burst = self.start(burst)?;
         self.look(&burst, 0, burst.frames, Awaited::ended(burst.frames)).map(drop)
     }
 
-    /// Row `row` of the first frame must have been kept.
+    /// Row `row` of the first frame must have been kept, with `samples`.
     fn kept(&mut self, row: usize, samples: &[u16]) -> Result<(), End> {
         let mut kept = vec![1, 0, 0, 0, 0];
         kept.extend((row as u16).to_le_bytes());

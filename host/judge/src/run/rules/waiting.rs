@@ -1,4 +1,4 @@
-//! Bursts that wait for free records, and what is told of them.
+//! Bursts that wait for free records, and what RECORDS says of them.
 
 use std::ops::Range;
 
@@ -11,21 +11,22 @@ use crate::board::Said;
 use crate::result::Rule;
 use crate::run::findings::End;
 
-/// How many records are taken each time that a burst waits for free ones.
+/// How many records are freed each time that a burst waits for free ones.
 const TAKEN: [u32; 4] = [5, 1, 9, 4];
-/// The most records that a burst fills: a slow board makes no more frames while anybody waits for it.
+/// The most records that a burst fills: a slow board would take too long to make more frames.
 pub(in crate::run) const MOST_FILLED: u32 = 1024;
 /// Records that fit into a packet.
 const AT_ONCE: u32 = Records::MOST as u32;
 
 impl Rules<'_, '_> {
-    /// Bursts that wait for the host to take records: what is refused meanwhile, and what they tell again.
+    /// Bursts that wait for the host to take records: what is refused meanwhile, and which records are sent again.
     pub(super) fn waiting(&mut self) -> Result<(), End> {
         let kept = self.capabilities.bursts.map_or(0, |bursts| u32::from(bursts.records));
         if kept > AT_ONCE { self.of_many_records(kept) } else { self.of_few_records(kept) }
     }
 
-    /// A burst that waits for free records again and again, since a packet tells whether all are taken.
+    /// For boards whose records all fit into a packet: a burst that waits for free records again and again, which that
+    /// packet shows.
     fn of_few_records(&mut self, kept: u32) -> Result<(), End> {
         let taken = TAKEN.map(|taken| taken.min(kept));
         let all = kept + taken.iter().sum::<u32>();
@@ -36,7 +37,7 @@ impl Rules<'_, '_> {
             self.look(&burst, from, kept, Awaited::under_way(kept))?;
             if from == 0 {
                 self.busy_with_burst(&burst)?;
-                // Fewer frames than were asked for first.
+                // Now fewer frames than were asked for first.
                 self.set_frames(&burst, all)?;
             }
             self.must_tell(Rule::Records, &burst, from..from + kept, BurstState::UnderWay, Some(&held))?;
@@ -53,7 +54,8 @@ impl Rules<'_, '_> {
         self.never_told(all..all)
     }
 
-    /// A burst that waits for free records without anybody seeing whether it does, so that frames may be held back or not.
+    /// For boards with more records: a burst that waits for free records, which no packet shows, so frames may be held
+    /// back or not.
     fn of_many_records(&mut self, kept: u32) -> Result<(), End> {
         let Some(burst) = self.small_burst(Burst::ENDLESS) else { return Ok(()) };
         let burst = self.start(burst)?;
@@ -67,7 +69,7 @@ impl Rules<'_, '_> {
             self.must_tell(Rule::Records, &burst, frames, BurstState::UnderWay, Some(&[]))?;
             self.never_told(from..from + kept)?;
         }
-        // One more than there are records for, so that it has not come there yet.
+        // One more frame than there are records for, so that the burst has not ended yet.
         let all = Some(taken + kept + 1).filter(|_| kept <= MOST_FILLED);
         self.set_frames(&burst, all.unwrap_or(0))?;
         let from = taken + 1;
@@ -89,14 +91,14 @@ impl Rules<'_, '_> {
         self.replied(Rule::Ended, &Request::Burst(Burst { frames, ..*burst }), Vec::new())
     }
 
-    /// One that has ended goes on no more, though it is set to `frames`, and its records stay behind a RESET.
+    /// A burst that has ended must not go on although it is set to `frames`, and its records must stay after a RESET.
     fn stays(&mut self, burst: &Burst, frames: u32) -> Result<(), End> {
         self.set_frames(burst, frames)?;
         self.drop_rows()
     }
 
-    /// The records of `frames` and no others must be there, of which those in `held` waited for a free one if that is known; they
-    /// free those before.
+    /// RECORDS must give the records of `frames` and no others, of which those in `held`, if that is known, waited for a
+    /// free one. The request frees the records before these.
     pub(super) fn must_tell(
         &mut self,
         rule: Rule,
@@ -113,7 +115,7 @@ impl Rules<'_, '_> {
         self.judge(rule, Kind::Records, said, &Said::Replied(right))
     }
 
-    /// What lies before or beyond the records of `frames` is refused.
+    /// Requests for records before or beyond `frames` must be refused.
     pub(super) fn never_told(&mut self, frames: Range<u32>) -> Result<(), End> {
         let before = frames.start.checked_sub(1);
         let beyond = (0..u32::BITS).filter_map(|bit| frames.end.checked_add(1 << bit));

@@ -13,18 +13,18 @@ use crate::run::at_speed::drawn_factors;
 use crate::run::findings::End;
 use crate::run::variations::Build;
 
-/// The generation that they are made with.
+/// The generation with which they are made.
 const GENERATION: u8 = 0x69;
 /// Their frame.
 const FRAME: u16 = 0xcba9;
-/// Rows, so that one is pushed out by the next.
+/// Two rows, so that the second pushes the first out.
 const ROWS: usize = 2;
 
 impl Rules<'_, '_> {
     pub(super) fn wide(&mut self) -> Result<(), End> {
         let Some(made) = self.wide_tables() else { return Ok(()) };
         let Generation { number, tables, kernel } = &made;
-        // The other bits than those that streamed frames have their gaps drawn with.
+        // The inverse of the seed of streamed frames' gaps.
         let gap_seed = !self.small.seed | 1;
         self.set(tables.geometry(), RowTiming { gap_seed, ..RowTiming::default() })?;
         let board = &mut self.run.board;
@@ -36,11 +36,11 @@ impl Rules<'_, '_> {
         let compared = Compared::with_gaps(gap_seed).with(&self.small, [FRAME], &made);
         self.frames(Rule::Wide, compared)?;
         self.last_row_trapped(&made)?;
-        // What follows is made with the small tables again.
+        // What follows needs the small tables again.
         self.rows_again()
     }
 
-    /// Tables for two rows of the greatest width; none if the board can have none.
+    /// Tables for two rows of the greatest width; none if the board can take none.
     fn wide_tables(&self) -> Option<Generation> {
         let build = Build::of(&self.capabilities);
         let width = usize::from(self.capabilities.max_width).min(build.ring) & !1;

@@ -1,4 +1,4 @@
-//! Packets that must have no effect: those that the link has damaged, and those of another session.
+//! Packets that must have no effect: damaged ones, and those of another session.
 
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Entries, Refusal, RefusalCode, Request};
@@ -9,28 +9,28 @@ use crate::board::{BoardError, Said};
 use crate::result::{Answer, Counter, Rule};
 use crate::run::findings::End;
 
-/// The row factor that must stay.
+/// The row factor that must stay in its place.
 const KEPT: [u8; 4] = 1_u32.to_le_bytes();
 
-/// One that nothing else writes.
+/// A row factor that nothing else writes.
 const OTHER: [u8; 4] = 0x1a5_u32.to_le_bytes();
 
 const READ: Request<'static> = Request::TableRead(FIRST_FACTOR);
 
-/// So many rows came once each where all that is answered twice is the board's.
+/// The least number of rows that must have come, each once, before doubled answers count as the board's fault.
 const ROWS: u32 = 64;
 
-/// So many sessions to come are left alone: what a link holds back could be theirs then.
+/// Numbers of this many coming sessions are left alone: a packet that the link holds back could belong to one of them later.
 const TO_COME: u16 = 16;
 
 impl Rules<'_, '_> {
-    /// A row factor stays as it was written, though packets that would write another one came with a flipped bit,
-    /// in another version or of another length than they name.
+    /// A row factor must stay as it was written, although packets that would write another one come with a flipped bit,
+    /// in another version, or with another length than they name.
     pub(super) fn damage(&mut self) -> Result<(), End> {
         self.thrice(Self::damage_counted)?;
         let mut said = self.behind_damage()?.0;
         for _ in 1..TIMES {
-            // A link that flips the very bit back makes one of them whole, and does so once.
+            // A link that happens to flip the same bit back makes one of them whole, but not every time.
             if is_other(&said) || self.run.board.answer_to_damaged().is_some() {
                 said = self.behind_damage()?.0;
             }
@@ -45,7 +45,8 @@ impl Rules<'_, '_> {
         }
     }
 
-    /// Each request has one answer: a link that doubled them would double rows as well, or packets to the board, which counts those.
+    /// Each request must have one answer. A link that doubles answers would also double rows, or packets to the board,
+    /// which counts these.
     pub(super) fn answered_once(&mut self) -> Result<(), End> {
         let board = &mut self.run.board;
         let [answered, twice] = board.answers();
@@ -56,21 +57,21 @@ impl Rules<'_, '_> {
         if !board.had_each_packet_once(&status) {
             return Ok(());
         }
-        // What came twice is what was found.
+        // The repeats are the finding, and so no reason to doubt it.
         board.excuse_repeats().map_err(of_board)?;
         let right = Answer::Replied { payload: String::new() };
         Err(broken(Rule::Once, Kind::TableWrite, right, Answer::Twice {}))
     }
 
-    /// What is said to be in the row factor's place behind damaged packets, and how many those were.
+    /// What is read in the row factor's place after damaged packets, and how many of each kind these were.
     fn behind_damage(&mut self) -> Result<(Result<Said, BoardError>, [u32; 2]), End> {
         self.replied(Rule::Damage, &write(&KEPT), Vec::new())?;
         let damaged = self.run.board.give_damaged(&write(&OTHER));
         Ok((self.read(), damaged))
     }
 
-    /// Damaged packets are counted as what they are. What stands between host and board may keep some of a kind to itself, as those
-    /// that do not unstuff, or all of both.
+    /// Damaged packets must be counted by their kind. What stands between host and board may drop some of a kind, such as
+    /// those that do not unstuff, or all of both.
     fn damage_counted(&mut self) -> Result<(), End> {
         let before = self.run.board.status(false).map_err(of_board)?;
         let (_, [crc, framing]) = self.behind_damage()?;
@@ -92,13 +93,14 @@ impl Rules<'_, '_> {
         }
     }
 
-    /// It stays so though packets of other sessions would write another one, and each of those is refused.
+    /// The row factor must stay although packets of other sessions would write another one, and each of these must be refused.
     pub(super) fn other_sessions(&mut self) -> Result<(), End> {
         let other = write(&OTHER);
         for session in others(self.run.board.session()) {
             let said = self.run.board.ask_in_session(session, other.kind(), &payload(&other));
             let refusal = Refusal { code: RefusalCode::Session, kind: other.kind().code(), detail: 0 };
-            // A board that carries it out may answer as if to a packet of its own session, which none is seen to be.
+            // Read first: a board that carries the packet out may answer as in its own session, which is then not taken
+            // for an answer.
             let read = self.read();
             self.judge_kept(Rule::Session, read)?;
             self.judge(Rule::Session, other.kind(), said, &Said::Refused(refusal))?;
@@ -110,17 +112,17 @@ impl Rules<'_, '_> {
         self.run.board.ask(READ.kind(), &payload(&READ))
     }
 
-    /// Ends with anything `said` to be in the row factor's place but what was written there.
+    /// Ends if `said`, which was read in the row factor's place, is not what was written there.
     fn judge_kept(&mut self, rule: Rule, said: Result<Said, BoardError>) -> Result<(), End> {
         if is_other(&said) {
-            // Whatever else a link has done, only what must have no effect can have written this.
+            // Whatever else the link did, only a packet that must have no effect can have written this.
             self.run.board.excuse_repeats().map_err(of_board)?;
         }
         self.judge(rule, READ.kind(), said, &Said::Replied(payload(&write(&KEPT))))
     }
 }
 
-/// Three quarters of so many.
+/// Three quarters of `packets`.
 fn most_of(packets: u32) -> u32 {
     packets - packets / 4
 }
@@ -134,7 +136,7 @@ fn write(bytes: &[u8; 4]) -> Request<'_> {
     Request::TableWrite(Entries { span: FIRST_FACTOR, bytes })
 }
 
-/// None, the session before `open`, and those whose numbers differ from it in a bit.
+/// 0, the session before `open`, and those whose numbers differ from it in one bit.
 pub(super) fn others(open: u8) -> impl Iterator<Item = u8> {
     let before = if open == 1 { u8::MAX } else { open - 1 };
     // 255 follows 254, and 1 follows 255.
