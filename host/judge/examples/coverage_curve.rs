@@ -1,7 +1,7 @@
-//! What runs of 1920 x 1080 find in how many seconds, on three links: chosen by every second fault that was measured, and
-//! checked on the others, which took no part. Each run is made on the mock, whose clock says what it took.
+//! What share of faults runs of 1920 x 1080 find in how many seconds, on three links. The parts are chosen by every second
+//! measured fault, and checked on the others. Each run is made on the mock, whose clock says how long it took.
 //!
-//! `cargo run --release --example coverage_curve -- pace=real` makes them in real time, as long as they are.
+//! `cargo run --release --example coverage_curve -- pace=real` makes the runs in real time.
 
 use std::error::Error;
 use std::time::{Duration, Instant};
@@ -12,10 +12,10 @@ use halfrow::progress::Silent;
 use halfrow::run::{Build, Prices, Rates, RunOptions, Selection, Vary, usual_capabilities};
 use halfrow::{Plan, link, verify};
 
-/// A UART of 3 and one of 12 Mbaud, and a FIFO.
+/// UARTs of 3 and 12 Mbaud and a FIFO, in bytes a second.
 const LINKS: [(&str, f64); 3] = [("3 Mbaud", 300_000.0), ("12 Mbaud", 1_200_000.0), ("FIFO", 5_000_000.0)];
 const ROUND_TRIP: f64 = 0.001;
-/// The share of a time that a run keeps for what no price knows.
+/// The share of its time that a run keeps as a reserve.
 const KEPT: f64 = 0.05;
 
 #[allow(clippy::print_stdout)]

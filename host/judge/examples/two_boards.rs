@@ -11,7 +11,7 @@ use halfrow::{Event, FrameSource, Plan, ReportFolder, RunOptions, Verdict};
 
 type Failure = Box<dyn Error + Send + Sync>;
 
-// A program of its own writes where it likes.
+// Only libraries must not print.
 #[allow(clippy::print_stdout)]
 fn main() -> Result<(), Failure> {
     let lens = Equidistant::from_radius(147.56)?;

@@ -1,4 +1,4 @@
-//! The named kernels: what holds for each of them, and values found outside of this code.
+//! The named kernels: what is true of each of them, and values found outside this code.
 
 use halfrow::kernels::NamedKernel;
 use halfrow::tables::KernelFile;
@@ -9,7 +9,7 @@ const SHIPPED: [(NamedKernel, &str, Taps); 2] = [
     (NamedKernel::Sharp7, include_str!("../src/kernels/sharp7.json"), Taps::Seven),
 ];
 
-/// G0 to G6 of each node: the two that are not stored follow from the five.
+/// The weights of G0 to G6 at each node: the two that are not stored follow from the other five.
 fn seven(kernel: &Kernel) -> impl Iterator<Item = [i32; 7]> {
     kernel.nodes().iter().map(|node| {
         let [g0, r1, g4, r5, g6] = node.map(i32::from);
@@ -41,8 +41,8 @@ fn the_files_of_fitted_kernels_tell_where_they_come_from() {
     }
 }
 
-/// Light has no preferred direction: seen from the other side, G0 is G6, G2 is G4 and R1 is R5. Rounding leaves up to four units in
-/// G2, which takes up what three weights leave.
+/// Light has no preferred direction: seen from the other side, G0 is G6, G2 is G4 and R1 is R5. Rounding leaves up to
+/// four units in G2, which takes up the rounding of three weights.
 #[test]
 fn fitted_kernels_are_the_same_from_both_sides() {
     for (named, ..) in SHIPPED {
@@ -69,8 +69,8 @@ fn a_flat_field_stays_as_it_is_under_every_kernel() {
     }
 }
 
-/// By hand, at x = 0, 1 and 2: Hermite's r1, g4, r5 less f″/16384, which is (−3x/4 + 1, −3x/2 + 3/2, 3x/4 − 1/2)/16384; halves
-/// are rounded up.
+/// By hand, at x = 0, 1 and 2: Hermite's r1, g4, r5 minus f″/16384, where f″ is (−3x/4 + 1, −3x/2 + 3/2, 3x/4 − 1/2);
+/// halves are rounded up.
 #[test]
 fn the_balanced_hermite_kernel_is_shifted_by_its_curvature() {
     let kernel = NamedKernel::HermiteBalanced.kernel().unwrap();

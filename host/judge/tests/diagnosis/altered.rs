@@ -1,16 +1,16 @@
-//! Frames that were altered by hand, for defects that the mock does not make.
+//! Frames that are altered by hand, for defects that the mock does not have.
 
 use halfrow::result::Suspect;
 use halfrow_model::{Frame, Kernel, RowFactor, TableSet, correct, correct_row, source};
 
 use crate::bench::{Bench, Generation, Seen, WHITE, fault, narrow, off_centre, wide};
 
-/// What is said of a board that gives `found` of a frame that went in, frame by frame.
+/// The suspects for a board that gives `found`, frame by frame.
 fn diagnose(bench: &Bench, found: impl Fn(usize, &Frame, &Frame) -> Vec<u16>) -> Vec<Suspect> {
     bench.judge(&seen(bench, found))
 }
 
-/// The frames, given the index of each, what went in, and what should come out.
+/// The frames that `found` makes of the index of each, of what went in and of what should come out.
 fn seen(bench: &Bench, found: impl Fn(usize, &Frame, &Frame) -> Vec<u16>) -> Seen {
     let mut altered = Seen { frames: Vec::new(), evidence: Vec::new() };
     for (index, (generation, input, expected)) in bench.sound_frames().into_iter().enumerate() {
@@ -21,19 +21,19 @@ fn seen(bench: &Bench, found: impl Fn(usize, &Frame, &Frame) -> Vec<u16>) -> See
     altered
 }
 
-/// Every row of a frame made anew by `row` from its index.
+/// A frame's samples, each row made by `row` from its index.
 fn by_row(frame: &Frame, row: impl Fn(usize) -> Vec<u16>) -> Vec<u16> {
     (0..frame.height()).flat_map(row).collect()
 }
 
-/// The only suspect, which must explain everything.
+/// Part and place of the only suspect, which must explain everything.
 fn certain(suspects: &[Suspect]) -> (&str, String) {
     let [only] = suspects else { panic!("{suspects:#?}") };
     assert_eq!(only.explained, 1.0, "{only:#?}");
     (only.part(), only.place())
 }
 
-/// The reference's frame with other tables.
+/// The reference's frame if row `row` has the factor of row `rows(row)`.
 fn remade(bench: &Bench, input: &Frame, rows: impl Fn(usize) -> usize, generation: usize) -> Vec<u16> {
     let tables = &bench.generations[generation].tables;
     let row_factors = (0..input.height()).map(|row| tables.row_factor(rows(row)).unwrap()).collect();
@@ -41,7 +41,7 @@ fn remade(bench: &Bench, input: &Frame, rows: impl Fn(usize) -> usize, generatio
     correct(&tables, &bench.generations[generation].kernel, input).unwrap().samples().to_vec()
 }
 
-/// Frames 0 and 1 of the bench are made with the decoy.
+/// The index of a frame's generation: frames 0 and 1 of the bench are made with the decoy.
 fn generation(frame: usize) -> usize {
     usize::from(frame > 1)
 }
@@ -52,7 +52,7 @@ fn a_stuck_line_behind_the_datapath_is_named() {
     assert_eq!(certain(&suspects), ("output bit", "corrected samples, bit 6, stuck at 1".to_owned()));
 }
 
-/// A line that is another one now and then, which no simulation gives: that all of it is one bit tells it.
+/// A line that flips now and then, which no simulation gives, shows by all differences being in one bit.
 #[test]
 fn a_flaky_line_behind_the_datapath_tells_its_bit() {
     let flaky = |place: usize, sample: &u16| sample ^ if place.is_multiple_of(97) { 32 } else { 0 };
@@ -98,7 +98,7 @@ fn rows_that_went_in_at_another_place_are_named() {
     );
 }
 
-/// What enters at the row's end is not known, so the last samples are not held against the suspect.
+/// What enters at the row's end is unknown, so the last samples do not count against the suspect.
 #[test]
 fn rows_shifted_along_themselves_are_named() {
     let suspects = diagnose(&narrow(), |_, _, expected| {
@@ -122,7 +122,7 @@ fn exchanged_columns_are_named() {
     assert_eq!(certain(&suspects), ("colour", "the pairs of columns".to_owned()));
 }
 
-/// The sum by hand, from the samples around the source (DATAPATH.md, "Output sample"), without its clamp.
+/// The output without its clamp, computed from the samples around the source (DATAPATH.md, "Output sample").
 fn sum(bench: &Bench, generation: usize, row: usize, input: &[u16], column: usize) -> i32 {
     let Generation { tables, kernel, .. } = &bench.generations[generation];
     let source = source(&bench.geometry, tables.row_factor(row).unwrap(), column);
@@ -256,7 +256,7 @@ fn a_kernel_that_is_stale_while_the_factors_are_not_is_named() {
     );
 }
 
-/// Two broken factors are two parts, and each explains its own row.
+/// Two broken factors are two parts, each of which explains its own row.
 #[test]
 fn two_defects_are_both_named_and_neither_for_certain() {
     let bench = wide();
@@ -277,7 +277,7 @@ fn two_defects_are_both_named_and_neither_for_certain() {
     assert!(suspects.iter().all(|suspect| suspect.explained < 1.0));
 }
 
-/// Nothing that is known makes every seventh column one brighter.
+/// No known defect makes a single column one brighter.
 #[test]
 fn what_nothing_explains_is_described() {
     let suspects = diagnose(&narrow(), |_, _, expected| {
@@ -300,7 +300,7 @@ fn differences_of_which_no_frame_was_kept_are_described() {
     assert_eq!((suspects.len(), suspects[0].part()), (1, "unknown"));
 }
 
-/// A white frame does not tell whether its samples lost a bit before the datapath or behind it.
+/// A white frame does not show whether its samples lost a bit before the datapath or after it.
 #[test]
 fn defects_that_cannot_be_told_apart_are_all_named() {
     let bench = narrow();

@@ -1,5 +1,5 @@
-//! A run against the mock's clocked core, as a session makes it: a decoy generation first, then the judged one, then
-//! other timings.
+//! A run against the mock's clocked core, in the order of a real run: the decoy generation, then the judged one, then other
+//! timings.
 
 use std::iter;
 
@@ -12,19 +12,19 @@ use halfrow_pipe::Parameters;
 
 use crate::scenes::{Scene, scene};
 
-/// Tables and kernel under a generation.
+/// Tables and kernel that are committed as one generation.
 pub(crate) struct Generation {
     pub(crate) number: u8,
     pub(crate) tables: TableSet,
     pub(crate) kernel: Kernel,
 }
 
-/// What all runs of a test have in common.
+/// What all runs of a test share.
 pub(crate) struct Bench {
     pub(crate) geometry: Geometry,
     pub(crate) generations: [Generation; 2],
     pub(crate) ring: u16,
-    /// Frames of noise behind the schedule.
+    /// Frames of noise after the schedule.
     pub(crate) noise: usize,
     /// Rows that the board has played before the run.
     pub(crate) rows_before: u16,
@@ -37,12 +37,12 @@ struct Timing {
     gap_seed: u32,
 }
 
-/// A frame of the schedule: what it shows, the index of its generation, its timing.
+/// A frame of the schedule: what it shows, the index of its generation, and its timing.
 type Scheduled = (Scene, usize, Timing);
 
 const LEAST: Timing = Timing { blanking: 0, gap_seed: 0 };
 
-/// The decoy twice, the judged tables behind it without a pause, then two other timings.
+/// The decoy twice, the judged tables directly after it, then two other timings.
 const SCHEDULE: [Scheduled; 9] = [
     (Scene::Noise, 0, LEAST),
     (Scene::Noise, 0, LEAST),
@@ -55,10 +55,10 @@ const SCHEDULE: [Scheduled; 9] = [
     (Scene::Noise, 1, Timing { blanking: 0, gap_seed: 7 }),
 ];
 
-/// The white frame of the schedule.
+/// The index of the white frame of the schedule.
 pub(crate) const WHITE: usize = 3;
 
-/// What a run gives to diagnose.
+/// What a run gives the diagnosis.
 pub(crate) struct Seen {
     pub(crate) frames: Vec<FrameReport>,
     pub(crate) evidence: Vec<Evidence>,
@@ -93,7 +93,7 @@ impl Bench {
         self.judge(&self.play(Some(fault)))
     }
 
-    /// What the diagnosis says of frames that were seen.
+    /// The suspects that the diagnosis names for what was seen.
     pub(crate) fn judge(&self, seen: &Seen) -> Vec<Suspect> {
         let uploaded = self.generations.each_ref().map(|generation| Uploaded {
             generation: generation.number,
@@ -108,7 +108,8 @@ impl Bench {
         })
     }
 
-    /// The frames of the schedule as a board with `fault` gives them. Frames of one timing follow each other closely.
+    /// The frames of the schedule as a board with `fault` gives them. Frames of the same timing follow each other without
+    /// a pause.
     pub(crate) fn play(&self, fault: Option<BoardFault>) -> Seen {
         let options = Options { ring: Some(self.ring), max_width: self.width(), ..Options::default() };
         let mut player = Player::new(&options, fault).unwrap();
@@ -141,7 +142,7 @@ impl Bench {
         SCHEDULE.into_iter().chain(iter::repeat_n((Scene::Noise, 1, LEAST), self.noise))
     }
 
-    /// Every frame of the schedule: its generation, what goes in, what must come out.
+    /// Every frame of the schedule: its generation, what goes in, and what must come out.
     pub(crate) fn sound_frames(&self) -> Vec<(u8, Frame, Frame)> {
         (1..)
             .zip(self.schedule())
@@ -154,7 +155,7 @@ impl Bench {
             .collect()
     }
 
-    /// Lets the ring's count begin somewhere else than at 0.
+    /// Plays `rows_before` rows, so that the ring's count does not begin at 0.
     fn play_before(&self, player: &mut Player, tables: &mut Tables) {
         player.configure(self.settings(LEAST)).unwrap();
         for row in 0..self.rows_before {
@@ -169,7 +170,7 @@ impl Bench {
         self.geometry.width() as u16
     }
 
-    /// The decoy is committed for frame 0, the judged tables for frame 2 while frame 1 has yet to come.
+    /// Commits the decoy for frame 0, and the judged tables for frame 2 while frame 1 is still to come.
     fn upload(&self, tables: &mut Tables, number: usize) {
         let (generation, first_frame) = match number {
             0 => (&self.generations[0], 0),
@@ -201,7 +202,7 @@ impl Bench {
 }
 
 impl Seen {
-    /// Adds a frame and keeps it as a session does: those that differ.
+    /// Adds a frame, and keeps its samples if it differs.
     pub(crate) fn take(&mut self, generation: u8, input: Frame, expected: Frame, found: Frame) {
         let comparison = Comparison::of_frames(&expected, &found);
         let differs = comparison.differences > 0;
@@ -223,7 +224,7 @@ impl Seen {
         }
     }
 
-    /// Keeps the frames that do not differ as well. `sound` are the same frames of a board without fault.
+    /// Keeps the frames that do not differ too. `sound` are the same frames of a board without a fault.
     pub(crate) fn keep_all(&mut self, sound: Vec<(u8, Frame, Frame)>) {
         let kept: Vec<_> = self.evidence.iter().map(|evidence| evidence.index).collect();
         for (index, (_, input, expected)) in sound.into_iter().enumerate() {
@@ -249,7 +250,7 @@ fn play(player: &mut Player, tables: &mut Tables, number: u16, input: &Frame, fo
     }
 }
 
-/// Takes what came back. Rows that never do stay black.
+/// Fetches what came back. Rows that never come back stay black.
 fn fetch(player: &mut Player, found: &mut [Vec<u16>]) {
     while let Some(out) = player.banks.fetch() {
         let width = out.samples.len();
@@ -270,12 +271,12 @@ pub(crate) fn fault(text: &str) -> BoardFault {
     BoardFault::from_name(name, &mut parameters).unwrap()
 }
 
-/// Small frames in a ring of just a row.
+/// Small frames in a ring of a single row.
 pub(crate) fn narrow() -> Bench {
     Bench::new(128, 16, 20.0, 128, Interpolant::Hermite)
 }
 
-/// Frames that are no power of two wide, in a ring that is longer than a row.
+/// Frames whose width is no power of two, in a ring longer than a row.
 pub(crate) fn wide() -> Bench {
     Bench::new(192, 24, 13.0, 256, Interpolant::Hermite)
 }
@@ -286,7 +287,7 @@ pub(crate) fn off_centre() -> Bench {
     Bench::with(geometry, 30.0, 256, Interpolant::Keys)
 }
 
-/// Frames that are corrected by a grid: 7 nodes and 8 grid rows.
+/// Frames that are corrected with a grid of 7 nodes and 8 grid rows.
 pub(crate) fn grid() -> Bench {
     let geometry = Geometry::centred(192, 24, BitDepth::Twelve).unwrap();
     let lens = Equidistant::from_radius(130.0).unwrap();
@@ -295,7 +296,7 @@ pub(crate) fn grid() -> Bench {
     Bench::of(camera.grid_by_formula(shape), 256, Interpolant::Hermite)
 }
 
-/// Whether the suspect is the part at `place`, or bits of one word that this bit is among.
+/// Whether the suspect is the part at `place`, or several bits of one word among which its bit is.
 pub(crate) fn is_told(suspect: &Suspect, place: &str) -> bool {
     let told = suspect.place();
     let several = told.split_once(", one of bits ").zip(place.split_once(", bit "));
@@ -307,7 +308,7 @@ pub(crate) fn is_told(suspect: &Suspect, place: &str) -> bool {
     })
 }
 
-/// A fault must be explained by the part at `place`, wholly and by nothing else.
+/// Asserts that the fault is explained by the part at `place`, completely and by nothing else.
 pub(crate) fn assert_named(bench: &Bench, text: &str, place: &str) {
     let suspects = bench.diagnose(fault(text));
     let places: Vec<_> = suspects.iter().map(Suspect::place).collect();

@@ -1,4 +1,5 @@
-//! Boards that correct by a grid: what is named for rows is named for them, and a wrong entry by its grid row and node.
+//! Boards that correct with a grid: what is named for row factors is named for them too, and a wrong entry is named by
+//! grid row and node.
 
 use halfrow::result::Suspect;
 use halfrow_model::{Interpolant, Kernel, TableSet, correct};
@@ -6,11 +7,11 @@ use halfrow_model::{Interpolant, Kernel, TableSet, correct};
 use crate::bench::{Bench, Generation, Seen, assert_named, fault, grid, is_told};
 use crate::scenes::Random;
 
-/// Grid rows, and columns with that of the offsets, of [`grid`].
+/// Grid rows of [`grid`], and its columns, including the one of the offsets.
 const ROWS: usize = 8;
 const COLUMNS: usize = 8;
 
-/// The fault of a bit of the entry (c, b), which reads back right, and the place that must be named.
+/// The fault of a bit of the entry at `column` and `row`, which reads back right, and the place that must be named.
 fn wrong_entry(column: usize, row: usize, bit: u32) -> (String, String) {
     let entry = match column {
         0 => "offset".to_owned(),
@@ -39,7 +40,7 @@ fn a_bit_of_a_grids_entry_is_named() {
     }
 }
 
-/// Many entries, by bits that move samples far and by bits that hardly do.
+/// Many entries, with bits that move samples far and bits that hardly do.
 #[test]
 fn no_wrong_entry_is_named_for_certain() {
     let bench = grid();
@@ -58,7 +59,7 @@ fn no_wrong_entry_is_named_for_certain() {
     assert!(4 * alone >= 3 * tried && tried >= 20, "{alone} of {tried}");
 }
 
-/// The row leads out of the frame, and which samples come then is not defined.
+/// The row leads out of the frame, and which samples come then is undefined.
 #[test]
 fn the_highest_bits_of_a_grids_entry_are_named_first() {
     for (column, row, bit) in [(0, 3, 23), (0, 5, 24), (1, 4, 24), (3, 2, 23), (5, 5, 24)] {
@@ -103,7 +104,7 @@ fn an_address_line_is_named_behind_a_grid_although_the_ring_did_not_begin_with_t
     assert_named(&bench, "stuck-address,bit=5", "line memory, address bit 5");
 }
 
-/// What is said of a board that makes the frames with these tables and this kernel instead.
+/// The suspects for a board that makes the frames with the tables and the kernel that `made` returns.
 fn diagnose(bench: &Bench, made: impl Fn(&TableSet, &Kernel) -> (TableSet, Kernel)) -> Vec<Suspect> {
     let mut seen = Seen { frames: Vec::new(), evidence: Vec::new() };
     for (generation, input, expected) in bench.sound_frames() {
@@ -115,7 +116,7 @@ fn diagnose(bench: &Bench, made: impl Fn(&TableSet, &Kernel) -> (TableSet, Kerne
     bench.judge(&seen)
 }
 
-/// A grid whose entries have nothing in common, and leave room at both ends of the row.
+/// A bench with a grid whose entries have nothing in common and leave room at both ends of the row.
 fn drawn() -> Bench {
     let tables = &grid().generations[1].tables;
     let entry = |index: usize| {
@@ -127,7 +128,7 @@ fn drawn() -> Bench {
     Bench::of(tables, 256, Interpolant::Hermite)
 }
 
-/// The grid with entries that are read otherwise.
+/// The grid with the entries that `read` gives.
 fn read_as(tables: &TableSet, read: impl Fn(&[u32], usize) -> u32) -> TableSet {
     let entries: Vec<_> = tables.entries().collect();
     let read: Vec<_> = (0..entries.len()).map(|index| read(&entries, index)).collect();

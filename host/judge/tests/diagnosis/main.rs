@@ -1,7 +1,7 @@
-//! The diagnosis against boards that are known to be broken: the mock's core, whose faults are made by an
-//! implementation of its own, and frames that were altered by hand.
+//! The diagnosis against boards that are known to be broken: the mock's core, an implementation of its own with faults,
+//! and frames that are altered by hand.
 
-// clippy.toml allows these inside #[test] functions, but not in the functions that several tests call.
+// clippy.toml allows these inside #[test] functions, but not in functions that several tests call.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod altered;

@@ -35,14 +35,14 @@ fn every_address_line_of_a_ring_longer_than_a_row_is_named() {
     }
 }
 
-/// Both levels make the same addresses share a cell.
+/// At either level the same addresses share a cell.
 #[test]
 fn an_address_line_is_named_whatever_its_level() {
     let [low, high] = ["stuck-address,bit=4,value=0", "stuck-address,bit=4,value=1"];
     assert_eq!(wide().diagnose(fault(low)), wide().diagnose(fault(high)));
 }
 
-/// In a ring of four rows, the sample that shares the cell comes two rows later.
+/// In a ring of four rows, the sample that shares a cell comes two rows later.
 #[test]
 fn an_address_line_that_changes_nothing_is_not_suspected() {
     let bench = Bench { ring: 512, ..narrow() };
@@ -68,7 +68,7 @@ fn an_address_line_is_named_although_later_frames_were_not_kept() {
     assert_eq!((suspects[0].part(), suspects.len()), ("address bit", 1), "{suspects:#?}");
 }
 
-/// Frames whose factors are of every size that a ring of 2048 allows, behind `rows_before` other rows.
+/// Frames with factors of every size that a ring of 2048 samples allows, after `rows_before` other rows.
 fn of_every_size(seed: u64, rows_before: u16) -> Bench {
     let mut random = Random::new(seed);
     let one_row = Geometry::centred(1364, 1, BitDepth::Twelve).unwrap();
@@ -88,7 +88,7 @@ fn of_every_size(seed: u64, rows_before: u16) -> Bench {
     Bench { rows_before, ..Bench::of(tables, 2048, Interpolant::Hermite) }
 }
 
-/// A row that is stretched much reads few columns, and many counts of the ring give it alike.
+/// A row that is stretched far reads few columns, and comes out the same for many counts of the ring.
 #[test]
 fn an_address_line_is_named_by_one_frame_of_rows_that_are_stretched_much() {
     for (seed, bit) in [1, 2, 3].into_iter().flat_map(|seed| [6, 8, 9].map(|bit| (seed, bit))) {

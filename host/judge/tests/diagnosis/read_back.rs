@@ -11,7 +11,7 @@ fn factors() -> Vec<u32> {
     (0..100_u32).map(|row| 16_777_216 - row.wrapping_mul(2_654_435_761) % 5_000_000).collect()
 }
 
-/// What is said of `found`, read of `table` of a board with `tables` and Hermite's kernel.
+/// The suspects for `found`, read back from `table` of a board with `tables` and Hermite's kernel.
 fn read(tables: &TableSet, table: Table, found: &[u8]) -> Vec<Suspect> {
     let kernel = Kernel::from(Interpolant::Hermite);
     read_back(&Uploaded { generation: 2, tables, kernel: &kernel }, table, found)
@@ -30,7 +30,7 @@ fn read_factors(found: &[u32]) -> Vec<Suspect> {
     read(&of_factors(), Table::RowFactors, &bytes(found))
 }
 
-/// A grid of 8 columns and 8 rows whose entries are changed.
+/// The suspects for a grid of 8 columns and 8 rows whose entries are changed.
 fn read_grid(change: impl Fn(usize, &mut u32)) -> Vec<Suspect> {
     let tables = &grid().generations[1].tables;
     let mut entries: Vec<_> = tables.entries().collect();
@@ -45,7 +45,7 @@ fn read_nodes(change: impl Fn(usize, &mut [i16; 5])) -> Vec<Suspect> {
     read(&of_factors(), Table::Kernel, &Kernel::from_nodes(nodes).unwrap().to_bytes())
 }
 
-/// What is named first, and how much of the wrong words it explains.
+/// The place that is named first, and the share of the wrong words that it explains.
 fn first(suspects: &[Suspect]) -> (String, f64) {
     (suspects[0].place(), suspects[0].explained)
 }
@@ -103,7 +103,7 @@ fn a_stuck_address_line_is_named() {
     assert_eq!(first(&suspects), ("kernel memory, address bit 4".to_owned(), 1.0));
 }
 
-/// Of two entries in one cell, the one written later stays.
+/// Of two entries in the same cell, the one written later stays.
 #[test]
 fn an_address_line_stuck_for_writing_too_is_named() {
     let later = |row: usize| if row | 32 < 100 { row | 32 } else { row };
@@ -111,7 +111,7 @@ fn an_address_line_stuck_for_writing_too_is_named() {
     assert_eq!(first(&suspects), ("row table, address bit 5".to_owned(), 1.0));
 }
 
-/// In a memory with two ports, half of the cells are never written, and hold what they held.
+/// In a memory with two ports, half of the cells are never written, and keep what they held.
 #[test]
 fn an_address_line_stuck_for_writing_alone_is_named() {
     let mut cells = vec![1 << 24; 100];

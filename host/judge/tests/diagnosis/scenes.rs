@@ -39,7 +39,7 @@ impl Random {
         Self(seed)
     }
 
-    /// A number from 0 to `bound` − 1, uniform but for a bias that does not matter here.
+    /// A number from 0 to `bound` − 1, uniform except for a bias that does not matter here.
     pub(crate) fn below(&mut self, bound: u64) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;

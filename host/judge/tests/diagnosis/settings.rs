@@ -1,11 +1,11 @@
-//! Boards that do not take a setting.
+//! Boards that ignore a setting.
 
 use halfrow::result::Suspect;
 use halfrow_model::{BitDepth, Frame, Geometry, TableSet, correct};
 
 use crate::bench::{Bench, Generation, Seen, off_centre};
 
-/// The bench of 8 bits and a centre of its own, behind a decoy whose centre is the middle.
+/// The bench with 8 bits and a centre of its own, and a decoy whose centre is the middle.
 fn bench() -> Bench {
     let mut bench = off_centre();
     let decoy = &mut bench.generations[0];
@@ -14,7 +14,7 @@ fn bench() -> Bench {
     bench
 }
 
-/// What is said of a board that makes each frame, by its index, with the settings that `made` gives.
+/// The suspect for a board that makes each frame, by its index, with the settings that `made` gives.
 fn diagnose(bench: &Bench, made: impl Fn(usize, &Geometry) -> Geometry) -> Suspect {
     let mut seen = Seen { frames: Vec::new(), evidence: Vec::new() };
     for (index, (generation, input, expected)) in bench.sound_frames().into_iter().enumerate() {
@@ -39,7 +39,7 @@ fn a_centre_that_is_not_taken_is_named() {
     assert!(middle.evidence().starts_with("taking the middle of the row instead"), "{}", middle.evidence());
 }
 
-/// Frame 2 is the first behind the decoy.
+/// Frame 2 is the first after the decoy.
 #[test]
 fn a_centre_that_is_taken_a_frame_late_is_named() {
     let late = diagnose(&bench(), |index, own| match index {

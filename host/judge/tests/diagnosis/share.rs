@@ -1,4 +1,4 @@
-//! How many single faults are named exactly.
+//! Measures how many single faults are named exactly.
 
 use std::time::Instant;
 
@@ -8,7 +8,7 @@ use halfrow_model::{Frame, Interpolant};
 use crate::bench::{Bench, Seen, fault, is_told, narrow, off_centre, wide};
 use crate::scenes::Random;
 
-/// A fault as in a target string, and the place that must be named.
+/// A random fault as in a target string, and the place that must be named.
 fn random_fault(random: &mut Random, height: u64) -> (String, String) {
     let level = random.below(2);
     match random.below(6) {
@@ -43,7 +43,7 @@ fn random_fault(random: &mut Random, height: u64) -> (String, String) {
     }
 }
 
-/// What became of a number of faults.
+/// How a number of faults were named.
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Tally {
     invisible: usize,
@@ -86,7 +86,7 @@ fn no_wrong_part_is_named_for_certain() {
     assert!(tally.alone >= 45, "{tally:?}");
 }
 
-/// Full-size frames, sixteen of which differ: a person waits for this.
+/// Full-size frames, sixteen of them of noise: a person waits for this diagnosis.
 #[test]
 #[ignore = "a measurement of time"]
 fn full_frames_are_diagnosed_within_two_seconds() {

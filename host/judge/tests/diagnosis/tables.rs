@@ -18,7 +18,7 @@ fn stale_tables_are_named_frame_by_frame() {
     }
 }
 
-/// Row 3 of the frames before came back right, and they were kept.
+/// Row 3 came back right in earlier frames, which were kept.
 #[test]
 fn a_factor_that_drifts_during_the_run_is_named_with_its_onset() {
     let bench = wide();

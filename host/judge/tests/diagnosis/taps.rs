@@ -1,10 +1,10 @@
-//! Taps and the arithmetic behind them.
+//! Taps and the arithmetic after them.
 
 use halfrow_model::Interpolant;
 
 use crate::bench::{Bench, assert_named, fault, narrow, wide};
 
-/// The taps in their order.
+/// The taps in order.
 const TAPS: [&str; 7] = ["G0", "R1", "G2", "R3", "G4", "R5", "G6"];
 
 #[test]
@@ -52,7 +52,7 @@ fn a_tap_that_carries_its_neighbour_is_named_with_it() {
     }
 }
 
-/// Hermite weighs neither G0 nor G6.
+/// The Hermite kernel has no weight for G0 or G6.
 #[test]
 fn a_dead_tap_that_nothing_weighs_is_not_suspected() {
     assert_eq!(narrow().diagnose(fault("dead-tap,tap=0")), []);

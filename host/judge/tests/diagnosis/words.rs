@@ -23,7 +23,7 @@ fn a_bit_of_a_rows_factor_is_named_in_wider_frames() {
     }
 }
 
-/// The factor exceeds 1, and which samples come then is not defined.
+/// The factor exceeds 1, and which samples come then is undefined.
 #[test]
 fn the_highest_bit_of_a_rows_factor_is_named_first() {
     for (bench, row) in [(narrow(), 2), (narrow(), 14), (wide(), 5)] {
@@ -32,7 +32,7 @@ fn the_highest_bit_of_a_rows_factor_is_named_first() {
     }
 }
 
-/// Beyond the image circle every factor is 1, and each bit makes it more, where a part of the row cannot be foretold.
+/// Outside the image circle every factor is 1. A flipped bit makes it more, and then part of the row cannot be predicted.
 #[test]
 fn a_bit_of_a_factor_of_one_is_named_first() {
     for (width, height, radius, row) in [(320, 200, 80.0, 5), (128, 96, 40.0, 5), (64, 15, 20.0, 7)] {
@@ -46,7 +46,7 @@ fn a_bit_of_a_factor_of_one_is_named_first() {
     }
 }
 
-/// A single frame has a few samples that a low bit changes, and other bits change them alike.
+/// In a single frame a low bit changes only a few samples, and other bits change the same ones in the same way.
 #[test]
 fn bits_of_one_word_that_come_to_the_same_are_one_suspect() {
     let bench = Bench::new(64, 16, 40.0, 2048, Interpolant::Hermite);
@@ -87,7 +87,7 @@ fn a_bit_of_a_kernel_word_is_named() {
     }
 }
 
-/// Most of the lowest bits change no sample, and those that do can often not be told apart.
+/// Most of the lowest bits change no sample, and those that do often cannot be told apart.
 #[test]
 fn low_bits_of_a_rows_factor_are_among_the_suspects_or_invisible() {
     for bit in 0..10 {

@@ -1,6 +1,6 @@
-//! Lens files of each program, and what is wrong with those in the wild.
+//! Lens files of each program, and what is wrong with some in the wild.
 
-// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
+// clippy.toml allows this inside #[test] functions, but not in functions that several tests call.
 #![allow(clippy::unwrap_used)]
 
 mod refusals;
@@ -14,14 +14,14 @@ use proptest::prelude::*;
 const OPENCV_YAML: &str = include_str!("files/opencv-4.10.yml");
 /// Written by OpenCV 4.10.0's `cv2.FileStorage`.
 const OPENCV_JSON: &str = include_str!("files/opencv-4.10.json");
-/// Written by OpenCV 5.0.0's `cv2.FileStorage`, whose header is that of YAML 1.2.
+/// Written by OpenCV 5.0.0's `cv2.FileStorage`, with a header of YAML 1.2.
 const OPENCV_5_YAML: &str = include_str!("files/opencv-5.0.yml");
 /// In the layout of ROS's `camera_calibration_parsers`.
 const CAMERA_INFO: &str = include_str!("files/camera_info.yaml");
 /// In the layout of Kalibr's camchain.
 const CAMCHAIN: &str = include_str!("files/camchain.yaml");
-/// In the layout of OCamCalib's `export_data.m`, with the numbers measured at a Sunex DSL215 that BSD-3 licensed
-/// ctu-mrs/uvdar_core publishes.
+/// In the layout of OCamCalib's `export_data.m`, with numbers measured at a Sunex DSL215, published by ctu-mrs/uvdar_core under
+/// BSD-3.
 const DSL215: &str = include_str!("files/dsl215.txt");
 
 /// The lens that all files but the last describe.
@@ -35,7 +35,7 @@ fn described(skew: f64) -> LensFile {
     }
 }
 
-/// `text` with its one `old` replaced by `new`.
+/// `text` with `old`, which occurs once, replaced by `new`.
 #[track_caller]
 fn with(text: &str, old: &str, new: &str) -> String {
     assert_eq!(text.matches(old).count(), 1, "{old}");
@@ -102,7 +102,7 @@ fn a_file_that_does_not_say_its_size_is_taken_as_the_frame_s() {
     assert_eq!((lens, centre), (described(0.75).lens, (641.5, 358.25)));
 }
 
-/// The direct polynomial says all; the inverse is a fit to it.
+/// The direct polynomial is complete; the inverse is only a fit to it.
 #[test]
 fn ocamcalib_s_inverse_polynomial_may_be_missing() {
     let inverse = DSL215.lines().find(|line| line.starts_with("10 ")).unwrap();

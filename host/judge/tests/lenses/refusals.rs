@@ -1,4 +1,4 @@
-//! What is no lens of these kinds is refused by its name, with what to do.
+//! Files that hold no lens of these kinds are refused with what they are and what to do.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ fn refusal(text: &str) -> LensContentError {
     LensFile::parse(text).unwrap_err()
 }
 
-/// The refusal of `text` with its one `old` replaced by `new` says `sentence`.
+/// Asserts that the refusal of `text`, with `old`, which occurs once, replaced by `new`, contains `sentence`.
 #[track_caller]
 fn says(text: &str, old: &str, new: &str, sentence: &str) {
     let refused = refusal(&with(text, old, new)).to_string();
@@ -103,7 +103,7 @@ fn an_axis_outside_the_pictures_is_refused() {
     );
 }
 
-/// Places count from the middle of the first pixel to that of the last.
+/// Places are counted from the middle of the first pixel to that of the last.
 #[test]
 fn an_axis_in_the_middle_of_an_outer_pixel_is_inside_the_pictures() {
     let centred = |row: &str, column: &str| {
@@ -117,8 +117,9 @@ fn an_axis_in_the_middle_of_an_outer_pixel_is_inside_the_pictures() {
     }
 }
 
-/// What is added is 20 (x + pi / 3) (x + pi / 6): nothing at 30 and 60 degrees from the axis, where x is minus those, and 11 pixels at
-/// 90 degrees, where x is 0. The pictures of 480 rows show up to 240 pixels, and 30 degrees alone are inside them.
+/// What is added is 20 (x + pi / 3) (x + pi / 6): nothing at 30 and 60 degrees from the axis, where x is -pi / 3 and -pi / 6,
+/// and 11 pixels at 90 degrees, where x is 0. Pictures of 480 rows show up to 240 pixels from the axis, and of these angles
+/// only 30 degrees is within that.
 #[test]
 fn ocamcalib_s_inverse_polynomial_is_looked_at_inside_the_pictures_alone() {
     let poor = with(DSL215, "388.557547 220.910537 -10.127377", "399.523774 252.326464 9.872623");
@@ -252,7 +253,7 @@ fn a_file_of_two_lenses_is_taken_for_neither() {
     let other = CAMERA_INFO.replace("552.25", "900.5");
     let two = format!("{CAMERA_INFO}\n---\n{other}");
     assert_eq!(refusal(&two), LensContentError::Cameras("2 documents".to_owned()));
-    // `rostopic echo` ends each message with that line, and says the same of a camera again and again.
+    // `rostopic echo` ends each message with this line, and repeats the same camera again and again.
     for again in [format!("{CAMERA_INFO}\n---\n"), format!("{CAMERA_INFO}\n---\n{CAMERA_INFO}\n---\n")] {
         assert_eq!(LensFile::parse(&again), LensFile::parse(CAMERA_INFO));
     }

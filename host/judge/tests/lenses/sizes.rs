@@ -1,4 +1,4 @@
-//! A lens in frames of another size than the pictures that it was calibrated with.
+//! A lens used for frames whose size is not that of the pictures it was calibrated with.
 
 use halfrow::lenses::{LensContentError, LensFile, WrongShape};
 
@@ -8,7 +8,7 @@ use super::{OPENCV_YAML, described};
 fn frames_of_the_same_shape_take_the_lens_scaled() {
     let file = LensFile::parse(OPENCV_YAML).unwrap();
     let (lens, (column, row)) = file.for_frame(1920, 1080).unwrap();
-    // By hand: 642 · 1.5 − 0.5 and 358.75 · 1.5 − 0.5, as a pixel's middle is half a pixel from its edge.
+    // By hand: 642 · 1.5 − 0.5 and 358.75 · 1.5 − 0.5, because a pixel's middle is half a pixel from its edge.
     assert_eq!((column, row), (962.5, 537.625));
     assert_eq!(lens, described(0.75).lens.scaled(1.5).unwrap());
     assert_eq!(file.for_frame(1280, 720).unwrap(), (described(0.75).lens, (641.5, 358.25)));

@@ -14,7 +14,7 @@ fn paper_file() -> TableFile {
     TableFile { tables, kernel: Interpolant::Hermite.into(), about: None }
 }
 
-/// Three rows, and a kernel of one repeated node.
+/// Three rows, and a kernel that repeats one node.
 fn small_file() -> TableFile {
     let geometry = Geometry::new(64, 3, BitDepth::Ten, 126).unwrap();
     TableFile {

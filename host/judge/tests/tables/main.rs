@@ -1,6 +1,6 @@
 //! Table and kernel files.
 
-// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
+// clippy.toml allows this inside #[test] functions, but not in functions that several tests call.
 #![allow(clippy::unwrap_used)]
 
 mod json;

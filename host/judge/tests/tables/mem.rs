@@ -84,7 +84,7 @@ fn both_files_are_written_and_read_back() {
     let (read, of_kernel, inputs) = mem::read(&path).unwrap();
     assert_eq!((read, of_kernel), (tables(), kernel));
     assert_eq!(inputs.map(|input| input.path), mem::paths(&path));
-    // By the name of either file, as they are told when they are written.
+    // Also by the name of either file, as `write` returns them.
     for named in mem::paths(&path) {
         assert_eq!(mem::read(&named).unwrap().2.map(|input| input.path), mem::paths(&path));
     }

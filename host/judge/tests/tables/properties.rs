@@ -49,7 +49,7 @@ fn table_files() -> impl Strategy<Value = TableFile> {
     (table_sets(), kernels(), notes()).prop_map(|(tables, kernel, about)| TableFile { tables, kernel, about })
 }
 
-/// JSON objects that have the keys of a table file, and values of any kind.
+/// JSON objects with the keys of a table file and values of any kind.
 fn near_misses() -> impl Strategy<Value = String> {
     let keys = ["datapath", "width", "height", "bits", "centre2", "step", "kernel", "about", "other"];
     let value = prop_oneof![values(), (0..70_i64).prop_map(Value::from), (0..3000_i64).prop_map(Value::from)];
@@ -61,7 +61,7 @@ fn near_misses() -> impl Strategy<Value = String> {
     })
 }
 
-/// All readers on one text: they must return.
+/// Calls every reader with `text`. They must return.
 fn read_every_way(text: &str) {
     let _ = TableFile::parse(text);
     let _ = KernelFile::parse(text);
