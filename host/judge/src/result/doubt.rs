@@ -13,14 +13,14 @@ pub enum Doubt {
         /// How many.
         requests: u64,
     },
-    /// The board counts a number of packets that cannot have reached it, or that was not sent.
+    /// The board's count of packets is not what can have reached it, or what was sent.
     PacketsMiscounted {
         /// What it counts.
         counted: u64,
         /// How many were sent, without those known to be lost.
         sent: u64,
     },
-    /// Only such counters are wrong as a link changes too, when it brings one packet twice and loses another.
+    /// Only counters are wrong that a link can change too, by bringing one packet twice and losing another.
     CountersOfLinks {},
     /// The board does not say how many packets reached it.
     PacketsUncounted {},

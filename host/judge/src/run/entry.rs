@@ -6,7 +6,7 @@ use halfrow_model::row_signature;
 
 use crate::result::FlippedBit;
 
-/// The polynomial of CRC-32, reflected. By this a row's CRC changes when the row's last bit is flipped.
+/// The polynomial of CRC-32, reflected: flipping the last bit of a row changes the row's CRC by this.
 const LAST_BIT: u32 = 0xedb8_8320;
 
 /// Rows that entered the core with other samples than were sent.

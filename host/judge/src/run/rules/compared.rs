@@ -122,7 +122,7 @@ impl Compared {
         right.is_some_and(|right| right.is_told_of(row) && right.frame.row(row.row) == row.samples)
     }
 
-    /// What is wrong with a row that is not right. Where it has the samples of another row, only its place is wrong.
+    /// What is wrong with a row that is not right. Its samples are diagnosed only if they are those of no right row.
     fn wrong(&self, row: &ReturnedRow<'_>) -> WrongRow {
         let mut others = self.right.iter().flat_map(|right| right.frame.rows());
         let is_other = others.any(|other| other == row.samples);

@@ -25,13 +25,13 @@ impl Rules<'_, '_> {
         self.cleared()
     }
 
-    /// Neither STATUS without *clear* nor RESET must clear a counter.
+    /// Neither STATUS without *clear* nor RESET may clear a counter.
     pub(super) fn counts_stay(&mut self) -> Result<(), End> {
         self.always(|rules| rules.counts_on(|_| Ok(())))?;
         self.always(|rules| rules.counts_on(Self::drop_rows))
     }
 
-    /// Rows must be counted that are asked for again and that are not needed, and none must be acknowledged by other sessions.
+    /// Rows must be counted that are asked for again or not needed, and other sessions may acknowledge none.
     fn rows_counted(&mut self) -> Result<(), End> {
         self.given = Given::default();
         self.drop_rows()?;
@@ -84,7 +84,7 @@ impl Rules<'_, '_> {
         tried
     }
 
-    /// The counters of rows must not go down with `act`.
+    /// The counters of rows may not go down through `act`.
     pub(super) fn counts_on(&mut self, act: impl FnOnce(&mut Self) -> Result<(), End>) -> Result<(), End> {
         self.right_frames(&[FRAME])?;
         let before = self.run.board.status(false).map_err(of_board)?;

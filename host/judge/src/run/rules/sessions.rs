@@ -240,8 +240,8 @@ impl Rules<'_, '_> {
         self.run.misconduct(CheckName::Rules).map_or(Ok(()), Err)
     }
 
-    /// After HELLO no row, burst, commit or count must be left of the session before. Tables and configuration must be as
-    /// they were at the status `before`.
+    /// After HELLO no row, burst, commit or count may be left of the session before. Tables and configuration must be as they
+    /// were at the status `before`.
     fn begun_anew(&mut self, rule: Rule, before: &Status) -> Result<(), End> {
         let status = self.run.board.status(false).map_err(of_board)?;
         self.not_counted(&status)?;

@@ -115,9 +115,11 @@ impl Account {
 
     /// Ends the soak at `now` on the run's clock with the first of these that applies:
     ///
-    /// 1. a difference that is the board's, which nothing later makes right; 2. what `ended` the bursts early, together
-    /// with a difference that could not be tried in another session, if there is one; 3. a difference that the link may
-    /// have caused; 4. that there was no frame to judge.
+    /// 1. a difference that is the board's, which nothing later makes right;
+    /// 2. what `ended` the bursts early, together with a difference that could not be tried in another session, if there
+    ///    is one;
+    /// 3. a difference that the link may have caused;
+    /// 4. that there was no frame to judge.
     pub(super) fn end(&mut self, now: Duration, ended: Result<(), End>) -> Result<(), End> {
         self.report.seconds = now.saturating_sub(self.begun).as_secs_f64();
         match (self.first.take(), ended, self.first_doubtful.take()) {
