@@ -21,7 +21,7 @@ const SMALL: usize = 300;
 const SHORT: usize = 64;
 /// The payload of the reply to CAPABILITIES, with the board's name.
 const CAPABILITIES: usize = 320;
-/// Pixel clocks that a commit of the longest tables takes (WIRE.md, "Reply times").
+/// Clocks that a commit of the longest tables takes (WIRE.md, "Reply times").
 const COMMIT: usize = 28_000;
 /// Round trips that are measured.
 const LOOKS: u32 = 3;

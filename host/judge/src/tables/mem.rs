@@ -72,8 +72,8 @@ pub fn write(
     Ok(vec![rows, nodes])
 }
 
-/// Reads both files for `path`, which is a path as [`paths`] takes it or the name of one of them, and returns what was read
-/// from where.
+/// Reads both files for `path`, which is a path as [`paths`] takes it or the name of one of them. Returns their content and
+/// what it was read from.
 ///
 /// # Errors
 /// [`TableFileError`] when one of them cannot be read or is no memory image of tables.
