@@ -224,7 +224,7 @@ mod tests {
         assert_eq!(seen(&[(64, 0, 5000, 5010)])[1], None);
         assert_eq!(seen(&[(32, 0, 250, 260), (32, 0, 5000, 5010)])[1], None);
         assert_eq!(seen(&[(10, 1, 5000, 5010)])[1], None);
-        // Later frames do again.
+        // Later frames count again.
         let behind = seen(&[(10, 1, 5000, 5010), (4, 0, 6010, 6010)]);
         assert_eq!(behind[1], Some(5 * 520 + latency()));
     }
