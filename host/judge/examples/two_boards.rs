@@ -11,7 +11,7 @@ use halfrow::{Event, FrameSource, Plan, ReportFolder, RunOptions, Verdict};
 
 type Failure = Box<dyn Error + Send + Sync>;
 
-// Only libraries must not print.
+// This is a program: it may print, which the libraries may not.
 #[allow(clippy::print_stdout)]
 fn main() -> Result<(), Failure> {
     let lens = Equidistant::from_radius(147.56)?;
