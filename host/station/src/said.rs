@@ -1,4 +1,4 @@
-//! What people are told: in English, and as a code with parameters, from which pages say it in other languages.
+//! What people are told: in English, and as a code with parameters from which pages say it in other languages.
 
 use std::error::Error;
 use std::fmt;
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use crate::codes::known;
 
-/// A sentence for people. It is written as its English text.
+/// A sentence for people. It is displayed as its English text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Said {
     /// Its code, as docs/CODES.md and docs/STATION-CODES.md list them.
@@ -18,14 +18,14 @@ pub struct Said {
     /// Its figures and names.
     #[serde(default, skip_serializing_if = "serde_json::Map::is_empty")]
     pub parameters: Parameters,
-    /// It in English.
+    /// The sentence in English.
     pub message: String,
-    /// What led to it, the nearest first.
+    /// Its causes, the nearest first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub causes: Vec<Self>,
 }
 
-/// The parameter of why a run broke off that counts the samples which differed by then.
+/// The parameter, of the reason why a run broke off, that counts the samples which differed by then.
 pub(crate) const DIFFERED: &str = "differed";
 
 /// What to do about what the station says, in full sentences, where its own do not end in it: by code.
@@ -43,12 +43,12 @@ const MIXED_UP: &str =
     "Scan the label of the board that is in the lane; after a repair, an engineer binds it again.";
 
 impl Said {
-    /// What to do about it, where its sentence does not end in that.
+    /// What to do about it, where the sentence does not end in that.
     pub(crate) fn remedy(&self) -> Option<&'static str> {
         REMEDIES.into_iter().find(|(code, _)| *code == self.code).map(|(_, remedy)| remedy)
     }
 
-    /// A sentence in English of which no code is known.
+    /// A sentence in English that has no code.
     pub(crate) fn uncoded(message: String) -> Self {
         Self { code: String::new(), parameters: Parameters::new(), message, causes: Vec::new() }
     }
@@ -86,7 +86,7 @@ impl From<&Finding> for Said {
     }
 }
 
-/// It and its causes in one sentence.
+/// The sentence, followed by its causes.
 impl fmt::Display for Said {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.message)?;
@@ -100,18 +100,18 @@ impl Parameter for Said {
     }
 }
 
-/// For documents in which it is text.
+/// Serializes it as its text.
 pub(crate) fn as_text<S: Serializer>(said: &Said, to: S) -> Result<S::Ok, S::Error> {
     to.collect_str(said)
 }
 
-/// As [`as_text`], of what may not be there.
+/// Like [`as_text`], if there is one.
 pub(crate) fn as_text_if_any<S: Serializer>(said: &Option<Said>, to: S) -> Result<S::Ok, S::Error> {
     said.as_ref().map(ToString::to_string).serialize(to)
 }
 
-/// What the station says that is no error of a type of its own: answers to scans, why a lane is out of service, what a
-/// step came to. Codes are those of `codes`.
+/// What the station says that is not an error with a type of its own: answers to scans, why a lane is out of service, results
+/// of steps. Its codes are in `codes`.
 #[derive(Debug, thiserror::Error)]
 #[allow(missing_docs, reason = "the sentence says what each is, and what its figures are")]
 pub enum Saying {

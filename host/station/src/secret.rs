@@ -57,7 +57,7 @@ pub enum SecretError {
     NoRandomness(#[source] rand::rngs::SysError),
 }
 
-/// Makes a file that was not there, of one line, which nobody else may read: whole, or not at all.
+/// Creates a new file of one line that nobody else may read, completely or not at all.
 pub(crate) fn create(path: &Path, line: &str) -> io::Result<()> {
     let mut aside = Builder::new().permissions(Permissions::from_mode(0o600)).tempfile_in(folder_of(path))?;
     writeln!(aside, "{line}")?;
@@ -75,7 +75,7 @@ pub(crate) fn own(path: &Path) -> Result<String, SecretError> {
     fs::read_to_string(path).map_err(refused)
 }
 
-/// The text of a file that the station is given, as a token: nobody but the station may read it, and root, whose it may be.
+/// The text of a file that the station is given, such as a token. Only the station may read it, and root, who may own it.
 pub(crate) fn text(path: &Path) -> Result<String, SecretError> {
     let refused = |source| SecretError::File { path: path.to_owned(), source };
     let about = Rights::of(&fs::metadata(path).map_err(refused)?);
@@ -103,15 +103,16 @@ impl Rights {
         Self { mode: about.mode(), owner: about.uid(), group: about.gid() }
     }
 
-    /// Whether nobody else may read it, where `user` and `group` are ours. Root's, in Debian's way, may be read by our group, and
-    /// that group is for root to choose.
+    /// Whether nobody else may read it; `user` and `group` are those of this process. As is usual on Debian, a file of root may
+    /// be readable by its group: by ours, or if we are root by any, because root chose it.
     fn is_closed(&self, user: u32, group: u32) -> bool {
         let is_for_group = self.mode & 0o037 == 0 && self.owner == 0 && (self.group == group || user == 0);
         !is_open(self.mode) || is_for_group
     }
 }
 
-/// Writes `secrets` to the file `path`, which nobody else may read, all or nothing; with `lasts`, a power cut does not take it back.
+/// Writes `secrets` to the file `path`, which nobody else may read, completely or not at all; with `lasts` it survives a power
+/// cut.
 fn keep(path: &Path, secrets: &str, lasts: bool) -> Result<(), SecretError> {
     let write = || {
         let mut aside = PathBuf::from(path).into_os_string();
@@ -127,7 +128,7 @@ fn keep(path: &Path, secrets: &str, lasts: bool) -> Result<(), SecretError> {
     write().map_err(|source| SecretError::File { path: path.to_owned(), source })
 }
 
-/// What the TOML file `path` of secrets says.
+/// The content of the TOML file `path` of secrets.
 pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<T, SecretError> {
     let wrong = |error: toml::de::Error| SecretError::Wrong {
         path: path.to_owned(),
@@ -136,12 +137,12 @@ pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<T, SecretError> {
     toml::from_str(&own(path)?).map_err(wrong)
 }
 
-/// As [`read`]; what there is by default, if there is no file.
+/// Like [`read`]; the default if there is no file.
 pub(crate) fn read_or_none<T: DeserializeOwned + Default>(path: &Path) -> Result<T, SecretError> {
     if path.exists() { read(path) } else { Ok(T::default()) }
 }
 
-/// Writes secrets to the TOML file `path`, as [`keep`] does.
+/// Writes secrets to the TOML file `path`, like [`keep`].
 pub(crate) fn write(path: &Path, secrets: &impl Serialize, lasts: bool) -> Result<(), SecretError> {
     let secrets = toml::to_string(secrets).map_err(io::Error::other);
     let secrets = secrets.map_err(|source| SecretError::File { path: path.to_owned(), source })?;
@@ -159,7 +160,7 @@ mod tests {
             (0o100_400, 0, 0, true),
             (0o100_640, 0, 998, true),
             (0o100_440, 0, 998, true),
-            // Its owner is no root, the group may write, all may read, the group is another one.
+            // Not owned by root; writable by the group; readable by all; of another group.
             (0o100_640, 998, 998, false),
             (0o100_660, 0, 998, false),
             (0o100_644, 0, 998, false),

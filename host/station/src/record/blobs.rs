@@ -1,4 +1,4 @@
-//! Evidence under its own hash: a file that is there is whole, and is what its name says.
+//! Evidence stored under its own hash: a file that exists is complete, and its name is the hash of its content.
 
 use std::fs::{self, File};
 use std::io;
@@ -45,7 +45,7 @@ pub enum BlobError {
 }
 
 impl BlobError {
-    /// Whether the evidence is not there at all.
+    /// Whether the evidence does not exist at all.
     #[must_use]
     pub fn is_gone(&self) -> bool {
         matches!(self, Self::Read { source, .. } if source.kind() == io::ErrorKind::NotFound)
@@ -73,16 +73,16 @@ impl Blobs {
         fs::read_dir(&self.folder).into_iter().flatten().flatten().any(is_used)
     }
 
-    /// Where the evidence of this hash is, if it is there.
+    /// The path of the evidence with this hash, whether it exists or not.
     #[must_use]
     pub fn path(&self, hash: &str) -> PathBuf {
         self.folder.join(hash.get(..2).unwrap_or("00")).join(hash)
     }
 
-    /// Brings `bytes` to the disk, their name with them, and returns their hash.
+    /// Writes `bytes` and syncs them and their name to the disk; returns their hash.
     ///
     /// # Errors
-    /// [`BlobError`]; nothing half written is there then.
+    /// [`BlobError`]; no partial file remains.
     pub fn put(&self, bytes: &[u8]) -> Result<String, BlobError> {
         let hash = sha256([bytes]);
         let path = self.path(&hash);
@@ -94,10 +94,10 @@ impl Blobs {
         }
         let written = Aside::written(&path, false, |file| file.write_all(bytes));
         match written.and_then(Aside::rename_into_place) {
-            // A run that ended early may have left it, and its name not yet on the disk.
+            // A run that ended early may have written it, without syncing its name.
             Err(WriteAsideError::Exists { .. }) => {
                 self.get(&hash)?;
-                // Its age counts from the last run that has it, which has no row yet.
+                // What no row names is pruned by its age, and this run has no row yet.
                 let dated = File::options().append(true).open(&path);
                 dated
                     .and_then(|file| file.set_modified(SystemTime::now()))
@@ -109,7 +109,7 @@ impl Blobs {
         Ok(hash)
     }
 
-    /// Removes what a program left half written that was killed.
+    /// Removes the partial files of a program that was killed.
     pub fn clear(&self) {
         let folders = fs::read_dir(&self.folder).into_iter().flatten().filter_map(Result::ok);
         for kept in folders.flat_map(|folder| written_aside::clear(&folder.path())) {
@@ -117,8 +117,8 @@ impl Blobs {
         }
     }
 
-    /// Every piece of evidence that is there, whether a row names it or not. What has no hash for a name is none, nor is what
-    /// goes meanwhile.
+    /// All stored evidence, whether a row names it or not. Files whose name is no hash are skipped, and so are files that
+    /// disappear meanwhile.
     ///
     /// # Errors
     /// [`BlobError`] when the folder cannot be read.
@@ -158,7 +158,7 @@ impl Blobs {
     /// The bytes of this hash.
     ///
     /// # Errors
-    /// [`BlobError`] when they are not there, or others.
+    /// [`BlobError`] when the file cannot be read or holds other bytes.
     pub fn get(&self, hash: &str) -> Result<Vec<u8>, BlobError> {
         let path = self.path(hash);
         let bytes = fs::read(&path).map_err(|source| BlobError::Read { path: path.clone(), source })?;
@@ -170,20 +170,20 @@ impl Blobs {
 /// A file among the evidence.
 #[derive(Clone, Debug)]
 pub(crate) struct Piece {
-    /// Its hash, by its name.
+    /// Its hash, taken from its name.
     pub hash: String,
     /// How many bytes it has.
     pub bytes: u64,
-    /// When it was last brought to the disk.
+    /// When it was last written, or put again.
     pub modified: SystemTime,
 }
 
-/// Whether it is what evidence is called.
+/// Whether `name` could be that of evidence.
 pub(crate) fn is_hash(name: &str) -> bool {
     name.len() == 64 && name.bytes().all(|byte| byte.is_ascii_digit() || (b'a'..=b'f').contains(&byte))
 }
 
-/// Brings the names in a folder to the disk.
+/// Syncs the names in a folder to the disk.
 pub(crate) fn synced(folder: &Path) -> Result<(), BlobError> {
     let done = File::open(folder).and_then(|open| open.sync_all());
     done.map_err(|source| BlobError::Folder { path: folder.to_owned(), source })

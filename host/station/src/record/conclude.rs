@@ -12,10 +12,10 @@ use crate::said::{Said, Saying};
 /// What a run says that ended since somebody wanted it to.
 const STOPPED: [&str; 2] = ["stopped-by-signal", "run-stopped-before"];
 
-/// What to do about an ERROR of which nothing else is known.
+/// The remedy for an ERROR about which nothing else is known.
 pub(crate) const TEST_AGAIN: &str = "Test the board again.";
 
-/// What a run came to.
+/// The result of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Conclusion {
     /// The verdict. It has no default.
@@ -24,7 +24,7 @@ pub struct Conclusion {
     pub cause: RunCause,
     /// The exit code.
     pub exit_code: u8,
-    /// It in one sentence.
+    /// The result in one sentence.
     pub headline: String,
     /// What to do next.
     pub remedy: Option<String>,
@@ -34,9 +34,9 @@ pub struct Conclusion {
 }
 
 impl Conclusion {
-    /// Of a plan of `planned` steps: the worst that the last try of a step came to, an ERROR being worse than a FAIL;
-    /// PASS only if every step passed. `lane` says why there are no more steps, if the lane did not come to the plan's
-    /// end by itself.
+    /// The conclusion of a run whose plan has `planned` steps: the worst result of any step's last try or of any
+    /// measurement in `run`, where ERROR is worse than FAIL; PASS only if every step passed. `lane` says why steps are
+    /// missing, if the lane did not reach the end of the plan by itself.
     #[must_use]
     pub fn of(planned: u32, steps: &[StepRecord], run: &[Measured], lane: Option<Self>) -> Self {
         let is_last = |step: &StepRecord| {
@@ -51,7 +51,7 @@ impl Conclusion {
             (passed < planned as usize).then(|| Self::error(RunCause::Station, why()))
         };
         let mut worst: Vec<_> = by_step.chain(by_run).chain(lane).collect();
-        // Of two that are as bad the first came first.
+        // The sort is stable: of two equally bad ones the first counts.
         worst.sort_by_key(|conclusion| conclusion.verdict != Verdict::Error);
         let worst = worst.into_iter().next().or_else(missing);
         worst.unwrap_or_else(|| Self {
@@ -64,7 +64,7 @@ impl Conclusion {
         })
     }
 
-    /// A PASS says so when nobody could tell whether the board has the serial number that was scanned.
+    /// Adds [`IDENTITY_NOT_CHECKED`] to a PASS if it could not be checked whether the board has the scanned serial number.
     #[must_use]
     pub fn note_unchecked_identity(self, device: DeviceSeen) -> Self {
         if self.verdict == Verdict::Pass && device == DeviceSeen::NotChecked {
@@ -73,7 +73,7 @@ impl Conclusion {
         self
     }
 
-    /// A run that the station ended for this reason gives it, and is owed to nobody who works there.
+    /// Gives `why` as the reason of a run that the station stopped, with the station as the cause instead of the operator.
     #[must_use]
     pub fn stopped_since(self, why: Option<Said>) -> Self {
         let is_stopped = self.finding.as_ref().is_some_and(|said| STOPPED.contains(&said.code.as_str()));
@@ -93,7 +93,7 @@ impl Conclusion {
         Self { verdict, cause, exit_code, headline, remedy, finding: Some(why) }
     }
 
-    /// An ERROR since somebody wanted the run to end before the board was touched.
+    /// An ERROR because somebody stopped the run before the board was touched.
     #[must_use]
     pub fn stopped(by: StoppedBy) -> Self {
         let (why, cause) = (Said::from(Saying::StoppedBefore), Cause::Stopped(by));
@@ -134,7 +134,7 @@ impl Conclusion {
 pub(crate) mod tests {
     use super::*;
 
-    /// The second of two tries passed, a step that failed, and one that was skipped.
+    /// A step whose second try passed, one that failed, and one that was skipped.
     pub(crate) fn steps() -> Vec<StepRecord> {
         vec![
             step(1, 1, StepOutcome::Error, RunCause::Link),

@@ -1,4 +1,4 @@
-//! The record of a run: one JSON file that says all of it. The tables of the store are its index.
+//! The record of a run: one JSON file with all that is known of it. The tables of the store are its index.
 
 mod blobs;
 mod conclude;
@@ -21,14 +21,14 @@ pub use step::{
 };
 pub(crate) use unnamed::UnnamedRecord;
 
-/// What a PASS says when nobody could tell whether the board has the serial number that was scanned.
+/// What a PASS says if it could not be checked whether the board has the scanned serial number.
 pub const IDENTITY_NOT_CHECKED: &str = "identity not checked";
 
 /// The version of the record's format.
 pub const SCHEMA: u32 = 1;
 
-/// A run that is over, however it ended. Keys that a later program adds are skipped, in all that a record consists of: its bytes
-/// are held to their hash, and nothing is written of what was read.
+/// A run that is over, however it ended. Unknown keys, which a later program may have added, are skipped at every level. This
+/// loses nothing: the bytes are checked against their hash, and a record that was read is never written again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// [`SCHEMA`]
@@ -37,18 +37,18 @@ pub struct Record {
     pub run: RunHead,
     /// When it ended, in milliseconds since 1970, UTC.
     pub ended_ms: i64,
-    /// How long it took by a clock that nobody sets, in seconds; none after a crash.
+    /// How long it took by a monotonic clock, in seconds; none after a crash.
     pub seconds: Option<f64>,
-    /// What it came to.
+    /// Its result.
     pub conclusion: Conclusion,
-    /// The plan, whole.
+    /// The plan, complete.
     pub plan: PlanRecord,
-    /// Whether the run counts as production: the plan takes hardware alone, the unit is none that checks shifts, and the
+    /// Whether the run counts as production: the plan takes only hardware, the unit does not serve to check shifts, and the
     /// shift was checked.
     pub production: bool,
     /// Whether a step needed more than one try.
     pub marginal: bool,
-    /// The board, as soon as it had said who it is.
+    /// The board, if it identified itself.
     pub board: Option<BoardSeen>,
     /// What the store knew of the board's device before it was judged.
     pub device: DeviceSeen,
@@ -56,7 +56,7 @@ pub struct Record {
     pub steps: Vec<StepRecord>,
     /// Measurements of the run as a whole.
     pub measurements: Vec<Measured>,
-    /// The parts that are suspected, the likeliest first.
+    /// The suspected parts, the likeliest first.
     pub suspects: Vec<SuspectRecord>,
     /// Further evidence, each under its hash.
     pub attachments: Vec<Attachment>,
@@ -85,21 +85,21 @@ pub struct RunHead {
     pub operator: String,
     /// The target string of the board.
     pub target: String,
-    /// Which holder of the lane this run is, by a number that only grows.
+    /// The number of this run as holder of its lane; it only grows.
     pub fence: i64,
     /// When it began, in milliseconds since 1970, UTC.
     pub started_ms: i64,
-    /// The job that it is of.
+    /// The job that it belongs to.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub job: Option<JobClaim>,
 }
 
-/// A job of a plant's, as a station had it.
+/// A station's claim of a job of the plant.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct JobClaim {
     /// The job, a UUID of version 7.
     pub id: String,
-    /// The number of the claim, higher than that of every one before. A run counts if its claim is the last one.
+    /// The number of the claim, higher than that of every earlier claim of the job. Only the run of the last claim counts.
     pub fence: i64,
 }
 
@@ -118,14 +118,14 @@ pub struct PlanRecord {
     pub files: Option<Vec<FileHash>>,
 }
 
-/// Evidence beside the record.
+/// Evidence in addition to the record.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Attachment {
     /// Its name within the run.
     pub name: String,
     /// SHA-256 of its bytes.
     pub sha256: String,
-    /// How many they are.
+    /// How many bytes it has.
     pub bytes: u64,
     /// Its media type.
     pub media_type: String,
@@ -139,9 +139,9 @@ pub enum RecordError {
         "the measurement {name} came to {value}, which is no number; report this with the plan and the board"
     )]
     NotANumber {
-        /// Of what.
+        /// The measurement.
         name: String,
-        /// What it came to.
+        /// Its value.
         value: f64,
     },
     /// A PASS does not tell of every step that the plan has.
@@ -151,7 +151,7 @@ pub enum RecordError {
     Incomplete {
         /// The step.
         seq: u32,
-        /// The plan's steps.
+        /// How many steps the plan has.
         steps: u32,
     },
     /// The record is of a schema that this program does not read.
@@ -171,10 +171,10 @@ pub enum RecordError {
 }
 
 impl Record {
-    /// What is stored, for a plan of `steps` steps.
+    /// The bytes to store, for a plan of `steps` steps.
     ///
     /// # Errors
-    /// [`RecordError`] when it says what no record may say.
+    /// [`RecordError`] when a measurement is no finite number, or a PASS has no outcome of a step.
     pub fn bytes(&self, steps: u32) -> Result<Vec<u8>, RecordError> {
         let measured = self.steps.iter().flat_map(|step| &step.measurements).chain(&self.measurements);
         for Measured { name, value, .. } in measured {
@@ -196,7 +196,7 @@ impl Record {
         Ok(bytes)
     }
 
-    /// How long it took; behind a crash by the computer's clock, and none if that was set back meanwhile.
+    /// How long it took. After a crash this is by the computer's clock, and none if that was set back meanwhile.
     #[must_use]
     pub fn took(&self) -> Option<Duration> {
         self.seconds.map_or_else(
@@ -205,21 +205,22 @@ impl Record {
         )
     }
 
-    /// How long one of its steps took by the computer's clock; none if that was set meanwhile: then it took no time, or more than the run.
+    /// How long one of its steps took by the computer's clock; none if that would be negative or longer than the run, because the
+    /// clock was set meanwhile.
     #[must_use]
     pub fn took_for(&self, step: &StepRecord) -> Option<Duration> {
         let whole = self.seconds.unwrap_or(f64::INFINITY) + SLACK;
         between(step.started_ms, step.ended_ms).filter(|took| took.as_secs_f64() <= whole)
     }
 
-    /// The device that this run binds to its serial number: one that neither knew, once it is judged.
+    /// The device that this run binds to its serial number, if it judged the board and neither of the two was bound before.
     #[must_use]
     pub fn binds(&self) -> Option<&str> {
         let is_new = self.device == DeviceSeen::New && self.conclusion.verdict != Verdict::Error;
         self.board.as_ref().filter(|_| is_new)?.device.as_deref()
     }
 
-    /// The record that these bytes are.
+    /// Parses a record.
     ///
     /// # Errors
     /// [`RecordError::OtherSchema`], [`RecordError::Json`]
@@ -237,13 +238,13 @@ impl Record {
     }
 }
 
-/// What a record of every schema has.
+/// What records of every schema have in common.
 #[derive(Deserialize)]
 struct Numbered {
     schema: u32,
 }
 
-/// By how many seconds the clocks of a run and of its steps may differ where nobody sets one.
+/// By how many seconds the clock of a run and that of its steps may differ without being set.
 const SLACK: f64 = 1.0;
 
 fn between(from_ms: i64, to_ms: i64) -> Option<Duration> {
@@ -307,7 +308,7 @@ pub(crate) mod tests {
         assert_eq!(Record::parse(&bytes).unwrap(), error);
     }
 
-    /// JSON has no such number; it would become `null`, and a measurement that was not made.
+    /// JSON has no such number: it would become `null`, which says that nothing was measured.
     #[test]
     fn a_measurement_that_is_no_number_is_not_stored() {
         let mut record = pass();

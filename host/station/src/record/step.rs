@@ -1,4 +1,4 @@
-//! What a step of a run came to.
+//! The result of a step of a run.
 
 use halfrow::result::codes;
 use halfrow::target::BoardKind;
@@ -22,7 +22,7 @@ pub struct StepRecord {
     pub name: String,
     /// What it does: `identity`, `link` or `verify`.
     pub kind: String,
-    /// How it came out.
+    /// Its outcome.
     pub outcome: StepOutcome,
     /// Why.
     pub cause: RunCause,
@@ -34,23 +34,23 @@ pub struct StepRecord {
     pub ended_ms: i64,
     /// What was seen, in one sentence.
     pub detail: String,
-    /// It with its code.
+    /// The same with its code.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finding: Option<Said>,
     /// What to do next.
     pub remedy: Option<String>,
     /// What was measured.
     pub measurements: Vec<Measured>,
-    /// The parts that are suspected, the likeliest first.
+    /// The suspected parts, the likeliest first.
     pub suspects: Vec<SuspectRecord>,
-    /// The board, if it said who it is.
+    /// The board, if it identified itself.
     pub board: Option<BoardSeen>,
-    /// All that the judge says: the report of `verify`, the figures of `link`.
+    /// Everything that the judge reported: the report of `verify`, the figures of `link`.
     pub evidence: Option<Value>,
 }
 
 impl StepRecord {
-    /// Of a step that was not reached by `at_ms`, the end of the run.
+    /// The record of a step that was not reached before the run ended, at `at_ms`.
     #[must_use]
     pub fn skipped(seq: u32, step: &Step, at_ms: i64) -> Self {
         Self {
@@ -74,7 +74,7 @@ impl StepRecord {
     }
 }
 
-/// How a step came out.
+/// The outcome of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum StepOutcome {
@@ -101,7 +101,7 @@ impl StepOutcome {
     }
 }
 
-/// Whom or what a result is owed to.
+/// Who or what caused a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RunCause {
@@ -117,7 +117,7 @@ pub enum RunCause {
     Operator,
     /// The program or the computer ended in the middle of it.
     Crash,
-    /// The board is none that this plan may judge.
+    /// The board is not one that this plan may judge, or a value that has a limit could not be measured.
     Refused,
 }
 
@@ -136,7 +136,7 @@ impl RunCause {
         }
     }
 
-    /// Why the judge ended as it did; `code` is that of its finding or error.
+    /// The cause of the judge's result; `code` is that of its finding or error.
     #[must_use]
     pub fn of(cause: Cause, code: &str) -> Self {
         match cause {
@@ -150,21 +150,21 @@ impl RunCause {
         }
     }
 
-    /// Whether a step that ended so may be tried again: a FAIL never is.
+    /// Whether a step that ended for this cause may be tried again; a FAIL never is.
     #[must_use]
     pub const fn is_retryable(self) -> bool {
         matches!(self, Self::Link | Self::Station)
     }
 }
 
-/// Whether an error of the judge's with this code is one of the link.
+/// Whether an error of the judge with this code is one of the link.
 fn is_of_link(code: &str) -> bool {
     const OF_LINK: [&str; 5] = ["BoardError", "LinkError", "SerialError", "TcpError", "UsbError"];
     let lists = codes::LISTS.into_iter().flatten().filter(|list| OF_LINK.contains(&list.error));
     lists.flat_map(|list| list.codes).any(|(known, _)| *known == code)
 }
 
-/// A board that said who it is.
+/// A board that identified itself.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct BoardSeen {
     /// `mock`, `sim`, `replay` or `hardware`.
@@ -178,64 +178,64 @@ pub struct BoardSeen {
 }
 
 impl BoardSeen {
-    /// Whether it is a product's hardware, and no board that a program makes.
+    /// Whether it is real hardware, and not a board that a program simulates or replays.
     #[must_use]
     pub fn is_hardware(&self) -> bool {
         self.kind == BoardKind::Hardware.to_string()
     }
 }
 
-/// What the store knows of a device under the serial number that was scanned.
+/// What the store knows of a device together with the scanned serial number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DeviceSeen {
-    /// Nobody looked: the board says no number, or the plan asks for none.
+    /// Not checked: the board reports no number, or the plan asks for none.
     NotChecked,
-    /// Neither was seen before.
+    /// Neither was bound before.
     New,
-    /// They belong together.
+    /// They are bound to each other.
     Known,
 }
 
-/// A part that is suspected.
+/// A suspected part.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SuspectRecord {
     /// The kind of part.
     pub part: String,
-    /// Where.
+    /// Where it is.
     pub place: String,
     /// The share of what is wrong that it explains, 0 to 1.
     pub explained: f64,
-    /// What a technician does with this board.
+    /// What a technician should do with this board.
     pub technician: String,
 }
 
-/// A measurement, beside its limit if it has one.
+/// A measurement, with its limit if it has one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// Its name.
     pub name: String,
-    /// What it came to; none if it could not be measured.
+    /// Its value; none if it could not be measured.
     pub value: Option<f64>,
     /// Its unit.
     pub unit: String,
-    /// The least that is right.
+    /// The lowest value that is right.
     pub low: Option<f64>,
-    /// The most.
+    /// The highest value that is right.
     pub high: Option<f64>,
-    /// Whom it blames when it is beyond them.
+    /// Who is to blame for a value outside these limits.
     pub blames: Blame,
-    /// How it came out.
+    /// Its outcome.
     pub outcome: MeasuredOutcome,
 }
 
-/// How a measurement came out.
+/// The outcome of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MeasuredOutcome {
     /// Within its limit.
     #[serde(rename = "passed")]
     Passed,
-    /// Beyond it.
+    /// Outside its limit.
     #[serde(rename = "failed")]
     Failed,
     /// It has a limit and no value.
@@ -278,7 +278,7 @@ impl Measured {
         }
     }
 
-    /// Whose fault it is, if it is beyond a limit that blames somebody. What could not be measured is refused.
+    /// The cause of an ERROR or FAIL, if the value is outside a limit that blames somebody, or could not be measured.
     #[must_use]
     pub fn fault(&self) -> Option<RunCause> {
         match (self.outcome, self.blames) {
@@ -289,7 +289,7 @@ impl Measured {
         }
     }
 
-    /// That it is beyond its limit, or missing.
+    /// The statement that the value is outside its limit, or missing.
     #[must_use]
     pub fn said(&self) -> Said {
         let (sentence, low, high) = (self.sentence(), self.low, self.high);
@@ -300,10 +300,10 @@ impl Measured {
         }
     }
 
-    /// It in one sentence.
+    /// The value and its limit in one sentence.
     #[must_use]
     pub fn sentence(&self) -> String {
-        // To the millionth, with a unit where it has one.
+        // Rounded to a millionth.
         let told = |value: f64| (value * 1e6).round() / 1e6;
         let side = |word: &str, bound: Option<f64>| bound.map(|bound| format!("{word} {}", told(bound)));
         let sides = [side("at least", self.low), side("at most", self.high)];
@@ -317,7 +317,7 @@ impl Measured {
     }
 }
 
-/// All measurements of `made_by`, whose values are `values` by name, against the limits on them.
+/// All measurements that `made_by` makes, judged against `limits`; `values` has their values by name.
 #[must_use]
 pub fn judged(made_by: Maker, values: &[(&str, Option<f64>)], limits: &[Limit]) -> Vec<Measured> {
     let made = MEASUREMENTS.into_iter().filter(|measurement| measurement.made_by == made_by);

@@ -10,22 +10,22 @@ use serde_json::Value;
 
 use super::{BlobError, Blobs, Piece};
 
-/// A record, of this or another version, that no row names. Where its run has a row, its program ended between the two;
-/// where it has none, this is all that tells of it.
+/// A record, of this or another version, that no row names. If its run has a row, the program ended after it wrote the record
+/// and before it wrote the verdict to the row; if not, the record is all that is left of the run.
 #[derive(Clone, Debug)]
 pub(crate) struct UnnamedRecord {
     /// Its hash.
     pub sha256: String,
     /// The run.
     pub run: String,
-    /// What it says that the run came to.
+    /// The run's verdict by this record.
     pub verdict: Option<Verdict>,
     /// The hashes of the evidence that it names.
     pub attachments: Vec<String>,
 }
 
 impl Blobs {
-    /// The records among `pieces` that are not among those that rows have `named`. What is gone by now was none.
+    /// The records among `pieces` that are not in `named`, the hashes that rows name. Pieces that are gone by now are skipped.
     ///
     /// # Errors
     /// [`BlobError`] when a piece cannot be read.
@@ -52,7 +52,7 @@ impl Blobs {
     }
 }
 
-/// What records of every version have.
+/// What records of every version have in common.
 #[derive(Deserialize)]
 struct Record {
     #[serde(rename = "schema")]

@@ -1,4 +1,4 @@
-//! The board of a run, which labgrid may lend for it.
+//! The board of a run, which may be lent by labgrid.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::lane::supervisor::{Attendant, End, Heard, Patience, supervise};
 use crate::lane::{Job, Message};
 use crate::said::Said;
 
-/// Has a lane carry out the job, on a board of a place of labgrid's while that is held.
+/// Has a lane carry out the job. If the board is at a place of labgrid, the place is held meanwhile.
 pub(super) fn supervised(
     order: &Order<'_>,
     mut job: Job,

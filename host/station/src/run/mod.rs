@@ -1,4 +1,4 @@
-//! A run, from the serial number to a verdict that is saved.
+//! A run, from the serial number to the saved verdict.
 //!
 //! ```text
 //!  open row ─► lane ─► record ─► evidence on the disk ─► COMMIT ─► read back ─► verdict
@@ -33,15 +33,15 @@ use crate::said::{Said, Saying};
 use crate::store::{Admission, Folder, SharedStore, StoreError, Stored};
 use crate::{clock, ids};
 
-/// What is to be done with which board.
+/// What to run on which board.
 #[derive(Clone, Copy, Debug)]
 pub struct Order<'a> {
     /// The plan.
     pub plan: &'a Plan,
     /// Its file.
     pub plan_file: &'a Path,
-    /// The serial number, as it was scanned; that of [the mock in this lane](crate::plan::mock) has the mock judged instead of the
-    /// board.
+    /// The serial number, as it was scanned. If it is that of [the mock in this lane](crate::plan::mock), the mock is judged
+    /// instead of the board.
     pub serial: &'a str,
     /// The board.
     pub board: &'a LaneBoard,
@@ -51,13 +51,13 @@ pub struct Order<'a> {
     pub lane: &'a str,
     /// Who starts it.
     pub operator: &'a str,
-    /// The program whose `lane` is started.
+    /// The program whose command `lane` is started.
     pub program: &'a Path,
     /// Whether the run counts as production: the board is a product, and the lane was checked in this shift.
     pub counts: bool,
-    /// The job that the run is of.
+    /// The job that the run belongs to.
     pub job: Option<&'a JobClaim>,
-    /// How long the lane may be silent, beside the link tests of the plan.
+    /// How long the lane may be silent, in addition to the link tests of the plan.
     pub silence: Duration,
     /// How much memory the lane may have, in MiB of addresses.
     pub memory_mib: u64,
@@ -74,15 +74,15 @@ pub struct Saved {
     pub saved_ms: i64,
 }
 
-/// Who watches a run.
+/// An observer of a run, who may stop it.
 pub trait Watch {
-    /// Who wants it to end, as soon as somebody does.
+    /// Who wants the run to end, if somebody does.
     fn stop(&self) -> Option<StoppedBy>;
-    /// Why, where that says more than who does.
+    /// Why it should end, where that says more than who wants it.
     fn why(&self) -> Option<Said> {
         None
     }
-    /// It has come so far.
+    /// Is called whenever the run reaches a stage.
     fn hear(&mut self, stage: Stage<'_>);
 }
 
@@ -91,11 +91,11 @@ pub trait Watch {
 pub enum Stage<'a> {
     /// It is in the store, and its lane starts.
     Begun(&'a RunHead),
-    /// Its lane told something.
+    /// Its lane reported something.
     Told(&'a Message),
     /// Its lane has ended, and its result is being saved.
     Saving {
-        /// Whether the lane's process had to be killed, since it was silent or took too long.
+        /// Whether the lane's process had to be killed because it was silent or took too long.
         was_killed: bool,
         /// Whether it could not even be killed: it may still have the board.
         is_stuck: bool,
@@ -126,7 +126,7 @@ pub enum RunError {
     },
 }
 
-/// Carries the order out before the eyes of `watch`. The store is taken for moments only.
+/// Carries out the order, watched by `watch`. The store is locked only for moments.
 ///
 /// # Errors
 /// [`RunError`] when there is no verdict that may be shown.
@@ -178,8 +178,8 @@ struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    /// The board of the order, or the mock with a fault that is drawn by `seed`. Limits are about boards, and a clock or a link
-    /// that is none could only miss them: the mock has none.
+    /// The board of the order, or the mock with a fault that is drawn by `seed`. No limits apply to the mock: they are about real
+    /// boards, and its clock and link, which are not real, could only miss them.
     fn of(order: &Order<'a>, seed: u64) -> Result<Self, SerialError> {
         if !mock::is_mock(order.serial) {
             let (serial, selected) = order.plan.select(order.serial)?;
@@ -194,7 +194,7 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// What the lane is told.
+/// The job that is handed to the lane.
 fn job(head: &RunHead, order: &Order<'_>, seed: u64, spool: &Path) -> Job {
     Job {
         run: head.id.clone(),
@@ -210,7 +210,7 @@ fn job(head: &RunHead, order: &Order<'_>, seed: u64, spool: &Path) -> Job {
     }
 }
 
-/// Attends to the lane of a run: answers from the store which device may have the serial number.
+/// Attends to the lane of a run: decides by the store whether a device may have the serial number.
 struct Attending<'a> {
     store: &'a SharedStore,
     run: &'a RunHead,
@@ -274,7 +274,7 @@ fn record(
     let rest = selected.steps.iter().zip(1..).filter(|(_, seq)| *seq > reached);
     steps.extend(rest.map(|(step, seq)| StepRecord::skipped(seq, step, ended_ms)));
     let board = steps.iter().find_map(|step| step.board.clone());
-    // What never said what it is may be a product.
+    // A board that never identified itself may be a product.
     let is_hardware = board.as_ref().is_none_or(BoardSeen::is_hardware);
     Record {
         schema: SCHEMA,
@@ -295,7 +295,7 @@ fn record(
     }
 }
 
-/// What the lane's end alone makes of the run.
+/// The conclusion that follows from the lane's end alone.
 fn of_lane(end: End) -> Option<Conclusion> {
     match end {
         End::Done => None,
@@ -311,8 +311,8 @@ fn last_suspects(steps: &[StepRecord]) -> Vec<SuspectRecord> {
     of_steps.find(|some| !some.is_empty()).cloned().unwrap_or_default()
 }
 
-/// Saves the record by `finish`, with what the lane wrote down unless it is a PASS, and empties the spool. That is on the disk
-/// before `finish`, which alone needs the store.
+/// Saves the record by `finish`, and removes the spool. Unless the run is a PASS, what the lane wrote down is attached; it is on
+/// the disk before `finish`, which alone needs the store.
 fn save(
     folder: &Folder,
     mut record: Record,
@@ -337,13 +337,13 @@ fn save(
     Ok(Saved { record, stored, saved_ms })
 }
 
-/// What a lane wrote down, as evidence.
+/// Stores what a lane wrote down as evidence.
 fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> {
     let mut attachments = Vec::new();
     let text = "text/plain; charset=utf-8";
     let told = [(EVENTS, "application/jsonl"), (LOG, text), (kept_frame::NOT_KEPT, text)];
     let told = told.map(|(name, media_type)| (name.to_owned(), media_type));
-    // Without a folder there is nothing in it.
+    // A lane that was not started has no folder.
     let frames = kept_frame::names(spool).unwrap_or_default().into_iter().map(|name| (name, "image/png"));
     for (name, media_type) in told.into_iter().chain(frames) {
         let path = spool.join(&name);

@@ -1,4 +1,4 @@
-//! How long a lane is waited for.
+//! How long the station waits for a lane.
 
 use std::time::Duration;
 
@@ -8,12 +8,12 @@ use crate::plan::{Act, Selected, Step};
 /// Round trips, echoes, to the board, to the host, together: each takes the seconds of the plan.
 const LINK_TEST_PARTS: u32 = 5;
 
-/// With a lane that carries this out, and may be silent so long beside its link tests.
+/// The patience with a lane that carries out `selected` and may be silent for `silence` in addition to its link tests.
 pub(super) fn of(silence: Duration, selected: &Selected) -> Patience {
     Patience { silence: silence.saturating_add(longest_link_test(selected)), whole: whole(selected) }
 }
 
-/// How long the longest link test is silent by its nature.
+/// How long the longest link test is silent when all is well.
 fn longest_link_test(selected: &Selected) -> Duration {
     let parts = |step: &Step| match step.act {
         Act::Link { each } => each.saturating_mul(LINK_TEST_PARTS),
@@ -22,7 +22,7 @@ fn longest_link_test(selected: &Selected) -> Duration {
     selected.steps.iter().map(parts).max().unwrap_or_default()
 }
 
-/// The longest that a run may take: every try of every step as long as it may, and as much again as one step for the
+/// The longest that a run may take: the timeouts of all tries of all steps, and the longest timeout once more for the
 /// rest.
 fn whole(selected: &Selected) -> Duration {
     let tries = selected.steps.iter().map(|step| step.timeout.saturating_mul(step.retries + 1));

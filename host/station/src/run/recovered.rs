@@ -16,8 +16,8 @@ use crate::store::{Folder, InLane, OpenRun, SharedStore, Store, StoreError, Stor
 
 use super::{RunError, Saved, save};
 
-/// Closes every run that is open as ERROR, cause crash, with what its lane wrote down. What it was about to come to
-/// does not count: a board that is tested again costs a minute, a PASS that is none costs more.
+/// Closes every open run as ERROR, cause crash, with what its lane wrote down. The verdict that it was heading for does not
+/// count: to test a board again costs a minute, a wrong PASS costs more.
 ///
 /// # Errors
 /// [`RunError`] when a run cannot be closed; its lane stays blocked.
@@ -34,11 +34,11 @@ pub fn recover(store: &mut Store) -> Result<Vec<Saved>, RunError> {
     Ok(closed)
 }
 
-/// What became of a run whose result could not be saved, once the store is well: ERROR, cause crash; what the store has,
-/// if all had come to the disk and only could not be read back. The store is taken for moments only.
+/// Settles a run whose result could not be saved, once the store works again: as ERROR, cause crash, or as the store has it if
+/// everything had reached the disk and only could not be read back. The store is locked only for moments.
 ///
 /// # Errors
-/// [`RunError`] when the store is not well yet, or does not know the run.
+/// [`RunError`] when the store does not work yet, or does not know the run.
 pub fn recover_run(store: &SharedStore, run: &str) -> Result<Saved, RunError> {
     let unsaved = |source| RunError::Unsaved { run: run.to_owned(), source: Box::new(source) };
     let open = store.with(Store::open_runs).map_err(unsaved)?;
@@ -51,7 +51,8 @@ pub fn recover_run(store: &SharedStore, run: &str) -> Result<Saved, RunError> {
     Ok(Saved { record, stored, saved_ms: clock::now_ms() })
 }
 
-/// Removes what runs left that ended between their result and their last act, and what is a day old and no row names.
+/// Removes the spools of runs that ended after their result was saved and before they could do so, and spools that are a day
+/// old and that no row names.
 fn clear(store: &mut Store) {
     let spools = match spools(store) {
         Ok(spools) => spools,
@@ -68,7 +69,7 @@ fn clear(store: &mut Store) {
     }
 }
 
-/// Closes a run by `finish`, as [`save`] does.
+/// Closes a run by `finish`, like [`save`].
 fn closed(
     folder: &Folder,
     open: OpenRun,
@@ -112,7 +113,7 @@ fn counts(folder: &Folder, run: &RunHead, plan_sha256: &str, text: &str) -> Resu
     folder.counts(&place, serial, *started_ms)
 }
 
-/// The steps that the lane told of, as far as they were written down.
+/// The steps that the lane reported, as far as they were written down.
 fn told(spool: &Path) -> Vec<StepRecord> {
     let events = fs::read(spool.join(EVENTS)).unwrap_or_default();
     let lines = events.split(|&byte| byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok());
