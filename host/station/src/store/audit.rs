@@ -1,4 +1,4 @@
-//! Acts of people, which are kept whatever becomes of them.
+//! The audit: what people did, kept whatever came of it.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ pub(super) struct Line<'a> {
 }
 
 impl Line<'_> {
-    /// Enters it, and for every sink that it is to be sent.
+    /// Enters the line, and an entry of the outbox for every sink.
     pub(super) fn enter(self, to: &mut dyn Database, sinks: &[String]) -> Result<(), DatabaseError> {
         let Self { id, at_ms, operator, act, subject, detail } = self;
         to.execute(sql::ADD_AUDIT, values![id, at_ms, operator, act, subject, detail])?;
@@ -36,7 +36,7 @@ impl Store {
         self.audited("an audit", [operator, act, subject, detail], |_| Ok(1)).map(drop)
     }
 
-    /// Carries out what changes rows or none, and enters it in the audit if it did: who, what, with what, and how. Returns how many it changed.
+    /// Carries out `change`, and enters it in the audit if it changed any row. Returns how many rows it changed.
     pub(super) fn audited(
         &mut self,
         doing: &'static str,

@@ -1,4 +1,4 @@
-//! Which device has which serial number: the FPGA's own number against the label on the board.
+//! Which device has which serial number: the FPGA's own number, and the label on the board.
 
 use std::sync::Arc;
 
@@ -12,26 +12,26 @@ use crate::clock;
 use crate::record::RunHead;
 use crate::said::{Said, Saying};
 
-/// Why a run binds.
+/// The reason of a binding by a run.
 pub(super) const BY_RUN: &str = "first judgement";
-/// What a change by a person is called in the audit.
+/// The audit's name for a change by a person.
 pub(super) const REBIND: &str = "rebind";
 
-/// What the store knows of a device under a serial number.
+/// Whether a device may be tested under a serial number.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Admission {
-    /// Neither was seen before: they are bound when the board is judged.
+    /// Neither was bound before: they are bound when the board is judged.
     New,
-    /// They belong together.
+    /// They are bound to each other.
     Known,
-    /// They do not, or the device is being tested elsewhere.
+    /// One of them is bound to another, or the device is being tested elsewhere.
     Refused {
         /// Which board it is, and which was scanned.
         why: Said,
     },
 }
 
-/// A change of what belongs together, by a person.
+/// A change of a binding by a person.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rebinding {
     /// Its line in the audit, a UUID of version 7.
@@ -42,13 +42,13 @@ pub struct Rebinding {
     pub operator: String,
     /// The unit, a UUID.
     pub unit_id: String,
-    /// The device that the unit has from then on; none if the next judgement is to say it.
+    /// The device that the unit has from then on; none if the next judgement is to bind it.
     pub device: Option<String>,
     /// Why.
     pub reason: String,
 }
 
-/// What the audit keeps of a rebinding beside who, when and which unit.
+/// What the audit keeps of a rebinding in addition to who, when and which unit.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Detail {
     pub(super) device: Option<String>,
@@ -56,8 +56,8 @@ pub(super) struct Detail {
 }
 
 impl Store {
-    /// Whether the board that says it is `device` may be judged as `run`'s. Until that run is over no other one may have
-    /// the device.
+    /// Whether the board that reports `device` may be judged in `run`. If so, no other run may have the device until that
+    /// run is over.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
@@ -80,11 +80,11 @@ impl Store {
         Ok(admission)
     }
 
-    /// Ends what binds the unit of this serial number, and `device` if one is given; the two are bound then, and else
-    /// the next judgement of the unit binds it. The reason is kept.
+    /// Ends the bindings of the unit with this serial number, and of `device` if one is given. The two are then bound to
+    /// each other; without a device, the next judgement of the unit binds it. The reason is kept.
     ///
     /// # Errors
-    /// [`RebindError`] when there is no such unit, it is being tested, or what is said of it is no device or no reason.
+    /// [`RebindError`] when there is no such unit, it is being tested, or the device or the reason is not acceptable.
     pub fn rebind(&mut self, change: &Change<'_>) -> Result<Rebinding, RebindError> {
         if change.reason.trim().is_empty() {
             return Err(RebindError::NoReason);
@@ -137,14 +137,14 @@ impl Store {
     }
 }
 
-/// What a person wants to be bound.
+/// A change of a binding that a person wants.
 #[derive(Clone, Copy, Debug)]
 pub struct Change<'a> {
     /// The serial number.
     pub serial: &'a str,
     /// The product, where several have such a serial number.
     pub product: Option<&'a str>,
-    /// The device that it is to have, as 16 hexadecimal digits; none for the one that is judged next.
+    /// The device that it is to have, as 16 hexadecimal digits; none for the one that its next judgement finds.
     pub device: Option<&'a str>,
     /// Who wants it.
     pub operator: &'a str,
@@ -226,7 +226,7 @@ struct Known {
 }
 
 impl Known {
-    /// Whether the board that says it is `device` may be judged as the scanned unit.
+    /// Whether the board that reports `device` may be judged as the scanned unit.
     fn admits(&self, scanned: &Unit, device: &str) -> Admission {
         let why = match (&self.unit, &self.device) {
             (None, None) => return Admission::New,
@@ -247,7 +247,7 @@ impl Known {
     }
 }
 
-/// What a run binds that judged a device which was not known.
+/// Binds a new device to the unit of the run that judged it.
 pub(super) fn bind(
     to: &mut dyn Database,
     run: &RunHead,
@@ -257,7 +257,7 @@ pub(super) fn bind(
     to.execute(sql::ADD_BINDING, values![&run.id, device, &run.unit_id, at_ms, &run.operator, BY_RUN])
 }
 
-/// What a person changed.
+/// Carries out a change by a person.
 pub(super) fn rebind(to: &mut dyn Database, change: &Rebinding) -> Result<(), DatabaseError> {
     let Rebinding { id, at_ms, operator, unit_id, device, reason } = change;
     to.execute(sql::END_BINDINGS, values![*at_ms, unit_id, device.as_ref()])?;

@@ -1,23 +1,23 @@
-//! Whether a run is dated as those of other stations are: a plant tells which of two judgements of a unit is the later one by
-//! when they began.
+//! Whether a run is dated consistently with those of other stations: a plant tells which of two judgements of a unit is the
+//! later one by when they began.
 
 use super::{SINK_OF_PLANT, Store, StoreError};
 use crate::clock::HeardClock;
 use crate::ids;
 use crate::record::RunHead;
 
-/// How far a date may be off: less than a board takes from one station to another.
+/// How far a date may be off: by less than a board needs to get from one station to another.
 pub(super) const TOLERATED_MS: i64 = 5 * 60_000;
 const MINUTE_MS: u64 = 60_000;
 
 impl Store {
-    /// The plant's clock was heard.
+    /// Notes the plant's clock, as it was heard.
     pub fn heard_plant(&mut self, clock: HeardClock) {
         self.plant_clock = Some(clock);
     }
 
-    /// Refuses a run that a plant would take for an earlier or later one than it is. Whoever sends nothing to a plant may date
-    /// runs as it likes: they are in order among themselves.
+    /// Refuses a run that a plant would take for earlier or later than it is. The dates of a station that sends nothing to a
+    /// plant do not matter: its runs are in order among themselves.
     pub(super) fn refuses_misdated(&self, run: &RunHead) -> Result<(), StoreError> {
         if !self.sinks.iter().any(|sink| sink == SINK_OF_PLANT) {
             return Ok(());

@@ -241,7 +241,7 @@ pub enum StoreError {
 }
 
 impl StoreError {
-    /// What the database in the file `path` does not do.
+    /// The error of the database in the file `path`, which refused `doing`.
     pub(super) fn of_file(path: &Path, doing: &'static str, source: impl Into<DatabaseError>) -> Self {
         let (path, source) = (path.to_owned(), source.into());
         if source.is_damage() {
@@ -251,7 +251,7 @@ impl StoreError {
         }
     }
 
-    /// What an engine at `place`, a file or an address, does not do.
+    /// The error of an engine at `place`, a file or an address, which refused `doing`.
     pub(super) fn refused(engine: Engine, place: &Path, doing: &'static str, source: DatabaseError) -> Self {
         match engine {
             Engine::Sqlite => Self::of_file(place, doing, source),
@@ -259,7 +259,7 @@ impl StoreError {
         }
     }
 
-    /// Whether the plant is not there for now, rather than that it does not do this one thing.
+    /// Whether the plant is unavailable for now, as opposed to refusing this one thing.
     #[must_use]
     pub fn is_away(&self) -> bool {
         match self {
@@ -269,7 +269,7 @@ impl StoreError {
         }
     }
 
-    /// Whether the plant can never hold what it was given.
+    /// Whether the plant can never store what it was given.
     #[must_use]
     pub(super) fn is_of_content(&self) -> bool {
         matches!(self, Self::Plant { source, .. } if source.is_of_content())

@@ -12,11 +12,11 @@ use super::database::Sqlite;
 use super::{Database, DatabaseError, PATIENCE, StoreError};
 use crate::record::Blobs;
 
-/// How long a program may take to leave the folder that has just ended, and how often it is looked.
+/// How long to wait for a program that is just ending to leave the folder, and the time between two tries.
 const LEAVES: Duration = Duration::from_secs(1);
 const AGAIN: Duration = Duration::from_millis(20);
 
-/// What a copy is called, in the folder that is there for it, while it is being made.
+/// The name of an unfinished copy, within the folder where the copy is to be.
 pub(crate) const ASIDE: &str = ".partial";
 
 /// The folder of a station.
@@ -24,7 +24,7 @@ pub(crate) const ASIDE: &str = ".partial";
 pub struct Folder(pub(super) PathBuf);
 
 impl Folder {
-    /// The station's folder `path`, whether it is there or not.
+    /// The station's folder `path`, whether it exists or not.
     #[must_use]
     pub fn new(path: &Path) -> Self {
         Self(path.to_owned())
@@ -36,18 +36,18 @@ impl Folder {
         self.0.join("station.db")
     }
 
-    /// Ends where a copy is being put, or was when its program was killed: what begins there would be in its way.
+    /// Refuses a folder in which a restore is at work, or was when its program was killed: what begins there would be in its way.
     pub(super) fn has_no_restore(&self) -> Result<(), StoreError> {
         let is_unfinished = self.0.join(ASIDE).exists() && !self.database().exists();
         if is_unfinished { Err(StoreError::Unrestored { folder: self.0.clone() }) } else { Ok(()) }
     }
 
-    /// Ends where there is evidence, and no database that says whose: nothing may begin anew beside it.
+    /// Refuses a folder that has evidence and no database to say whose: nothing may begin anew beside it.
     pub(super) fn has_kept_database(&self) -> Result<(), StoreError> {
         self.refuse_lost(fs::metadata(self.database()).is_err())
     }
 
-    /// The same of what `database` holds, which is nothing where its write-ahead log was left behind.
+    /// The same for a `database` without any table, as where it was copied without its write-ahead log.
     pub(super) fn has_kept_tables(&self, database: &mut dyn Database) -> Result<(), StoreError> {
         let tables = database.one("SELECT count(*) FROM sqlite_schema", &[], |row| row.get::<i64>(0));
         let tables = tables.map_err(|source| StoreError::of_file(&self.database(), "to be read", source))?;
@@ -65,13 +65,13 @@ impl Folder {
         Blobs::new(self.0.join("blobs"))
     }
 
-    /// What the run of this id writes down while it is under way.
+    /// The folder of what the run of this id writes down while it is under way.
     #[must_use]
     pub fn spool(&self, run: &str) -> PathBuf {
         self.spools().join(run)
     }
 
-    /// What all runs that are under way write down.
+    /// The folder of the spools of all runs that are under way.
     #[must_use]
     pub fn spools(&self) -> PathBuf {
         self.0.join("spool")
@@ -81,12 +81,12 @@ impl Folder {
         StoreError::Folder { folder: self.0.clone(), source }
     }
 
-    /// What whoever writes holds.
+    /// The file that is locked by the program that writes.
     pub(crate) fn lock_file(&self) -> PathBuf {
         self.0.join("station.lock")
     }
 
-    /// The right to write to the folder, which is there, for as long as the file is open.
+    /// The right to write to the folder, which must exist. It lasts as long as the file is open.
     ///
     /// # Errors
     /// [`StoreError`] when another program has it.
@@ -104,7 +104,7 @@ impl Folder {
         }
     }
 
-    /// The connection that writes. It folds no log into the database by itself, not even at its end until it is told to.
+    /// The connection that writes. It does not fold the log into the database by itself, nor when it closes unless told to.
     pub(super) fn writer(&self) -> Result<Box<dyn Database>, StoreError> {
         let path = self.database();
         let place = &path;
@@ -121,7 +121,7 @@ impl Folder {
         if mode != "wal" {
             return Err(StoreError::NoLog { path, mode });
         }
-        // A commit that returns is on the disk. With less, a power cut takes back what was shown.
+        // A commit that returned is on the disk. With less, a power cut could undo what was shown.
         writer
             .execute_batch("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON")
             .map_err(refused("to be safe"))?;

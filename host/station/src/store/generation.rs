@@ -1,9 +1,9 @@
-//! Which `station.db` a write-ahead log is of.
+//! Which `station.db` a write-ahead log belongs to.
 //!
-//! SQLite does not know: it plays the pages of any log into whatever database lies beside it. So the database has a number in the header
-//! that every SQLite file has (`user_version`), which is kept in `station.lock`, too, and gets a new one whenever the log is folded into
-//! it. In between its file does not change: a copy with the noted number is the very file to which the log belongs, and any other copy has
-//! none, or an earlier one.
+//! SQLite does not know: it plays the pages of any log into whatever database lies beside it. So the database has a number in its
+//! header (`user_version`), which is noted in `station.lock`, too. It gets a new one whenever the log is folded into it. In
+//! between its file does not change: a copy with the noted number is identical to the file to which the log belongs, and any
+//! other copy has no number, or an earlier one.
 
 use std::fs::{self, File, Metadata};
 use std::io;
@@ -16,16 +16,16 @@ use rusqlite::{Connection, ffi};
 use super::{Database, DatabaseError, Folder, StoreError};
 use crate::ids;
 
-/// Where the number stands, its highest byte first (SQLite, "Database File Format", section 1.3).
+/// The offset of the number in the file, big-endian (SQLite, "Database File Format", section 1.3).
 const PLACE: u64 = 60;
-/// The bytes of a log that has a header alone, and no pages (there, section 4.1).
+/// The bytes of a log that has only a header and no pages (section 4.1 there).
 const EMPTY_LOG: u64 = 32;
 
-/// Changes after which the log is folded. A run is two, of some fifteen pages each: that is sooner than SQLite would fold it by itself, at
-/// a thousand pages, which [`Folder::writer`] keeps it from.
+/// Changes after which the log is folded. A run makes two, of some fifteen pages each, so this is sooner than SQLite's own limit
+/// of a thousand pages, which [`Folder::writer`] switches off.
 const CHANGES: u32 = 32;
 
-/// The numbers that a database may have of which the log is, the newest at the end.
+/// The numbers that the database of the log may have, the newest last.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(super) struct Generations(Vec<u32>);
 
@@ -57,13 +57,13 @@ pub(super) fn is_named(file: &File, path: &Path) -> bool {
     own.is_some() && own == id(fs::metadata(path))
 }
 
-/// The database that a start opened. It stays open for as long as a connection writes to it: whoever closes a file gives up the locks
-/// that SQLite has there, too (fcntl(2)).
+/// The database that a start opened. It stays open as long as a connection writes to it: to close the file would also release the
+/// locks that SQLite has on it (fcntl(2)).
 #[derive(Debug)]
 pub(super) struct Opened {
     file: File,
     known: Generations,
-    /// Since the log was folded.
+    /// How many since the log was folded.
     changes: u32,
 }
 
@@ -73,17 +73,17 @@ impl Opened {
         Self { file, known, changes: 0 }
     }
 
-    /// Whether it is the file of its name still, and what was written to it.
+    /// Whether it is still the file of its name, and no other database was written over it.
     pub(super) fn is_there(&self, folder: &Folder) -> bool {
         is_named(&self.file, &folder.database()) && self.is_unspoilt()
     }
 
-    /// Whether nobody has written another database over it, which its log would spoil.
+    /// Whether no other database was written over it, which its log would spoil.
     pub(super) fn is_unspoilt(&self) -> bool {
         matches!(number(&self.file), Ok(Some(found)) if self.known.0.contains(&found))
     }
 
-    /// Counts a change, and folds the log as often as it is time for it.
+    /// Counts a change, and folds the log when that is due.
     pub(super) fn changed(
         &mut self,
         folder: &Folder,
@@ -98,7 +98,7 @@ impl Opened {
         }
     }
 
-    /// Folds the log into the database, which has another number from there on. What somebody reads stays in the log meanwhile.
+    /// Folds the log into the database, which gets a new number. What a reader still needs stays in the log meanwhile.
     pub(super) fn fold(
         &mut self,
         folder: &Folder,
@@ -109,20 +109,20 @@ impl Opened {
             let both = Generations(vec![known, chosen()?]);
             note(folder, lock, &both)?;
             both.give(folder, writer)?;
-            // Not before it has it: the log is folded as soon as there are two.
+            // Only now that the database has the new number: with two known, the log is folded.
             self.known = both;
         }
         self.settle(folder, lock, writer)
     }
 
-    /// Takes the last number alone, as soon as it stands in the file itself: an earlier one may be that of a copy.
+    /// Drops all numbers but the last, as soon as that is in the file itself: a copy may have an earlier one.
     fn settle(&mut self, folder: &Folder, lock: &File, writer: &mut dyn Database) -> Result<(), StoreError> {
         let [_, .., last] = self.known.0[..] else { return Ok(()) };
         let folded = writer.one("PRAGMA wal_checkpoint(PASSIVE)", &[], |row| {
             let [busy, pages, folded] = [row.get::<i64>(0)?, row.get(1)?, row.get(2)?];
             Ok(busy == 0 && pages == folded)
         });
-        // Who reads an earlier state keeps the pages since in the log.
+        // A reader of an earlier state keeps later pages in the log.
         if folded.map_err(|source| refused(folder, source))? {
             let last = Generations(vec![last]);
             note(folder, lock, &last)?;
@@ -147,18 +147,18 @@ fn refused(folder: &Folder, source: DatabaseError) -> StoreError {
     StoreError::of_file(&folder.database(), "to be told from its copies", source)
 }
 
-/// What is known of a log beside a database.
+/// What is known of the log beside a database.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Log {
     /// There is none.
     None,
-    /// It is this database's.
+    /// It belongs to this database.
     Own,
-    /// It was left by a program that wrote down nothing of it, or not yet of which database it is.
+    /// It was left by a program that had not noted, or not finally, which database it belongs to.
     Unknown,
 }
 
-/// Looks at the log that was left in `folder`, which nobody works in: before a connection plays it into the database.
+/// Examines the log that was left in `folder`, in which nobody works, before a connection plays it into the database.
 pub(super) fn of_left_log(folder: &Folder) -> Result<(Log, Generations), StoreError> {
     let refused = |source| folder.refused(source);
     let path = folder.database();
@@ -166,7 +166,7 @@ pub(super) fn of_left_log(folder: &Folder) -> Result<(Log, Generations), StoreEr
     let log = fs::metadata(path.with_extension("db-wal"));
     let is_left = log.is_ok_and(|log| log.len() > EMPTY_LOG);
     let (Some(found), true) = (found, is_left) else {
-        // A file that is not made yet will have 0.
+        // A database that does not exist yet will have 0.
         return Ok((Log::None, Generations(vec![found.unwrap_or_default()])));
     };
     let mut noted = noted(folder);
@@ -176,15 +176,15 @@ pub(super) fn of_left_log(folder: &Folder) -> Result<(Log, Generations), StoreEr
     if !noted.0.contains(&found) {
         return Err(StoreError::OtherLog { path });
     }
-    // With several of them a start was not sure yet, and a copy may have one.
+    // With several noted, a start had not settled on one yet, and a copy may have any of them.
     let log = if noted.0.len() > 1 { Log::Unknown } else { Log::Own };
     noted.0.retain(|one| *one != found);
     noted.0.push(found);
     Ok((log, noted))
 }
 
-/// Refuses a log that another database has left, also to whoever looks beside a start. Of a database that this process writes to that is
-/// known, and to close it once more would give up the locks that SQLite has there.
+/// Refuses a log that belongs to another database; a station may start meanwhile. A database that this process writes to is not
+/// examined: its log is known, and to open and close the file would release the locks that SQLite has on it.
 pub(super) fn has_own_log(folder: &Folder) -> Result<(), StoreError> {
     if id(fs::metadata(folder.database())).is_some_and(|id| written().contains(&id)) {
         return Ok(());
@@ -192,14 +192,14 @@ pub(super) fn has_own_log(folder: &Folder) -> Result<(), StoreError> {
     loop {
         let before = noted(folder);
         match of_left_log(folder) {
-            // A start has given it another number meanwhile, which it notes first.
+            // A start has given the database another number meanwhile; it notes that first.
             Err(StoreError::OtherLog { .. }) if noted(folder) != before => {}
             looked => return looked.map(drop),
         }
     }
 }
 
-/// The number in the database of this name itself, whatever its log says; none where there is no database.
+/// The number in the file of this database itself, whatever its log says; none if there is no database.
 fn header(database: &Path) -> io::Result<Option<u32>> {
     match File::open(database) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
@@ -207,7 +207,7 @@ fn header(database: &Path) -> io::Result<Option<u32>> {
     }
 }
 
-/// The number in this file; none of one that is too short for it.
+/// The number in this file; none if the file is too short for it.
 fn number(file: &File) -> io::Result<Option<u32>> {
     let mut bytes = [0; 4];
     match file.read_exact_at(&mut bytes, PLACE) {
@@ -219,14 +219,14 @@ fn number(file: &File) -> io::Result<Option<u32>> {
     }
 }
 
-/// What the last start kept: the first line, for a line that was longer may have left its end behind.
+/// The numbers that were noted last. Only the first line counts, because the end of a longer one may remain after it.
 fn noted(folder: &Folder) -> Generations {
     let text = fs::read_to_string(folder.lock_file()).unwrap_or_default();
     let words = text.lines().next().unwrap_or_default().split(' ').filter(|word| word.len() == 8);
     Generations(words.filter_map(|word| u32::from_str_radix(word, 16).ok()).collect())
 }
 
-/// Keeps them in the file that is locked.
+/// Notes the numbers in the lock file.
 fn note(folder: &Folder, lock: &File, Generations(all): &Generations) -> Result<(), StoreError> {
     let words: Vec<_> = all.iter().map(|one| format!("{one:08x}")).collect();
     let line = words.join(" ") + "\n";
@@ -234,13 +234,14 @@ fn note(folder: &Folder, lock: &File, Generations(all): &Generations) -> Result<
     written.and_then(|()| lock.sync_all()).map_err(|source| folder.refused(source))
 }
 
-/// A number that no copy has. Its end is random; `user_version` is signed, and 0 is that of a copy.
+/// A number that no copy has: the random end of an id, but positive, since `user_version` is signed, and not 0, which copies
+/// have.
 fn chosen() -> Result<u32, StoreError> {
     Ok((ids::new(0)?.as_u128() as u32 >> 1) | 1)
 }
 
-/// Chooses the number that this start gives the database, as the last of `known`. Beside a database that was put back it is noted before
-/// a log comes about.
+/// Chooses the number that this start gives the database, and appends it to `known`. Where the database was put back, it is noted
+/// before there is a log.
 pub(super) fn choose(
     folder: &Folder,
     lock: &File,
@@ -261,8 +262,8 @@ pub(super) fn choose(
     Ok(known)
 }
 
-/// Gives the database the last number of `known`, which none of its copies has. Until it stands in the file itself, those that it had
-/// count as well, so that a start that is killed on the way is in no other's way.
+/// Gives the database the last number of `known`, which none of its copies has. Until that is in the file itself, the earlier
+/// ones count as well, so that a start that is killed halfway does not block the next one.
 pub(super) fn begin(
     folder: &Folder,
     lock: &File,
@@ -288,7 +289,7 @@ pub(super) fn is_whole(folder: &Folder, database: &mut dyn Database) -> Result<(
     Err(StoreError::of_file(&folder.database(), "to be checked", damage))
 }
 
-/// Takes the number from the copy of a database in the file `path`.
+/// Removes the number from the copy of a database in the file `path`.
 pub(super) fn remove(path: &Path) -> Result<(), StoreError> {
     let refused = |source: rusqlite::Error| StoreError::of_file(path, "to be told from its original", source);
     let copy = Connection::open(path).map_err(refused)?;

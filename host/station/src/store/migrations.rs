@@ -18,9 +18,9 @@ pub(super) const NEWEST: &str = "SELECT max(n) FROM schema_version";
 /// Notes that it has another one.
 const NOTE: &str = "INSERT INTO schema_version (n, sha256, applied_ms) VALUES ($1, $2, $3)";
 
-/// Applies all schemas that `database`, which is at `path`, does not have yet, in one transaction: whatever comes between, it has the
-/// version that was found, or the newest. Before a database that holds results is changed, a copy of it is laid beside it: as a file,
-/// or as a schema `before_N` or `before_N_2` and so on, by what is free.
+/// Applies all schemas that `database`, which is at `path`, does not have yet, in one transaction: whatever happens, it has the
+/// version that was found, or the newest. Before a database that holds results is changed, it is copied: to a file beside it, or
+/// to a schema `before_N`, or `before_N_2` and so on where that name is taken.
 pub(super) fn apply(database: &mut dyn Database, path: &Path, now_ms: i64) -> Result<(), StoreError> {
     let engine = database.engine();
     let refused = |source| StoreError::refused(engine, path, "a new version", source);
@@ -39,7 +39,7 @@ pub(super) fn apply(database: &mut dyn Database, path: &Path, now_ms: i64) -> Re
     let change = |to: &mut dyn Database| {
         if found > 0 && engine == Engine::Postgres {
             copy_tables(to, *next)?;
-            // What a program has looked at in its transaction stays so until that is over.
+            // A program that has read the version in its transaction relies on it until that is over.
             to.batch("LOCK TABLE schema_version")?;
         }
         new.iter().try_for_each(|(version, schema)| {
@@ -50,12 +50,12 @@ pub(super) fn apply(database: &mut dyn Database, path: &Path, now_ms: i64) -> Re
     database.transaction(change).map_err(refused)
 }
 
-/// The version of a database, none being 0.
+/// The version of a database; 0 if it has none.
 pub(super) fn newest(database: &mut dyn Database) -> Result<i64, DatabaseError> {
     Ok(database.one(NEWEST, &[], |row| row.get::<Option<i64>>(0))?.unwrap_or(0))
 }
 
-/// Refuses a database that is not of this program's version: `found`, and the file is `path`.
+/// Refuses the database in the file `path` if its version, `found`, is not this program's.
 pub(super) fn is_known(path: &Path, found: i64) -> Result<(), StoreError> {
     not_newer(path, found)?;
     let known = SCHEMAS.len() as i64;
@@ -73,14 +73,15 @@ fn not_newer(path: &Path, found: i64) -> Result<(), StoreError> {
     Ok(())
 }
 
-/// Refuses when the disk has no room for a copy of the database in the file `path`. A change that finds none is taken back.
+/// Refuses when the disk has no room for a copy of the database in the file `path`. A change that runs out of room is rolled
+/// back.
 fn has_room(path: &Path) -> Result<(), StoreError> {
     let folder = path.parent().unwrap_or(path);
     let refused = |source| StoreError::Folder { folder: folder.to_owned(), source };
     let disk = statvfs(folder).map_err(|error| refused(error.into()))?;
-    // Some file systems do not tell.
+    // Some file systems do not report it.
     let free = (disk.blocks() > 0).then(|| disk.blocks_available() * disk.fragment_size());
-    // Without a log there is nothing in it.
+    // Where there is no log, it has no bytes.
     let log = fs::metadata(path.with_extension("db-wal")).map_or(0, |log| log.len());
     let bytes = fs::metadata(path).map_err(refused)?.len() + log;
     match missing(bytes, free) {
@@ -89,12 +90,12 @@ fn has_room(path: &Path) -> Result<(), StoreError> {
     }
 }
 
-/// How many megabytes there are too few, with so many bytes `free`, if that is known, for a copy of so many `bytes`.
+/// How many megabytes are missing for a copy of `bytes` bytes where `free` bytes are free; 0 if that is not known.
 fn missing(bytes: u64, free: Option<u64>) -> u64 {
     free.map_or(0, |free| bytes.saturating_sub(free).div_ceil(1_000_000))
 }
 
-/// Lays a copy of `database`, the file `path`, beside it, whole or not at all.
+/// Copies `database`, the file `path`, to a file beside it, completely or not at all.
 fn copy(database: &mut dyn Database, path: &Path, version: i64) -> Result<(), StoreError> {
     let aside = path.with_extension(format!("before-{version}.partial"));
     let folder = path.parent().unwrap_or(path);
@@ -111,7 +112,7 @@ fn copy(database: &mut dyn Database, path: &Path, version: i64) -> Result<(), St
         fs::rename(&aside, &whole).map_err(refused)
     });
     if named.is_err() {
-        // The next attempt begins with it, and has no need of what is left here.
+        // If this fails, the next attempt removes them first.
         for left in &unfinished {
             let _ = remove(left);
         }
@@ -120,7 +121,7 @@ fn copy(database: &mut dyn Database, path: &Path, version: i64) -> Result<(), St
     Ok(synced(folder)?)
 }
 
-/// What the copy in `aside` is to be called: as no other copy is, which may be all that is left of what was before an earlier change.
+/// The name for the copy in `aside`. It is not that of a different copy, which may be all that is left of an earlier state.
 fn free_name(path: &Path, version: i64, aside: &Path) -> io::Result<PathBuf> {
     let mut whole = path.with_extension(format!("before-{version}.db"));
     let mut number = 2;
@@ -144,7 +145,7 @@ fn hold_the_same(one: &Path, other: &Path) -> io::Result<bool> {
     Ok(true)
 }
 
-/// Removes the file `path`, if it is there.
+/// Removes the file `path`, if it exists.
 fn remove(path: &Path) -> io::Result<()> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
@@ -164,7 +165,7 @@ fn copy_tables(to: &mut dyn Database, version: i64) -> Result<(), DatabaseError>
     tables.iter().try_for_each(|table| to.batch(&format!("CREATE TABLE {copy}.{table} AS TABLE {table}")))
 }
 
-/// Refuses a database whose version was made by another text.
+/// Refuses a database if its `version` was made by another text.
 fn check(database: &mut dyn Database, path: &Path, version: i64, hash: &str) -> Result<(), StoreError> {
     let text = "SELECT sha256 FROM schema_version WHERE n = $1";
     let applied = database.first(text, values![version], |row| row.get::<String>(0));

@@ -4,10 +4,10 @@
 //!  station.db          SQLite, the index; write-ahead log, every commit on the disk before it returns
 //!  blobs/ab/abcd…      evidence by its hash; records among it
 //!  spool/RUN/          what a run writes down while it is under way
-//!  station.lock        held by the one program that writes; says of which database a log is
+//!  station.lock        held by the one program that writes; says which database a log belongs to
 //! ```
 //!
-//! A run is in the store, open, before its board is touched, and its verdict is shown when a second connection has read
+//! A run is entered as open before its board is touched, and its verdict is shown only when a second connection has read
 //! it back.
 
 mod audit;
@@ -87,7 +87,7 @@ pub struct Stored {
     pub exit_code: u8,
     /// The hash of the record.
     pub record_sha256: String,
-    /// Which judgement of this unit under plans of this name it is, counted from 1; 0 of one that does not count.
+    /// Which judgement of this unit under plans of this name it is, counted from 1; 0 for one that does not count.
     pub nth: i64,
 }
 
@@ -98,35 +98,35 @@ pub struct Store {
     writer: Box<dyn Database>,
     /// Devices that are being tested, each with its run.
     admitted: BTreeMap<String, String>,
-    /// To whom all is sent on.
+    /// The names of all sinks.
     sinks: Arc<[String]>,
-    /// The plant's, if it was heard since the start.
+    /// The plant's clock, if it was heard since the start.
     plant_clock: Option<HeardClock>,
-    /// What the writer writes to, which the file of its name need not be.
+    /// The file that the writer writes to. Another one may have its name by now.
     opened: Opened,
     lock: File,
 }
 
 impl Store {
-    /// The store in `folder`, which is made if it is not there.
+    /// Opens the store in `folder`, which is made if it does not exist.
     ///
     /// # Errors
     /// [`StoreError`] when another program has it, or it cannot be made, read or written.
     pub fn open(folder: &Folder) -> Result<Self, StoreError> {
         folder.has_no_restore()?;
         for place in ["blobs", "spool"] {
-            // Whatever the umask is: nobody else puts another database there.
+            // Whatever the umask, nobody else may put another database there.
             let made = DirBuilder::new().recursive(true).mode(0o750).create(folder.0.join(place));
             made.map_err(|source| folder.refused(source))?;
         }
         let lock = folder.lock()?;
-        // One may have begun meanwhile.
+        // A restore may have begun meanwhile.
         folder.has_no_restore()?;
         folder.has_kept_database()?;
         let (log, known) = generation::of_left_log(folder)?;
         let known = generation::choose(folder, &lock, log, known)?;
         let mut writer = folder.writer()?;
-        // One that was left stays as it is if the start fails: it may be another database's after all.
+        // If the start fails, a log that was left stays as it is: it may belong to another database after all.
         writer.leave_log(log != Log::None);
         if log == Log::Unknown {
             tracing::warn!(
@@ -150,21 +150,21 @@ impl Store {
         })
     }
 
-    /// The store in `folder`, which must be there.
+    /// Opens the store in `folder`, which must exist.
     ///
     /// # Errors
-    /// As [`Self::open`], and when there is none.
+    /// Like [`Self::open`], and when there is none.
     pub fn open_existing(folder: &Folder) -> Result<Self, StoreError> {
         folder.reader()?;
         Self::open(folder)
     }
 
-    /// Brings what stands in the write-ahead log into the database, so that the one file has everything. Nothing is lost without it.
+    /// Folds the write-ahead log into the database, so that this one file has everything. If it fails, nothing is lost.
     pub fn fold_log(&mut self) {
         if !self.opened.is_unspoilt() {
             return tracing::warn!("the write-ahead log stays beside the database, which is another one");
         }
-        // What is written after it is the log of another file than before.
+        // The file changes, so it needs a new number: what is written from now on is no log of its earlier copies.
         if let Err(error) = self.opened.fold(&self.folder, &self.lock, &mut *self.writer) {
             return tracing::warn!("the write-ahead log stays beside the database: {error}");
         }
@@ -182,8 +182,8 @@ impl Store {
         &self.folder
     }
 
-    /// An id of the moment `now_ms`, behind those of all runs and acts that are here: their order is that in which they were begun,
-    /// though the clock was set back between two.
+    /// An id of the moment `now_ms`, greater than those of all runs and rebindings here: ids are in the order in which these
+    /// began, even if the clock was set back in between.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read, or there is no randomness.
@@ -200,8 +200,8 @@ impl Store {
     /// Enters an open run. Only then may its board be touched. Returns its head with the unit's id and the fence.
     ///
     /// # Errors
-    /// [`StoreError::BeingJudged`] when the lane or the unit has an open run already; others when the database does not take it, or it is
-    /// dated otherwise than the plant would date it.
+    /// [`StoreError::BeingJudged`] when the lane or the unit has an open run already; others when the database does not take it,
+    /// or the station's clock disagrees with the plant's or with the last run.
     pub fn begin(&mut self, run: RunHead, plan: &PlanRecord) -> Result<RunHead, StoreError> {
         self.refuses_misdated(&run)?;
         match self.change("to begin a run", |to| rows::open(to, &run, plan)) {
@@ -213,7 +213,7 @@ impl Store {
         }
     }
 
-    /// What keeps `run` from being begun, for which there is a `conflict`.
+    /// Why `run` cannot begin, after a `conflict` in the database.
     fn in_the_way(&mut self, run: &RunHead, conflict: DatabaseError) -> StoreError {
         let is_in_the_way = |open: &RunHead| {
             (&open.product, &open.serial) == (&run.product, &run.serial)
@@ -255,12 +255,12 @@ impl Store {
     /// A run that is over, as a second connection reads it back.
     ///
     /// # Errors
-    /// [`StoreError`] when it is not there, or its row and its record differ, or it is in another file than the one of its name.
+    /// [`StoreError`] when it is not there, or its row and its record differ, or another file has the database's name.
     pub fn saved(&self, run: &str) -> Result<(Stored, Record), StoreError> {
         let otherwise = || StoreError::ReadsOtherwise { run: run.to_owned() };
         let stored = self.folder.verdict_of(run)?.ok_or_else(otherwise)?;
         let record = Record::parse(&self.folder.blobs().get(&stored.record_sha256)?)?;
-        // Beside another file SQLite reads what is in the log of this one.
+        // If another file had the name, SQLite would have read it together with the log of this one.
         self.has_its_name()?;
         let is_same = stored.verdict == record.conclusion.verdict && record.run.id == run;
         if is_same { Ok((stored, record)) } else { Err(otherwise()) }
@@ -284,7 +284,7 @@ impl Store {
         read(&mut *self.writer).map_err(|source| StoreError::of_file(&path, doing, source))
     }
 
-    /// What `change` returns once all that it did is on the disk, in the file of this name.
+    /// Runs `change` in a transaction. Returns when all is on the disk, in the file that has the database's name.
     fn change<T>(
         &mut self,
         doing: &'static str,
@@ -299,8 +299,8 @@ impl Store {
         Ok(changed)
     }
 
-    /// Refuses to go on when another file has the name of the one that was opened, or other bytes are in it: what is written goes with it.
-    /// The same of the lock, which keeps others from the folder by its name alone.
+    /// Refuses to go on when another file has the name of the database that was opened, or another database was written over it:
+    /// what is written now would be lost. The same for the lock file, which keeps others from the folder by its name alone.
     fn has_its_name(&self) -> Result<(), StoreError> {
         let lock = self.folder.lock_file();
         if !self.opened.is_there(&self.folder) {

@@ -1,5 +1,5 @@
-//! What is to be sent on: each run, waiver and line of the audit has an entry for every sink, made in the transaction that
-//! keeps it, and kept until the sink has it for certain.
+//! What is to be sent on: each run, waiver and line of the audit has an entry for every sink. The entry is made in the
+//! transaction that keeps the thing itself, and is open until the sink certainly has it.
 
 mod acts;
 
@@ -14,7 +14,7 @@ use crate::{clock, ids};
 /// The plant's name among the sinks. A plant that moves to another address keeps it.
 pub const SINK_OF_PLANT: &str = "plant";
 
-/// How many entries of a sink are told at once that wait for a person: a sink may have refused all that was kept for years.
+/// The most entries of a sink that are listed as waiting for a person: a sink may have refused everything for years.
 pub const DEAD_SHOWN: u32 = 100;
 
 /// What an entry is about.
@@ -54,36 +54,36 @@ pub struct Entry {
     pub kind: Kind,
     /// Its id, a UUID of version 7.
     pub subject: String,
-    /// How often it was tried in vain.
+    /// How many attempts failed.
     pub attempts: u32,
 }
 
-/// How it stands with a sink.
+/// What is unsent at a sink.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Unsent {
     /// The sink.
     pub sink: String,
-    /// Entries that it does not have for certain.
+    /// Entries that it does not certainly have.
     pub entries: u32,
-    /// Those of them that are runs and waivers, and no lines of the audit.
+    /// Those of them that are runs and waivers, not lines of the audit.
     pub results: u32,
     /// Those of them that wait for a person.
     pub dead: u32,
-    /// When the first of them came about, in milliseconds since 1970, UTC.
+    /// When the subject of the first of them came about, in milliseconds since 1970, UTC.
     pub since_ms: i64,
-    /// What was last said to one that is tried again.
+    /// What the sink said last to one that will be tried again.
     #[serde(serialize_with = "as_text_if_any")]
     pub said: Option<Said>,
 }
 
-/// How it stands with a run at a sink. One that is not to be sent there is neither done nor dead.
+/// The state of a run at a sink. A run that is not to be sent there is neither done nor dead.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Standing {
-    /// Whether the sink has it for certain.
+    /// Whether the sink certainly has it.
     pub is_done: bool,
     /// Whether it waits for a person.
     pub is_dead: bool,
-    /// What the sink said when it was last tried in vain.
+    /// What the sink said at the last attempt that failed.
     pub said: Option<Said>,
 }
 
@@ -102,14 +102,14 @@ pub struct Dead {
     pub said: Said,
 }
 
-/// All that belongs to an entry.
+/// The content of an entry.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Parcel {
     /// A run that is over.
     Run {
         /// Its record.
         record: Box<Record>,
-        /// That record's very text.
+        /// The exact text of the record.
         text: String,
         /// The hash of the text.
         sha256: String,
@@ -118,7 +118,7 @@ pub enum Parcel {
     Waiver {
         /// Its id.
         id: String,
-        /// It.
+        /// The waiver.
         waiver: Waiver,
     },
     /// A line of the audit.
@@ -136,7 +136,7 @@ pub struct AuditLine {
     pub operator: String,
     /// What was done.
     pub act: String,
-    /// With what.
+    /// What it was done to.
     pub subject: String,
     /// How.
     pub detail: String,
@@ -144,28 +144,28 @@ pub struct AuditLine {
     pub unit: Option<[String; 2]>,
 }
 
-/// What became of an entry that was tried.
+/// The result of an attempt to send an entry.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Tried {
-    /// The sink has it for certain.
+    /// The sink certainly has it.
     Done,
-    /// It is tried again at this moment, in milliseconds since 1970, UTC.
+    /// It will be tried again.
     Again {
-        /// The moment.
+        /// When, in milliseconds since 1970, UTC.
         next_ms: i64,
-        /// What was said.
+        /// What the sink said.
         said: Said,
     },
-    /// So is this, and the runs that it belongs to, which the sink has lost, are sent again.
+    /// It will be tried again, and so will the runs that it belongs to, which the sink has lost.
     Early {
-        /// The moment.
+        /// When, in milliseconds since 1970, UTC.
         next_ms: i64,
-        /// What was said.
+        /// What the sink said.
         said: Said,
     },
-    /// A person looks at it.
+    /// It waits for a person.
     Dead {
-        /// What was said.
+        /// What the sink said.
         said: Said,
     },
 }
@@ -183,7 +183,7 @@ pub(super) fn enter(
 }
 
 impl Store {
-    /// Sends to these sinks from now on, what was kept before included.
+    /// Sends to these sinks from now on, including what was kept before.
     ///
     /// # Errors
     /// [`StoreError`] when the database does not take it.
@@ -195,18 +195,18 @@ impl Store {
         Ok(())
     }
 
-    /// What was tried in vain for `sink` waits no longer; what waits for a person does.
+    /// Makes the entries for `sink` that failed due at once, but not those that wait for a person.
     ///
     /// # Errors
-    /// As [`Self::sends_to`].
+    /// Like [`Self::sends_to`].
     pub fn due_at_once(&mut self, sink: &str) -> Result<(), StoreError> {
         self.change("what is to be sent now", |to| to.execute(sql::OUTBOX_AT_ONCE, values![sink]).map(drop))
     }
 
-    /// What this folder is called, whatever the station is; drawn the first time.
+    /// The id of this folder, whatever the station's name is. It is drawn the first time.
     ///
     /// # Errors
-    /// As [`Self::sends_to`].
+    /// Like [`Self::sends_to`].
     pub fn origin(&mut self) -> Result<String, StoreError> {
         let drawn = ids::new(clock::now_ms())?.to_string();
         self.change("what it is called", |to| {
@@ -215,10 +215,10 @@ impl Store {
         })
     }
 
-    /// Keeps what became of these entries at `now_ms`.
+    /// Keeps the results of these attempts, made at `now_ms`.
     ///
     /// # Errors
-    /// As [`Self::sends_to`].
+    /// Like [`Self::sends_to`].
     pub fn tried(&mut self, sink: &str, tried: &[(Entry, Tried)], now_ms: i64) -> Result<(), StoreError> {
         self.change("what was sent", |to| {
             tried.iter().try_for_each(|(Entry { kind, subject, .. }, tried)| {
@@ -242,7 +242,7 @@ impl Store {
 }
 
 impl Snapshot {
-    /// How it stands with each sink that does not have all.
+    /// What is unsent at each sink that does not have everything.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
@@ -254,10 +254,10 @@ impl Snapshot {
         })
     }
 
-    /// The first [`DEAD_SHOWN`] entries of each of these sinks that wait for a person; [`Unsent::dead`] is how many do.
+    /// The first [`DEAD_SHOWN`] entries of each of these sinks that wait for a person; [`Unsent::dead`] counts all of them.
     ///
     /// # Errors
-    /// As [`Self::unsent`].
+    /// Like [`Self::unsent`].
     pub fn dead(&self, unsent: &[Unsent]) -> Result<Vec<Dead>, StoreError> {
         let mut dead = Vec::new();
         for Unsent { sink, .. } in unsent.iter().filter(|unsent| unsent.dead > 0) {
@@ -272,8 +272,8 @@ impl Snapshot {
 }
 
 impl Folder {
-    /// The first entries that are due for `sink` at `now_ms`, in the order in which they came about; also those that would wait for
-    /// longer than `longest_ms`, since the clock was set back.
+    /// The first entries that are due for `sink` at `now_ms`, in the order in which they came about. Entries that would wait for
+    /// longer than `longest_ms`, because the clock was set back, are due as well.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
@@ -284,28 +284,28 @@ impl Folder {
         })
     }
 
-    /// Whether `sink` has this run for certain.
+    /// Whether `sink` certainly has this run.
     ///
     /// # Errors
-    /// As [`Self::due`].
+    /// Like [`Self::due`].
     pub fn is_sent(&self, sink: &str, run: &str) -> Result<bool, StoreError> {
         Ok(self.standing(sink, run)?.is_done)
     }
 
-    /// The newest run that `sink` has for certain.
+    /// The newest run that `sink` certainly has.
     ///
     /// # Errors
-    /// As [`Self::due`].
+    /// Like [`Self::due`].
     pub fn newest_sent(&self, sink: &str) -> Result<Option<String>, StoreError> {
         self.read("to tell what was sent last", |from| {
             from.first(sql::OUTBOX_NEWEST_SENT, values![sink, Kind::Run.name()], |row| row.get(0))
         })
     }
 
-    /// How it stands with this run at `sink`.
+    /// The state of this run at `sink`.
     ///
     /// # Errors
-    /// As [`Self::due`].
+    /// Like [`Self::due`].
     pub fn standing(&self, sink: &str, run: &str) -> Result<Standing, StoreError> {
         let found = self.read("to tell what was sent", |from| {
             from.first(sql::OUTBOX_ENTRY, values![sink, Kind::Run.name(), run], |row| {
@@ -316,7 +316,7 @@ impl Folder {
         Ok(found.unwrap_or_default())
     }
 
-    /// All that belongs to an entry.
+    /// The content of an entry.
     ///
     /// # Errors
     /// [`StoreError`] when it cannot be read, or is not as it was written.
@@ -349,13 +349,13 @@ impl Folder {
     }
 }
 
-/// What was said as it is kept, with its code, so that pages tell it in their language.
+/// What was said as it is kept: with its code, so that pages say it in their language.
 fn written(said: &Said) -> String {
-    // What no JSON can be made of has no code, either.
+    // What cannot be written as JSON is kept without its code.
     serde_json::to_string(said).unwrap_or_else(|_| said.to_string())
 }
 
-/// What was said; earlier programs kept the sentence alone.
+/// What was said; earlier programs kept only the sentence.
 fn said(row: &Row<'_>, place: usize) -> Result<Option<Said>, DatabaseError> {
     let kept: Option<String> = row.get(place)?;
     Ok(kept.map(|kept| serde_json::from_str(&kept).unwrap_or_else(|_| Said::uncoded(kept))))

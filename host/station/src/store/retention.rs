@@ -30,7 +30,7 @@ impl Folder {
 }
 
 impl Snapshot {
-    /// The hashes of all attachments, each with when the last run ended that has it, in milliseconds since 1970, UTC.
+    /// The hashes of all attachments, each with when the last run that has it ended, in milliseconds since 1970, UTC.
     pub(crate) fn attachments(&self) -> Result<Vec<(String, i64)>, StoreError> {
         self.rows("to tell its evidence", sql::ATTACHMENTS, &[], |row| Ok((row.get(0)?, row.get(1)?)))
     }
@@ -62,7 +62,7 @@ impl Snapshot {
         Ok(found.into_iter().next())
     }
 
-    /// What evidence was removed since it was old.
+    /// The evidence that was removed because it was old.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
@@ -73,12 +73,12 @@ impl Snapshot {
     }
 }
 
-/// Evidence that was removed since it was old, by its hash, and when: milliseconds since 1970, UTC.
+/// Evidence that was removed because it was old, by its hash, and when, in milliseconds since 1970, UTC.
 #[derive(Clone, Debug, Default)]
 pub struct Removed(BTreeMap<String, i64>);
 
 impl Removed {
-    /// Whether that is why a run that ended at this moment has not got this piece any more. A later run had it anew.
+    /// Whether this is why a run that ended at `ended_ms` has lost the piece `hash`. A run that ended later stored it anew.
     #[must_use]
     pub fn explains(&self, hash: &str, ended_ms: i64) -> bool {
         self.0.get(hash).is_some_and(|&removed_ms| ended_ms < removed_ms)
@@ -86,7 +86,7 @@ impl Removed {
 }
 
 impl Store {
-    /// The hashes of the attachments of which every run ended before `before_ms`, and began before it by its id.
+    /// The hashes of the attachments whose runs all ended before `before_ms`, and by their ids began before it.
     pub(crate) fn old_evidence(&self, before_ms: i64) -> Result<Vec<String>, StoreError> {
         Snapshot::take(&self.folder)?.rows(
             "to tell old evidence",

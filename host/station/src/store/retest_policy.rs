@@ -31,8 +31,8 @@ pub enum AgainError {
 }
 
 impl Folder {
-    /// Why the unit of this serial number is not tested again just so: its last judgement under just this plan is PASS.
-    /// `how` is what somebody does who means it. Units that check shifts are always tested.
+    /// Why the unit of this serial number is not simply tested again: its last judgement under this very plan is PASS.
+    /// `how` says how to have it tested all the same. Units that check shifts are always tested.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.

@@ -1,12 +1,12 @@
-//! What a run leaves in the tables. A database that is rebuilt from records gets its rows here, too.
+//! The rows of a run in the tables. A database that is rebuilt from records gets its rows here, too.
 
 use super::database::{Database, DatabaseError, values};
 use super::{bindings, statements as sql};
 use crate::plan::mock::is_mock;
 use crate::record::{PlanRecord, Record, RunHead};
 
-/// Unit, plan and open run. Returns the unit's id and the fence; the unit that is named is made if there is none of
-/// this serial number.
+/// Enters unit, plan and open run. Returns the unit's id and the fence. The unit is made with the id that `run` names if
+/// there is none of this serial number.
 pub(super) fn open(
     to: &mut dyn Database,
     run: &RunHead,
@@ -31,7 +31,7 @@ pub(super) fn open(
     Ok((unit, fence))
 }
 
-/// The plan and the unit of a run. Returns the unit's id.
+/// Enters the plan and the unit of a run. Returns the unit's id.
 pub(super) fn unit(to: &mut dyn Database, run: &RunHead, plan: &PlanRecord) -> Result<String, DatabaseError> {
     let PlanRecord { sha256, name, version, text, files: _ } = plan;
     let RunHead { product, serial, started_ms, .. } = run;
@@ -44,8 +44,8 @@ pub(super) fn unit(to: &mut dyn Database, run: &RunHead, plan: &PlanRecord) -> R
     Ok(unit)
 }
 
-/// The end of a run with all that belongs to it. Returns the number of runs that it ended: none, and then nothing is
-/// changed, when the run is not open, or somebody else's.
+/// Ends a run, with all that belongs to it. Returns the number of runs that it ended: 0, and then nothing is changed,
+/// when the run is not open, or another holder's.
 pub(super) fn finish(to: &mut dyn Database, record: &Record, hash: &str) -> Result<u64, DatabaseError> {
     let id = &record.run.id;
     let (ended, board) = (&record.conclusion, record.board.as_ref());
@@ -77,7 +77,8 @@ pub(super) fn finish(to: &mut dyn Database, record: &Record, hash: &str) -> Resu
     Ok(changed)
 }
 
-/// What yields and failures are told from, with the run `id`, which is entered with all that hangs on it and is its unit's last one.
+/// Updates what yields and failures are counted from by the run `id`, which is entered with all its parts and is its unit's last
+/// one.
 pub(super) fn counted(to: &mut dyn Database, id: &str) -> Result<(), DatabaseError> {
     for counted in [sql::ADD_DAY_COUNT, sql::ADD_RETEST, sql::ADD_FAILURES] {
         to.execute(counted, values![id])?;
@@ -85,7 +86,7 @@ pub(super) fn counted(to: &mut dyn Database, id: &str) -> Result<(), DatabaseErr
     Ok(())
 }
 
-/// What hangs on a run: steps, measurements, suspects, attachments.
+/// Enters the parts of a run: steps, measurements, suspects, attachments.
 pub(super) fn parts(to: &mut dyn Database, record: &Record) -> Result<(), DatabaseError> {
     let id = &record.run.id;
     for step in &record.steps {

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::Store;
 
-/// The store of a station, in as many hands as it has lanes.
+/// The store of a station, shared by its lanes.
 #[derive(Clone, Debug)]
 pub struct SharedStore(Arc<Mutex<Store>>);
 
@@ -15,9 +15,9 @@ impl SharedStore {
         Self(Arc::new(Mutex::new(store)))
     }
 
-    /// What `act` returns of the store, which nobody else has meanwhile.
+    /// Runs `act` on the store, which nobody else has meanwhile, and returns its result.
     pub fn with<T>(&self, act: impl FnOnce(&mut Store) -> T) -> T {
-        // Whoever panicked has left a transaction that was taken back, and the store as it was.
+        // A panic rolled its transaction back, and left the store as it was.
         act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }

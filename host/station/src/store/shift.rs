@@ -42,13 +42,13 @@ pub struct Owed {
     pub why: Said,
 }
 
-/// What a lane owes to its shift.
+/// Whether a lane was checked in its shift.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Checked {
     /// What it is to do; nothing if it was checked.
     pub owed: Option<Owed>,
-    /// The last moment at which that is so without another run in the lane, in milliseconds since 1970, UTC. A judgement that is
-    /// dated too far ahead counts behind it.
+    /// The last moment at which this holds without another run in the lane, in milliseconds since 1970, UTC. After it, a
+    /// judgement that is dated too far ahead now may count.
     pub until_ms: i64,
 }
 
@@ -65,13 +65,13 @@ impl Folder {
     /// checked in this shift.
     ///
     /// # Errors
-    /// As [`Self::owed`].
+    /// Like [`Self::owed`].
     pub fn counts(&self, place: &InLane<'_>, serial: &str, now_ms: i64) -> Result<bool, StoreError> {
         Ok(place.production.counts(serial) && self.owed(place, now_ms)?.owed.is_none())
     }
 
-    /// What a lane still owes to the shift at `now_ms` before boards are judged by its plan: that the last judgement of the good
-    /// unit is PASS, and that of what is known to be bad FAIL, which came behind it. An ERROR checks nothing.
+    /// What a lane still owes to the shift at `now_ms` before boards are judged by its plan: the last judgement of the good unit
+    /// must be PASS, and that of the bad unit, or of the mock in its place, FAIL and after it. An ERROR checks nothing.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
@@ -87,7 +87,7 @@ impl Folder {
             let of = values![station, lane, plan_sha256, product, &serial, since];
             let last =
                 self.read("to tell who checked a shift", |from| from.first(sql::LAST_JUDGEMENT, of, judged))?;
-            // When one was made that is dated further ahead, nobody knows.
+            // Nobody knows when a judgement that is dated further ahead was made.
             let last = last.filter(|last| {
                 let is_astray = last.started_ms > now_ms.saturating_add(TOLERATED_MS);
                 if is_astray {
@@ -95,7 +95,8 @@ impl Folder {
                 }
                 !is_astray
             });
-            // Behind a repair the good unit passes again, and what failed in front of that says nothing of the lane as it is now.
+            // After a repair the good unit passes again, and an earlier FAIL of the bad one says nothing of the lane as it is
+            // now.
             let last = last.filter(|last| last.verdict != expected || last.run > before);
             if let Some(Judged { started_ms, .. }) = &last {
                 until_ms = until_ms.min(started_ms.saturating_add(lasts));
@@ -116,7 +117,7 @@ fn judged(row: &Row<'_>) -> Result<Judged, DatabaseError> {
     Ok(Judged { run: row.get(0)?, verdict: row.get(1)?, started_ms: row.get(2)?, target: row.get(3)? })
 }
 
-/// Why a lane waits for what is to come to `expected`, and came to something else or to nothing.
+/// Why a lane waits for a judgement that must be `expected`: the `last` one is another, or there is none.
 fn why(shift: &Shift, expected: Verdict, last: Option<Judged>) -> Said {
     let (serial, is_good) = match (expected, &shift.bad) {
         (Verdict::Pass, _) => (shift.good.clone(), true),

@@ -1,4 +1,4 @@
-//! The tables as they are at one moment, and as they are when they are made anew from the records.
+//! The tables as they are at one moment, and as they come out when they are made anew from the records.
 
 use std::cell::RefCell;
 use std::path::PathBuf;
@@ -30,7 +30,7 @@ pub const TABLES: [(&str, &str); 11] = [
     ("failure", "run_id, kind, name"),
 ];
 
-/// The tables as they are, whatever is written meanwhile.
+/// The tables as they are at one moment, whatever is written meanwhile.
 #[derive(Debug)]
 pub struct Snapshot {
     of: Of,
@@ -62,7 +62,7 @@ impl Snapshot {
         let snapshot = Self { of: Of::Station(folder.clone()), reader };
         let found = snapshot.read("to be read", |reader| {
             reader.batch("BEGIN")?;
-            // It begins with the first look.
+            // The transaction begins with the first read.
             reader.one(migrations::NEWEST, &[], |row| row.get(0))
         })?;
         migrations::is_known(&folder.database(), found)?;
@@ -81,7 +81,7 @@ impl Snapshot {
         Ok(snapshot)
     }
 
-    /// The connection to the plant that they were read by, for the next; none of a station, or when it is no more.
+    /// The connection to the plant, to be used again; none for a station, or when it does not work any more.
     #[must_use]
     pub fn end(self) -> Option<Plant> {
         let Of::Plant(shown) = self.of else { return None };
@@ -132,8 +132,8 @@ impl Snapshot {
         matches!(&self.of, Of::Station(folder) if folder.blobs().path(hash).is_file())
     }
 
-    /// What SQLite itself finds wrong with its file, and the columns that it does not miss, since it goes by the names that it reads
-    /// there; nothing when all is well.
+    /// What SQLite itself finds wrong with its file, and the columns that are missing, which it does not notice because it knows
+    /// only the names in that file; nothing when all is well.
     ///
     /// # Errors
     /// [`StoreError`] when it cannot even look.
@@ -179,7 +179,7 @@ impl Snapshot {
         Rows::by(move |behind| self.read("to tell a table", |reader| page(reader, name, key, behind)))
     }
 
-    /// What `row` makes of each row that `text`, a statement that reads, brings for `values`.
+    /// What `row` makes of each row of the query `text` with `values`.
     pub(crate) fn rows<T>(
         &self,
         doing: &'static str,
@@ -211,14 +211,14 @@ fn columns(database: &mut dyn Database) -> Result<Vec<String>, DatabaseError> {
     database.all(COLUMNS, &[], |row| row.get(0))
 }
 
-/// Tables that are made anew, in memory, and beyond 64 MiB in a file where the system keeps those that are nobody's.
+/// Tables that are made anew: in memory, and beyond 64 MiB in a temporary file.
 #[derive(Debug)]
 pub struct Rebuilt {
     database: Box<dyn Database>,
 }
 
 impl Rebuilt {
-    /// Without a row.
+    /// Empty tables.
     ///
     /// # Errors
     /// [`StoreError`] when there is no room for it.
@@ -233,7 +233,7 @@ impl Rebuilt {
         Ok(Self { database })
     }
 
-    /// The run of this record, whose hash is `hash`. Runs come in the order of their ids.
+    /// Enters the run of this record, whose hash is `hash`. Runs must come in the order of their ids.
     ///
     /// # Errors
     /// [`StoreError`] when it contradicts the runs before.
@@ -244,20 +244,20 @@ impl Rebuilt {
         })
     }
 
-    /// A run that is open.
+    /// Enters an open run.
     ///
     /// # Errors
-    /// As [`Self::add`].
+    /// Like [`Self::add`].
     pub fn add_open(&mut self, open: &OpenRun) -> Result<(), StoreError> {
         let [name, version, text] = open.plan.clone();
         let plan = PlanRecord { sha256: open.plan_sha256.clone(), name, version, text, files: None };
         self.change(|to| rows::open(to, &open.run, &plan).map(drop))
     }
 
-    /// A binding that a person changed.
+    /// Enters a binding that a person changed.
     ///
     /// # Errors
-    /// As [`Self::add`].
+    /// Like [`Self::add`].
     pub fn add_rebinding(&mut self, change: &Rebinding) -> Result<(), StoreError> {
         self.change(|to| bindings::rebind(to, change))
     }
@@ -267,7 +267,7 @@ impl Rebuilt {
         Rows::by(move |behind| page(&mut *self.database, name, key, behind).map_err(refused))
     }
 
-    /// What `change` returns once it is made.
+    /// Runs `change` in a transaction.
     pub(super) fn change<T>(
         &mut self,
         change: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,

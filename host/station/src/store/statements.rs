@@ -1,7 +1,7 @@
-//! The text of every statement. SQLite and PostgreSQL have the same, but for [words](super::database::Engine::words).
+//! The text of every statement. It is the same for SQLite and PostgreSQL, except for [words](super::database::Engine::words).
 
-/// The schemas, in order: numbered files that are never edited. The column `retest_of` of a run is nobody's: what was judged again is
-/// told by `nth` and the table `retest`.
+/// The schemas, in order: numbered files that are never edited. The column `retest_of` of a run is not used: `nth` and the table
+/// `retest` say what was judged again.
 pub(super) const SCHEMAS: [&str; 7] = [
     include_str!("../../sql/schema-1.sql"),
     include_str!("../../sql/schema-2.sql"),
@@ -12,8 +12,8 @@ pub(super) const SCHEMAS: [&str; 7] = [
     include_str!("../../sql/schema-7.sql"),
 ];
 
-/// What a plant's statements say of boards: whether nobody has one, whether somebody waits who reaches it, of which station whoever
-/// waits is, and what time it is by the plant's clock, in milliseconds since 1970, UTC. Later ones stand in earlier ones.
+/// Words of a plant's statements about boards: whether a board is free, whether somebody waits for it who reaches it, a waiter's
+/// station, and the time by the plant's clock, in milliseconds since 1970, UTC. Earlier ones use later ones.
 pub(super) const OF_BOARDS: [(&str, &str); 4] = [
     ("{free}", "(board.holder IS NULL OR board.until_ms < {now_ms})"),
     (
@@ -25,7 +25,7 @@ pub(super) const OF_BOARDS: [(&str, &str); 4] = [
     ("{now_ms}", "CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT)"),
 ];
 
-/// A constant for each statement, and all of them for what is to be true of every one.
+/// A constant for each statement, and a list of all for the tests.
 macro_rules! statements {
     ($($sight:vis $name:ident = $file:literal;)*) => {
         $($sight const $name: &str = include_str!(concat!("../../sql/", $file));)*

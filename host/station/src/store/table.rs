@@ -1,4 +1,4 @@
-//! Tables row by row, in the order of their keys, of which a few are read at a time.
+//! Tables row by row, in the order of their keys, read a page at a time.
 
 use std::collections::VecDeque;
 use std::fmt;
@@ -12,7 +12,7 @@ const PAGE: usize = 1_000;
 /// A row, each value as text with its column.
 pub type Row = Vec<(String, String)>;
 
-/// The key of a row. Both engines put rows in the order that keys have.
+/// The key of a row. Both engines sort rows in the order of these keys.
 pub type Key = Vec<KeyValue>;
 
 /// The value of one column of a key.
@@ -42,7 +42,7 @@ impl<'a> From<&'a KeyValue> for Value<'a> {
     }
 }
 
-/// What reads the rows behind a key, or the first ones.
+/// Reads the rows after a key, or the first ones.
 type Read<'a> = Box<dyn FnMut(Option<&Key>) -> Result<Vec<(Key, Row)>, StoreError> + 'a>;
 
 /// All rows of a table.
@@ -54,7 +54,7 @@ pub struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// Those that `read` brings.
+    /// The rows that `read` returns.
     pub(super) fn by(read: impl FnMut(Option<&Key>) -> Result<Vec<(Key, Row)>, StoreError> + 'a) -> Self {
         Self { read: Box::new(read), ahead: VecDeque::new(), last: None, is_over: false }
     }
@@ -87,7 +87,7 @@ impl Iterator for Rows<'_> {
     }
 }
 
-/// The next rows of the table `name` behind `behind`, in the order of the columns `key`, with commas between.
+/// The next rows of the table `name` after the key `behind`, in the order of the columns `key`, a list with commas between.
 pub(super) fn page(
     reader: &mut dyn Database,
     name: &str,

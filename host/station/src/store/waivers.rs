@@ -112,7 +112,7 @@ impl Store {
     }
 }
 
-/// The characters of a reason that pages and events have no room for.
+/// The number of characters of a reason, if it is too long for pages and events.
 pub(super) fn too_long(reason: &str) -> Option<usize> {
     Some(reason.chars().count()).filter(|characters| *characters > MOST_REASON)
 }

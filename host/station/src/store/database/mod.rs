@@ -1,4 +1,4 @@
-//! The two engines behind one door: SQLite at a station, PostgreSQL at a plant. Both take the same text.
+//! One interface to two engines: SQLite at a station, PostgreSQL at a plant. Both take the same statements.
 
 mod postgres;
 mod sqlite;
@@ -15,25 +15,25 @@ pub(crate) use value::{FromValue, Value, values};
 
 use super::statements::OF_BOARDS;
 
-/// Something that an engine does not do.
+/// An error of an engine.
 #[derive(Debug, thiserror::Error)]
 pub enum DatabaseError {
-    /// SQLite says why.
+    /// An error of SQLite.
     #[error(transparent)]
     Sqlite(#[from] rusqlite::Error),
-    /// PostgreSQL says why, or the connection to it does.
+    /// An error of PostgreSQL, or of the connection to it.
     #[error(transparent)]
     Postgres(#[from] tokio_postgres::Error),
-    /// The server of a plant is not there, or does as if it were not.
+    /// The server of a plant does not answer.
     #[error("the server has said nothing for {seconds} s")]
     Silent {
         /// How long.
         seconds: u64,
     },
-    /// The system does not let anybody wait for a server.
+    /// The system lacks the resources to wait for a server.
     #[error("the system has no room for a connection")]
     Room(#[source] io::Error),
-    /// A column holds something else than it should.
+    /// A column holds something other than it should.
     #[error("column {place} of a row holds {found} where {expected} should be")]
     Column {
         /// Its place, from 0.
@@ -43,13 +43,13 @@ pub enum DatabaseError {
         /// What it should hold.
         expected: &'static str,
     },
-    /// A row names another one that is not there.
+    /// A row names another one that does not exist.
     #[error("a row names {what} that is not there")]
     Dangling {
         /// What it names.
         what: &'static str,
     },
-    /// A text that should be JSON is none, or the other way round.
+    /// A text is not the JSON that it should be, or something cannot be written as JSON.
     #[error(transparent)]
     Json(#[from] serde_json::Error),
 }
@@ -62,24 +62,24 @@ impl DatabaseError {
         matches!(error.code, ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase)
     }
 
-    /// Whether the station's engine has a row already that there may be only one of.
+    /// Whether the station's engine already has a row that must be unique.
     pub(crate) fn is_conflict(&self) -> bool {
         matches!(self, Self::Sqlite(error) if error.sqlite_error_code() == Some(ErrorCode::ConstraintViolation))
     }
 
-    /// Whether the engine is not there, or not for now, rather than that it does not do this one thing.
+    /// Whether the engine is unavailable, as opposed to refusing this one statement.
     pub(crate) fn is_away(&self) -> bool {
         let error = match self {
             Self::Postgres(error) => error,
             Self::Silent { .. } | Self::Room(_) => return true,
             _ => return false,
         };
-        // Connections and resources that are no more, and an operator's intervention: PostgreSQL, appendix A.
+        // Connection exceptions, insufficient resources, operator interventions and system errors: PostgreSQL, appendix A.
         let away = |code: &str| ["08", "53", "57", "58"].iter().any(|class| code.starts_with(class));
         error.as_db_error().is_none_or(|said| away(said.code().code()))
     }
 
-    /// Whether the engine can never hold what it was given. What contradicts other rows may be taken once they have changed.
+    /// Whether the engine can never store what it was given. What contradicts other rows may be accepted once they have changed.
     pub(crate) fn is_of_content(&self) -> bool {
         let Self::Postgres(error) = self else { return false };
         // Data exceptions: PostgreSQL, appendix A.
@@ -87,7 +87,7 @@ impl DatabaseError {
     }
 }
 
-/// A row as an engine brings it.
+/// A row as an engine returns it.
 #[derive(Debug)]
 pub(crate) enum Row<'a> {
     Sqlite(&'a rusqlite::Row<'a>),
@@ -102,7 +102,7 @@ impl Row<'_> {
         T::from_value(value).ok_or(DatabaseError::Column { place, found, expected: T::EXPECTED })
     }
 
-    /// The text in the column at `place`, where it stands.
+    /// The text in the column at `place`, borrowed.
     pub(crate) fn text(&self, place: usize) -> Result<&str, DatabaseError> {
         match self.value(place)? {
             Value::Text(text) => Ok(text),
@@ -137,8 +137,8 @@ pub(crate) enum Engine {
 }
 
 impl Engine {
-    /// A schema, or a statement of a plant, with what its words stand for: those that the engines have for whole numbers, other numbers,
-    /// and tables that take nothing else; and of boards that are shared, which only a plant has, [those](OF_BOARDS).
+    /// A schema, or a statement of a plant, with its words in braces replaced: the engine's types for whole and for other
+    /// numbers, its mark of strict tables, and what is said [of shared boards](OF_BOARDS), which only a plant has.
     pub(crate) fn words(self, text: &str) -> String {
         let [int, real, strict] = match self {
             Self::Sqlite => ["INTEGER", "REAL", " STRICT"],
@@ -160,16 +160,16 @@ pub(crate) trait Database: Debug + Send {
     /// Begins a transaction that writes.
     fn begin(&mut self) -> Result<(), DatabaseError>;
 
-    /// Carries out statements without values.
+    /// Executes statements without values.
     fn batch(&mut self, text: &str) -> Result<(), DatabaseError>;
 
-    /// Carries a statement out. Returns how many rows it changed.
+    /// Executes a statement. Returns how many rows it changed.
     fn execute(&mut self, text: &str, values: &[Value<'_>]) -> Result<u64, DatabaseError>;
 
-    /// Whether at its end nothing is brought from the log into the file.
+    /// Sets whether the log is left alone when the connection closes, instead of being folded into the file.
     fn leave_log(&mut self, _leaves: bool) {}
 
-    /// Brings every row of a statement that reads.
+    /// Hands every row of a query to `row`.
     fn each(&mut self, text: &str, values: &[Value<'_>], row: Each<'_>) -> Result<(), DatabaseError>;
 }
 
@@ -209,7 +209,7 @@ impl dyn Database + '_ {
         self.first(text, values, row)?.ok_or(DatabaseError::Dangling { what: "a row" })
     }
 
-    /// What `change` returns, once all that it did is kept; of what fails, or panics, nothing is.
+    /// Runs `change` in a transaction, which is committed. If it fails or panics, it is rolled back.
     pub(crate) fn transaction<T>(
         &mut self,
         change: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,
@@ -223,7 +223,7 @@ impl dyn Database + '_ {
     }
 }
 
-/// A transaction that is taken back unless it is over.
+/// A transaction that is rolled back unless it is over.
 struct Open<'a, 'b> {
     database: &'a mut (dyn Database + 'b),
     is_over: bool,

@@ -1,4 +1,4 @@
-//! PostgreSQL, by a connection that ends when its server says nothing for too long.
+//! PostgreSQL, by a connection that ends when its server is silent for too long.
 
 use std::collections::HashMap;
 use std::error::Error;
@@ -23,10 +23,10 @@ const FAREWELL: Duration = Duration::from_secs(1);
 
 /// A connection to a PostgreSQL server.
 pub(crate) struct Postgres {
-    /// The connection ends when this is dropped, and with it the line.
+    /// To drop this ends the connection, so it stands before the line, which waits for that.
     client: Client,
     line: Line,
-    /// Statements by their text, which the server has read already.
+    /// Prepared statements, by their text.
     ready: HashMap<String, Statement>,
 }
 
@@ -34,12 +34,12 @@ pub(crate) struct Postgres {
 struct Line {
     runtime: Runtime,
     connection: JoinHandle<Result<(), tokio_postgres::Error>>,
-    /// How long the server may say nothing while it is waited for; for ever if none.
+    /// How long to wait for the server's answer; for ever if none.
     patience: Option<Duration>,
 }
 
 impl Line {
-    /// What the server answers. Behind one that it does not give there is no connection any more.
+    /// Waits for the server's answer. If none comes in time, the connection is ended.
     fn wait<T>(
         &self,
         answer: impl Future<Output = Result<T, tokio_postgres::Error>>,
@@ -58,7 +58,7 @@ impl Line {
 impl Drop for Line {
     fn drop(&mut self) {
         let Self { runtime, connection, .. } = self;
-        // A server that does not hear it finds out by itself.
+        // A server that does not hear of the end notices it by itself.
         let _ = runtime.block_on(async { timeout(FAREWELL, connection).await });
     }
 }
@@ -74,7 +74,7 @@ impl fmt::Debug for Postgres {
 }
 
 impl Postgres {
-    /// To the server of `config`, which lets somebody in within `reached`, and then says nothing for no longer than `patience`.
+    /// Connects to the server of `config` within `reached`. After that, each answer must come within `patience`.
     pub(crate) fn connect<T>(
         config: &Config,
         tls: T,
@@ -87,7 +87,7 @@ impl Postgres {
     {
         let runtime = Builder::new_current_thread().enable_all().build().map_err(DatabaseError::Room)?;
         let Ok(connected) = runtime.block_on(async { timeout(reached, config.connect(tls)).await }) else {
-            // The system may be looking for the server's address still.
+            // The system may still be resolving the server's address.
             runtime.shutdown_background();
             return Err(silent(reached));
         };
@@ -149,7 +149,7 @@ pub(super) fn value(row: &tokio_postgres::Row, place: usize) -> Result<Value<'_>
     })
 }
 
-/// A value is sent as the type that the server has found for its place in the statement.
+/// A value is sent as the type that the server inferred for its place in the statement.
 impl ToSql for Value<'_> {
     fn to_sql(&self, of: &Type, out: &mut BytesMut) -> Result<IsNull, Box<dyn Error + Sync + Send>> {
         match (*self, of) {

@@ -19,7 +19,7 @@ pub(crate) struct Sqlite(Connection);
 impl Sqlite {
     pub(crate) fn new(connection: Connection) -> Self {
         connection.set_prepared_statement_cache_capacity(PREPARED);
-        // A statement that is planned by its values is planned anew for each; a connection that cannot help it is slower.
+        // Otherwise a statement may be planned anew for other values. Where this cannot be set, the connection is only slower.
         let _ = connection.set_db_config(DbConfig::SQLITE_DBCONFIG_ENABLE_QPSG, true);
         Self(connection)
     }
@@ -31,7 +31,7 @@ impl Database for Sqlite {
     }
 
     fn begin(&mut self) -> Result<(), DatabaseError> {
-        // Whoever begins by reading could find at its first write that another has written meanwhile.
+        // A transaction that begins by reading could fail at its first write, because another one has written meanwhile.
         self.batch("BEGIN IMMEDIATE")
     }
 
@@ -44,7 +44,7 @@ impl Database for Sqlite {
     }
 
     fn leave_log(&mut self, leaves: bool) {
-        // It does not refuse that.
+        // SQLite does not refuse this.
         let _ = self.0.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, leaves);
     }
 
@@ -58,7 +58,7 @@ impl Database for Sqlite {
     }
 }
 
-/// What the column at `place` holds. No table of a station has bytes.
+/// What the column at `place` holds. No table of a station has blobs.
 pub(super) fn value<'a>(row: &'a rusqlite::Row<'a>, place: usize) -> Result<Value<'a>, DatabaseError> {
     Ok(match row.get_ref(place)? {
         ValueRef::Null => Value::Null,

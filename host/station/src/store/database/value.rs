@@ -1,10 +1,10 @@
-//! What stands in a column, and what is asked for by it.
+//! Values of columns, and of parameters of statements.
 
 use std::borrow::Cow;
 
 use halfrow::Verdict;
 
-/// What stands in a column.
+/// The value of a column or a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Value<'a> {
     /// Nothing.
@@ -17,7 +17,8 @@ pub(crate) enum Value<'a> {
     Text(&'a str),
 }
 
-/// `text` as both engines keep it. PostgreSQL has no U+0000 in a text, and whatever a person or a device said is to come to a plant.
+/// `text` as both engines can store it. PostgreSQL takes no U+0000 in a text, and what a person or a device said must reach a
+/// plant.
 pub(super) fn kept(text: &str) -> Cow<'_, str> {
     if text.contains('\0') { text.replace('\0', "\u{fffd}").into() } else { text.into() }
 }
@@ -93,10 +94,10 @@ pub(crate) use values;
 
 /// What a column can be read as.
 pub(crate) trait FromValue: Sized {
-    /// It, for people.
+    /// What such a value is, in words for people.
     const EXPECTED: &'static str;
 
-    /// The value, if it is one.
+    /// The value, if it is of this type.
     fn from_value(value: Value<'_>) -> Option<Self>;
 }
 

@@ -1,21 +1,23 @@
-//! What a person does about what is to be sent, which stands in the audit.
+//! What a person does about entries of the outbox. All of it is in the audit.
 
 use super::super::database::values;
 use super::super::{Store, StoreError, statements as sql};
 
 impl Store {
-    /// Has every sink try again what waits for a person under this id; the audit keeps who said so, and why. Returns how many did.
+    /// Has every sink try again the entry of this id, where it waits for a person; the audit keeps who said so, and why. Returns
+    /// how many entries that are.
     ///
     /// # Errors
-    /// As [`Self::sends_to`].
+    /// Like [`Self::sends_to`].
     pub fn release(&mut self, subject: &str, operator: &str, reason: &str) -> Result<u64, StoreError> {
         self.released(sql::OUTBOX_RELEASED, subject, operator, reason)
     }
 
-    /// Has this sink try again all that waits for a person; the audit keeps who said so, and why. Returns how much did.
+    /// Has this sink try again all that waits for a person; the audit keeps who said so, and why. Returns how many entries that
+    /// are.
     ///
     /// # Errors
-    /// As [`Self::sends_to`].
+    /// Like [`Self::sends_to`].
     pub fn release_all(&mut self, sink: &str, operator: &str, reason: &str) -> Result<u64, StoreError> {
         self.released(sql::OUTBOX_ALL_RELEASED, sink, operator, reason)
     }
@@ -25,11 +27,11 @@ impl Store {
         self.audited("what is to be sent again", line, |to| to.execute(text, values![of]))
     }
 
-    /// Sends nothing more to this sink, and forgets what it has; the audit keeps who said so, and why. Returns how many entries it had
-    /// that it was not sent.
+    /// Sends nothing more to this sink, and forgets what it has; the audit keeps who said so, and why. Returns how many of its
+    /// entries were unsent.
     ///
     /// # Errors
-    /// As [`Self::sends_to`].
+    /// Like [`Self::sends_to`].
     pub fn forget_sink(&mut self, sink: &str, operator: &str, reason: &str) -> Result<u64, StoreError> {
         let mut unsent = 0;
         self.audited("that a sink is no more", [operator, "forget-sink", sink, reason], |to| {
@@ -39,11 +41,11 @@ impl Store {
         Ok(unsent)
     }
 
-    /// Sends all that was kept to this sink again, which has lost what it had; the audit keeps who said so, and why. Returns how many
-    /// entries it had for certain.
+    /// Sends all that was kept again to this sink, which has lost what it had; the audit keeps who said so, and why. Returns how
+    /// many entries counted as sent.
     ///
     /// # Errors
-    /// As [`Self::sends_to`].
+    /// Like [`Self::sends_to`].
     pub fn send_again(&mut self, sink: &str, operator: &str, reason: &str) -> Result<u64, StoreError> {
         let line = [operator, "send-again", sink, reason];
         self.audited("that a sink has nothing", line, |to| to.execute(sql::OUTBOX_AGAIN, values![sink]))

@@ -1,6 +1,6 @@
 use super::*;
 
-/// Tries in vain at moments of this test, with the waits of the outbox itself.
+/// Failed attempts at times that the test chooses, with the waits of the outbox itself.
 #[test]
 fn what_was_said_last_is_that_of_the_last_try() {
     let folder = tempfile::tempdir().unwrap();
@@ -11,7 +11,7 @@ fn what_was_said_last_is_that_of_the_last_try() {
     let entries = store.folder().due("mes", now_ms, i64::MAX).unwrap();
     let mut said = |place: usize, tries: u32, at_ms: i64, said: &str| {
         for vain in 0..tries {
-            // The earlier tries lie as far back as their waits are long.
+            // Only the last attempt still waits.
             let next_ms = at_ms + if vain + 1 < tries { 0 } else { 875 << vain };
             let again = Tried::Again { next_ms, said: Said::uncoded(said.to_owned()) };
             store.tried("mes", &[(entries[place].clone(), again)], at_ms).unwrap();
@@ -26,7 +26,7 @@ fn what_was_said_last_is_that_of_the_last_try() {
     assert_eq!(unsent.said, Some(Said::uncoded("asked again later".to_owned())));
 }
 
-/// What a sink has refused stands in front of what it is sent, and may be all that was kept for years.
+/// Entries that a sink refused stand before those that are due, and may be all that was kept for years.
 #[test]
 fn what_is_due_is_found_without_a_look_at_what_waits_for_a_person() {
     let folder = tempfile::tempdir().unwrap();
@@ -39,7 +39,7 @@ fn what_is_due_is_found_without_a_look_at_what_waits_for_a_person() {
     assert_eq!(plan.unwrap(), ["SEARCH outbox USING INDEX outbox_due (sink=?)"]);
 }
 
-/// As an earlier program kept it, which had no code for it.
+/// Kept as by an earlier program, without a code.
 #[test]
 fn what_was_said_to_an_earlier_program_is_told_as_it_is() {
     let folder = tempfile::tempdir().unwrap();

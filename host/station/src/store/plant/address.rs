@@ -14,13 +14,13 @@ use tokio_postgres_rustls::MakeRustlsConnect;
 use super::super::database::{DatabaseError, Postgres};
 use crate::trust::{self, TrustError};
 
-/// How long a connection may take to come about.
+/// How long a connection may take to be established.
 const REACHED: Duration = Duration::from_secs(10);
-/// How long a server may say nothing to somebody who waits for it. What it is asked without haste takes it a few seconds at most.
+/// How long to wait for a server's answer. Ordinary questions take it a few seconds at most.
 const SILENT: Duration = Duration::from_secs(20);
-/// How long a server may leave what was sent to it without an acknowledgement.
+/// How long what was sent to a server may stay without a TCP acknowledgement.
 const ACKNOWLEDGED: Duration = Duration::from_secs(20);
-/// How long a connection may say nothing until it is asked whether it is still there.
+/// How long a connection may be idle before a TCP keepalive probe, and the time between two probes.
 const QUIET: Duration = Duration::from_secs(10);
 
 /// An address of a plant that cannot be used.
@@ -46,7 +46,7 @@ pub enum PlantAddressError {
     Trust(#[from] TrustError),
 }
 
-/// Where a plant is. Printed, it has no password.
+/// Where a plant is. It is printed without its password.
 #[derive(Clone)]
 pub struct PlantAddress {
     config: Config,
@@ -57,7 +57,7 @@ pub struct PlantAddress {
 
 impl PlantAddress {
     /// The address `url`, with `password` if the plant asks for one. Whatever leaves this computer goes through TLS, and the
-    /// plant's certificate is signed by one of the file `ca`, or of the system's own.
+    /// plant's certificate must be signed by one in the file `ca`, or by one of the system's own.
     ///
     /// # Errors
     /// [`PlantAddressError`]
@@ -89,7 +89,7 @@ impl PlantAddress {
         Ok(Self { config, tls, shown, patience: Some(SILENT) })
     }
 
-    /// The same for questions that take as long as they take, of a person who sees that there is no answer.
+    /// The same without a time limit on answers, for long questions of a person who sees that there is no answer yet.
     #[must_use]
     pub(crate) fn patient(&self) -> Self {
         Self { patience: None, ..self.clone() }
@@ -121,7 +121,7 @@ impl fmt::Debug for PlantAddress {
     }
 }
 
-/// The address without what is nobody's business.
+/// The address without anything secret.
 fn shown(config: &Config) -> Result<String, PlantAddressError> {
     let without = |what| PlantAddressError::Without { what };
     let host = match config.get_hosts().first().ok_or(without("host"))? {
@@ -134,7 +134,7 @@ fn shown(config: &Config) -> Result<String, PlantAddressError> {
     Ok(format!("postgres://{user}@{host}{port}/{name}"))
 }
 
-/// Whether what is sent to this host stays in this computer.
+/// Whether what is sent to this host stays on this computer.
 fn is_near(host: &Host) -> bool {
     match host {
         Host::Unix(_) => true,

@@ -1,4 +1,4 @@
-//! What comes to a plant from its stations, in any order, and as often as they are not certain.
+//! What arrives at a plant from its stations, in any order, and again whenever they are not certain.
 
 use halfrow::Verdict;
 
@@ -10,8 +10,8 @@ use crate::plan::Plan;
 use crate::plan::mock::is_mock;
 use crate::record::{DeviceSeen, JobClaim, Record};
 
-/// A run that is over, with all that follows from its record. One of this id that is there stays as it is; it gets its record again if
-/// that alone was lost.
+/// Enters a run that is over, with all that follows from its record. A run with this id that is already there stays as it is; it
+/// gets its record back if only that was lost.
 pub(super) fn run(
     to: &mut dyn Database,
     record: &Record,
@@ -39,7 +39,7 @@ pub(super) fn run(
     Ok(())
 }
 
-/// Enters the run of `unit` with what is counted by it, which `counts` unless it is superseded. Returns whether it was not there.
+/// Enters the run of `unit`, and what is counted from it; it `counts` unless it is superseded. Returns whether it is new.
 pub(in crate::store) fn entered(
     to: &mut dyn Database,
     record: &Record,
@@ -56,8 +56,8 @@ pub(in crate::store) fn entered(
     Ok(true)
 }
 
-/// Ends the job that the run was of, if it was of one, or gives it back when nothing was judged. Returns whether the run counts: not
-/// if the job was cancelled, or claimed again.
+/// Ends the job of the run, if it has one, or gives it back when nothing was judged. Returns whether the run counts: not if the
+/// job was cancelled, or claimed again.
 fn settles_job(to: &mut dyn Database, record: &Record) -> Result<bool, DatabaseError> {
     let Some(JobClaim { id, fence }) = &record.run.job else { return Ok(true) };
     let ended = &record.conclusion;
@@ -65,11 +65,12 @@ fn settles_job(to: &mut dyn Database, record: &Record) -> Result<bool, DatabaseE
         Verdict::Error => to.execute(sql::JOB_BACK, values![&ended.headline, id, *fence])?,
         Verdict::Pass | Verdict::Fail => to.execute(sql::JOB_DONE, values![&record.run.id, id, *fence])?,
     };
-    // A job of another plant, or of one that was lost, supersedes nothing; nor does one that waits for its next claim.
+    // A job that is not here, because it is another plant's or was lost, supersedes nothing; nor does one that waits for its next
+    // claim.
     Ok(changed == 1 || to.first(sql::SUPERSEDING_JOB, values![id, *fence], |_| Ok(()))?.is_none())
 }
 
-/// The plan of a job, of which there need be no run yet.
+/// Enters the plan of a job, which need not have a run yet.
 pub(super) fn plan(to: &mut dyn Database, plan: &Plan, at_ms: i64) -> Result<(), DatabaseError> {
     let Plan { sha256, name, version, product, text, .. } = plan;
     to.execute(sql::ADD_PLAN, values![sha256, name, version, product, text, at_ms]).map(drop)
@@ -110,7 +111,7 @@ fn enter(
     )
 }
 
-/// Counts the run as its station did; when later runs of its unit were counted already, those behind it anew.
+/// Counts the run as its station did. If later runs of its unit were counted already, those are counted anew.
 fn count(to: &mut dyn Database, record: &Record, unit: &str, counts: bool) -> Result<(), DatabaseError> {
     let (id, plan, product) = (&record.run.id, &record.plan.name, &record.run.product);
     let later: i64 = to.one(sql::IS_LATE, values![unit, id, plan, product], |row| row.get(0))?;
@@ -123,20 +124,20 @@ fn count(to: &mut dyn Database, record: &Record, unit: &str, counts: bool) -> Re
     to.execute(sql::COUNT_ON, values![unit, id, plan, product])?;
     to.execute(sql::FORGET_RETEST, values![unit, plan])?;
     rows::counted(to, id)?;
-    // It may be the unit's first judgement by now, and is not its last one.
+    // The run may be the unit's first judgement now, and is not its last one.
     let last: String = to.one(sql::LAST_JUDGED, values![unit, plan, product], |row| row.get(0))?;
     to.execute(sql::ADD_RETEST, values![&last]).map(drop)
 }
 
-/// A waiver.
+/// Enters a waiver.
 pub(super) fn waiver(to: &mut dyn Database, id: &str, waiver: &Waiver) -> Result<(), DatabaseError> {
     let Waiver { run, at_ms, operator, reason } = waiver;
     to.execute(sql::ADD_WAIVER_UNLESS, values![id, run, *at_ms, operator, reason]).map(drop)
 }
 
-/// A line of the audit. One about a unit is about the plant's unit of that serial number; what it bound is bound here, too, until what
-/// was bound later, whichever comes first.
-/// Returns whether it was entered: not while the plant does not have its unit, which comes with a run.
+/// Enters a line of the audit. A line about a unit is entered for the plant's unit with that serial number. What it bound is
+/// bound here, too, until the next later binding, in whatever order the two arrive. Returns whether it was entered: not while the
+/// plant does not have its unit, which comes with a run.
 pub(super) fn audit(to: &mut dyn Database, line: &AuditLine) -> Result<bool, DatabaseError> {
     let AuditLine { id, at_ms, operator, act, subject, detail, unit } = line;
     let unit: Option<String> = match unit {

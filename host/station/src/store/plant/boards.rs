@@ -1,4 +1,5 @@
-//! Boards that several computers share: each is held by one until a moment of the plant's clock, and by whoever waits longest.
+//! Boards that several computers share. Each is held by one of them, until a time by the plant's clock; whoever has waited
+//! longest gets it next.
 
 use std::time::Instant;
 
@@ -12,7 +13,7 @@ use crate::{clock, ids};
 
 /// How long a board or a job is held without being renewed, in milliseconds.
 pub const LEASE_MS: i64 = 30_000;
-/// How long somebody is known to wait who does not ask again, in milliseconds.
+/// How long the place of a waiter who does not ask again is kept, in milliseconds.
 const WAITING_MS: i64 = 10_000;
 
 /// A board that several computers share.
@@ -20,19 +21,19 @@ const WAITING_MS: i64 = 10_000;
 pub struct SharedBoard {
     /// Its name.
     pub name: String,
-    /// Whoever needs any board needs one of a kind.
+    /// Its kind. Who takes any board asks for one of a kind.
     pub kind: String,
-    /// Where it is, as boards are named everywhere.
+    /// Its target string.
     pub target: String,
     /// The product that it is a unit of; empty if no plan judges it.
     pub product: String,
     /// Its serial number; empty if no plan judges it.
     pub serial: String,
-    /// The one station that reaches it; empty if every one does.
+    /// The only station that reaches it; empty if all do.
     pub station: String,
-    /// Why nobody may have it.
+    /// Why nobody may have it, if it is out.
     pub out: Option<String>,
-    /// How often somebody got it.
+    /// How often it was given to somebody.
     pub fence: i64,
     /// Who has it.
     pub holder: Option<String>,
@@ -49,7 +50,7 @@ pub struct Lease {
     pub target: String,
     /// Who has it.
     pub holder: String,
-    /// How often somebody got it, this time included.
+    /// How often it was given to somebody, this time included.
     pub fence: i64,
     /// Not later than when it was given, by this computer's clock.
     #[serde(skip)]
@@ -65,22 +66,22 @@ pub struct Lease {
 /// Somebody who waits for any board of a kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Waiter {
-    /// Who they are to the queue, a UUID of version 7: who came first has the smaller one.
+    /// Their place in the queue, a UUID of version 7: whoever came first has the smaller one.
     pub id: String,
     /// The kind.
     pub kind: String,
-    /// Who they are: their station, a blank, and what has none.
+    /// Who they are: their station, a blank, and a name without blanks.
     pub holder: String,
     /// The station that they are at.
     pub station: String,
 }
 
-/// What somebody who waits is told.
+/// The answer to somebody who waits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Turn {
     /// The board is theirs.
     Held(Lease),
-    /// So many are in front of them.
+    /// Others are in front of them.
     Waits {
         /// How many.
         before: u32,
@@ -90,7 +91,7 @@ pub enum Turn {
 }
 
 impl Waiter {
-    /// Somebody who waits from now on, called `name`, without a blank, at their station.
+    /// Somebody at `station` who waits from now on, called `name`, which has no blanks.
     ///
     /// # Errors
     /// [`ids::NoRandomness`]
@@ -102,8 +103,8 @@ impl Waiter {
 }
 
 impl Plant {
-    /// Enters a board that is shared, or changes it while nobody has it; `operator` says so. Returns whether it is entered: not when
-    /// [another one](Self::other_of_unit) is this unit.
+    /// Enters a board that is shared, or changes it while nobody has it; `operator` says so. Returns whether it is entered: not
+    /// when somebody has it, or [another one](Self::other_of_unit) is this unit.
     ///
     /// # Errors
     /// [`StoreError`] when the plant does not take it.
@@ -114,10 +115,10 @@ impl Plant {
         })
     }
 
-    /// The board of another name that is the unit of this one, if there is one.
+    /// The name of another board that is the same unit, if there is one.
     ///
     /// # Errors
-    /// As [`Self::share`].
+    /// Like [`Self::share`].
     pub fn other_of_unit(&mut self, board: &SharedBoard) -> Result<Option<String>, StoreError> {
         let SharedBoard { name, product, serial, .. } = board;
         self.carry_out("to tell its boards", |database| {
@@ -125,40 +126,41 @@ impl Plant {
         })
     }
 
-    /// Nobody gets the board of this name any more, for this reason; whoever has it loses it. Returns whether there is one.
+    /// Takes out the board of this name, for this reason: nobody gets it any more, and whoever has it loses it. Returns whether
+    /// there is such a board.
     ///
     /// # Errors
-    /// As [`Self::share`].
+    /// Like [`Self::share`].
     pub fn take_out(&mut self, name: &str, reason: &str, operator: &str) -> Result<bool, StoreError> {
         self.audited(operator, "board out", name, reason, |to| {
             to.execute(sql::BOARD_OUT, values![reason, name])
         })
     }
 
-    /// The board of this name is given out again, for this reason. Returns whether there is one.
+    /// Lets the board of this name be given out again, for this reason. Returns whether there is such a board.
     ///
     /// # Errors
-    /// As [`Self::share`].
+    /// Like [`Self::share`].
     pub fn put_in(&mut self, name: &str, reason: &str, operator: &str) -> Result<bool, StoreError> {
         self.audited(operator, "board in", name, reason, |to| {
             to.execute(sql::BOARD_OUT, values![None::<&str>, name])
         })
     }
 
-    /// The board of this name is not shared any more. Returns whether there was one.
+    /// Stops sharing the board of this name. Returns whether there was such a board.
     ///
     /// # Errors
-    /// As [`Self::share`].
+    /// Like [`Self::share`].
     pub fn unshare(&mut self, name: &str, operator: &str, reason: &str) -> Result<bool, StoreError> {
         self.audited(operator, "unshare board", name, reason, |to| {
             to.execute(sql::FORGET_BOARD, values![name])
         })
     }
 
-    /// Gives `waiter` a board of the kind if it is their turn, and keeps their place otherwise, for as long as they ask again.
+    /// Gives `waiter` a board of the kind if it is their turn, and otherwise keeps their place for as long as they keep asking.
     ///
     /// # Errors
-    /// As [`Self::share`].
+    /// Like [`Self::share`].
     pub fn wait(&mut self, waiter: &Waiter) -> Result<Turn, StoreError> {
         let Waiter { id, kind, holder, station } = waiter;
         self.carry_out("to give a board", |database| {
@@ -183,19 +185,19 @@ impl Plant {
         })
     }
 
-    /// `waiter` waits no more.
+    /// Removes `waiter` from the queue.
     ///
     /// # Errors
-    /// As [`Self::share`].
+    /// Like [`Self::share`].
     pub fn leave(&mut self, waiter: &Waiter) -> Result<(), StoreError> {
         self.carry_out("to forget who waits", |to| to.execute(sql::FORGET_WAITERS, values![&waiter.id]))
             .map(drop)
     }
 
-    /// Holds the board for longer. Returns whether it is held still.
+    /// Renews the lease. Returns whether the board is still held.
     ///
     /// # Errors
-    /// As [`Self::share`].
+    /// Like [`Self::share`].
     pub fn renew(&mut self, lease: &Lease) -> Result<bool, StoreError> {
         let Lease { board, holder, fence, .. } = lease;
         let renewed = self.carry_out("to let a board be held", |to| {
@@ -204,10 +206,10 @@ impl Plant {
         Ok(renewed == 1)
     }
 
-    /// Gives the board back, if it is held still.
+    /// Gives the board back, if it is still held.
     ///
     /// # Errors
-    /// As [`Self::share`].
+    /// Like [`Self::share`].
     pub fn give_back(&mut self, lease: &Lease) -> Result<(), StoreError> {
         let Lease { board, holder, fence, .. } = lease;
         let back =
@@ -215,7 +217,7 @@ impl Plant {
         self.carry_out("to take a board back", back)
     }
 
-    /// Carries out what changes a row or none, and enters it in the audit if it did. Returns whether it did.
+    /// Carries out `change`, and enters it in the audit if it changed any row. Returns whether it did.
     pub(super) fn audited(
         &mut self,
         operator: &str,
@@ -238,12 +240,12 @@ impl Plant {
     }
 }
 
-/// Those of one station that wait in front of somebody.
+/// Those of one station who wait in front of somebody.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Queue {
     station: String,
     waiting: i64,
-    /// How many boards are free that this station alone reaches.
+    /// How many boards are free that only this station reaches.
     own: i64,
 }
 
@@ -252,14 +254,14 @@ impl Queue {
         Ok(Self { station: row.get(0)?, waiting: row.get(1)?, own: row.get(2)? })
     }
 
-    /// How many of them get one that every station reaches.
+    /// How many of them need a board that every station reaches.
     fn of_all(&self) -> i64 {
         (self.waiting - self.own).max(0)
     }
 }
 
-/// How many of the free boards that somebody at `station` reaches are left to those in front: of its own to those at the same station,
-/// of the rest to whoever gets none that their station alone reaches.
+/// How many of the free boards that somebody at `station` reaches are left to those in front: of the station's own, to those at
+/// the same station; of the rest, to all for whom no board is free that only their station reaches.
 fn left_to_others(queue: &[Queue], station: &str) -> i64 {
     let (ours, others): (Vec<_>, Vec<_>) = queue.iter().partition(|queue| queue.station == station);
     let (waiting, own) = ours.first().map_or((0, 0), |ours| (ours.waiting, ours.own));
@@ -282,7 +284,7 @@ pub(super) fn hold(to: &mut dyn Database, name: &str, holder: &str) -> Result<Le
     })
 }
 
-/// Every board that is shared, by kind and name.
+/// Every shared board, ordered by kind and name.
 ///
 /// # Errors
 /// [`StoreError`] when the plant cannot be read.
@@ -316,7 +318,7 @@ pub struct Waiting {
     pub since_ms: i64,
 }
 
-/// Who waits, by kind, and in the order of its queue.
+/// Who waits, ordered by kind and by place in its queue.
 ///
 /// # Errors
 /// [`StoreError`] when the plant cannot be read.

@@ -1,5 +1,5 @@
-//! Jobs: what whichever station is free is to judge. A job and its board are claimed together or not at all, held until a
-//! moment of the plant's clock, and done when a run of it has come to the plant while the claim was the last one.
+//! Jobs: what any free station is to judge. A job and its board are claimed together or not at all, and held until a time by
+//! the plant's clock. A job is done when the run of its last claim has come to the plant.
 
 use serde::Serialize;
 
@@ -10,10 +10,10 @@ use super::{Plant, arrived};
 use crate::plan::Plan;
 use crate::{clock, ids};
 
-/// The states of jobs: waiting for a station, claimed by one, judged, come to nothing.
+/// The states of jobs: waiting for a station, claimed by one, judged, given up.
 pub const STATES: [&str; 4] = ["waiting", "claimed", "done", "dead"];
 
-/// What a job is about.
+/// Which board a job is about.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Wanted {
     /// The board that is this unit.
@@ -31,13 +31,13 @@ pub struct NewJob<'a> {
     pub wanted: &'a Wanted,
     /// What a station must have.
     pub needs: &'a [String],
-    /// Those of a higher one come first.
+    /// Jobs of a higher priority come first.
     pub priority: i64,
     /// Who wants it.
     pub operator: &'a str,
 }
 
-/// A job as it is.
+/// A job and its state.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Job {
     /// Its id, a UUID of version 7.
@@ -52,15 +52,15 @@ pub struct Job {
     pub serial: String,
     /// The kind of board; empty if it is one unit.
     pub kind: String,
-    /// What a station must have, with blanks between.
+    /// What a station must have, separated by blanks.
     pub needs: String,
-    /// Those of a higher one come first.
+    /// Jobs of a higher priority come first.
     pub priority: i64,
     /// One of [`STATES`].
     pub state: String,
     /// Who has it, or had it last.
     pub holder: Option<String>,
-    /// How often it was claimed since a person last looked at it.
+    /// How often it was claimed since it was added, or since a person had it tried again.
     pub attempts: u32,
     /// The run that counts.
     pub run: Option<String>,
@@ -70,7 +70,7 @@ pub struct Job {
     pub created_ms: i64,
     /// Who wants it.
     pub operator: String,
-    /// Why it came to nothing, or to nothing yet.
+    /// Why it was given up, or has no result yet.
     pub said: Option<String>,
 }
 
@@ -83,7 +83,7 @@ pub struct Worker {
     pub station: String,
     /// The hashes of its plans.
     pub plans: Vec<String>,
-    /// What it has.
+    /// What it has that jobs may need.
     pub has: Vec<String>,
 }
 
@@ -92,7 +92,7 @@ pub struct Worker {
 pub struct Claim {
     /// The job.
     pub job: String,
-    /// The number of the claim, higher than that of every one before.
+    /// The number of the claim, higher than that of every earlier claim of the job.
     pub fence: i64,
     /// The hash of the plan.
     pub plan_sha256: String,
@@ -138,20 +138,20 @@ impl Plant {
         Ok(added)
     }
 
-    /// The job is judged no more, for this reason; whoever has it loses it. Returns whether it was waiting or claimed.
+    /// Cancels the job, for this reason; whoever has it loses it. Returns whether it was waiting or claimed.
     ///
     /// # Errors
-    /// As [`Self::add_jobs`].
+    /// Like [`Self::add_jobs`].
     pub fn cancel_job(&mut self, id: &str, operator: &str, reason: &str) -> Result<bool, StoreError> {
         self.audited(operator, "cancel job", id, reason, |to| {
             to.execute(sql::CANCEL_JOB, values![reason, id])
         })
     }
 
-    /// The job that came to nothing is judged after all. Returns whether it had.
+    /// Has a job that was given up judged after all. Returns whether it was given up.
     ///
     /// # Errors
-    /// As [`Self::add_jobs`].
+    /// Like [`Self::add_jobs`].
     pub fn retry_job(&mut self, id: &str, operator: &str, reason: &str) -> Result<bool, StoreError> {
         self.audited(operator, "retry job", id, reason, |to| to.execute(sql::RETRY_JOB, values![id]))
     }
@@ -159,15 +159,15 @@ impl Plant {
     /// Gives `worker` the first job that it can judge, with a board; none if there is none for now.
     ///
     /// # Errors
-    /// As [`Self::add_jobs`].
+    /// Like [`Self::add_jobs`].
     pub fn claim(&mut self, worker: &Worker) -> Result<Option<Claim>, StoreError> {
         self.carry_out("to give a job", |database| database.transaction(|to| claimed(to, worker)))
     }
 
-    /// Holds a job and its board for longer. Returns whether both are held still.
+    /// Renews the leases of a job and its board. Returns whether both are still held.
     ///
     /// # Errors
-    /// As [`Self::add_jobs`].
+    /// Like [`Self::add_jobs`].
     pub fn renew_claim(&mut self, claim: &Claim) -> Result<bool, StoreError> {
         let Claim { job, fence, lease, .. } = claim;
         let renewed = self.carry_out("to let a job be held", |to| {
@@ -176,10 +176,10 @@ impl Plant {
         Ok(renewed == 1 && self.renew(lease)?)
     }
 
-    /// Gives a job back that was not begun, and its board.
+    /// Gives back a job that was not begun, and its board.
     ///
     /// # Errors
-    /// As [`Self::add_jobs`].
+    /// Like [`Self::add_jobs`].
     pub fn decline(&mut self, claim: &Claim) -> Result<(), StoreError> {
         let Claim { job, fence, lease, .. } = claim;
         self.carry_out("to take a job back", |to| {
@@ -188,20 +188,20 @@ impl Plant {
         self.give_back(lease)
     }
 
-    /// Gives a job back of which no run came about, for this reason; one that was claimed five times is dead.
+    /// Gives back a job that came to no run, for this reason. A job that was claimed five times is dead.
     ///
     /// # Errors
-    /// As [`Self::add_jobs`].
+    /// Like [`Self::add_jobs`].
     pub fn fail(&mut self, claim: &Claim, said: &str) -> Result<(), StoreError> {
         let Claim { job, fence, .. } = claim;
         self.carry_out("to take a job back", |to| to.execute(sql::JOB_BACK, values![said, job, *fence]))
             .map(drop)
     }
 
-    /// The run that counts of a job; none if there is none yet.
+    /// The run of a job that counts; none if there is none yet.
     ///
     /// # Errors
-    /// As [`Self::add_jobs`].
+    /// Like [`Self::add_jobs`].
     pub fn run_of_job(&mut self, id: &str) -> Result<Option<String>, StoreError> {
         let run = self.carry_out("to tell a job's run", |database| {
             database.first(sql::RUN_OF_JOB, values![id], |row| row.get::<Option<String>>(0))
@@ -212,7 +212,7 @@ impl Plant {
     /// Whether a run counts; none if it is not there.
     ///
     /// # Errors
-    /// As [`Self::add_jobs`].
+    /// Like [`Self::add_jobs`].
     pub fn counts(&mut self, run: &str) -> Result<Option<bool>, StoreError> {
         let nth = self.carry_out("to tell whether a run counts", |database| {
             database.first(sql::NTH_OF, values![run], |row| row.get::<i64>(0))
@@ -221,7 +221,7 @@ impl Plant {
     }
 }
 
-/// A job and its board, or neither: what is locked goes with the transaction.
+/// Claims a job and its board, or neither: the rows are locked until the transaction ends.
 fn claimed(to: &mut dyn Database, worker: &Worker) -> Result<Option<Claim>, DatabaseError> {
     let Worker { holder, station, plans, has } = worker;
     to.execute(sql::EXHAUSTED_JOBS, &[])?;
@@ -245,7 +245,8 @@ fn claimed(to: &mut dyn Database, worker: &Worker) -> Result<Option<Claim>, Data
     })
 }
 
-/// The jobs of these of [`STATES`], the newest first: at most `most`, behind the one with the id `behind`, if any.
+/// The jobs in these of the [`STATES`], the newest first: at most `most`, following the job with the id `behind` unless that is
+/// empty.
 ///
 /// # Errors
 /// [`StoreError`] when the plant cannot be read.

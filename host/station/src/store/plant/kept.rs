@@ -1,4 +1,4 @@
-//! What a plant keeps, read back, and its tables as they are when they are made anew from its records.
+//! What a plant keeps, read back, and its tables as they come out when they are made anew from its records.
 
 use super::super::bindings::BY_RUN;
 use super::super::database::{DatabaseError, values};
@@ -13,7 +13,7 @@ pub struct Kept {
     pub run: String,
     /// Its unit.
     pub unit_id: String,
-    /// Which judgement of the unit it is, counted from 1; 0 of one that does not count.
+    /// Which judgement of the unit it is, counted from 1; 0 for one that does not count.
     pub nth: i64,
     /// The hash of its record.
     pub sha256: String,
@@ -30,10 +30,10 @@ pub struct PlanOfJob {
 }
 
 impl Snapshot {
-    /// The next runs of a plant behind the one of the id `behind`, in the order in which they began; none behind the last.
+    /// The next runs of a plant after the one with the id `behind`, in the order in which they began; none after the last.
     ///
     /// # Errors
-    /// [`StoreError`] when the database cannot be read, as of all that follow.
+    /// [`StoreError`] when the database cannot be read.
     pub fn kept_runs(&self, behind: &str) -> Result<Vec<Kept>, StoreError> {
         self.rows("to tell its runs", sql::KEPT_RUNS, values![behind], |row| {
             let (run, unit_id, nth) = (row.get(0)?, row.get(1)?, row.get(2)?);
@@ -44,25 +44,25 @@ impl Snapshot {
     /// The id of a unit.
     ///
     /// # Errors
-    /// As [`Self::kept_runs`].
+    /// Like [`Self::kept_runs`].
     pub fn unit_of(&self, product: &str, serial: &str) -> Result<Option<String>, StoreError> {
         let found = self.rows("to tell a unit", sql::UNIT_OF, values![product, serial], |row| row.get(0))?;
         Ok(found.into_iter().next())
     }
 
-    /// The run by which a job is done: none of a job that is not, or not there.
+    /// The run by which a job is done: `Some(None)` for a job that is not done, `None` for one that does not exist.
     ///
     /// # Errors
-    /// As [`Self::kept_runs`].
+    /// Like [`Self::kept_runs`].
     pub fn run_of_job(&self, job: &str) -> Result<Option<Option<String>>, StoreError> {
         let found = self.rows("to tell a job", sql::RUN_OF_JOB, values![job], |row| row.get(0))?;
         Ok(found.into_iter().next())
     }
 
-    /// When all bindings of this device or this unit begin but the one of this id, in milliseconds since 1970, UTC.
+    /// When all bindings of this device or this unit begin, except the one with this id, in milliseconds since 1970, UTC.
     ///
     /// # Errors
-    /// As [`Self::kept_runs`].
+    /// Like [`Self::kept_runs`].
     pub fn others_begin(&self, id: &str, device: &str, unit: &str) -> Result<Vec<i64>, StoreError> {
         let text = "SELECT from_ms FROM binding WHERE id <> $1 AND (device = $2 OR unit_id = $3)";
         self.rows("to tell what is bound", text, values![id, device, unit], |row| row.get(0))
@@ -71,7 +71,7 @@ impl Snapshot {
     /// The hashes of records that no run names.
     ///
     /// # Errors
-    /// As [`Self::kept_runs`].
+    /// Like [`Self::kept_runs`].
     pub fn unnamed_records(&self) -> Result<Vec<String>, StoreError> {
         self.rows("to tell its records", sql::UNNAMED_RECORDS, &[], |row| row.get(0))
     }
@@ -79,15 +79,15 @@ impl Snapshot {
     /// Jobs that are said to be done and have no run.
     ///
     /// # Errors
-    /// As [`Self::kept_runs`].
+    /// Like [`Self::kept_runs`].
     pub fn jobs_without_runs(&self) -> Result<Vec<String>, StoreError> {
         self.rows("to tell its jobs", sql::JOBS_WITHOUT_RUNS, &[], |row| row.get(0))
     }
 
-    /// The runs of mismatches that are not what their runs say.
+    /// The runs of mismatches that contradict their run.
     ///
     /// # Errors
-    /// As [`Self::kept_runs`].
+    /// Like [`Self::kept_runs`].
     pub fn other_mismatches(&self) -> Result<Vec<String>, StoreError> {
         self.rows("to tell what is bound", sql::OTHER_MISMATCHES, &[], |row| row.get(0))
     }
@@ -95,7 +95,7 @@ impl Snapshot {
     /// The plans that jobs brought.
     ///
     /// # Errors
-    /// As [`Self::kept_runs`].
+    /// Like [`Self::kept_runs`].
     pub fn plans_of_jobs(&self) -> Result<Vec<PlanOfJob>, StoreError> {
         self.rows("to tell its plans", sql::PLANS_OF_JOBS, &[], |row| {
             let [sha256, name, version, text] = [row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?];
@@ -106,7 +106,7 @@ impl Snapshot {
 }
 
 impl Rebuilt {
-    /// A plant's, without a row. What its stations bound may contradict itself.
+    /// Empty tables of a plant. What its stations bound may contradict each other.
     ///
     /// # Errors
     /// [`StoreError`] when there is no room for it.
@@ -127,8 +127,8 @@ impl Rebuilt {
         self.change(|to| to.first(sql::UNIT_OF, values![product, serial], |row| row.get(0)))
     }
 
-    /// The run of this record, whose hash is `hash`, as it comes to a plant; it `counts` unless another run of its job does. Runs
-    /// come in the order of their ids.
+    /// Enters the run of this record, whose hash is `hash`, as a plant does; it `counts` unless another run of its job does. Runs
+    /// must come in the order of their ids.
     ///
     /// # Errors
     /// [`StoreError`] when it contradicts the runs before.
@@ -143,7 +143,8 @@ impl Rebuilt {
         })
     }
 
-    /// What a person bound, beside all that was bound before; nothing if the unit is not there, for the plant left it out, too.
+    /// Enters what a person bound, without ending what was bound before; nothing if the unit does not exist, because then the
+    /// plant left it out, too.
     ///
     /// # Errors
     /// [`StoreError`] when it contradicts what is there.
@@ -157,7 +158,7 @@ impl Rebuilt {
         })
     }
 
-    /// Which device and which unit the binding of this id is about.
+    /// The device and the unit of the binding with this id.
     ///
     /// # Errors
     /// [`StoreError`] when it cannot be read.
@@ -166,7 +167,7 @@ impl Rebuilt {
         self.change(|to| to.first(text, values![id], |row| Ok((row.get(0)?, row.get(1)?))))
     }
 
-    /// A plan that a job brought, behind all runs. When it did is taken as it is, unless a run is earlier.
+    /// Enters a plan that a job brought, after all runs. The time of its first use is taken as it is, unless a run is earlier.
     ///
     /// # Errors
     /// [`StoreError`] when it contradicts what is there.

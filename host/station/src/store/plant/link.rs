@@ -1,11 +1,11 @@
-//! A connection to a plant for as long as it is good.
+//! A connection to a plant, kept as long as it works.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::super::StoreError;
 use super::{Plant, PlantAddress};
 
-/// A plant that is connected to when it is asked something, and anew behind an error. A copy has the same connection.
+/// A plant that is connected to when it is asked something, and anew after an error. A clone has the same connection.
 #[derive(Clone, Debug)]
 pub struct PlantLink(Arc<Parts>);
 
@@ -16,21 +16,22 @@ struct Parts {
 }
 
 impl PlantLink {
-    /// To the plant at `address`.
+    /// A link to the plant at `address`.
     #[must_use]
     pub fn new(address: PlantAddress) -> Self {
         Self(Arc::new(Parts { address, plant: Mutex::default() }))
     }
 
-    /// What the plant answers. Whoever has another question waits meanwhile.
+    /// The plant's answer to `question`. Other questions wait meanwhile.
     ///
     /// # Errors
-    /// What the question says, and [`StoreError`] when the plant is not there, or refuses. The next question goes over a new connection.
+    /// Those of the question, and [`StoreError`] when the plant is not there, or refuses. The next question goes over a new
+    /// connection.
     pub fn ask<T, E: From<StoreError>>(
         &self,
         question: impl FnOnce(&mut Plant) -> Result<T, E>,
     ) -> Result<T, E> {
-        // Whoever panicked has taken the connection with them.
+        // A question that panicked has taken the connection with it.
         let mut kept = self.0.plant.lock().unwrap_or_else(PoisonError::into_inner);
         let mut plant = match kept.take() {
             Some(plant) => plant,

@@ -1,7 +1,7 @@
 //! The plant: the results of all stations in one PostgreSQL database, which their outboxes fill.
 //!
-//! The tables are those of a station. What a run leaves follows from its record alone, so that the plant has what the
-//! station has; only what is counted over the runs of a unit is counted over all stations.
+//! The tables are those of a station. The rows of a run follow from its record alone, so the plant has what the station
+//! has. Only what is counted over the runs of a unit is counted over all stations.
 
 mod address;
 pub(super) mod arrived;
@@ -28,7 +28,7 @@ use super::{Parcel, StoreError, migrations, statements as sql};
 use crate::clock::{self, HeardClock};
 use crate::trust::CertificateError;
 
-/// A delivery that did not come about.
+/// A delivery that failed.
 #[derive(Debug, thiserror::Error)]
 pub enum PlantError {
     /// The plant has this run with another record: somebody has made two runs of one id, or changed one.
@@ -96,7 +96,7 @@ pub enum PlantError {
 }
 
 impl PlantError {
-    /// Whether the plant is not there, rather than that it does not take this one thing.
+    /// Whether the plant is unavailable, as opposed to refusing this one thing.
     #[must_use]
     pub fn is_away(&self) -> bool {
         matches!(self, Self::Store(error) if error.is_away())
@@ -108,7 +108,7 @@ impl PlantError {
         matches!(self, Self::Store(StoreError::Newer { .. } | StoreError::Older { .. }))
     }
 
-    /// Whether it never takes this one thing as it is.
+    /// Whether the plant will never take this one thing as it is.
     #[must_use]
     pub(crate) fn is_final(&self) -> bool {
         match self {
@@ -119,12 +119,12 @@ impl PlantError {
     }
 }
 
-/// What a plant hears of a station.
+/// What a station tells the plant of itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Presence {
     /// The station's name.
     pub name: String,
-    /// What its folder is called.
+    /// The id of its folder.
     pub origin: String,
     /// Its program's version.
     pub program: String,
@@ -161,8 +161,8 @@ impl Plant {
         Ok(plant)
     }
 
-    /// Makes the tables of the plant at `address`, or brings those that are there up to date, with a copy of all that is in
-    /// them. Whoever does so at the same time waits. Returns the version.
+    /// Makes the tables of the plant at `address`, or copies those that exist and brings them up to date. A program that
+    /// does so at the same time waits. Returns the version.
     ///
     /// # Errors
     /// [`PlantError::Store`] when it is not there or its tables are newer, [`PlantError::Collation`].
@@ -174,10 +174,10 @@ impl Plant {
         Ok(sql::SCHEMAS.len())
     }
 
-    /// Takes a parcel, whole or not at all. It is there for certain when this returns: it was read back after it was kept.
+    /// Stores a parcel, completely or not at all. When this returns, it is certainly there: it was read back after the commit.
     ///
     /// # Errors
-    /// [`PlantError`] when it is not, or nobody knows.
+    /// [`PlantError`] when it is not there, or that is not known.
     pub fn take(&mut self, parcel: &Parcel) -> Result<(), PlantError> {
         match parcel {
             Parcel::Run { record, text, sha256 } => {
@@ -201,7 +201,7 @@ impl Plant {
         }
     }
 
-    /// Enters that this station is there. Returns the plant's clock.
+    /// Enters that this station is at work. Returns the plant's clock.
     ///
     /// # Errors
     /// [`PlantError::OtherStation`] when another station has its name.
@@ -214,10 +214,10 @@ impl Plant {
         seen_ms.map(HeardClock::shows).ok_or_else(|| PlantError::OtherStation { name: name.clone() })
     }
 
-    /// The plant has this run, which it had for certain.
+    /// Checks that the plant still has this run, which it certainly had.
     ///
     /// # Errors
-    /// [`PlantError::Lost`] when it has not.
+    /// [`PlantError::Lost`] when it does not.
     pub fn still_has(&mut self, run: &str) -> Result<(), PlantError> {
         self.hash_of(run)?.map(drop).ok_or_else(|| PlantError::Lost { run: run.to_owned() })
     }
@@ -259,7 +259,7 @@ impl Plant {
         Err(PlantError::Collation { plant: self.shown.display().to_string(), collation, encoding })
     }
 
-    /// The hash of a run and whether its record is there, if the run is.
+    /// The hash of a run's record, and whether that record is there; none if the run is not.
     fn hash_of(&mut self, run: &str) -> Result<Option<(String, bool)>, PlantError> {
         Ok(self.carry_out("to be read back", |database| {
             database.first(sql::HASH_OF, values![run], |row| Ok((row.get(0)?, row.get(1)?)))
@@ -282,8 +282,8 @@ impl Plant {
         found.ok_or_else(|| PlantError::NotKept { subject: subject.to_owned() })
     }
 
-    /// Carries out what a station sends, in a transaction that has the version for which this program knows what that leaves: the
-    /// tables may have been brought up to date since the connection came about.
+    /// Enters what a station sends, in a transaction that checks the version of the tables: they may have been brought up to date
+    /// since the connection was made, and this program does not know what to enter in others.
     fn bring<T>(
         &mut self,
         doing: &'static str,
@@ -311,5 +311,5 @@ impl Plant {
     }
 }
 
-/// One program at a time prepares a plant. It ends with the connection.
+/// Lets one program at a time prepare a plant. The lock ends with the connection.
 const LOCK: &str = "SELECT pg_advisory_lock(7249613001)";

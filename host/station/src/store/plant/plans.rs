@@ -8,7 +8,7 @@ use crate::history::PlanName;
 use crate::published::{Bundle, Statement};
 
 impl Plant {
-    /// What holds for this plan: the statement's text, and its signature. Whether it is to be trusted is for whoever asks.
+    /// The statement that holds for this plan, as text, and its signature. The caller decides whether to trust it.
     ///
     /// # Errors
     /// [`StoreError`] when the plant cannot be read.
@@ -19,10 +19,10 @@ impl Plant {
         })
     }
 
-    /// As [`Self::publication`], what was said last of this version.
+    /// Like [`Self::publication`], the last statement about this version.
     ///
     /// # Errors
-    /// As [`Self::publication`].
+    /// Like [`Self::publication`].
     pub fn published_version(
         &mut self,
         plan: &PlanName,
@@ -38,15 +38,15 @@ impl Plant {
     /// The text of the bundle of this hash; empty if there is none.
     ///
     /// # Errors
-    /// As [`Self::publication`].
+    /// Like [`Self::publication`].
     pub fn bundle(&mut self, sha256: &str) -> Result<String, StoreError> {
         let found = self
             .carry_out("to give a plan", |from| from.first(sql::BUNDLE, values![sha256], |row| row.get(0)))?;
         Ok(found.unwrap_or_default())
     }
 
-    /// From now on what the statement says holds; `bundle` is its plan, unless the plant has it, and takes the place of what the plant has
-    /// under its hash. Returns whether it was the next one: somebody else may have been quicker.
+    /// Makes the statement hold from now on. `bundle` is its plan, which the plant needs unless it has it, and replaces what the
+    /// plant has under its hash. Returns whether the statement was the next one: somebody else may have been quicker.
     ///
     /// # Errors
     /// [`StoreError`] when the plant does not take it.
@@ -72,7 +72,8 @@ impl Plant {
     }
 }
 
-/// What holds, by product and name, and since when in milliseconds since 1970, UTC. What is no statement of this program's is left out.
+/// The statements that hold, ordered by product and name, and since when, in milliseconds since 1970, UTC. What this program
+/// cannot read is left out.
 ///
 /// # Errors
 /// [`StoreError`] when the plant cannot be read.

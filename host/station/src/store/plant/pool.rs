@@ -1,14 +1,14 @@
-//! Connections to a plant that pages look at it by, one after the other.
+//! Connections to a plant, which pages reuse one after the other.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::super::{Snapshot, StoreError};
 use super::{Plant, PlantAddress};
 
-/// Connections that are kept while nobody looks.
+/// How many connections are kept while nobody looks.
 const KEPT: usize = 4;
 
-/// The plant's connections. A copy has the same ones.
+/// Connections to the plant. A clone has the same ones.
 #[derive(Clone, Debug)]
 pub struct PlantPool(Arc<Parts>);
 
@@ -19,7 +19,7 @@ struct Parts {
 }
 
 impl PlantPool {
-    /// Of the plant at `address`, which is connected to when somebody looks.
+    /// Connections to the plant at `address`, which are made when somebody looks.
     #[must_use]
     pub fn new(address: PlantAddress) -> Self {
         Self(Arc::new(Parts { address, idle: Mutex::default() }))
@@ -44,13 +44,13 @@ impl PlantPool {
     /// Enters in the plant's audit that `operator` does `act` with `subject`; `detail` says how.
     ///
     /// # Errors
-    /// As [`Self::look`].
+    /// Like [`Self::look`].
     pub fn note(&self, operator: &str, act: &str, subject: &str, detail: &str) -> Result<(), StoreError> {
         let mut plant = Plant::connect(&self.0.address)?;
         plant.audited(operator, act, subject, detail, |_| Ok(1)).map(drop)
     }
 
-    /// By a connection that was kept, unless it has ended meanwhile.
+    /// A snapshot by a connection that was kept, or by a new one if there is none or it has ended meanwhile.
     fn snapshot(&self) -> Result<Snapshot, StoreError> {
         let kept = self.idle().pop();
         match kept.map(Snapshot::of_plant) {

@@ -1,17 +1,17 @@
-//! Rows of old runs that are only there to be looked for: a record has all of them.
+//! Rows of old runs that serve only to be searched: the records have all of their content.
 
 use super::super::database::values;
 use super::super::{Snapshot, StoreError, statements as sql};
 use super::Plant;
 use crate::ids;
 
-/// What it is called in the audit. A station's own is of evidence.
+/// The name of this act in the audit. A station's own act, which removes evidence, has another one.
 const PRUNE: &str = "prune rows";
 
 impl Plant {
-    /// Removes the steps and measurements of all runs that began before `before_ms`, milliseconds since 1970, UTC; `told` hears how
-    /// many rows are gone by now. That they are removed is in the audit before they are. Runs, records, and all that is counted stay.
-    /// What is interrupted is done again.
+    /// Removes the steps and measurements of all runs that began before `before_ms`, milliseconds since 1970, UTC. Calls `told`
+    /// with the number of rows removed so far; returns that of all. The audit has the removal before it begins. Runs, records,
+    /// and all that is counted stay. After an interruption, call it again.
     ///
     /// # Errors
     /// [`StoreError`] when the plant does not take it.
@@ -43,7 +43,7 @@ impl Plant {
 }
 
 impl Snapshot {
-    /// What the ids of runs stand in front of whose steps and measurements may be gone; empty if none may.
+    /// The id below which the steps and measurements of runs may be gone; empty if all are there.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
