@@ -24,7 +24,7 @@ const ASSETS: [(&str, &str, &str); 9] = [
     ("sound.js", SCRIPT, include_str!("../../assets/sound.js")),
 ];
 
-/// What they say.
+/// The texts of all files.
 pub(super) fn texts() -> impl Iterator<Item = &'static str> {
     ASSETS.into_iter().map(|(_, _, text)| text)
 }
@@ -36,6 +36,6 @@ pub(super) fn routes() -> Vec<Route> {
 async fn asset(visit: Visit, Path(name): Path<String>) -> Result<Response, Trouble> {
     let found = ASSETS.into_iter().find(|(known, _, _)| *known == name);
     let (_, kind, text) = found.ok_or_else(|| Trouble::missing(&visit))?;
-    // Another program may have other ones under the same names.
+    // Another version of the program may have others under the same names.
     Ok(([(CONTENT_TYPE, kind), (CACHE_CONTROL, "no-cache")], text).into_response())
 }

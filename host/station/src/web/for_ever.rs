@@ -1,5 +1,5 @@
-//! What never changes: a browser that has it need not be sent it again, and asks each time whether it may still show it, since whoever
-//! has logged out may not.
+//! What never changes: a browser that has it is not sent it again, but asks each time whether it may still show it, because
+//! whoever has logged out may not see it.
 
 use axum::extract::Request;
 use axum::http::header::{CACHE_CONTROL, ETAG, IF_NONE_MATCH};
@@ -7,10 +7,10 @@ use axum::http::{HeaderValue, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Response};
 
-/// The only version that there is.
+/// The entity tag of the only version that there is.
 const VERSION: &str = "\"1\"";
 
-/// Around a route, within what looks who asks.
+/// Goes around a route, within the check of who asks.
 pub(super) async fn for_ever(request: Request, next: Next) -> Response {
     let mut known = request.headers().get_all(IF_NONE_MATCH).iter();
     let is_known = known.any(|known| known.to_str().is_ok_and(|known| known.contains(VERSION)));

@@ -23,10 +23,10 @@ pub(super) fn routes() -> Vec<Route> {
 /// Which jobs are asked for.
 #[derive(Deserialize)]
 struct Asked {
-    /// Those of one state; of all where it is none.
+    /// Only those in this state; all if it is no state.
     #[serde(default)]
     state: String,
-    /// Those that were added before this one.
+    /// Only those that were added before this one.
     #[serde(default)]
     behind: String,
 }

@@ -29,7 +29,7 @@ pub(super) enum Here {
 }
 
 impl Here {
-    /// Every place of the navigation that all have, with its path and the key of its name.
+    /// The places of the navigation that stations and plants have, each with its path and the key of its name.
     const ALL: [(Self, &'static str, Label); 3] = [
         (Self::History, "/history", Label { key: "nav.history" }),
         (Self::Yield, "/yield", Label { key: "nav.yield" }),
@@ -55,7 +55,7 @@ struct Label {
     key: &'static str,
 }
 
-/// A page: its place, its title, what is in its head beside the common style sheet, and its content.
+/// A page: its place, its title, what its head has in addition to the common style sheet, and its content.
 #[derive(Debug)]
 pub(super) struct Page<'a> {
     pub(super) here: Here,
@@ -65,12 +65,12 @@ pub(super) struct Page<'a> {
 }
 
 impl Page<'_> {
-    /// As an answer to `visit`.
+    /// The page as an answer to `visit`.
     pub(super) fn answer(self, visit: &Visit) -> Response {
         self.with_status(visit, StatusCode::OK)
     }
 
-    /// As a part of one of the station's own pages, without the navigation.
+    /// The page as a part of one of the station's own pages, without the navigation.
     pub(super) fn framed(self, visit: &Visit) -> Response {
         let mut response = text(StatusCode::OK, self.markup(visit, false));
         response
@@ -79,7 +79,7 @@ impl Page<'_> {
         response
     }
 
-    /// As an answer with this status.
+    /// The page as an answer with this status.
     pub(super) fn with_status(self, visit: &Visit, status: StatusCode) -> Response {
         text(status, self.markup(visit, true))
     }
@@ -134,7 +134,7 @@ fn navigation(visit: &Visit, here: Here) -> Markup {
 fn who(visit: &Visit) -> Markup {
     html! {
         @match &visit.user {
-            // A plant without people lets everybody look, who is nobody.
+            // A plant without users lets everybody look, without a name.
             Some(user) if user.name.is_empty() => {}
             Some(user) => {
                 span.who { (user.name) " " span.role { "(" (role(visit, user.who)) ")" } }

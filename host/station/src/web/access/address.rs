@@ -1,4 +1,4 @@
-//! Where the pages are: the address that is listened on, and the names under which browsers may ask for it.
+//! Where the pages are: the address to listen on, and the names under which browsers may ask for it.
 
 use std::net::SocketAddr;
 
@@ -8,7 +8,7 @@ use crate::trust::is_near;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Address {
     pub(super) listen: SocketAddr,
-    /// What stands before `//` in the address that browsers show.
+    /// Whether the address that browsers show begins with `https:`.
     is_https: bool,
     /// Every value that the header `Host` may have.
     hosts: Vec<String>,
@@ -61,14 +61,16 @@ impl Address {
         self
     }
 
-    /// Whether nobody outside this computer gets here. A name that is not its own is that of a proxy, through which others come.
+    /// Whether nobody outside this computer gets here. A name that is not this computer's is a proxy's, through which others
+    /// come.
     #[must_use]
     pub fn is_private(&self) -> bool {
         let is_here = |host: &String| is_near(without_port(host));
         self.listen.ip().is_loopback() && !self.is_https && self.hosts.iter().all(is_here)
     }
 
-    /// Whether others may come through a proxy on this computer: to an address of its own only so, and what speaks TLS may be here.
+    /// Whether others may come through a proxy on this computer: to a loopback address they come only so, and with TLS the proxy
+    /// that speaks it may be on this computer.
     pub(crate) fn may_have_proxy_here(&self) -> bool {
         !self.is_private() && (self.listen.ip().is_loopback() || self.is_https)
     }
@@ -83,8 +85,8 @@ impl Address {
         self.is_https
     }
 
-    /// Whether a request for this `Host` is for the station. A page of somebody else whose name was made to lead here is
-    /// not.
+    /// Whether a request for this `Host` is for the station. A request of a foreign page whose name was made to resolve to
+    /// this address (DNS rebinding) is not.
     pub(crate) fn is_host(&self, host: &str) -> bool {
         self.hosts.iter().any(|known| known.eq_ignore_ascii_case(host))
     }

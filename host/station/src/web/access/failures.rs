@@ -1,4 +1,4 @@
-//! How often somebody failed to say who they are, so that nobody guesses for long.
+//! How often somebody failed to identify themselves, so that nobody guesses for long.
 
 use std::collections::{HashMap, VecDeque};
 use std::hash::Hash;
@@ -6,25 +6,25 @@ use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
 use std::time::{Duration, Instant};
 
 const WINDOW: Duration = Duration::from_secs(60);
-/// The most of whom failures are kept. From there on others wait, as if they had failed.
+/// The most clients whose failures are kept. When there are more, the others wait as if they had failed.
 const MOST: usize = 10_000;
 
-/// When who failed.
+/// When each client failed.
 #[derive(Debug)]
 pub(super) struct Failures<Who> {
-    /// So many failures within [`WINDOW`] are the last before a wait.
+    /// How many failures within [`WINDOW`] are followed by a wait.
     last: usize,
     of: HashMap<Who, VecDeque<Instant>>,
 }
 
 impl<Who: Eq + Hash> Failures<Who> {
-    /// Of nobody yet, with so many within a minute that are followed by a wait.
+    /// No failures yet; after `last` of them within a minute there is a wait.
     pub(super) fn new(last: usize) -> Self {
         Self { last, of: HashMap::new() }
     }
 
-    /// `who` tries, which has failed until it is known that it has not: many may try at once. How long they wait first, if they
-    /// have to.
+    /// Counts an attempt of `who`. It is a failure until [`Self::succeeded`] says otherwise, because many attempts may be made at
+    /// once. Returns how long they must wait first, if they must.
     pub(super) fn attempt(&mut self, who: Who, now: Instant) -> Option<Duration> {
         self.of.retain(|_, failed| {
             failed.retain(|at| now.saturating_duration_since(*at) < WINDOW);
@@ -43,13 +43,14 @@ impl<Who: Eq + Hash> Failures<Who> {
         }
     }
 
-    /// One of them was none.
+    /// One attempt of `who` was no failure.
     pub(super) fn succeeded(&mut self, who: &Who) {
         self.of.get_mut(who).and_then(VecDeque::pop_back);
     }
 }
 
-/// Who is at `peer`: this computer, or of an address of IPv6 its network, since a computer has as many addresses there as it likes.
+/// The client at `peer`: this computer, an IPv4 address, or the /64 network of an IPv6 address, in which a computer has as many
+/// addresses as it likes.
 pub(in crate::web) fn network(peer: IpAddr) -> IpAddr {
     match peer.to_canonical() {
         IpAddr::V6(address) if !address.is_loopback() => {

@@ -9,7 +9,7 @@ use sha2::Sha256;
 
 use crate::secret::{self, SecretError};
 
-/// Bytes of a key, and of what is drawn for a session.
+/// Bytes of a key, and of what is drawn for a session or a token.
 const BYTES: usize = 32;
 
 /// The key.
@@ -23,7 +23,7 @@ impl std::fmt::Debug for Key {
 }
 
 impl Key {
-    /// The key in the file `path`, which is drawn and written if it is not there.
+    /// The key in the file `path`; if there is no file, a key is drawn and written to it.
     pub(crate) fn load(path: &Path) -> Result<Self, SecretError> {
         if !path.exists() {
             return Self::draw(path);
@@ -48,13 +48,13 @@ impl Key {
         hex(&self.hmac(what, text).finalize().into_bytes())
     }
 
-    /// Whether `mark` is that of `text`, in a time that tells nothing of how far it is.
+    /// Whether `mark` is that of `text`. The time that this takes does not tell where they differ.
     pub(crate) fn is_mark(&self, what: &str, text: &str, mark: &str) -> bool {
         bytes(mark).is_some_and(|mark| self.hmac(what, text).verify_slice(&mark).is_ok())
     }
 
     fn hmac(&self, what: &str, text: &str) -> Hmac<Sha256> {
-        // A shorter key stands before zeros in its block (RFC 2104, section 2).
+        // A key shorter than the block is padded with zeros (RFC 2104, section 2).
         let block: [u8; 64] = std::array::from_fn(|at| self.0.get(at).copied().unwrap_or(0));
         let mut hmac = Hmac::<Sha256>::new(&block.into());
         hmac.update(what.as_bytes());
@@ -64,7 +64,7 @@ impl Key {
     }
 }
 
-/// Drawn bytes, which nobody can guess.
+/// Random bytes, which nobody can guess.
 pub(crate) fn drawn() -> Result<[u8; BYTES], rand::rngs::SysError> {
     let mut drawn = [0; BYTES];
     SysRng.try_fill_bytes(&mut drawn).map(|()| drawn)

@@ -6,7 +6,7 @@ use std::net::IpAddr;
 /// The most machines and addresses that are remembered.
 const MOST: usize = 1000;
 
-/// Each with the address that it asked from, since the start.
+/// The machines that were let in since the start, each with the address that it asked from.
 #[derive(Debug, Default)]
 pub(super) struct Machines(HashSet<(String, IpAddr)>);
 
@@ -16,7 +16,8 @@ impl Machines {
         self.0.contains(&(name.to_owned(), peer))
     }
 
-    /// The audit has it. When too many are remembered all are forgotten, so that the audit has a line twice rather than not at all.
+    /// Notes that the audit has it. When too many are remembered, all are forgotten: the audit has a line twice rather than not
+    /// at all.
     pub(super) fn note(&mut self, name: String, peer: IpAddr) {
         if self.0.len() >= MOST {
             self.0.clear();

@@ -1,7 +1,7 @@
 //! Who may see and do what.
 //!
-//! A badge says who somebody is, and makes an operator; a password beside it makes an engineer. Who is logged in is known
-//! by a cookie, and every form carries a mark of that cookie, which no page of another site can know.
+//! A badge says who somebody is, and makes an operator; badge and password make an engineer. A cookie says who is logged
+//! in, and every form carries a mark of that cookie, which no page of another site can know.
 
 mod address;
 mod failures;
@@ -31,7 +31,7 @@ use key::Key;
 use machines::Machines;
 use sessions::Sessions;
 
-/// What the marks of forms are told from others by, and those of cookies.
+/// The kinds of the marks of forms and of cookies.
 const FORM: &str = "form";
 const SESSION: &str = "session";
 
@@ -42,11 +42,11 @@ pub struct Access {
     people: People,
     key: Key,
     sessions: Mutex<Sessions>,
-    /// Who failed to log in, by where they are.
+    /// Who failed to log in, by address.
     failures: Mutex<Failures<IpAddr>>,
-    /// Machines' failures, so that one with a wrong token behind a proxy locks no operator out.
+    /// Failures of machines, on their own so that one with a wrong token behind a proxy locks no operator out.
     refused: Mutex<Failures<IpAddr>>,
-    /// Scans of those who are logged in that are no badge, by their sessions: other operators may be behind the same proxy.
+    /// Scans that are no badge, of those who are logged in, by session: other operators may be behind the same proxy.
     scans: Mutex<Failures<String>>,
     machines: Mutex<Machines>,
 }
@@ -56,47 +56,47 @@ pub struct Access {
 enum People {
     /// Everybody who gets here.
     Everybody(User),
-    /// Who is in the file and has logged in, until they have been idle for so long.
+    /// Who is in `file` and has logged in, until they have been idle for `idle`.
     Listed { file: PathBuf, tokens: Option<PathBuf>, idle: Duration },
 }
 
-/// Who says who they are.
+/// Somebody who identifies themselves.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Claimant {
-    /// Somebody who is not logged in, by where they are.
+    /// Somebody who is not logged in, by address.
     Stranger(IpAddr),
-    /// Somebody who is, by their session: what they scan may be the badge of another one.
+    /// Somebody who is logged in, by session: what they scan may be another person's badge.
     Session(String),
 }
 
 /// A machine that asks with a token.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Machine {
-    /// It is let in under this name; the audit has it from there, or not yet.
+    /// It is let in under `name`; `is_noted` says whether the audit has it from this address.
     Known { name: String, is_noted: bool },
-    /// It is not.
+    /// It is not let in.
     Unknown,
-    /// It is not, and has to wait so long until it is told so again.
+    /// It is not let in, and must wait this long before it asks again.
     Waits(Duration),
 }
 
-/// So many failures within a minute are followed by a wait.
+/// How many failures within a minute are followed by a wait.
 const MOST_FAILURES: usize = 10;
-/// So many scans within a minute are more than anybody makes who does not guess.
+/// How many scans within a minute are followed by a wait: more than anybody makes who does not guess.
 const MOST_SCANS: usize = 120;
 
-/// The station's key, in its folder.
+/// The file of the station's key.
 fn key_file(data: &Path) -> PathBuf {
     data.join("station.key")
 }
 
-/// Who is logged in, in the station's folder.
+/// The file of who is logged in.
 fn sessions_file(data: &Path) -> PathBuf {
     data.join("station.sessions")
 }
 
 impl Access {
-    /// As the settings say. Without people in them everybody at the computer itself is `everybody`.
+    /// Access as the settings say. If they name no people, everybody at the computer itself is the user `everybody`.
     ///
     /// # Errors
     /// [`SecretError`] when the station's key or the file of people cannot be used.
@@ -126,7 +126,7 @@ impl Access {
         })
     }
 
-    /// With the port that the system gave for port 0.
+    /// The same with the port that the system gave for port 0.
     #[must_use]
     pub fn at(self, port: u16) -> Self {
         Self { address: self.address.at(port), ..self }
@@ -152,10 +152,10 @@ impl Access {
         self.address.is_private()
     }
 
-    /// Who has this cookie, or is everybody. It may wait for the disk.
+    /// The user of this cookie, or the one who stands for everybody. It may wait for the disk.
     ///
     /// # Errors
-    /// [`SecretError`] when the file of people cannot tell; whoever is logged in stays so.
+    /// [`SecretError`] when the file of people cannot be read; whoever is logged in stays so.
     pub(super) fn user(&self, session: Option<&str>, is_act: bool) -> Result<Option<User>, SecretError> {
         let (file, idle) = match &self.people {
             People::Everybody(user) => return Ok(Some(user.clone())),
@@ -164,7 +164,7 @@ impl Access {
         let Some(mark) = session.map(|session| self.key.mark(SESSION, session)) else { return Ok(None) };
         let known = self.sessions().user(&mark, idle, is_act, clock::now_ms());
         let Some(known) = known else { return Ok(None) };
-        // Whoever was taken from the file, or has another badge or password there, is nobody any more.
+        // Whoever was removed from the file, or has another badge or password there, is logged out.
         if Users::load(file)?.has(&self.key, &known) {
             return Ok(Some(known.user));
         }
@@ -172,16 +172,16 @@ impl Access {
         Ok(None)
     }
 
-    /// Who this badge and this password make, and nobody else. It takes a while.
+    /// Who has this badge and this password, if anybody. It takes a while.
     ///
     /// # Errors
-    /// As [`Self::user`].
+    /// Like [`Self::user`].
     pub(super) fn identify(&self, badge: &str, password: &str) -> Result<Option<Identified>, SecretError> {
         let People::Listed { file, .. } = &self.people else { return Ok(None) };
         Ok(Users::load(file)?.identify(&self.key, badge, password))
     }
 
-    /// Which machine has this token, asked from `peer`. It may wait for the disk.
+    /// The machine that asks with this token from `peer`. It may wait for the disk.
     pub(super) fn machine(&self, token: &str, peer: IpAddr) -> Machine {
         let tokens = match &self.people {
             People::Listed { tokens: Some(file), .. } => Tokens::load_or_none(file),
@@ -191,22 +191,22 @@ impl Access {
             tracing::error!("{:#}", anyhow::Error::from(error));
             Tokens::default()
         });
-        // From here on nothing waits for the disk: others wait for this.
+        // From here on nothing may wait for the disk, because others wait for the locks.
         let Some(name) = tokens.reader(&self.key, token) else {
             let wait = locked(&self.refused).attempt(network(peer), Instant::now());
             return wait.map_or(Machine::Unknown, Machine::Waits);
         };
-        // One that is right never waits, for 256 bits are not guessed, and behind a proxy others have the same address.
+        // A right token never waits: nobody guesses 256 bits, and behind a proxy others have the same address.
         let is_noted = locked(&self.machines).has(name, peer);
         Machine::Known { name: name.to_owned(), is_noted }
     }
 
-    /// The audit has that this machine was let in from `peer`.
+    /// Notes that the audit has this machine from `peer`.
     pub(super) fn noted(&self, name: String, peer: IpAddr) {
         locked(&self.machines).note(name, peer);
     }
 
-    /// A new session of `who`: the value of its cookie.
+    /// Begins a session, of `who` if anybody. Returns the value of its cookie.
     ///
     /// # Errors
     /// When the system has no randomness.
@@ -223,7 +223,7 @@ impl Access {
         self.sessions().remove(&self.key.mark(SESSION, session), clock::now_ms());
     }
 
-    /// What forms carry that were made for this cookie.
+    /// The mark of forms that are made for this cookie.
     pub(super) fn form_mark(&self, session: &str) -> String {
         self.key.mark(FORM, session)
     }
@@ -233,7 +233,7 @@ impl Access {
         self.key.is_mark(FORM, session, mark)
     }
 
-    /// Somebody tries to say who they are. How long they wait first, if they have to.
+    /// Counts an attempt. Returns how long they must wait first, if they must.
     pub(super) fn attempt(&self, by: &Claimant) -> Option<Duration> {
         match by {
             Claimant::Stranger(peer) => locked(&self.failures).attempt(network(*peer), Instant::now()),
@@ -249,13 +249,14 @@ impl Access {
         }
     }
 
-    /// The name of the cookie. Cookies do not tell ports apart.
+    /// The name of the cookie. It has the port, because cookies do not tell ports apart.
     pub(super) fn cookie_name(&self) -> String {
         let prefix = if self.address.is_https() { "__Host-" } else { "" };
         format!("{prefix}halfrow-{}", self.address.listen.port())
     }
 
-    /// The cookie of this session, as it is set. A link on a page of another site comes with it, and a form does not.
+    /// The cookie of this session, as it is set. A link on a page of another site is followed with it, a form there is sent
+    /// without.
     pub(super) fn cookie(&self, session: &str) -> String {
         let secure = if self.address.is_https() { "; Secure" } else { "" };
         format!("{}={session}; Path=/; HttpOnly; SameSite=Lax{secure}", self.cookie_name())
@@ -270,7 +271,7 @@ fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
     of.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Adds a token to the file `file`; returns it, for it is nowhere written.
+/// Adds a token to the file `file`. Returns the token, which is written nowhere.
 ///
 /// # Errors
 /// [`TokenError`]
@@ -282,7 +283,7 @@ pub fn add_token(settings: &Settings, file: &Path, name: &str, scope: Scope) -> 
     Ok(token)
 }
 
-/// Adds somebody to the file of the settings' people.
+/// Adds somebody to `file`, the people of the settings.
 ///
 /// # Errors
 /// [`UserError`]

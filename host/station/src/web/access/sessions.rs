@@ -14,10 +14,10 @@ use crate::web::visit::User;
 /// The most sessions at once.
 const MOST: usize = 1000;
 
-/// How old may be what the file says of when somebody did something last.
+/// By how much the file may lag in saying when somebody last did something.
 const SAVED_MS: i64 = 60_000;
 
-/// Somebody who is logged in, as the file has them. No cookie can be read from it.
+/// Somebody who is logged in, as the file has them. No cookie can be derived from it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Line {
@@ -27,7 +27,7 @@ struct Line {
     is_engineer: bool,
     /// The mark of the badge and the password that they logged in by.
     proof: String,
-    /// When they did something last, in milliseconds since 1970, UTC.
+    /// When they last did something, in milliseconds since 1970, UTC.
     used_ms: i64,
 }
 
@@ -38,8 +38,8 @@ struct Lines {
     session: Vec<Line>,
 }
 
-/// Everybody who is logged in, by the marks of their browsers' cookies. A station that starts again knows them still, so
-/// that pages that are open go on.
+/// Everybody who is logged in, by the marks of their browsers' cookies. A station that starts again still knows them, so
+/// open pages go on.
 #[derive(Debug, Default)]
 pub(super) struct Sessions {
     known: HashMap<String, (Identified, i64)>,
@@ -48,7 +48,7 @@ pub(super) struct Sessions {
 }
 
 impl Sessions {
-    /// Those in the file `path`, which is written from here on.
+    /// The sessions in the file `path`, which is kept up to date from now on.
     ///
     /// # Errors
     /// [`SecretError`] when others may read it, or it cannot be read.
@@ -68,7 +68,7 @@ impl Sessions {
         Ok(Self { known: known.collect(), file: Some(path.to_owned()), saved_ms: 0 })
     }
 
-    /// Somebody logged in. Whoever has been idle for longest makes room.
+    /// Adds somebody who logged in. If there are too many, whoever has been idle longest is logged out.
     pub(super) fn add(&mut self, mark: String, who: Identified, now_ms: i64) {
         if self.known.len() >= MOST {
             let idle = self.known.iter().min_by_key(|(_, (_, used))| *used).map(|(mark, _)| mark.clone());
@@ -78,7 +78,7 @@ impl Sessions {
         self.save(now_ms);
     }
 
-    /// Who this is, unless they have been idle for `idle`. An act is no idleness.
+    /// Whose cookie has this mark, unless they have been idle for `idle`, which is ended by an act and not by a look.
     pub(super) fn user(
         &mut self,
         mark: &str,
@@ -87,7 +87,7 @@ impl Sessions {
         now_ms: i64,
     ) -> Option<Identified> {
         let idle_ms = i64::try_from(idle.as_millis()).unwrap_or(i64::MAX);
-        // Nobody did anything later than now: the clock was ahead when it was noted.
+        // What is noted later than now was noted while the clock was ahead.
         self.saved_ms = self.saved_ms.min(now_ms);
         self.known.retain(|_, (_, used)| {
             *used = (*used).min(now_ms);
@@ -104,14 +104,14 @@ impl Sessions {
         Some(who)
     }
 
-    /// Somebody logged out, or may not be logged in any more.
+    /// Removes somebody who logged out, or may not be logged in any more.
     pub(super) fn remove(&mut self, mark: &str, now_ms: i64) {
         if self.known.remove(mark).is_some() {
             self.save(now_ms);
         }
     }
 
-    /// Writes everybody down. Whoever is lost with the file logs in anew, so nothing waits for the disk.
+    /// Writes all sessions to the file. Whoever is lost with it logs in anew, so nothing waits for the disk.
     fn save(&mut self, now_ms: i64) {
         let Some(file) = &self.file else { return };
         self.saved_ms = now_ms;
@@ -159,7 +159,7 @@ mod tests {
         assert_eq!(sessions.user("s", idle, false, 1_000), Some(weber.clone()));
         assert_eq!(sessions.user("s", idle, false, 100_999), Some(weber.clone()));
         assert_eq!(sessions.user("s", idle, false, 101_000), None);
-        // What the file says of acts goes by the clock that is right, too.
+        // The acts in the file, too, go by the clock that is right.
         sessions.add("s".to_owned(), weber.clone(), AHEAD);
         sessions.user("s", idle, true, 101_000);
         sessions.user("s", idle, true, 101_000 + SAVED_MS);

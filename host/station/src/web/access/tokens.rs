@@ -1,4 +1,4 @@
-//! Machines that read the pages: a file of their names and tokens, none of which can be read from it.
+//! Machines that read the pages: a file of their names and of marks of their tokens, from which no token can be derived.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::key::{self, Key};
 use crate::secret::{self, SecretError};
 
-/// What the marks of tokens are told from others by.
+/// The kind of the marks of tokens.
 const TOKEN: &str = "token";
 
 /// What a token is for.
@@ -67,7 +67,7 @@ impl Tokens {
         secret::write(path, self, true)
     }
 
-    /// Draws a token of 256 bits, in hexadecimal digits, which is known from here on and nowhere written.
+    /// Adds a token of 256 random bits. Returns it in hexadecimal digits; it is written nowhere.
     ///
     /// # Errors
     /// [`TokenError`]

@@ -1,4 +1,4 @@
-//! The people who may act: a file of their names, badges and passwords, none of which can be read from it.
+//! The people who may act: a file of their names, of marks of their badges and of hashes of their passwords.
 
 use std::path::Path;
 use std::sync::LazyLock;
@@ -11,9 +11,9 @@ use crate::secret::{self, SecretError};
 use crate::web::routes::Who;
 use crate::web::visit::User;
 
-/// What the marks of badges are told from others by.
+/// The kind of the marks of badges.
 const BADGE: &str = "badge";
-/// What the marks of sessions' proofs are told from others by.
+/// The kind of the marks of sessions' proofs.
 const PROOF: &str = "proof";
 /// The fewest characters of a password.
 const FEWEST: usize = 8;
@@ -42,14 +42,15 @@ struct Line {
 }
 
 impl Line {
-    /// The mark of what makes them `who`: whoever has the same name with another badge or password has another one.
+    /// The mark of the badge, and for an engineer the password, that make them `who`: somebody of the same name with others has
+    /// another mark.
     fn proof(&self, key: &Key, who: Who) -> String {
         let password = self.password.as_deref().filter(|_| who == Who::Engineer).unwrap_or_default();
         key.mark(PROOF, &format!("{} {password}", self.badge))
     }
 }
 
-/// Somebody whom a badge has made out, or a badge and a password.
+/// Somebody who was identified by a badge, or by badge and password.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Identified {
     pub(crate) user: User,
@@ -97,7 +98,7 @@ impl Users {
         secret::read(path)
     }
 
-    /// As [`Self::load`]; nobody, if there is no file.
+    /// Like [`Self::load`]; nobody, if there is no file.
     ///
     /// # Errors
     /// [`SecretError`]
@@ -165,7 +166,7 @@ impl Users {
         self.user.iter().find(|user| key.is_mark(BADGE, badge, &user.badge))
     }
 
-    /// Who has this badge. The badge alone makes an operator of everybody; an engineer's password makes the engineer.
+    /// Who has this badge. The badge alone makes anybody an operator; only their password makes engineers what they are.
     pub(crate) fn identify(&self, key: &Key, badge: &str, password: &str) -> Option<Identified> {
         let identified = |line: &Line, who| Identified {
             user: User { name: line.name.clone(), who },
@@ -176,13 +177,13 @@ impl Users {
         if password.is_empty() {
             return line.map(|line| identified(line, Who::Operator));
         }
-        // Whoever guesses badges does not learn by the time that it takes whether there is such a one.
+        // The time that this takes must not tell somebody who guesses badges whether a badge exists.
         let is_right =
             Argon2::default().verify_password(password.as_bytes(), known.unwrap_or(&NOBODYS)).is_ok();
         line.filter(|_| is_right && known.is_some()).map(|line| identified(line, Who::Engineer))
     }
 
-    /// Whether somebody of this name may be what this was, by the same badge and password.
+    /// Whether this person still has the same role, by the same badge and password.
     pub(crate) fn has(&self, key: &Key, Identified { user, proof }: &Identified) -> bool {
         let is = |known: &Line| {
             known.name == user.name

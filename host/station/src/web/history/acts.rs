@@ -1,4 +1,4 @@
-//! What an engineer changes about what was judged: a waiver beside a FAIL, another device under a serial number.
+//! What an engineer changes about what was judged: a waiver of a FAIL, another device for a serial number.
 
 use axum::Form;
 use axum::extract::{Path, State};
@@ -18,10 +18,10 @@ use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
-/// What a device looks like, for the browser.
+/// The pattern of a device's number, for the browser.
 const DEVICE: &str = "[0-9a-f]{16}";
 
-/// Why something was not done, for the page that it was asked for on.
+/// Why an act was refused, for the page on which it was asked for.
 #[derive(Debug)]
 pub(super) struct Refused {
     pub(super) status: StatusCode,
@@ -34,7 +34,7 @@ impl Refused {
         Self { status, code: said.code.clone(), told: visit.words.tell(said) }
     }
 
-    /// It with its code.
+    /// The reason with its code.
     pub(super) fn markup(&self) -> Markup {
         html! { p.refused role="alert" { (show::told(&self.told)) " " code { (self.code) } } }
     }

@@ -30,27 +30,27 @@ pub(super) struct Asked {
     after: String,
 }
 
-/// A value that nothing can be looked for by.
+/// A value that cannot be searched for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Wrong(String);
 
 impl Wrong {
-    /// It in the visitor's language.
+    /// The error in the visitor's language.
     pub(super) fn told(self, visit: &Visit) -> Trouble {
         Trouble::wrong(visit, visit.words.fill("history.wrong", &[("value", &self.0)]))
     }
 }
 
 impl Asked {
-    /// For this serial number.
+    /// A query for this serial number.
     pub(super) fn of_serial(serial: &str) -> Self {
         Self { serial: serial.to_owned(), ..Self::default() }
     }
 
-    /// As a filter of runs.
+    /// The query as a filter of runs.
     ///
     /// # Errors
-    /// [`Wrong`] when a value is none.
+    /// [`Wrong`] when a value is not valid.
     pub(super) fn filter(&self) -> Result<Filter, Wrong> {
         let verdict = match self.verdict.as_str() {
             "" => None,
@@ -60,7 +60,7 @@ impl Asked {
             other => return Err(Wrong(other.to_owned())),
         };
         Ok(Filter {
-            // What was scanned is taken as it is, and a blank at its end is of it.
+            // What was scanned is taken as it is: a blank at its end is part of it.
             serial: Some(self.serial.clone()).filter(|serial| !serial.is_empty()),
             verdict,
             plan: some(&self.plan),
@@ -71,10 +71,10 @@ impl Asked {
         })
     }
 
-    /// As what is to be counted.
+    /// The query as what is to be counted.
     ///
     /// # Errors
-    /// As [`Self::filter`].
+    /// Like [`Self::filter`].
     pub(super) fn wanted(&self) -> Result<Wanted, Wrong> {
         Ok(Wanted {
             plan: some(&self.plan),
@@ -87,15 +87,15 @@ impl Asked {
     /// The place after which the page begins.
     ///
     /// # Errors
-    /// As [`Self::filter`].
+    /// Like [`Self::filter`].
     pub(super) fn after(&self) -> Result<Option<Place>, Wrong> {
         some(&self.after).map(|after| after.parse().map_err(|_| Wrong(after.clone()))).transpose()
     }
 
-    /// The first of `choices` that `by` names; the first of all when it names none.
+    /// The one of `choices` that `by` names; the first when `by` is empty.
     ///
     /// # Errors
-    /// As [`Self::filter`].
+    /// Like [`Self::filter`].
     pub(super) fn by<T: Copy>(&self, choices: &[(&str, T)]) -> Result<T, Wrong> {
         let named = |name: &str| self.by == name || self.by.is_empty();
         let found = choices.iter().find(|(name, _)| named(name));

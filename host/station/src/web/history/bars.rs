@@ -1,4 +1,4 @@
-//! Shares as bars. They are drawings of the numbers beside them, and say nothing to who does not see them.
+//! Shares as bars. They draw the numbers beside them, and add nothing for those who do not see them.
 
 use maud::{Markup, html};
 
@@ -32,7 +32,7 @@ pub(super) fn length(count: u64, most: u64) -> Markup {
     }
 }
 
-/// Pixels of a day, of what stands beside the days, and of a chart's height.
+/// The width of a day, the width of what stands beside the days, and the height of a chart, in pixels.
 const DAY: usize = 12;
 const BESIDE: usize = 52;
 const HEIGHT: usize = 130;
@@ -41,21 +41,21 @@ const HEIGHT: usize = 130;
 #[derive(Clone, Debug)]
 pub(super) struct Day {
     pub(super) name: String,
-    /// What stands there when it is pointed at.
+    /// What is shown when it is pointed at.
     pub(super) said: String,
     pub(super) rate: Rate,
     /// What its share may be if nothing has changed.
     pub(super) limits: Option<Limits>,
 }
 
-/// A column for each day of a yield: share and interval, the earliest first, in the band of what they may be; `of` says what
-/// they are for.
+/// A column for each day of a yield, the earliest first: share and interval, in the band of what they may be. `of` says what
+/// the shares are of.
 pub(super) fn days(of: &str, days: &[Day]) -> Markup {
     let low = |day: &Day| day.rate.interval.map(|[low, _]| low);
     let limit = |day: &Day| day.limits.map(|Limits { limits: [low, _], .. }| low);
-    // The interval of a day of few units would leave no room for all others; it is cut off where the chart ends.
+    // The interval of a day with few units would leave no room for the others; it is cut off where the chart ends.
     let many = days.iter().filter(|day| day.rate.of >= FEW).flat_map(|day| [low(day), limit(day)]).flatten();
-    // Where shares are high, what is below would be empty.
+    // Where shares are high, the lower part of the chart would be empty.
     let floors = |least: f64| [0.95, 0.9, 0.8, 0.5].into_iter().find(|floor| *floor <= least);
     let floor = many.reduce(f64::min).and_then(floors).unwrap_or(0.0);
     let width = days.len() * DAY + BESIDE;

@@ -16,7 +16,7 @@ use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
-/// Runs that are read at once. Whoever reads slowly holds neither a thread nor the store meanwhile.
+/// How many runs are read at a time. A slow reader holds neither a thread nor the store in between.
 const RUNS: u32 = 200;
 
 /// A download that is under way.
@@ -24,7 +24,7 @@ struct Download {
     app: App,
     visit: Visit,
     filter: Filter,
-    /// What comes next; none behind the last piece.
+    /// What comes next; none after the last piece.
     next: Option<Next>,
 }
 
@@ -33,7 +33,7 @@ enum Next {
     After(Place),
 }
 
-/// All pages of the filter, piece by piece. A download that cannot go on breaks off, so that no half is taken for the whole.
+/// All runs of the filter, piece by piece. A download that cannot go on breaks off, so that no part is taken for the whole.
 pub(super) async fn all(
     State(app): State<App>,
     visit: Visit,
@@ -55,7 +55,7 @@ async fn further(mut of: Download) -> Option<(io::Result<Vec<u8>>, Download)> {
         Next::Piece(bytes, after) => (bytes, after),
         Next::After(place) => match piece(&of.app, &of.visit, &of.filter, Some(place)).await {
             Ok(piece) => piece,
-            // Why is in the log.
+            // The log says why.
             Err(_) => return Some((Err(io::Error::other("the store cannot be read")), of)),
         },
     };
@@ -63,7 +63,7 @@ async fn further(mut of: Download) -> Option<(io::Result<Vec<u8>>, Download)> {
     Some((Ok(bytes), of))
 }
 
-/// The lines of the runs from the one after `after` on, and after which the next piece begins. The first has the header.
+/// The lines of the runs that follow `after`, and the place after which the next piece begins. The first piece has the header.
 async fn piece(
     app: &App,
     visit: &Visit,

@@ -49,8 +49,8 @@ pub(super) async fn attached(
     app.look(visit, look).await?.ok_or_else(|| Trouble::missing(visit))
 }
 
-/// The media type that is told to browsers, and whether they show it: pictures and text, and nothing that could do
-/// anything.
+/// The media type that browsers are given, and whether they show the content: pictures and text, and nothing that could
+/// do anything.
 fn served_as(media_type: &str) -> (&'static str, &'static str) {
     match media_type.split(';').next().unwrap_or_default().trim() {
         "image/png" => ("image/png", "inline"),
@@ -59,7 +59,7 @@ fn served_as(media_type: &str) -> (&'static str, &'static str) {
     }
 }
 
-/// A run as another program takes it.
+/// A run in a format for other programs.
 pub(super) async fn export(
     State(app): State<App>,
     visit: Visit,

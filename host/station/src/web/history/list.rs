@@ -16,7 +16,7 @@ use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
-/// Runs of a page.
+/// How many runs a page has.
 const RUNS: u32 = 50;
 
 pub(super) async fn page(

@@ -62,7 +62,7 @@ fn answer(picture: Vec<u8>) -> Response {
     ([(CONTENT_TYPE, "image/png")], picture).into_response()
 }
 
-/// The frames that were kept of a run, each as it went in, came out, should have, and where it differs.
+/// The frames that were kept of a run, each as it went in, as it came out, as it should have come out, and where it differs.
 pub(super) fn of_run(
     visit: &Visit,
     run: &RunLine,

@@ -1,4 +1,4 @@
-//! One run: its verdict and all that it stands on.
+//! One run: its verdict and all that this is based on.
 
 use std::time::Duration;
 
@@ -23,7 +23,7 @@ use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
-/// A run, its record or why that cannot be read, and the attachments that are still there.
+/// A run, its record or why that cannot be read, and its attachments, each with whether it is still there.
 struct Found {
     run: UnitRun,
     record: Option<Result<Box<Record>, Said>>,
@@ -38,7 +38,7 @@ pub(super) async fn page(
     shown(app, visit, id, None).await
 }
 
-/// The page with why an act was refused on it, if one was.
+/// The page, with the reason why an act on it was refused, if one was.
 pub(super) async fn shown(
     app: App,
     visit: Visit,
@@ -91,7 +91,7 @@ fn content(visit: &Visit, Found { run, record, kept }: &Found) -> Markup {
     }
 }
 
-/// What the run came to, and what to do.
+/// The result of the run, and what to do.
 fn concluded(visit: &Visit, headline: Option<&str>, record: Option<&Record>) -> Markup {
     let finding = record.and_then(|record| record.conclusion.finding.as_ref());
     let recorded = record.and_then(|record| record.conclusion.remedy.as_deref());
@@ -140,7 +140,7 @@ pub(super) fn waiver(visit: &Visit, waiver: &Waiver) -> Markup {
     }
 }
 
-/// The parts that are suspected, each with what a technician does about it where the run's own remedy does not say it.
+/// The suspected parts, each with what a technician should do about it unless the run's own remedy says so.
 fn suspects(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
     let advice = |place: usize| {
         let record = record?;
@@ -243,7 +243,7 @@ fn step_row(visit: &Visit, step: &StepRecord, took: Option<Duration>) -> Markup 
     }
 }
 
-/// How a step, a check or a measurement came out: a word with a shape.
+/// The outcome of a step, a check or a measurement: a word with a shape.
 fn outcome(visit: &Visit, name: &str) -> Markup {
     let (class, shape, word) = match name {
         "passed" => ("came passed", "✔", visit.say("run.passed")),
@@ -325,7 +325,7 @@ fn blamed(visit: &Visit, blame: Blame) -> &'static str {
     }
 }
 
-/// So many bytes, with the language's decimal point.
+/// A number of bytes, with the language's decimal point.
 fn size(visit: &Visit, bytes: u64) -> String {
     visit.words.figures(&halfrow::words::bytes(bytes))
 }

@@ -20,12 +20,12 @@ pub(in crate::web) fn moment(ms: i64) -> Markup {
     html! { time datetime=(format!("{moment:.3}")) { (moment.strftime("%Y-%m-%d %H:%M:%S")) } }
 }
 
-/// What a scanner, a board or a person said, without the control characters that would turn the page's text around.
+/// What a scanner, a board or a person said, without control characters, which could reverse the text of the page.
 pub(in crate::web) fn said(text: &str) -> Markup {
     html! { (plain(text)) }
 }
 
-/// What was told, marked where it stands in another language than the page.
+/// A sentence, marked if its language is not that of the page.
 pub(in crate::web) fn told(told: &Told) -> Markup {
     match told.foreign {
         Some(language) => html! { span lang=(language) { (said(&told.text)) } },
@@ -33,12 +33,12 @@ pub(in crate::web) fn told(told: &Told) -> Markup {
     }
 }
 
-/// What was told in English.
+/// A sentence in English.
 pub(in crate::web) fn english(visit: &Visit, text: &str) -> Markup {
     told(&visit.words.english(text.to_owned()))
 }
 
-/// A verdict as word, shape and colour; that a run is open.
+/// A verdict as word, shape and colour; without one, that the run is open.
 pub(in crate::web) fn verdict(visit: &Visit, verdict: Option<&str>) -> Markup {
     let (class, shape) = match verdict {
         Some("PASS") => ("verdict pass", "✔"),
@@ -72,19 +72,19 @@ pub(super) fn share(visit: &Visit, rate: &Rate) -> Markup {
     }
 }
 
-/// So many of so many.
+/// The two counts of a share.
 pub(super) fn of(rate: &Rate) -> Markup {
     html! { (rate.count) "/" (rate.of) }
 }
 
-/// A number with the language's decimal point, as short as it is exact.
+/// A number with the language's decimal point, to a millionth.
 pub(super) fn number(visit: &Visit, value: f64) -> String {
     let text =
         if value.abs() >= 1e6 { format!("{value:.0}") } else { format!("{}", (value * 1e6).round() / 1e6) };
     visit.words.figures(&text)
 }
 
-/// A term with what it is.
+/// A term with its value.
 pub(super) fn pair(term: &str, value: impl maud::Render) -> Markup {
     html! { div { dt { (term) } dd { (value) } } }
 }

@@ -15,7 +15,7 @@ use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
-/// Runs that are shown; a unit that checks shifts has thousands.
+/// The most runs that are shown; a unit that checks shifts has thousands.
 const MOST_RUNS: usize = 200;
 
 pub(super) async fn page(
@@ -26,7 +26,7 @@ pub(super) async fn page(
     shown(app, visit, asked, None).await
 }
 
-/// The page with why an act was refused on it, if one was.
+/// The page, with the reason why an act on it was refused, if one was.
 pub(super) async fn shown(
     app: App,
     visit: Visit,

@@ -19,11 +19,11 @@ use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
-/// Flips that are listed.
+/// The most flips that are listed.
 const MOST_FLIPS: usize = 200;
-/// Days that are drawn.
+/// The most days that are drawn.
 const MOST_DAYS: usize = 60;
-/// Lines that are listed.
+/// The most lines that are listed.
 const MOST_LINES: usize = 120;
 /// With fewer units a share says little.
 pub(super) const FEW: u64 = 30;
@@ -44,7 +44,7 @@ pub(super) async fn page(
     let (wanted, by) = asking.map_err(|wrong| wrong.told(&visit))?;
     let look = move |now: &Snapshot| Ok((yields::yields(now, &wanted, by)?, history::plan_names(now)?));
     let (Yields { mut lines, mut flips }, plans) = app.look(&visit, look).await?;
-    // The newest day first; lane 10 behind lane 9.
+    // The newest day first; lane 10 after lane 9.
     let lane = |line: &Yield| line.lane.as_ref().map(|lane| (lane.len(), lane.clone()));
     lines.sort_by_cached_key(|line| {
         (line.plan.clone(), std::cmp::Reverse(line.day.or(line.week)), line.station.clone(), lane(line))
@@ -84,7 +84,7 @@ fn form(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanNam
     }
 }
 
-/// What the lines are for.
+/// The choice of what there is a line for.
 pub(super) fn by(visit: &Visit, asked: &Asked, choices: &[(&str, &str)]) -> Markup {
     html! {
         label { span { (visit.say("history.by")) }
@@ -123,7 +123,7 @@ fn began(line: &Yield) -> String {
     line.day.or(line.week).map(|day| day.to_string()).unwrap_or_default()
 }
 
-/// The newest days of a plan, whose lines begin with the newest, the earliest of them first.
+/// The newest days of a plan, the earliest of them first. The lines begin with the newest day.
 fn named_days(visit: &Visit, of_plan: &[Yield]) -> Vec<Day> {
     let named = |line: &Yield| {
         let name = began(line);
@@ -133,7 +133,7 @@ fn named_days(visit: &Visit, of_plan: &[Yield]) -> Vec<Day> {
     of_plan.iter().take(MOST_DAYS).rev().map(named).collect()
 }
 
-/// Stations that judge otherwise than all others do.
+/// Stations that judge differently from all others.
 fn drifting(visit: &Visit, drifts: &[Drift]) -> Markup {
     let marked: Vec<_> = drifts.iter().filter(|drift| drift.is_marked).collect();
     html! {
@@ -203,7 +203,7 @@ fn row(visit: &Visit, line: &Yield) -> Markup {
     }
 }
 
-/// A share with its interval and its counts; of few units, it says that they are few.
+/// A share with its interval and its counts, and a word where the units are few.
 fn rate(visit: &Visit, rate: &Rate) -> Markup {
     html! {
         div.rate {

@@ -17,7 +17,7 @@ use crate::said::REMEDIES;
 const SAID: &str = "said";
 const REMEDY: &str = "remedy";
 
-/// The types of the station's errors that operators, or engineers at a page, come to see.
+/// The types of the station's errors that operators, or engineers at a page, may see.
 const OF_STATION: [&str; 19] = [
     "SerialError",
     "ScanError",
@@ -39,7 +39,7 @@ const OF_STATION: [&str; 19] = [
     "Saying",
     "UnknownBarcode",
 ];
-/// The same of the judge's.
+/// The types of the judge's errors that they may see.
 const OF_JUDGE: [&str; 15] = [
     "BoardError",
     "LinkError",
@@ -62,10 +62,10 @@ const OTHERS: [&str; 2] = ["no-randomness", "program-failed"];
 
 /// A language's file: words by table and key.
 type File = BTreeMap<Spanned<String>, BTreeMap<Spanned<String>, Spanned<String>>>;
-/// Keys, each with the names that its words may have in them.
+/// Keys, each with the names that its words may contain.
 type Keys = BTreeMap<String, BTreeSet<String>>;
 
-/// Every code that somebody at a page comes to see, with its parameters.
+/// Every code that somebody at a page may see, with its parameters.
 fn said() -> Keys {
     let of_judge = codes::LISTS.into_iter().flatten().filter(|list| OF_JUDGE.contains(&list.error));
     let of_station = station::LISTS.iter().filter(|list| OF_STATION.contains(&list.error));
@@ -77,7 +77,7 @@ fn said() -> Keys {
     known.chain(findings()).chain(defects()).collect()
 }
 
-/// What a technician does about a finding or a defect, what other findings ask for, and what the station does.
+/// The keys of remedies: for findings that ask for something, for defects, and for what the station itself asks for.
 fn remedies() -> Keys {
     let asks = |finding: &halfrow::result::Finding| finding.remedy().map(|_| finding.as_problem().code);
     let asking: BTreeSet<_> = examples::findings().iter().filter_map(asks).collect();
@@ -106,7 +106,7 @@ fn defects() -> impl Iterator<Item = (String, BTreeSet<String>)> {
     })
 }
 
-/// The `{names}` in a text, each without what it takes of the value.
+/// The `{names}` in a text, each up to its first dot.
 fn names(text: &str) -> BTreeSet<String> {
     let (mut names, mut rest) = (BTreeSet::new(), text);
     while let Some((_, name, after)) = super::next_name(rest) {

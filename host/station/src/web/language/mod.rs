@@ -1,7 +1,7 @@
 //! The languages of the pages: one file each, all with the same keys. Reports and records stay English.
 //!
-//! What has a code is said by its code: `[said]` and `[remedy]` of a language have the codes for keys. In English it is
-//! said as it was told, which the code's own sentence is.
+//! What has a code is translated by its code: the keys of a language's tables `[said]` and `[remedy]` are codes. In English
+//! the recorded sentence is shown as it is.
 
 mod check;
 mod told;
@@ -26,7 +26,7 @@ pub(super) struct Words {
     words: BTreeMap<String, String>,
 }
 
-/// Every language: its code and its file. The first is for whoever wants none of them.
+/// Every language: its code and its file. The first is for those who want none of them.
 const FILES: [(&str, &str); 3] = [
     ("en", include_str!("../../../lang/en.toml")),
     ("de", include_str!("../../../lang/de.toml")),
@@ -37,7 +37,7 @@ static ALL: LazyLock<[Words; 3]> = LazyLock::new(|| FILES.map(|(code, text)| Wor
 
 impl Words {
     fn read(code: &'static str, text: &str) -> Self {
-        // The tests hold that all files can be read and have the same keys.
+        // The tests make sure that all files can be read and have the same keys.
         let tables: BTreeMap<String, BTreeMap<String, String>> = toml::from_str(text).unwrap_or_default();
         let keys = tables.into_iter().flat_map(|(table, words)| {
             words.into_iter().map(move |(key, words)| (format!("{table}.{key}"), words))
@@ -79,7 +79,7 @@ impl Words {
     }
 }
 
-/// The text with the values of its `{names}`, which are looked at once: a value may hold braces.
+/// The text with the values of its `{names}`, in a single pass: a value may contain braces.
 fn filled(text: &str, value: &dyn Fn(&str) -> Option<String>) -> String {
     let (mut filled, mut rest) = (String::new(), text);
     while let Some((before, name, after)) = next_name(rest) {
@@ -90,14 +90,14 @@ fn filled(text: &str, value: &dyn Fn(&str) -> Option<String>) -> String {
     filled + rest
 }
 
-/// The first `{name}` of a text, with what stands before and behind it.
+/// The first `{name}` of a text, with what stands before and after it.
 fn next_name(text: &str) -> Option<(&str, &str, &str)> {
     let (before, rest) = text.split_once('{')?;
     let (name, after) = rest.split_once('}')?;
     Some((before, name, after))
 }
 
-/// Every language, by its code and by the name that it gives itself.
+/// Every language: its code, and its name in that language.
 pub(super) fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
     ALL.iter().map(|words| (words.code, words.say("language.name")))
 }
@@ -106,7 +106,7 @@ pub(super) fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
 pub(super) fn of(chosen: Option<&str>, preferred: Option<&HeaderValue>) -> &'static Words {
     let known = |code: &str| ALL.iter().find(|words| code.split('-').next() == Some(words.code));
     let preferred = preferred.and_then(|value| value.to_str().ok()).unwrap_or_default();
-    // Browsers put the languages in the order of their weights.
+    // Browsers send the languages in the order of their weights.
     let mut codes = preferred.split(',').map(|item| item.split(';').next().unwrap_or_default().trim());
     let [first, ..] = &*ALL;
     chosen.and_then(known).or_else(|| codes.find_map(known)).unwrap_or(first)

@@ -1,4 +1,4 @@
-//! What has a code, in the words of a language.
+//! What has a code, translated into a language.
 
 mod doing;
 mod parameters;
@@ -12,11 +12,11 @@ use crate::record::TEST_AGAIN;
 use crate::said::{DIFFERED, Said};
 use parameters::late;
 
-/// The language of what was told.
+/// The language of recorded sentences.
 const ENGLISH: &str = "en";
-/// Parameters that say what a finding is about: what is to be done is asked of them first.
+/// Parameters that say what a finding is about: their remedies come first.
 const ABOUT: [&str; 4] = ["suspect", "defect", "found", "reason"];
-/// The parameter of a finding that may come from the link.
+/// The parameter of a finding whose cause may be the link.
 const DOUBT: &str = "doubt";
 /// The code of rows that are late, and the key of what it asks for where they come and go.
 pub(super) const LATE: &str = "latency-wrong";
@@ -25,7 +25,7 @@ pub(super) const LATE_AT_TIMES: &str = "latency-wrong-at-times";
 /// A sentence on a page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in crate::web) struct Told {
-    /// It.
+    /// The sentence.
     pub(in crate::web) text: String,
     /// `en` if it stands in English on a page of another language.
     pub(in crate::web) foreign: Option<&'static str>,
@@ -38,7 +38,8 @@ impl Words {
         Told { text: sentences.join(self.say("told.colon")), foreign }
     }
 
-    /// What was said without what it asks for, and that: `recorded`, which is in English, or what stands behind a semicolon.
+    /// What was said without its remedy, and the remedy: `recorded`, which is in English, or what stands after the last
+    /// semicolon.
     pub(in crate::web) fn parted(&self, said: &Said, recorded: Option<&str>) -> (Told, Option<Told>) {
         let (why, asked) = self.split(said, recorded);
         let asked = asked.or_else(|| {
@@ -48,14 +49,15 @@ impl Words {
         (why, asked)
     }
 
-    /// As [`Self::parted`], with what is asked for in whole sentences where it has its own.
+    /// Like [`Self::parted`], but a remedy that does not stand in the sentence is told in whole sentences, and nothing is split
+    /// off where no remedy is recorded.
     pub(in crate::web) fn with_remedy(&self, said: &Said, recorded: Option<&str>) -> (Told, Option<Told>) {
         let Some(recorded) = recorded else { return (self.tell(said), None) };
         let (why, asked) = self.split(said, Some(recorded));
         (why, Some(asked.unwrap_or_else(|| self.remedy(Some(said), recorded))))
     }
 
-    /// What was said, parted where it ends in what is asked for.
+    /// What was said, split before its remedy where it ends in that.
     fn split(&self, said: &Said, recorded: Option<&str>) -> (Told, Option<Told>) {
         let is_asked = |one: &Said| {
             parts(&one.message)
@@ -71,7 +73,7 @@ impl Words {
         (Told { text: sentences.join(self.say("told.colon")), foreign }, parted)
     }
 
-    /// What was said and each of its causes, and whether that is in another language.
+    /// What was said and each of its causes, and their language if it is not the page's.
     fn sentences(&self, said: &Said) -> (Vec<String>, Option<&'static str>) {
         let english = |said: &Said| said.message.clone();
         let own = |one: &Said| self.sentence(&one.code, &one.parameters.clone().into());
@@ -80,7 +82,7 @@ impl Words {
         }
         match (all(said).map(own).collect::<Option<Vec<_>>>(), own(said)) {
             (Some(own), _) => (own, None),
-            // A cause that is the system's or a library's own has no words here.
+            // A cause that comes from the system or a library has no translation.
             (None, Some(first)) => {
                 ([first].into_iter().chain(said.causes.iter().map(english)).collect(), None)
             }
@@ -98,7 +100,7 @@ impl Words {
         }
     }
 
-    /// What was told in English.
+    /// A sentence in English.
     pub(in crate::web) fn english(&self, text: String) -> Told {
         Told { text, foreign: (self.code != ENGLISH).then_some(ENGLISH) }
     }
@@ -112,7 +114,7 @@ impl Words {
     }
 
     fn asked(&self, code: &str, parameters: &Value) -> Option<String> {
-        // What may come from the link asks for nothing of the board.
+        // If the cause may be the link, nothing is asked about the board.
         let about: &[&str] = if parameters.get(DOUBT).is_some() { &[] } else { &ABOUT };
         let inner = about.iter().find_map(|name| {
             let about = parameters.get(name)?;
@@ -125,23 +127,23 @@ impl Words {
     }
 }
 
-/// It and its causes.
+/// What was said, and its causes.
 fn all(said: &Said) -> impl Iterator<Item = &Said> {
     [said].into_iter().chain(&said.causes)
 }
 
-/// What is wrong and what to do about it: sentences of this program have that behind their last semicolon.
+/// What is wrong and what to do about it: sentences of this program say the latter after their last semicolon.
 fn parts(sentence: &str) -> Option<(&str, &str)> {
     sentence.rsplit_once("; ").or_else(|| sentence.rsplit_once('；'))
 }
 
-/// What to do as a line of its own has it.
+/// What to do, written as a line of its own: with a capital and without a full stop.
 fn written(asked: &str) -> String {
     let mut letters = asked.trim().trim_end_matches(['.', '。']).chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
-/// The key of what a code asks for.
+/// The key of a code's remedy.
 fn asked_by<'a>(code: &'a str, parameters: &Value) -> &'a str {
     if code == LATE && late(parameters).is_some_and(|late| late.come_and_go()) { LATE_AT_TIMES } else { code }
 }

@@ -6,7 +6,7 @@ use super::{Told, Words};
 use crate::record::StepOutcome;
 
 impl Words {
-    /// What a run does, as its lane tells it. What a plan calls a step or a frame stays as it is.
+    /// What a run does, as its lane reports it. The names that a plan gives to steps and frames stay as they are.
     pub(in crate::web) fn doing(&self, what: &str) -> Told {
         match self.step(what).or_else(|| self.ended(what)).or_else(|| self.board(what)) {
             Some(text) => Told { text, foreign: None },
@@ -14,7 +14,7 @@ impl Words {
         }
     }
 
-    /// The step that the judge calls so, with how far it is.
+    /// The judge's step of this name, with how far it is.
     fn step(&self, what: &str) -> Option<String> {
         let known = [
             (Step::JudgeTheJudge, self.say("step.judge")),

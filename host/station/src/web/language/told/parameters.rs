@@ -1,4 +1,4 @@
-//! Parameters of what was told, as people read them.
+//! Parameters of sentences, as people read them.
 
 use halfrow::result::LateRows;
 use jiff::Timestamp;
@@ -11,7 +11,7 @@ use crate::clock;
 
 /// Parameters that are seconds.
 const TIMES: [&str; 4] = ["at", "seconds", "deadline", "waited"];
-/// Parameters that count what there are many of. Others that are numbers name something.
+/// Parameters that are counts. Other numbers identify something.
 const COUNTS: [&str; 10] = [
     "bytes",
     "differences",
@@ -28,7 +28,7 @@ const COUNTS: [&str; 10] = [
 const LISTS: [&str; 5] = ["builds", "channels", "holders", "known", "names"];
 
 impl Words {
-    /// The parameter of this name as people read it, with what others say of it; none if there is none.
+    /// The parameter of this name as people read it, together with others that qualify it; none if there is none.
     pub(super) fn named(&self, name: &str, parameters: &Value) -> Option<String> {
         let value = at(parameters, name);
         let own = || Some(self.alone(name, value?));
@@ -36,7 +36,7 @@ impl Words {
             "others" => Some(self.others(value.and_then(Value::as_u64).unwrap_or_default())),
             "is_one_row" => Some(self.one_row(parameters)),
             "rows" => self.some_rows(parameters).or_else(own),
-            // Earlier records name the entries of tables so.
+            // Earlier records call the entries of tables `rows`.
             "entries" if value.is_none() => self.named("rows", parameters),
             "bit" => self.one_of_bits(parameters).or_else(own),
             "value" => self.measured(parameters).or_else(own),
@@ -96,7 +96,7 @@ impl Words {
         Some(words.to_owned())
     }
 
-    /// That so many other defects explain all as well.
+    /// That this many other defects explain everything as well.
     fn others(&self, others: u64) -> String {
         match others {
             0 => String::new(),
@@ -105,7 +105,7 @@ impl Words {
         }
     }
 
-    /// Late rows of all that there are.
+    /// How many of all rows are late.
     fn some_rows(&self, parameters: &Value) -> Option<String> {
         let LateRows { rows, of_rows, .. } = late(parameters).filter(LateRows::are_some)?;
         Some(
@@ -122,7 +122,7 @@ impl Words {
         late.map_or_else(String::new, |late| self.fill("told.one-row", &[("row", &late.row.to_string())]))
     }
 
-    /// The bit and those that come to the same, if there are some.
+    /// The bit and those with the same effect, if there are any.
     fn one_of_bits(&self, parameters: &Value) -> Option<String> {
         let alike = at(parameters, "reading.alike")?.as_array()?.iter();
         let mut bits: Vec<_> =
@@ -133,7 +133,7 @@ impl Words {
         Some(self.fill("told.or", &[("first", &first), ("last", &last.to_string())]))
     }
 
-    /// The parameter of this name by itself: of times no more than people can tell apart.
+    /// The parameter of this name by itself. Times are rounded to what matters to people.
     fn alone(&self, name: &str, value: &Value) -> String {
         match value.as_f64().filter(|_| value.is_f64() && TIMES.contains(&name)) {
             Some(seconds) if seconds >= 1.0 => self.figures(&format!("{}", (seconds * 10.0).round() / 10.0)),
@@ -178,7 +178,7 @@ fn moment(value: &Value) -> Option<String> {
     Some(clock::local(at.as_millisecond()).strftime("%Y-%m-%d %H:%M").to_string())
 }
 
-/// The late rows that these parameters are of, if they are of such.
+/// The late rows that these parameters describe, if they do.
 pub(super) fn late(parameters: &Value) -> Option<LateRows> {
     LateRows::deserialize(parameters).ok()
 }

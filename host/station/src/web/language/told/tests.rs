@@ -26,7 +26,7 @@ fn what_has_a_code_is_said_in_the_language_with_its_figures_and_causes() {
     assert_eq!(german(&seconds).0, "der Prozess des Platzes meldete 2,5 s lang nichts");
 }
 
-/// In every language what to do is told apart, and a finding's figures stay whole.
+/// In every language what to do is separated from the rest, and a finding's figures stay whole.
 #[test]
 fn what_is_asked_for_is_told_apart_from_why() {
     let text = |told: Option<Told>| told.map(|told| (told.text, told.foreign));
@@ -113,7 +113,7 @@ fn judged(code: &str, parameters: &Value) -> Said {
     Said { code: code.to_owned(), parameters, message: "in English".to_owned(), causes: Vec::new() }
 }
 
-/// Of a run that ended early nobody has looked into that, and no sentence has room for it.
+/// After a run that ended early nobody has looked into the difference, and no code's own sentence has room for it.
 #[test]
 fn samples_that_differed_by_the_end_of_a_run_are_told_in_every_language() {
     let differed = json!({ "differences": 12_345, "samples": 40_960, "differing_frames": 3, "frames": 8 });
@@ -131,7 +131,7 @@ fn samples_that_differed_by_the_end_of_a_run_are_told_in_every_language() {
     );
 }
 
-/// A bit that is one of several alike, and a suspect that is one of several; records of earlier programs say of neither.
+/// A bit that is one of several alike, and a suspect that is one of several; records of earlier programs have neither.
 #[test]
 fn what_is_one_of_several_is_not_told_as_the_fact_in_any_language() {
     let told = |language, said: &Said| of(Some(language), None).tell(said).text;
@@ -191,7 +191,7 @@ fn one_late_row_is_told_as_one_and_rows_that_are_late_now_and_then_ask_for_a_loo
     }
 }
 
-/// What the station asks for by itself, of boards that a plan refuses, too.
+/// What the station itself asks for, also about boards that a plan refuses.
 #[test]
 fn what_the_station_asks_for_is_told_in_the_language() {
     let said: Said = Saying::OtherSerial { serial: "CA2".to_owned(), scanned: "CA9".to_owned() }.into();
@@ -213,7 +213,7 @@ fn what_the_station_asks_for_is_told_in_the_language() {
     assert_eq!(asked("zh", &died, TEST_AGAIN), "请重新测试该板");
 }
 
-/// As the judge counts frames at speed, and as a lane says how a step ended and who the board is.
+/// As the judge counts frames at speed, and as a lane says how a step ended and which board it is.
 #[test]
 fn what_a_run_does_is_told_in_the_language_with_its_figures() {
     let told = |language, what: &str| {
@@ -267,7 +267,7 @@ fn figures_are_written_as_the_language_writes_them() {
     assert_eq!(text("zh", &stuck("kernel")), "核存储器，数据位 7，固定为 1");
 }
 
-/// Whoever reads of a PASS learns that it is no product's.
+/// Whoever reads of a PASS learns that no product was tested.
 #[test]
 fn that_no_hardware_was_tested_is_told_in_every_language() {
     let text = |language, board: &str| {
@@ -283,7 +283,7 @@ fn that_no_hardware_was_tested_is_told_in_every_language() {
     assert!(text("de", "replay").ends_with(" (Aufzeichnung: jetzt wurde keine Hardware geprüft)"));
 }
 
-/// By the words of the lane's state, and by its clock.
+/// In the words of the lane's state, and by the station's clock.
 #[test]
 fn a_verdict_and_an_hour_are_told_as_the_lane_says_them() {
     let text = |language, said: &Said| of(Some(language), None).tell(said).text;
@@ -296,7 +296,7 @@ fn a_verdict_and_an_hour_are_told_as_the_lane_says_them() {
     assert!(text("de", &passed).contains(&format!("bestanden, {here}; ")), "{}", text("de", &passed));
 }
 
-/// Of errors that end in what is to be done, as their records keep it.
+/// For errors that end in what to do, as records keep them.
 #[test]
 fn what_an_error_asks_for_is_told_in_the_language() {
     for (code, parameters, message) in [
