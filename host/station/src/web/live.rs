@@ -1,6 +1,6 @@
-//! The engine's news for every page that is open: what is, then what changes, and a beat each second.
+//! The engine's news for every open page: the present state, then what changes, and a beat each second.
 //!
-//! A page that hears no beat does not show verdicts as live. The beat stops with the engine's thread, too.
+//! A page that hears no beat does not show verdicts as live. The beat also stops when the engine's thread does.
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -18,10 +18,10 @@ use crate::said::Said;
 
 /// How often there is a beat.
 const BEAT: Duration = Duration::from_secs(1);
-/// How long behind the last beat that a page heard it is done what the page asks for. Behind it another board may be there, and a
-/// page that hears no beat has long said that it is not live.
+/// How long after the last beat that a page heard its requests are carried out. Later another board may be there, and the page
+/// has long said that it is not live.
 const FRESH: Duration = Duration::from_secs(5);
-/// How much a page may be behind. One that is further behind is dropped, and opens anew.
+/// How many events a page may lag behind. One that lags further is dropped, and connects anew.
 const BACKLOG: usize = 1024;
 
 /// What a lane's run does.
@@ -32,7 +32,7 @@ pub(super) struct Doing {
     pub(super) rows: Option<(u64, u64)>,
 }
 
-/// What became of a scan or of an act.
+/// The result of a scan or of an act.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Became {
     pub(super) number: u64,
@@ -42,10 +42,10 @@ pub(super) struct Became {
     pub(super) said: Said,
 }
 
-/// What pages are told.
+/// An event for pages.
 #[derive(Clone, Debug)]
 pub(super) enum What {
-    /// With its moment.
+    /// A beat, with its moment.
     Beat(String),
     Lane(Box<LaneState>),
     Doing(String, Doing),
@@ -56,7 +56,7 @@ pub(super) enum What {
     },
 }
 
-/// With its number. They follow each other without a gap.
+/// An event with its number. Numbers follow each other without a gap.
 #[derive(Clone, Debug)]
 pub(super) struct Told {
     pub(super) id: u64,
@@ -66,28 +66,29 @@ pub(super) struct Told {
 /// Everything as it is at one moment.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Now {
-    /// The number of the last that was told.
+    /// The number of the last event.
     pub(super) id: u64,
-    /// Its moment.
+    /// This moment, as pages name it.
     pub(super) beat: String,
     pub(super) lanes: Vec<LaneState>,
     pub(super) doing: BTreeMap<String, Doing>,
 }
 
-/// What is told to pages.
+/// The source of all events for pages.
 #[derive(Debug)]
 pub(super) struct Live {
     now: Mutex<Now>,
     pages: broadcast::Sender<Told>,
     asked: Mutex<HashMap<u64, oneshot::Sender<Became>>>,
     numbers: AtomicU64,
-    /// When it began, by a clock that only goes on, and what tells this start of the station from others.
+    /// When it began, by a monotonic clock.
     begun: Instant,
+    /// Tells this start of the station from others.
     start: String,
 }
 
 impl Live {
-    /// What the engine tells, from now on.
+    /// Follows the engine's news from now on.
     ///
     /// # Errors
     /// When the system has no thread for it.
@@ -106,7 +107,7 @@ impl Live {
         Ok(live)
     }
 
-    /// Everything as it is, and what is told after.
+    /// Everything as it is, and the events from then on.
     pub(super) fn follow(&self) -> (Now, broadcast::Receiver<Told>) {
         let now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
         (Now { beat: self.moment(), ..now.clone() }, self.pages.subscribe())
@@ -122,11 +123,11 @@ impl Live {
         format!("{}-{}", self.start, self.begun.elapsed().as_millis())
     }
 
-    /// Until when that may be done which a page asks for that last heard the station at the moment `beat`. Whoever names none
-    /// was told of no board, and is trusted to know which one is there.
+    /// Until when a request may be carried out of a page that last heard the station at the moment `beat`. A page that names
+    /// none hears no news, and its user is trusted to know which board is there.
     ///
     /// # Errors
-    /// [`ScanError::Late`] when it is too late already, and of a moment that is not of this start.
+    /// [`ScanError::Late`] when it is too late already, or the moment belongs to another start.
     pub(super) fn until(&self, beat: &str) -> Result<Option<Instant>, ScanError> {
         if beat.is_empty() {
             return Ok(None);
@@ -138,7 +139,7 @@ impl Live {
         in_time(Some(until)).map(|()| Some(until))
     }
 
-    /// A number for a scan or an act, and what will become of it.
+    /// A number for a scan or an act, and the receiver of its result.
     pub(super) fn ask(&self) -> (u64, oneshot::Receiver<Became>) {
         let number = self.numbers.fetch_add(1, Ordering::Relaxed) + 1;
         let (sender, receiver) = oneshot::channel();
@@ -161,7 +162,7 @@ impl Live {
         self.tell(what);
         if let Some(became) = answered {
             let mut asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
-            // Nobody waits for what a page that is gone has scanned.
+            // A page that is gone does not wait for its scan any more.
             let _ = asked.remove(&became.number).map(|sender| sender.send(became));
         }
     }
@@ -182,19 +183,19 @@ impl Live {
             What::Beat(_) | What::Scan(_) | What::Hook { .. } => {}
         }
         now.id += 1;
-        // Without a page nobody hears it.
+        // This fails when no page is open.
         let _ = self.pages.send(Told { id: now.id, what });
     }
 }
 
-/// Tells what the engine tells until nobody is left to hear it.
+/// Passes the engine's news on until nobody is left to hear them.
 fn listen(engine: &Engine, mut heard: Receiver<News>, told: &Weak<Live>) {
     let mut beat = Instant::now();
     while let Some(live) = told.upgrade() {
         match heard.recv_timeout(BEAT.saturating_sub(beat.elapsed())) {
             Ok(news) => live.hear(news),
             Err(RecvTimeoutError::Timeout) => {}
-            // It was too slow for the engine, and begins with all lanes again.
+            // This thread was too slow for the engine. It listens anew, which begins with all lanes.
             Err(RecvTimeoutError::Disconnected) => heard = engine.listen(),
         }
         if beat.elapsed() >= BEAT {

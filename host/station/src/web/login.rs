@@ -73,7 +73,7 @@ async fn log_in(
     Ok(([(header::SET_COOKIE, cookie)], Redirect::to("/")).into_response())
 }
 
-/// Who this badge and this password make, as somebody says who does not guess for long.
+/// Who has this badge and this password, if anybody. Whoever guesses has to wait after some failures.
 pub(super) async fn identified(
     app: &App,
     visit: &Visit,
@@ -86,18 +86,18 @@ pub(super) async fn identified(
     let access = app.clone();
     let known = app.blocking(visit, move || access.access().identify(&badge, &password)).await?;
     match (&known, &by) {
-        // Where nobody can be told, nobody has guessed.
+        // If it cannot be found out who this is, it was no guess.
         (Ok(Some(_)) | Err(_), _) => app.access().succeeded(&by),
         (Ok(None), Claimant::Stranger(peer)) => {
             app.audit(visit, "login refused", &peer.to_string(), "").await?;
         }
-        // It is most likely no badge at all.
+        // Most likely it was no badge at all.
         (Ok(None), Claimant::Session(_)) => {}
     }
     known.map_err(|error| Trouble::secret(visit, &error))
 }
 
-/// Logs somebody in, in the place of whoever was; returns the cookie to be set.
+/// Logs somebody in, instead of whoever was; returns the cookie to be set.
 pub(super) async fn logged_in(app: &App, visit: &Visit, who: Identified) -> Result<HeaderValue, Trouble> {
     let now = Visit { user: Some(who.user.clone()), ..visit.clone() };
     app.audit(&now, "login", if now.may(Who::Engineer) { "engineer" } else { "operator" }, "").await?;
@@ -112,7 +112,7 @@ async fn log_out(State(app): State<App>, visit: Visit) -> Result<Response, Troub
     Ok(([(header::SET_COOKIE, cookie)], Redirect::to("/")).into_response())
 }
 
-/// The cookie of a new session, in the place of the visitor's, which ends.
+/// Ends the visitor's session and begins a new one; returns its cookie.
 async fn anew(app: &App, visit: &Visit, who: Option<Identified>) -> Result<HeaderValue, Trouble> {
     let (of, session) = (app.clone(), visit.session.clone());
     let begun = move || {
@@ -143,11 +143,11 @@ async fn choose(
     Ok(([(header::SET_COOKIE, cookie)], Redirect::to(back)).into_response())
 }
 
-/// The page that a form was on, with what it asks for.
+/// The page that a form was on, with its query.
 fn back<'a>(app: &App, headers: &'a HeaderMap) -> Option<&'a str> {
     let (_, page) = headers.get(header::REFERER)?.to_str().ok()?.split_once("://")?;
     let asked = page.get(page.find('/')?..)?;
     let path = asked.split(['?', '#']).next()?;
-    // What an act was answered with has an address at which no page is.
+    // The answer to an act has an address at which there is no page.
     is_page(app, path).then_some(asked)
 }

@@ -12,7 +12,7 @@ use tokio::time::{Sleep, sleep};
 /// How long the other end may take nothing. A computer that was switched off holds no place for longer.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// A connection that breaks when nothing of what is written gets away for [`PATIENCE`].
+/// A connection that breaks when nothing can be written for [`PATIENCE`].
 #[derive(Debug)]
 pub(super) struct Patient {
     stream: TcpStream,
@@ -20,12 +20,12 @@ pub(super) struct Patient {
 }
 
 impl Patient {
-    /// With this connection.
+    /// Wraps this connection.
     pub(super) fn new(stream: TcpStream) -> Self {
         Self { stream, stuck: None }
     }
 
-    /// What came of a write, unless it has been pending for too long.
+    /// The result of a write; an error if it has been pending for too long.
     fn settled<T>(&mut self, to: &mut Context<'_>, written: Poll<io::Result<T>>) -> Poll<io::Result<T>> {
         if written.is_ready() {
             self.stuck = None;

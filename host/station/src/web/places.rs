@@ -21,12 +21,12 @@ const CONNECTIONS: usize = 64;
 /// How many of them one address has.
 const CONNECTIONS_OF_ONE: usize = 48;
 
-/// What a connection is at.
+/// What a connection is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum At {
     /// A request is being answered: it is not broken off.
     Answers,
-    /// It tells news. Whoever shows them opens it again.
+    /// It sends news. If it is closed, the page opens it again.
     TellsNews,
     /// It waits for a request.
     Waits,
@@ -39,7 +39,7 @@ pub(super) struct Places(Arc<Mutex<Table>>);
 #[derive(Debug)]
 struct Table {
     of_this_computer: usize,
-    /// The number of what happened last.
+    /// The number of the last change.
     last: u64,
     taken: BTreeMap<u64, Taken>,
 }
@@ -48,7 +48,7 @@ struct Table {
 struct Taken {
     network: IpAddr,
     at: At,
-    /// The number of what it has been at that for.
+    /// The number of the change since which it does this.
     since: u64,
     close: Arc<Notify>,
 }
@@ -63,14 +63,14 @@ pub(super) enum NoPlace {
 }
 
 impl Places {
-    /// All are free. Others come through a proxy on this computer if it `has_proxy`, so it may have all that there are.
+    /// All places are free. If this computer `has_proxy`, others come through it, so this computer may have all places.
     pub(super) fn new(has_proxy: bool) -> Self {
         let of_this_computer = if has_proxy { usize::MAX } else { CONNECTIONS_OF_ONE };
         Self(Arc::new(Mutex::new(Table { of_this_computer, last: 0, taken: BTreeMap::new() })))
     }
 
-    /// A place for `peer`, which is free again when it is dropped. Where there is none, another connection gives way: one of the same
-    /// address if that has its share, else one of the address that has most.
+    /// A place for `peer`, which is free again when it is dropped. If there is none, another connection gives way: one of the
+    /// same address if that has all that it may have, else one of the address with the most connections.
     ///
     /// # Errors
     /// [`NoPlace`] where all that could give way are being answered.
@@ -101,8 +101,8 @@ impl Table {
         self.last
     }
 
-    /// Closes the connection that has waited longest for a request, or else told news for longest, of `network` alone or of the one
-    /// that has most; none if there is neither.
+    /// Closes a connection of `network`, or without one of the network with the most connections: the one that has waited longest
+    /// for a request, or else that has sent news for longest. None if there is neither.
     fn one_gives_way(&mut self, network: Option<IpAddr>) -> Option<()> {
         let mut counts = HashMap::<IpAddr, usize>::new();
         for taken in self.taken.values() {
@@ -147,7 +147,7 @@ impl Drop for Place {
     }
 }
 
-/// Around every request of a connection: its place knows what it is at until the last of the answer.
+/// Goes around every request of a connection, so that its place knows what it is doing until the end of the answer.
 pub(super) async fn noted(State(place): State<Arc<Place>>, request: Request, next: Next) -> Response {
     place.is_at(At::Answers);
     let busy = Busy(place);
@@ -158,7 +158,7 @@ pub(super) async fn noted(State(place): State<Arc<Place>>, request: Request, nex
     response.map(|body| Body::new(Answer { body, _busy: busy }))
 }
 
-/// Of a connection that waits for a request again when this is dropped.
+/// A connection that is busy. When this is dropped, it waits for a request again.
 struct Busy(Arc<Place>);
 
 impl Drop for Busy {
@@ -167,7 +167,7 @@ impl Drop for Busy {
     }
 }
 
-/// What an answer says.
+/// The body of an answer, until whose end the connection is busy.
 struct Answer {
     body: Body,
     _busy: Busy,

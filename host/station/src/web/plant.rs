@@ -1,4 +1,4 @@
-//! The plant's first page: every station, and what two of them bound differently. All else that it shows is the history's, over all of them.
+//! The plant's first page: every station, what two of them bound differently, and the plans that hold.
 
 use axum::extract::State;
 use axum::response::Response;

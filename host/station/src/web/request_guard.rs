@@ -1,4 +1,4 @@
-//! What stands before every route: is it for this station, who asks, and may they.
+//! The checks before every route: is the request for this station, who asks, and may they.
 
 use std::net::{IpAddr, Ipv4Addr};
 use std::time::Duration;
@@ -21,14 +21,14 @@ use crate::said::Said;
 
 /// How long an answer may take to begin.
 const PATIENCE: Duration = Duration::from_secs(30);
-/// How long a form may take to come, for nobody else has its place meanwhile.
+/// How long a form may take to arrive, because its connection takes up a place meanwhile.
 const FORM: Duration = Duration::from_secs(10);
 /// The most bytes of a form.
 const MOST: usize = 64 * 1024;
 /// The field of every form that says for whom it was made.
 const MARK: &str = "csrf";
 
-/// What pages may load, which is from the station alone, and who may frame them.
+/// What pages may load, which is only from the station, and who may frame them.
 macro_rules! policy {
     ($frames:literal) => {
         concat!(
@@ -39,12 +39,12 @@ macro_rules! policy {
     };
 }
 
-/// The policy of what stands in a page of the station.
+/// The policy of a page that is framed by another page of the station.
 pub(super) const FRAMED: &str = policy!("'self'");
 
-/// What every answer carries that has none of its own. A page stands in nobody's frame.
+/// The headers of every answer that does not have its own. By default nobody may frame a page.
 ///
-/// With `no-referrer` browsers send the origin `null` with forms; `same-origin` tells others as little.
+/// With `no-referrer` browsers send the origin `null` with forms; `same-origin` tells other sites just as little.
 const HEADERS: [(HeaderName, &str); 4] = [
     (header::CONTENT_SECURITY_POLICY, policy!("'none'")),
     (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
@@ -60,7 +60,7 @@ pub(super) struct Guarded {
     pub(super) is_act: bool,
 }
 
-/// Around all: whether it is for this station at all, how long it may take, and what every answer carries.
+/// Goes around all routes: whether a request is for this station at all, how long it may take, and the headers of every answer.
 pub(super) async fn every(State(app): State<App>, request: Request, next: Next) -> Response {
     let visit = app.stranger(request.headers());
     let is_ours = host(request.headers()).is_some_and(|host| app.access().address().is_host(host));
@@ -70,7 +70,7 @@ pub(super) async fn every(State(app): State<App>, request: Request, next: Next) 
         let late = || Trouble::new(&visit, StatusCode::REQUEST_TIMEOUT, visit.say("trouble.late"));
         time::timeout(PATIENCE, next.run(request)).await.unwrap_or_else(|_| late().into_response())
     } else {
-        // A page of somebody else whose name was made to lead here can read this.
+        // A foreign page whose name was made to resolve to this address can read this, so it says little.
         (StatusCode::MISDIRECTED_REQUEST, visit.say("trouble.host")).into_response()
     };
     for (name, value) in HEADERS {
@@ -79,7 +79,7 @@ pub(super) async fn every(State(app): State<App>, request: Request, next: Next) 
     response
 }
 
-/// Around a route: who asks, and whether they may.
+/// Goes around a route: who asks, and whether they may.
 pub(super) async fn route(State(guarded): State<Guarded>, request: Request, next: Next) -> Response {
     let Guarded { app, who, is_act } = guarded;
     let visit = match bearer(request.headers()) {
@@ -164,7 +164,7 @@ async fn machine(
     }
 }
 
-/// A page: whoever may not see it logs in.
+/// Checks a look at a page: whoever may not see it is sent to log in.
 fn look(visit: &Visit, who: Who, request: Request) -> Result<Request, Refused> {
     if visit.may(who) {
         return Ok(request);
@@ -179,7 +179,7 @@ fn look(visit: &Visit, who: Who, request: Request) -> Result<Request, Refused> {
     }
 }
 
-/// An act: from a page of the station, made for this browser, by somebody who may.
+/// Checks an act: it comes from a page of the station, made for this browser, by somebody who may do it.
 async fn act(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Request, Refused> {
     let headers = request.headers();
     let is_own = host(headers).zip(only(headers, &header::ORIGIN));
@@ -212,12 +212,12 @@ fn mark(body: &Bytes) -> Option<String> {
     marks.next().is_none().then(|| mark.to_owned())
 }
 
-/// Where nothing is.
+/// The answer where there is no route.
 pub(super) async fn nothing_here(State(app): State<App>, headers: HeaderMap) -> Trouble {
     app.visit(&headers, false).await.map_or_else(|trouble| trouble, |visit| Trouble::missing(&visit))
 }
 
-/// Whether a proxy says that it hands on what somebody else asks, who need not be at this computer.
+/// Whether a proxy says that it forwards a request of somebody else, who need not be at this computer.
 fn is_forwarded(headers: &HeaderMap) -> bool {
     let names = ["forwarded", "via", "x-real-ip", "x-forwarded-for", "x-forwarded-host", "x-forwarded-proto"];
     names.iter().any(|name| headers.contains_key(*name))
@@ -227,7 +227,7 @@ fn host(headers: &HeaderMap) -> Option<&str> {
     only(headers, &header::HOST)
 }
 
-/// The value of a header that is there once.
+/// The value of a header that is there exactly once.
 fn only<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
     let mut values = headers.get_all(name).into_iter();
     let value = values.next()?.to_str().ok()?;
@@ -235,10 +235,10 @@ fn only<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
 }
 
 impl App {
-    /// Who asks, and in which language. Somebody without a cookie has one drawn.
+    /// Who asks, and in which language. A visitor without a cookie gets a new one.
     ///
     /// # Errors
-    /// [`Trouble`] when that did not come to its end.
+    /// [`Trouble`] when that broke off.
     async fn visit(&self, headers: &HeaderMap, is_act: bool) -> Result<Visit, Trouble> {
         let (access, stranger) = (self.access(), self.stranger(headers));
         let sent = cookie(headers, &access.cookie_name()).map(str::to_owned);

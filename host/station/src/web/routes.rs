@@ -36,7 +36,7 @@ pub struct Route {
 }
 
 impl Route {
-    /// For what has a hash in its address, and so never changes.
+    /// For content that never changes, such as what has its hash in its address.
     pub(super) fn for_ever(self) -> Self {
         Self { handler: self.handler.layer(middleware::from_fn(for_ever::for_ever)), ..self }
     }
@@ -89,7 +89,7 @@ pub(super) fn is_page(app: &App, path: &str) -> bool {
     table(app).iter().any(|route| route.method == Method::GET && is_at(route))
 }
 
-/// The table as a service. What is common to all routes stands around it, what depends on their lines around each.
+/// The table as a service. What all routes have in common goes around the whole, what depends on a line goes around its route.
 pub(super) fn router(app: &App) -> Router {
     let with = |router: Router<App>, Route { method, path, who, handler }: Route| {
         let guarded = Guarded { app: app.clone(), who, is_act: method == Method::POST };

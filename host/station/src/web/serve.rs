@@ -26,7 +26,7 @@ use super::state::App;
 const HEAD: Duration = Duration::from_secs(10);
 /// The longest head, in bytes.
 const MOST_HEAD: usize = 16 * 1024;
-/// How long it is waited when there is no room for another connection, here or in the system.
+/// How long to wait when there is no room for another connection, here or in the system.
 const FULL: Duration = Duration::from_millis(100);
 /// How long work for a page may go on when the pages are closed.
 const LAST: Duration = Duration::from_secs(1);
@@ -126,7 +126,7 @@ async fn accept(listener: tokio::net::TcpListener, router: Router, places: Place
     }
 }
 
-/// A place for `peer`; none if it has too many. Where all are taken it waits for its turn.
+/// A place for `peer`; none if it has too many. If all are taken, it waits until one is free.
 async fn place(places: &Places, peer: SocketAddr) -> Option<Place> {
     loop {
         match places.take(peer.ip()) {
@@ -138,7 +138,7 @@ async fn place(places: &Places, peer: SocketAddr) -> Option<Place> {
 }
 
 async fn connection(stream: TcpStream, router: Router, place: Arc<Place>) {
-    // News are short, and each is waited for.
+    // News are short, and pages wait for each.
     let _ = stream.set_nodelay(true);
     let mut builder = http1::Builder::new();
     builder.timer(TokioTimer::new()).header_read_timeout(HEAD).max_header_size(MOST_HEAD);

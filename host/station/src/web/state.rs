@@ -19,13 +19,14 @@ use crate::secret::SecretError;
 use crate::settings::{PlanFile, Settings};
 use crate::store::{Folder, PlantAddress, PlantPool, Snapshot, Store, StoreError};
 
-/// Plans that are named in the head of a page.
+/// How many plans are named in the head of a page.
 const NAMED: usize = 2;
 
-/// How many times as long as it counted a plant, which may have a year of hundreds of stations, is left alone by those who watch.
+/// How long metrics leave a plant alone after they counted it, as a multiple of the time that this took: a plant may have a year
+/// of hundreds of stations.
 const RESTS: u32 = 20;
 
-/// The station as its pages know it. A copy is the same one.
+/// The station as its pages know it. A clone is the same one.
 #[derive(Clone, Debug)]
 pub struct App(Arc<Parts>);
 
@@ -34,9 +35,9 @@ struct Parts {
     settings: Settings,
     access: Access,
     plans: String,
-    /// What an open page of the lanes is told by whether it is still that of this station.
+    /// By this an open page of the lanes finds out whether it still fits the station.
     mark: String,
-    /// For those who ask every few seconds.
+    /// For clients that ask every few seconds.
     turns: Turns,
     source: Source,
 }
@@ -58,8 +59,8 @@ pub(super) struct Floor {
 }
 
 impl App {
-    /// The station of these settings, which the engine has at work, for those whom `access` lets in. A visitor of a
-    /// demonstration is told that the serial numbers `hints` may be typed.
+    /// The station of these settings, with its engine at work, for those whom `access` lets in. `hints` are serial numbers
+    /// that a visitor of a demonstration may type.
     ///
     /// # Errors
     /// When the system has no thread for its news.
@@ -76,7 +77,7 @@ impl App {
         Ok(Self(Arc::new(Parts { settings, access, plans, mark, turns, source })))
     }
 
-    /// The results of all stations, which these settings say where to find.
+    /// The results of all stations of the plant at `address`.
     #[must_use]
     pub fn of_plant(settings: Settings, address: PlantAddress, access: Access) -> Self {
         let source = Source::Plant(PlantPool::new(address));
@@ -110,7 +111,7 @@ impl App {
         &self.0.plans
     }
 
-    /// What changes whenever a page of the lanes that was made before is none of this station any more.
+    /// What changes whenever a page of the lanes that was made before no longer fits the station.
     pub(super) fn mark(&self) -> &str {
         &self.0.mark
     }
@@ -127,10 +128,10 @@ impl App {
         &self.0.turns
     }
 
-    /// Who has this cookie, or is everybody, as [`Access::user`] tells. The file of them may be on a slow disk.
+    /// The user of this cookie, as [`Access::user`] says. The file of users may be on a slow disk.
     ///
     /// # Errors
-    /// [`Trouble`] when it did not come to its end.
+    /// [`Trouble`] when that broke off.
     pub(super) async fn user(
         &self,
         visit: &Visit,
@@ -177,10 +178,10 @@ impl App {
         self.try_to_look(visit, look).await?.map_err(|error| Trouble::store(visit, &error))
     }
 
-    /// The same, for whoever can do without.
+    /// The same, for a caller that can do without the result.
     ///
     /// # Errors
-    /// [`Trouble`] when it did not come to its end.
+    /// [`Trouble`] when it broke off.
     pub(super) async fn try_to_look<T: Send + 'static>(
         &self,
         visit: &Visit,
@@ -198,10 +199,10 @@ impl App {
         }
     }
 
-    /// What `change` does with the store. Runs that end wait for it, so it is brief.
+    /// Runs `change` on the store, and returns its result. Runs that end wait for it, so it must be brief.
     ///
     /// # Errors
-    /// [`Trouble`] when it did not come to its end.
+    /// [`Trouble`] when it broke off.
     pub(super) async fn change<T: Send + 'static>(
         &self,
         visit: &Visit,
@@ -211,10 +212,10 @@ impl App {
         self.blocking(visit, move || store.with(change)).await
     }
 
-    /// What `work` returns, which may wait for a disk or compute for long.
+    /// Runs `work`, which may wait for a disk or compute for long, on another thread, and returns its result.
     ///
     /// # Errors
-    /// [`Trouble`] when it did not come to its end.
+    /// [`Trouble`] when it broke off.
     pub(super) async fn blocking<T: Send + 'static>(
         &self,
         visit: &Visit,
@@ -224,7 +225,7 @@ impl App {
     }
 }
 
-/// The plans by product, name and version; of many the first two, and how many more there are.
+/// The plans by product, name and version; of many only the first two, and how many more there are.
 fn named(settings: &Settings) -> String {
     let name = |file: &PlanFile| {
         let Plan { product, name, version, .. } = &file.plan;
@@ -235,13 +236,14 @@ fn named(settings: &Settings) -> String {
     if more.is_empty() { names } else { format!("{names} + {}", more.len()) }
 }
 
-/// The hash of all that stands on a page of the lanes beside their states, or makes it: program, station, plans, lanes.
+/// The hash of all that a page of the lanes shows, except their states, or that makes it: program, station, plans, lanes,
+/// scripts.
 fn mark(settings: &Settings) -> String {
     let plant = if settings.plant.is_some() { "plant" } else { "" };
     let mut parts = vec![halfrow::VERSION, &settings.name, plant];
     parts.extend(settings.plans.iter().map(|file| file.plan.sha256.as_str()));
     parts.extend(settings.lanes.iter().map(|lane| lane.name.as_str()));
     assets::texts().for_each(|text| parts.push(text));
-    // No name has a line's end in it.
+    // No name has a line break in it.
     halfrow::result::sha256(parts.into_iter().flat_map(|part| [part, "\n"]))
 }

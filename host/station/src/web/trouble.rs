@@ -36,7 +36,7 @@ impl Trouble {
         Self { status, visit: Box::new(visit.clone()), told: visit.words.tell(said) }
     }
 
-    /// The visitor may not.
+    /// The visitor may not do this.
     pub(super) fn barred(visit: &Visit) -> Self {
         match (&visit.user, &visit.untold) {
             (None, Some(why)) => Self::telling(visit, StatusCode::SERVICE_UNAVAILABLE, why),
@@ -45,7 +45,7 @@ impl Trouble {
         }
     }
 
-    /// The visitor has failed too often, and waits for so long.
+    /// The visitor has failed too often, and must wait this long.
     pub(super) fn waits(visit: &Visit, wait: Duration) -> Self {
         let seconds = (wait.as_secs() + 1).to_string();
         let said = visit.words.fill("login.wait", &[("seconds", &seconds)]);
@@ -57,26 +57,26 @@ impl Trouble {
         Self::new(visit, StatusCode::NOT_FOUND, visit.say("trouble.missing"))
     }
 
-    /// The request says what it cannot say.
+    /// The request has a value that is not valid.
     pub(super) fn wrong(visit: &Visit, said: impl Into<String>) -> Self {
         Self::new(visit, StatusCode::BAD_REQUEST, said)
     }
 
-    /// The store does not do it. The reason is for the log and the engineer.
+    /// The store refuses. The reason is logged as well, for the engineer.
     pub(super) fn store(visit: &Visit, error: &StoreError) -> Self {
         let said = Said::of(error);
         tracing::error!("{said}");
         Self::telling(visit, StatusCode::SERVICE_UNAVAILABLE, &said)
     }
 
-    /// It cannot be told who somebody is.
+    /// It cannot be found out who somebody is.
     pub(super) fn secret(visit: &Visit, error: &SecretError) -> Self {
         let said = Said::of(error);
         tracing::error!("{said}");
         Self::telling(visit, StatusCode::SERVICE_UNAVAILABLE, &said)
     }
 
-    /// Something of the program itself ended early.
+    /// A part of the program itself failed.
     pub(super) fn broken(visit: &Visit, error: &dyn Display) -> Self {
         tracing::error!("a page was not made: {error}");
         Self::new(visit, StatusCode::INTERNAL_SERVER_ERROR, visit.say("trouble.broken"))

@@ -19,24 +19,24 @@ pub struct User {
     pub who: Who,
 }
 
-/// A request's circumstances, which the guard made out.
+/// What the guard found out about a request.
 #[derive(Clone, Debug)]
 pub(super) struct Visit {
     /// The language's words.
     pub(super) words: &'static Words,
-    /// Who it is, if it is somebody.
+    /// Who asks, if it is somebody known.
     pub(super) user: Option<User>,
-    /// Why it cannot be told who it is.
+    /// Why it could not be found out who asks.
     pub(super) untold: Option<Said>,
     /// The value of the cookie that the visitor has, or is given.
     pub(super) session: String,
     /// Whether everybody who gets here may see what is tested.
     pub(super) is_open: bool,
-    /// Whether it is given.
+    /// Whether this cookie is new.
     pub(super) is_new: bool,
     /// Whether people log in at this station.
     pub(super) can_log_in: bool,
-    /// What every form sends back in its field `csrf`.
+    /// The mark that every form sends back in its field `csrf`.
     pub(super) csrf: String,
     /// The station's name.
     pub(super) station: String,

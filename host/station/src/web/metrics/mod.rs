@@ -1,6 +1,6 @@
 //! Figures for Prometheus and whatever else reads its formats: of a station, or of a plant.
 //!
-//! They carry no serial number, no unit and nobody's name, so that there are as many series as there are plans and lanes.
+//! Their labels have no serial number, no unit and nobody's name, so the number of series depends only on plans and lanes.
 
 mod of_plant;
 mod of_station;
@@ -46,7 +46,7 @@ const BUILD: Metric = Metric {
     help: "The program's version, with the commit that it was built of.",
 };
 
-/// Writes runs by verdict, units, and units that passed at first, by these three metrics; `labels` are those of a cell.
+/// Writes runs by verdict, units, and units that passed at first, as these three metrics; `labels` are those of a cell.
 fn counted(
     text: &mut Text,
     [by_verdict, units, first_passed]: [&Metric; 3],

@@ -67,7 +67,7 @@ struct Held {
     mismatches: Option<u64>,
 }
 
-/// Writes all of them. A plant that is away is said to be.
+/// Writes all figures. They say so if the plant is away.
 pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) {
     let held = turns::counted(app, visit, |now, tally| {
         let version = Some(now.version()?.unsigned_abs());

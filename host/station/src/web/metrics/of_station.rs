@@ -84,7 +84,7 @@ const OLDEST: Metric = Metric {
 /// What the store holds.
 type Kept = (BTreeMap<Cell, Count>, Vec<Unsent>);
 
-/// Writes all of them. A store that cannot be read is said to be so, and what lanes do is told all the same.
+/// Writes all figures. If the store cannot be read they say so, and still have what lanes do.
 pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) -> Result<(), Trouble> {
     let engine = &app.floor(visit)?.engine;
     let kept: Option<Kept> =
@@ -128,7 +128,7 @@ fn since_the_start(text: &mut Text, figures: &Figures) {
     text.of(&COMMIT).spread(&[], &figures.commits);
 }
 
-/// With what the settings have and nobody ran yet: a counter that begins at 0 shows its first run.
+/// Adds the plans and lanes of the settings that had no run yet: a counter shows its first run only if it began at 0.
 fn with_all(settings: &Settings, kept: BTreeMap<Cell, Count>) -> BTreeMap<Cell, Count> {
     let mut counts = BTreeMap::<Cell, Count>::new();
     for lane in &settings.lanes {
@@ -138,7 +138,7 @@ fn with_all(settings: &Settings, kept: BTreeMap<Cell, Count>) -> BTreeMap<Cell, 
         }
     }
     for (cell, count) in kept {
-        // A station that had another name before is one station.
+        // A station that had another name before is the same station.
         counts.entry(Cell { station: String::new(), ..cell }).or_default().add(&count);
     }
     counts
@@ -148,7 +148,7 @@ fn labels(Cell { plan, lane, .. }: &Cell) -> [Label<'_>; 3] {
     [("product", &plan.product), ("plan", &plan.plan), ("lane", lane)]
 }
 
-/// How it stands with every sink, those that have all included.
+/// What is unsent at every sink, also at those that have everything.
 fn outbox(text: &mut Text, settings: &Settings, unsent: Option<&[Unsent]>) {
     let now_ms = clock::now_ms();
     let mut sinks: BTreeMap<&str, (u64, u64, f64)> = BTreeMap::new();

@@ -1,7 +1,7 @@
 //! The two formats: OpenMetrics 1.0, and the older text format of Prometheus (version 0.0.4), which differ in the names of
 //! counters, in units and at the end.
 //!
-//! The libraries for it know one of the two each; what else there is to it are these lines.
+//! The existing libraries know only one of the two each, and there is little more to it than these lines.
 
 use std::fmt::{Display, Write as _};
 
@@ -18,7 +18,7 @@ pub(super) enum Format {
 }
 
 impl Format {
-    /// The one that is asked for: OpenMetrics by its name alone, for few programs know it.
+    /// The format that is asked for: OpenMetrics only if it is named, because few programs know it.
     pub(super) fn asked(headers: &HeaderMap) -> Self {
         let values = headers.get_all(ACCEPT).into_iter().filter_map(|value| value.to_str().ok());
         let (mut open, mut plain) = (0.0, 0.0);
@@ -47,20 +47,20 @@ impl Format {
     }
 }
 
-/// What a metric is.
+/// The kind of a metric.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Counter,
     Gauge,
     Histogram,
-    /// What is always 1, and tells by its labels.
+    /// Always 1; its labels have the information.
     Info,
 }
 
 /// A metric.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Metric {
-    /// Its name without what its kind adds. One that ends in `_seconds` is in seconds.
+    /// Its name without the suffix of its kind. A metric whose name ends in `_seconds` is in seconds.
     pub(super) name: &'static str,
     pub(super) kind: Kind,
     /// What it is, in a sentence.
@@ -68,7 +68,7 @@ pub(super) struct Metric {
 }
 
 impl Metric {
-    /// What the names of its samples end in.
+    /// The suffix of its samples' names.
     const fn suffix(&self) -> &'static str {
         match self.kind {
             Kind::Counter => "_total",
@@ -128,7 +128,7 @@ impl Text {
         Self { format, text: String::new() }
     }
 
-    /// Begins `metric`, whose samples follow. It is told of without any, too.
+    /// Begins `metric`, whose samples follow. It is described even if there are none.
     pub(super) fn of<'a>(&'a mut self, metric: &'a Metric) -> Samples<'a> {
         let Metric { name, kind, help } = metric;
         let (kind, suffix) = match (self.format, kind) {
@@ -148,7 +148,7 @@ impl Text {
         Samples { metric, text }
     }
 
-    /// All of it.
+    /// The complete text.
     pub(super) fn end(mut self) -> String {
         if self.format == Format::OpenMetrics {
             self.text.push_str("# EOF\n");
@@ -165,12 +165,12 @@ pub(super) struct Samples<'a> {
 }
 
 impl Samples<'_> {
-    /// One with these labels.
+    /// Writes a sample with these labels.
     pub(super) fn put(&mut self, labels: &[Label<'_>], number: impl Into<Number>) {
         self.line(self.metric.suffix(), labels, number.into());
     }
 
-    /// All of a histogram with these labels.
+    /// Writes a whole histogram with these labels.
     pub(super) fn spread(&mut self, labels: &[Label<'_>], of: &Histogram) {
         let mut bucket = |bound: &str, count: u64| {
             let labels = [labels, &[("le", bound)]].concat();
@@ -197,7 +197,7 @@ impl Samples<'_> {
     }
 }
 
-/// Both formats escape in the values of labels what would end them.
+/// Escapes the value of a label, as both formats want it.
 fn escape(text: &mut String, value: &str) {
     for letter in value.chars() {
         match letter {
@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn openmetrics_is_for_those_who_ask_for_it() {
-        // What Prometheus 2.42 and 3.5 ask with, curl, Firefox, and some who were asked otherwise.
+        // As Prometheus 2.42 and 3.5, curl and Firefox ask, and as others might.
         let open = [
             "application/openmetrics-text;version=1.0.0,application/openmetrics-text;version=0.0.1;q=0.75,text/plain;version=0.0.4;q=0.5,*/*;q=0.1",
             "application/openmetrics-text;version=1.0.0;escaping=allow-utf-8;q=0.6,application/openmetrics-text;version=0.0.1;q=0.5,text/plain;version=1.0.0;escaping=allow-utf-8;q=0.4,text/plain;version=0.0.4;q=0.3,*/*;q=0.2",

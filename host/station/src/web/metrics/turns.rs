@@ -1,5 +1,5 @@
-//! Whoever asks every few seconds takes turns with others of that kind, and is answered soon: a plant that hangs holds up one
-//! thread, and neither the pages nor the answer that says so.
+//! Clients that ask every few seconds take turns with each other, and are answered soon: a plant that hangs holds up one
+//! thread, but neither the pages nor the answer that says so.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,7 +13,7 @@ use crate::store::{Snapshot, StoreError};
 use crate::web::state::App;
 use crate::web::visit::Visit;
 
-/// How long it may take. Prometheus waits for ten seconds.
+/// How long an answer may take. Prometheus waits for ten seconds.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// What was counted before, and whose turn it is.
@@ -24,13 +24,13 @@ pub(in crate::web) struct Turns {
 }
 
 impl Turns {
-    /// With nothing counted yet.
+    /// Nothing is counted yet.
     pub(in crate::web) fn new(tally: Tally) -> Self {
         Self { tally, turn: Arc::default() }
     }
 }
 
-/// What `count` finds in the store as it is at one moment; nothing when it cannot be read, or not soon.
+/// What `count` finds in the store as it is at one moment; none when it cannot be read, or not soon enough.
 pub(super) async fn counted<T: Send + 'static>(
     app: &App,
     visit: &Visit,
@@ -40,7 +40,7 @@ pub(super) async fn counted<T: Send + 'static>(
     let found = time::timeout(PATIENCE, async {
         let turn = Arc::clone(&app.turns().turn).lock_owned().await;
         let look = move |now: &Snapshot| {
-            // It ends with the look, however long that takes.
+            // The turn ends with the look, however long that takes.
             let _turn = turn;
             count(now, &of.turns().tally)
         };
@@ -49,7 +49,7 @@ pub(super) async fn counted<T: Send + 'static>(
     match found.await {
         Ok(Ok(Ok(found))) => return Some(found),
         Ok(Ok(Err(error))) => tracing::warn!("what is counted cannot be told: {}", Said::of(&error)),
-        // It is in the log.
+        // The error is in the log already.
         Ok(Err(_)) => {}
         Err(_) => tracing::warn!("what is counted was not read within {} s", PATIENCE.as_secs()),
     }

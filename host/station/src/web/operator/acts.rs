@@ -27,17 +27,17 @@ use crate::web::visit::Visit;
 /// A scan as a page sends it.
 #[derive(Debug, Deserialize)]
 pub(super) struct Scanned {
-    /// The page's own number for it, which comes back.
+    /// The page's own number for it, which the answer repeats.
     #[serde(default)]
     counter: u64,
     text: String,
-    /// The lane whose barcode this page was given before.
+    /// The lane whose barcode was scanned on this page before.
     #[serde(default)]
     lane: String,
     /// Whether a person may have typed it, without what the scanner adds.
     #[serde(default)]
     typed: bool,
-    /// The last beat that a page with a script had heard when it was made.
+    /// The last beat that the page had heard when the scan was made; empty without a script.
     #[serde(default)]
     beat: String,
 }
@@ -45,12 +45,12 @@ pub(super) struct Scanned {
 /// A button as a page sends it.
 #[derive(Debug, Deserialize)]
 pub(super) struct Pressed {
-    /// As of a scan.
+    /// Like that of a scan.
     #[serde(default)]
     beat: String,
 }
 
-/// What became of a scan, for the page that sent it.
+/// The result of a scan, for the page that sent it.
 #[derive(Debug, Serialize)]
 pub(super) struct Answer {
     counter: u64,
@@ -60,7 +60,7 @@ pub(super) struct Answer {
     pub(super) said: String,
     /// The lane that the page's next scan is for.
     pub(super) armed: Option<String>,
-    /// Whether it is somebody else's page from now on.
+    /// Whether somebody else is logged in on the page from now on.
     is_other: bool,
 }
 
@@ -78,14 +78,14 @@ pub(super) async fn scan(
     }
     let until = match app.floor(&visit)?.live.until(&scanned.beat) {
         Ok(until) => until,
-        // The page forgets its lane, too: the barcode of another one may be what came too late.
+        // The page forgets its lane, too: what came too late may be the barcode of another one.
         Err(late) => return Ok(json(&scanned.answer(None, Err(told(&visit, &late)), None))),
     };
     let answer = understood(&app, &visit, &scanned, until).await?;
     if visit.is_script { Ok(json(&answer)) } else { page::answered(app, visit, answer).await }
 }
 
-/// The answer to a badge: who has it tests from then on, in the place of whoever did.
+/// The answer to a badge: its owner tests from then on, instead of whoever did. None if it is no badge.
 async fn badge(
     app: &App,
     visit: &Visit,
@@ -110,7 +110,7 @@ async fn badge(
     Ok(Some(([(SET_COOKIE, cookie)], response).into_response()))
 }
 
-/// What the scan is for, and what became of it; behind `until` nothing does.
+/// Carries out the scan, but not after `until`, and answers it.
 async fn understood(
     app: &App,
     visit: &Visit,
@@ -182,7 +182,7 @@ fn place<'a>(app: &'a App, name: &str) -> Result<(usize, &'a str), ScanError> {
     })
 }
 
-/// What the audit has of a scan. What no plan takes may be a badge that is not known here, of which it has the length alone.
+/// What the audit keeps of a scan. What no plan takes may be a badge that is not known here: only its length is kept.
 fn kept(app: &App, label: &str) -> String {
     let takes = |file: &PlanFile| file.plan.serial.read(label).is_ok();
     match Scan::read(label) {
@@ -193,8 +193,8 @@ fn kept(app: &App, label: &str) -> String {
     }
 }
 
-/// What became of that which `ask` asks of the engine under a number. It stands in the audit before; an abort at the same time: no
-/// disk that is full keeps a board from being let go.
+/// The result of what `ask` asks of the engine under a number. It is entered in the audit first; an abort only at the same time,
+/// so that a full disk does not keep a board from being let go.
 async fn asked(
     app: &App,
     visit: &Visit,
@@ -239,7 +239,7 @@ pub(super) async fn back(button: Button) -> Result<Response, Trouble> {
     done(button, Act::In).await
 }
 
-/// Does it with the lane.
+/// Carries out the act on the lane.
 async fn done(button: Button, act: Act) -> Result<Response, Trouble> {
     let (State(app), visit, Path(lane), Form(pressed)) = button;
     let (place, name) = place(&app, &lane)
@@ -263,7 +263,7 @@ async fn done(button: Button, act: Act) -> Result<Response, Trouble> {
     }
 }
 
-/// What was told, in the visitor's language.
+/// The error in the visitor's language.
 fn told(visit: &Visit, error: &(dyn Error + 'static)) -> String {
     visit.words.tell(&Said::of(error)).text
 }

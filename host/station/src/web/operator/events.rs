@@ -19,7 +19,7 @@ use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
-/// What a proxy is told, so that it keeps nothing back.
+/// The header that tells a proxy to pass everything on at once.
 const UNBUFFERED: HeaderName = HeaderName::from_static("x-accel-buffering");
 
 /// Everything as it is, then what changes.
@@ -38,7 +38,8 @@ struct Follower {
     told: Receiver<Told>,
 }
 
-/// The next event. A page that is too far behind gets none, and so opens anew; nor does one whose user has logged out.
+/// The next event. The stream ends for a page that lags too far behind, which then connects anew, and for one whose user has
+/// logged out.
 async fn next(
     first: Option<String>,
     mut of: Follower,
@@ -76,7 +77,7 @@ fn news(visit: &Visit, told: &Told) -> String {
             let rows = doing.rows.map(|(done, of)| [done, of]);
             json!({ "lane": lane, "run": doing.run, "what": told.text, "lang": told.foreign, "rows": rows })
         }),
-        // Whoever scanned is answered what became of it; it may have been a badge.
+        // Only whoever scanned gets the whole answer: the scan may have been a badge.
         What::Scan(Became { is_taken, lane, .. }) => {
             event_text(id, "scan", &json!({ "is_taken": is_taken, "lane": lane }))
         }
@@ -87,7 +88,7 @@ fn news(visit: &Visit, told: &Told) -> String {
 }
 
 fn event_text(id: u64, name: &str, data: &impl Serialize) -> String {
-    // JSON has no line's end in it, which would end the event.
+    // JSON is written without line breaks, which would end the event.
     let data = serde_json::to_string(data).unwrap_or_default();
     let mut text = String::with_capacity(data.len() + 64);
     let _ = write!(text, "id: {id}\nevent: {name}\ndata: {data}\n\n");

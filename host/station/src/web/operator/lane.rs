@@ -1,4 +1,4 @@
-//! A lane on the page. The server alone draws it, for the page's first look as for every change.
+//! A lane on the page. Only the server draws it, for the page itself and after every change.
 
 use halfrow::Verdict;
 use halfrow::words::plain;
@@ -14,7 +14,7 @@ use crate::web::live::Doing;
 use crate::web::routes::Who;
 use crate::web::visit::Visit;
 
-/// A lane as pages are told of it. They draw no verdict without its run and the hash of its record.
+/// A lane as it is sent to pages. They draw no verdict without its run and the hash of its record.
 #[derive(Debug, Serialize)]
 pub(super) struct LaneEvent {
     lane: String,
@@ -22,13 +22,13 @@ pub(super) struct LaneEvent {
     run: Option<String>,
     verdict: Option<Verdict>,
     record_sha256: Option<String>,
-    /// For those who do not see it.
+    /// For those who do not see the page.
     said: String,
     html: String,
 }
 
 impl LaneEvent {
-    /// Of this state, for `visit`.
+    /// The event of this state, for `visit`.
     pub(super) fn new(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> Self {
         let shown = state.shown.as_ref().filter(|_| is_verdict(state.state));
         let serial = state.serial.as_deref().unwrap_or_default();
@@ -76,7 +76,7 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
     }
 }
 
-/// The serial number; of a run that is over it leads to all that was found.
+/// The serial number; after a run it is a link to all that was found.
 fn serial(serial: &str, shown: Option<&Shown>) -> Markup {
     html! {
         @match shown {
@@ -86,7 +86,7 @@ fn serial(serial: &str, shown: Option<&Shown>) -> Markup {
     }
 }
 
-/// How large a word or a name can be: a class of the style sheet.
+/// The class of the style sheet for how large a word or a name can be.
 fn length(word: &str) -> &'static str {
     match word.chars().count() {
         0..=5 => "short",
@@ -95,11 +95,11 @@ fn length(word: &str) -> &'static str {
     }
 }
 
-/// What the operator does now, and why.
+/// What the operator should do now, and why.
 fn says(visit: &Visit, state: &LaneState) -> Markup {
     let shown = state.shown.as_ref().filter(|_| is_verdict(state.state));
     let note = state.note.as_ref().map(|note| match state.state {
-        // There is one thing to do, whatever is said.
+        // There is only one thing to do, whatever the reason.
         Word::Unsaved => (visit.words.tell(note), None),
         _ => visit.words.parted(note, None),
     });
@@ -135,7 +135,7 @@ fn headline(visit: &Visit, shown: &Shown) -> Told {
     }
 }
 
-/// Why, with what an engineer does when it is pointed at.
+/// The reason; what an engineer should do is shown when it is pointed at.
 fn why(told: &Told, remedy: Option<&Told>) -> Markup {
     html! { p.why lang=[told.foreign] title=[remedy.map(|remedy| &remedy.text)] { (plain(&told.text)) } }
 }
@@ -147,7 +147,7 @@ fn saved(visit: &Visit, shown: &Shown) -> Markup {
     html! { p.saved { time datetime=(format!("{:.3}", at.timestamp())) title=(at.strftime("%Y-%m-%d %H:%M:%S").to_string()) { (words) } } }
 }
 
-/// What the run does; the script puts in what is told later.
+/// What the run does; the script puts in what is reported later.
 fn progress(visit: &Visit, lane: &str, of: Option<&Doing>) -> Markup {
     let (rows, told) = (of.and_then(|of| of.rows), of.map(|of| doing(visit, of)));
     html! {
@@ -166,7 +166,7 @@ pub(super) fn doing(visit: &Visit, doing: &Doing) -> Told {
     }
 }
 
-/// What can be done with the lane, and may be. Before a board is tested it is aborted, and not taken out of service.
+/// What can be done with the lane, and may be by this visitor. A lane that waits is aborted, not taken out of service.
 fn acts(visit: &Visit, state: &LaneState) -> Markup {
     let is_wanted = |act: &Act| *act != Act::Out || !matches!(state.state, Word::Waiting | Word::Out);
     let may =
@@ -182,7 +182,7 @@ fn acts(visit: &Visit, state: &LaneState) -> Markup {
     }
 }
 
-/// The end of its address, and what stands on it.
+/// The end of the button's address, and its label.
 fn button(visit: &Visit, act: Act) -> (&'static str, &'static str) {
     match act {
         Act::Start => ("start", visit.say("lane.start")),

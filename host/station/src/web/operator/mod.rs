@@ -14,7 +14,7 @@ pub(super) fn routes() -> Vec<Route> {
         look("/still", Who::Reader, page::still),
         look("/live", Who::Reader, events::events),
         look("/today", Who::Reader, page::today),
-        // A badge logs in, whoever scans it.
+        // A badge logs somebody in, so anyone may scan.
         act("/scan", Who::Anyone, acts::scan),
         act("/lanes/{lane}/start", Who::Operator, acts::start),
         act("/lanes/{lane}/abort", Who::Operator, acts::abort),

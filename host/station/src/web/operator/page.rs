@@ -18,14 +18,14 @@ use crate::web::state::{App, Floor};
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
-/// How often the lanes come anew without the page's script, in seconds.
+/// How often the lanes are loaded anew without the page's script, in seconds.
 const ANEW: u32 = 5;
 
 pub(super) async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
     drawn(app, visit, None).await
 }
 
-/// The page with what became of a scan that came without a script.
+/// The page with the result of a scan that was sent without a script.
 pub(super) async fn answered(app: App, visit: Visit, answer: Answer) -> Result<Response, Trouble> {
     drawn(app, visit, Some(answer)).await
 }
@@ -46,7 +46,7 @@ async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Respons
             (scan_box(&visit, &now, answer.as_ref()))
             p #notice .notice role="alert" data-lane=(visit.say("hand.lane")) {}
             (hint(hints, &visit, &now))
-            // What is typed meanwhile stays, since the form is in another page than the lanes.
+            // What is typed stays when the lanes are loaded anew, because they are in a page of their own.
             noscript { iframe src="/still" title=(visit.say("nav.lanes")) {} }
             (floor(&visit, &now))
             footer #today data-changes[app.settings().plant.is_some()] { (today) }
@@ -56,7 +56,7 @@ async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Respons
     Ok(Page { here: Here::Lanes, title: visit.say("nav.lanes"), head, content }.answer(&visit))
 }
 
-/// The lanes alone, which come anew without a script.
+/// The lanes alone, which are loaded anew without a script.
 pub(super) async fn still(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
     let (now, today) = (app.floor(&visit)?.live.now(), counted(&app, &visit).await?);
     let head = html! {
@@ -90,12 +90,12 @@ fn floor(visit: &Visit, now: &Now) -> Markup {
     }
 }
 
-/// Which arrangement so many lanes have.
+/// Which arrangement this many lanes have.
 fn shape_of(lanes: usize) -> usize {
     [1, 2, 3, 4, 8].into_iter().find(|&most| lanes <= most).unwrap_or(16)
 }
 
-/// Where scans appear. It is there for whoever is not logged in, too: a badge is scanned.
+/// Where scans appear. It is also there while nobody is logged in, because badges are scanned.
 fn scan_box(visit: &Visit, now: &Now, answer: Option<&Answer>) -> Markup {
     let class = answer.map_or("", |answer| if answer.is_taken { "taken" } else { "refused" });
     html! {
@@ -125,7 +125,7 @@ fn live_lamp(visit: &Visit) -> Markup {
     }
 }
 
-/// For people who type; for browsers without scripts with the lane that was chosen last.
+/// The form for people who type. For browsers without scripts it has the lane that was chosen last.
 fn by_hand(visit: &Visit, now: &Now, unscripted: Option<&str>) -> Markup {
     let is_scripted = unscripted.is_none();
     html! {

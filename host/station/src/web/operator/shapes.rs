@@ -24,9 +24,9 @@ pub(super) fn said(visit: &Visit, word: Word) -> &'static str {
     }
 }
 
-/// What the operator does now. Where more is asked for, it is not said twice.
+/// What the operator should do now. Where the reason itself asks for something, it is not said twice.
 pub(super) fn does(visit: &Visit, state: &LaneState, is_asked: bool) -> Option<&'static str> {
-    // Scans of whoever is not logged in are badges.
+    // While nobody is logged in, scans are badges.
     let is_barred = visit.can_log_in && !visit.may(Who::Operator);
     Some(match state.state {
         Word::Out if is_asked => return None,
@@ -36,7 +36,7 @@ pub(super) fn does(visit: &Visit, state: &LaneState, is_asked: bool) -> Option<&
         Word::Empty => visit.say("does.empty"),
         Word::Ready => visit.say("does.ready"),
         Word::Waiting if state.can.contains(&Act::Start) => visit.say("does.start"),
-        // It is plugging it in that starts this lane.
+        // This lane is started by plugging the board in.
         Word::Waiting if state.is_present => visit.say("does.again"),
         Word::Waiting => visit.say("does.plug"),
         Word::Running => visit.say("does.running"),
@@ -50,7 +50,7 @@ pub(super) fn does(visit: &Visit, state: &LaneState, is_asked: bool) -> Option<&
     })
 }
 
-/// Whether the verdict is the mock board's, and none on the board that is in the lane.
+/// Whether the verdict is on the mock board, and not on the board in the lane.
 pub(super) fn is_of_mock(state: &LaneState) -> bool {
     state.shown.as_ref().is_some_and(|shown| mock::is_mock(&shown.serial))
 }
@@ -62,7 +62,7 @@ pub(super) fn shape(word: Word) -> Markup {
     }
 }
 
-/// In a square of 24.
+/// The outline, in a square of 24 by 24.
 fn path(word: Word) -> &'static str {
     match word {
         Word::Empty => "M12 3a9 9 0 1 0 0 18a9 9 0 1 0 0-18zm0 3a6 6 0 1 1 0 12a6 6 0 1 1 0-12z",
