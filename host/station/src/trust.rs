@@ -1,4 +1,4 @@
-//! Whom this computer trusts when it sends results over a network, and what stays in it.
+//! Whom this computer trusts when it sends results over a network, and which addresses are on this computer.
 
 mod certificate;
 
@@ -13,7 +13,7 @@ use rustls::{ClientConfig, RootCertStore};
 
 pub use certificate::CertificateError;
 
-/// Nobody can be trusted.
+/// Why nobody can be trusted.
 #[derive(Debug, thiserror::Error)]
 pub enum TrustError {
     /// Certificates cannot be read.
@@ -34,13 +34,13 @@ pub enum TrustError {
     Tls(#[source] rustls::Error),
 }
 
-/// Whether what is sent to this host stays in this computer.
+/// Whether what is sent to this host stays on this computer.
 pub(crate) fn is_near(host: &str) -> bool {
     let address = host.trim_start_matches('[').trim_end_matches(']');
     host == "localhost" || address.parse::<IpAddr>().is_ok_and(|ip| ip.is_loopback())
 }
 
-/// What encrypts.
+/// The cryptography that TLS uses.
 pub(crate) fn provider() -> Arc<CryptoProvider> {
     Arc::new(rustls::crypto::ring::default_provider())
 }
@@ -61,7 +61,7 @@ pub(crate) fn certificates(ca: Option<&Path>) -> Result<Vec<CertificateDer<'stat
     if found.is_empty() { Err(TrustError::NoCertificates) } else { Ok(found) }
 }
 
-/// Whoever is signed by one of the file `ca`, or of the system's own, is trusted.
+/// A TLS client that trusts servers whose certificate is signed by one in the file `ca`, or by one of the system's own.
 ///
 /// # Errors
 /// [`TrustError`]
@@ -69,7 +69,7 @@ pub(crate) fn client(ca: Option<&Path>) -> Result<ClientConfig, TrustError> {
     let mut roots = RootCertStore::empty();
     for certificate in certificates(ca)? {
         match roots.add(certificate) {
-            // One of the system's own that is out of date is nobody's fault.
+            // It is nobody's fault if one of the system's own is not usable.
             Err(_) if ca.is_none() => {}
             added => added.map_err(TrustError::Tls)?,
         }

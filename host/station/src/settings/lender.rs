@@ -1,4 +1,4 @@
-//! Which board a lane has: one of this computer's, or one that labgrid lends.
+//! Which board a lane has: one of this computer's own, or one that labgrid lends.
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use super::text::{LabgridText, LaneText, SettingsText};
 use crate::input_error::Fault;
 use crate::labgrid::{KIND, Labgrid, LaneBoard, PROGRAM, Place};
 
-/// How long a place may take to be acquired, in seconds.
+/// How long it may take to acquire a place, in seconds.
 const DEADLINE: f64 = 30.0;
 
 /// Who has boards for lanes.
@@ -25,7 +25,7 @@ impl Lender {
     pub(super) fn of(folder: &Path, read: &SettingsText) -> Result<Self, Fault> {
         let LabgridText { coordinator, program, deadline } = &read.labgrid;
         let program = program.as_ref().map(not_empty).transpose()?.unwrap_or_else(|| PROGRAM.to_owned());
-        // A name without a folder is looked for where the shell looks.
+        // A name without a folder is searched for in `PATH`.
         let program = if program.contains('/') { folder.join(program) } else { PathBuf::from(program) };
         let coordinator = coordinator.as_ref().map(not_empty).transpose()?;
         let deadline = seconds(deadline.as_ref(), DEADLINE)?;
@@ -49,7 +49,7 @@ impl Lender {
         if let Some((what, remedy)) = stable::refused(&board) {
             return Err(Fault::wrong(at, what, remedy));
         }
-        // It is there before any lane is, and opening it changes nothing.
+        // The mock is there before any lane is, and opening it changes nothing.
         if kind.board == BoardKind::Mock {
             link::open(&board).map_err(|error| Fault::input(at, "the board", error))?;
         }

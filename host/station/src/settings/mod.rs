@@ -30,7 +30,7 @@ use crate::web::Address;
 /// The version of the settings' own format.
 pub const SCHEMA: u32 = 1;
 
-/// A station's settings, which were checked against each other and against what they name.
+/// A station's settings, checked against each other and against what they name.
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// Its name.
@@ -43,11 +43,11 @@ pub struct Settings {
     pub memory_mib: u64,
     /// Whether a serial number that is scanned first goes to the next board that is plugged in.
     pub scan_then_plug: bool,
-    /// What the scanner adds before and behind every label.
+    /// What the scanner adds before and after every label.
     pub scanner: Scanner,
-    /// Every plan that a lane names.
+    /// Every plan that a lane or `[work]` names.
     pub plans: Vec<PlanFile>,
-    /// The lanes, at least one.
+    /// The lanes, at least one except in a plant's settings.
     pub lanes: Vec<LaneSettings>,
     /// What is started when a verdict is saved.
     pub hooks: Vec<Hook>,
@@ -55,9 +55,9 @@ pub struct Settings {
     pub address: Address,
     /// Who may act on them; without it, everybody at the computer itself.
     pub access: Option<AccessSettings>,
-    /// Where results are sent on to.
+    /// The plant that results are sent on to.
     pub plant: Option<PlantSettings>,
-    /// Who else is sent results.
+    /// The other sinks that are sent results.
     pub sinks: Vec<SinkSettings>,
     /// Which jobs of the plant it takes.
     pub work: Option<WorkSettings>,
@@ -74,14 +74,14 @@ pub struct AccessSettings {
     pub idle: Duration,
 }
 
-/// What settings have of the plant, whether it was fetched or not.
+/// The plans that settings take from the plant, whether they were fetched or not.
 #[derive(Clone, Debug)]
 pub struct Published {
     /// The station's folder.
     pub data: PathBuf,
     /// Where the plant is.
     pub plant: Option<PlantSettings>,
-    /// The plans that it publishes and lanes or jobs are judged by, each once.
+    /// The plans of the plant by which lanes or jobs are judged, each once.
     pub plans: Vec<PlanName>,
 }
 
@@ -96,7 +96,7 @@ impl Published {
 /// `[work]`
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WorkSettings {
-    /// Its plans, by their places in [`Settings::plans`].
+    /// Its plans, as indexes into [`Settings::plans`].
     pub plans: Vec<usize>,
     /// What it has that jobs may need.
     pub has: Vec<String>,
@@ -120,7 +120,7 @@ pub struct LaneSettings {
     pub name: String,
     /// Its board, by a name that stays.
     pub board: LaneBoard,
-    /// Its plans, by their places in [`Settings::plans`].
+    /// Its plans, as indexes into [`Settings::plans`].
     pub plans: Vec<usize>,
     /// How its runs are started.
     pub starts: Starts,
@@ -129,14 +129,14 @@ pub struct LaneSettings {
 /// What the scanner adds.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Scanner {
-    /// Before.
+    /// Before the label.
     pub prefix: String,
-    /// Behind.
+    /// After the label.
     pub suffix: String,
 }
 
 impl Scanner {
-    /// The label of what was scanned; none if the scanner did not add what it always adds.
+    /// The label in what was scanned; none if the scanner did not add what it always adds.
     #[must_use]
     pub fn label<'a>(&self, scanned: &'a str) -> Option<&'a str> {
         scanned.strip_prefix(self.prefix.as_str())?.strip_suffix(self.suffix.as_str())
@@ -150,13 +150,13 @@ pub struct Hook {
     pub on: Verdict,
     /// The program.
     pub program: PathBuf,
-    /// Its arguments, with [`WORDS`] between braces.
+    /// Its arguments, in which [`WORDS`] in braces are replaced.
     pub arguments: Vec<String>,
     /// How long it may take.
     pub deadline: Duration,
 }
 
-/// What an argument of a hook may have between braces.
+/// The words that an argument of a hook may have in braces.
 pub const WORDS: [&str; 6] = ["lane", "serial", "verdict", "run", "record", "headline"];
 
 impl Settings {
@@ -168,18 +168,18 @@ impl Settings {
         Self::load_for(path, true)
     }
 
-    /// The same of whoever shows a plant, and has no lanes.
+    /// The same for a program that shows a plant, and has no lanes.
     ///
     /// # Errors
-    /// As [`Self::load`].
+    /// Like [`Self::load`].
     pub fn load_plant(path: &Path) -> Result<Self, InputError> {
         Self::load_for(path, false)
     }
 
-    /// What the settings in the file `path` have of the plant; no plan is looked at.
+    /// The plans that the settings in the file `path` take from the plant. No plan is read.
     ///
     /// # Errors
-    /// As [`Self::load`].
+    /// Like [`Self::load`].
     pub fn published(path: &Path) -> Result<Published, InputError> {
         understood(path, |text| read::published(path, text))
     }
@@ -193,12 +193,12 @@ impl Settings {
         lane.plans.iter().filter_map(|&plan| self.plans.get(plan))
     }
 
-    /// The names of all to whom results are sent on.
+    /// The names of all sinks, the plant included.
     pub(crate) fn sink_names(&self) -> impl Iterator<Item = &str> {
         self.plant.iter().map(|_| SINK_OF_PLANT).chain(self.sinks.iter().map(|sink| sink.name.as_str()))
     }
 
-    /// What a plant hears of the station whose folder is called `origin`.
+    /// What a station whose folder has the id `origin` tells the plant of itself.
     #[must_use]
     pub fn presence(&self, origin: String) -> Presence {
         let plan =
@@ -208,7 +208,7 @@ impl Settings {
         Presence { name: self.name.clone(), origin, program, plans, unsent: 0, dead: 0 }
     }
 
-    /// The lanes as they are before a board came.
+    /// The lanes as they are before any board comes.
     #[must_use]
     pub fn floor(&self) -> Floor {
         let place = |lane: &LaneSettings| Place {

@@ -9,7 +9,7 @@ use crate::input_error::Fault;
 use crate::plan::Plan;
 use crate::published::{Kept, PLACE, PublicKey, named_by};
 
-/// Every plan that was named so far, once.
+/// Every plan that was named so far, each once.
 #[derive(Debug)]
 pub(super) struct Plans<'a> {
     folder: &'a Path,
@@ -19,13 +19,13 @@ pub(super) struct Plans<'a> {
 }
 
 impl<'a> Plans<'a> {
-    /// Of settings whose folder is `folder`, of the station that keeps its results in `data`.
+    /// No plans yet, of settings in `folder`, for the station that keeps its results in `data`.
     pub(super) fn beside(folder: &'a Path, data: &Path, plant: Option<&PlantSettings>) -> Self {
         let trusted = plant.map(|plant| plant.trusts.clone()).unwrap_or_default();
         Self { folder, kept: Kept::of(data), trusted, named: Vec::new() }
     }
 
-    /// The place of this plan among them.
+    /// The index of this plan among them; it is loaded when it is named first.
     pub(super) fn take(&mut self, text: &Spanned<String>) -> Result<usize, Fault> {
         let (path, expected) = self.path(text)?;
         if let Some(known) = self.named.iter().position(|known| known.path == path) {

@@ -1,4 +1,4 @@
-//! `[plant]`: where results are sent on to, and who answers for the network between.
+//! `[plant]`: where results are sent on to, and whom to trust on the way.
 
 use std::path::{Path, PathBuf};
 
@@ -10,9 +10,9 @@ use crate::published::PublicKey;
 use crate::secret::{self, SecretError};
 use crate::store::{PlantAddress, PlantAddressError};
 
-/// The variable that may have the password.
+/// The environment variable that may have the password.
 pub(crate) const PASSWORD_OF_PLANT: &str = "HALFROW_PLANT_PASSWORD";
-/// How many results may be unsent until lanes take nothing more.
+/// How many results may be unsent before lanes take nothing more.
 const MOST_UNSENT: u32 = 10_000;
 /// How full the disk may be, in per cent, while results are unsent.
 const MOST_FILLED: u8 = 95;
@@ -25,9 +25,9 @@ pub struct PlantSettings {
     ca: Option<PathBuf>,
     /// Whether a verdict is shown only when the plant has it.
     pub is_green_at_plant: bool,
-    /// How many results may be unsent until lanes take nothing more.
+    /// How many results may be unsent before lanes take nothing more.
     pub most_unsent: u32,
-    /// How full the disk may be, in per cent (1 to 100), until lanes take nothing more while results are unsent.
+    /// How full the disk may be, in per cent (1 to 100), before lanes take nothing more while results are unsent.
     pub most_filled: u8,
     /// The keys of those whose plans are taken.
     pub trusts: Vec<PublicKey>,
@@ -56,7 +56,7 @@ impl PlantSettings {
             most_filled: most_filled(text.most_filled.as_ref())?,
             trusts: text.trusts.iter().map(trusted).collect::<Result<_, _>>()?,
         };
-        // A password is read when it is needed; all else is looked at when the station starts.
+        // A password is read when it is needed; all else is checked now.
         PlantAddress::new(&settings.url, None, settings.ca.as_deref()).map_err(|error| {
             match (&error, &text.ca) {
                 (PlantAddressError::Trust(_), Some(ca)) => {
@@ -68,7 +68,7 @@ impl PlantSettings {
         Ok(settings)
     }
 
-    /// Where the plant is, with the password of its file or of the environment.
+    /// Where the plant is, with the password from its file or from the environment.
     ///
     /// # Errors
     /// [`PlantSettingsError`]

@@ -19,24 +19,24 @@ use crate::lane::{MEMORIES_MIB, MEMORY_MIB};
 use crate::published::named_by;
 use crate::web::Address;
 
-/// Where all keys are listed.
+/// What to do about a wrong key: where all keys are listed.
 const KEYS: &str = "the table \"All settings\" of docs/station.md names every key";
 /// How long a lane may be silent, in seconds.
 const SILENCE: f64 = 60.0;
 /// How long a hook may take, in seconds.
 const DEADLINE: f64 = 10.0;
-/// Where the pages are.
+/// Where the pages are, unless the settings say otherwise.
 const LISTEN: &str = "127.0.0.1:8612";
-/// How long somebody may be idle and stay logged in, and the most.
+/// How long somebody may be idle and stay logged in, and the most that can be set.
 const HOURS: f64 = 8.0;
 const MOST_HOURS: f64 = 720.0;
-/// The longest of either.
+/// The longest silence and the longest deadline.
 const MOST_SECONDS: f64 = 86_400.0;
 /// The most characters of a lane's name, which stands on a barcode and is read from afar.
 const MOST_NAME: usize = 16;
-/// What such a name is made of.
+/// What such a name consists of.
 pub(crate) const LANE_NAME: &str = "1 to 16 letters, digits and hyphens, which a barcode has room for";
-/// The most jobs that are judged at once, each by a process of its own.
+/// The most jobs that may be judged at once, each by a process of its own.
 const MOST_AT_ONCE: u32 = 64;
 
 /// The settings of `text` in the file `path`.
@@ -90,7 +90,7 @@ fn work(text: &WorkText, plans: &mut Plans<'_>) -> Result<WorkSettings, Fault> {
     Ok(WorkSettings { plans: files, has, at_once: at_once(text.at_once.as_ref())? })
 }
 
-/// How many jobs are judged at once: one if nothing is said.
+/// How many jobs are judged at once; by default one.
 fn at_once(text: Option<&Spanned<u32>>) -> Result<u32, Fault> {
     let wanted = text.map_or(1, |text| *text.get_ref());
     match text {
@@ -112,7 +112,7 @@ fn read(text: &str) -> Result<SettingsText, Fault> {
     Ok(read)
 }
 
-/// The plans that the settings of `text` would have of the plant, where the station's folder is, and the plant.
+/// The plans that the settings of `text` take from the plant, the station's folder, and where the plant is.
 pub(super) fn published(path: &Path, text: &str) -> Result<Published, Fault> {
     let read = read(text)?;
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -130,7 +130,7 @@ pub(crate) fn is_word(word: &str) -> bool {
     !word.is_empty() && !word.contains(|letter: char| letter.is_whitespace() || letter.is_control())
 }
 
-/// Whoever else is sent results, each under a name of its own.
+/// The other sinks that are sent results, each under a name of its own.
 fn sinks(folder: &Path, read: &SettingsText) -> Result<Vec<SinkSettings>, Fault> {
     let mut sinks = Vec::<SinkSettings>::new();
     for text in &read.sink {
@@ -144,7 +144,7 @@ fn sinks(folder: &Path, read: &SettingsText) -> Result<Vec<SinkSettings>, Fault>
     Ok(sinks)
 }
 
-/// Where the pages are. Whatever others can reach has people who log in.
+/// Where the pages are. If others can reach them, people must log in.
 fn address(read: &SettingsText) -> Result<Address, Fault> {
     let WebText { listen, public, hosts } = &read.web;
     let at = |text: &Option<Spanned<String>>| text.as_ref().map(|text| text.span().start);
@@ -228,12 +228,12 @@ fn lanes(folder: &Path, read: &SettingsText, plans: &mut Plans<'_>) -> Result<Ve
     Ok(lanes)
 }
 
-/// Whether a lane may be called so.
+/// Whether a lane may have this name.
 pub(crate) fn is_lane_name(name: &str) -> bool {
     is_name(name, MOST_NAME)
 }
 
-/// Whether something may be called so whose names have up to `most` characters.
+/// Whether this is a name of at most `most` characters.
 pub(super) fn is_name(name: &str, most: usize) -> bool {
     (1..=most).contains(&name.len()) && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-')
 }
@@ -277,7 +277,7 @@ fn hooks(folder: &Path, read: &SettingsText) -> Result<Vec<Hook>, Fault> {
 
 fn hook(folder: &Path, on: Verdict, text: &HookText) -> Result<Hook, Fault> {
     let written = not_empty(&text.program)?;
-    // A name without a folder is looked for where the shell looks.
+    // A name without a folder is searched for in `PATH`.
     let program = if written.contains('/') { folder.join(&written) } else { PathBuf::from(&written) };
     if written.contains('/') && !program.is_file() {
         let what = format!("there is no program {}", program.display());
@@ -298,7 +298,7 @@ fn hook(folder: &Path, on: Verdict, text: &HookText) -> Result<Hook, Fault> {
     Ok(Hook { on, program, arguments, deadline: seconds(text.deadline.as_ref(), DEADLINE)? })
 }
 
-/// The first word between braces that stands for nothing.
+/// The first word in braces that stands for nothing.
 fn unknown_word(argument: &str) -> Option<&str> {
     let words = argument.split('{').skip(1).filter_map(|piece| piece.split_once('}'));
     words.map(|(word, _)| word).find(|word| !WORDS.contains(word))

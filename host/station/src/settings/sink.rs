@@ -19,7 +19,7 @@ const MOST_NAME: usize = 32;
 /// A `[[sink]]`
 #[derive(Clone, Debug)]
 pub struct SinkSettings {
-    /// Its name, under which the outbox keeps what it has.
+    /// Its name, by which the outbox keeps what it has.
     pub name: String,
     /// Where it is.
     pub to: Destination,
@@ -28,14 +28,14 @@ pub struct SinkSettings {
 /// Where results are sent to.
 #[derive(Clone, Debug)]
 pub enum Destination {
-    /// A file for each into a folder.
+    /// A folder, which gets a file for each.
     Folder {
         /// The folder.
         path: PathBuf,
         /// What runs are written as.
         format: Format,
     },
-    /// A request for each to a web server.
+    /// A web server, which gets a request for each.
     Post {
         /// Where it is.
         address: SinkAddress,
@@ -43,24 +43,24 @@ pub enum Destination {
         format: Format,
         /// The file with the token that lets the station in.
         token: Option<PathBuf>,
-        /// Whom requests go through, as they are: it sees neither them nor the answers.
+        /// The proxy that connects the station with the server. It sees neither requests nor answers.
         proxy: Option<Proxy>,
     },
-    /// An event for each to a broker of MQTT.
+    /// A broker of MQTT, which gets an event for each.
     Events {
-        /// Where it is; what topics begin with is its path.
+        /// Where it is; topics begin with its path.
         address: SinkAddress,
-        /// Who lets the station in.
+        /// How the station logs in.
         login: Option<Login>,
     },
 }
 
-/// Who the station is to a broker.
+/// How the station logs in at a broker.
 #[derive(Clone, Debug)]
 pub struct Login {
     /// The name.
     pub user: String,
-    /// The file of the password.
+    /// The file with the password.
     pub password: PathBuf,
 }
 
@@ -73,7 +73,7 @@ pub struct SinkAddress {
     pub host: String,
     /// The port.
     pub port: u16,
-    /// What stands behind them.
+    /// The path after them.
     pub path: String,
     /// Whether it goes through TLS.
     pub is_protected: bool,
@@ -81,7 +81,7 @@ pub struct SinkAddress {
     pub ca: Option<PathBuf>,
 }
 
-/// The schemes of a way to send: open, protected, and the port of each.
+/// The schemes of a way to send, in clear and by TLS, and the default port of each.
 type Schemes = [(&'static str, u16); 2];
 
 const HTTP: Schemes = [("http", 80), ("https", 443)];
@@ -165,7 +165,7 @@ fn login(folder: &Path, text: &SinkText) -> Result<Option<Login>, Fault> {
     }
 }
 
-/// The address of a broker, whose path every topic begins with.
+/// The address of a broker, unless its path, with which every topic begins, is not fit for topics.
 fn topics(url: &Spanned<String>) -> Result<&Spanned<String>, Fault> {
     if !url.get_ref().contains(['+', '#', '?']) {
         return Ok(url);
@@ -174,7 +174,7 @@ fn topics(url: &Spanned<String>) -> Result<&Spanned<String>, Fault> {
     Err(Fault::wrong(url.span().start, what, "leave them out"))
 }
 
-/// The proxy to a server at `to`. What goes through one leaves this computer.
+/// The proxy to a server at `to`. What goes through a proxy leaves this computer, so it must be protected.
 fn proxy(text: Option<&Spanned<String>>, to: &SinkAddress) -> Result<Option<Proxy>, Fault> {
     let Some(text) = text else { return Ok(None) };
     let wrong = |what, remedy| Fault::wrong(text.span().start, what, remedy);
@@ -194,7 +194,7 @@ fn proxy(text: Option<&Spanned<String>>, to: &SinkAddress) -> Result<Option<Prox
     proxy.build().map(Some).map_err(|_| no_proxy())
 }
 
-/// What leaves this computer goes through TLS, and no address has a password.
+/// The address of a sink. What leaves this computer goes through TLS, and no address has a password.
 fn address(
     text: &Spanned<String>,
     [open, protected]: Schemes,

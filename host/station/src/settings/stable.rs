@@ -1,4 +1,4 @@
-//! Names of boards that stay when another one is plugged in first.
+//! Names of boards that stay the same when another board is plugged in first.
 
 use std::path::Path;
 
@@ -34,7 +34,7 @@ pub(super) fn refused(board: &Target) -> Option<(String, String)> {
     }
 }
 
-/// Whether the kernel counts such ports in the order in which they come.
+/// Whether the kernel numbers such ports in the order in which they appear.
 fn may_move(path: &str) -> bool {
     ["/dev/ttyUSB", "/dev/ttyACM"].iter().any(|counted| path.starts_with(counted))
 }

@@ -1,4 +1,4 @@
-//! The settings as they stand in their file, each value with its place where an error may name it.
+//! The settings as they stand in their file. A value that an error may name has its place with it.
 
 use serde::Deserialize;
 use toml::Spanned;

@@ -1,4 +1,4 @@
-//! What is wrong with a certificate by which the other side was not trusted.
+//! What is wrong with a certificate because of which the other side was not trusted.
 
 use std::error::Error;
 use std::io;
@@ -91,14 +91,14 @@ impl CertificateError {
                 host,
                 names: presented.iter().map(|name| bare(name)).collect::<Vec<_>>().join(", "),
             },
-            // A signer of the same name has another key.
+            // A bad signature means that a signer of the same name has another key.
             Invalid::UnknownIssuer | Invalid::BadSignature => Self::Stranger { host },
             invalid => Self::Unfit { host, source: rustls::Error::InvalidCertificate(invalid.clone()) },
         }
     }
 }
 
-/// What led to an error; some have it elsewhere than as their source.
+/// The cause of an error; some errors have it elsewhere than in their source.
 fn within<'a>(error: &'a (dyn Error + 'static)) -> Option<&'a (dyn Error + 'static)> {
     if let Some(error) = error.downcast_ref::<io::Error>() {
         return error.get_ref().map(|error| error as _);
@@ -115,7 +115,7 @@ fn moment(time: UnixTime) -> String {
     clock::local(ms).strftime("%Y-%m-%d %H:%M").to_string()
 }
 
-/// A name of a certificate without its kind: `DnsName("mes.example")`.
+/// A name of a certificate without its kind: of `DnsName("mes.example")` the text in quotes.
 fn bare(name: &str) -> String {
     let bare = name.split_once('(').and_then(|(_, rest)| rest.strip_suffix(')'));
     bare.unwrap_or(name).trim_matches('"').to_owned()

@@ -1,4 +1,4 @@
-//! What is held at a plant: a thread renews it, and says when it is lost.
+//! What is held at a plant: a thread renews the lease, and notes when it is lost.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
@@ -10,15 +10,15 @@ use crate::guard::guarded;
 use crate::said::Said;
 use crate::store::{Claim, LEASE_MS, Lease, Plant, PlantLink, StoreError};
 
-/// How long it is held from the last time that it was renewed.
+/// How long it is held after it was last renewed.
 const HELD: Duration = Duration::from_millis(LEASE_MS.unsigned_abs());
-/// How often it is renewed: three times as often as it must be.
+/// The time between two renewals, which are three times as often as they must be.
 const RENEWED: Duration = Duration::from_millis(LEASE_MS.unsigned_abs() / 3);
-/// How soon it is tried again when the plant did not answer.
+/// How soon a renewal is tried again when the plant did not answer.
 const AGAIN: Duration = Duration::from_secs(1);
-/// How long in front of the end of its lease something is taken for lost: a lane that heeds its station asks nothing of the board any
-/// more by then. One that does not is killed some seconds later, when somebody else may have the board; the board itself refuses its
-/// packets then, for its session is over.
+/// How long before the end of its lease something counts as lost: in this time a lane that heeds its station stops using the
+/// board. One that does not is killed some seconds later, when somebody else may have the board; by then the board itself refuses
+/// its packets, because its session is over.
 const ENDS: Duration = Duration::from_secs(4);
 
 /// What is held.
@@ -72,11 +72,11 @@ pub enum Lost {
     },
 }
 
-/// Something that is held until this is dropped or ended, or it is lost.
+/// Something that is held until this is dropped or ended, or until it is lost.
 #[derive(Debug)]
 pub struct Holding {
     known: Arc<Known>,
-    /// Dropped, it ends the thread.
+    /// Ends the thread when it is dropped.
     stop: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
@@ -125,7 +125,8 @@ impl Drop for Holding {
     }
 }
 
-/// What is known of something that is held. Time alone loses it: whoever renews it may be stuck in a question.
+/// What is known of something that is held. The mere passing of time loses it, since the thread that renews it may be stuck in a
+/// question.
 #[derive(Debug)]
 struct Known {
     board: String,
@@ -136,7 +137,7 @@ struct Known {
 #[derive(Debug)]
 struct Renewed {
     since: Instant,
-    /// Why it was not since.
+    /// Why it was not renewed since then.
     said: String,
 }
 
@@ -160,7 +161,7 @@ impl Known {
         })
     }
 
-    /// It was held still behind `since`.
+    /// Notes that it was still held after `since`.
     fn renew(&self, since: Instant) {
         self.renewed().since = since;
     }
@@ -174,7 +175,7 @@ impl Known {
     }
 }
 
-/// Renews what is held until it is stopped, and gives it back then; ends when it is lost.
+/// Renews what is held until it is stopped, and then gives it back. Ends when it is lost.
 fn renew(plant: &PlantLink, held: &Held, known: &Known, stopped: &Receiver<()>) {
     let mut wait = RENEWED;
     while stopped.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
@@ -211,14 +212,14 @@ fn give_back(plant: &PlantLink, held: &Held) {
 mod tests {
     use super::*;
 
-    /// What was last renewed so long ago.
+    /// Something that was last renewed this long ago.
     fn renewed(ago: Duration) -> Known {
         let since = Instant::now().checked_sub(ago).unwrap();
         let renewed = Mutex::new(Renewed { since, said: "no route to host".to_owned() });
         Known { board: "shelf-1".to_owned(), is_taken: AtomicBool::new(false), renewed }
     }
 
-    /// Whoever renews it may be stuck in a question: nobody tells that it is lost.
+    /// The thread that renews it may be stuck in a question, and so may not note that it is lost.
     #[test]
     fn time_alone_loses_what_is_held_before_somebody_else_may_have_it() {
         let lost = renewed(HELD.checked_sub(ENDS).unwrap()).lost().unwrap();

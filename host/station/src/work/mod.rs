@@ -1,9 +1,9 @@
 //! A station that takes jobs of its plant, as many at once as its settings say, each on a board that several computers share.
 //!
 //! ```text
-//!  claim: job and board, together ─► run, as every run ─► kept here ─► outbox ─► plant: the job is done, by just this run
+//!  claim: job and board, together ─► run, like any run ─► kept here ─► outbox ─► plant: the job is done, by this very run
 //!      └ held: renewed every ten seconds ────────────────────────────────────────┘
-//!        └ lost: the run is ended; what comes of it is kept and does not count
+//!        └ lost: the run is ended; its result is kept and does not count
 //! ```
 
 mod held;
@@ -28,15 +28,15 @@ use crate::said::Said;
 use crate::settings::{PlanFile, Settings};
 use crate::store::{Claim, InLane, PlantError, PlantLink, Presence, SharedStore, StoreError, Worker};
 
-/// Who acts, to records and to the plant's audit.
+/// The operator in records and in the plant's audit.
 const OPERATOR: &str = "job";
-/// How often it is asked for a job while there is none, in milliseconds.
+/// About how long to wait before asking for a job again, in milliseconds.
 const IDLE_MS: u64 = 1_000;
-/// And while the plant is away, or the station's own store is not well.
+/// The same while the plant is away, or the station's own store fails.
 const AWAY_MS: u64 = 5_000;
-/// How often the plant is told that a board is out, until it hears it.
+/// How many times the station tries to tell the plant that a board is out.
 const TRIES_OUT: u32 = 40;
-/// How often it is looked whether the plant has a run.
+/// The time between two checks whether the plant has a run, or a wait is over.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// A job that came to no run.
@@ -77,34 +77,34 @@ pub enum WorkError {
 }
 
 impl WorkError {
-    /// Whether the board was not touched, for a reason that is the station's and not the job's.
+    /// Whether the board was not touched, for a reason that lies with the station and not with the job.
     const fn is_not_begun(&self) -> bool {
         matches!(self, Self::Run(RunError::NotBegun(_) | RunError::NoRandomness(_)))
     }
 
-    /// Whether the station's own store is not well, so that another job would come to no more.
+    /// Whether the station's own store fails, so that another job would get no further.
     #[must_use]
     pub const fn is_of_store(&self) -> bool {
         self.is_not_begun() || matches!(self, Self::Run(RunError::Unsaved { .. }))
     }
 }
 
-/// What became of a job.
+/// The result of a job.
 #[derive(Debug)]
 pub struct Judged {
     /// The job.
     pub claim: Claim,
     /// Its run.
     pub saved: Saved,
-    /// Whether the plant had it when it was last looked.
+    /// Whether the plant had it at the last check.
     pub is_sent: bool,
-    /// Why the plant, which is there, does not take it.
+    /// Why the plant, which is there, does not take it, if it does not.
     pub refused: Option<String>,
-    /// Whether it counts there: its job was not cancelled, nor claimed again. None until the plant has it and says so.
+    /// Whether it counts there, because its job was neither cancelled nor claimed again. None until the plant has it and says so.
     pub counts: Option<bool>,
 }
 
-/// Somebody who takes jobs.
+/// A station that takes jobs.
 #[derive(Debug)]
 pub struct Work<'a> {
     /// The station's settings.
@@ -113,9 +113,9 @@ pub struct Work<'a> {
     pub plant: PlantLink,
     /// The station's store, whose outbox is at work.
     pub store: SharedStore,
-    /// The program whose `lane` is started.
+    /// The program whose command `lane` is started.
     pub program: PathBuf,
-    /// Who it is to the plant.
+    /// Its identity at the plant.
     pub worker: Worker,
 }
 
@@ -128,7 +128,7 @@ impl Work<'_> {
         self.plant.ask(|plant| plant.claim(&self.worker))
     }
 
-    /// The next job that this station can judge; none when `stop` says so before there is one. A plant that is away is waited for.
+    /// Waits for the next job that this station can judge, also while the plant is away; none when `stop` ends the wait.
     ///
     /// # Errors
     /// [`StoreError`] when the plant is there and refuses.
@@ -147,7 +147,7 @@ impl Work<'_> {
         Ok(None)
     }
 
-    /// Gives a job back that was not begun, which costs it no attempt.
+    /// Gives back a job that was not begun. This costs the job no attempt.
     pub fn decline(&self, claim: &Claim) {
         let back = self.plant.ask(|plant| plant.decline(claim));
         free_later(&claim.job, back);
@@ -156,7 +156,7 @@ impl Work<'_> {
     /// Judges the board of a claim, keeps the result, and waits until the plant has it or does not take it, or the claim is lost.
     ///
     /// # Errors
-    /// [`WorkError`] when there is no run; the job is another's then once the claim has run out.
+    /// [`WorkError`] when there is no run. Then others may take the job, at the latest when the claim has run out.
     pub fn judge(
         &self,
         claim: Claim,
@@ -191,8 +191,8 @@ impl Work<'_> {
         Ok(Judged { claim, is_sent, refused, counts, saved })
     }
 
-    /// Waits until another job may come to more than that which ended with `error`: what could not be saved is closed first, since
-    /// nothing else is begun on its board before.
+    /// Waits until another job may get further than the one that ended with `error`. What could not be saved is closed first,
+    /// because nothing else can begin on its board before that.
     pub fn settle(&self, error: &WorkError, stop: &dyn Fn() -> Option<StoppedBy>) {
         if !error.is_of_store() {
             return;
@@ -208,8 +208,8 @@ impl Work<'_> {
         }
     }
 
-    /// Has nobody get a board any more that a process may still have which cannot be killed. The board is held until the plant
-    /// knows, or has been away for some minutes; a program that is to end tries for a moment.
+    /// Takes out a board that a process which cannot be killed may still have, so that nobody gets it. The board is held until
+    /// the plant knows, or has been away for some minutes; a program that is to end tries only for a moment.
     fn take_out(&self, board: &str, stop: &dyn Fn() -> Option<StoppedBy>) {
         let station = &self.worker.station;
         let why = format!(
@@ -261,8 +261,8 @@ impl Work<'_> {
         Ok(run::run(&self.store, &order, watched)?)
     }
 
-    /// Has the plant hear of this station, which it takes nothing of while another one has its name. One that is away is waited for
-    /// if it `may_be_away`.
+    /// Tells the plant of this station, from which it takes nothing while another one has its name. Waits for a plant that is
+    /// away if it `may_be_away`.
     ///
     /// # Errors
     /// [`PlantError`] when it is there and refuses.
@@ -284,15 +284,15 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Waits until the plant has a run that it did not take, or a person is to look at it.
+    /// Waits until the plant has a run that it did not take, or that run waits for a person.
     pub fn until_taken(&self, run: &str, stop: &dyn Fn() -> Option<StoppedBy>) {
         while stop().is_none() && matches!(self.sent(run, &|| true), Sent::NotYet) {
             rest(AWAY_MS, stop);
         }
     }
 
-    /// How it stands with a run at the plant, as [`sent::awaited`] says. A store that does not tell is waited for no longer: the run
-    /// is saved, and sent whenever the outbox can.
+    /// The state of a run at the plant, as [`sent::awaited`] says. If the store cannot say, it is not waited for: the run is
+    /// saved, and sent when the outbox can.
     fn sent(&self, run: &str, is_over: &dyn Fn() -> bool) -> Sent {
         let folder = self.store.with(|store| store.folder().clone());
         sent::awaited(&folder, run, is_over).unwrap_or_else(|error| {
@@ -307,20 +307,21 @@ impl Work<'_> {
     }
 }
 
-/// Waits for about so long, or until `stop` says so: stations that were started together do not ask together.
+/// Waits for about this long, or until `stop` says so. The time is random so that stations which were started together do not ask
+/// together.
 fn rest(about_ms: u64, stop: &dyn Fn() -> Option<StoppedBy>) {
     let wait = rng().random_range(about_ms / 2..about_ms * 3 / 2);
     sleep_unless(Duration::from_millis(wait), &|| stop().is_some());
 }
 
-/// Says that a job which could not be given `back` is free later.
+/// Warns that a job which could not be given `back` is free only later.
 fn free_later(job: &str, back: Result<(), StoreError>) {
     if let Err(error) = back {
         tracing::warn!("the job {job} is free when its lease has run out: {}", Said::of(&error));
     }
 }
 
-/// A run that ends when what it is about is lost.
+/// Ends a run when its job and board are lost.
 struct Watched<'a> {
     holding: &'a Holding,
     stop: &'a dyn Fn() -> Option<StoppedBy>,
@@ -344,7 +345,7 @@ impl Watch for Watched<'_> {
     }
 }
 
-/// Waits so long, or until it `is_over`.
+/// Waits this long, or until it `is_over`.
 pub(crate) fn sleep_unless(wait: Duration, is_over: &dyn Fn() -> bool) {
     let until = Instant::now() + wait;
     while !is_over() && Instant::now() < until {

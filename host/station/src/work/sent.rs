@@ -1,4 +1,4 @@
-//! Whether the plant has the run of a job, and what it says when it does not take it.
+//! Whether the plant has the run of a job, and why if it does not take it.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -7,22 +7,22 @@ use super::LOOK;
 use crate::said::Said;
 use crate::store::{Folder, LEASE_MS, SINK_OF_PLANT, Snapshot, StoreError};
 
-/// How long a plant that says something else may take nothing: as long as one that is away may be away.
+/// How long a plant that answers may take nothing: as long as a plant may be away before a lease runs out.
 const PATIENCE: Duration = Duration::from_millis(LEASE_MS.unsigned_abs());
 
-/// How it stands with a run at the plant.
+/// The state of a run at the plant.
 #[derive(Debug)]
 pub(super) enum Sent {
     /// The plant has it.
     Yes,
-    /// It is sent whenever the outbox can.
+    /// It will be sent when the outbox can.
     NotYet,
     /// The plant does not take it, for this reason.
     Refused(Said),
 }
 
-/// How it stands with a run at the plant once that has it, a person is to look at it, or the plant has taken nothing for too long;
-/// it is waited for no longer when that `is_over`.
+/// The state of a run at the plant. Waits until the plant has it, the run waits for a person, the plant has taken nothing for too
+/// long, or the wait `is_over`.
 pub(super) fn awaited(folder: &Folder, run: &str, is_over: &dyn Fn() -> bool) -> Result<Sent, StoreError> {
     let mut until = Instant::now() + PATIENCE;
     loop {
@@ -37,7 +37,7 @@ pub(super) fn awaited(folder: &Folder, run: &str, is_over: &dyn Fn() -> bool) ->
             return Ok(Sent::NotYet);
         }
         if Instant::now() >= until {
-            // Nothing is said while it waits behind others.
+            // Nothing is said of the run itself while it waits in line after others.
             if let Some(said) = entry.said.map_or_else(|| said_last(folder), |said| Ok(Some(said)))? {
                 return Ok(Sent::Refused(said));
             }
@@ -47,7 +47,7 @@ pub(super) fn awaited(folder: &Folder, run: &str, is_over: &dyn Fn() -> bool) ->
     }
 }
 
-/// What the plant said last to anything that is tried again.
+/// What the plant said last about anything that will be tried again.
 fn said_last(folder: &Folder) -> Result<Option<Said>, StoreError> {
     let unsent = Snapshot::take(folder)?.unsent()?;
     Ok(unsent.into_iter().find(|unsent| unsent.sink == SINK_OF_PLANT).and_then(|unsent| unsent.said))
