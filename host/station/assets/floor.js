@@ -21,7 +21,7 @@ export function draw(event) {
   return true;
 }
 
-// Shows what the lane's run does.
+// Shows what the lane's run is doing.
 export function progress({ lane, what, lang, rows }) {
   const doing = place(lane)?.querySelector(".doing"), bar = place(lane)?.querySelector("progress");
   if (!doing || !bar) return;

@@ -1,9 +1,10 @@
-// The station's news. Without a beat for almost three seconds nothing here is live; then they are opened anew every two.
+// The station's news. Without a beat for almost three seconds nothing here is live; then the page reconnects every two seconds.
 
 const QUIET = 2800, AGAIN = 2000, LOOK = 100, RELOADS = 10000;
 const NAMES = ["snapshot", "lane", "doing", "scan", "hook", "beat"];
 
-// The page was made with `mark`. Returns what tells the last beat that was heard; nothing while the page is not live.
+// `mark` is the mark with which the page was made. Returns a function that gives the last beat heard, or "" while the page is not
+// live.
 export function live({ mark, hear, show }) {
   let source, id, opened, beat = "", heard = -Infinity;
   const now = () => performance.now();
@@ -15,7 +16,7 @@ export function live({ mark, hear, show }) {
     const mine = source;
     for (const name of NAMES) source.addEventListener(name, (event) => mine === source && take(event));
   };
-  // Lanes, plans or the program are others than those of this page.
+  // The lanes, the plans or the program are not those of this page any more.
   const leave = () => {
     source.close();
     [source, opened] = [undefined, now() + RELOADS];
@@ -24,7 +25,7 @@ export function live({ mark, hear, show }) {
   const take = (event) => {
     const at = Number(event.lastEventId), said = JSON.parse(event.data);
     if (event.type === "snapshot" && said.mark !== mark) return leave();
-    // Something was missed: what is shown may be wrong.
+    // Some news were missed, so what is shown may be wrong.
     if (event.type !== "snapshot" && at !== id + 1) return open();
     id = at;
     if (said.beat) [beat, heard] = [said.beat, now()];

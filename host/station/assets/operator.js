@@ -8,16 +8,16 @@ import { isOn, play, turn } from "./sound.js";
 const station = document.getElementById("station").dataset;
 const by = (id) => document.getElementById(id);
 const put = (id, text) => { if (by(id)) by(id).textContent = text; };
-// What did not arrive may have been a lane's barcode, so that the next scan is for none.
+// What did not arrive may have been a lane's barcode, so the next scan is for no lane.
 const UNSENT = { is_taken: false, said: station.unsent, armed: "" };
-// Longer than the station takes anything behind the beat that it names.
+// In milliseconds: longer than the station accepts anything after the beat that it names.
 const PATIENT = 10000;
 // What each lane showed last.
 const shown = new Map();
 let armed = "", sent = 0, answered = 0, queue = Promise.resolve(), todayIsStale = false, noticed = "";
 
-// Acts go out one after another, so that a scan is for the lane whose barcode was scanned just before. Each names the last beat
-// that was heard when it was made: the station refuses what comes late, when another board may be there.
+// Acts are sent one after another, so that a scan is for the lane whose barcode was scanned just before. Each names the last beat
+// heard when it was made: the station refuses what arrives late, because another board may be there by then.
 function post(path, fields, show) {
   const made = beat();
   if (!made) return refuse(show);
@@ -27,7 +27,7 @@ function post(path, fields, show) {
     const signal = AbortSignal.timeout(PATIENT);
     try {
       const answer = await fetch(path, { method: "POST", body, signal, headers: { accept: "application/json" } });
-      // Whoever the page is for is not logged in any more.
+      // The user of the page is not logged in any more.
       if (answer.status === 401 && "known" in station) return location.reload();
       show(await answer.json());
     } catch {
@@ -36,7 +36,7 @@ function post(path, fields, show) {
   });
 }
 
-// What is not live takes nothing. A session that is over ends what is live as well, and whoever scans then is to log in.
+// A page that is not live takes nothing. The reason may be that the session is over; then the page is loaded anew to log in.
 function refuse(show) {
   show(UNSENT);
   if (!("known" in station)) return;
@@ -76,7 +76,7 @@ function lane(event, isNews) {
   arm(armed);
   const shows = `${event.state} ${event.run}`, isAsBefore = shown.get(event.lane) === shows;
   shown.set(event.lane, shows);
-  // A board that comes or goes changes what can be done, and nothing of what was told.
+  // A board that comes or goes changes what can be done, but there is nothing new to say.
   if (isAsBefore) return;
   if (noticed === event.lane) put("notice", noticed = "");
   if (!isNews) return;
@@ -85,7 +85,7 @@ function lane(event, isNews) {
   todayIsStale ||= Boolean(event.verdict);
 }
 
-// It is of a verdict that stands, and no answer to a scan.
+// A failed hook belongs to a verdict that is shown; it is no answer to a scan.
 function hook({ lane, said }) {
   noticed = lane;
   put("notice", `${by("notice").dataset.lane} ${lane}: ${said}`);
@@ -106,7 +106,7 @@ const HEAR = {
   scan: () => {},
   hook,
   beat: ({ clock }) => {
-    // Behind midnight another day is counted.
+    // After midnight another day is counted.
     todayIsStale ||= clock < by("clock")?.textContent;
     put("clock", clock);
   },
@@ -159,5 +159,5 @@ if (by("hand")) {
   by("sound").setAttribute("aria-pressed", isOn());
   by("sound").addEventListener("click", () => { turn(!isOn()); by("sound").setAttribute("aria-pressed", isOn()); play("PASS"); });
 }
-// What is at the plant changes without news.
+// What the plant has changes without news.
 setInterval(() => { todayIsStale ||= "changes" in by("today").dataset; today(); }, 5000);

@@ -1,6 +1,6 @@
-// A scanner is a keyboard. Its keys count wherever the focus is; Enter or Tab alone ends a scan, whatever time it takes.
+// A scanner is a keyboard. Its keys count wherever the focus is; only Enter or Tab ends a scan, however long it takes.
 
-// Keys by which scanners send control characters. No label has them, so what has one is refused by the station.
+// Keys with which scanners send control characters. No label has any, so the station refuses a scan with one.
 const CONTROL = /^[@[\\\]^_]$/;
 
 export function scanner({ isTyping, show, scanned }) {
@@ -28,7 +28,7 @@ export function scanner({ isTyping, show, scanned }) {
       keep(event);
       scanned(whole);
     } else if (isOver && event.key === "Enter") {
-      // Some end a scan with two keys. The second must press no button.
+      // Some scanners end a scan with two keys. The second one must not press a button.
       keep(event);
     } else if (event.key !== "Shift") {
       isOver = false;

@@ -1,4 +1,4 @@
-// A sound for each verdict, and for what is refused: told apart by their course, not by their pitch alone.
+// A sound for each verdict, and for what is refused. They differ in their course, not only in pitch.
 
 const SOUNDS = {
   PASS: { wave: "sine", notes: [[660, 0.12], [990, 0.22]] },
