@@ -1,5 +1,5 @@
--- What a FAIL failed by: the part that is suspected first, and every check, which is a limit that blames the board, or a
--- step that failed by more than its limits.
+-- What a FAIL failed by: the part that is suspected first, and every failed check, which is a limit that blames the board, or
+-- a step that failed by more than its limits.
 INSERT INTO failure (run_id, kind, name, unit_id, plan_sha256, lane, started_ms)
 SELECT run.id, 'part', coalesce(suspect.part, ''), run.unit_id, run.plan_sha256, run.lane, run.started_ms
 FROM run

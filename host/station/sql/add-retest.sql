@@ -1,4 +1,4 @@
--- This judgement, if it is not the unit's first, beside the first under plans of the same name.
+-- Enters this judgement, if it is not the unit's first, together with the first one under plans of the same name.
 INSERT INTO retest (unit_id, plan, judgements, first_run, first_plan_sha256, station, lane, first_ms, first_verdict,
   last_run, last_ms, last_verdict)
 SELECT again.unit_id, theirs.name, again.nth, earliest.id, earliest.plan_sha256, earliest.station, earliest.lane,

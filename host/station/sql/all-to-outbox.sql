@@ -1,4 +1,4 @@
--- All that was kept while nobody sent it to this sink.
+-- Enters for this sink all that was kept before and has no entry for it.
 INSERT INTO outbox (sink, kind, subject, attempts, next_ms)
 SELECT $1, kind, subject, 0, 0 FROM (
   SELECT 'run' AS kind, id AS subject FROM run WHERE state = 'final'

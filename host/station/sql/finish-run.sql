@@ -1,4 +1,4 @@
--- The n-th judgement of this unit under plans of this name; an ERROR uses up none. The mock that checks a shift is no
+-- nth counts the judgements of this unit under plans of this name; an ERROR uses up no number. The mock that checks a shift is no
 -- unit: its runs have the number 0, and count nowhere.
 UPDATE run SET
   state = 'final', verdict = $1, exit_code = $2, cause = $3, headline = $4, ended_ms = $5, record_sha256 = $6,

@@ -1,5 +1,5 @@
--- What a station takes for one and the plant does not, each with what stands against it. A person who bound one of the two anew
--- since has settled it.
+-- Devices and units that belong together for a station and not for the plant, each with the binding that contradicts this. It is
+-- settled if a person has bound one of the two anew since.
 SELECT mismatch.station, mismatch.device, unit.product, unit.serial, mismatch.run_id, mismatch.last_ms,
   binding.device, other.product, other.serial, binding.from_ms, coalesce(run.station, '')
 FROM mismatch

@@ -1,2 +1,3 @@
--- The greatest id of a run or of a change of a binding, which is in the audit. Other lines there are in no order with runs.
+-- The greatest id of a run or of a change of a binding, which is in the audit. Other lines of the audit are not in order with
+-- runs.
 SELECT max(id) FROM (SELECT max(id) AS id FROM run UNION ALL SELECT max(id) FROM audit WHERE act = 'rebind') AS newest;

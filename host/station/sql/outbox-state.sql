@@ -1,6 +1,6 @@
--- How much is still to be sent to each sink, how much of it is no line of the audit, how much waits for a person, what came about
--- first of it, and what was said last to one that is tried again. A try lies before the next one by 7/8 of the wait behind so many tries, and an eighth
--- more or less.
+-- For each sink: how many entries are unsent, how many of them are not lines of the audit, how many wait for a person, the first
+-- of them, and what the sink said last to one that will be tried again. The last try of an entry lies before its next one by 7/8
+-- of the wait after that many tries, give or take an eighth.
 SELECT sink, count(*), count(CASE WHEN kind <> 'audit' THEN 1 END), count(dead_ms), min(subject), (
   SELECT tried.said
   FROM outbox AS tried

@@ -3,7 +3,7 @@ SELECT run.id, run.started_ms, run.ended_ms, unit.product, unit.serial, plan.nam
   run.operator_id, run.verdict, run.cause, run.headline, run.nth,
   EXISTS (SELECT 1 FROM waiver WHERE waiver.run_id = run.id), run.record_sha256
 FROM run
--- A left join keeps the engines from beginning with another table than the runs.
+-- A left join keeps the engines from beginning with a table other than the runs.
 LEFT JOIN unit ON unit.id = run.unit_id
 LEFT JOIN plan ON plan.sha256 = run.plan_sha256
 {filters}

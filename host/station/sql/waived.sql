@@ -1,4 +1,4 @@
--- Waived FAILs, and whether the unit was judged once under plans of that name. The few waivers choose the runs.
+-- Waived FAILs, and whether the unit was judged only once under plans of that name. The few waivers choose the runs.
 SELECT run.id, run.plan_sha256, run.station, run.lane, run.started_ms, NOT EXISTS (
   SELECT 1 FROM retest
   JOIN plan ON plan.sha256 = run.plan_sha256

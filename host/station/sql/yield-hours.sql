@@ -1,4 +1,4 @@
--- The same in a part of a day. An ERROR has a number, too, and is no judgement.
+-- The same over a part of a day. An ERROR has a number, too, but is no judgement.
 SELECT plan_sha256, station, lane, started_ms / 86400000,
   count(*),
   count(*) FILTER (WHERE verdict = 'ERROR'),

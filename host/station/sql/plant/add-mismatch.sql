@@ -1,4 +1,4 @@
--- This run's device and unit, if they were not bound together while it went on and one of the two is bound to a third now.
+-- This run's device and unit, if they were not bound to each other during the run and one of them is bound to another now.
 INSERT INTO mismatch (station, device, unit_id, run_id, last_ms)
 SELECT run.station, run.device, run.unit_id, run.id, run.started_ms
 FROM run

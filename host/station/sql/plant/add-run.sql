@@ -1,4 +1,4 @@
--- A run that is over, as the station has it. How many judgements of its unit came before is counted over all stations.
+-- A run that is over, as the station has it. The earlier judgements of its unit are counted over all stations.
 INSERT INTO run (id, station, lane, unit_id, plan_sha256, variant, operator_id, target, fence, started_ms, ended_ms, verdict,
   exit_code, cause, headline, record_sha256, board_kind, device, build, state, nth)
 VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, 'final',

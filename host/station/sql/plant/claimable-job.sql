@@ -1,4 +1,4 @@
--- The first job that a station with these plans and these things can judge now, on a board that is free and that nobody waits for.
+-- The first job that a station with these plans and this equipment can judge now, on a board that is free and nobody waits for.
 WITH free AS MATERIALIZED (
   SELECT product, kind, serial FROM board
   WHERE serial <> '' AND station IN ('', $1) AND out IS NULL

@@ -1,4 +1,4 @@
--- A board of this kind that nobody has, behind those that are left to others; one that this station alone reaches comes first.
+-- A board of this kind that nobody has, after those that are left to others. Boards that only this station reaches come first.
 SELECT name FROM board
 WHERE kind = $1 AND station IN ('', $2) AND out IS NULL
   AND {free}

@@ -1,4 +1,4 @@
--- The jobs of some states, the newest first, behind this one.
+-- The jobs in some states, the newest first, following this one.
 SELECT job.id, plan.name, plan.version, job.product, job.serial, job.kind, job.needs, job.priority,
   CASE WHEN job.state = 'claimed' AND job.until_ms < {now_ms} THEN 'waiting' ELSE job.state END,
   job.holder, job.attempts, job.run_id, run.verdict, job.created_ms, job.operator_id, job.said

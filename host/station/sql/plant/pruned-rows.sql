@@ -1,2 +1,2 @@
--- The run in front of which steps and measurements were last removed.
+-- The id below which the steps and measurements of all runs were removed.
 SELECT max(subject) FROM audit WHERE act = $1;

@@ -1,4 +1,5 @@
--- By station: how many of it wait in front of this one for a board of the kind, and how many are free that it alone reaches.
+-- By station: how many of it wait in front of this waiter for a board of the kind, and how many boards are free that only it
+-- reaches.
 WITH front AS (
   SELECT {waiter_station} AS station, count(*) AS waiting FROM waiter
   WHERE kind = $1 AND id < $2 AND until_ms >= {now_ms}

@@ -1,4 +1,5 @@
--- A station is there, by the plant's clock, which is told. Nothing is changed, and nothing told, when another one has its name.
+-- Notes when a station was at work, by the plant's clock, and returns that time. When another station has its name, nothing is
+-- changed or returned.
 INSERT INTO station (name, origin, program, plans, unsent, dead, seen_ms)
 VALUES ($1, $2, $3, $4, $5, $6, {now_ms})
 ON CONFLICT (name) DO UPDATE SET

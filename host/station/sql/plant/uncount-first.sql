@@ -1,4 +1,4 @@
--- What was counted as the unit's first judgement, and is its second one now.
+-- Uncounts what was counted as the unit's first judgement, and is its second one now.
 UPDATE day_count SET
   units = day_count.units - 1,
   passed = day_count.passed - CASE WHEN earliest.verdict = 'PASS' THEN 1 ELSE 0 END
