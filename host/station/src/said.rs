@@ -28,7 +28,7 @@ pub struct Said {
 /// The parameter, of the reason why a run broke off, that counts the samples which differed by then.
 pub(crate) const DIFFERED: &str = "differed";
 
-/// What to do about what the station says, in full sentences, where its own do not end in it: by code.
+/// What to do, in full sentences and by code, about what the station says in a sentence that does not end in it.
 pub(crate) const REMEDIES: [(&str, &str); 8] = [
     ("plan-takes-hardware", "Check the lane's target."),
     ("build-not-of-plan", "Load a released build, or take the plan for this one."),

@@ -9,7 +9,7 @@ use super::step::{DeviceSeen, Measured, RunCause, StepOutcome, StepRecord};
 use crate::exit::Exit;
 use crate::said::{Said, Saying};
 
-/// What a run says that ended since somebody wanted it to.
+/// The codes of a run that ended because somebody wanted it to.
 const STOPPED: [&str; 2] = ["stopped-by-signal", "run-stopped-before"];
 
 /// The remedy for an ERROR about which nothing else is known.

@@ -312,7 +312,7 @@ fn last_suspects(steps: &[StepRecord]) -> Vec<SuspectRecord> {
 }
 
 /// Saves the record by `finish`, and removes the spool. Unless the run is a PASS, what the lane wrote down is attached; it is on
-/// the disk before `finish`, which alone needs the store.
+/// the disk before `finish`, the only part that needs the store.
 fn save(
     folder: &Folder,
     mut record: Record,

@@ -142,7 +142,7 @@ impl Store {
 pub struct Change<'a> {
     /// The serial number.
     pub serial: &'a str,
-    /// The product, where several have such a serial number.
+    /// The product, if several have this serial number.
     pub product: Option<&'a str>,
     /// The device that it is to have, as 16 hexadecimal digits; none for the one that its next judgement finds.
     pub device: Option<&'a str>,

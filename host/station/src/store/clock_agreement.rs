@@ -6,7 +6,7 @@ use crate::clock::HeardClock;
 use crate::ids;
 use crate::record::RunHead;
 
-/// How far a date may be off: by less than a board needs to get from one station to another.
+/// How far a date may be off: less than a board needs to get from one station to another.
 pub(super) const TOLERATED_MS: i64 = 5 * 60_000;
 const MINUTE_MS: u64 = 60_000;
 

@@ -1,4 +1,4 @@
-//! The folder of a station, and what lies in it.
+//! The folder of a station, and what is in it.
 
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
@@ -42,7 +42,7 @@ impl Folder {
         if is_unfinished { Err(StoreError::Unrestored { folder: self.0.clone() }) } else { Ok(()) }
     }
 
-    /// Refuses a folder that has evidence and no database to say whose: nothing may begin anew beside it.
+    /// Refuses a folder that has evidence and no database: no station may start from scratch there.
     pub(super) fn has_kept_database(&self) -> Result<(), StoreError> {
         self.refuse_lost(fs::metadata(self.database()).is_err())
     }

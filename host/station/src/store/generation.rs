@@ -63,7 +63,7 @@ pub(super) fn is_named(file: &File, path: &Path) -> bool {
 pub(super) struct Opened {
     file: File,
     known: Generations,
-    /// How many since the log was folded.
+    /// How many changes were made since the log was folded.
     changes: u32,
 }
 

@@ -1,4 +1,4 @@
-//! Whether a unit that passed already is tested again.
+//! Whether a unit that has passed already is tested again.
 
 use halfrow::Verdict;
 

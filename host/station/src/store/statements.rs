@@ -179,7 +179,7 @@ mod tests {
     use super::super::database::Engine;
     use super::*;
 
-    /// SQLite numbers `$1` by where it first stands, PostgreSQL by its digits.
+    /// SQLite numbers `$1` by its first place in the text, PostgreSQL by its digits.
     #[test]
     fn parameters_are_numbered_in_the_order_of_their_first_use() {
         for text in ALL {

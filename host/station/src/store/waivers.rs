@@ -1,4 +1,4 @@
-//! Waivers: an engineer's word on a FAIL, beside it and never in its place.
+//! Waivers: an engineer's word on a FAIL, in addition to it and never in its place.
 
 use std::sync::Arc;
 

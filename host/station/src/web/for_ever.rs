@@ -1,5 +1,5 @@
-//! What never changes: a browser that has it is not sent it again, but asks each time whether it may still show it, because
-//! whoever has logged out may not see it.
+//! Content that never changes: a browser that has it is not sent it again, but asks each time whether it may still show it,
+//! because whoever has logged out may not see it.
 
 use axum::extract::Request;
 use axum::http::header::{CACHE_CONTROL, ETAG, IF_NONE_MATCH};

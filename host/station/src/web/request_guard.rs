@@ -164,7 +164,7 @@ async fn machine(
     }
 }
 
-/// Checks a look at a page: whoever may not see it is sent to log in.
+/// Checks a request for a page: whoever may not see it is sent to log in.
 fn look(visit: &Visit, who: Who, request: Request) -> Result<Request, Refused> {
     if visit.may(who) {
         return Ok(request);

@@ -22,8 +22,8 @@ use crate::store::{Folder, PlantAddress, PlantPool, Snapshot, Store, StoreError}
 /// How many plans are named in the head of a page.
 const NAMED: usize = 2;
 
-/// How long metrics leave a plant alone after they counted it, as a multiple of the time that this took: a plant may have a year
-/// of hundreds of stations.
+/// How long metrics do not count a plant again, as a multiple of the time that the last count took: a plant may have a year of
+/// hundreds of stations.
 const RESTS: u32 = 20;
 
 /// The station as its pages know it. A clone is the same one.

@@ -13,7 +13,7 @@ use crate::said::Said;
 /// Somebody who is known by name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct User {
-    /// The name, which stands in records and in the audit.
+    /// The name, which is in records and in the audit.
     pub name: String,
     /// What they may do: operator or engineer; a machine with a token is a reader.
     pub who: Who,

@@ -23,7 +23,7 @@ const FAREWELL: Duration = Duration::from_secs(1);
 
 /// A connection to a PostgreSQL server.
 pub(crate) struct Postgres {
-    /// To drop this ends the connection, so it stands before the line, which waits for that.
+    /// Declared before `line` so that it is dropped first: this ends the connection, for whose end the line waits.
     client: Client,
     line: Line,
     /// Prepared statements, by their text.

@@ -19,7 +19,7 @@ pub(crate) struct Sqlite(Connection);
 impl Sqlite {
     pub(crate) fn new(connection: Connection) -> Self {
         connection.set_prepared_statement_cache_capacity(PREPARED);
-        // Otherwise a statement may be planned anew for other values. Where this cannot be set, the connection is only slower.
+        // Without this SQLite may plan a statement anew for each value. If it cannot be set, the connection is only slower.
         let _ = connection.set_db_config(DbConfig::SQLITE_DBCONFIG_ENABLE_QPSG, true);
         Self(connection)
     }

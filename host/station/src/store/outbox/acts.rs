@@ -4,8 +4,8 @@ use super::super::database::values;
 use super::super::{Store, StoreError, statements as sql};
 
 impl Store {
-    /// Has every sink try again the entry of this id, where it waits for a person; the audit keeps who said so, and why. Returns
-    /// how many entries that are.
+    /// Has every sink where the entry of this id waits for a person try it again; the audit keeps who said so, and why. Returns
+    /// how many entries there were.
     ///
     /// # Errors
     /// Like [`Self::sends_to`].
@@ -13,8 +13,8 @@ impl Store {
         self.released(sql::OUTBOX_RELEASED, subject, operator, reason)
     }
 
-    /// Has this sink try again all that waits for a person; the audit keeps who said so, and why. Returns how many entries that
-    /// are.
+    /// Has this sink try again all entries that wait for a person; the audit keeps who said so, and why. Returns how many there
+    /// were.
     ///
     /// # Errors
     /// Like [`Self::sends_to`].

@@ -166,7 +166,7 @@ impl Users {
         self.user.iter().find(|user| key.is_mark(BADGE, badge, &user.badge))
     }
 
-    /// Who has this badge. The badge alone makes anybody an operator; only their password makes engineers what they are.
+    /// Who has this badge. With the badge alone everybody is an operator; an engineer also gives the password.
     pub(crate) fn identify(&self, key: &Key, badge: &str, password: &str) -> Option<Identified> {
         let identified = |line: &Line, who| Identified {
             user: User { name: line.name.clone(), who },

@@ -111,7 +111,7 @@ impl Asked {
         })
     }
 
-    /// The address at `path` that asks for the same, from the run after `after` on.
+    /// The address at `path` with the same query, from the run after `after` on.
     pub(super) fn address(&self, path: &str, after: Option<&Place>) -> String {
         let after = after.map(ToString::to_string).unwrap_or_default();
         let Self { serial, verdict, plan, station, lane, operator, from, until, by, after: _ } = self;

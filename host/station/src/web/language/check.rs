@@ -57,7 +57,7 @@ const OF_JUDGE: [&str; 15] = [
     "NoThread",
     "UsbFailure",
 ];
-/// Codes that belong to no type of those.
+/// Codes that belong to none of these types.
 const OTHERS: [&str; 2] = ["no-randomness", "program-failed"];
 
 /// A language's file: words by table and key.

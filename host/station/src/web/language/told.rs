@@ -27,7 +27,7 @@ pub(super) const LATE_AT_TIMES: &str = "latency-wrong-at-times";
 pub(in crate::web) struct Told {
     /// The sentence.
     pub(in crate::web) text: String,
-    /// `en` if it stands in English on a page of another language.
+    /// `en` if it is in English on a page of another language.
     pub(in crate::web) foreign: Option<&'static str>,
 }
 
@@ -49,8 +49,8 @@ impl Words {
         (why, asked)
     }
 
-    /// Like [`Self::parted`], but a remedy that does not stand in the sentence is told in whole sentences, and nothing is split
-    /// off where no remedy is recorded.
+    /// Like [`Self::parted`], but a remedy that is not part of the sentence stays in whole sentences, and nothing is split off
+    /// where no remedy is recorded.
     pub(in crate::web) fn with_remedy(&self, said: &Said, recorded: Option<&str>) -> (Told, Option<Told>) {
         let Some(recorded) = recorded else { return (self.tell(said), None) };
         let (why, asked) = self.split(said, Some(recorded));

@@ -1,4 +1,4 @@
-//! Figures for Prometheus and whatever else reads its formats: of a station, or of a plant.
+//! Figures of a station or of a plant, for Prometheus and other programs that read its formats.
 //!
 //! Their labels have no serial number, no unit and nobody's name, so the number of series depends only on plans and lanes.
 

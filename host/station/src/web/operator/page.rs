@@ -148,7 +148,7 @@ fn by_hand(visit: &Visit, now: &Now, unscripted: Option<&str>) -> Markup {
     }
 }
 
-/// What was judged today, for whoever may look.
+/// What was judged today, for everybody who may look.
 pub(super) async fn today(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
     Ok(Html(counted(&app, &visit).await?.into_string()).into_response())
 }

@@ -1,4 +1,4 @@
-//! What tells the states apart without colour: a shape and a word each.
+//! What distinguishes the states without colour: a shape and a word for each.
 
 use maud::{Markup, html};
 

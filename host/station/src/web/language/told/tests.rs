@@ -1,4 +1,4 @@
-//! What is told, in each language.
+//! What is said, in each language.
 
 use serde_json::json;
 
