@@ -97,7 +97,7 @@ impl Blobs {
             // A run that ended early may have written it, without syncing its name.
             Err(WriteAsideError::Exists { .. }) => {
                 self.get(&hash)?;
-                // What no row names is pruned by its age, and this run has no row yet.
+                // What no row names is pruned by its age, and for this run no row names it yet.
                 let dated = File::options().append(true).open(&path);
                 dated
                     .and_then(|file| file.set_modified(SystemTime::now()))

@@ -10,8 +10,8 @@ use serde_json::Value;
 
 use super::{BlobError, Blobs, Piece};
 
-/// A record, of this or another version, that no row names. If its run has a row, the program ended after it wrote the record
-/// and before it wrote the verdict to the row; if not, the record is all that is left of the run.
+/// A record, of this or another version, that no row names. If its run has a row, the program ended before the record was entered
+/// there, or the database is a copy from before that; if not, the record is all that is left of the run.
 #[derive(Clone, Debug)]
 pub(crate) struct UnnamedRecord {
     /// Its hash.

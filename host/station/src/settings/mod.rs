@@ -47,7 +47,7 @@ pub struct Settings {
     pub scanner: Scanner,
     /// Every plan that a lane or `[work]` names.
     pub plans: Vec<PlanFile>,
-    /// The lanes, at least one except in a plant's settings.
+    /// The lanes: at least one, unless the settings were loaded by [`Self::load_plant`].
     pub lanes: Vec<LaneSettings>,
     /// What is started when a verdict is saved.
     pub hooks: Vec<Hook>,
@@ -168,7 +168,7 @@ impl Settings {
         Self::load_for(path, true)
     }
 
-    /// The same for a program that shows a plant, and has no lanes.
+    /// The same for commands that need no lanes, such as those about a plant.
     ///
     /// # Errors
     /// Like [`Self::load`].

@@ -209,7 +209,6 @@ fn memory(text: Option<&Spanned<u64>>) -> Result<u64, Fault> {
     }
 }
 
-/// The lanes.
 fn lanes(folder: &Path, read: &SettingsText, plans: &mut Plans<'_>) -> Result<Vec<LaneSettings>, Fault> {
     let mut lanes = Vec::<LaneSettings>::new();
     let lender = Lender::of(folder, read)?;
