@@ -195,7 +195,7 @@ impl Store {
         Ok(())
     }
 
-    /// Makes the entries for `sink` that failed due at once, but not those that wait for a person.
+    /// Makes the failed entries for `sink` due at once, except those that wait for a person.
     ///
     /// # Errors
     /// Like [`Self::sends_to`].

@@ -41,8 +41,8 @@ impl Store {
         Ok(unsent)
     }
 
-    /// Sends all that was kept again to this sink, which has lost what it had; the audit keeps who said so, and why. Returns how
-    /// many entries counted as sent.
+    /// Sends everything that was kept to this sink once more, because it has lost what it had; the audit keeps who said so, and
+    /// why. Returns how many entries counted as sent.
     ///
     /// # Errors
     /// Like [`Self::sends_to`].

@@ -21,7 +21,7 @@ const WAITING_MS: i64 = 10_000;
 pub struct SharedBoard {
     /// Its name.
     pub name: String,
-    /// Its kind. Who takes any board asks for one of a kind.
+    /// Its kind, by which those ask who will take any board.
     pub kind: String,
     /// Its target string.
     pub target: String,

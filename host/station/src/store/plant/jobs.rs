@@ -1,5 +1,5 @@
 //! Jobs: what any free station is to judge. A job and its board are claimed together or not at all, and held until a time by
-//! the plant's clock. A job is done when the run of its last claim has come to the plant.
+//! the plant's clock. A job is done when a PASS or FAIL of its last claim has come to the plant.
 
 use serde::Serialize;
 
