@@ -170,7 +170,7 @@ mod tests {
             let rights = Rights { mode, owner, group };
             assert_eq!(rights.is_closed(998, 998), expected, "{mode:o} {owner}:{group}");
         }
-        // Root, who prepares a plant for a station.
+        // As root, who prepares a plant for a station.
         let rights = |mode| Rights { mode, owner: 0, group: 998 };
         assert_eq!([0o640, 0o644].map(|mode| rights(mode).is_closed(0, 0)), [true, false]);
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::lane::supervisor::Patience;
 use crate::plan::{Act, Selected, Step};
 
-/// Round trips, echoes, to the board, to the host, together: each takes the seconds of the plan.
+/// Round trips, echoes, to the board, to the host, both ways at once: each part takes the seconds that the plan gives.
 const LINK_TEST_PARTS: u32 = 5;
 
 /// The patience with a lane that carries out `selected` and may be silent for `silence` in addition to its link tests.

@@ -67,7 +67,7 @@ pub struct Login {
 /// The address of a sink.
 #[derive(Clone, Debug)]
 pub struct SinkAddress {
-    /// All of it.
+    /// The whole address.
     pub url: String,
     /// The host.
     pub host: String,
@@ -77,7 +77,7 @@ pub struct SinkAddress {
     pub path: String,
     /// Whether it goes through TLS.
     pub is_protected: bool,
-    /// The certificates that sign its own; those of the system if none is named.
+    /// The file of certificates that sign the server's; those of the system if there is none.
     pub ca: Option<PathBuf>,
 }
 

@@ -7,7 +7,7 @@ use halfrow::target::Target;
 
 use crate::presence::{USB, chips};
 
-/// What is wrong with a name that may lead to another board tomorrow, and which to write instead.
+/// What is wrong with a name that may lead to another board tomorrow, and what to write instead.
 pub(super) fn refused(board: &Target) -> Option<(String, String)> {
     let written = board.to_string();
     match (board.kind.as_str(), board.address.as_deref()) {

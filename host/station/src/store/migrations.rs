@@ -15,7 +15,7 @@ use crate::record::synced;
 
 /// The newest version that a database has.
 pub(super) const NEWEST: &str = "SELECT max(n) FROM schema_version";
-/// Notes that it has another one.
+/// Notes that the database has another version.
 const NOTE: &str = "INSERT INTO schema_version (n, sha256, applied_ms) VALUES ($1, $2, $3)";
 
 /// Applies all schemas that `database`, which is at `path`, does not have yet, in one transaction: whatever happens, it has the

@@ -15,7 +15,7 @@ pub enum AgainError {
     Refused {
         /// The serial number.
         serial: String,
-        /// When it passed, by this computer's clock on the wall, with its distance from UTC.
+        /// When it passed, in this computer's local time with the offset from UTC.
         when: String,
     },
     /// Nobody has said yet that it is meant.
@@ -25,7 +25,7 @@ pub enum AgainError {
         serial: String,
         /// When it passed, as above.
         when: String,
-        /// How it is said that it is meant.
+        /// What to do to have it tested all the same.
         how: &'static str,
     },
 }

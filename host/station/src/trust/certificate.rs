@@ -8,7 +8,7 @@ use rustls::pki_types::UnixTime;
 
 use crate::clock;
 
-/// The other side's certificate is not good. Moments are as a clock on the station's wall shows them.
+/// The other side's certificate is not good. Moments are in the station's local time.
 #[derive(Debug, thiserror::Error)]
 pub enum CertificateError {
     /// The other side's certificate was valid until a moment that has passed, by this computer's clock.

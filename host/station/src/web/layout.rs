@@ -12,7 +12,7 @@ use super::{language, request_guard};
 /// A place of the navigation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Here {
-    /// None of it.
+    /// A page that is not in the navigation.
     Elsewhere,
     /// The lanes.
     Lanes,

@@ -42,7 +42,7 @@ struct Parts {
     source: Source,
 }
 
-/// Where what is shown comes from.
+/// The source of what is shown.
 #[derive(Debug)]
 enum Source {
     Station(Floor),

@@ -30,7 +30,7 @@ pub(crate) struct Postgres {
     ready: HashMap<String, Statement>,
 }
 
-/// What carries a connection.
+/// What a connection runs on.
 struct Line {
     runtime: Runtime,
     connection: JoinHandle<Result<(), tokio_postgres::Error>>,

@@ -52,7 +52,7 @@ pub struct Lease {
     pub holder: String,
     /// How often it was given to somebody, this time included.
     pub fence: i64,
-    /// Not later than when it was given, by this computer's clock.
+    /// A moment not later than when it was given, by this computer's clock.
     #[serde(skip)]
     pub(crate) since: Instant,
     /// The product that it is a unit of; empty if no plan judges it.

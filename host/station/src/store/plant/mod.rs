@@ -59,7 +59,7 @@ pub enum PlantError {
          `halfrow-station outbox again plant`"
     )]
     Lost {
-        /// The newest run that it had for certain.
+        /// The newest run that it certainly had.
         run: String,
     },
     /// What was sent is not there when it is looked for.

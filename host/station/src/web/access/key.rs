@@ -70,7 +70,7 @@ pub(crate) fn drawn() -> Result<[u8; BYTES], rand::rngs::SysError> {
     SysRng.try_fill_bytes(&mut drawn).map(|()| drawn)
 }
 
-/// In hexadecimal digits.
+/// These bytes in hexadecimal digits.
 pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

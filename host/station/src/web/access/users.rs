@@ -58,7 +58,7 @@ pub(crate) struct Identified {
     pub(super) proof: String,
 }
 
-/// Everybody.
+/// Everybody who may act.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Users {

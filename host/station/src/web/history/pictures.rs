@@ -52,7 +52,7 @@ pub(super) async fn difference(
 /// The frame that an attachment is, if it is one.
 fn decoded((bytes, attachment): &(Vec<u8>, Attachment)) -> Option<Frame> {
     let (KeptFrame { depth, phase, .. }, _) = KeptFrame::of(&attachment.name)?;
-    // A broken board may have made more of it than the depth holds.
+    // A broken board may have returned samples that exceed the depth.
     [depth, BitDepth::Twelve]
         .into_iter()
         .find_map(|depth| frames::decode(bytes, &ReadOptions { depth, phase, ..ReadOptions::default() }).ok())

@@ -169,7 +169,7 @@ fn of_table(table: &str, keys: &Keys, file: &File, found: &mut Vec<Fault>) {
             continue;
         };
         let used = names(text.get_ref());
-        // Words of a code may leave out a figure; those of a page have it for a reason.
+        // The words of a code may leave out a figure; those of a page must have all of them.
         let is_right = used.is_subset(names_of_key) && (is_of_codes || used == *names_of_key);
         if !is_right {
             let what = format!("the words of `{key}` have {} in them", braced(&used));

@@ -172,7 +172,7 @@ impl Scanned {
     }
 }
 
-/// The place of the lane of this name, and the name.
+/// The index of the lane of this name, and the name.
 fn place<'a>(app: &'a App, name: &str) -> Result<(usize, &'a str), ScanError> {
     let lanes = &app.settings().lanes;
     let found = lanes.iter().position(|lane| lane.name == name);

@@ -76,7 +76,7 @@ impl Words {
         Some(word.to_owned())
     }
 
-    /// That a board which was judged was no hardware.
+    /// The statement that the judged board was no hardware.
     fn no_hardware(&self, parameters: &Value) -> &str {
         match parameters.get("board").and_then(Value::as_str) {
             Some("mock") => self.say("told.of-mock"),
@@ -96,7 +96,7 @@ impl Words {
         Some(words.to_owned())
     }
 
-    /// That this many other defects explain everything as well.
+    /// The statement that this many other defects explain everything as well.
     fn others(&self, others: u64) -> String {
         match others {
             0 => String::new(),
@@ -116,7 +116,7 @@ impl Words {
         )
     }
 
-    /// That every late row is the same one.
+    /// The statement that every late row is the same one.
     fn one_row(&self, parameters: &Value) -> String {
         let late = late(parameters).filter(LateRows::are_one_row);
         late.map_or_else(String::new, |late| self.fill("told.one-row", &[("row", &late.row.to_string())]))
