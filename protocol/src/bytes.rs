@@ -39,7 +39,7 @@ impl<'a> Fields<'a> {
         self.0
     }
 
-    /// Ends the reading: a later version may append fields, so what is left is not looked at.
+    /// Ends the reading: a later version may append fields, so what is left is ignored.
     pub(crate) fn end<T>(self, value: T) -> T {
         value
     }

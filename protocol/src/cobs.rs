@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 /// The longest run of bytes that one code byte announces.
 const RUN: usize = 254;
 
-/// The most bytes that stuffing makes of `length` bytes.
+/// The most bytes that `length` bytes become by stuffing.
 pub(crate) const fn stuffed_length(length: usize) -> usize {
     length.saturating_add(length / RUN + 1)
 }
@@ -22,14 +22,14 @@ pub(crate) fn stuff(bytes: &[u8], wire: &mut Vec<u8>) {
         wire.push(run as u8 + 1);
         wire.extend_from_slice(&rest[..run]);
         rest = &rest[run + usize::from(ends_in_zero)..];
-        // A zero in the last place leaves an empty run behind; a full run at the very end leaves nothing.
+        // A zero in the last place is followed by an empty run; a full run at the very end is followed by nothing.
         if rest.is_empty() && !ends_in_zero {
             return;
         }
     }
 }
 
-/// Appends what was stuffed as `bytes` to `plain`, or answers nothing if [`stuff`] does not make them.
+/// Appends the bytes that were stuffed as `bytes` to `plain`. `None` if `bytes` is not valid stuffing.
 pub(crate) fn unstuff(mut bytes: &[u8], plain: &mut Vec<u8>) -> Option<()> {
     while let Some((&code, rest)) = bytes.split_first() {
         let run = usize::from(code).checked_sub(1)?;

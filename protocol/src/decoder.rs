@@ -1,4 +1,4 @@
-//! From bytes to packets, whatever the link did to the bytes.
+//! From bytes to packets, whatever the link has done to the bytes.
 
 use alloc::vec::Vec;
 
@@ -32,7 +32,7 @@ const MAX_STUFFED: usize = cobs::stuffed_length(MAX_PACKET);
 /// damaged is lost.
 #[derive(Debug, Default)]
 pub struct Decoder {
-    /// What has come of a packet that has not ended.
+    /// The bytes so far of a packet that has not ended.
     stuffed: Vec<u8>,
     too_long: bool,
     /// The packet that ended last.
@@ -40,7 +40,7 @@ pub struct Decoder {
 }
 
 impl Decoder {
-    /// A decoder that takes whatever comes before the first zero for a packet.
+    /// A decoder that treats whatever comes before the first zero as a packet.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
@@ -88,7 +88,7 @@ impl Decoder {
     }
 }
 
-/// The packet in these bytes, if they are as they were sent.
+/// The packet in these unstuffed bytes, if they arrived as they were sent.
 fn open(packet: &[u8]) -> Result<Packet<'_>, Damage> {
     let length = packet.len();
     if length > MAX_PACKET {

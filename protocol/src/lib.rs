@@ -1,13 +1,13 @@
-//! The wire between a host and a halfrow board, as `protocol/WIRE.md` lays it down.
+//! The wire between a host and a halfrow board, as `protocol/WIRE.md` specifies it.
 //!
 //! ```text
 //!   Request, Reply ──► payload ──► packet (header, payload, CRC-32) ──► COBS between zeros ──► bytes
 //!     (message)                      (packet)                            (cobs, decoder)
 //! ```
 //!
-//! Pure: no input or output, no clock, no files, and no standard library, which the feature `std` only asks what the
-//! processor has. What a packet means is said by the types here;
-//! what a board does with it, by the board; when to ask again, by the host.
+//! Pure: no input or output, no clock, no files, and no standard library; the feature `std` uses it only to detect what
+//! the processor supports. The types here say what a packet means. The board decides what to do with it, and the host
+//! when to ask again.
 
 #![no_std]
 

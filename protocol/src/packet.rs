@@ -1,4 +1,4 @@
-//! The packet: header, payload, CRC-32; and how one is put on the wire.
+//! The packet: header, payload, CRC-32; and how it is put on the wire.
 
 use alloc::vec::Vec;
 use core::fmt;
@@ -9,10 +9,10 @@ use crate::{MAX_PACKET, MAX_PAYLOAD, VERSION, cobs};
 pub(crate) const HEADER: usize = 12;
 /// Bytes of a CRC-32.
 pub(crate) const CRC: usize = 4;
-/// Bytes of a packet that are no payload.
+/// Bytes of a packet that are not payload.
 pub(crate) const OVERHEAD: usize = HEADER + CRC;
 
-/// The most bytes on the wire of a packet with a payload of so many, the zero behind it included.
+/// The most bytes that a packet with `payload` bytes of payload takes on the wire, the zero after it included.
 #[must_use]
 pub const fn wire_length(payload: usize) -> usize {
     cobs::stuffed_length(OVERHEAD.saturating_add(payload)).saturating_add(1)
@@ -30,7 +30,7 @@ pub enum Kind {
     Status = 0x02,
     /// Drops rows, the session or the tables.
     Reset = 0x03,
-    /// Bytes that come back as they went.
+    /// Bytes that come back unchanged.
     Echo = 0x04,
     /// Writes entries of a shadow table.
     TableWrite = 0x10,
@@ -46,15 +46,15 @@ pub enum Kind {
     RowIn = 0x20,
     /// A corrected row.
     RowOut = 0x21,
-    /// Nothing but the header's acknowledgement.
+    /// Only the acknowledgement in the header.
     RowAck = 0x22,
     /// Starts or ends frames that the board makes on its own.
     Burst = 0x30,
-    /// What the board signed of them.
+    /// The board's signed records of these frames.
     Records = 0x31,
-    /// The signatures that rows of a repeating frame must have.
+    /// The signatures that the rows of a repeating frame must have.
     Expect = 0x32,
-    /// The first row that had another one.
+    /// The first row whose signature was not the expected one.
     Trap = 0x33,
     /// Why a request was refused.
     Refusal = 0x7f,
@@ -95,7 +95,7 @@ impl Kind {
         self as u8
     }
 
-    /// As WIRE.md writes it: `ROW_IN`.
+    /// The name as WIRE.md writes it, such as `ROW_IN`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -128,7 +128,7 @@ impl fmt::Display for Kind {
     }
 }
 
-/// The fields in front of every payload, but for version and length.
+/// The fields before every payload, except version and length.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Header {
     /// The code of the packet's [`Kind`]; a receiver may not know it.
@@ -137,7 +137,7 @@ pub struct Header {
     pub sequence: u16,
     /// Set in replies.
     pub reply: bool,
-    /// The session, as the reply to HELLO named it; 0 outside one.
+    /// The session number from the reply to HELLO; 0 outside a session.
     pub session: u8,
     /// From a board: the row sequence number before which the host may send. From a host: the row sequence number
     /// before which all corrected rows have arrived.
@@ -174,7 +174,7 @@ impl Header {
     }
 }
 
-/// A packet that arrived whole: its CRC, length and version were right.
+/// A packet that arrived intact: its CRC, length and version were right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Packet<'a> {
     /// Its header.
@@ -188,7 +188,7 @@ pub struct Packet<'a> {
 #[error("a payload of {0} bytes is over the {MAX_PAYLOAD} of a packet; split it")]
 pub struct TooLong(pub usize);
 
-/// Puts packets on the wire; keeps its buffer from one to the next.
+/// Puts packets on the wire; reuses its buffer from packet to packet.
 #[derive(Debug, Default)]
 pub struct Encoder {
     packet: Vec<u8>,
@@ -201,8 +201,8 @@ impl Encoder {
         Self { packet: Vec::with_capacity(MAX_PACKET) }
     }
 
-    /// Appends a packet to `wire`, whose payload is what `write_payload` appends to its argument: a zero, the stuffed
-    /// packet, a zero.
+    /// Appends a packet to `wire`: a zero, the stuffed packet, a zero. Its payload is what `write_payload` appends to its
+    /// argument.
     ///
     /// # Errors
     /// [`TooLong`], with nothing appended, when the payload is over [`MAX_PAYLOAD`].
@@ -215,10 +215,11 @@ impl Encoder {
         self.encode_altered(header, write_payload, |_| {}, wire)
     }
 
-    /// The same of a packet that `alter` makes another one of in front of its CRC, such as no receiver takes.
+    /// Like [`Self::encode`], but `alter` changes header and payload before the CRC is computed, for example into a packet
+    /// that no receiver accepts.
     ///
     /// # Errors
-    /// As [`Self::encode`].
+    /// Like [`Self::encode`].
     pub fn encode_altered(
         &mut self,
         header: &Header,

@@ -19,13 +19,13 @@ mod avx2 {
 
 use alloc::vec::Vec;
 
-/// Bytes that `samples` samples take; `samples` is even.
+/// Bytes that `samples` samples take on the wire; `samples` is even.
 #[must_use]
 pub const fn packed_length(samples: usize) -> usize {
     (samples / 2).saturating_mul(3)
 }
 
-/// Appends `samples`, an even number of them, to `packed`. Bits above the twelfth are left out.
+/// Appends `samples`, an even number of them, to `packed`. Bits above the twelfth are dropped.
 pub fn pack(samples: &[u16], packed: &mut Vec<u8>) {
     let begin = packed.len();
     packed.resize(begin + packed_length(samples.len()), 0);
@@ -69,13 +69,13 @@ mod tests {
         assert_eq!(samples, [0x123, 0xabc, 0xfff, 0x000]);
     }
 
-    /// Bit `bit` of the wire, counted from the first byte's lowest.
+    /// Bit number `bit` of the wire, counted from the lowest bit of the first byte.
     fn bit(packed: &[u8], bit: usize) -> u16 {
         u16::from(packed[bit / 8] >> (bit % 8) & 1)
     }
 
     proptest! {
-        /// As many as fill vectors, with some left over, wherever they begin in memory.
+        /// Enough samples to fill vectors, with some left over, at any alignment.
         #[test]
         fn every_bit_has_its_place_whatever_the_length(
             pairs in prop::collection::vec(any::<[u16; 2]>(), 0..80),

@@ -1,4 +1,4 @@
-//! BURST, RECORDS, EXPECT and TRAP: frames that the board makes and signs on its own, as `fpga/AT-SPEED.md` says.
+//! BURST, RECORDS, EXPECT and TRAP: frames that the board makes and signs on its own (`fpga/AT-SPEED.md`).
 
 use alloc::vec::Vec;
 
@@ -35,27 +35,27 @@ codes! {
     Alternating = 1,
     /// The same content in each frame, made with the active tables.
     Repeating = 2,
-    /// As repeating, and the trap is set.
+    /// Like repeating, with the trap set.
     Trapped = 3,
 }
 
 codes! {
-    /// How far a burst is.
+    /// How far a burst has come.
     BurstState, "state";
-    /// There was none in this session.
+    /// There has been no burst in this session.
     None = 0,
     /// Frames are to come, or one is inside the core.
     UnderWay = 1,
-    /// The last frame's record is there.
+    /// The record of the last frame exists.
     Ended = 2,
 }
 
 /// Starts a burst, or sets how many frames the one under way has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Burst {
-    /// The burst's name, which the host draws, not 0: a request that names the last one starts nothing.
+    /// The burst's id, drawn by the host, not 0. A request that names the last burst starts nothing.
     pub burst: u32,
-    /// How many frames; [`Burst::ENDLESS`] for as many as come until it is ended, 0 to end it behind the present one.
+    /// How many frames; [`Burst::ENDLESS`] for frames until the burst is ended, 0 to end it after the present frame.
     pub frames: u32,
     /// The seed of the content.
     pub seed: u32,
@@ -93,7 +93,7 @@ impl Burst {
     }
 }
 
-/// What a board signed of one frame (AT-SPEED.md, *Record*). Counts stay at their greatest value instead of wrapping.
+/// A board's signed record of one frame (AT-SPEED.md, *Record*). Counts stay at their greatest value instead of wrapping.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameRecord {
     /// CRC-32 of the rows' signatures, in the order in which they left.
@@ -106,11 +106,11 @@ pub struct FrameRecord {
     pub least_latency: u16,
     /// The largest.
     pub most_latency: u16,
-    /// Clocks of the board without enable from the frame's first sample to its last output.
+    /// Board clocks without enable, from the frame's first sample to its last output.
     pub pauses: u16,
-    /// The generation of the tables that the frame was made with; 0 for the shadow's.
+    /// The generation of the tables that the frame was made with; 0 for the shadow tables.
     pub generation: u8,
-    /// Whether the frame waited for a free record, so that it did not follow the one in front without a pause.
+    /// Whether the frame waited for a free record, so that it did not directly follow the previous frame.
     pub held_back: bool,
 }
 
@@ -147,26 +147,26 @@ impl From<[u8; FrameRecord::BYTES]> for FrameRecord {
     }
 }
 
-/// Records of the session's last burst, those from a frame on that are made and fit a packet.
+/// Records of the session's last burst: those from frame `from` on that are made and fit into a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Records<'a> {
     /// The burst; 0 for none.
     pub burst: u32,
     /// The frame of the first record, counted from 0.
     pub from: u32,
-    /// How far the burst is.
+    /// How far the burst has come.
     pub state: BurstState,
     /// The records, at most [`Records::MOST`] of them, as they stand on the wire.
     pub bytes: &'a [[u8; FrameRecord::BYTES]],
 }
 
 impl<'a> Records<'a> {
-    /// Bytes in front of the records.
+    /// Bytes before the records.
     pub const HEAD: usize = 10;
-    /// The most records of a packet.
+    /// The most records in a packet.
     pub const MOST: usize = (MAX_PAYLOAD - Self::HEAD) / FrameRecord::BYTES;
 
-    /// The records, one a frame.
+    /// The records, one per frame.
     pub fn records(&self) -> impl Iterator<Item = FrameRecord> + use<'a> {
         self.bytes.iter().map(|&bytes| bytes.into())
     }
@@ -188,12 +188,12 @@ impl<'a> Records<'a> {
     }
 }
 
-/// The signatures that rows of a repeating frame must have, for the trap.
+/// The signatures that the rows of a repeating frame must have, for the trap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Expect<'a> {
     /// The first of the rows.
     pub first: u16,
-    /// A signature a row, as they stand on the wire; at most [`Expect::MOST`].
+    /// One signature per row, as they stand on the wire; at most [`Expect::MOST`].
     pub bytes: &'a [[u8; Expect::BYTES]],
 }
 
@@ -201,10 +201,10 @@ impl<'a> Expect<'a> {
     /// Bytes of a signature on the wire.
     pub const BYTES: usize = 4;
     const HEAD: usize = 4;
-    /// The most signatures of a packet.
+    /// The most signatures in a packet.
     pub const MOST: usize = (MAX_PAYLOAD - Self::HEAD) / Self::BYTES;
 
-    /// The signatures, one a row.
+    /// The signatures, one per row.
     pub fn signatures(&self) -> impl Iterator<Item = u32> + use<'a> {
         self.bytes.iter().map(|&bytes| u32::from_le_bytes(bytes))
     }
@@ -231,7 +231,7 @@ pub struct TrappedRow<'a> {
     pub frame: u32,
     /// The row of the frame.
     pub row: u16,
-    /// Samples.
+    /// Samples in the row.
     pub width: u16,
     /// The signature that the row has.
     pub signature: u32,
@@ -240,7 +240,7 @@ pub struct TrappedRow<'a> {
 }
 
 impl<'a> TrappedRow<'a> {
-    /// Appends `kept`, and the row if one was trapped.
+    /// Appends the field `kept`, and the row if one was trapped.
     pub(crate) fn write(kept: Option<&Self>, payload: &mut Vec<u8>) {
         payload.push(u8::from(kept.is_some()));
         if let Some(Self { frame, row, width, signature, packed }) = kept {

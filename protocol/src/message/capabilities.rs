@@ -7,7 +7,7 @@ use super::{Datapath, UnknownDatapath};
 use crate::Malformed;
 use crate::bytes::Fields;
 
-/// What stands behind the wire, as the board itself says.
+/// What is at the other end of the wire, as the board itself reports.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum BoardNature {
@@ -19,7 +19,7 @@ pub enum BoardNature {
     Mock = 3,
 }
 
-/// The sample depths that a board has.
+/// The sample depths that a board supports: bit 0 for 8, bit 1 for 10, bit 2 for 12 bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Depths(pub u8);
 
@@ -39,12 +39,12 @@ impl Depths {
     }
 }
 
-/// What a board can do of AT-SPEED.md: frames that it makes and signs on its own.
+/// A board's support for AT-SPEED.md: frames that it makes and signs on its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bursts {
-    /// The content id: which samples a seed stands for. A host asks for no burst of an id that it does not know.
+    /// The content id: which samples a seed generates. A host asks for no burst if it does not know the id.
     pub content: u16,
-    /// Records that the board keeps until a host has them, at least 2.
+    /// How many records the board keeps until a host has them, at least 2.
     pub records: u16,
     /// The fewest pixel clocks between two frames.
     pub least_frame_blanking: u16,
@@ -74,23 +74,23 @@ impl Bursts {
     }
 }
 
-/// What a board can do of a datapath beside the one of [`Capabilities::datapath`]: DATAPATH.md, *Datapath 2*.
+/// A board's support for a datapath in addition to [`Capabilities::datapath`] (DATAPATH.md, *Datapath 2*).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grids {
-    /// The id of the further datapath. A host asks for nothing of an id other than 2.
+    /// The id of the further datapath. A host uses none other than 2.
     pub further_datapath: u16,
-    /// T: entries of a bank, at least 2048 and as many as the highest frame has rows.
+    /// T: entries in a bank, at least 2048 and at least `max_height`.
     pub entries: u16,
-    /// Bit k is set for every k that it takes; 5 or 6 is among them.
+    /// Bit k is set for every k that the board takes; at least bit 5 or bit 6.
     pub ks: u8,
-    /// The fewest pixel clocks between rows of a grid that are narrower than `grid_width`.
+    /// The fewest pixel clocks between rows corrected by a grid that are narrower than `grid_width`.
     pub grid_blanking: u8,
-    /// Columns from which on rows of a grid need no more blanking than others.
+    /// The row width from which on rows corrected by a grid need no more blanking than others, in samples.
     pub grid_width: u16,
 }
 
 impl Grids {
-    /// Whether nodes can lie every 2^k columns.
+    /// Whether the board takes grids with a node every 2^k columns.
     #[must_use]
     pub fn takes(&self, k: u8) -> bool {
         self.ks.checked_shr(k.into()).is_some_and(|ks| ks & 1 == 1)
@@ -124,13 +124,13 @@ macro_rules! capabilities {
         #[derive(Clone, Debug, PartialEq, Eq)]
         pub struct Capabilities {
             $($(#[$doc])* pub $name: $type,)*
-            /// The bursts that it makes; none where it makes none.
+            /// Its support for bursts; none if it makes no bursts.
             pub bursts: Option<Bursts>,
-            /// Whether ROW_OUT ends with the CRC-32 of the samples that entered.
+            /// Whether ROW_OUT ends with the CRC-32 of the samples that entered the core.
             pub entered: bool,
-            /// The grids that it takes; none where datapath 1 is all.
+            /// Its support for grids; none if it has datapath 1 only.
             pub grids: Option<Grids>,
-            /// What stands behind the wire.
+            /// What is at the other end of the wire.
             pub nature: BoardNature,
             /// The board's name, for people; UTF-8, at most 255 bytes.
             pub name: String,
@@ -190,47 +190,47 @@ macro_rules! capabilities {
 }
 
 capabilities! {
-    /// The datapath's id: which arithmetic the board computes. [`Self::known_datapath`] tells whether it is known.
+    /// The datapath's id: which arithmetic the board computes. [`Self::known_datapath`] returns it if it is known.
     0x01 datapath: u16,
     /// The widest row, in samples.
     0x02 max_width: u16,
     /// The most rows of a frame.
     0x03 max_height: u16,
-    /// Depths: bit 0 for 8, bit 1 for 10, bit 2 for 12 bits.
+    /// Sample depths: bit 0 for 8, bit 1 for 10, bit 2 for 12 bits.
     0x04 depths: u8,
-    /// 5, or 7 when the outer taps are there.
+    /// 5, or 7 if the board has the outer taps.
     0x05 taps: u8,
-    /// L: a sample leaves W/2 + L pixel clocks after it entered.
+    /// L: a sample leaves W/2 + L pixel clocks after it enters.
     0x06 latency: u8,
-    /// M: samples of line memory, a power of two.
+    /// M: samples that the line memory holds, a power of two.
     0x07 ring: u16,
     /// The fewest pixel clocks between two rows.
     0x08 least_blanking: u16,
-    /// Banks of tables: 2 when one can be written while the other is used.
+    /// Banks of tables: 2 if one can be written while the other is in use.
     0x09 table_banks: u8,
-    /// Rows that the board holds before they are played.
+    /// How many rows the board holds before they are played.
     0x0a row_banks_in: u8,
-    /// Rows that it holds until they are acknowledged.
+    /// How many corrected rows it holds until they are acknowledged.
     0x0b row_banks_out: u8,
-    /// Ports by which the datapath reads row factors.
+    /// Ports through which the datapath reads row factors.
     0x0c step_ports: u8,
-    /// Ports by which it reads the kernel.
+    /// Ports through which it reads the kernel.
     0x0d kernel_ports: u8,
-    /// The clock that runs the core: 0 the host's own, 1 the sensor's PIXCLK, 2 a PLL.
+    /// The source of the pixel clock: 0 the host's own, 1 the sensor's PIXCLK, 2 a PLL.
     0x0e clock_source: u8,
-    /// Its frequency in hertz; 0 when it stands for no real time.
+    /// The frequency of the pixel clock in hertz; 0 if it is not known.
     0x0f clock_hz: u32,
 }
 
 impl Capabilities {
-    /// The datapath.
+    /// The datapath that [`Self::datapath`] names.
     ///
     /// # Errors
-    /// [`UnknownDatapath`], of which a host can neither make tables nor judge.
+    /// [`UnknownDatapath`]: a host can neither make tables for such a board nor judge it.
     pub fn known_datapath(&self) -> Result<Datapath, UnknownDatapath> {
         match self.datapath.try_into()? {
             Datapath::RowFactors => Ok(Datapath::RowFactors),
-            // Told by a capability of its own; every board has datapath 1.
+            // A capability of its own reports this one; here every board names datapath 1.
             Datapath::Grids => Err(UnknownDatapath { id: self.datapath }),
         }
     }
@@ -253,7 +253,7 @@ impl BoardNature {
     }
 }
 
-/// As much of `text` as fits a value, in whole characters.
+/// As much of `text` as fits into a value, in whole characters.
 fn cut(text: &str) -> &str {
     &text[..text.floor_char_boundary(usize::from(u8::MAX))]
 }

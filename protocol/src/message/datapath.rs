@@ -4,10 +4,10 @@ use core::fmt;
 
 macro_rules! datapaths {
     ($($(#[$doc:meta])* $name:ident = $id:literal,)*) => {
-        /// A datapath that is known: which tables a board takes, what it makes of them, to the bit, and when.
+        /// A known datapath: which tables a board takes, what it computes from them, bit for bit, and when.
         ///
-        /// Whoever adds one is told by the compiler where there is something to decide: nobody matches on this with a
-        /// wildcard.
+        /// No code matches on this with a wildcard, so that the compiler shows whoever adds a datapath every place that must
+        /// decide about it.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         #[repr(u16)]
         pub enum Datapath {
@@ -15,7 +15,7 @@ macro_rules! datapaths {
         }
 
         impl Datapath {
-            /// All that are known.
+            /// Every known datapath.
             pub const ALL: &[Self] = &[$(Self::$name,)*];
         }
 
@@ -33,7 +33,7 @@ macro_rules! datapaths {
 }
 
 datapaths! {
-    /// DATAPATH.md: one row factor a row, and a kernel.
+    /// DATAPATH.md: one row factor per row, and a kernel.
     RowFactors = 1,
     /// DATAPATH.md, *Datapath 2*: a grid of factors, and a kernel.
     Grids = 2,

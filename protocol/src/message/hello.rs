@@ -5,21 +5,21 @@ use alloc::vec::Vec;
 use crate::Malformed;
 use crate::bytes::Fields;
 
-/// The four bytes by which a halfrow board is known.
+/// The four bytes that identify a halfrow board.
 pub const MAGIC: [u8; 4] = *b"HRW1";
 
 /// A host's greeting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hello {
-    /// Drawn anew for every session: a reply that does not carry it is a stale one.
+    /// Drawn anew for every session: a reply without it is stale.
     pub nonce: u32,
-    /// Who asks: drawn once by a host program and kept while it runs.
+    /// Identifies the host program, which draws it when it starts and keeps it while it runs.
     pub host: u32,
     /// The oldest version of the wire that the host speaks.
     pub version_min: u8,
     /// The newest one.
     pub version_max: u8,
-    /// Take the board over although another host holds it.
+    /// Take the board over even if another host holds it.
     pub take_over: bool,
 }
 
@@ -47,7 +47,7 @@ impl Hello {
 pub struct Welcome {
     /// The nonce of the greeting.
     pub nonce: u32,
-    /// The version of the wire that the session speaks.
+    /// The version of the wire that the session uses.
     pub version: u8,
     /// The session's number, 1 to 255.
     pub session: u8,

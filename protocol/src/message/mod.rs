@@ -1,4 +1,5 @@
-//! What packets say. Integers are little endian; a reader skips what a later version appended to a payload it knows.
+//! The contents of packets. Integers are little endian. A reader skips what a later version appended to a payload that
+//! it knows.
 
 mod bursts;
 mod capabilities;
@@ -57,11 +58,11 @@ pub enum Malformed {
 pub enum Request<'a> {
     /// Open a session.
     Hello(Hello),
-    /// Say what you are.
+    /// Say what you are and can do.
     Capabilities,
-    /// Say what you counted.
+    /// Report your counters.
     Status {
-        /// And start again from zero.
+        /// Set the counters to zero afterwards.
         clear: bool,
     },
     /// Drop rows, session or tables.
@@ -72,7 +73,7 @@ pub enum Request<'a> {
     TableWrite(Entries<'a>),
     /// Read entries back.
     TableRead(Span),
-    /// Read entries back and say their CRC-32.
+    /// Read entries back and report their CRC-32.
     TableCrc(Span),
     /// Use the shadow tables from a frame on.
     Commit(Commit),
@@ -82,16 +83,16 @@ pub enum Request<'a> {
     RowIn(RowIn<'a>),
     /// Take the acknowledgement in the header; there is no reply.
     RowAck,
-    /// Make frames on your own, or this many more or fewer.
+    /// Make frames on your own, or change how many the burst under way has.
     Burst(Burst),
-    /// Drop the records of the burst's frames before this one, and say those from it on.
+    /// Drop the records of the burst's frames before this one, and send those from it on.
     Records {
         /// The frame, counted from 0.
         from: u32,
     },
-    /// Expect these signatures of the rows of a burst.
+    /// Expect these signatures from the rows of a burst.
     Expect(Expect<'a>),
-    /// Say which row was trapped.
+    /// Send the row that was trapped.
     Trap,
 }
 
@@ -174,9 +175,9 @@ pub enum Reply<'a> {
     Hello(Welcome),
     /// What the board is and can do.
     Capabilities(Capabilities),
-    /// What it counted.
+    /// The board's counters.
     Status(Status),
-    /// It has dropped what it was told to.
+    /// What the request named was dropped.
     Reset,
     /// The bytes of the request.
     Echo(&'a [u8]),
@@ -195,9 +196,9 @@ pub enum Reply<'a> {
     Configure,
     /// A corrected row.
     RowOut(RowOut<'a>),
-    /// The burst has this many frames, and goes on or begins.
+    /// The burst starts, or its number of frames is set.
     Burst,
-    /// What was signed of a burst's frames.
+    /// The signed records of a burst's frames.
     Records(Records<'a>),
     /// The signatures are kept.
     Expect,

@@ -45,7 +45,7 @@ codes! {
     Version = 1, "version", "the board speaks another version of the wire";
     /// The kind is not known to the board.
     Kind = 2, "kind", "the board does not know this request";
-    /// The payload is not the kind's.
+    /// The payload is not one of this kind.
     Payload = 3, "payload", "the request's payload is malformed";
     /// A value out of range; `detail` is the index of the entry, or the field's place in WIRE.md.
     Range = 4, "range", "a value is out of the board's range";
@@ -57,11 +57,11 @@ codes! {
     Busy = 7, "busy", "the core is busy";
     /// Rows came before a configuration and a commit.
     NotReady = 8, "not ready", "geometry and tables have not been set";
-    /// The tables read back otherwise than the host says they are; `detail` is the table.
+    /// A table does not read back with the CRC that the host gave; `detail` is the table.
     TableCrc = 9, "table crc", "a table reads back with another CRC";
-    /// A row beyond the credit.
+    /// A row at or beyond the window.
     Credit = 10, "credit", "a row was sent without credit";
-    /// The row's place or width is not the configuration's.
+    /// The row's place or width does not fit the configuration or the order.
     Row = 11, "row", "a row does not fit the configuration or the order";
     /// The kernel needs the outer taps, and the board has none; `detail` is the node.
     Taps = 12, "taps", "the kernel needs seven taps and the board has five";
@@ -74,7 +74,7 @@ pub struct Refusal {
     pub code: RefusalCode,
     /// The code of the kind of the request.
     pub kind: u8,
-    /// More, by the code.
+    /// Further detail; its meaning depends on the code.
     pub detail: u16,
 }
 

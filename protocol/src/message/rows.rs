@@ -9,15 +9,15 @@ use crate::samples::{pack, packed_length};
 /// Which row it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RowPlace {
-    /// Counts the rows of a session, through all its frames.
+    /// The number of the row, counted through all frames of the session.
     pub row_sequence: u32,
-    /// The frame's number, as the host likes.
+    /// The frame's number, chosen by the host.
     pub frame: u16,
-    /// The row of the frame, from 0 at the top.
+    /// The row within the frame, from 0 at the top.
     pub row: u16,
-    /// Samples.
+    /// Samples in the row.
     pub width: u16,
-    /// The last row of its frame: the core is flushed behind it.
+    /// Whether this is the last row of its frame: the core is flushed after it.
     pub last: bool,
 }
 
@@ -60,7 +60,7 @@ pub struct RowIn<'a> {
 }
 
 impl<'a> RowIn<'a> {
-    /// Bytes of the payload in front of the samples.
+    /// Bytes of the payload before the samples.
     pub const HEAD: usize = RowPlace::BYTES;
 
     pub(crate) fn write(&self, payload: &mut Vec<u8>) {
@@ -92,21 +92,21 @@ pub struct RowOut<'a> {
     pub first_latency: u16,
     /// Pixel clocks from the last sample in to the last sample out.
     pub last_latency: u16,
-    /// Board clocks that the enable was off while the row was played, 65535 and more as 65535.
+    /// Board clocks for which gaps kept the enable off, up to the row's last sample; stays at 65535.
     pub pauses: u16,
-    /// Times that the row was sent before.
+    /// How often the row was sent before; stays at 65535.
     pub repeats: u16,
     /// Its samples, as [`crate::samples::pack`] packs them.
     pub packed: &'a [u8],
-    /// CRC-32 of the row's samples as they entered the core, words of 16 bits; none where the payload ends with the
-    /// samples. Only a board with the capability `entered` says it: what another one sends there has no meaning.
+    /// CRC-32 of the row's samples as they entered the core, each as a 16-bit word; none if the payload ends with the
+    /// samples. Only meaningful from a board with the capability `entered`.
     pub entered: Option<u32>,
 }
 
 impl<'a> RowOut<'a> {
-    /// Bytes of the payload in front of the samples.
+    /// Bytes of the payload before the samples.
     pub const HEAD: usize = RowPlace::BYTES + 8;
-    /// Bytes of `entered` behind the samples.
+    /// Bytes of `entered`, after the samples.
     pub const ENTERED: usize = 4;
 
     pub(crate) fn write(&self, payload: &mut Vec<u8>) {

@@ -22,7 +22,7 @@ pub enum ResetLevel {
 pub struct Reset {
     /// How much it drops.
     pub level: ResetLevel,
-    /// The row sequence number that the board then waits for; beyond any that was sent, so that no late row fits.
+    /// The row sequence number that the board then waits for. It is beyond any that was sent, so that no late row fits.
     pub next_row: u32,
 }
 
@@ -44,12 +44,12 @@ impl Reset {
     }
 }
 
-/// The geometry and the timing that rows are played with.
+/// The geometry and timing with which rows are played.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Configuration {
-    /// W: samples a row, even.
+    /// W: samples per row, even.
     pub width: u16,
-    /// H: rows a frame.
+    /// H: rows per frame.
     pub height: u16,
     /// C: twice the column of the optical centre, 0 to 2W − 2.
     pub centre2: u16,
@@ -57,7 +57,7 @@ pub struct Configuration {
     pub blanking: u16,
     /// Seed of the gaps in and between rows; 0 for none.
     pub gap_seed: u32,
-    /// B: bits a sample: 8, 10 or 12.
+    /// B: bits per sample: 8, 10 or 12.
     pub bits: u8,
 }
 

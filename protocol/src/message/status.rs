@@ -1,4 +1,4 @@
-//! STATUS: what a board counted since its session began or since the counters were cleared.
+//! STATUS: what a board has counted since its session began or since the counters were cleared.
 
 use alloc::vec::Vec;
 
@@ -33,7 +33,7 @@ macro_rules! status {
 }
 
 status! {
-    /// Packets that arrived whole.
+    /// Packets that arrived intact.
     packets,
     /// Packets with a wrong CRC-32.
     crc_errors,
@@ -45,11 +45,11 @@ status! {
     refusals,
     /// Rows accepted into a bank.
     rows_in,
-    /// Rows of which every sample has left the core.
+    /// Rows whose last sample has left the core.
     rows_out,
     /// Rows sent again from their bank.
     rows_repeated,
-    /// Rows that came again and were not needed.
+    /// Rows that came again although the board has them or they were acknowledged.
     rows_unneeded,
     /// Samples at or above 2^B.
     samples_over,
@@ -61,8 +61,8 @@ status! {
     core_busy,
     /// The generation of the active tables, 0 for none.
     generation,
-    /// The smallest first or last latency of a row, in pixel clocks.
+    /// The smallest first or last latency of any row, in pixel clocks; 0 before any.
     least_latency,
-    /// The largest.
+    /// The largest first or last latency of any row, in pixel clocks.
     most_latency,
 }

@@ -1,11 +1,11 @@
-//! The tables: written into a shadow bank, read back through the ports that the datapath uses, then committed.
+//! The tables. They are written into a shadow bank, read back through the ports that the datapath uses, then committed.
 
 use alloc::vec::Vec;
 
 use crate::Malformed;
 use crate::bytes::Fields;
 
-/// Bytes of a row factor or of a grid's entry on the wire: an unsigned 32-bit word that holds 25 bits.
+/// Bytes of a row factor or a grid entry on the wire: an unsigned 32-bit word that holds 25 bits.
 pub const ROW_FACTOR_BYTES: usize = 4;
 /// Nodes of a kernel.
 pub const NODES: usize = 65;
@@ -22,7 +22,7 @@ pub enum Table {
     RowFactors = 0,
     /// The kernel's nodes.
     Kernel = 1,
-    /// The entries of a grid, in the memory of the row factors; of boards with [`super::Grids`] alone.
+    /// The entries of a grid, in the memory of the row factors; only on boards with [`super::Grids`].
     Grid = 3,
 }
 
@@ -56,7 +56,7 @@ pub enum Bank {
     Active = 1,
 }
 
-/// Entries of a table.
+/// A range of a table's entries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Span {
     /// The table.
@@ -95,20 +95,20 @@ impl Span {
 /// Entries of a table with their values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entries<'a> {
-    /// Where they stand. A write goes to the shadow bank and through every port.
+    /// Where the entries are. A write goes to the shadow bank, for every port.
     pub span: Span,
     /// Their values, [`Table::entry_bytes`] each.
     pub bytes: &'a [u8],
 }
 
 impl<'a> Entries<'a> {
-    /// Row factors or entries of a grid, if they are the table's: words as they came, which the board that takes them must
-    /// check.
+    /// The entries as row factors or grid entries, if that is what the table holds. The words are unchecked: the board that
+    /// takes them must check their range.
     pub fn row_factors(&self) -> impl Iterator<Item = u32> + use<'a> {
         self.bytes.as_chunks::<ROW_FACTOR_BYTES>().0.iter().map(|&word| u32::from_le_bytes(word))
     }
 
-    /// Kernel nodes, if they are the table's.
+    /// The entries as kernel nodes, if that is what the table holds.
     pub fn nodes(&self) -> impl Iterator<Item = [i16; NODE_WEIGHTS]> + use<'a> {
         self.bytes.as_chunks::<NODE_BYTES>().0.iter().map(|node| {
             let weights = node.as_chunks::<2>().0;
@@ -128,33 +128,34 @@ impl<'a> Entries<'a> {
     }
 }
 
-/// How the rows of a bank use its entries (DATAPATH.md, *Datapath 2*): any two numbers, which the board that takes them must
-/// check.
+/// How the rows of a bank use its entries (DATAPATH.md, *Datapath 2*). The numbers are unchecked: the board that takes
+/// them must check them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shape {
-    /// A grid row lies every 2^v rows; 0 for one row factor a row.
+    /// There is a grid row every 2^v rows; 0 for one row factor per row.
     pub v: u8,
-    /// A node lies every 2^k columns; without meaning if v is 0.
+    /// There is a grid node every 2^k columns; no meaning if v is 0.
     pub k: u8,
 }
 
 /// Makes the shadow tables the active ones, from a frame on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Commit {
-    /// CRC-32 of the first H row factors, or of all entries of the grid, 4 bytes each.
+    /// CRC-32 of the first H row factors, or of all entries of the grid: 4 bytes each.
     pub steps_crc: u32,
-    /// CRC-32 of the 65 nodes, 10 bytes each.
+    /// CRC-32 of the kernel's 65 nodes: 10 bytes each.
     pub kernel_crc: u32,
     /// The number of the frame whose row 0 is the first to use them.
     pub first_frame: u16,
-    /// The generation that the tables become, 1 to 255; not the present one, so that a repeated request is known.
+    /// The generation that the tables get, 1 to 255. It differs from the present one, so that a repeated request is
+    /// recognised.
     pub generation: u8,
-    /// The bank's shape; none for one row factor a row. Only for a board with [`super::Grids`]: others do not look at it.
+    /// The bank's shape; none for one row factor per row. Only for a board with [`super::Grids`]; others ignore it.
     pub shape: Option<Shape>,
 }
 
 impl Commit {
-    /// Bytes of the payload, the shape's included.
+    /// Bytes of the payload, the shape included.
     pub const BYTES: usize = 13;
 
     pub(crate) fn write(&self, payload: &mut Vec<u8>) {

@@ -4,15 +4,15 @@ use core::arch::x86_64::*;
 
 use super::packed_length;
 
-/// Samples of a vector.
+/// Samples in a vector.
 const GROUP: usize = 16;
 /// Their bytes on the wire.
 const PACKED: usize = packed_length(GROUP);
 
-/// Bytes between what is packed and what is fetched from memory meanwhile, about a row.
+/// How far ahead of the samples being packed memory is prefetched, in bytes: about a row.
 const AHEAD: usize = 4096;
 
-/// Packs the first samples, and returns how many.
+/// Packs the first samples, as many as fill vectors, and returns how many.
 pub(super) fn pack(samples: &[u16], packed: &mut [u8]) -> usize {
     if !std::is_x86_feature_detected!("avx2") {
         return 0;
@@ -23,7 +23,7 @@ pub(super) fn pack(samples: &[u16], packed: &mut [u8]) -> usize {
     GROUP * groups.len().min(places.len())
 }
 
-/// Unpacks the first samples, and returns how many.
+/// Unpacks the first samples, as many as fill vectors, and returns how many.
 pub(super) fn unpack(packed: &[u8], samples: &mut [u16]) -> usize {
     if !std::is_x86_feature_detected!("avx2") {
         return 0;
@@ -43,14 +43,14 @@ fn pack_groups(groups: &[[u16; GROUP]], places: &mut [[u8; PACKED]]) {
         _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1));
     let close_up = _mm256_setr_epi32(0, 1, 2, 4, 5, 6, 3, 7);
     for (group, place) in groups.iter().zip(places) {
-        // The next row: frames come from memory, and a processor does not look ahead beyond a page.
+        // The next row: frames come from memory, and a processor does not prefetch across a page boundary.
         _mm_prefetch::<_MM_HINT_T0>(group.as_ptr().cast::<i8>().wrapping_add(AHEAD));
         // SAFETY: the group is as long as the vector.
         let samples = unsafe { _mm256_loadu_si256(group.as_ptr().cast()) };
         let pairs = _mm256_madd_epi16(_mm256_and_si256(samples, twelve_bits), shift_second);
         let packed = _mm256_permutevar8x32_epi32(_mm256_shuffle_epi8(pairs, lower_three), close_up);
         let (low, high) = (_mm256_castsi256_si128(packed), _mm256_extracti128_si256::<1>(packed));
-        // SAFETY: the place is 24 bytes long: 16, and 8 behind them.
+        // SAFETY: the place is 24 bytes long: 16, and the 8 after them.
         unsafe {
             _mm_storeu_si128(place.as_mut_ptr().cast(), low);
             _mm_storel_epi64(place[16..].as_mut_ptr().cast(), high);
