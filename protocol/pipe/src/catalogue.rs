@@ -1,4 +1,4 @@
-//! Faults by name. A table says once what each does and what can be set; its listing and its reading follow from that.
+//! Faults by name. One table says what each does and what can be set; the list of faults and the parser follow from it.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ pub enum Place {
 }
 
 impl Place {
-    /// The place in a word.
+    /// The place, in one word.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -48,21 +48,21 @@ impl std::fmt::Display for Range {
     }
 }
 
-/// Something about a fault that can be set.
+/// A parameter of a fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameter {
     /// Its name, as in `bit=5`.
     pub key: &'static str,
-    /// What it may be.
+    /// The values that it may have.
     pub range: Range,
-    /// What it is when it is not given, as one would give it; none where the fault does without.
+    /// Its value when it is not given, as text; none if the fault needs no value.
     pub default: Option<&'static str>,
     /// What it means.
     pub meaning: &'static str,
 }
 
 impl Parameter {
-    /// A parameter with all that is to be known of it.
+    /// A parameter.
     #[must_use]
     pub const fn new(
         key: &'static str,
@@ -92,11 +92,11 @@ impl Parameter {
 enum Value {
     Whole(i64),
     Decimal(f64),
-    /// The place of the word in its range.
+    /// The index of the word in its range.
     Word(usize),
 }
 
-/// The values of a fault's parameters, those that were given before the defaults.
+/// The values of a fault's parameters. A given value takes precedence over the default.
 #[derive(Debug)]
 pub struct Values {
     given: BTreeMap<&'static str, Value>,
@@ -118,7 +118,7 @@ impl Values {
         Ok(values)
     }
 
-    /// Whether the parameter was given, and does not just have its default.
+    /// Whether the parameter was given, and not just left at its default.
     #[must_use]
     pub fn is_given(&self, key: &str) -> bool {
         self.given.contains_key(key)
@@ -131,7 +131,7 @@ impl Values {
     /// A whole number.
     ///
     /// # Errors
-    /// [`ValueError::Missing`] when the fault has no such number, or not in the range of `T`.
+    /// [`ValueError::Missing`] when the fault has no such number, or it is outside the range of `T`.
     pub fn whole<T: TryFrom<i64>>(&self, key: &'static str) -> Result<T, ValueError> {
         let whole = self.get(key).and_then(|value| match value {
             Value::Whole(whole) => T::try_from(whole).ok(),
@@ -151,7 +151,7 @@ impl Values {
         }
     }
 
-    /// The one among `choices` that stands where the word stands in its range.
+    /// The one of `choices` at the index that the word has in its range.
     ///
     /// # Errors
     /// [`ValueError::Missing`] when the fault has no such word.
@@ -164,7 +164,7 @@ impl Values {
     }
 }
 
-/// What can be told of a fault.
+/// The description of a fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaultInfo {
     /// The name, as in `fault=late`.
@@ -178,8 +178,8 @@ pub struct FaultInfo {
 }
 
 impl FaultInfo {
-    /// What happens, with the parameters and their defaults, as in `a row goes in and never comes out (row=3)`. Those without
-    /// a default show as `reads=N`.
+    /// What happens, with the parameters and their defaults, as in `a row goes in and never comes out (row=3)`. A parameter
+    /// without a default is shown as `reads=N`.
     #[must_use]
     pub fn summary(&self) -> String {
         let shown = |it: &Parameter| format!("{}={}", it.key, it.default.unwrap_or("N"));
@@ -197,16 +197,16 @@ impl FaultInfo {
     }
 }
 
-/// A line of a table of faults that are `T`s.
+/// A line of a table of faults; `T` is the type of the fault that it makes.
 #[derive(Clone, Copy, Debug)]
 pub struct Fault<T: 'static> {
-    /// What can be told of it.
+    /// Its description.
     pub info: FaultInfo,
     make: fn(&Values) -> Result<T, ValueError>,
 }
 
 impl<T> Fault<T> {
-    /// The fault called `name`, which spoils `place` by `what`, and is made by `make` from the values of its `parameters`.
+    /// The fault called `name`, which does `what` to `place`. `make` makes it from the values of its `parameters`.
     #[must_use]
     pub const fn new(
         name: &'static str,
@@ -218,7 +218,7 @@ impl<T> Fault<T> {
         Self { info: FaultInfo { name, place, what, parameters }, make }
     }
 
-    /// The fault, with its own parameters taken out of `parameters` and the others left there.
+    /// Makes the fault. Takes its own parameters out of `parameters` and leaves the others there.
     ///
     /// # Errors
     /// [`FaultError::Parameter`] when one is out of range, or contradicts another.

@@ -1,4 +1,4 @@
-//! When a fault strikes, and the dice that it throws.
+//! When a fault strikes, and its random numbers.
 
 use std::num::NonZeroU64;
 
@@ -10,7 +10,7 @@ use rand_pcg::Pcg32;
 pub(super) enum Occurrence {
     /// Once, at the byte or packet of this number, from 0.
     At(u64),
-    /// Behind each so many bytes or packets.
+    /// Repeatedly, each time after this many bytes or packets.
     Every(NonZeroU64),
     /// At each byte or packet with this probability, 0 to 1.
     Rate(f64),
@@ -39,12 +39,12 @@ impl Chance {
         chance
     }
 
-    /// What is struck next; none when it is over.
+    /// The number that is struck next; none if no more are.
     pub(super) fn next(&self) -> Option<u64> {
         self.next
     }
 
-    /// Whether `number` is struck. If so, goes on to the next.
+    /// Whether `number` is struck. If so, moves on to the next number to strike.
     pub(super) fn strikes(&mut self, number: u64) -> bool {
         let strikes = self.next == Some(number);
         if strikes {
@@ -56,8 +56,8 @@ impl Chance {
         strikes
     }
 
-    /// Draws the first one struck from `number` on. The gap before it has a geometric distribution, and one draw gives it:
-    /// P(gap ≥ n) = (1 − rate)^n is inverted at a uniform variate, so that what is not struck costs nothing.
+    /// Draws the first number struck from `number` on. The gap before it has a geometric distribution, so one draw is
+    /// enough: P(gap ≥ n) = (1 − rate)^n is inverted at a uniform variate. What is not struck costs nothing.
     fn first_from(&mut self, number: u64) -> Option<u64> {
         const UNIT: f64 = 1.0 / (1_u64 << 53) as f64;
         if self.rate <= 0.0 {
@@ -68,7 +68,7 @@ impl Chance {
         number.checked_add(gap as u64)
     }
 
-    /// A random number from 0 up to `end`, which is left out; 0 when there is none.
+    /// A random number from 0 to `end`, exclusive; 0 if `end` is 0.
     pub(super) fn below(&mut self, end: usize) -> usize {
         ((u128::from(self.random.next_u64()) * end as u128) >> 64) as usize
     }
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn strikes_do_not_shun_or_seek_each_other() {
-        // The next one is struck as often after a strike as elsewhere: 0.3 of some 300,000, deviation 251.
+        // A strike follows a strike as often as anything else: 0.3 of some 300,000, deviation 251.
         let struck = struck(Occurrence::Rate(0.3), 2, 1_000_000);
         let pairs = struck.windows(2).filter(|pair| pair[1] == pair[0] + 1).count() as f64;
         assert!((pairs - 0.3 * struck.len() as f64).abs() < 5.0 * 251.0, "{pairs} pairs of {}", struck.len());

@@ -31,12 +31,12 @@ pub(super) enum Damage {
     Interrupted(InterruptedStream),
 }
 
-/// What came of some bytes.
+/// How far some bytes have passed.
 #[derive(Debug, PartialEq)]
 pub(super) struct Passage {
-    /// How many are done with, from the front.
+    /// How many are done, from the front.
     pub(super) bytes: usize,
-    /// What happens before the others.
+    /// What happens before the remaining ones.
     pub(super) interruption: Option<Interruption>,
 }
 
@@ -54,7 +54,7 @@ impl Damage {
         }
     }
 
-    /// Appends to `out` what is left of `bytes`. A packet whose fate is open is held back until its end has come.
+    /// Appends to `out` what is left of `bytes`. A packet whose harm depends on its end is held back until the end has come.
     pub(super) fn pass(&mut self, bytes: &[u8], out: &mut Vec<u8>) -> Passage {
         match self {
             Self::None => out.extend_from_slice(bytes),

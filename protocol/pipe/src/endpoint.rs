@@ -1,8 +1,8 @@
-//! What may stand at the far end of a pipe.
+//! What may be at the far end of a pipe.
 
 use std::time::Duration;
 
-/// A board that takes bytes and has bytes to send. It takes no time of the pipe's clock: all that it can do it does when
+/// A board that takes bytes and has bytes to send. It takes no time on the pipe's clock: it does everything it can when
 /// bytes arrive.
 pub trait Endpoint {
     /// Why a board can stop for good.
@@ -11,7 +11,7 @@ pub trait Endpoint {
     /// Takes bytes that arrive together, at the time `now` since the board was switched on.
     ///
     /// # Errors
-    /// If the board will not answer any more.
+    /// If the board will never answer again.
     fn receive(&mut self, bytes: &[u8], now: Duration) -> Result<(), Self::Failure>;
 
     /// Bytes that wait to be sent to the host.

@@ -1,4 +1,4 @@
-//! Faults of the pipe by name: bytes and packets that suffer on their way.
+//! Faults of the pipe by name: harm to bytes and packets on their way.
 
 use std::num::NonZeroU64;
 use std::time::Duration;
@@ -17,7 +17,7 @@ const TOWARD: &str = "toward";
 const SEED: &str = "seed";
 const SECONDS: &str = "seconds";
 
-/// A byte or a packet by its number; none is over a terabyte away.
+/// The number of a byte or a packet, up to a terabyte.
 const NUMBER: Range = Range::Whole(0, 1_000_000_000_000);
 
 const AT_BYTE: Parameter =
@@ -35,8 +35,8 @@ const AT_EVERY: Parameter = Parameter::new(
     None,
     "strikes behind each so many bytes of its direction",
 );
-/// The longest packet has 4,113 bytes between its zeros. By default those are struck that are longer than the session's and its
-/// requests: rows, tables and echoes.
+/// The longest packet has 4,113 bytes between its zeros. The default strikes rows, tables and echoes, and spares the shorter
+/// packets of the session and its requests.
 const LEAST_SIZE: Parameter = Parameter::new(
     SIZE,
     Range::Whole(1, 4113),
@@ -47,9 +47,9 @@ const LEAST_SIZE: Parameter = Parameter::new(
 const AT_PACKET_40: Parameter = Parameter { default: Some("40"), ..AT_PACKET };
 const RATE_OF_PACKETS: Parameter =
     Parameter::new(RATE, Range::Decimal(0.0, 1.0), None, "strikes each packet with this probability");
-/// One packet in a thousand: one or two of a frame of 1080 rows.
+/// One packet in a thousand: one or two in a frame of 1080 rows.
 const PACKETS_1E3: Parameter = Parameter { default: Some("1e-3"), ..RATE_OF_PACKETS };
-/// Some hundred strikes in 100 MB: a few frames of 1920 x 1080 samples both ways suffer, and can be repaired.
+/// About 100 strikes in 100 MB: a few frames of 1920 x 1080 samples suffer both ways, and can be repaired.
 const BYTES_1E6: Parameter =
     Parameter::new(RATE, Range::Decimal(0.0, 1.0), Some("1e-6"), "strikes each byte with this probability");
 const TOWARDS: Parameter = Parameter::new(
@@ -65,7 +65,7 @@ const LASTING: Parameter =
 
 const OF_BYTES: &[Parameter] = &[BYTES_1E6, AT_BYTE, AT_EVERY, AT_PACKET, TOWARDS, SEEDED];
 
-/// The faults of the pipe. Of `byte`, `every`, `packet` and `rate` one may be given; the default of one of them holds otherwise.
+/// The faults of the pipe. One of `byte`, `every`, `packet` and `rate` may be given; otherwise the one that has a default holds.
 pub const FAULTS: &[Fault<PipeFault>] = &[
     fault("flip", "one bit of a byte, or of a packet, flips", OF_BYTES, |values| {
         PipeFault::of(values, &Choice::of_bytes(ByteHarm::Flip, PacketHarm::Flip))
@@ -123,7 +123,7 @@ const fn fault(
     Fault::new(name, Place::Pipe, what, parameters, make)
 }
 
-/// A fault of the pipe. The two directions count their bytes and packets, and throw their dice, each on its own.
+/// A fault of the pipe. Each direction has its own count of bytes and packets, and its own random numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PipeFault {
     pub(crate) harm: Harm,
@@ -177,7 +177,7 @@ impl PipeFault {
 
 /// What a fault does, depending on how its place is given.
 struct Choice {
-    /// None where the fault has no such place.
+    /// None if the fault cannot strike at a byte.
     at_byte: Option<Harm>,
     at_packet: Harm,
     at_rate: Harm,
@@ -200,7 +200,7 @@ impl Choice {
         Self { at_byte: Some(byte), at_packet: packet, at_rate: packet }
     }
 
-    /// The place that was given, or else the one that has a default.
+    /// Harm and occurrence of the place that was given, or else of the one that has a default.
     fn place(&self, values: &Values) -> Result<(Harm, Occurrence), ValueError> {
         let places = [
             (BYTE, self.at_byte),
@@ -222,7 +222,7 @@ impl Choice {
     }
 }
 
-/// What happens at the place that `key` says.
+/// What happens, and when, if `key` gives the place.
 fn occurrence(
     values: &Values,
     key: &'static str,

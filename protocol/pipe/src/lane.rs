@@ -1,4 +1,4 @@
-//! One direction of the pipe: bytes that travel.
+//! One direction of the pipe.
 
 use std::collections::VecDeque;
 use std::num::NonZeroU64;
@@ -8,7 +8,7 @@ use super::damage::{Damage, Interruption};
 use super::options::PipeOptions;
 use super::queue::ByteQueue;
 
-/// Bytes that travel together at most: a packet of USB 2 in high speed.
+/// The most bytes that travel together: a high-speed packet of USB 2.
 const SLICE: usize = 512;
 
 const NANOSECONDS: u128 = 1_000_000_000;
@@ -22,8 +22,8 @@ pub(super) struct Lane {
     /// Taken in and not yet handed over.
     bytes: ByteQueue,
     slices: VecDeque<Slice>,
-    /// When the pipe last began to be busy, and the bytes it took since: times come from their sum, so that rounding
-    /// does not add up.
+    /// When the pipe last became busy, and how many bytes it has taken since. Times are computed from this total, so that
+    /// rounding errors do not add up.
     busy_since: Duration,
     busy_bytes: u64,
     free_at: Duration,
@@ -66,7 +66,7 @@ impl Lane {
         self.bytes.is_empty()
     }
 
-    /// Takes in from the front of `bytes` what there is room for. Returns how much that was.
+    /// Takes in as many bytes from the front of `bytes` as there is room for, and returns their number.
     pub(super) fn accept(&mut self, bytes: &[u8], now: Duration) -> usize {
         let accepted = &bytes[..bytes.len().min(self.room())];
         for slice in accepted.chunks(SLICE) {
@@ -78,7 +78,7 @@ impl Lane {
         accepted.len()
     }
 
-    /// Bytes that can be taken in. Without a buffer, one slice is in the pipe at a time.
+    /// How many bytes can be taken in. Without a buffer, the pipe holds one slice at a time.
     fn room(&self) -> usize {
         match self.buffer {
             0 if self.is_empty() => SLICE,
@@ -86,7 +86,7 @@ impl Lane {
         }
     }
 
-    /// Keeps the pipe busy for `length` more bytes, from when it is free.
+    /// Keeps the pipe busy for `length` more bytes, from when it becomes free.
     fn occupy(&mut self, length: usize, now: Duration) {
         if self.free_at <= now {
             (self.busy_since, self.busy_bytes) = (now, 0);

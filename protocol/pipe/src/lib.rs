@@ -1,4 +1,4 @@
-//! The byte pipe to a board in this process, on a virtual clock: it has a speed and a delay, and faults on purpose.
+//! The byte pipe to a board in this process, on a virtual clock. It has a speed, a delay, and deliberate faults.
 //!
 //! ```text
 //! host ── exchange ─► Lane to the board ─► Endpoint::receive
@@ -8,7 +8,7 @@
 //! ```
 //!
 //! It is simulated event by event. The clock stands still while bytes can move; when none can, it jumps to the next
-//! arrival. So a run takes no more of the real clock than its computing does, and comes out the same every time.
+//! arrival. So a run takes only the real time that its computing takes, and has the same result every time.
 
 mod catalogue;
 mod chance;
@@ -64,9 +64,9 @@ pub struct Pipe<B: Endpoint> {
     now: Duration,
     to_board: Lane,
     to_host: Lane,
-    /// What the board has said and the lane to the host has not taken.
+    /// What the board has sent and the lane to the host has not accepted.
     unsent: ByteQueue,
-    /// What reaches the board at one instant; kept for its memory.
+    /// What reaches the board at one instant; kept to reuse its memory.
     arrived: Vec<u8>,
     broken: Option<Broken<B::Failure>>,
 }
@@ -89,12 +89,12 @@ impl<B: Endpoint> Pipe<B> {
     }
 
     /// Moves bytes both ways: takes from the front of `outgoing` what the pipe accepts, and appends to `incoming` what
-    /// has arrived. Returns the number of bytes taken as soon as a byte has moved either way; if none has moved when
-    /// `wait` has passed on the virtual clock, 0.
+    /// has arrived. Returns the number of bytes taken as soon as a byte has moved either way, or 0 if none has moved
+    /// once `wait` has passed on the virtual clock.
     ///
     /// # Errors
-    /// [`Broken`] once the pipe is broken. Bytes that moved in the call in which it broke are returned by that
-    /// call, and the next one fails.
+    /// [`Broken`] once the pipe is broken. The call in which it breaks still returns the bytes that moved; the next
+    /// one fails.
     pub fn exchange(
         &mut self,
         outgoing: &[u8],
@@ -148,14 +148,14 @@ impl<B: Endpoint> Pipe<B> {
         outgoing.len() - rest.len()
     }
 
-    /// Whether the host may send at all. A pipe without a buffer takes nothing while the board has something to say, and
-    /// what was `heard` in this call is the host's only when the call returns.
+    /// Whether the host may send at all. A pipe without a buffer takes nothing while the board has something to send, or
+    /// when something was `heard` in this call: the host gets that only when the call returns.
     fn accepts(&self, heard: bool) -> bool {
         self.options.buffer > 0 || !heard && self.unsent.is_empty() && self.to_host.is_empty()
     }
 
-    /// Hands over what has arrived on either side, and puts what the board says on its lane. Returns the number of
-    /// steps that bytes took, so 0 when nothing moved.
+    /// Hands over what has arrived on either side, and puts what the board sends on its lane. Returns how many bytes
+    /// moved, summed over the three steps; 0 when nothing moved.
     fn carry(&mut self, incoming: &mut Vec<u8>) -> usize {
         self.arrived.clear();
         let to_board = self.to_board.deliver(self.now, &mut self.arrived);

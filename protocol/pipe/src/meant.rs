@@ -1,10 +1,10 @@
-//! Which word of a list was meant by one that is not of it.
+//! Which word of a list was probably meant by a word that is not in it.
 
-/// How like a word must be to one of a list, 0 to 1, to be taken for a slip in it.
+/// How similar a word must be to one of a list, 0 to 1, to be taken for a misspelling of it.
 const LIKENESS: f64 = 0.8;
 
-/// To stand in front of "from" and a list: the word of `known`, words between commas up to a semicolon, that `given` was most likely
-/// meant to be, as in `late, if that was meant, or `; nothing where none is like it.
+/// The word of `known` that `given` was most likely meant to be, as a phrase to put before "from" and the list, such as
+/// `late, if that was meant, or `. Empty if no word is similar. `known` is a list with commas, up to a semicolon or its end.
 #[must_use]
 pub fn meant(given: &str, known: &str) -> String {
     let given = given.to_lowercase();

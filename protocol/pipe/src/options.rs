@@ -1,4 +1,4 @@
-//! What a pipe is like when nothing is wrong with it.
+//! The properties of a pipe without faults.
 
 use std::num::NonZeroU64;
 use std::time::Duration;
@@ -9,16 +9,16 @@ const SPEED: Limits = Limits::new("speed", 1, 1_000_000_000_000);
 const DELAY: Decimal = Decimal::new("delay", 0.0, 60.0);
 const BUFFER: Limits = Limits::new("buffer", 0, 1 << 30);
 
-/// A pipe, the same in both directions.
+/// The properties of a pipe, the same in both directions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PipeOptions {
     /// Bytes per second; none for no limit.
     pub speed: Option<NonZeroU64>,
-    /// Time from when a byte has left one end until it is at the other.
+    /// Time from when a byte has left one end until it arrives at the other.
     pub delay: Duration,
-    /// Bytes that are taken in before they are handed over. As on a real link, a buffer smaller than speed times delay
-    /// slows the pipe down. With 0, bytes go over only while the other side has nothing to say: whoever sends without
-    /// listening waits for ever.
+    /// Bytes that a direction holds before they are handed over. As on a real link, a buffer smaller than speed times delay
+    /// slows the pipe down. With 0, the host's bytes are taken only while the board has nothing to send: a host that sends
+    /// without listening waits for ever.
     pub buffer: usize,
 }
 

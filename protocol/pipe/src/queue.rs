@@ -1,6 +1,6 @@
-//! Bytes in a row, put in behind and taken out in front.
+//! A queue of bytes in one piece of memory.
 
-/// A queue whose bytes lie together and are not moved when its front is taken.
+/// A queue whose bytes are contiguous, and do not move when the front is taken.
 #[derive(Debug, Default)]
 pub(super) struct ByteQueue {
     bytes: Vec<u8>,
@@ -26,8 +26,8 @@ impl ByteQueue {
         &self.as_slice()[..count.min(self.len())]
     }
 
-    /// Appends `bytes`. They move to the front of the memory only when at least half of it is free there, so that a byte
-    /// is moved about once.
+    /// Appends `bytes`. The bytes already queued move to the front of the memory only if at least half of it is free there,
+    /// so that each byte moves about once.
     pub(super) fn extend(&mut self, bytes: &[u8]) {
         if self.start >= self.len() {
             self.bytes.drain(..self.start);

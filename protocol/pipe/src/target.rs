@@ -1,4 +1,4 @@
-//! From the options of a target string to a pipe with a board at its end.
+//! From the options in a target string to a pipe with a board at its end.
 
 use std::collections::BTreeSet;
 
@@ -75,9 +75,9 @@ pub enum TargetError {
     },
 }
 
-/// What a target string can say of the board at the end of a pipe.
+/// What a target string can set of the board at the end of a pipe.
 pub trait BoardOptions {
-    /// What can be wrong with the board on purpose.
+    /// The board's deliberate faults.
     type Fault: 'static;
 
     /// The names of all options.
@@ -93,7 +93,7 @@ pub trait BoardOptions {
     fn set(&mut self, key: &str, value: &str) -> Result<bool, ValueError>;
 }
 
-/// A board of which a target string can say nothing.
+/// A board without options and faults.
 #[derive(Clone, Copy, Debug)]
 pub struct NoOptions;
 
@@ -117,9 +117,9 @@ pub struct PipeSetup {
 }
 
 impl PipeSetup {
-    /// The pipe that the options of a target string describe, as in `speed=1200000,fault=flip,rate=1e-4`, to a board that
-    /// has no options itself: those of the pipe ([`PipeOptions::set`]), and at most one of its faults with its parameters
-    /// ([`FAULTS`]).
+    /// The pipe that the options of a target string describe, as in `speed=1200000,fault=flip,rate=1e-4`, to a board
+    /// without options. There may be options of the pipe ([`PipeOptions::set`]) and at most one of its faults with its
+    /// parameters ([`FAULTS`]).
     ///
     /// # Errors
     /// [`TargetError`] when a key is unknown or given twice, or a value is out of range.
@@ -127,7 +127,8 @@ impl PipeSetup {
         Self::with_board(options, &mut NoOptions).map(|(setup, _)| setup)
     }
 
-    /// The same to a board that has options, which are set, and at most one fault of the board with its parameters.
+    /// Like [`Self::from_options`], to a board with options, which are set in `board`. There may also be one fault of the
+    /// board, with its parameters.
     ///
     /// # Errors
     /// [`TargetError`] when a key is unknown, given twice or taken by both faults, or a value is out of range.
@@ -161,7 +162,7 @@ impl PipeSetup {
     }
 }
 
-/// The faults that were asked for.
+/// The faults that were given.
 struct Faults<O: BoardOptions> {
     pipe: Option<&'static Fault<PipeFault>>,
     board: Option<&'static Fault<O::Fault>>,
@@ -184,7 +185,7 @@ impl<O: BoardOptions> Faults<O> {
         }
     }
 
-    /// Makes the faults from `parameters`, each of which must be of use to exactly one of them.
+    /// Makes the faults from `parameters`. Each parameter must belong to exactly one of them.
     fn make(&self, mut parameters: Parameters) -> Result<(Option<PipeFault>, Option<O::Fault>), TargetError> {
         parameters.keys().try_for_each(|key| self.check_use(key))?;
         Ok((made(self.pipe, &mut parameters)?, made(self.board, &mut parameters)?))
@@ -215,7 +216,7 @@ impl<O: BoardOptions> Faults<O> {
         names.join(", ")
     }
 
-    /// The options that exist; and what the chosen faults take, which their summaries say.
+    /// The options that exist, and the summaries of the chosen faults, which name their parameters.
     fn known_keys(&self) -> String {
         let options: Vec<_> = O::KEYS.iter().copied().chain(PipeOptions::KEYS).chain([FAULT]).collect();
         let options = options.join(", ");
@@ -243,7 +244,7 @@ mod tests {
     use super::*;
     use crate::catalogue::{Parameter, Range};
 
-    /// A board with a fault that takes what a fault of the pipe takes.
+    /// A board with a fault that has a parameter in common with a fault of the pipe.
     struct Seedy;
 
     impl BoardOptions for Seedy {

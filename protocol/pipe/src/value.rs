@@ -104,7 +104,7 @@ impl Limits {
         }
     }
 
-    /// The number that `text` stands for, if it lies in the range and in the range of `T`.
+    /// The number in `text`, if it lies in the range and in that of `T`.
     ///
     /// # Errors
     /// [`ValueError::NotANumber`] or [`ValueError::OutOfRange`] when it does not.
@@ -138,7 +138,7 @@ impl Decimal {
         self.key
     }
 
-    /// The number that `text` stands for, if it lies in the range.
+    /// The number in `text`, if it lies in the range.
     pub(crate) fn parse(&self, text: &str) -> Result<f64, ValueError> {
         let Self { key, least, most } = *self;
         let number = text.parse().ok().filter(|number| (least..=most).contains(number));

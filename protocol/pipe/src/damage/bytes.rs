@@ -1,4 +1,4 @@
-//! Single bytes that suffer.
+//! Harm to single bytes.
 
 use crate::chance::Chance;
 
@@ -11,16 +11,16 @@ pub(crate) enum ByteHarm {
     Drop,
     /// It comes twice.
     Duplicate,
-    /// It gets lost with all that follows up to the end of its packet.
+    /// It gets lost, with everything after it up to the end of its packet.
     Truncate,
 }
 
-/// A stream of which some bytes suffer.
+/// A stream in which some bytes suffer.
 #[derive(Debug)]
 pub(crate) struct SpoiltBytes {
     harm: ByteHarm,
     chance: Chance,
-    /// Bytes that have come, which is the next one's number.
+    /// Bytes that have come, and so the number of the next one.
     count: u64,
     /// Whether bytes get lost until the next zero.
     losing: bool,
@@ -42,7 +42,7 @@ impl SpoiltBytes {
         self.copy(bytes, out);
     }
 
-    /// The first byte among `bytes` that is struck, with what is before and behind it.
+    /// The first byte among `bytes` that is struck, with what is before and after it.
     fn split_at_struck<'b>(&self, bytes: &'b [u8]) -> Option<(&'b [u8], u8, &'b [u8])> {
         let offset = usize::try_from(self.chance.next()?.checked_sub(self.count)?).ok()?;
         let (before, rest) = bytes.split_at_checked(offset)?;

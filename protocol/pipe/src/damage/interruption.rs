@@ -8,13 +8,13 @@ use crate::chance::Chance;
 /// What stops a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Interruption {
-    /// It stands still for so long.
+    /// It stands still for this long.
     Stall(Duration),
     /// The pipe breaks, for good.
     Disconnect,
 }
 
-/// What is counted to find the place.
+/// What is counted to find the place of the interruption.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Unit {
     /// Bytes.
@@ -29,7 +29,7 @@ pub(crate) struct InterruptedStream {
     unit: Unit,
     interruption: Interruption,
     chance: Chance,
-    /// Bytes or packets that have begun, which is the next one's number.
+    /// Bytes passed or packets begun, and so the number of the next one.
     count: u64,
     inside: bool,
 }
@@ -58,7 +58,8 @@ impl InterruptedStream {
         offset.filter(|_| self.chance.strikes(number))
     }
 
-    /// Whether a struck packet begins with `byte`. It has begun then, and does not strike again when its bytes come again.
+    /// Whether a struck packet begins with `byte`. It then counts as begun, and does not strike again when the interrupted
+    /// bytes are passed once more.
     fn strikes_before(&mut self, byte: u8) -> bool {
         let begins = byte != 0 && !self.inside;
         self.inside = byte != 0;

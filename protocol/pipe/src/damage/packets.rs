@@ -1,4 +1,4 @@
-//! Whole packets that suffer.
+//! Harm to whole packets.
 
 use crate::chance::Chance;
 
@@ -9,25 +9,25 @@ pub(crate) enum PacketHarm {
     Flip,
     /// It gets lost; the zeros around it stay.
     Drop,
-    /// It comes twice, with a zero between.
+    /// It comes twice, with a zero in between.
     Duplicate,
-    /// It comes behind the next packet, which cannot suffer the same. A zero follows it there.
+    /// It comes after the next packet, which cannot suffer the same. A zero follows it there.
     Reorder,
-    /// Its bytes from a random one on get lost; the zero behind it stays.
+    /// Its bytes from a random one on get lost; the zero after it stays.
     Truncate,
-    /// It gets lost if it has so many bytes; the zeros around it stay. Shorter ones are not counted.
+    /// It gets lost if it has at least this many bytes; the zeros around it stay. Shorter ones are not counted.
     Lose {
-        /// Bytes between the zeros.
+        /// The fewest bytes between the zeros.
         least: usize,
     },
 }
 
-/// A stream of which some packets suffer.
+/// A stream in which some packets suffer.
 #[derive(Debug)]
 pub(crate) struct SpoiltPackets {
     harm: PacketHarm,
     chance: Chance,
-    /// Packets that have begun, which is the next one's number.
+    /// Packets that have begun, and so the number of the next one.
     count: u64,
     inside: bool,
     struck: bool,
@@ -52,7 +52,7 @@ impl SpoiltPackets {
         self.run(bytes, out);
     }
 
-    /// Takes bytes of a packet, or none.
+    /// Takes bytes of a packet; there may be none.
     fn run(&mut self, bytes: &[u8], out: &mut Vec<u8>) {
         if bytes.is_empty() {
             return;
@@ -60,7 +60,7 @@ impl SpoiltPackets {
         if !self.inside {
             self.inside = true;
             self.struck = match self.harm {
-                // How long it is shows at its end.
+                // Its length is known only at its end, where this is decided.
                 PacketHarm::Lose { .. } => true,
                 _ => self.begins_struck() && self.late.is_empty(),
             };
@@ -69,7 +69,7 @@ impl SpoiltPackets {
         to.extend_from_slice(bytes);
     }
 
-    /// Counts a packet, and says whether it is struck.
+    /// Counts a packet, and returns whether it is struck.
     fn begins_struck(&mut self) -> bool {
         self.count += 1;
         self.chance.strikes(self.count - 1)

@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::*;
 use crate::{FAULTS, Fault, Parameters};
 
-/// Packets at the bytes 1 to 3, 6 to 9, and 11 and 12.
+/// Packets at bytes 1 to 3, 6 to 9, and 11 to 12.
 const STREAM: &[u8] = b"\0abc\0\0defg\0hi\0";
 
 fn damage(name: &str, parameters: &[(&str, &str)]) -> Damage {
