@@ -40,19 +40,19 @@ FROM_BOARD = {
 CAPABILITIES = dict(enumerate((
     "datapath max_width max_height depths taps latency ring least_blanking table_banks row_banks_in row_banks_out"
     " step_ports kernel_ports clock_source clock_hz").split(), 1)) | {0x11: "entered", 0x20: "nature", 0x21: "name"}
-BURSTS = "content:H records:H least_frame_blanking:H trap:B"  # of the capability 10
-GRIDS = "further_datapath:H entries:H ks:B grid_blanking:B grid_width:H"  # of the capability 12
+BURSTS = "content:H records:H least_frame_blanking:H trap:B"  # of capability 10
+GRIDS = "further_datapath:H entries:H ks:B grid_blanking:B grid_width:H"  # of capability 12
 SHAPE = "v:B k:B"
 TABLES = {0: "I", 1: "hhhhh", 3: "I"}  # the words of an entry
 RECORD = "signature:I samples:I rows:H least_latency:H most_latency:H pauses:H generation:B flags:B"
 TRAPPED = "frame:I row:H width:H signature:I samples"
 MEANINGS = {"level": range(3), "table": TABLES, "bank": range(2), "mode": range(4),
             "state": range(3), "kept": range(2)}  # the values that have a meaning
-LOOKED_AT = {"flags": lambda value: value & 1, "take_over": bool, "clear": bool}  # what alone of a value means anything
+LOOKED_AT = {"flags": lambda value: value & 1, "take_over": bool, "clear": bool}  # the part of a value that has a meaning
 
 
 def unstuff(piece):
-    """Undoes COBS; None when a code byte points behind the end."""
+    """Undoes COBS; None when a code byte points past the end."""
     packet, at = bytearray(), 0
     while at < len(piece):
         code = piece[at]
@@ -73,12 +73,12 @@ def samples(data, fields):
 
 
 def entries(data, fields):
-    """Row factors and entries of a grid are u32; a node is five i16."""
+    """Row factors and grid entries are u32; a node is five i16."""
     return " ".join(map(str, struct.unpack_from("<" + TABLES[fields["table"]] * fields["count"], data)))
 
 
 def shape(data, fields):
-    """Of a bank that holds a grid: both numbers, or none."""
+    """The shape of a bank that holds a grid: both numbers, or neither."""
     if len(data) >= 2:
         fields |= read_fields(SHAPE, data)
 
@@ -98,20 +98,20 @@ def capabilities(data, fields):
 
 
 def entered(data, fields):
-    """What follows the samples, which are not cut off in front of it: only boards with the capability 11 send it."""
+    """The word after the samples, which only boards with capability 11 send. `data` still begins with the samples."""
     tail = data[3 * fields["width"] // 2 :]
     return struct.unpack_from("<I", tail)[0] if len(tail) >= 4 else None
 
 
 def records(data, fields):
-    """The numbers of one record after the other."""
+    """The numbers of all records, one record after the other."""
     size = struct.calcsize("<" + "".join(word[-1] for word in RECORD.split()))
     found = [read_fields(RECORD, data[at : at + size]) for at in range(0, size * fields["count"], size)]
     return " ".join(str(value) for record in found for value in record.values())
 
 
 def signatures(data, fields):
-    """One of 32 bits a row."""
+    """One 32-bit signature per row."""
     return " ".join(map(str, struct.unpack_from(f"<{fields['count']}I", data)))
 
 
@@ -126,7 +126,7 @@ TAILS = {"samples": samples, "entries": entries, "capabilities": capabilities, "
 
 
 def read_fields(layout, data):
-    """The fields that the layout names, as a dictionary; what lies behind them is skipped."""
+    """The fields that the layout names, as a dictionary; bytes after them are skipped."""
     fields = {}
     for name, _, letter in (word.partition(":") for word in layout.split()):
         if letter:
@@ -141,7 +141,7 @@ def read_fields(layout, data):
 
 
 def receive(piece, layouts):
-    """What stood between two zeros: a packet's fields, or the first check that it fails, in the order of section 1."""
+    """What is between two zeros: a packet's fields, or the first check of section 1, in its order, that it fails."""
     packet = unstuff(piece)
     if packet is None:
         return {"damage": "stuffing"}
@@ -165,7 +165,7 @@ def receive(piece, layouts):
 
 
 def read_head(text):
-    """The direction, and what must come out: a dictionary of texts for every packet or damage, in order."""
+    """The direction, and what is expected: a dictionary of texts for every packet or damage, in order."""
     direction, events = None, []
     for key, value in re.findall(r"^// ([a-z0-9_.]+) =(?: (.*))?$", text, re.M):
         if key in ("kind", "damage"):
@@ -179,7 +179,7 @@ def read_head(text):
 
 
 def complaints(path):
-    """A line for every field of the file in which head and bytes do not agree."""
+    """A line for every field of the file in which head and bytes disagree."""
     text = path.read_text(encoding="utf-8")
     direction, expected = read_head(text)
     pieces = bytes.fromhex(re.sub("//.*", "", text)).split(b"\0")[:-1]

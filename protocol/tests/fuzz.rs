@@ -1,6 +1,7 @@
-//! Fuzzes the decoder and the messages for `HALFROW_FUZZ_SECONDS` (3), from the frozen vectors on, with a fixed seed.
+//! Fuzzes the decoder and the messages for `HALFROW_FUZZ_SECONDS` (default 3), starting from the frozen vectors, with a fixed
+//! seed.
 
-// clippy.toml allows it inside #[test] functions, but not in the functions that they call.
+// clippy.toml allows this in #[test] functions, but not in the functions that they call.
 #![allow(clippy::expect_used)]
 
 mod fuzz_body;
@@ -15,7 +16,7 @@ use proptest::test_runner::{RngAlgorithm, TestRng};
 
 const SEED: [u8; 16] = *b"halfrow's wire 1";
 
-/// Shows the input in front of a panic's message, so that it can become a test.
+/// Shows the input on a panic, so that it can become a test.
 struct Input(Vec<u8>);
 
 impl Drop for Input {
@@ -27,7 +28,7 @@ impl Drop for Input {
     }
 }
 
-/// Of each vector: its bytes, and its packets as [`fuzz_body::decode`] takes them, with and without a header.
+/// For each vector: its bytes, and its packets in the forms that [`fuzz_body::decode`] takes, with and without a header.
 fn seeds() -> Vec<Vec<u8>> {
     let mut seeds = vec![Vec::new()];
     for (_, text) in vector_file::read_all() {

@@ -1,7 +1,7 @@
-//! What holds for every message and on every link: what was sent arrives as it was or not at all, and damage ends at the
-//! next zero.
+//! What holds for every message and on every link: what was sent arrives unchanged or not at all, and damage ends at the next
+//! zero.
 
-// clippy.toml allows it inside #[test] functions, but not in the functions that they call.
+// clippy.toml allows this in #[test] functions, but not in the functions that they call.
 #![allow(clippy::expect_used)]
 
 mod messages;
@@ -25,7 +25,7 @@ fn header() -> impl Strategy<Value = Header> {
     })
 }
 
-/// The sizes of the reads in which a link delivers its bytes, over and over.
+/// The sizes of the reads in which a link delivers its bytes, used in turn.
 fn reads() -> impl Strategy<Value = Vec<usize>> {
     vec(prop_oneof![1..8_usize, 1..4000_usize], 1..12)
 }
@@ -58,22 +58,22 @@ fn receive(mut wire: &[u8], reads: &[usize]) -> Vec<Result<(Header, Vec<u8>), Da
     events
 }
 
-/// Requests that have fields of fixed places; the bytes of ECHO end where the payload ends.
+/// Requests whose fields have fixed places; the bytes of ECHO end where the payload ends.
 fn request_with_fields() -> impl Strategy<Value = OwnedRequest> {
     request().prop_filter("it has no fields", |request| {
         !matches!(request.get().kind(), Kind::Echo | Kind::Capabilities | Kind::RowAck | Kind::Trap)
     })
 }
 
-/// Requests behind whose fields bytes may follow that have no meaning: behind the shape of a COMMIT that has one, not behind
-/// those of another.
+/// Requests whose fields may be followed by bytes without meaning. A COMMIT must have a shape, or such bytes would be read as
+/// one.
 fn request_that_may_be_longer() -> impl Strategy<Value = OwnedRequest> {
     request_with_fields().prop_filter("it would have a shape", |request| {
         !matches!(request.get(), Request::Commit(Commit { shape: None, .. }))
     })
 }
 
-/// Replies that have fields of fixed places; ECHO and the list of CAPABILITIES end where the payload ends.
+/// Replies whose fields have fixed places; ECHO and the list of CAPABILITIES end where the payload ends.
 fn reply_with_fields() -> impl Strategy<Value = OwnedReply> {
     reply().prop_filter("it has no fields", |reply| match reply.get() {
         Reply::Reset | Reply::TableWrite | Reply::Configure | Reply::Burst | Reply::Expect => false,
@@ -81,8 +81,8 @@ fn reply_with_fields() -> impl Strategy<Value = OwnedReply> {
     })
 }
 
-/// Replies behind whose fields bytes may follow that have no meaning: behind the samples of a row that says what entered,
-/// not behind those of another.
+/// Replies whose fields may be followed by bytes without meaning. A row must have `entered`, or such bytes would be read as
+/// that.
 fn reply_that_may_be_longer() -> impl Strategy<Value = OwnedReply> {
     reply_with_fields().prop_filter("it would say what entered", |reply| {
         !matches!(reply.get(), Reply::RowOut(RowOut { entered: None, .. }))
@@ -134,7 +134,7 @@ proptest! {
         let payload = payload_of(|payload| request.write(payload));
         let rest = &payload[..cut.index(payload.len())];
         let expected = match request {
-            // A COMMIT's payload may end in front of the shape.
+            // A COMMIT's payload may end before the shape.
             Request::Commit(commit @ Commit { shape: Some(_), .. }) if rest.len() + 2 >= payload.len() => {
                 Ok(Request::Commit(Commit { shape: None, ..commit }))
             }
@@ -191,7 +191,7 @@ fn the_longest_packet_may_end_in_a_piece_of_its_own() {
     let window = 0x0101_0101;
     let header = Header { kind: Kind::Echo.code(), sequence: 0x0101, reply: true, session: 1, window };
     let wire = encode(&header, |payload| payload.extend([7; MAX_PAYLOAD]));
-    // 4096 bytes without a zero are sixteen runs of 254 and one of 32, each behind its length.
+    // 4096 bytes without a zero are sixteen runs of 254 and one of 32, each after its code byte.
     assert_eq!(wire.len(), 1 + 4096 + 17 + 1);
     assert_eq!(receive(&wire, &[wire.len() - 1, 1]), [Ok((header, vec![7; MAX_PAYLOAD]))]);
 }
@@ -218,8 +218,7 @@ enum Blow {
 }
 
 impl Blow {
-    /// Repeats are shorter than any packet: a link that repeats whole packets repeats what was sent, and it is for the
-    /// sequence numbers to tell.
+    /// Repeats are shorter than any packet: if a link repeats whole packets, only their sequence numbers can show it.
     fn any() -> impl Strategy<Value = Self> {
         let place = any::<Index>;
         prop_oneof![
@@ -256,7 +255,7 @@ impl Blow {
     }
 }
 
-/// A payload, what the link does to its packet (often nothing), and the noise in front of it.
+/// A payload, what the link does to its packet (often nothing), and the noise before it.
 fn passage() -> impl Strategy<Value = (Vec<u8>, Vec<Blow>, Vec<u8>)> {
     let payload =
         prop_oneof![4 => vec(any::<u8>(), 0..60), 1 => vec(prop_oneof![Just(0), any::<u8>()], 0..1500)];
@@ -264,7 +263,7 @@ fn passage() -> impl Strategy<Value = (Vec<u8>, Vec<Blow>, Vec<u8>)> {
     (payload, prop_oneof![2 => Just(vec![]), 3 => vec(Blow::any(), 1..4)], noise)
 }
 
-/// The bytes that come out of the link. With `share` a packet leaves its first zero out if a zero is there already.
+/// The bytes that come out of the link. With `share`, a packet omits its first zero if the bytes before it end in one.
 fn disturb(passages: &[(Vec<u8>, Vec<Blow>, Vec<u8>)], share: bool) -> Vec<u8> {
     let mut wire = Vec::new();
     for (sequence, (payload, blows, noise)) in (0..).zip(passages) {

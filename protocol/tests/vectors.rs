@@ -1,6 +1,6 @@
-//! The crate against the frozen vectors: every field of every packet, every damage, and the bytes that it sends itself.
+//! The crate against the frozen vectors: every field of every packet, every damage, and the bytes that the crate sends.
 
-// clippy.toml allows it inside #[test] functions, but not in the functions that they call.
+// clippy.toml allows this in #[test] functions, but not in the functions that they call.
 #![allow(clippy::expect_used)]
 
 mod vector_file;
@@ -13,7 +13,7 @@ use halfrow_protocol::message::{
 };
 use halfrow_protocol::{Damage, Decoder, Encoder, Header, Kind, Malformed, Packet, Reply, Request, samples};
 
-/// The fields of a packet, or its damage, by their keys in the head of a vector.
+/// The fields of a packet, or its damage, by the keys that they have in the head of a vector.
 type Keys = BTreeMap<String, String>;
 
 /// Payload fields by their names in WIRE.md.
@@ -139,7 +139,7 @@ fn capability_fields(board: &Capabilities) -> Fields {
         fields.extend(fields![grids; further_datapath entries ks grid_blanking grid_width]);
     }
     fields.push(("nature", (board.nature as u8).to_string()));
-    // A board without a name sends none; the crate reads that as an empty one.
+    // A board without a name sends none; the crate reads this as an empty name.
     fields.extend((!board.name.is_empty()).then(|| ("name", board.name.clone())));
     fields
 }
@@ -163,7 +163,7 @@ fn request_fields(request: &Request<'_>) -> Fields {
             fields![commit; steps_crc kernel_crc first_frame generation].into_iter().chain(shape).collect()
         }
         Request::Configure(set) => fields![set; width height centre2 blanking gap_seed bits],
-        // A host's rows have no generation; the crate sends 0 for it and does not look at it.
+        // A host's rows have no generation; the crate sends 0 and ignores what it reads.
         Request::RowIn(RowIn { place, packed }) => row_fields(place, 0, packed),
         Request::Burst(burst) => {
             let mode = ("mode", (burst.mode as u8).to_string());
@@ -227,7 +227,7 @@ fn packet_keys(packet: &Packet<'_>, from_host: bool) -> Keys {
     keys
 }
 
-/// The name of a damage in the vectors.
+/// A damage by its name in the vectors.
 fn damage_keys(damage: Damage) -> Keys {
     let name = match damage {
         Damage::Stuffing => "stuffing",
@@ -250,7 +250,7 @@ fn decode(vector: &Vector) -> Vec<Keys> {
     found
 }
 
-/// The packet of a canonical vector, read and sent again.
+/// The bytes of a canonical vector's packet after it was read and written again.
 fn resend(vector: &Vector) -> Vec<u8> {
     let (mut decoder, mut wire) = (Decoder::new(), Vec::new());
     let packet = decoder.next(&mut vector.bytes.as_slice()).expect("an event").expect("a packet");

@@ -1,4 +1,4 @@
-//! Section 1 of WIRE.md: bytes behind the fields that a receiver knows are skipped.
+//! Section 1 of WIRE.md: bytes after the fields that a receiver knows are skipped.
 
 use halfrow_protocol::message::{
     Bank, Burst, BurstMode, BurstState, Commit, Expect, Reply, Request, Reset, ResetLevel, RowIn, Shape,
@@ -13,10 +13,10 @@ use crate::golden_rows::HERMITE;
 use crate::material::{GOLDEN_FACTOR, UNSTRETCHED, hermite};
 use crate::uploads::{TableSet, span, write};
 
-/// What a later version may append: as row factors these are legal, and so they are as signatures.
+/// What a later version may append. These bytes are also legal as row factors and as signatures.
 const APPENDED: [u8; 8] = [1, 0, 0, 0, 1, 0, 0, 0];
 
-/// Sends a request with bytes behind its fields, which must be carried out.
+/// Sends a request with bytes after its fields; it must be carried out.
 fn longer(bench: &mut Bench, request: &Request<'_>) -> Heard {
     let header = bench.header(request.kind().code());
     let mut payload = Vec::new();
@@ -40,7 +40,7 @@ pub(crate) fn requests_may_carry_fields_of_a_later_version(on: &dyn Boards) {
     let crc = Reply::TableCrc(crc32fast::hash(&entries));
     assert_eq!(longer(&mut bench, &Request::TableCrc(factors(2))).reply(), crc);
     let Request::Commit(commit) = tables.commit(1, 0) else { unreachable!() };
-    // Behind a shape, which is what was appended to COMMIT last.
+    // After a shape: without one, the appended bytes would be read as the shape.
     longer(&mut bench, &Request::Commit(Commit { shape: Some(Shape { v: 0, k: 0 }), ..commit }));
     assert_eq!(samples_of(&long_row(&mut bench).row()), HERMITE);
     longer(&mut bench, &Request::Reset(Reset { level: ResetLevel::Rows, next_row: 5 }));
@@ -50,7 +50,7 @@ pub(crate) fn requests_may_carry_fields_of_a_later_version(on: &dyn Boards) {
     assert_eq!((status.next_row_in, status.generation), (5, 1));
 }
 
-/// Sends the golden row with bytes behind its samples. Returns what comes back.
+/// Sends the golden row with bytes after its samples, and returns what comes back.
 fn long_row(bench: &mut Bench) -> Heard {
     let row = row(1, 0);
     let mut payload = Vec::new();

@@ -1,5 +1,5 @@
-//! Boards that make frames on their own, for the tests of `fpga/AT-SPEED.md`. A board that does not is asked nothing but what
-//! `burst_refusals` says of it.
+//! Boards that make frames on their own, for the tests of `fpga/AT-SPEED.md`. Other boards are tested only by the test for such
+//! boards in `burst_refusals`.
 
 use std::time::Duration;
 
@@ -14,16 +14,16 @@ use crate::material::{GOLDEN_FACTOR, hermite, noise_row};
 use crate::uploads::TableSet;
 use crate::{Boards, Build, offered};
 
-/// The rows' signatures of the page's frame of four rows: 64 columns, 12 bits, seed 1, frame 0, behind [`golden_tables`].
+/// The row signatures of the page's frame of four rows: 64 columns, 12 bits, seed 1, frame 0, made with [`golden_tables`].
 pub const ROWS: [u32; 4] = [0x3b58_4a0c, 0xa0a8_5d70, 0x068e_af3c, 0x4f53_a7e2];
 
-/// The CRC-32 of the content of these rows, which is their signature behind tables that change no sample.
+/// The CRC-32 of the content of these rows, which is also their signature if the tables change no sample.
 pub(crate) const CONTENTS: [u32; 4] = [0x3f30_8f73, 0x1470_85ad, 0x4de3_0b33, 0x4f53_a7e2];
 
 /// The signature of the page's frame of four rows.
 pub const FRAME: u32 = 0xc40b_35b2;
 
-/// The rows of that frame.
+/// How many rows that frame has.
 pub const HEIGHT: u16 = 4;
 
 /// The tables of that frame: the golden factor in each row, and Hermite's kernel.
@@ -32,19 +32,20 @@ pub fn golden_tables() -> TableSet {
     TableSet::new(&[GOLDEN_FACTOR; HEIGHT as usize], &hermite())
 }
 
-/// One frame of that kind, as a burst of its own.
+/// A burst of that one frame.
 pub const ONE: Burst =
     Burst { burst: 0xb0, frames: 1, seed: 1, first_frame: 0, frame_blanking: 2000, mode: BurstMode::Fresh };
 
 /// A burst of the golden frame, over and over, until it is ended.
 pub const ENDLESS: Burst = Burst { frames: Burst::ENDLESS, mode: BurstMode::Repeating, ..ONE };
 
-/// What a board of this build says of its bursts; none if it makes none of the page's content.
+/// The board's support for bursts; none if it makes none with the page's content.
 pub(crate) fn bursts_of(bench: &mut Bench) -> Option<Bursts> {
     bench.capabilities().bursts.filter(|bursts| bursts.content == 1)
 }
 
-/// A board of a build that makes bursts, configured, with these tables as the active ones under generation 1, and empty.
+/// A board of this build, configured and empty, with these tables active as generation 1. None if the build is not offered or
+/// makes no bursts.
 pub fn ready_with(
     on: &dyn Boards,
     build: &Build,
@@ -59,7 +60,7 @@ pub fn ready_with(
     Some((bench, bursts))
 }
 
-/// Configures an empty board, and makes these tables the active ones under generation 1 unless that is active already.
+/// Configures an empty board, and makes these tables the active ones as generation 1, unless that generation is already active.
 pub(crate) fn make_ready(bench: &mut Bench, configuration: Configuration, tables: &TableSet) {
     bench.done(&Request::Configure(configuration));
     tables.upload(bench);
@@ -67,7 +68,7 @@ pub(crate) fn make_ready(bench: &mut Bench, configuration: Configuration, tables
     activate(bench, &configuration, 0);
 }
 
-/// The same for the golden frame, of the default build.
+/// Like [`ready_with`], for the golden frame on the default build.
 pub fn ready(on: &dyn Boards) -> Option<(Bench, Bursts)> {
     ready_with(on, &Build::default(), configuration(HEIGHT), &golden_tables())
 }
@@ -81,19 +82,19 @@ pub fn activate(bench: &mut Bench, configuration: &Configuration, frame: u16) {
     bench.window = 0;
 }
 
-/// What a board says of its burst.
+/// A board's answer to RECORDS.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Told {
     /// The burst.
     pub burst: u32,
-    /// How far it is.
+    /// How far it has come.
     pub state: BurstState,
-    /// The records from the frame on that was asked for.
+    /// The records, from the requested frame on.
     pub records: Vec<FrameRecord>,
 }
 
 impl Bench {
-    /// The records from a frame on, those before which the board then drops.
+    /// The records from a frame on. The board drops those before it.
     pub fn records(&mut self, from: u32) -> Told {
         let answer = self.done(&Request::Records { from });
         let Reply::Records(records) = answer.reply() else { panic!("{answer:?}") };
@@ -101,7 +102,7 @@ impl Bench {
         Told { burst: records.burst, state: records.state, records: records.records().collect() }
     }
 
-    /// The same, as soon as `enough` of it.
+    /// Like [`Self::records`], asked until `enough` holds for the answer.
     pub fn records_when(&mut self, from: u32, enough: impl Fn(&Told) -> bool) -> Told {
         for _ in 0..3000 {
             let told = self.records(from);
@@ -113,7 +114,7 @@ impl Bench {
         panic!("what is waited for from frame {from} on does not come: {:?}", self.records(from));
     }
 
-    /// The records of a burst that ends, all of which the board keeps.
+    /// Makes a burst, waits until it ends, and returns its records, all of which the board must be able to keep.
     pub fn signed(&mut self, burst: &Burst) -> Vec<FrameRecord> {
         self.done(&Request::Burst(*burst));
         let told = self.records_when(0, |told| told.state == BurstState::Ended);
@@ -121,7 +122,7 @@ impl Bench {
         told.records
     }
 
-    /// How far the burst is; no record is dropped.
+    /// How far the burst has come. The board drops its records before frame `unread`.
     pub(crate) fn burst_state(&mut self, unread: u32) -> BurstState {
         self.records(unread).state
     }

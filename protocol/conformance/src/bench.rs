@@ -1,4 +1,4 @@
-//! A host that speaks in packets and hears whole ones, and takes what comes for what WIRE.md says it is.
+//! A host that sends packets, hears whole ones, and reads what comes as WIRE.md defines it.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet, Reply, Request};
 
 use crate::{Boards, Build, Subject};
 
-/// The greeting of the host that the tests speak for.
+/// The HELLO of the host that the tests play.
 pub const HELLO: Hello =
     Hello { nonce: 0x600d_f00d, host: 0x0000_0a11, version_min: 1, version_max: 1, take_over: false };
 
@@ -21,13 +21,13 @@ pub struct Heard {
 }
 
 impl Heard {
-    /// What it says.
+    /// The message that it carries.
     #[must_use]
     pub fn reply(&self) -> Reply<'_> {
         Reply::read(&Packet { header: self.header, payload: &self.payload }).unwrap()
     }
 
-    /// The row that it is.
+    /// The row that it carries.
     #[must_use]
     pub fn row(&self) -> RowOut<'_> {
         let Reply::RowOut(row) = self.reply() else { panic!("{self:?} is no row") };
@@ -44,7 +44,7 @@ impl Heard {
     }
 }
 
-/// Row sequence numbers of the packets, all of which are rows.
+/// Row sequence numbers of packets that must all be rows.
 pub fn rows_of(heard: &[Heard]) -> Vec<u32> {
     heard.iter().map(|packet| packet.row().place.row_sequence).collect()
 }
@@ -54,9 +54,9 @@ pub struct Bench {
     board: Box<dyn Subject>,
     /// Time since the board was switched on.
     pub now: Duration,
-    /// The session that packets name.
+    /// The session number that packets carry.
     pub session: u8,
-    /// The window of packets: the row sequence number before which every row has come back.
+    /// The window that packets carry: the row sequence number before which every row has come back.
     pub window: u32,
     sequence: u16,
 }
@@ -83,7 +83,7 @@ impl Bench {
         bench
     }
 
-    /// Hands bytes to the board. Whatever it answers must be whole packets.
+    /// Hands bytes to the board and returns what it sends, which must be whole packets.
     pub fn receive(&mut self, bytes: &[u8]) -> Vec<Heard> {
         let outgoing = self.board.answer(bytes, self.now);
         assert!(outgoing.is_empty() || outgoing.starts_with(&[0]) && outgoing.ends_with(&[0]));
@@ -108,7 +108,7 @@ impl Bench {
         wire(&header, |payload| request.write(payload))
     }
 
-    /// Sends a request and returns all that comes back.
+    /// Sends a request and returns everything that comes back.
     pub fn say(&mut self, request: &Request<'_>) -> Vec<Heard> {
         let packet = self.packet(request);
         self.receive(&packet)
@@ -148,7 +148,7 @@ impl Bench {
         answer.refusal().unwrap_or_else(|| panic!("{request:?} is not refused: {answer:?}"))
     }
 
-    /// Opens a session and speaks in it from now on.
+    /// Opens a session, and uses it from now on.
     pub fn greet(&mut self, hello: &Hello) -> Welcome {
         let answer = self.done(&Request::Hello(*hello));
         let Reply::Hello(welcome) = answer.reply() else { panic!("{answer:?}") };
@@ -160,7 +160,7 @@ impl Bench {
         welcome
     }
 
-    /// What the board says of its build.
+    /// The board's capabilities.
     pub fn capabilities(&mut self) -> Capabilities {
         let answer = self.done(&Request::Capabilities);
         let Reply::Capabilities(capabilities) = answer.reply() else { panic!("{answer:?}") };
@@ -172,14 +172,14 @@ impl Bench {
         self.status_and(false)
     }
 
-    /// The counters, which are cleared on the way if `clear`.
+    /// The counters before they are cleared, if `clear`.
     pub(crate) fn status_and(&mut self, clear: bool) -> Status {
         let answer = self.done(&Request::Status { clear });
         let Reply::Status(status) = answer.reply() else { panic!("{answer:?}") };
         status
     }
 
-    /// Tells the board that every row before `window` has come back. Returns what it sends then.
+    /// Tells the board that every row before `window` has come back, and returns what it sends.
     pub fn acknowledge(&mut self, window: u32) -> Vec<Heard> {
         self.window = window;
         self.say(&Request::RowAck)

@@ -21,7 +21,7 @@ fn under_way(on: &dyn Boards) -> Option<Bench> {
     Some(bench)
 }
 
-/// Two rows go through the board as through one that has made no burst.
+/// Checks that two rows go through the board as if it had made no burst.
 fn corrects_rows(bench: &mut Bench) {
     bench.done(&Request::Reset(Reset { level: ResetLevel::Tables, next_row: 0 }));
     make_ready(bench, 2);
@@ -65,7 +65,7 @@ pub(crate) fn a_new_session_ends_a_burst_and_knows_none(on: &dyn Boards) {
     bench.greet(&hello);
     assert_eq!(bench.records(0), Told { burst: 0, state: BurstState::None, records: vec![] });
     assert_eq!(bench.status().core_busy, 0);
-    // A name of the session before is a new one.
+    // The id of a burst of the previous session counts as a new one.
     assert_eq!(bench.signed(&Burst { frames: 1, ..ENDLESS })[0].signature, FRAME);
     corrects_rows(&mut bench);
 }

@@ -1,4 +1,4 @@
-//! Section 3 of WIRE.md, 30 BURST and on: what a board refuses, and in which order.
+//! Section 3 of WIRE.md, from 30 BURST on: what a board refuses, and in which order.
 
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{
@@ -67,7 +67,7 @@ pub(crate) fn fields_out_of_range_are_named_the_first_of_several(on: &dyn Boards
     let Some((mut bench, bursts)) = ready(on) else { return };
     let close = bursts.least_frame_blanking.checked_sub(1);
     let no_name = Burst { burst: 0, frame_blanking: close.unwrap_or(0), ..ONE };
-    // A row that waits would make it busy.
+    // Alone, the row that waits would make the board busy.
     bench.send_all(HEIGHT, [1]);
     assert_eq!(bench.refused(&Request::Burst(no_name)), (RefusalCode::Range, 0));
     if let Some(frame_blanking) = close {

@@ -12,7 +12,7 @@ use crate::material::{factors, hermite, keys};
 use crate::uploads::TableSet;
 use crate::{Boards, Build};
 
-/// The record of the page's frame of four rows, for a board of latency L.
+/// The record of the page's frame of four rows, made by a board of latency L.
 fn golden_record(latency: u8) -> FrameRecord {
     let delay = 32 + u16::from(latency);
     FrameRecord {
@@ -66,7 +66,7 @@ pub(crate) fn frames_are_numbered_modulo_2_16_and_a_repeating_burst_has_one(on: 
     assert_ne!(other, [FRAME]);
 }
 
-/// The shadow's tables change no sample, so what leaves is the content.
+/// The shadow tables change no sample, so that the content comes out.
 pub(crate) fn every_second_frame_of_an_alternating_burst_is_the_shadows(on: &dyn Boards) {
     let Some((mut bench, bursts)) = ready(on) else { return };
     TableSet::unstretched(HEIGHT).upload(&mut bench);
@@ -85,7 +85,7 @@ pub(crate) fn every_second_frame_of_an_alternating_burst_is_the_shadows(on: &dyn
         (FRAME, 1),
         "the active ones are as before"
     );
-    // The shadow's were committed once, and are the shadow's all the same.
+    // These tables were committed once and are in the shadow bank again: their generation is 0 all the same.
     bench.done(&TableSet::unstretched(HEIGHT).commit(2, 1));
     activate(&mut bench, &configuration(HEIGHT), 1);
     let both = bench.signed(&Burst { burst: 4, frames: 2, first_frame: u16::MAX, ..alternating });
@@ -134,8 +134,8 @@ pub(crate) fn another_burst_drops_the_records_of_the_one_before(on: &dyn Boards)
     assert_ne!(records[0].signature, FRAME);
 }
 
-/// As many frames as there are records go on without the host; the next one waits for it, and says so. Of a board that keeps more
-/// records than a packet holds it cannot be seen when it waits.
+/// The board makes as many frames as it has records without the host. The next frame waits for the host, and its record says
+/// so. If a board keeps more records than fit into a packet, the test cannot see when it waits.
 pub(crate) fn a_frame_without_a_free_record_is_held_back_and_says_so(on: &dyn Boards) {
     let Some((mut bench, bursts)) = ready(on) else { return };
     let kept = usize::from(bursts.records);
@@ -173,7 +173,7 @@ pub(crate) fn a_burst_may_be_made_longer_or_ended_while_it_is_under_way(on: &dyn
     let kept = u32::from(bursts.records);
     bench.done(&Request::Burst(ENDLESS));
     bench.records_when(0, |told| told.records.len() >= 2);
-    // Only the name and the number of frames are looked at.
+    // Only the id and the number of frames count.
     bench.done(&Request::Burst(Burst { frames: kept + 2, seed: 99, frame_blanking: 0, ..ENDLESS }));
     let (mut records, mut more) = (Vec::new(), true);
     while more {

@@ -1,4 +1,4 @@
-//! CAPABILITIES: what the board says of its build.
+//! CAPABILITIES: what the board reports of its build.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,8 @@ use crate::bench::{Bench, HELLO};
 use crate::frames::lean;
 use crate::{Boards, Build, offered};
 
-/// The values by their tags, of a board that was just switched on, little endian; the name left out.
+/// The values by tag of a board that was just switched on: the first four bytes of each as a little-endian number. Without the
+/// name.
 pub fn values(bench: &mut Bench) -> BTreeMap<u8, u32> {
     bench.greet(&HELLO);
     let payload = bench.done(&Request::Capabilities).payload;
@@ -36,7 +37,7 @@ pub(crate) fn every_board_sends_all_tags_in_their_widths(on: &dyn Boards) {
     for (tag, width) in (1..=15).zip(numbers).chain([(0x20, 1)]) {
         assert!(widths.get(&tag).is_some_and(|&told| told >= width), "tag {tag:#04x}");
     }
-    // A board need not make bursts, nor say what entered, nor take grids.
+    // A board need not make bursts, report what entered, or take grids.
     for (tag, width) in [(0x10, 7), (0x11, 1), (0x12, 8)] {
         let told = widths.get(&tag).copied().unwrap_or(0);
         assert!(told == 0 || told >= width, "tag {tag:#04x}");

@@ -18,7 +18,7 @@ fn golden_tables() -> TableSet {
     TableSet::new(&[GOLDEN_FACTOR], &hermite())
 }
 
-/// A board that has played frame 0 of one row with tables of generation 1, all acknowledged.
+/// A board that has played frame 0, of one row, with tables of generation 1, and whose row is acknowledged.
 fn in_use(on: &dyn Boards) -> Bench {
     let mut bench = ready(on, &Build::default(), 1);
     bench.send_all(1, [0]);
@@ -63,7 +63,7 @@ pub(crate) fn two_frames_back_to_back_have_their_own_tables(on: &dyn Boards) {
     for row in [&mut first, &mut second] {
         row.samples = noise_row(0, 64);
     }
-    // Both are there before the first one's rest has left.
+    // Both arrive before the rest of the first one has left.
     let both = [bench.row_packet(&first), bench.row_packet(&second)].concat();
     let unchanged = first.samples.clone();
     assert_eq!(made(&bench.receive(&both)), [(1, unchanged), (2, HERMITE.to_vec())]);
@@ -141,7 +141,7 @@ pub(crate) fn nothing_is_committed_while_a_row_is_inside(on: &dyn Boards) {
     is_busy_while_a_row_is_inside(&mut ready(on, &Build::default(), 2));
 }
 
-/// Holds a board that is ready for frames of two rows to it.
+/// Checks on a board that is ready for frames of two rows that COMMIT is refused with *busy* while a row is inside.
 pub fn is_busy_while_a_row_is_inside(bench: &mut Bench) {
     bench.send_all(2, [0]);
     let tables = TableSet::unstretched(2);

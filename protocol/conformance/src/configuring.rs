@@ -13,13 +13,13 @@ fn builds(on: &dyn Boards) -> Vec<Build> {
     offered(on, [small, Build::default()])
 }
 
-/// A configuration that the build can just have.
+/// A configuration at the limits of the build.
 fn fine(build: &Build) -> Configuration {
     let (width, height, blanking) = (build.max_width, build.max_height, build.least_blanking);
     Configuration { width, height, centre2: 2 * width - 2, blanking, gap_seed: u32::MAX, bits: 12 }
 }
 
-/// Tries configurations on every build, and expects the same of all.
+/// Tries configurations on every build, and expects the same answer to all: done, or out of range with this field.
 fn expect(
     on: &dyn Boards,
     expected: Option<u16>,

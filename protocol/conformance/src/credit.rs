@@ -21,7 +21,7 @@ pub(crate) fn credit_reaches_past_the_first_row_that_has_not_entered_by_the_inpu
         bench.send_all(8, [number]);
         windows.push(window(&mut bench));
     }
-    // Two output banks: the third row waits, and so do those behind it.
+    // Two output banks: the third row waits, and so do those after it.
     assert_eq!(windows, [4, 5, 6, 6, 6, 6]);
 }
 
@@ -83,7 +83,7 @@ pub(crate) fn one_acknowledgement_may_free_many_banks(on: &dyn Boards) {
     assert_eq!(rows_of(&bench.acknowledge(6)), [6, 7]);
 }
 
-/// Streams 60 rows in frames of 20, and fails when nothing moves any more.
+/// Streams 60 rows in frames of 20. Fails if nothing moves any more.
 fn stream(on: &dyn Boards, build: &Build) {
     let mut bench = ready(on, build, 20);
     let mut credit = window(&mut bench);

@@ -1,4 +1,4 @@
-//! Section 1 of WIRE.md: what is no packet is counted, and never answered.
+//! Section 1 of WIRE.md: bytes that are not a packet are counted and never answered.
 
 use halfrow_protocol::message::Request;
 use halfrow_protocol::{Header, Kind, MAX_PACKET};
@@ -6,7 +6,7 @@ use halfrow_protocol::{Header, Kind, MAX_PACKET};
 use crate::Boards;
 use crate::bench::{Bench, wire};
 
-/// Whole packets but for STATUS itself, CRC errors and framing errors since the session began.
+/// Whole packets without the STATUS itself, CRC errors, and framing errors since the session began.
 fn counted(bench: &mut Bench) -> (u32, u32, u32) {
     let status = bench.status();
     (status.packets - 1, status.crc_errors, status.framing_errors)

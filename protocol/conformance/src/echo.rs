@@ -1,4 +1,4 @@
-//! ECHO, and requests that are none.
+//! ECHO, and packets that are not valid requests.
 
 use halfrow_protocol::message::{RefusalCode, Request};
 use halfrow_protocol::{Kind, MAX_PAYLOAD};
@@ -26,7 +26,7 @@ pub(crate) fn any_bytes_come_back_as_they_went(on: &dyn Boards) {
 
 pub(crate) fn kinds_that_no_host_sends_are_refused(on: &dyn Boards) {
     let mut bench = Bench::greeted(on);
-    // The last four are those of bursts, which a board may refuse too.
+    // The last four belong to bursts; a board may refuse them too.
     let requests =
         [0x00, 0x01, 0x02, 0x03, 0x04, 0x10, 0x11, 0x12, 0x13, 0x18, 0x20, 0x22, 0x30, 0x31, 0x32, 0x33];
     for kind in (0..=255).filter(|kind| !requests.contains(kind)) {

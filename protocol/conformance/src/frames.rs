@@ -24,7 +24,7 @@ pub fn row(height: u16, row_sequence: u32) -> Row {
     let frame = (row_sequence / u32::from(height)) as u16;
     let row = (row_sequence % u32::from(height)) as u16;
     let place = RowPlace { row_sequence, frame, row, width: WIDTH, last: row + 1 == height };
-    // The formula multiplies by the width.
+    // Limited, because the formula multiplies by the width.
     Row { place, samples: noise_row(row_sequence % 10_000, WIDTH) }
 }
 
@@ -46,7 +46,7 @@ pub fn lean() -> Build {
     Build { taps: 5, latency: 11, table_banks: 1, ..Build::default() }
 }
 
-/// A board of this build that is ready for frames of `height` rows and changes no sample.
+/// A board of this build that is ready for frames of `height` rows, with tables that change no sample.
 #[must_use]
 pub fn ready(on: &dyn Boards, build: &Build, height: u16) -> Bench {
     let mut bench = Bench::switched_on(on, build);
@@ -55,7 +55,7 @@ pub fn ready(on: &dyn Boards, build: &Build, height: u16) -> Bench {
     bench
 }
 
-/// The same; none if there is no such build.
+/// Like [`ready`]; none if the build is not offered.
 #[must_use]
 pub(crate) fn ready_if_offered(on: &dyn Boards, build: &Build, height: u16) -> Option<Bench> {
     on.offers(build).then(|| ready(on, build, height))
@@ -77,13 +77,13 @@ impl Bench {
         self.packet(&Request::RowIn(RowIn { place: row.place, packed: &packed }))
     }
 
-    /// Sends a row and returns all that comes back.
+    /// Sends a row and returns everything that comes back.
     pub fn send(&mut self, row: &Row) -> Vec<Heard> {
         let packet = self.row_packet(row);
         self.receive(&packet)
     }
 
-    /// Sends the rows with these numbers, a packet at a time.
+    /// Sends the rows with these numbers, one packet at a time, and returns everything that comes back.
     pub fn send_all(&mut self, height: u16, numbers: impl IntoIterator<Item = u32>) -> Vec<Heard> {
         numbers.into_iter().flat_map(|number| self.send(&row(height, number))).collect()
     }

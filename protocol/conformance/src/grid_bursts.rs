@@ -1,4 +1,4 @@
-//! Frames that a board makes on its own, through grids.
+//! Frames that a board makes on its own, corrected by grids.
 
 use halfrow_protocol::message::{Burst, BurstMode, FrameRecord, Hello, Request, Reset, ResetLevel, Shape};
 
@@ -12,7 +12,7 @@ use crate::{Boards, Build};
 
 const SHAPE: Shape = Shape { v: 1, k: 5 };
 
-/// The signature of the page's frame of four rows behind the grid drawn from the seed 7, with Hermite's kernel. Computed
+/// The signature of the page's frame of four rows, corrected by the grid drawn from the seed 7 with Hermite's kernel. Computed
 /// outside the project.
 const DRAWN: u32 = 0xf9c8_e792;
 
@@ -20,8 +20,8 @@ fn grid() -> TableSet {
     TableSet::grid(SHAPE, &drawn_grid(SHAPE, WIDTH, HEIGHT, 7), &hermite())
 }
 
-/// A board that makes bursts and takes grids, with these as its active tables under generation 1, and a burst of one frame
-/// with as much blanking as it needs.
+/// A board that makes bursts and takes grids, with these tables active as generation 1; and a burst of one frame with as much
+/// blanking as it needs.
 fn ready(on: &dyn Boards, tables: &TableSet) -> Option<(Bench, Burst)> {
     let build = Build::default();
     let (_, grids) = greeted(on, &build)?;
@@ -30,7 +30,7 @@ fn ready(on: &dyn Boards, tables: &TableSet) -> Option<(Bench, Burst)> {
     Some((bench, Burst { frame_blanking, ..ONE }))
 }
 
-/// An alternating burst whose frame 1, which is the shadow bank's, has the number 0.
+/// An alternating burst whose frame 1, which is made with the shadow bank, has the number 0.
 fn to_the_shadow(one: Burst) -> Burst {
     Burst { frames: 2, first_frame: u16::MAX, mode: BurstMode::Alternating, ..one }
 }

@@ -1,4 +1,4 @@
-//! COMMIT of a grid: what is refused, and what its CRC is of.
+//! COMMIT of a grid: what is refused, and what its CRC covers.
 
 use halfrow_protocol::message::{Commit, Configuration, Grids, Hello, RefusalCode, Request, Shape, Table};
 
@@ -22,7 +22,7 @@ fn grid(height: u16) -> TableSet {
     TableSet::grid(SHAPE, &drawn_grid(SHAPE, 64, height, 7), &hermite())
 }
 
-/// A board that takes grids, configured for four rows of 64 samples, with a grid in its shadow.
+/// A board that takes grids, configured for four rows of 64 samples, with a grid in its shadow bank.
 fn uploaded(on: &dyn Boards) -> Option<(Bench, Grids)> {
     let (mut bench, grids) = greeted(on, &Build::default())?;
     bench.done(&Request::Configure(narrow(&grids, 4)));
@@ -77,7 +77,7 @@ pub(crate) fn a_shape_out_of_range_is_named_the_first_of_several(on: &dyn Boards
     assert_eq!(bench.refused(&of(9, 6, if grids.takes(5) { 5 } else { 6 })), (RefusalCode::Busy, 0));
 }
 
-/// A shape, a width and the greatest height whose grid fills a bank of `entries` to the last one, if there are such.
+/// A shape and a width, and the greatest height with which the grid fills a bank of `entries` to the last one, if any.
 fn fullest(entries: u16, k: u8) -> Option<(Shape, u16, u16)> {
     let fills = |shape, width, height| {
         let (segments, grid_rows) = grid_size(shape, width, height);
@@ -90,7 +90,7 @@ fn fullest(entries: u16, k: u8) -> Option<(Shape, u16, u16)> {
         .next()
 }
 
-/// The greatest height below 2048 that is so.
+/// The last height, below 2047, for which `is_so` holds.
 fn last(is_so: impl Fn(u16) -> bool) -> Option<u16> {
     (1..2047).find(|&height| is_so(height) && !is_so(height + 1))
 }
@@ -108,7 +108,7 @@ pub(crate) fn a_grid_may_fill_its_bank_and_no_more(on: &dyn Boards) {
         assert_eq!(bench.refused(&tables.commit(generation, 0)), (RefusalCode::Range, 2), "{shape:?}");
         bench.done(&configuration(height));
         bench.done(&tables.commit(generation, 0));
-        // What is pending would keep the next one out.
+        // A pending commit would make the board refuse the next one.
         bench.greet(&Hello { nonce: generation.into(), ..HELLO });
     }
 }
@@ -118,7 +118,7 @@ pub(crate) fn the_crc_covers_the_entries_of_the_configured_frame(on: &dyn Boards
     bench.done(&write(Table::Grid, 16, &MOST.to_le_bytes()));
     bench.done(&grid(4).commit(1, 0));
     bench.greet(&Hello { nonce: 5, ..HELLO });
-    // A frame of five rows has a grid row more, and so one more entry of the offsets and of each node.
+    // A frame of five rows has one more grid row, and so one more offset and one more factor per node column.
     bench.done(&Request::Configure(narrow(&grids, 5)));
     assert_eq!(bench.refused(&grid(4).commit(2, 0)), (RefusalCode::TableCrc, Table::Grid as u16));
     grid(5).upload(&mut bench);
@@ -139,7 +139,7 @@ pub(crate) fn a_crc_that_is_not_the_grids_is_refused_with_its_table(on: &dyn Boa
         // The same bank as row factors.
         (Commit { shape: None, ..right }, Table::RowFactors),
         (Commit { shape: Some(Shape { v: 0, k: 5 }), ..right }, Table::RowFactors),
-        // As a grid of fewer grid rows.
+        // The same bank as a grid of fewer grid rows.
         (Commit { shape: Some(Shape { v: 2, ..SHAPE }), ..right }, Table::Grid),
     ] {
         assert_eq!(
@@ -159,7 +159,7 @@ pub(crate) fn a_repeated_commit_of_another_shape_changes_nothing(on: &dyn Boards
     }
 }
 
-/// The rows of a frame behind a grid whose commit is repeated with these shapes.
+/// The rows of a frame corrected by a grid whose commit is repeated with these shapes.
 fn rows_behind(on: &dyn Boards, repeated: &[Option<Shape>]) -> Option<Vec<Vec<u16>>> {
     let (mut bench, _) = uploaded(on)?;
     let right = fields(&grid(4), 1, 0);

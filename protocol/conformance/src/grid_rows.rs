@@ -1,4 +1,4 @@
-//! Rows that go through grids, and frames that change between them and row factors.
+//! Rows corrected by grids, and frames that change between grids and row factors.
 
 use halfrow_protocol::message::{Commit, Configuration, Request, RowPlace, Shape};
 
@@ -13,13 +13,14 @@ use crate::{Boards, Build};
 
 const SHAPE: Shape = Shape { v: 1, k: 5 };
 
-/// CRC-32 of the two rows of a frame of the specification's samples: behind the grid drawn from the seed 7, and behind the
-/// golden factor, with Hermite's kernel; and as they went in. Computed outside the project.
+/// CRC-32 of each of the two rows of a frame of the specification's samples: corrected by the grid drawn from the seed 7, and by
+/// the golden factor, with Hermite's kernel; and unchanged. Computed outside the project.
 const DRAWN: [u32; 2] = [0x8d18_7855, 0xea71_8ae2];
 const GOLDEN: [u32; 2] = [0x8b0d_0aa8, 0xd575_54e6];
 const UNCHANGED: [u32; 2] = [0xe38d_756b, 0x0b58_cafb];
 
-/// The same of all 70 rows of 200 samples together, for each v and k: the grid drawn from the seed 10v + k, Keys' kernel if v is odd.
+/// v, k, and the CRC-32 of all 70 rows of 200 samples together, corrected by the grid drawn from the seed 10v + k; with Keys'
+/// kernel if v is odd, else Hermite's. Computed outside the project.
 const SHAPES: [(u8, u8, u32); 12] = [
     (1, 5, 0xc1f2_6091),
     (1, 6, 0xd84d_156b),
@@ -35,7 +36,7 @@ const SHAPES: [(u8, u8, u32); 12] = [
     (6, 6, 0x4a47_efbd),
 ];
 
-/// The row of a frame of 70 rows of 200 samples, which are numbered through all frames.
+/// A row of frames of 70 rows of 200 samples; `number` counts through all frames.
 fn wide_row(number: u32) -> Row {
     let (frame, row) = ((number / 70) as u16, number % 70);
     let place = RowPlace { row_sequence: number, frame, row: row as u16, width: 200, last: row == 69 };
@@ -81,7 +82,7 @@ fn drawn() -> TableSet {
     TableSet::grid(SHAPE, &drawn_grid(SHAPE, WIDTH, 2, 7), &hermite())
 }
 
-/// The golden factor at every node: a grid whose factors are alike is one row factor for every row.
+/// The golden factor at every node: a grid of equal factors is the same as one row factor for every row.
 fn alike() -> TableSet {
     let (segments, grid_rows) = grid_size(SHAPE, WIDTH, 2);
     let nodes = vec![GOLDEN_FACTOR; (segments + 1) * grid_rows];
@@ -92,7 +93,7 @@ fn golden() -> TableSet {
     TableSet::new(&[GOLDEN_FACTOR; 2], &hermite())
 }
 
-/// The packets of a frame of two rows, which has the samples of frame 0.
+/// The packets of a frame of two rows, with the samples of frame 0.
 fn frame(bench: &mut Bench, number: u32) -> Vec<u8> {
     let rows = [0, 1].map(|row_in_frame| {
         let Row { place, .. } = row(2, 2 * number + row_in_frame);
@@ -106,7 +107,7 @@ fn made(heard: &[Heard]) -> Vec<(u8, u32)> {
     heard.iter().map(|it| (it.row().generation, crc_of_words(samples_of(&it.row())))).collect()
 }
 
-/// What is made of a frame under a generation.
+/// What [`made`] returns for a frame made under this generation.
 fn frame_of(generation: u8, rows: [u32; 2]) -> Vec<(u8, u32)> {
     rows.map(|crc| (generation, crc)).to_vec()
 }
@@ -133,7 +134,7 @@ pub(crate) fn frames_back_to_back_change_between_grids_and_row_factors(on: &dyn 
         let first_frame = 2 * generation - 2;
         bench.done(&tables.commit(generation, first_frame.into()));
         let (mut packets, mut expected) = (Vec::new(), Vec::new());
-        // The frame in front has yet to leave when row 0 of this one enters.
+        // The previous frame has yet to leave when row 0 of this one enters.
         if let Some((generation, rows)) = before {
             packets.extend(frame(&mut bench, u32::from(first_frame) - 1));
             expected.extend(frame_of(generation, rows));

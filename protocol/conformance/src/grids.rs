@@ -1,5 +1,5 @@
-//! The entries of a grid, written and read: datapath 2 of DATAPATH.md. A board that takes no grids is asked nothing but what
-//! stands here and in `grid_commits` of such boards.
+//! The entries of a grid, written and read: datapath 2 of DATAPATH.md. Boards without grids are tested only by the tests for
+//! such boards here and in `grid_commits`.
 
 use halfrow_protocol::message::{
     Bank, Configuration, Entries, Grids, RefusalCode, Request, Reset, ResetLevel, Span, Table,
@@ -14,12 +14,12 @@ use crate::{Boards, Build, offered};
 /// The greatest entry of a grid.
 pub(crate) const MOST: u32 = (1 << 25) - 1;
 
-/// What a board says of the grids that it takes; none of a datapath that the page does not describe.
+/// The board's support for grids; none if it is for a datapath that the page does not describe.
 pub(crate) fn grids_of(bench: &mut Bench) -> Option<Grids> {
     bench.capabilities().grids.filter(|grids| grids.further_datapath == 2)
 }
 
-/// A board of this build with an open session; none if there is no such build, or it takes no grids.
+/// A board of this build with an open session; none if the build is not offered or takes no grids.
 pub fn greeted(on: &dyn Boards, build: &Build) -> Option<(Bench, Grids)> {
     let build = offered(on, [build.clone()]).pop()?;
     let mut bench = Bench::switched_on(on, &build);
@@ -28,7 +28,7 @@ pub fn greeted(on: &dyn Boards, build: &Build) -> Option<(Bench, Grids)> {
     Some((bench, grids))
 }
 
-/// A configuration for rows of 64 samples with as much blanking as rows of a grid need.
+/// A configuration for rows of 64 samples, with the blanking that rows corrected by a grid need.
 #[must_use]
 pub fn narrow(grids: &Grids, height: u16) -> Configuration {
     Configuration { blanking: grids.grid_blanking.into(), ..configuration(height) }
@@ -80,7 +80,7 @@ pub(crate) fn an_entry_out_of_range_is_named_by_its_index_and_nothing_is_written
             assert_eq!(refusal, (RefusalCode::Range, first + 2));
             assert_eq!(bench.read(shadow(Table::Grid, first, 4)), words(&[UNSTRETCHED; 4]));
         }
-        // A row factor has a range of its own in the same place.
+        // Row factors have a range of their own in the same memory.
         let refusal = bench.refused(&write(Table::RowFactors, 0, &words(&[UNSTRETCHED + 1])));
         assert_eq!(refusal, (RefusalCode::Range, 0));
     }

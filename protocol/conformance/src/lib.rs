@@ -1,11 +1,11 @@
-//! The tests that every board answers, whatever it is made of: `protocol/WIRE.md`, rule by rule, through a board's bytes.
+//! The tests that every board must pass, whatever it is made of: `protocol/WIRE.md`, rule by rule, through the bytes of a board.
 //!
 //! ```text
 //! conformance!(&MyBoards) ─► #[test] … ─► Bench ── packets ─► Subject (mock, Verilog, …)
 //! ```
 //!
-//! Whoever has boards implements [`Boards`] for them and writes [`conformance!`] in a test. Of each build that a test asks for
-//! and that there is, it gets a board that was just switched on.
+//! To test boards, implement [`Boards`] for them and write [`conformance!`] in a test. For each build that a test asks for, if
+//! it is offered, the test gets a board that was just switched on.
 
 #![expect(clippy::panic, clippy::unwrap_used, reason = "a test that cannot go on fails")]
 #![expect(clippy::missing_panics_doc, reason = "a board that answers otherwise than it must fails the test")]
@@ -50,18 +50,18 @@ pub use bench::{Bench, HELLO, Heard, rows_of};
 pub use commits::is_busy_while_a_row_is_inside;
 pub use subject::{Boards, Build, Subject};
 
-/// Those of these builds that there are.
+/// Those of these builds that are offered.
 fn offered(on: &dyn Boards, builds: impl IntoIterator<Item = Build>) -> Vec<Build> {
     builds.into_iter().filter(|build| on.offers(build)).collect()
 }
 
-/// How a property is tried: one case for `share` of those that the board has time for. Cases that failed are kept in `file`.
+/// How a property is tried: with [`Boards::cases`] divided by `share` cases. Cases that failed are kept in `file`.
 fn cases(on: &dyn Boards, share: u32, file: &'static str) -> Config {
     let failure_persistence = Some(Box::new(FileFailurePersistence::Direct(file)) as Box<_>);
     Config { cases: on.cases() / share, failure_persistence, ..Config::default() }
 }
 
-/// Names every test once: it is called by what [`conformance!`] makes, and one that is missing here is dead code.
+/// Names every test once, for [`conformance!`] to call. A test that is missing here is dead code.
 macro_rules! suite {
     ($d:tt $($module:ident: $($test:ident),+;)+) => {
         #[doc(hidden)]
@@ -73,8 +73,8 @@ macro_rules! suite {
             })+
         }
 
-        /// Makes a `#[test]` of every test of the suite, in a module for each of its subjects, against the boards of
-        /// this expression, a `&dyn Boards`.
+        /// Makes a `#[test]` of every test of the suite, in one module per subject, against the boards of this expression,
+        /// a `&dyn Boards`.
         #[macro_export]
         macro_rules! conformance {
             ($d boards:expr) => {

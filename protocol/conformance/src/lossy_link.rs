@@ -9,10 +9,10 @@ use crate::{Boards, Build, cases, offered};
 
 const ROWS: u32 = 24;
 const HEIGHT: u16 = 6;
-/// Rounds in which every packet arrives again, so that a run that is not stuck ends.
+/// Rounds at the end in which nothing is lost, so that a run that is not stuck comes to its end.
 const CLEAN_ROUNDS: usize = ROWS as usize * 2;
 
-/// A host that sends all rows it has credit for in every round, whether it sent them before or not.
+/// A host that in every round sends all missing rows that it has credit for, whether it has sent them before or not.
 struct LossyHost {
     bench: Bench,
     credit: u32,
@@ -20,7 +20,7 @@ struct LossyHost {
 }
 
 impl LossyHost {
-    /// One round; bit n of `lost_out` and `lost_in` says that the n-th packet that way is lost.
+    /// One round. Bit n mod 32 of `lost_out` and `lost_in` says that the n-th packet in that direction is lost.
     fn round(&mut self, lost_out: u32, lost_in: u32) {
         let arrives = |lost: u32, index: u32| lost >> (index % 32) & 1 == 0;
         let missing = (self.bench.window..self.credit.min(ROWS)).filter(|&row| !self.back[row as usize]);
@@ -29,7 +29,7 @@ impl LossyHost {
             rows.into_iter().map(|number| self.bench.row_packet(&row(HEIGHT, number))).collect();
         packets.push(self.bench.packet(&Request::RowAck));
         let sent = (0..).zip(packets).filter(|(index, _)| arrives(lost_out, *index));
-        // One at a time: of packets that arrive together, it depends on the board's speed what a repeated row finds.
+        // One at a time: if packets arrive together, what the board does with a repeated row depends on its speed.
         let heard: Vec<_> = sent.flat_map(|(_, packet)| self.bench.receive(&packet)).collect();
         for (index, packet) in (0..).zip(heard) {
             if arrives(lost_in, index) {

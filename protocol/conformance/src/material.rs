@@ -1,4 +1,4 @@
-//! What the tests feed boards with, made from the paper's formulas and the specification's sample formula.
+//! The input of the tests, made from the paper's formulas and the specification's sample formula.
 
 use halfrow_protocol::message::{NODE_WEIGHTS, NODES, Shape};
 
@@ -36,14 +36,14 @@ fn sampled(weights: impl Fn(f64) -> [f64; NODE_WEIGHTS]) -> Nodes {
     })
 }
 
-/// The specification's samples of one row of a frame `width` columns wide.
+/// The specification's samples for one row of a frame `width` columns wide.
 #[must_use]
 pub fn noise_row(row: u32, width: u16) -> Vec<u16> {
     let width = u32::from(width);
     (0..width).map(|column| ((row * width + column).wrapping_mul(2_654_435_761) >> 20) as u16).collect()
 }
 
-/// Table entries of a frame with the circle's radius `radius` (Eq. 9), its centre row in the middle.
+/// Table entries of a frame whose circle has the radius `radius` (Eq. 9), with the centre row in the middle.
 #[must_use]
 pub fn factors(height: u16, radius: f64) -> Vec<u32> {
     let middle = f64::from(height - 1) / 2.0;
@@ -61,7 +61,7 @@ pub(crate) fn grid_size(shape: Shape, width: u16, height: u16) -> (usize, usize)
     (usize::from(width).div_ceil(columns), (usize::from(height) - 1) / rows + 3)
 }
 
-/// A legal grid that bends every row, drawn from a seed: no offsets, and factors from 0.875 to 0.9375.
+/// A legal grid that bends every row, drawn from a seed: offsets of 1.0, and factors from 0.875 to 0.9375.
 #[must_use]
 pub fn drawn_grid(shape: Shape, width: u16, height: u16, seed: u32) -> Vec<u32> {
     let (segments, grid_rows) = grid_size(shape, width, height);

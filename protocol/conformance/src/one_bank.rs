@@ -1,4 +1,4 @@
-//! A build with one bank of tables: what is written is what rows use.
+//! A build with one bank of tables: rows use what is written.
 
 use halfrow_protocol::message::{Bank, RefusalCode, Request, Table};
 
@@ -9,7 +9,7 @@ use crate::material::{GOLDEN_FACTOR, hermite, noise_row};
 use crate::uploads::{TableSet, span, write};
 use crate::{Boards, Build, offered};
 
-/// A configured board with one bank of tables, if there is such a build.
+/// A configured board with one bank of tables, if that build is offered.
 fn one_bank(on: &dyn Boards, height: u16) -> Option<Bench> {
     let build = offered(on, [lean()]).pop()?;
     let mut bench = Bench::switched_on(on, &build);
@@ -18,7 +18,7 @@ fn one_bank(on: &dyn Boards, height: u16) -> Option<Bench> {
     Some(bench)
 }
 
-/// The same with tables that change no sample, as generation 1.
+/// Like [`one_bank`], with tables that change no sample committed as generation 1.
 fn ready(on: &dyn Boards, height: u16) -> Option<Bench> {
     let mut bench = one_bank(on, height)?;
     TableSet::unstretched(height).upload(&mut bench);

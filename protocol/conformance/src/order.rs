@@ -21,7 +21,7 @@ fn refusals(heard: &[Heard]) -> Vec<(RefusalCode, u16)> {
 const ROW: [(RefusalCode, u16); 1] = [(RefusalCode::Row, 0)];
 const NOT_READY: [(RefusalCode, u16); 1] = [(RefusalCode::NotReady, 0)];
 
-/// A row with another place and the samples of its old one.
+/// The row of this number with its place changed and its samples kept.
 fn moved(height: u16, number: u32, change: impl FnOnce(&mut RowPlace)) -> Row {
     let mut row = row(height, number);
     change(&mut row.place);
@@ -57,7 +57,7 @@ pub(crate) fn rows_that_are_not_the_configurations_are_refused(on: &dyn Boards) 
         Row { samples: vec![0; 62], ..moved(4, 0, |place| place.width = 62) },
         Row { samples: vec![0; 66], ..moved(4, 0, |place| place.width = 66) },
         Row { samples: vec![], ..moved(4, 0, |place| place.width = 0) },
-        // An odd width is no configuration's.
+        // No configuration has an odd width.
         moved(4, 0, |place| place.width = 63),
         Row { samples: vec![0; 66], ..moved(4, 0, |place| place.width = 65) },
         moved(4, 0, |place| place.row = 4),
@@ -153,7 +153,7 @@ pub(crate) fn row_0_may_follow_any_row(on: &dyn Boards) {
     assert_eq!((heard[1].row().first_latency, heard[1].row().last_latency), (44, 44));
 }
 
-/// Sends a row in a payload that `change` has changed.
+/// Sends a row with its payload changed by `change`.
 fn send_changed(bench: &mut Bench, row: &Row, change: impl FnOnce(&mut Vec<u8>)) -> Vec<Heard> {
     let header = bench.header(Kind::RowIn.code());
     let mut payload = Vec::new();

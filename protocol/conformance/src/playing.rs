@@ -28,7 +28,7 @@ pub(crate) fn the_golden_rows_come_out_of_the_wire(on: &dyn Boards) {
     }
 }
 
-/// What entered is told of rows as they came, samples beyond the depth included.
+/// `entered` covers the samples as they came, those beyond the depth included.
 pub(crate) fn the_crc_of_what_entered_is_that_of_the_samples_that_were_sent(on: &dyn Boards) {
     let mut bench = ready(on, &Build::default(), 2);
     bench.done(&Request::Configure(Configuration { bits: 8, ..configuration(2) }));
@@ -114,7 +114,7 @@ pub(crate) fn without_a_seed_nothing_pauses(on: &dyn Boards) {
     assert!(heard.iter().all(|packet| packet.row().pauses == 0));
 }
 
-/// The generator of section 5 of WIRE.md, in 64 bits, so that what leaves a word is cut off where the page says so.
+/// The generator of section 5 of WIRE.md, computed in 64 bits and cut to 32 where the page says so.
 fn draws(seed: u32) -> impl Iterator<Item = u32> {
     let word = |x: u64| x & 0xffff_ffff;
     std::iter::successors(Some(seed.into()), move |&x| {
@@ -126,8 +126,7 @@ fn draws(seed: u32) -> impl Iterator<Item = u32> {
     .map(|x| x as u32)
 }
 
-/// Pauses inside the rows of a frame: a row takes one draw in front of it, unless it is row 0, and one in front of each
-/// sample.
+/// Pauses inside the rows of a frame. There is one draw before every row but row 0, and one before every sample.
 fn pauses(seed: u32, width: u16, height: u16) -> Vec<u16> {
     let mut draws = draws(seed);
     let row = |row| {
@@ -181,7 +180,7 @@ pub(crate) fn blanking_without_a_seed_changes_no_sample(on: &dyn Boards) {
     }
 }
 
-/// Two frames of two rows come out as they went in.
+/// Checks that two frames of two rows come out unchanged.
 fn expect_unchanged(bench: &mut Bench, configuration: Configuration) {
     bench.done(&Request::Configure(configuration));
     for (number, packet) in (0..).zip(bench.send_all(2, 0..4)) {

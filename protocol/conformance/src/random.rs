@@ -14,18 +14,18 @@ use crate::{Boards, Build, cases, offered};
 
 const HEIGHT: u16 = 2;
 
-/// Something that comes over the wire.
+/// Something that the host sends.
 #[derive(Clone, Debug)]
 enum Event {
-    /// The row that the board waits for, or one so far behind it.
+    /// The row this many after the one that the board waits for.
     Row(u32),
     /// A packet of the open session, or of another one.
     Packet { kind: u8, payload: Vec<u8>, foreign: bool },
     /// Bytes that are no packet.
     Bytes(Vec<u8>),
-    /// The host has so many rows more.
+    /// The host acknowledges this many more rows.
     Acknowledge(u32),
-    /// The host has all rows, and wants so many frames of a burst.
+    /// The host acknowledges all rows, and requests a burst of this many frames.
     Burst(u32),
 }
 
@@ -65,7 +65,7 @@ fn build(on: &dyn Boards) -> impl Strategy<Value = Build> + use<> {
     prop::sample::select(offered(on, builds))
 }
 
-/// The payload of a request of this kind, made of four numbers.
+/// The payload of a request of this kind, made from four numbers.
 fn payload(kind: Kind, [a, b, c, d]: [u32; 4]) -> Vec<u8> {
     let mut payload = Vec::new();
     match kind {
@@ -103,7 +103,7 @@ fn payload(kind: Kind, [a, b, c, d]: [u32; 4]) -> Vec<u8> {
     payload
 }
 
-/// The payload of a request of bursts.
+/// The payload of BURST, RECORDS or EXPECT.
 fn at_speed(kind: Kind, [a, b, c, d]: [u32; 4], payload: &mut Vec<u8>) {
     let bytes = vec![c.to_le_bytes(); b as usize % (Expect::MOST + 1)];
     let modes = [BurstMode::Fresh, BurstMode::Alternating, BurstMode::Repeating, BurstMode::Trapped];
@@ -140,12 +140,12 @@ fn configuration([a, b, c, d]: [u32; 4]) -> Configuration {
     }
 }
 
-/// A host that checks what holds for every packet of a board, whatever made it come.
+/// A host that checks what must hold for every packet from a board, whatever caused it.
 struct Observer {
     bench: Bench,
-    /// The greatest window since the session or the last RESET.
+    /// The greatest window since the session began or since the last RESET.
     credit: u32,
-    /// The count that the next ROW_OUT carries, if one has come in this session.
+    /// The count that the next ROW_OUT carries; none if it is not known.
     next_count: Option<u16>,
 }
 
@@ -214,7 +214,7 @@ impl Observer {
         self.receive(&bytes);
     }
 
-    /// A greeting behind two zeros must be answered, and a frame must come out as it went in.
+    /// A HELLO after two zeros must be answered, and a frame must come out unchanged.
     fn recover(mut self) {
         self.bench.receive(&[0, 0]);
         self.bench.greet(&Hello { nonce: 0xffff_0000, host: 1, take_over: true, ..HELLO });

@@ -1,4 +1,4 @@
-//! RESET: what each level drops, and where the window goes on.
+//! RESET: what each level drops, and where the window continues.
 
 use halfrow_protocol::message::{Hello, RefusalCode, Request, Reset, ResetLevel, Status};
 
@@ -11,14 +11,14 @@ fn reset(level: ResetLevel, next_row: u32) -> Request<'static> {
     Request::Reset(Reset { level, next_row })
 }
 
-/// A row of frames of four rows, numbered from `first` on.
+/// Row `number` of frames of four rows that are numbered from `first` on.
 fn row_behind(first: u32, number: u32) -> Row {
     let mut row = row(4, number);
     row.place.row_sequence += first;
     row
 }
 
-/// A board with a row in the core, one that waits, and one that was not acknowledged.
+/// A board with one row in the core, one that waits, and one that is not acknowledged.
 fn full_of_rows(on: &dyn Boards) -> Bench {
     let mut bench = ready(on, &Build::default(), 4);
     bench.send_all(4, [0, 1, 3]);

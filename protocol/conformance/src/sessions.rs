@@ -1,4 +1,4 @@
-//! Section 2 of WIRE.md: how a session opens, and what becomes of packets of another one.
+//! Section 2 of WIRE.md: how a session opens, and what happens to packets of another session.
 
 use halfrow_protocol::message::{Hello, RefusalCode, Reply, Request, Reset, ResetLevel};
 use halfrow_protocol::{Header, Kind};
@@ -73,7 +73,7 @@ pub(crate) fn rows_are_counted_from_0_again_in_a_new_session(on: &dyn Boards) {
     assert_eq!(numbers, [0, 1, 2, 3]);
 }
 
-/// The number behind this one.
+/// The session number after this one.
 fn next(session: u8) -> u8 {
     if session == 255 { 1 } else { session + 1 }
 }

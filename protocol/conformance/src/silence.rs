@@ -11,7 +11,7 @@ use crate::bench::{Bench, HELLO};
 const OTHER: Request<'_> =
     Request::Hello(Hello { nonce: 0x0bad_cafe, host: 0x0000_0b0b, take_over: false, ..HELLO });
 
-/// What another host is told at this time, in milliseconds.
+/// The refusal that another host gets at this time, in milliseconds.
 fn other_is_told(bench: &mut Bench, milliseconds: u64) -> Option<(RefusalCode, u16)> {
     bench.now = Duration::from_millis(milliseconds);
     bench.ask(&OTHER).refusal()

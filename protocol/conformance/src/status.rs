@@ -13,7 +13,7 @@ pub(crate) fn counters_are_sent_in_the_order_of_the_page(on: &dyn Boards) {
     bench.acknowledge(1);
     let payload = bench.done(&Request::Status { clear: false }).payload;
     let words: Vec<_> = payload.chunks(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
-    // HELLO cleared the counters; behind it came CONFIGURE, two TABLE_WRITE, COMMIT, three ROW_IN, ROW_ACK, STATUS.
+    // HELLO cleared the counters; after it came CONFIGURE, two TABLE_WRITE, COMMIT, three ROW_IN, ROW_ACK, STATUS.
     assert_eq!(words, [9, 0, 0, 0, 0, 3, 1, 0, 0, 0, 2, 1, 1, 1, 44, 44]);
 }
 

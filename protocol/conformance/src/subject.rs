@@ -6,7 +6,7 @@ use halfrow_pipe::Endpoint;
 
 /// A board, whatever it is made of.
 pub trait Subject {
-    /// What it sends when it gets these bytes together, at the time `now` since it was switched on.
+    /// What it sends when it gets these bytes at once, at the time `now` since it was switched on.
     fn answer(&mut self, bytes: &[u8], now: Duration) -> Vec<u8>;
 }
 
@@ -17,7 +17,7 @@ impl<B: Endpoint> Subject for B {
     }
 }
 
-/// What is fixed when a board is built, as CAPABILITIES tells it.
+/// What is fixed when a board is built, as CAPABILITIES reports it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Build {
     /// Pixel clocks L.
@@ -26,17 +26,17 @@ pub struct Build {
     pub taps: u8,
     /// 1 or 2.
     pub table_banks: u8,
-    /// Rows that wait to be played, at least 2.
+    /// How many rows can wait to be played, at least 2.
     pub row_banks_in: u8,
-    /// Rows that were played and wait to be acknowledged, at least 2.
+    /// How many played rows can wait to be acknowledged, at least 2.
     pub row_banks_out: u8,
-    /// Pixel clocks that are needed between rows.
+    /// The fewest pixel clocks between two rows.
     pub least_blanking: u16,
-    /// Samples of the widest row.
+    /// The widest row, in samples.
     pub max_width: u16,
-    /// Rows of the highest frame.
+    /// The most rows of a frame.
     pub max_height: u16,
-    /// Bits a sample that can be set.
+    /// The depths that can be configured, in bits per sample.
     pub depths: &'static [u8],
 }
 
@@ -60,12 +60,12 @@ impl Default for Build {
 
 /// Boards of one make.
 pub trait Boards {
-    /// Whether there is such a build. There must be the default one.
+    /// Whether this build exists. The default build must exist.
     fn offers(&self, build: &Build) -> bool;
 
-    /// A board of this build, which is offered, that was just switched on.
+    /// A board of this build, just switched on. The build must be offered.
     fn switched_on(&self, build: &Build) -> Box<dyn Subject>;
 
-    /// Cases that properties are tried with, for the long ones a share of it.
+    /// How many cases properties are tried with; the long ones use only a share of them.
     fn cases(&self) -> u32;
 }

@@ -8,7 +8,7 @@ use crate::material::{UNSTRETCHED, crc_of_words, factors, hermite, keys};
 use crate::uploads::{TableSet, span, write, write_both_banks};
 use crate::{Boards, Build, offered};
 
-/// The golden tables of 1080 rows, in the shadow bank.
+/// A board with the golden tables of 1080 rows in the shadow bank.
 fn golden(on: &dyn Boards) -> Bench {
     let mut bench = Bench::greeted(on);
     let bytes: Vec<_> = factors(1080, 1106.697).into_iter().flat_map(u32::to_le_bytes).collect();
@@ -40,7 +40,7 @@ pub(crate) fn a_read_answers_with_its_span_and_the_entries(on: &dyn Boards) {
     assert_eq!(payload, [1, 0, port, 32, 0, 1, 0, 0, 0, 0, 0xf8, 0, 0x20, 0, 0xf8, 0, 0]);
 }
 
-/// That every factor of both banks is 2^24 and every node 0, through every port.
+/// Checks that every factor of both banks is 2^24 and every node 0, through every port.
 fn expect_blank(bench: &mut Bench, rows: u16) {
     let unstretched = vec![UNSTRETCHED.to_le_bytes(); rows.into()].concat();
     let Capabilities { step_ports, kernel_ports, .. } = bench.capabilities();

@@ -8,7 +8,7 @@ use crate::bench::Bench;
 use crate::frames::configuration;
 use crate::material::{GOLDEN_FACTOR, Nodes, UNSTRETCHED, hermite};
 
-/// Row factors of one packet.
+/// Row factors in one packet.
 const FACTORS: usize = 1000;
 
 /// Row factors or a grid, and a kernel, as a host uploads them.
@@ -20,7 +20,7 @@ pub struct TableSet {
 }
 
 impl TableSet {
-    /// These factors, one a row, and this kernel.
+    /// These factors, one per row, and this kernel.
     #[must_use]
     pub fn new(factors: &[u32], kernel: &Nodes) -> Self {
         Self {
@@ -59,7 +59,7 @@ impl TableSet {
     }
 }
 
-/// A write of whole entries, from the entry `first` on.
+/// A write of whole entries into the shadow bank, from the entry `first` on.
 pub fn write(table: Table, first: u16, bytes: &[u8]) -> Request<'_> {
     let count = (bytes.len() / table.entry_bytes()) as u16;
     Request::TableWrite(Entries { span: Span { table, bank: Bank::Shadow, port: 0, first, count }, bytes })
@@ -70,7 +70,8 @@ pub fn span(table: Table, bank: Bank, port: u8, first: u16, count: u16) -> Span 
     Span { table, bank, port, first, count }
 }
 
-/// Writes a golden factor, a kernel and what `also` writes into both banks: a row of a frame of one takes the first into use.
+/// Writes a golden factor, a kernel and what `also` writes into both banks. Between the two, a frame of one row makes the first
+/// bank the active one.
 pub(crate) fn write_both_banks(bench: &mut Bench, also: impl Fn(&mut Bench)) {
     let tables = TableSet::new(&[GOLDEN_FACTOR], &hermite());
     bench.done(&Request::Configure(configuration(1)));

@@ -1,6 +1,6 @@
-//! The body of a fuzzer: from any bytes to nothing, or to a panic when the wire breaks a promise.
+//! The body of a fuzzer: takes any bytes, and panics if the wire breaks a promise.
 //!
-//! Any engine can drive [`decode`]; `fuzz.rs` does, with the frozen vectors and [`mutate`].
+//! Any engine can drive [`decode`]; `fuzz.rs` does so with the frozen vectors and [`mutate`].
 
 use halfrow_protocol::{
     Damage, Decoder, Encoder, Header, MAX_PACKET, MAX_PAYLOAD, Packet, Reply, Request, VERSION,
@@ -10,14 +10,14 @@ use halfrow_protocol::{
 const HEADER: usize = 12;
 const CRC: usize = 4;
 
-/// What a decoder delivers, kept.
+/// What a decoder delivers, with its bytes copied.
 type Event = Result<(Header, Vec<u8>), Damage>;
 
-/// Takes `bytes` for three things, in turn: what a link delivers; a packet, to which the right CRC is added; and the code
-/// of a kind with its payload.
+/// Treats `bytes` in turn as three things: what a link delivers; a packet without its CRC, which is added; and the code of a
+/// kind with its payload.
 ///
-/// Panics when a promise of the wire is broken: packets depend on how the bytes were cut into reads, a payload is over its limit,
-/// a packet with a wrong length or version is accepted, or a message is not the same after it was written and read again.
+/// Panics if a promise of the wire is broken: packets depend on how the bytes are cut into reads, a payload is over its limit,
+/// a packet with a wrong length or version is accepted, or a message changes when it is written and read again.
 pub(crate) fn decode(bytes: &[u8]) {
     check_stream(bytes);
     check_sealed(bytes);
@@ -27,8 +27,8 @@ pub(crate) fn decode(bytes: &[u8]) {
     }
 }
 
-/// Damages `bytes` in one place, as a link would, or sets a byte to one of its limits. `below(n)` draws a number
-/// under `n`, which is never 0.
+/// Damages `bytes` in one place, as a link would, or sets a byte to a limit value. `below(n)` draws a number below `n`; `n` is
+/// never 0.
 pub(crate) fn mutate(bytes: &mut Vec<u8>, below: &mut impl FnMut(usize) -> usize) {
     const LIMITS: [u8; 7] = [0, 1, 2, 0x7f, 0x80, 0xfe, 0xff];
     let place = below(bytes.len() + 1);
@@ -52,7 +52,7 @@ fn check_stream(bytes: &[u8]) {
     assert_eq!(self::events(bytes, read), events, "the packets depend on how the bytes were cut");
 }
 
-/// `body` is sent with its right CRC, so nothing but its size, version and length decides.
+/// `body` is sent with the right CRC, so that only its size, version and length decide.
 fn check_sealed(body: &[u8]) {
     let packet = [body, &crc32fast::hash(body).to_le_bytes()].concat();
     let wire = [&[0][..], &stuffed(&packet), &[0]].concat();
@@ -66,7 +66,7 @@ fn check_sealed(body: &[u8]) {
     }
 }
 
-/// A packet as section 1 of WIRE.md stuffs it: cut at its zeros and behind every 254th byte, with one zero imagined at its end.
+/// A packet as section 1 of WIRE.md stuffs it: cut at its zeros and after every 254th byte, with a zero imagined at its end.
 fn stuffed(packet: &[u8]) -> Vec<u8> {
     let mut wire = Vec::new();
     for between_zeros in packet.split(|&byte| byte == 0) {
@@ -78,7 +78,7 @@ fn stuffed(packet: &[u8]) -> Vec<u8> {
         }
         wire.push(last.len() as u8 + 1);
         wire.extend_from_slice(last);
-        // A piece of 254 implies no zero; the one behind it is a piece of its own.
+        // A piece of 254 implies no zero; the zero after it is a piece of its own.
         if last.len() == 254 {
             wire.push(1);
         }
@@ -86,7 +86,7 @@ fn stuffed(packet: &[u8]) -> Vec<u8> {
     wire
 }
 
-/// The first check, in the order of section 1 of WIRE.md, that a packet fails whose CRC is right.
+/// The first check, in the order of section 1 of WIRE.md, that a packet with the right CRC fails.
 fn damage_of(body: &[u8]) -> Option<Damage> {
     let Some((&[version, _, _, _, low, high, ..], payload)) = body.split_first_chunk::<HEADER>() else {
         return Some(Damage::Size);
@@ -125,7 +125,7 @@ fn again(header: &Header, write_payload: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     found.map(|(_, payload)| payload).unwrap_or_default()
 }
 
-/// What a decoder makes of `bytes` when they come in reads of `read` bytes.
+/// What a decoder delivers when `bytes` come in reads of `read` bytes.
 fn events(bytes: &[u8], read: usize) -> Vec<Event> {
     let mut decoder = Decoder::new();
     let mut events = Vec::new();

@@ -1,4 +1,4 @@
-//! Strategies for every message of the wire. Those that borrow their bytes are kept with the bytes.
+//! Strategies for every message of the wire. Messages that borrow bytes are kept together with their bytes.
 
 use halfrow_protocol::message::{
     Bank, BoardNature, Burst, BurstMode, BurstState, Bursts, Capabilities, Commit, Configuration, Entries,
@@ -33,7 +33,7 @@ impl OwnedRequest {
     }
 }
 
-/// A reply that owns its bytes; a row stands here without its samples.
+/// A reply that owns its bytes. What would borrow them (rows, records) is empty in the message, and kept beside it.
 #[derive(Clone, Debug)]
 pub(crate) enum OwnedReply {
     Plain(Reply<'static>),
@@ -80,7 +80,7 @@ pub(crate) fn request() -> impl Strategy<Value = OwnedRequest> {
     ]
 }
 
-/// Any reply, or row of a board.
+/// Any reply or row from a board.
 pub(crate) fn reply() -> impl Strategy<Value = OwnedReply> {
     let plain = prop_oneof![
         welcome().prop_map(Reply::Hello),
@@ -102,7 +102,7 @@ pub(crate) fn reply() -> impl Strategy<Value = OwnedReply> {
     ]
 }
 
-/// Few bytes mostly, but up to as many as a packet takes.
+/// Mostly few bytes, but up to as many as a packet holds.
 fn echo() -> impl Strategy<Value = Vec<u8>> {
     prop_oneof![3 => vec(any::<u8>(), 0..40), 1 => vec(0..2_u8, 0..600), 1 => vec(1..=255_u8, 0..=MAX_PAYLOAD)]
 }
@@ -129,7 +129,7 @@ fn welcome() -> impl Strategy<Value = Welcome> {
 
 fn capabilities() -> impl Strategy<Value = Capabilities> {
     let nature = select(vec![BoardNature::Hardware, BoardNature::Simulation, BoardNature::Mock]);
-    // Sixty characters are at most 240 bytes; a name has at most 255.
+    // The name: sixty characters are at most 240 bytes, and a name has at most 255.
     let further = (proptest::option::of(bursts()), proptest::option::of(grids()));
     (any::<([u16; 5], [u8; 9], u32, bool)>(), further, nature, "\\PC{0,60}").prop_map(
         |((words, bytes, clock_hz, entered), (bursts, grids), nature, name)| {
@@ -250,7 +250,7 @@ fn span() -> impl Strategy<Value = Span> {
     })
 }
 
-/// As many entries as a packet takes are 1018 row factors or 407 nodes.
+/// A packet holds at most 1018 row factors or 407 nodes.
 fn entries() -> impl Strategy<Value = (Span, Vec<u8>)> {
     (span(), prop_oneof![3 => 0..9_u16, 1 => 0..=407_u16, 1 => Just(1018)]).prop_flat_map(|(span, most)| {
         let count = if span.table == Table::Kernel { most.min(407) } else { most };
@@ -258,7 +258,7 @@ fn entries() -> impl Strategy<Value = (Span, Vec<u8>)> {
     })
 }
 
-/// A row and its packed samples, up to the 2592 that the datapath goes to.
+/// A row and its packed samples, up to the datapath's limit of 2592.
 fn row() -> impl Strategy<Value = (RowPlace, Vec<u8>)> {
     let half_width = prop_oneof![3 => 32..40_u16, 1 => 32..=1296_u16];
     (half_width, any::<(u32, u16, u16, bool)>()).prop_flat_map(|(half, (row_sequence, frame, row, last))| {
@@ -315,13 +315,13 @@ fn burst() -> impl Strategy<Value = Burst> {
     )
 }
 
-/// As many signatures as a packet takes are 1019.
+/// A packet holds at most 1019 signatures.
 fn expect() -> impl Strategy<Value = OwnedRequest> {
     let bytes = prop_oneof![3 => vec(any::<[u8; 4]>(), 0..9), 1 => vec(any::<[u8; 4]>(), 1000..=1019)];
     (any::<u16>(), bytes).prop_map(|(first, bytes)| OwnedRequest::Expect(first, bytes))
 }
 
-/// As many records as a packet takes are 226.
+/// A packet holds at most 226 records.
 fn records() -> impl Strategy<Value = OwnedReply> {
     let states = [BurstState::None, BurstState::UnderWay, BurstState::Ended];
     let records = prop_oneof![3 => vec(any::<[u8; 18]>(), 0..9), 1 => vec(any::<[u8; 18]>(), 200..=226)];
