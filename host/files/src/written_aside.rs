@@ -1,7 +1,7 @@
-//! Outputs that are whole or as they were: written aside in the same folder, then renamed into their place.
+//! Outputs that are whole or as before: written aside in the same folder, then renamed into their place.
 //!
-//! What is aside goes by a name of ours and is locked, so that a run can tell what killed runs left from what running ones
-//! write, and clears it ([`clear`]).
+//! What is aside has a name of our own and is locked. So a run can tell what killed runs left from what running ones write, and
+//! clears it ([`clear`]).
 
 mod claim;
 mod error;
@@ -28,26 +28,26 @@ pub use under_way::abandon_all;
 /// Bytes that are written at once: writes of whole multiples of it are handed on as they are.
 pub const BUFFER: usize = 1 << 17;
 
-/// The same for streams.
+/// Like [`BUFFER`], for streams.
 const STREAM_BUFFER: usize = 1 << 13;
 
-/// A file that is written but not in its place: it goes by another name in the same folder until [`Self::put_in_place`],
+/// A file that is written but not yet in its place: it has another name in the same folder until [`Self::put_in_place`],
 /// and is removed if that is never called.
 #[derive(Debug)]
 pub struct Aside {
     out: BufWriter<NamedTempFile>,
     path: PathBuf,
     overwrite: bool,
-    /// Until the file is in its place, so that two that may not overwrite cannot both begin.
+    /// Held until the file is in its place, so that two runs that may not overwrite cannot both begin.
     _claim: Option<Claim>,
     _noted: under_way::Noted,
 }
 
 impl Aside {
-    /// A file for `path` with what `write` puts into it, and the rights of the file that it replaces, or of an ordinary one.
+    /// A file for `path` with what `write` puts into it. It has the rights of the file that it replaces, or ordinary ones.
     ///
     /// # Errors
-    /// As [`write_aside`].
+    /// Like [`write_aside`].
     pub fn written(
         path: &Path,
         overwrite: bool,
@@ -61,11 +61,11 @@ impl Aside {
         }
     }
 
-    /// A file for `path` that grows for as long as a run takes, and that is worth keeping as far as it goes. Nobody else may begin
-    /// one of that name meanwhile, unless either may overwrite.
+    /// A file for `path` that grows for as long as a run takes, and that is worth keeping even if it is incomplete. No other
+    /// run may begin a file of that name meanwhile, unless either may overwrite.
     ///
     /// # Errors
-    /// As [`write_aside`].
+    /// Like [`write_aside`].
     pub fn stream(path: &Path, overwrite: bool) -> Result<Self, WriteAsideError> {
         check(path, overwrite)?;
         let claim = if overwrite { None } else { Some(Claim::take(path)?) };
@@ -83,16 +83,16 @@ impl Aside {
         let rights = if overwrite { Rights::of(path) } else { None };
         let (file, noted) = under_way::file(folder_of(path), kept_for, rights)
             .map_err(|source| WriteAsideError::Io { path: path.to_owned(), source })?;
-        // What is worth keeping is not kept back.
+        // What is worth keeping should reach the file soon.
         let capacity = if kept_for.is_some() { STREAM_BUFFER } else { BUFFER };
         let out = BufWriter::with_capacity(capacity, file);
         Ok(Self { out, path: path.to_owned(), overwrite, _claim: claim, _noted: noted })
     }
 
-    /// Renames the file into its place, once its bytes are on the disk, and does what can be done for the new name to be, too.
+    /// Brings the bytes of the file to the disk, renames it into its place, and tries to bring the new name to the disk too.
     ///
     /// # Errors
-    /// [`WriteAsideError`] when the place has been taken meanwhile and may not be, or the system refuses.
+    /// [`WriteAsideError`] when something has taken the place meanwhile and may not be replaced, or the system refuses.
     pub fn put_in_place(self) -> Result<(), WriteAsideError> {
         let path = self.path.clone();
         self.rename_into_place()?;
@@ -100,10 +100,11 @@ impl Aside {
         Ok(())
     }
 
-    /// [`Self::put_in_place`] for a caller who brings the new name to the disk, and to whom it matters when that fails.
+    /// Like [`Self::put_in_place`], for a caller that brings the new name to the disk itself because it must know when that
+    /// fails.
     ///
     /// # Errors
-    /// As [`Self::put_in_place`].
+    /// Like [`Self::put_in_place`].
     pub fn rename_into_place(mut self) -> Result<(), WriteAsideError> {
         let written = self.whole();
         let Self { out, path, overwrite, .. } = self;
@@ -111,7 +112,7 @@ impl Aside {
         written.and_then(|()| place(file, &path, overwrite).map_err(|(error, _)| error))
     }
 
-    /// [`Self::put_in_place`], or else keeps what there is under a name that nothing else has.
+    /// Like [`Self::put_in_place`], but on an error keeps what there is under a name that is free.
     ///
     /// # Errors
     /// [`Unfinished`] where [`Self::put_in_place`] has an error.
@@ -128,7 +129,7 @@ impl Aside {
         Ok(())
     }
 
-    /// Keeps what there is under a name that nothing else has, since writing on failed with `source`.
+    /// Keeps what there is under a name that is free, because writing failed with `source`.
     #[must_use]
     pub fn keep_unfinished(self, source: io::Error) -> Unfinished {
         let source = WriteAsideError::Io { path: self.path.clone(), source };
@@ -156,10 +157,10 @@ impl Write for Aside {
     }
 }
 
-/// Writes the file `path` with what `write` puts into it. Whatever goes wrong, the file is whole or as it was.
+/// Writes the file `path` with what `write` puts into it. Whatever goes wrong, the file is whole or as before.
 ///
 /// # Errors
-/// [`WriteAsideError`] when `path` is a link or no regular file, is there and `overwrite` is false, or cannot be written.
+/// [`WriteAsideError`] when `path` is a link or not a regular file, exists and `overwrite` is false, or cannot be written.
 pub fn write_aside(
     path: &Path,
     overwrite: bool,
@@ -168,7 +169,7 @@ pub fn write_aside(
     Aside::written(path, overwrite, write)?.put_in_place()
 }
 
-/// Renames a file into its place, or gives it back.
+/// Renames a file into its place. On an error, gives the file back.
 fn place(file: NamedTempFile, path: &Path, overwrite: bool) -> Result<(), (WriteAsideError, NamedTempFile)> {
     if overwrite && let Err(error) = check(path, true) {
         return Err((error, file));
@@ -177,7 +178,7 @@ fn place(file: NamedTempFile, path: &Path, overwrite: bool) -> Result<(), (Write
     let path = path.to_owned();
     match renamed {
         Ok(()) => {
-            // It has another name by now, under which it stays.
+            // It has its final name by now, and must not be removed on drop.
             let _ = file.keep();
             Ok(())
         }
@@ -188,30 +189,30 @@ fn place(file: NamedTempFile, path: &Path, overwrite: bool) -> Result<(), (Write
     }
 }
 
-/// Keeps what there is of a file, and says where.
+/// Keeps what there is of a file, and returns its path; none if it is empty or gone.
 fn keep(file: NamedTempFile) -> Option<PathBuf> {
     if file.as_file().metadata().is_ok_and(|about| about.len() == 0) {
         return None;
     }
     let (_file, path) = file.keep().ok()?;
-    // Its folder may have gone with it.
+    // It may have gone with its folder.
     Some(under_way::kept(&path).unwrap_or(path)).filter(|kept| kept.exists())
 }
 
-/// The folder that `path` is in.
+/// The folder that contains `path`.
 #[must_use]
 pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Makes the name of what is whole and in its place last. Whatever fails here takes nothing of it away.
+/// Makes the name of a file that is whole and in its place last through a power cut. A failure here leaves the file as it is.
 fn settle(path: &Path) {
     if let Err(error) = sync_folder(folder_of(path)) {
         tracing::warn!(path = %path.display(), %error, "it is written, and a power cut may take it away again");
     }
 }
 
-/// Makes the names in `folder` last through a power cut, where its file system knows how to and it may be listed.
+/// Makes the names in `folder` last through a power cut, if its file system can do that and the folder may be opened.
 ///
 /// # Errors
 /// The system's reason.
@@ -304,7 +305,7 @@ mod tests {
 
     #[test]
     fn what_is_no_regular_file_is_never_replaced() {
-        // A socket stands for a device: run as root, a broken check would replace a real one.
+        // A socket serves as the device: run as root, a broken check would replace a real device.
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("socket");
         let _socket = std::os::unix::net::UnixListener::bind(&path).unwrap();

@@ -1,4 +1,4 @@
-//! The frames that need no file.
+//! The built-in frames, which need no file.
 
 use std::fmt;
 use std::str::FromStr;
@@ -21,7 +21,7 @@ pub enum Builtin {
     RampAcross,
     /// From black at the top to white at the bottom.
     RampDown,
-    /// Eight upright bars: the full colours.
+    /// Eight vertical bars in the full colours.
     Bars,
     /// Neighbours of one colour alternate between black and white.
     Checkerboard,
@@ -29,7 +29,7 @@ pub enum Builtin {
     Impulses,
     /// Random samples over the full range.
     Noise,
-    /// Only 0 and 2^B − 1, in orders that drive the sum beyond both ends.
+    /// Only 0 and 2^B − 1, in orders that drive the sum beyond both ends of the range.
     Extremes,
     /// Rings that become finer outwards.
     ZonePlate,
@@ -38,7 +38,7 @@ pub enum Builtin {
 }
 
 impl Builtin {
-    /// What stands before its name where a file could be named.
+    /// The prefix of its name where a file could be named instead.
     pub const PREFIX: &str = "builtin:";
 
     /// All built-in frames.
@@ -95,16 +95,16 @@ impl Builtin {
         }
     }
 
-    /// The built-in frame that `text` names where a file could be named, if it names none.
+    /// The built-in frame that `text` names, or none if it names a file instead.
     ///
     /// # Errors
-    /// [`UnknownBuiltin`] when no built-in frame has the name behind [`Self::PREFIX`].
+    /// [`UnknownBuiltin`] when no built-in frame has the name after [`Self::PREFIX`].
     pub fn named(text: &str) -> Result<Option<Self>, UnknownBuiltin> {
         text.strip_prefix(Self::PREFIX).map(str::parse).transpose()
     }
 
-    /// The frame, made for `scene`. The same scene always gives the same frame; the street's may differ in single
-    /// samples from one machine's floating-point library to another's.
+    /// The frame, made for `scene`. The same scene always gives the same frame, except that single samples of the street may
+    /// differ between floating-point libraries.
     ///
     /// # Errors
     /// None for a legal geometry; the [`FrameError`] is passed on rather than dropped.

@@ -1,8 +1,8 @@
-//! DNG (Digital Negative 1.4): the raw samples with what a raw developer needs to know about them.
+//! DNG (Digital Negative 1.4): the raw samples, with what a raw developer needs to know about them.
 //!
 //! The samples are 16-bit words, uncompressed, black at 0 and white at 2^B − 1. The camera's colours are declared to be linear
 //! sRGB with a neutral of (1, 1, 1), so that a developer shows what [`super::preview::demosaic`] shows; nothing is known about
-//! the colours of the real sensor. Section names are those of Adobe's specification.
+//! the colours of the real sensor. Tag names are those of Adobe's specification.
 
 use std::io::{Seek, Write};
 
@@ -17,7 +17,7 @@ use super::Orientation;
 /// PhotometricInterpretation of a colour filter array.
 pub(super) const FILTER_ARRAY: u16 = 32803;
 
-/// CFARepeatPatternDim, and what it must be here: two rows of two columns.
+/// CFARepeatPatternDim, and the value that it must have here: two rows of two columns.
 pub(super) const REPEAT: (u16, [u16; 2]) = (33421, [2, 2]);
 /// CFAPattern: one of red 0, green 1 and blue 2 for each place, row after row.
 pub(super) const PATTERN: u16 = 33422;
@@ -41,22 +41,22 @@ pub(super) const BLACK_DELTAS: [u16; 2] = [50715, 50716];
 pub(super) const WHITE: u16 = 50717;
 /// ColorMatrix1: from XYZ to the camera's colours.
 const COLOUR_MATRIX: u16 = 50721;
-/// AsShotNeutral: the camera's colours of what is to look white.
+/// AsShotNeutral: the camera's colours of what should look white.
 const NEUTRAL: u16 = 50728;
 /// ActiveArea: top, left, bottom and right of what the sensor saw.
 pub(super) const ACTIVE_AREA: u16 = 50829;
 /// CalibrationIlluminant1: the light that [`COLOUR_MATRIX`] holds for.
 const ILLUMINANT: u16 = 50778;
-/// D65 among Exif's light sources.
+/// D65 in Exif's list of light sources.
 const D65: u16 = 21;
 
 /// From XYZ to linear sRGB by IEC 61966-2-1, in ten thousandths.
 const XYZ_TO_SRGB: [i32; 9] = [32406, -15372, -4986, -9689, 18758, 415, 557, -2040, 10570];
 
-/// Writes `frame` as a DNG, its samples as they are, for who shows it turned by `orientation`.
+/// Writes `frame` as a DNG, its samples unchanged, to be shown turned by `orientation`.
 ///
 /// # Errors
-/// The encoder's, or whatever `out` answers.
+/// Those of the encoder and of `out`.
 pub fn encode(
     frame: &Frame,
     orientation: Orientation,
@@ -65,7 +65,7 @@ pub fn encode(
     let (width, height) = (u32::try_from(frame.width())?, u32::try_from(frame.height())?);
     let mut encoder = TiffEncoder::new(out)?;
     let mut image = encoder.new_image::<Gray16>(width, height)?;
-    // Some developers look for one strip alone.
+    // Some developers expect exactly one strip.
     image.rows_per_strip(height)?;
     describe_file(image.encoder(), orientation)?;
     describe_samples(image.encoder(), frame)?;
@@ -76,7 +76,7 @@ fn describe_file<W: Write + Seek, K: TiffKind>(
     directory: &mut DirectoryEncoder<'_, W, K>,
     orientation: Orientation,
 ) -> Result<(), TiffError> {
-    // The full picture, not a smaller one of another.
+    // The full picture, not a reduced version of another.
     directory.write_tag(Tag::NewSubfileType, 0_u32)?;
     directory.write_tag(Tag::Orientation, orientation.tag())?;
     directory.write_tag(Tag::Software, concat!("halfrow ", env!("CARGO_PKG_VERSION")))?;
@@ -103,7 +103,7 @@ fn describe_samples<W: Write + Seek, K: TiffKind>(
     directory.write_tag(Tag::Unknown(ILLUMINANT), D65)
 }
 
-/// The colours of the upper left four places as [`PATTERN`] has them.
+/// The colours of the four places at the upper left, as in [`PATTERN`].
 fn pattern(phase: Phase) -> [u8; 4] {
     [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(row, column)| match phase.colour(row, column) {
         Colour::Red => 0,

@@ -222,7 +222,7 @@ pub enum DecodeError {
     Frame(FrameError),
 }
 
-/// Of a depth that can be given no deeper, the remedy is another one.
+/// At the greatest depth there is, a sample that is too bright needs another remedy.
 impl From<FrameError> for DecodeError {
     fn from(error: FrameError) -> Self {
         match error {
@@ -237,7 +237,7 @@ impl From<FrameError> for DecodeError {
 /// What a reader says that came to the end of its bytes.
 pub(super) const BROKEN_OFF: &str = "it breaks off";
 
-/// What the PNG decoder found, without the names of its own types.
+/// What the PNG decoder reported, without the names of its own types.
 fn png_damage(error: &png::DecodingError) -> String {
     if let png::DecodingError::IoError(error) = error
         && error.kind() == io::ErrorKind::UnexpectedEof
@@ -254,7 +254,7 @@ fn png_damage(error: &png::DecodingError) -> String {
     chunk.unwrap_or_else(|| text.to_owned())
 }
 
-/// What the TIFF decoder found.
+/// What the TIFF decoder reported.
 fn tiff_damage(error: &tiff::TiffError) -> String {
     match error {
         tiff::TiffError::IoError(error) if error.kind() == io::ErrorKind::UnexpectedEof => {

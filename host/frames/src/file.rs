@@ -1,4 +1,4 @@
-//! Frames on disk: reading a file whole, and replacing it whole or not at all.
+//! Frames on disk: reading a whole file, and replacing it whole or not at all.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -15,7 +15,7 @@ use super::{
 };
 use halfrow_files::written_aside::{BUFFER, write_aside};
 
-/// The frame in the file `path`. The bytes tell the format, not the name; without a header, `how.raw` must.
+/// The frame in the file `path`. Its bytes determine the format, not its name; for a file without a header, `how.raw` does.
 ///
 /// # Errors
 /// [`ReadError`] when the file cannot be read or holds no frame as `how` describes it.
@@ -23,8 +23,8 @@ pub fn read(path: &Path, how: &ReadOptions) -> Result<Frame, ReadError> {
     FrameFile::read(path)?.decode(how).map(|decoded| decoded.frame)
 }
 
-/// The bytes of a file that is no longer than any frame. It may change meanwhile, so what is decoded and what is hashed is taken
-/// from these.
+/// The bytes of a file that is not longer than any frame. The file may change meanwhile, so these bytes are both decoded and
+/// hashed.
 #[derive(Debug)]
 pub struct FrameFile {
     path: PathBuf,
@@ -41,7 +41,7 @@ impl FrameFile {
         Self::of_open(opened, path)
     }
 
-    /// What is left of `input`, which is the file `path`.
+    /// The rest of `input`, which is the open file `path`.
     fn of_open(input: File, path: &Path) -> Result<Self, ReadError> {
         let (path, mut bytes) = (path.to_owned(), Vec::new());
         match input.take(MAX_FILE_BYTES as u64 + 1).read_to_end(&mut bytes) {
@@ -57,7 +57,7 @@ impl FrameFile {
         &self.bytes
     }
 
-    /// Its frame, as [`read`] takes it, and how a picture was fitted.
+    /// Its frame, like [`read`], and how a picture was fitted.
     ///
     /// # Errors
     /// [`ReadError`] when it holds no frame as `how` describes it.
@@ -66,7 +66,7 @@ impl FrameFile {
         super::decode_fitted(&self.bytes, how).map_err(|source| self.wrong(source))
     }
 
-    /// Its picture, as [`read_rgb`] takes it.
+    /// Its picture, like [`read_rgb`].
     ///
     /// # Errors
     /// [`ReadError`] when it holds no such picture.
@@ -79,10 +79,10 @@ impl FrameFile {
     }
 }
 
-/// The frame in `input`, which is the file `path` from its beginning.
+/// The frame in `input`, which is the open file `path`, at its beginning.
 ///
 /// # Errors
-/// As those of [`read`].
+/// Those of [`read`].
 pub(super) fn read_open(input: File, path: &Path, how: &ReadOptions) -> Result<Decoded, ReadError> {
     FrameFile::of_open(input, path)?.decode(how)
 }
@@ -95,8 +95,8 @@ pub fn read_rgb(path: &Path) -> Result<RgbImage, ReadError> {
     FrameFile::read(path)?.decode_rgb()
 }
 
-/// The picture in the file `path`, in red, green and blue of 8 bits: a PNG as [`read_rgb`] takes it, or a photograph, turned as its
-/// EXIF says.
+/// The picture in the file `path`, in red, green and blue of 8 bits: a PNG that [`read_rgb`] reads, or a photograph, turned by
+/// its EXIF orientation.
 ///
 /// # Errors
 /// [`ReadError`] when the file cannot be read or holds no such picture.
@@ -117,18 +117,18 @@ pub fn read_shown(path: &Path) -> Result<RgbImage, ReadError> {
 }
 
 /// Writes `frame` to the file `path`, in the format that its extension names: `.pgm`, `.png`, `.tif` or `.tiff`, `.dng`, or
-/// `.raw` (16 bits, low byte first). Whatever goes wrong, the file is whole or as it was.
+/// `.raw` (16 bits, low byte first). Whatever goes wrong, the file is whole or as before.
 ///
 /// # Errors
-/// [`WriteError`] when the extension is another, the file exists and `overwrite` is false, or it cannot be written.
+/// [`WriteError`] when the extension is none of these, the file exists and `overwrite` is false, or it cannot be written.
 pub fn write(path: &Path, frame: &Frame, overwrite: bool) -> Result<(), WriteError> {
     write_oriented(path, frame, Orientation::default(), overwrite)
 }
 
-/// [`write()`] of a frame that is shown turned by `orientation`, which a DNG and a TIFF tell.
+/// Like [`write()`], for a frame that is shown turned by `orientation`, which a DNG and a TIFF record.
 ///
 /// # Errors
-/// As those of [`write()`].
+/// Those of [`write()`].
 pub fn write_oriented(
     path: &Path,
     frame: &Frame,
@@ -141,12 +141,12 @@ pub fn write_oriented(
     Ok(write_aside(path, overwrite, |out| out.write_all(&bytes))?)
 }
 
-/// Writes a frame of `shape` to the file `path`, as [`write()`] does, with what `next_row` makes of each row. Only a row is held
-/// where the format has its rows one after the other.
+/// Writes a frame of `shape` to the file `path`, as [`write()`] does. `next_row` fills each row in turn. If the format stores
+/// plain rows one after the other, only one row is held in memory.
 ///
 /// # Errors
-/// [`WriteError`], as `E`, where [`write()`] has it, or where the rows are no frame: `shape` has none, or an odd width, or a sample is
-/// beyond its depth; and whatever `next_row` answers. Nothing is written then.
+/// [`WriteError`], as `E`: those of [`write()`], and when the rows are not a frame: `shape` has no rows or an odd width, or a
+/// sample exceeds its depth. Also the errors of `next_row`. Nothing is written then.
 pub fn write_rows<E: From<WriteError>>(
     path: &Path,
     shape: &FrameShape,
@@ -200,8 +200,8 @@ fn write_plain_rows<E: From<WriteError>>(
     }
 }
 
-/// What is on its way into a file, in blocks that begin at multiples of their length: the system keeps such a block in few
-/// large pages, and any other in many small ones.
+/// Output to a file in blocks that begin at multiples of their length: the system keeps such a block in a few large pages, and
+/// any other in many small ones.
 struct Blocks<'a> {
     out: &'a mut dyn Write,
     bytes: Vec<u8>,
@@ -239,7 +239,7 @@ pub fn check_png(path: &Path) -> Result<(), WriteError> {
     }
 }
 
-/// Writes `image` to the PNG file `path`, which is whole or as it was, whatever goes wrong.
+/// Writes `image` to the PNG file `path`, which is whole or as before, whatever goes wrong.
 ///
 /// # Errors
 /// [`WriteError`] when the extension is not `.png`, the file exists and `overwrite` is false, or it cannot be written.
@@ -255,7 +255,7 @@ pub fn write_rgb(path: &Path, image: &RgbImage, overwrite: bool) -> Result<(), W
 mod tests {
     use super::*;
 
-    /// Keeps what comes, write by write.
+    /// Keeps each write separately.
     #[derive(Default)]
     struct Writes(Vec<Vec<u8>>);
 

@@ -1,4 +1,4 @@
-//! Pictures brought to the size of a frame: cropped about their centre to its shape, then scaled.
+//! Bringing pictures to the size of a frame: cropped about their centre to its shape, then scaled.
 
 use std::fmt;
 
@@ -8,20 +8,20 @@ use image::{ImageBuffer, Pixel, Rgb};
 use super::DecodeError;
 use super::size::MAX_SIDE;
 
-/// What becomes of a picture in colour, by its size. Raw samples are never scaled.
+/// How the size of a picture in colour is treated. Raw samples are never scaled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PictureSize {
     /// It is taken as it is.
     #[default]
     Any,
-    /// It must have so many columns and rows.
+    /// It must have these numbers of columns and rows.
     Exactly(usize, usize),
-    /// It is cropped and scaled to so many columns and rows, at most [`MAX_SIDE`] each.
+    /// It is cropped and scaled to these numbers of columns and rows, at most [`MAX_SIDE`] each.
     Fitted(usize, usize),
 }
 
 impl PictureSize {
-    /// How a picture of `(width, height)` is fitted; none when it is taken as it is.
+    /// How a picture of `(width, height)` is fitted; none if it is taken as it is.
     ///
     /// # Errors
     /// [`DecodeError::OtherSize`] or [`DecodeError::FittedTooLarge`].
@@ -50,7 +50,8 @@ pub struct Fitting {
 }
 
 impl Fitting {
-    /// Of a picture of the size `found` to the size `wanted`: the largest part of its shape is kept. None without pixels.
+    /// From the size `found` to the size `wanted`: the largest part with the shape of `wanted` is kept. None if either has no
+    /// pixels.
     fn new(found: (usize, usize), wanted: (usize, usize)) -> Option<Self> {
         if [found.0, found.1, wanted.0, wanted.1].contains(&0) {
             return None;
@@ -64,13 +65,13 @@ impl Fitting {
         Some(Self { found, cropped, wanted })
     }
 
-    /// The same of the picture as it lies in its file, a quarter turned.
+    /// The same fitting for the picture as it is stored in its file, a quarter turned.
     pub(super) fn turned(self) -> Self {
         let swapped = |(width, height)| (height, width);
         Self { found: swapped(self.found), cropped: swapped(self.cropped), wanted: swapped(self.wanted) }
     }
 
-    /// `image` fitted. Values are scaled as they are coded.
+    /// `image`, fitted. Values are scaled as they are coded, not in linear light.
     pub(super) fn apply<Sample>(
         &self,
         image: &ImageBuffer<Rgb<Sample>, Vec<Sample>>,

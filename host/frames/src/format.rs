@@ -1,4 +1,4 @@
-//! The formats that frames are written in.
+//! The formats in which frames are written.
 
 use std::fmt;
 use std::io::{self, Cursor};
@@ -9,7 +9,7 @@ use halfrow_model::{BitDepth, Frame};
 
 use super::{EncodeError, FrameShape, Orientation, WriteError, dng, pgm, png, raw, tiff};
 
-/// A format that frames are written in.
+/// A format in which frames are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// A portable greymap, binary.
@@ -18,7 +18,7 @@ pub enum Format {
     Png,
     /// Grey samples.
     Tiff,
-    /// Raw samples that a raw developer opens.
+    /// Raw samples for raw developers.
     Dng,
     /// Words of 16 bits, the low byte first, without a header.
     Raw,
@@ -55,12 +55,12 @@ impl Format {
         named.ok_or_else(|| WriteError::Extension { path: path.to_owned() })
     }
 
-    /// Whether a file is a header and then one row after the other, so that it can be written row by row.
+    /// Whether a file is a header and then one row after the other, and so can be written row by row.
     pub(super) fn has_plain_rows(self) -> bool {
         matches!(self, Self::Pgm | Self::Raw)
     }
 
-    /// Writes what comes before the rows, when [`Self::has_plain_rows`].
+    /// Writes what comes before the rows; only for formats for which [`Self::has_plain_rows`] holds.
     pub(super) fn write_header(self, shape: &FrameShape, out: &mut dyn io::Write) -> io::Result<()> {
         match self {
             Self::Pgm => pgm::write_header(out, (shape.width, shape.height), shape.depth),
@@ -68,7 +68,7 @@ impl Format {
         }
     }
 
-    /// Appends the bytes of a row to `line`, when [`Self::has_plain_rows`].
+    /// Appends the bytes of a row to `line`; only for formats for which [`Self::has_plain_rows`] holds.
     pub(super) fn pack(self, row: &[u16], depth: BitDepth, line: &mut Vec<u8>) {
         match self {
             Self::Pgm => pgm::pack(row, depth, line),

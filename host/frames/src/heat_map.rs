@@ -1,8 +1,8 @@
-//! Amounts as a picture.
+//! Amounts shown as a picture.
 
 use super::preview::RgbImage;
 
-/// Dark to bright, evenly in lightness.
+/// From dark to bright, in even steps of lightness.
 const COLOURS: [[f64; 3]; 5] = [
     [23.0, 23.0, 32.0],
     [131.0, 38.0, 129.0],
@@ -16,21 +16,21 @@ const COLOURS: [[f64; 3]; 5] = [
 pub struct HeatMap {
     /// A pixel for each amount.
     pub image: RgbImage,
-    /// The amount that is brightest.
+    /// The amount that is shown brightest.
     pub most: f64,
 }
 
 impl HeatMap {
-    /// The picture of `rows`, all of them equally long, of amounts that are 0 or more.
+    /// The picture of `rows` of amounts. All rows are equally long, and all amounts at least 0.
     #[must_use]
     pub fn new(rows: &[Vec<f64>]) -> Self {
         Self::up_to(rows, rows.iter().flatten().copied().fold(0.0, f64::max))
     }
 
-    /// The picture of `rows` as [`Self::new`] has them, with `most` for the brightest, as for maps of one scale.
+    /// Like [`Self::new`], with `most` as the brightest amount, for maps that share a scale.
     #[must_use]
     pub fn up_to(rows: &[Vec<f64>], most: f64) -> Self {
-        // Where all amounts are 0 any scale will do.
+        // If all amounts are 0, any scale will do.
         let scale = if most > 0.0 { most } else { 1.0 };
         let data = rows.iter().flatten().flat_map(|&amount| colour(amount / scale)).collect();
         let width = rows.first().map_or(0, Vec::len);
@@ -38,7 +38,7 @@ impl HeatMap {
     }
 }
 
-/// The colour of a share of the largest error, 0 to 1.
+/// The colour of an amount, as a share of the largest: 0 to 1.
 fn colour(share: f64) -> [u8; 3] {
     let place = share.clamp(0.0, 1.0) * (COLOURS.len() - 1) as f64;
     let below = (place as usize).min(COLOURS.len() - 2);

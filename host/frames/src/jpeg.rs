@@ -1,5 +1,4 @@
-//! JPEG, with a first look at the file, which decides whether its decoder may see it: that one fills up what is missing or unknown
-//! to it.
+//! JPEG. The file is checked before the decoder sees it, because the decoder fills in what is missing or what it does not know.
 //!
 //! Markers and their names are those of ITU-T T.81, table B.1.
 
@@ -27,17 +26,17 @@ const SCAN: u8 = 0xda;
 const END: u8 = 0xd9;
 /// Start of frame of the progressive process.
 const PROGRESSIVE: u8 = 0xc2;
-/// The most pixels for which a coded byte stands: each block of 8 x 8 takes a bit.
+/// The most pixels that a coded byte can represent: each block of 8 x 8 takes at least a bit.
 const PIXELS_A_BYTE: u64 = 8 * 8 * 8;
-/// What stands in the place of the end of image: the decoder, which reads up to nine bytes ahead, comes to its end only if samples
-/// are missing.
+/// What replaces the end-of-image marker. The decoder reads up to nine bytes ahead, so it reaches the end of these bytes only if
+/// samples are missing.
 const BEYOND: [u8; 16] = [0; 16];
-/// How a JPEG is to be saved that is of another kind.
+/// How to save a JPEG of another kind.
 const REMEDY: &str = "save it as a baseline or progressive JPEG of 8 bits in RGB";
 
 /// A JPEG whose headers are read.
 pub(super) struct Jpeg<'a> {
-    /// As [`checked`] has it.
+    /// As [`checked`] returns them.
     bytes: Cow<'a, [u8]>,
     size: (u32, u32),
     is_grey: bool,
@@ -50,7 +49,7 @@ impl<'a> Jpeg<'a> {
     /// The JPEG in `bytes`.
     ///
     /// # Errors
-    /// [`DecodeError`] when it is damaged as far as its headers tell, or of a kind that is not taken.
+    /// [`DecodeError`] when its headers show that it is damaged, or of a kind that is not accepted.
     pub(super) fn new(bytes: &'a [u8]) -> Result<Self, DecodeError> {
         let bytes = checked(bytes)?;
         let decoder = with_headers(&bytes, ColorSpace::RGB);
@@ -62,7 +61,8 @@ impl<'a> Jpeg<'a> {
     }
 }
 
-/// Reads the headers of a JPEG that will be decoded to `colours`. Strange bytes between them are passed over, and in samples not.
+/// Reads the headers of a JPEG that will be decoded to `colours`. Unknown bytes are skipped between headers, but not among
+/// samples.
 fn with_headers(bytes: &[u8], colours: ColorSpace) -> Result<Decoder<'_>, DecodeErrors> {
     let options = DecoderOptions::default()
         .jpeg_set_out_colorspace(colours)
@@ -100,7 +100,7 @@ impl ImageDecoder for Jpeg<'_> {
     }
 }
 
-/// What the decoder found, as all photographs' have it.
+/// The decoder's error as an error of the `image` crate.
 fn found(error: DecodeErrors) -> ImageError {
     let format = ImageFormatHint::Exact(ImageFormat::Jpeg);
     match error {
@@ -115,11 +115,12 @@ fn found(error: DecodeErrors) -> ImageError {
     }
 }
 
-/// Refuses a JPEG that is not of 8 bits, grey or of three colours, coded by Huffman's baseline, extended or progressive process, or
-/// that breaks off. What follows its end is left out: cameras put more there. Of all but a progressive one, [`BEYOND`] follows.
+/// Refuses a JPEG that breaks off, or that is anything but 8 bits, grey or three colours, Huffman-coded by the baseline,
+/// extended or progressive process. Bytes after its end are dropped: cameras append data there. Unless it is progressive,
+/// [`BEYOND`] replaces its end.
 ///
 /// # Errors
-/// [`DecodeError`] that names what is not taken.
+/// [`DecodeError`] that names what is not accepted.
 fn checked(bytes: &[u8]) -> Result<Cow<'_, [u8]>, DecodeError> {
     let mut segments = Segments { bytes, place: 2 };
     let mut frame = None;
@@ -139,7 +140,7 @@ fn checked(bytes: &[u8]) -> Result<Cow<'_, [u8]>, DecodeError> {
     }
 }
 
-/// Refuses what a frame header of the kind `marker` tells that is not taken.
+/// Refuses a frame header, under `marker`, of a kind that is not accepted.
 fn check_frame(marker: u8, header: &[u8]) -> Result<(), DecodeError> {
     let &[bits, _, _, _, _, colours, ..] = header else {
         return Err(damaged("its frame header is too short"));
@@ -170,7 +171,7 @@ impl<'a> Iterator for Segments<'a> {
     type Item = (u8, &'a [u8]);
 
     fn next(&mut self) -> Option<Self::Item> {
-        // Fill bytes may stand before a marker, and some cameras leave others behind a segment.
+        // There may be fill bytes before a marker, and some cameras leave other bytes after a segment.
         let marker = loop {
             match self.bytes.get(self.place..)? {
                 [0xff, marker @ 1..=0xfe, ..] => break *marker,
@@ -193,7 +194,7 @@ impl<'a> Iterator for Segments<'a> {
 }
 
 impl Segments<'_> {
-    /// Goes to the next marker behind the coded samples of a scan, among which zeros and restarts follow 0xff.
+    /// Goes to the next marker after the coded samples of a scan. Among the samples, 0xff is followed by zero or a restart.
     fn skip_scan(&mut self) {
         let rest = self.bytes.get(self.place..).unwrap_or_default();
         let end =

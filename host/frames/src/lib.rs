@@ -1,7 +1,7 @@
-//! Frames: reading and writing them, making them, and looking at them.
+//! Frames: reading, writing, making and viewing them.
 //!
-//! A file's samples are taken as they are, never rescaled; only a picture in colour is brought to the size and depth asked for, as
-//! it is mosaicked. The files mostly say neither the Bayer phase nor the depth, so [`ReadOptions`] gives both.
+//! Raw samples in a file are taken as they are, never rescaled. Only a picture in colour is brought to the size and depth asked
+//! for when it is mosaicked. Most files state neither the Bayer phase nor the depth, so [`ReadOptions`] gives both.
 
 #![warn(missing_debug_implementations)]
 
@@ -59,9 +59,9 @@ pub struct ReadOptions {
     pub depth: BitDepth,
     /// The arrangement of the colours.
     pub phase: Phase,
-    /// The geometry of a file without a header. When it is given, no header is looked for.
+    /// The geometry of a file without a header. If given, no header is looked for.
     pub raw: Option<RawGeometry>,
-    /// What becomes of pictures in colour of another size.
+    /// How the size of pictures in colour is treated.
     pub size: PictureSize,
 }
 
@@ -70,28 +70,28 @@ pub struct ReadOptions {
 pub struct Decoded {
     /// The frame.
     pub frame: Frame,
-    /// How the picture that it was made of was brought to its size, if it was.
+    /// How the picture that it was made from was brought to its size, if it was.
     pub fitting: Option<Fitting>,
-    /// How raw samples are to be turned by who shows them. A picture in colour was turned.
+    /// How a viewer must turn raw samples. A picture in colour is already turned.
     pub orientation: Orientation,
 }
 
-/// Of raw samples, or of a picture that had the size.
+/// Of raw samples, or of a picture that already had its size.
 impl From<Frame> for Decoded {
     fn from(frame: Frame) -> Self {
         Self { frame, fitting: None, orientation: Orientation::default() }
     }
 }
 
-/// The frame in `bytes`: of the format that they begin with, or headerless when `how.raw` is given.
+/// The frame in `bytes`: in the format that they begin with, or without a header if `how.raw` is given.
 ///
 /// # Errors
-/// [`DecodeError`] when the bytes are no frame as `how` describes it.
+/// [`DecodeError`] when the bytes are not a frame as `how` describes it.
 pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
     decode_fitted(bytes, how).map(|decoded| decoded.frame)
 }
 
-/// [`decode`], and how a picture was fitted.
+/// Like [`decode`], with how a picture was fitted.
 fn decode_fitted(bytes: &[u8], how: &ReadOptions) -> Result<Decoded, DecodeError> {
     if let Some(geometry) = how.raw {
         raw::decode(bytes, geometry, how).map(Decoded::from)
@@ -108,7 +108,7 @@ fn decode_fitted(bytes: &[u8], how: &ReadOptions) -> Result<Decoded, DecodeError
     }
 }
 
-/// The refusal of `bytes` of no known format; those that people have get a remedy of their own.
+/// The error for `bytes` of no supported format. Common formats get a remedy of their own.
 fn unknown(bytes: &[u8]) -> DecodeError {
     const PICTURE: &str = "convert it to PNG or TIFF";
     const PHOTOGRAPH: &str = "convert it to JPEG or PNG";

@@ -7,23 +7,23 @@ use image::{DynamicImage, ImageBuffer};
 use super::preview::RgbImage;
 use super::{DecodeError, Decoded, Fitting, Orientation, ReadOptions, narrow};
 
-/// A decoded picture: `channels` interleaved samples a pixel, row after row.
+/// A decoded picture: `channels` interleaved samples per pixel, row after row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Picture {
     /// Pixels in a row.
     pub(super) width: usize,
-    /// 1 grey, 2 grey and alpha, 3 red, green and blue, 4 the same and alpha.
+    /// 1: grey; 2: grey and alpha; 3: red, green and blue; 4: red, green, blue and alpha.
     pub(super) channels: usize,
     /// The sample of full brightness: 255 or 65535.
     pub(super) full: u16,
     /// The samples.
     pub(super) samples: Vec<u16>,
-    /// How it is turned by who shows it.
+    /// How a viewer must turn it.
     pub(super) orientation: Orientation,
 }
 
 impl Picture {
-    /// A picture in colour as it is seen, by its orientation. Raw samples stay as they lie.
+    /// A picture in colour turned upright, by its orientation. Raw samples stay as they are.
     pub(super) fn turned(self) -> Self {
         let Self { width, channels, orientation, .. } = self;
         if channels < 3 || orientation == Orientation::default() {
@@ -47,11 +47,11 @@ impl Picture {
         Self { width, channels, full, samples, orientation: Orientation::default() }
     }
 
-    /// The frame that the picture stands for. Grey is a raw Bayer frame and taken as it is. Of colour, which may be fitted, each
-    /// sample keeps the colour of its place, scaled to the depth by [`scaled`], without gamma. Alpha is ignored.
+    /// The frame that the picture represents. Grey is taken as a raw Bayer frame. A picture in colour may be fitted; each sample
+    /// keeps the colour of its place, scaled to the depth by [`scaled`], without gamma. Alpha is ignored.
     ///
     /// # Errors
-    /// [`DecodeError`] when the samples are no frame of `how.depth`, or colour is not of the size that `how` asks for.
+    /// [`DecodeError`] when the samples are not a frame of `how.depth`, or colour does not have the size that `how` asks for.
     pub(super) fn into_frame(self, how: &ReadOptions) -> Result<Decoded, DecodeError> {
         let Self { width, channels, full, samples, orientation } = self;
         if channels < 3 {
@@ -72,7 +72,7 @@ impl Picture {
         Ok(Decoded { fitting, ..frame.into() })
     }
 
-    /// Red, green and blue as they are; none when the picture is grey or has more than 8 bits.
+    /// Red, green and blue, unchanged; none if the picture is grey or has more than 8 bits.
     pub(super) fn into_rgb(self) -> Option<RgbImage> {
         let Self { width, channels, full, samples, .. } = self;
         if channels < 3 || full > u8::MAX.into() {
@@ -85,7 +85,7 @@ impl Picture {
     }
 }
 
-/// The raw frame of 8 bits that is left of `image` under a filter array of `phase`.
+/// The raw frame of 8 bits that a filter array of `phase` leaves of `image`.
 ///
 /// # Errors
 /// [`FrameError`] when the width is odd or there are no pixels.
@@ -93,17 +93,17 @@ pub fn mosaic(image: &RgbImage, phase: Phase) -> Result<Frame, FrameError> {
     of_rgb(image, &ReadOptions { depth: BitDepth::Eight, phase, ..ReadOptions::default() })
 }
 
-/// The frame of `how.depth` that is left of `image` under a filter array of `how.phase`.
+/// The frame of `how.depth` that a filter array of `how.phase` leaves of `image`.
 ///
 /// # Errors
-/// As [`mosaic`].
+/// Like [`mosaic`].
 pub(super) fn of_rgb(image: &RgbImage, how: &ReadOptions) -> Result<Frame, FrameError> {
     let mosaic = mosaicked(&image.data, 3, image.width.max(1), how.phase);
     let samples = mosaic.map(|sample| scaled(sample, u8::MAX.into(), how.depth)).collect();
     Frame::new(image.width, how.depth, how.phase, samples)
 }
 
-/// The colours of a picture of `size` and of samples up to `full`, fitted: its new width, channels and samples.
+/// The colours of a picture of `size`, with samples up to `full`, fitted: the new width, channels and samples.
 fn fitted(
     fitting: &Fitting,
     size: (usize, usize),
@@ -115,12 +115,12 @@ fn fitted(
     let colours = samples.chunks_exact(channels).flat_map(|pixel| &pixel[..3]).copied().collect();
     let image = ImageBuffer::from_raw(side(size.0), side(size.1), colours).unwrap_or_default();
     let fitted = fitting.apply(&image);
-    // Catmull-Rom overshoots at edges, and keeps within what a `u16` holds alone.
+    // Catmull-Rom overshoots at edges, limited only to the range of `u16`.
     let within = |sample: u16| sample.min(full);
     (fitted.width() as usize, 3, fitted.into_raw().into_iter().map(within).collect())
 }
 
-/// The sample of each place's own colour, from three or more channels a pixel.
+/// The sample of each place's own colour, from three or more channels per pixel.
 fn mosaicked<Sample: Copy + Into<u16>>(
     samples: &[Sample],
     channels: usize,
@@ -133,10 +133,10 @@ fn mosaicked<Sample: Copy + Into<u16>>(
         .map(move |(place, pixel)| pixel[channel(phase, place / width, place % width)].into())
 }
 
-/// Where green stands in a pixel.
+/// The index of green in a pixel.
 pub(super) const GREEN: usize = 1;
 
-/// Where the colour of a place stands in a pixel of red, green and blue.
+/// The index of a place's colour in a pixel of red, green and blue.
 pub(super) fn channel(phase: Phase, row: usize, column: usize) -> usize {
     match phase.colour(row, column) {
         Colour::Red => 0,

@@ -1,10 +1,10 @@
-//! A word on frames whose samples fill little of their depth, which is seldom meant.
+//! A warning about frames whose samples use little of their depth, which is rarely intended.
 
 use std::sync::Once;
 
 use halfrow_model::BitDepth;
 
-/// Says once that raw samples of a file whose largest is `full` are dark in frames of `depth`, if they are.
+/// Warns, once per process, if raw samples from a file whose largest sample is `full` are dark in frames of `depth`.
 pub(super) fn note(full: u16, depth: BitDepth) {
     static SAID: Once = Once::new();
     let max = depth.max();

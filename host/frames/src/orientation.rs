@@ -1,8 +1,8 @@
-//! How a camera was held.
+//! How the camera was held.
 
 use image::metadata;
 
-/// How a picture is turned and mirrored to be seen upright, by the tag Orientation of TIFF and EXIF.
+/// How a picture must be turned and mirrored to be upright, by the tag Orientation of TIFF and EXIF.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Orientation(metadata::Orientation);
 
@@ -10,13 +10,13 @@ impl Orientation {
     /// The tag's number.
     pub(super) const TAG: u16 = 274;
 
-    /// What the tag says; upright where it says nothing that there is.
+    /// The orientation of this value of the tag; upright if the value has no meaning.
     pub(super) fn of_tag(value: u32) -> Self {
         let known = u8::try_from(value).ok().and_then(metadata::Orientation::from_exif);
         known.map_or_else(Self::default, Self)
     }
 
-    /// What the tag in the bytes of an EXIF block says; upright where there is none.
+    /// The orientation in the bytes of an EXIF block; upright if there is none.
     pub(super) fn of_exif(block: &[u8]) -> Self {
         metadata::Orientation::from_exif_chunk(block).map_or_else(Self::default, Self)
     }
@@ -26,12 +26,12 @@ impl Orientation {
         self.0.to_exif().into()
     }
 
-    /// The columns and rows that a picture is seen with, of those that it lies in its file with.
+    /// Columns and rows of a picture as it is shown, from those stored in its file.
     pub(super) fn seen(self, (width, height): (usize, usize)) -> (usize, usize) {
         if is_quarter_turn(self.0) { (height, width) } else { (width, height) }
     }
 
-    /// The same for pictures.
+    /// The same as the type of the `image` crate.
     pub(super) fn turn(self) -> metadata::Orientation {
         self.0
     }

@@ -1,20 +1,21 @@
-//! Work that all processors share. Where the system gives no more threads one does it alone: rayon by itself would panic.
+//! Work that all processors share. If the system grants no more threads, the calling one does it alone: rayon by itself would
+//! panic.
 
 use std::error::Error as _;
 use std::sync::LazyLock;
 
 use rayon::prelude::*;
 
-/// Whether there are threads that share the work; they are started if nobody has done that.
+/// Whether there are threads to share the work. Starts them if nobody has.
 fn is_shared() -> bool {
     static STARTED: LazyLock<bool> = LazyLock::new(|| {
-        // An error without a cause says that they are there.
+        // An error without a cause means that they are already started.
         rayon::ThreadPoolBuilder::new().build_global().err().is_none_or(|error| error.source().is_none())
     });
     *STARTED
 }
 
-/// What `make` makes of each of `items` and its number, in their order.
+/// What `make` returns for each of `items` and its number, in their order.
 pub fn map<Item: Sync, Made: Send>(items: &[Item], make: impl Fn(usize, &Item) -> Made + Sync) -> Vec<Made> {
     let make = |(number, item)| make(number, item);
     if is_shared() {
@@ -24,10 +25,10 @@ pub fn map<Item: Sync, Made: Send>(items: &[Item], make: impl Fn(usize, &Item) -
     }
 }
 
-/// Does `work` for every number below `count`, with what `begin` gives each thread. One that fails ends the rest.
+/// Does `work` for every number below `count`, with a state that `begin` makes for each thread. The first failure ends the rest.
 ///
 /// # Errors
-/// That of the one that failed.
+/// That of the work that failed.
 pub fn try_each<State, Failed: Send>(
     count: usize,
     begin: impl Fn() -> State + Sync + Send,
@@ -41,7 +42,7 @@ pub fn try_each<State, Failed: Send>(
     }
 }
 
-/// Fills `samples` row by row, each of `width` and told its number.
+/// Fills `samples` in rows of `width`. `fill` gets the number of the row and its samples.
 pub(crate) fn fill_rows(samples: &mut [u16], width: usize, fill: impl Fn(usize, &mut [u16]) + Sync) {
     let fill = |(row, samples): (usize, &mut [u16])| fill(row, samples);
     if is_shared() {

@@ -1,4 +1,4 @@
-//! Test patterns: frames that each try one thing in the datapath.
+//! Test patterns: frames that each test one thing in the datapath.
 
 use halfrow_model::{Colour, Frame, FrameError};
 use rand_core::Rng;
@@ -6,10 +6,10 @@ use rand_pcg::Pcg32;
 
 use super::scene::Scene;
 
-/// Columns from one impulse to the next: one more than the seven taps span, so that no output sees two.
+/// Columns from one impulse to the next: one more than the seven taps span, so that no output depends on two.
 const IMPULSE_SPACING: usize = 8;
 
-/// The streams of the generator, so that no two patterns share their numbers.
+/// The streams of the generator, so that no two patterns share random numbers.
 const NOISE_STREAM: u64 = 54;
 const EXTREMES_STREAM: u64 = 55;
 
@@ -54,7 +54,7 @@ pub(super) fn checkerboard(scene: &Scene) -> Result<Frame, FrameError> {
 }
 
 /// Single samples, bright in even rows and dark in odd ones, that move by three columns from one pair of rows to the
-/// next: in 16 rows they visit every column both ways.
+/// next: in 16 rows every column has had both.
 pub(super) fn impulses(scene: &Scene) -> Result<Frame, FrameError> {
     scene.frame(|row, column| {
         let hit = column % IMPULSE_SPACING == row / 2 * 3 % IMPULSE_SPACING;
@@ -69,9 +69,8 @@ pub(super) fn noise(scene: &Scene) -> Result<Frame, FrameError> {
     scene.frame(|_, _| u16::try_from(random.next_u32() >> shift).unwrap_or(u16::MAX))
 }
 
-/// 0 and the largest sample only, eight rows over and over: one colour at rest at an extreme while the other alternates,
-/// which drives a Hermite sum beyond either end of the range; pairs of one colour, which does it to a cubic sum; and
-/// random rows.
+/// 0 and the largest sample only, in eight kinds of rows that repeat: one colour at an extreme while the other alternates, which
+/// drives a Hermite sum beyond either end of the range; pairs of one colour, which do the same to a cubic sum; and random rows.
 pub(super) fn extremes(scene: &Scene) -> Result<Frame, FrameError> {
     let mut random = Pcg32::new(scene.seed, EXTREMES_STREAM);
     scene.frame(|row, column| {
@@ -90,7 +89,7 @@ pub(super) fn extremes(scene: &Scene) -> Result<Frame, FrameError> {
     })
 }
 
-/// Rings round the optical centre's column in the frame's middle row, ever closer: half a frame to its side they reach a quarter
+/// Rings around the optical centre's column in the frame's middle row, ever finer: half a frame to the side they reach a quarter
 /// of a cycle per column, the finest that one colour can show.
 pub(super) fn zone_plate(scene: &Scene) -> Result<Frame, FrameError> {
     let (width, height) = (scene.geometry.width() as u64, scene.geometry.height() as u64);
@@ -105,7 +104,7 @@ pub(super) fn zone_plate(scene: &Scene) -> Result<Frame, FrameError> {
     })
 }
 
-/// cos(2π · turn / 2^32) to about 10 digits, from products and sums alone, so that it is the same on every machine.
+/// cos(2π · turn / 2^32) to about 10 digits, from basic arithmetic alone, so that it is the same on every machine.
 fn cosine(turn: u32) -> f64 {
     const QUARTER: u32 = 1 << 30;
     let angle = turn.min(turn.wrapping_neg());

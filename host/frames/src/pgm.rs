@@ -1,6 +1,6 @@
-//! PGM, the binary kind (P5): samples exactly as they are in the file.
+//! Binary PGM (P5): samples exactly as they are in the file.
 //!
-//! The maxval says only how many bytes a sample takes, one up to 255 and else two, the high one first. It never scales.
+//! The maxval says only how many bytes a sample takes: one up to 255, otherwise two, the high one first. It never scales.
 
 use std::io::{self, Write};
 
@@ -24,7 +24,7 @@ pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
 /// Where the samples are in the PGM that begins with `bytes`.
 ///
 /// # Errors
-/// [`DecodeError`] when the header is malformed, or goes on behind `bytes`.
+/// [`DecodeError`] when the header is malformed, or continues beyond `bytes`.
 pub(super) fn raster(bytes: &[u8]) -> Result<Raster, DecodeError> {
     let mut header = Header { bytes, offset: MAGIC.len() };
     if !bytes.starts_with(MAGIC) {
@@ -39,7 +39,7 @@ pub(super) fn raster(bytes: &[u8]) -> Result<Raster, DecodeError> {
 /// Writes `frame` as a PGM with the maxval 2^B − 1.
 ///
 /// # Errors
-/// Whatever `out` answers.
+/// Those of `out`.
 pub fn encode(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
     write_header(out, (frame.width(), frame.height()), frame.depth())?;
     let mut line = Vec::with_capacity(frame.width() * 2);
@@ -51,10 +51,10 @@ pub fn encode(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes all that comes before the rows of a PGM of `(width, height)`.
+/// Writes everything before the rows of a PGM of `(width, height)`.
 ///
 /// # Errors
-/// Whatever `out` answers.
+/// Those of `out`.
 pub(super) fn write_header(
     out: &mut (impl Write + ?Sized),
     (width, height): (usize, usize),
@@ -82,7 +82,7 @@ impl<'a> Header<'a> {
         self.bytes.get(self.offset..).unwrap_or_default()
     }
 
-    /// The next number, after white space and comments, of which there must be some.
+    /// The next number, after white space or comments, which must not be missing.
     fn number(&mut self, wanted: &'static str) -> Result<u32, DecodeError> {
         let missing = |offset| DecodeError::PgmHeader { wanted, offset };
         let before = self.offset;
@@ -105,7 +105,7 @@ impl<'a> Header<'a> {
         }
     }
 
-    /// Where the samples begin: after the one white space that ends the header.
+    /// Where the samples begin: after the one white-space byte that ends the header.
     fn end(&self) -> Result<usize, DecodeError> {
         match self.rest() {
             [blank, ..] if blank.is_ascii_whitespace() => Ok(self.offset + 1),

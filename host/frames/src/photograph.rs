@@ -1,8 +1,8 @@
-//! Photographs in the formats that cameras and phones have: JPEG, WebP and BMP.
+//! Photographs in the formats of cameras and phones: JPEG, WebP and BMP.
 //!
-//! They are pictures for eyes, of 8 bits a colour, and never raw samples. Each sample keeps the colour of its place and is scaled to
-//! the depth; grey is the same of all colours. Gamma and colour profiles are not applied, and alpha is ignored. The header says
-//! whether a picture is decoded at all, so that none takes more memory than [`MAX_PIXELS`] do.
+//! They are pictures for viewing, with 8 bits per colour, never raw samples. Each sample keeps the colour of its place and is
+//! scaled to the depth; in a grey picture all colours are equal. Gamma and colour profiles are not applied, and alpha is
+//! ignored. The header decides whether a picture is decoded at all, so that none takes more memory than [`MAX_PIXELS`] need.
 
 use std::fs::{self, File};
 use std::io::{Cursor, Read as _};
@@ -21,7 +21,7 @@ use super::{DecodeError, Decoded, Fitting, PictureSize, ReadOptions, mosaic};
 /// The most pixels that a photograph may have.
 pub(super) const MAX_PIXELS: u64 = 100_000_000;
 
-/// Bytes by which a format is known.
+/// The first bytes that show the format.
 const HEAD: u64 = 16;
 
 /// A format of photographs.
@@ -43,7 +43,7 @@ impl PhotographFormat {
         }
     }
 
-    /// What it is called.
+    /// Its name.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Jpeg => "JPEG",
@@ -52,7 +52,7 @@ impl PhotographFormat {
         }
     }
 
-    /// What decodes `bytes`, which has read their header.
+    /// A decoder of `bytes` that has read their header.
     fn decoder<'a>(self, bytes: &'a [u8]) -> Result<Box<dyn ImageDecoder + 'a>, DecodeError> {
         let input = Cursor::new(bytes);
         let refused = |error| self.refused(&error);
@@ -63,7 +63,7 @@ impl PhotographFormat {
         })
     }
 
-    /// Refuses a WebP that moves, or that is longer than `bytes` by its own word.
+    /// Refuses a WebP that is animated, or that by its header is longer than `bytes`.
     fn still<Input: std::io::BufRead + std::io::Seek>(
         self,
         bytes: &[u8],
@@ -83,7 +83,7 @@ impl PhotographFormat {
         Ok(decoder)
     }
 
-    /// What the decoder found.
+    /// The decoder's `error` as one of ours.
     pub(super) fn refused(self, error: &ImageError) -> DecodeError {
         match error {
             ImageError::Unsupported(_) => DecodeError::Unsupported {
@@ -97,13 +97,14 @@ impl PhotographFormat {
         }
     }
 
-    /// The refusal of a picture that its decoder cannot make anything of.
+    /// The error for a picture that its decoder cannot read.
     pub(super) fn damaged(self, reason: &str) -> DecodeError {
         DecodeError::Photograph { format: self.name(), reason: reason.to_owned() }
     }
 }
 
-/// Whether the file `path` is a photograph, whose colours are coded for the screen. A pipe, which cannot be read twice, is none.
+/// Whether the file `path` is a photograph, whose colours are coded for the screen. Always false for a pipe, which cannot be read
+/// twice.
 #[must_use]
 pub fn is_photograph(path: &Path) -> bool {
     let mut head = Vec::new();
@@ -125,7 +126,7 @@ pub(super) fn decode(
     Ok(Decoded { fitting, ..mosaic::of_rgb(&picture, how)?.into() })
 }
 
-/// The photograph in `bytes`, turned as its EXIF says, and how it was fitted.
+/// The photograph in `bytes`, turned by its EXIF orientation, and how it was fitted.
 ///
 /// # Errors
 /// [`DecodeError`] when it is damaged, of a kind that is not taken, larger than [`MAX_PIXELS`], or not of the `size` asked for.

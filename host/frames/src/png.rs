@@ -1,4 +1,4 @@
-//! PNG, 8 and 16 bits a sample. Gamma and colour profiles are not applied: the numbers in the file are the samples.
+//! PNG with 8 or 16 bits per sample. Gamma and colour profiles are not applied: the numbers in the file are the samples.
 
 use std::io::{Cursor, Write};
 use std::ops::RangeInclusive;
@@ -16,20 +16,20 @@ pub(super) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// The sides that a PNG can have, by its specification.
 const SIDES: RangeInclusive<u32> = 1..=(1 << 31) - 1;
 
-/// The frame in the bytes of a PNG: grey is a raw Bayer frame as it is; colour, palettes among it, is turned as its EXIF
-/// says, and mosaicked; alpha is ignored.
+/// The frame in the bytes of a PNG. Grey is taken as a raw Bayer frame. Colour, including palettes, is turned by its EXIF
+/// orientation and mosaicked. Alpha is ignored.
 ///
 /// # Errors
 /// [`DecodeError`] when the PNG is damaged, animated, followed by other bytes, or grey with fewer than 8 bits, or when a
-/// sample is above `how.depth`.
+/// sample exceeds `how.depth`.
 pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
     picture(bytes, how.size)?.into_frame(how).map(|decoded| decoded.frame)
 }
 
-/// The picture in the bytes of a PNG in red, green and blue of 8 bits, turned as its EXIF says; alpha is ignored.
+/// The picture in the bytes of a PNG in red, green and blue of 8 bits, turned by its EXIF orientation; alpha is ignored.
 ///
 /// # Errors
-/// [`DecodeError`] when [`decode`] would refuse the PNG, when it is none, or when it is grey or has 16 bits.
+/// [`DecodeError`] when [`decode`] would refuse the PNG, when it is not a PNG, or when it is grey or has 16 bits.
 pub(super) fn decode_rgb(bytes: &[u8]) -> Result<RgbImage, DecodeError> {
     if !bytes.starts_with(MAGIC) {
         let what = photograph::PhotographFormat::of(bytes)
@@ -42,10 +42,10 @@ pub(super) fn decode_rgb(bytes: &[u8]) -> Result<RgbImage, DecodeError> {
     })
 }
 
-/// Writes `frame` as grey samples, as they are: of 8 bits when that is its depth, else of 16.
+/// Writes `frame` as grey samples, unchanged: with 8 bits if that is its depth, else with 16.
 ///
 /// # Errors
-/// The encoder's, or whatever `out` answers.
+/// Those of the encoder and of `out`.
 pub fn encode(frame: &Frame, out: &mut impl Write) -> Result<(), EncodingError> {
     let samples = frame.samples();
     match frame.depth() {
@@ -68,7 +68,7 @@ pub fn encode(frame: &Frame, out: &mut impl Write) -> Result<(), EncodingError> 
 /// Writes a PNG of `(width, height)` from rows of bytes in the given colour type and depth.
 ///
 /// # Errors
-/// The encoder's, when `bytes` have another length or the sides are above [`SIDES`] among them, or whatever `out` answers.
+/// Those of the encoder, also when `bytes` has another length or a side is outside [`SIDES`], and those of `out`.
 pub(super) fn write(
     out: &mut impl Write,
     (width, height): (usize, usize),
@@ -87,10 +87,10 @@ pub(super) fn write(
     writer.finish()
 }
 
-/// The picture that `bytes` hold, with nothing behind it, unpacked only if it can be of the `size` asked for.
+/// The picture in `bytes`, with nothing after it. It is unpacked only if it can have the `size` asked for.
 ///
 /// # Errors
-/// Those of [`decode`] that are the PNG's.
+/// Those of [`decode`] that concern the PNG.
 pub(super) fn picture(bytes: &[u8], size: PictureSize) -> Result<Picture, DecodeError> {
     let mut input = Cursor::new(bytes);
     let picture = read(&mut input, size)?;
@@ -122,12 +122,12 @@ fn read(input: &mut Cursor<&[u8]>, size: PictureSize) -> Result<Picture, DecodeE
     let (channels, full, samples) = widened(&bytes, output.bit_depth, output.color_type.samples());
     drop(bytes);
     let width = usize::try_from(output.width).unwrap_or(usize::MAX);
-    // The block may stand behind the picture.
+    // The EXIF block may come after the picture.
     let orientation = reader.info().exif_metadata.as_deref().map(Orientation::of_exif).unwrap_or_default();
     Ok(Picture { width, channels, full, samples, orientation }.turned())
 }
 
-/// Channels, full brightness and samples of the `bytes` of a picture without its alpha, which stands behind grey or the colours.
+/// Channels, full brightness and samples from the `bytes` of a picture, without alpha, which follows the grey or the colours.
 fn widened(bytes: &[u8], depth: png::BitDepth, channels: usize) -> (usize, u16, Vec<u16>) {
     let kept = channels - usize::from(channels.is_multiple_of(2));
     let width = if depth == png::BitDepth::Sixteen { 2 } else { 1 };
@@ -139,7 +139,7 @@ fn widened(bytes: &[u8], depth: png::BitDepth, channels: usize) -> (usize, u16, 
     (kept, if width == 2 { u16::MAX } else { u8::MAX.into() }, samples)
 }
 
-/// Refuses a picture in colour that is not of the `size` asked for, however it is turned.
+/// Refuses a picture in colour that cannot have the `size` asked for, however it is turned.
 fn check_size(header: &Info<'_>, size: PictureSize) -> Result<(), DecodeError> {
     if matches!(header.color_type, ColorType::Grayscale | ColorType::GrayscaleAlpha) {
         return Ok(());
@@ -147,7 +147,7 @@ fn check_size(header: &Info<'_>, size: PictureSize) -> Result<(), DecodeError> {
     let (width, height) = size::checked(header.width.into(), header.height.into())?;
     let fitting = match &header.exif_metadata {
         Some(block) => size.fitting(Orientation::of_exif(block).seen((width, height))),
-        // It may still come behind the picture.
+        // An EXIF block may still come after the picture.
         None => size
             .fitting((width, height))
             .or_else(|refused| size.fitting((height, width)).map_err(|_| refused)),
@@ -155,7 +155,7 @@ fn check_size(header: &Info<'_>, size: PictureSize) -> Result<(), DecodeError> {
     fitting.map(drop)
 }
 
-/// Refuses what would be too large or would not keep its samples, from the header alone.
+/// Refuses, from the header alone, what is too large or would not keep its samples.
 fn check(header: &Info<'_>) -> Result<(), DecodeError> {
     size::checked(header.width.into(), header.height.into())?;
     let bits = header.bit_depth as u8;

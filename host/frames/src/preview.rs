@@ -1,4 +1,4 @@
-//! Looking at frames: a simple development of raw samples into a picture for the screen.
+//! Viewing frames: a simple development of raw samples into a picture for the screen.
 
 use std::io::Write;
 
@@ -9,7 +9,7 @@ use png::{BitDepth, ColorType, EncodingError};
 use crate::mosaic::{GREEN, channel};
 use crate::{DecodeError, Orientation, size};
 
-/// A picture of 8 bits in red, green and blue, coded for the screen. [`Self::new`] makes sure that its data fill it.
+/// A picture of 8 bits in red, green and blue, coded for the screen. [`Self::new`] checks the length of its data.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RgbImage {
     /// Pixels in a row.
@@ -21,7 +21,7 @@ pub struct RgbImage {
 }
 
 impl RgbImage {
-    /// The picture of `data`, which is all that it needs and no more.
+    /// The picture with the pixels `data`, which must have exactly its length.
     ///
     /// # Errors
     /// [`DecodeError::Empty`] without a pixel, [`DecodeError::TooLarge`] when a side is above [`crate::MAX_SIDE`], or
@@ -35,7 +35,7 @@ impl RgbImage {
         Ok(Self { width, height, data })
     }
 
-    /// The picture of raw samples as it is seen, by their orientation.
+    /// The picture of raw samples turned upright, by their orientation.
     #[must_use]
     pub fn turned(self, orientation: Orientation) -> Self {
         if orientation == Orientation::default() {
@@ -53,15 +53,15 @@ impl RgbImage {
     }
 }
 
-/// The frame as a picture: each missing colour is the mean of its neighbours of that colour (bilinear), and linear light
-/// is coded as sRGB. Neither black level nor white balance is touched.
+/// The frame as a picture: each missing colour is the mean of the neighbours of that colour (bilinear), and linear light
+/// is coded as sRGB. Neither black level nor white balance is applied.
 #[must_use]
 pub fn demosaic(frame: &Frame) -> RgbImage {
     thumbnail(frame, frame.width())
 }
 
-/// [`demosaic`] of samples that are coded for the screen already, as those of a photograph are: brought to 8 bits, rounded half
-/// up, and no more.
+/// Like [`demosaic`], for samples that are already coded for the screen, as those of a photograph are: they are only brought to
+/// 8 bits, rounded half up.
 #[must_use]
 pub fn demosaic_coded(frame: &Frame) -> RgbImage {
     let full = u32::from(frame.depth().max());
@@ -73,7 +73,7 @@ pub fn demosaic_coded(frame: &Frame) -> RgbImage {
     RgbImage { width: frame.width(), height: frame.height(), data }
 }
 
-/// [`demosaic`], at most `max_width` pixels wide: squares of pixels become their mean, taken in linear light.
+/// Like [`demosaic`], at most `max_width` pixels wide: each square of pixels becomes its mean, taken in linear light.
 #[must_use]
 pub fn thumbnail(frame: &Frame, max_width: usize) -> RgbImage {
     let side = frame.width().div_ceil(max_width.max(1));
@@ -98,7 +98,7 @@ pub fn thumbnail(frame: &Frame, max_width: usize) -> RgbImage {
 /// Writes `image` as a PNG.
 ///
 /// # Errors
-/// The encoder's, when its data has another length among them, or whatever `out` answers.
+/// Those of the encoder, also when the data has another length, and those of `out`.
 pub fn encode_png_rgb(image: &RgbImage, out: &mut impl Write) -> Result<(), EncodingError> {
     super::png::write(out, (image.width, image.height), (ColorType::Rgb, BitDepth::Eight), &image.data)
 }
@@ -106,7 +106,7 @@ pub fn encode_png_rgb(image: &RgbImage, out: &mut impl Write) -> Result<(), Enco
 /// Writes a PNG of `width` x `height` grey pixels of one byte.
 ///
 /// # Errors
-/// The encoder's, when `data` has another length among them, or whatever `out` answers.
+/// Those of the encoder, also when `data` has another length, and those of `out`.
 pub fn encode_png_grey(
     width: usize,
     height: usize,
@@ -132,12 +132,12 @@ fn pixels(frame: &Frame, row: usize) -> Vec<[u16; 3]> {
     pixels
 }
 
-/// [`pixel`] where all eight neighbours are there, which takes the most of a frame and so must be quick.
+/// [`pixel`] for places with all eight neighbours. They are most of a frame, so this must be fast.
 #[derive(Clone, Copy)]
 enum Site {
-    /// Green, with this channel beside it and that one above and below.
+    /// Green, with the channel `beside` on its left and right and the channel `above` above and below.
     Green { beside: usize, above: usize },
-    /// Red or blue, with this channel at the corners.
+    /// Red or blue, with the channel `corners` at the corners.
     Other { corners: usize },
 }
 
@@ -152,7 +152,7 @@ impl Site {
         }
     }
 
-    /// Of three samples each of the row above, of this one, and of the one below.
+    /// The pixel in the middle of three samples each of the row above, this row, and the row below.
     fn pixel(self, ((above, here), below): ((&[u16], &[u16]), &[u16])) -> [u16; 3] {
         let sample = |row: &[u16], column: usize| u64::from(row[column]);
         let beside = sample(here, 0) + sample(here, 2);
@@ -173,8 +173,8 @@ impl Site {
     }
 }
 
-/// Red, green and blue at `row` and `column`: the sample itself for its own colour, and for the others the mean of those
-/// of its eight neighbours that have the colour.
+/// Red, green and blue at `row` and `column`: the sample itself for its own colour, and for each other colour the mean of the
+/// neighbours, of eight, that have it.
 fn pixel(frame: &Frame, row: usize, column: usize) -> [u16; 3] {
     let mut means = [Mean::default(); 3];
     let first = column.saturating_sub(1);
@@ -207,7 +207,7 @@ impl Mean {
     }
 }
 
-/// The bytes of all samples on a screen.
+/// The screen byte of each sample value.
 struct Srgb(Vec<u8>);
 
 impl Srgb {

@@ -1,4 +1,4 @@
-//! Files in which a frame's rows follow one another uncompressed, so that they can be read row by row.
+//! Files in which a frame's rows follow one another uncompressed, and so can be read row by row.
 
 use halfrow_model::{BitDepth, Frame, FrameError};
 
@@ -14,10 +14,10 @@ pub(super) struct Raster {
     pub(super) lines: Lines,
 }
 
-/// How the samples of a row lie in bytes.
+/// How the samples of a row are laid out in bytes.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Lines {
-    /// One byte a sample up to a maxval of 255, and else two, the high one first.
+    /// One byte per sample up to a maxval of 255, otherwise two, the high one first.
     Pgm {
         maxval: u16,
     },
@@ -34,7 +34,7 @@ impl Raster {
         }
     }
 
-    /// Whether a file of `length` bytes ends with the last row.
+    /// Checks that a file of `length` bytes ends with the last row.
     ///
     /// # Errors
     /// [`DecodeError`] when it does not.
@@ -53,7 +53,7 @@ impl Raster {
     /// Unpacks the bytes of row `index` into `samples`.
     ///
     /// # Errors
-    /// [`DecodeError`] when a sample is above the header's maxval or `depth`.
+    /// [`DecodeError`] when a sample exceeds the header's maxval or `depth`.
     pub(super) fn unpack(
         &self,
         index: usize,
@@ -83,7 +83,7 @@ impl Raster {
         }
     }
 
-    /// The frame in all `bytes` of a file.
+    /// The frame in `bytes`, which are a whole file.
     ///
     /// # Errors
     /// [`DecodeError`] when the length is not exactly that of the rows, or a sample is too large.
@@ -111,9 +111,9 @@ fn unpack_pgm(line: &[u8], row: &mut [u16]) {
     }
 }
 
-/// The first sample above `max`, if one is, and its column.
+/// The column and value of the first sample above `max`, if there is one.
 fn above(row: &[u16], max: u16) -> Option<(usize, u16)> {
-    // No sample is above its bits joined, which are quickly found and almost always enough.
+    // No sample is greater than the OR of all, which is quick to compute and almost always decides.
     if row.iter().fold(0, |bits, &sample| bits | sample) <= max {
         return None;
     }

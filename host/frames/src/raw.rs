@@ -1,4 +1,4 @@
-//! Headerless samples: plain bytes and words, and the packings of MIPI CSI-2.
+//! Samples without a header: plain bytes and words, and the packings of MIPI CSI-2.
 //!
 //! RAW10 packs four samples into five bytes: their upper eight bits in order, then their lower two bits in the fifth
 //! byte, the first sample's in bits 1:0. RAW12 packs two samples into three bytes: their upper eight bits, then their
@@ -14,12 +14,12 @@ use super::error::PackingError;
 use super::raster::{Lines, Raster};
 use super::{DecodeError, ReadOptions, size};
 
-/// How headerless samples lie in bytes.
+/// How samples without a header are laid out in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RawLayout {
-    /// One byte a sample.
+    /// One byte per sample.
     U8,
-    /// Two bytes a sample, the low one first.
+    /// Two bytes per sample, the low one first.
     U16Le,
     /// MIPI RAW10: four samples in five bytes.
     Mipi10,
@@ -130,23 +130,23 @@ pub struct RawGeometry {
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// How the samples lie in bytes.
+    /// How the samples are laid out in bytes.
     pub layout: RawLayout,
 }
 
 /// The frame in headerless bytes. Rows follow one another without padding.
 ///
 /// # Errors
-/// [`DecodeError`] when the length is not exactly that of the geometry, when a row is no whole number of packing groups,
-/// or when a sample is above `how.depth`.
+/// [`DecodeError`] when the length is not exactly that of the geometry, when a row is not a whole number of packing groups,
+/// or when a sample exceeds `how.depth`.
 pub fn decode(bytes: &[u8], geometry: RawGeometry, how: &ReadOptions) -> Result<Frame, DecodeError> {
     raster(geometry)?.decode(bytes, how)
 }
 
-/// The rows of a headerless file.
+/// Where the rows of a headerless file are.
 ///
 /// # Errors
-/// [`DecodeError`] when a side is too long, or a row is no whole number of packing groups.
+/// [`DecodeError`] when a side is too long, or a row is not a whole number of packing groups.
 pub(super) fn raster(geometry: RawGeometry) -> Result<Raster, DecodeError> {
     let RawGeometry { width, height, layout } = geometry;
     let (width, height) = size::checked(width as u64, height as u64)?;
@@ -162,7 +162,7 @@ pub(super) fn pack(row: &[u16], line: &mut Vec<u8>) {
 /// Writes the samples of `frame` in [`RawLayout::U16Le`], without a header.
 ///
 /// # Errors
-/// Whatever `out` answers.
+/// Those of `out`.
 pub fn encode(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
     let mut line = Vec::with_capacity(frame.width() * 2);
     for row in frame.rows() {

@@ -1,4 +1,4 @@
-//! Frames row by row, so that a frame of any height takes the memory of a row wherever its format allows it.
+//! Frames row by row: where the format allows it, a frame of any height takes the memory of a few rows.
 
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
@@ -10,12 +10,12 @@ use halfrow_model::{BitDepth, Frame, FrameError, Phase};
 use super::raster::Raster;
 use super::{Decoded, Fitting, Orientation, ReadError, ReadOptions, file, narrow, pgm, raw};
 
-/// Bytes in which the header of a PGM is looked for. A file with a longer one is read whole.
+/// Bytes in which the header of a PGM is looked for. A file with a longer header is read whole.
 const HEAD: u64 = 4096;
-/// Bytes that are read at once.
+/// How many bytes are read at once.
 const BUFFER: usize = 1 << 17;
 
-/// What a frame is besides its samples.
+/// Everything about a frame but its samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FrameShape {
     /// Columns.
@@ -26,7 +26,7 @@ pub struct FrameShape {
     pub depth: BitDepth,
     /// The arrangement of the colours.
     pub phase: Phase,
-    /// How it is turned by who shows it, which a DNG and a TIFF tell.
+    /// How a viewer must turn it, which a DNG and a TIFF record.
     pub orientation: Orientation,
 }
 
@@ -71,16 +71,17 @@ struct Lines {
 }
 
 impl RowReader {
-    /// The rows of the frame in the file `path`. The bytes tell the format, not the name; without a header, `how.raw`
-    /// must. What cannot be read row by row is read whole.
+    /// The rows of the frame in the file `path`. Its bytes determine the format, not its name; for a file without a header,
+    /// `how.raw` does. What cannot be read row by row is read whole.
     ///
     /// # Errors
-    /// [`ReadError`] when the file cannot be read, or its header, its length, or all of it is not that of a frame.
+    /// [`ReadError`] when the file cannot be read, or when its header or its length is not that of a frame; if it is read
+    /// whole, also when its content is not.
     pub fn open(path: &Path, how: &ReadOptions) -> Result<Self, ReadError> {
         let failed = |source| ReadError::Io { path: path.to_owned(), source };
         let mut input = File::open(path).map_err(failed)?;
         let about = input.metadata().map_err(failed)?;
-        // A pipe cannot be read twice, so it is not looked into.
+        // A pipe cannot be read twice, so its header is not looked for.
         let raster = if about.is_file() { raster(&mut input, how).map_err(failed)? } else { None };
         let Some(raster) = raster else { return file::read_open(input, path, how).map(Self::from) };
         let length = usize::try_from(about.len()).unwrap_or(usize::MAX);
@@ -108,13 +109,13 @@ impl RowReader {
         self.height
     }
 
-    /// How the picture that the frame was made of was brought to its size, if it was.
+    /// How the picture that the frame was made from was brought to its size, if it was.
     #[must_use]
     pub fn fitting(&self) -> Option<Fitting> {
         self.fitting
     }
 
-    /// How raw samples are to be turned by who shows them.
+    /// How a viewer must turn raw samples.
     #[must_use]
     pub fn orientation(&self) -> Orientation {
         self.orientation
@@ -123,10 +124,10 @@ impl RowReader {
     /// Reads the next row into the first [`Self::width`] of `samples`, and returns whether there was one.
     ///
     /// # Panics
-    /// When there are fewer.
+    /// When `samples` has fewer.
     ///
     /// # Errors
-    /// [`ReadError`] when the file cannot be read, or a sample is above its depth or its header's maxval.
+    /// [`ReadError`] when the file cannot be read, or a sample exceeds its depth or its header's maxval.
     pub fn next_row(&mut self, samples: &mut [u16]) -> Result<bool, ReadError> {
         let (index, samples) = (self.next, &mut samples[..self.width]);
         if index == self.height {
@@ -142,7 +143,7 @@ impl RowReader {
 }
 
 impl Lines {
-    /// Unpacks row `index`, the next one.
+    /// Unpacks row `index`, which must be the next one.
     fn unpack(&mut self, index: usize, samples: &mut [u16]) -> Result<(), ReadError> {
         let length = self.raster.line_bytes();
         if self.taken == self.bytes.len() {
@@ -185,8 +186,8 @@ impl From<Arc<Frame>> for RowReader {
     }
 }
 
-/// Where the rows are, if `input` is of a format that has them uncompressed. What is wrong with its header is left to be
-/// said by who reads all of it.
+/// Where the rows are, if the format of `input` has them uncompressed. None also if the header is wrong: reading the whole file
+/// then reports that.
 fn raster(input: &mut File, how: &ReadOptions) -> std::io::Result<Option<Raster>> {
     let found = match how.raw {
         Some(geometry) => raw::raster(geometry),

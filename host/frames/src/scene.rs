@@ -1,10 +1,10 @@
-//! What a built-in frame is made for: its size and depth, its colours, and the lens it is seen through.
+//! What a built-in frame is made for: size and depth, colours, and the lens that it is seen through.
 
 use halfrow_model::{Equidistant, Frame, FrameError, Geometry, Phase};
 
 use super::parallel;
 
-/// The circumstances of a built-in frame. The default is the paper's: 1920 x 1080, 12 bits, GRBG, its lens.
+/// What a built-in frame is made for. The default is the paper's: 1920 x 1080, 12 bits, GRBG, and its lens.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Scene {
     /// Width, height, depth and the column of the optical centre.
@@ -15,15 +15,15 @@ pub struct Scene {
     pub phase: Phase,
     /// The lens; only the street is seen through it.
     pub lens: Equidistant,
-    /// What random samples start from: the same seed gives the same frame.
+    /// The seed of random samples: the same seed gives the same frame.
     pub seed: u64,
 }
 
 impl Scene {
-    /// The frame whose sample at each row and column is what `sample` answers, asked row by row.
+    /// The frame whose sample at each row and column is what `sample` returns, called row by row.
     ///
     /// # Errors
-    /// [`FrameError::TooBright`] when an answer is above the depth.
+    /// [`FrameError::TooBright`] when a sample exceeds the depth.
     pub(super) fn frame(&self, mut sample: impl FnMut(usize, usize) -> u16) -> Result<Frame, FrameError> {
         let (width, height) = (self.geometry.width(), self.geometry.height());
         let mut samples = Vec::with_capacity(width * height);
@@ -36,7 +36,7 @@ impl Scene {
     /// The frame whose rows `fill` fills, several at a time.
     ///
     /// # Errors
-    /// [`FrameError::TooBright`] when a sample is above the depth.
+    /// [`FrameError::TooBright`] when a sample exceeds the depth.
     pub(super) fn frame_of_rows(&self, fill: impl Fn(usize, &mut [u16]) + Sync) -> Result<Frame, FrameError> {
         let width = self.geometry.width();
         let mut samples = vec![0; width * self.geometry.height()];
@@ -54,7 +54,7 @@ impl Scene {
         f64::from(self.geometry.centre2()) / 2.0
     }
 
-    /// y of `row`: how far it lies below the optical centre, in rows.
+    /// y of `row`: its distance below the optical centre, in rows.
     pub(super) fn y(&self, row: usize) -> f64 {
         self.geometry.row_offset(row, self.centre_y)
     }

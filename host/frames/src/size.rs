@@ -1,17 +1,17 @@
-//! Limits that hold before anything is allocated.
+//! Limits that are checked before anything is allocated.
 
 use super::DecodeError;
 
-/// The longest side of a picture that is read at all. The datapath's own, smaller limits are the geometry's to check.
+/// The longest side of a picture that is read at all. The geometry checks the datapath's own, smaller limits.
 pub const MAX_SIDE: usize = 8192;
 
-/// The longest file that is read at all: [`MAX_SIDE`] squared, four channels of 16 bits, and room for a header.
+/// The longest file that is read at all, in bytes: [`MAX_SIDE`] squared, four channels of 16 bits, and room for a header.
 pub(crate) const MAX_FILE_BYTES: usize = MAX_SIDE * MAX_SIDE * 8 + (1 << 20);
 
-/// The most bytes that one compressed byte stands for: about 1,030 in deflate, 1,400 in LZW, 64 in PackBits.
+/// The most bytes that one compressed byte can expand to: about 1,030 in deflate, 1,400 in LZW, 64 in PackBits.
 const MAX_EXPANSION: usize = 2048;
 
-/// The width and height as the machine counts.
+/// The width and height as `usize`.
 ///
 /// # Errors
 /// [`DecodeError::TooLarge`] when a side is above [`MAX_SIDE`].
@@ -22,7 +22,7 @@ pub(super) fn checked(width: u64, height: u64) -> Result<(usize, usize), DecodeE
     }
 }
 
-/// Whether there are exactly the `expected` bytes of samples.
+/// Checks that there are exactly `expected` bytes of samples.
 ///
 /// # Errors
 /// [`DecodeError::Truncated`] when there are fewer, [`DecodeError::Trailing`] when there are more.
@@ -34,7 +34,7 @@ pub(super) fn exact(found: usize, expected: usize) -> Result<(), DecodeError> {
     }
 }
 
-/// Whether `compressed` bytes can stand for `expanded` bytes at all.
+/// Checks that `compressed` bytes can expand to `expanded` bytes at all.
 ///
 /// # Errors
 /// [`DecodeError::Truncated`] when no lossless coding read here packs that tightly.

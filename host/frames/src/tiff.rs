@@ -1,4 +1,4 @@
-//! TIFF, 8 and 16 bits a sample: one plain picture, in either byte order, or raw samples under a filter array (DNG).
+//! TIFF with 8 or 16 bits per sample: one plain picture, in either byte order, or raw samples under a filter array (DNG).
 
 use std::io::{Cursor, Seek, Write};
 
@@ -15,12 +15,12 @@ use super::{DecodeError, Orientation, ReadOptions, tiff_directory};
 /// The first bytes of a TIFF, of either byte order.
 pub(super) const MAGICS: [&[u8]; 2] = [b"II*\0", b"MM\0*"];
 
-/// The frame in the bytes of a TIFF or DNG: grey is a raw Bayer frame as it is; RGB is turned as its
-/// orientation says, and mosaicked; alpha is ignored.
+/// The frame in the bytes of a TIFF or DNG. Grey is taken as a raw Bayer frame. RGB is turned by its orientation and mosaicked.
+/// Alpha is ignored.
 ///
 /// # Errors
-/// [`DecodeError`] when the file is damaged, of a kind that is not taken (several pictures, palettes, planes, lossy or
-/// unusual codings), says that its phase or depth is another than `how` has, or when a sample is above `how.depth`.
+/// [`DecodeError`] when the file is damaged, is of a kind that is not accepted (several pictures, palettes, planes, lossy or
+/// unusual codings), names another phase or depth than `how`, or when a sample exceeds `how.depth`.
 pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
     picture(bytes, how)?.into_frame(how).map(|decoded| decoded.frame)
 }
@@ -28,7 +28,7 @@ pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
 /// The picture in the bytes of a TIFF or DNG.
 ///
 /// # Errors
-/// Those of [`decode`] that are the file's.
+/// Those of [`decode`] that concern the file.
 pub(super) fn picture(bytes: &[u8], how: &ReadOptions) -> Result<Picture, DecodeError> {
     let told = tiff_directory::check(bytes)?;
     if told.is_coloured {
@@ -44,11 +44,11 @@ pub(super) fn picture(bytes: &[u8], how: &ReadOptions) -> Result<Picture, Decode
     Ok(Picture { orientation: told.orientation, ..picture }.turned())
 }
 
-/// Writes `frame` as grey samples, as they are: of 8 bits when that is its depth, else of 16; uncompressed,
-/// and for who shows it turned by `orientation`.
+/// Writes `frame` as grey samples, unchanged and uncompressed: with 8 bits if that is its depth, else with 16; to be shown turned
+/// by `orientation`.
 ///
 /// # Errors
-/// The encoder's, or whatever `out` answers.
+/// Those of the encoder and of `out`.
 pub fn encode(
     frame: &Frame,
     orientation: Orientation,

@@ -1,22 +1,22 @@
-//! The numbers of a TIFF's directory, which are of either byte order and stand in the entry or elsewhere.
+//! The numbers of a TIFF's directory, which have either byte order and are in the entry or elsewhere.
 
 use super::DecodeError;
 
-/// The codes of the kinds of number.
+/// The codes of the types of numbers.
 const BYTE: u16 = 1;
 pub(super) const SHORT: u16 = 3;
 const LONG: u16 = 4;
 const RATIONAL: u16 = 5;
 const SIGNED_RATIONAL: u16 = 10;
 
-/// Numbers of either byte order at any place of a file.
+/// Numbers at any place in a file, in the file's byte order.
 pub(super) struct Bytes<'a> {
     bytes: &'a [u8],
     little: bool,
 }
 
 impl<'a> Bytes<'a> {
-    /// Of the file `bytes`, whose first two tell the order.
+    /// The numbers of the file `bytes`, whose first two bytes give the order.
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         Self { bytes, little: bytes.starts_with(b"II") }
     }
@@ -64,7 +64,8 @@ impl<'a> Bytes<'a> {
             .collect()
     }
 
-    /// The four bytes of the directory entry at `start`, the first uppermost; of any other value, a number that is no pattern.
+    /// The four bytes of the directory entry at `start`, the first one uppermost. For any other kind of value, a number that is not
+    /// a pattern.
     pub(super) fn four_bytes(&self, start: usize) -> Result<u32, DecodeError> {
         match (self.short(start.saturating_add(2))?, self.long(start.saturating_add(4))?) {
             (BYTE, 4) => self.array(start.saturating_add(8)).map(u32::from_be_bytes),

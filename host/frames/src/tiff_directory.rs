@@ -1,6 +1,6 @@
-//! A first look at a TIFF's directory, which decides whether its decoder may see the file.
+//! A check of a TIFF's directory, which decides whether the decoder may see the file.
 //!
-//! A header of a few bytes can promise more than memory holds, and in places the decoder computes with such numbers
+//! A header of a few bytes can announce more than fits into memory, and in places the decoder computes with such numbers
 //! unchecked. So the tags that set sizes and codings are read here first, and anything but a plain picture is refused.
 
 use halfrow_model::Phase;
@@ -18,22 +18,22 @@ const PLANAR: u16 = 284;
 const TILE_WIDTH: u16 = 322;
 const TILE_HEIGHT: u16 = 323;
 
-/// What brings raw samples into a form that is read here.
+/// How to bring raw samples into a form that is read here.
 const UNPACK: &str = "write its raw samples as a 16-bit TIFF, as `dcraw -D -4 -T` does";
 
-/// What a TIFF or DNG tells of the colour filter array that its samples lie under.
+/// What a TIFF or DNG says about the colour filter array of its samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct FilterArray {
     /// The arrangement of the colours.
     phase: Phase,
-    /// The sample of full brightness, if it is told.
+    /// The sample of full brightness, if the file says it.
     white: Option<u32>,
-    /// Where the entry stands that says so.
+    /// The offset of the directory entry that declares the filter array.
     entry: usize,
 }
 
 impl FilterArray {
-    /// Refuses samples of another phase or depth than `how` has.
+    /// Refuses samples whose phase or depth differs from that of `how`.
     ///
     /// # Errors
     /// [`DecodeError::OtherPhase`] or [`DecodeError::OtherDepth`].
@@ -50,7 +50,7 @@ impl FilterArray {
         }
     }
 
-    /// The file `bytes` with its samples declared grey, since the decoder knows no filter array.
+    /// The file `bytes` with its samples declared as grey, since the decoder does not support filter arrays.
     pub(super) fn as_grey(&self, bytes: &[u8]) -> Vec<u8> {
         let little = bytes.starts_with(b"II");
         let short = |value: u16| if little { value.to_le_bytes() } else { value.to_be_bytes() };
@@ -64,25 +64,25 @@ impl FilterArray {
     }
 }
 
-/// What a TIFF or DNG tells of its picture beside its codings.
+/// What a TIFF or DNG says about its picture, apart from its coding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Told {
-    /// Its columns and rows, as it lies in the file.
+    /// Its columns and rows, as stored in the file.
     pub(super) size: (usize, usize),
     /// Whether each pixel has red, green and blue.
     pub(super) is_coloured: bool,
-    /// The filter array that raw samples lie under.
+    /// The filter array of raw samples.
     pub(super) array: Option<FilterArray>,
-    /// How the picture is turned by who shows it.
+    /// How a viewer must turn the picture.
     pub(super) orientation: Orientation,
 }
 
 /// Refuses a TIFF that is not one plain picture: grey from black to white, raw under a colour filter array (DNG), or colour,
-/// with or without alpha, of 8 or 16 bits, uncompressed or packed by LZW, deflate or PackBits. Returns what else is
-/// told.
+/// with or without alpha; with 8 or 16 bits; uncompressed, or packed by LZW, deflate or PackBits. Returns what else the
+/// directory says.
 ///
 /// # Errors
-/// [`DecodeError`] that names what is not taken, or the byte where the directory breaks off.
+/// [`DecodeError`] that names what is not accepted, or the byte where the directory breaks off.
 pub(super) fn check(bytes: &[u8]) -> Result<Told, DecodeError> {
     let tags = Tags::read(bytes)?;
     let one = |tag, otherwise| tags.value(tag).unwrap_or(otherwise);
@@ -117,7 +117,7 @@ fn no_bayer_pattern() -> DecodeError {
     DecodeError::Unsupported { what, remedy: "use a sensor of Bayer's pattern" }
 }
 
-/// Refuses samples that are not packed by a coding that is read here.
+/// Refuses samples in a coding that is not read here.
 fn check_coding(compression: u32) -> Result<(), DecodeError> {
     let (what, remedy) = match compression {
         1 | 5 | 8 | 32773 | 32946 => return Ok(()),
@@ -131,7 +131,7 @@ fn check_coding(compression: u32) -> Result<(), DecodeError> {
     Err(DecodeError::Unsupported { what, remedy })
 }
 
-/// A tag of the first directory that holds a number, or four bytes as one, and where its entry stands.
+/// A tag of the first directory, its value as a number (or four bytes as one), and the offset of its entry.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Entry {
     tag: u16,
@@ -157,10 +157,10 @@ impl Tags {
             let tag = file.short(start)?;
             let value = match tag {
                 dng::PATTERN | dng::VERSION => file.four_bytes(start)?,
-                // Of a table only its presence matters; the others are not looked at unless the samples are raw.
+                // Of a table only its presence matters; the others are read only if the samples are raw.
                 dng::LINEARISATION | dng::ACTIVE_AREA | dng::LAYOUT => 0,
                 tag if tag == dng::REPEAT.0 || Self::BLACKS.contains(&tag) => 0,
-                // No size hangs on it.
+                // No size depends on it, so a malformed value does no harm.
                 Orientation::TAG => file.value(start).unwrap_or(1),
                 tag if Self::wanted(tag) => file.value(start)?,
                 _ => continue,
@@ -188,10 +188,10 @@ impl Tags {
         self.entry(tag).map(|entry| entry.value)
     }
 
-    /// All that is black's: 0, or not there.
+    /// The tags of the black level: each must be 0 or missing.
     const BLACKS: [u16; 3] = [dng::BLACK, dng::BLACK_DELTAS[0], dng::BLACK_DELTAS[1]];
 
-    /// Refuses raw samples of `file`, `width` x `height`, that are not all of the picture, lie otherwise than in Bayer's pattern, or
+    /// Refuses raw samples of `file`, `width` x `height`, that are not the whole picture, are not in a plain Bayer pattern, or
     /// are not black at 0.
     fn check_raw(&self, file: &Bytes<'_>, width: usize, height: usize) -> Result<(), DecodeError> {
         let values = |tag| self.entry(tag).map(|entry| file.values(entry.start)).transpose();
@@ -228,7 +228,7 @@ impl Tags {
         Ok(())
     }
 
-    /// The filter array that the samples lie under, if they lie under any.
+    /// The filter array of the samples, if they have one.
     fn filter_array(&self) -> Result<Option<FilterArray>, DecodeError> {
         let refused = |what: &str, remedy| Err(DecodeError::Unsupported { what: what.to_owned(), remedy });
         let entry = match self.entry(PHOTOMETRIC) {

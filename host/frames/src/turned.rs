@@ -2,7 +2,7 @@
 
 use super::preview::RgbImage;
 
-/// `image` turned a quarter clockwise if it stands.
+/// `image`, turned a quarter clockwise if it is higher than wide.
 #[must_use]
 pub fn lying(image: RgbImage) -> RgbImage {
     if image.height > image.width { turned_clockwise(&image) } else { image }

@@ -1,4 +1,4 @@
-//! The right to make a file or folder of a name, which one run has at a time.
+//! The right to make a file or folder of a given name, which one run has at a time.
 
 use std::fs::{self, File, OpenOptions};
 use std::os::unix::fs::OpenOptionsExt as _;
@@ -12,12 +12,12 @@ use super::WriteAsideError;
 use super::lock::{self, Tried};
 use super::under_way::{self, Noted};
 
-/// A run that cleans has the lock for a moment.
+/// How long a run that cleans up may hold the lock.
 const MOMENT: Duration = Duration::from_millis(10);
-/// How many such moments are waited for.
+/// How often to wait for that long.
 const MOMENTS: u32 = 10;
 
-/// A name that is this run's to make until it is dropped.
+/// The right of this run to make a name, until this is dropped.
 #[derive(Debug)]
 pub struct Claim {
     /// Holds the lock.
@@ -49,7 +49,7 @@ impl Claim {
         Err(WriteAsideError::Claimed { path: target.to_owned() })
     }
 
-    /// Claims `target` as soon as nobody else does, for what takes no time.
+    /// Claims `target` as soon as no other run does. For work that takes next to no time.
     ///
     /// # Errors
     /// The system's reason.
@@ -57,7 +57,7 @@ impl Claim {
         let path = under_way::claim_on(target);
         loop {
             let file = open(&path, target)?;
-            // Where the file system has no locks there is none to wait for.
+            // If the file system has no locks, there is none to wait for.
             let _ = file.lock();
             if lock::is_named(&file, &path) {
                 return Ok(Self::of(file, path));
@@ -78,7 +78,7 @@ fn open(path: &Path, target: &Path) -> Result<File, WriteAsideError> {
 
 impl Drop for Claim {
     fn drop(&mut self) {
-        // The name goes before the lock, so that nobody takes over a file that is about to go.
+        // The name is removed before the lock is freed, so that nobody locks a file that is about to be removed.
         let _ = fs::remove_file(self.noted.path());
     }
 }

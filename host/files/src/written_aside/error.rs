@@ -1,4 +1,4 @@
-//! Why a file is not in its place.
+//! Why a file could not be put in its place.
 
 use std::io;
 use std::path::PathBuf;

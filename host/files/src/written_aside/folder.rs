@@ -11,13 +11,13 @@ use super::rights::Rights;
 use super::under_way::{self, Noted};
 use super::{folder_of, rename, settle, sync_folder};
 
-/// How often a place is looked at again that changes between two looks.
+/// How often a place is checked again if it changes between two checks.
 const LOOKS: usize = 100;
-/// The end of the name of what was in the place while it is out of the way, where folders cannot be swapped.
+/// The end of the name that what is replaced has while it is out of the way, on file systems where folders cannot be swapped.
 const EARLIER: &str = ".earlier";
 
-/// A folder with a name of ours beside the place that it is for. It goes, with all that is in it, if it is not put
-/// there.
+/// A folder with a name of our own, beside the place that it is for. It is removed, with everything in it, unless it is put in
+/// its place.
 #[derive(Debug)]
 pub struct AsideFolder {
     dir: TempDir,
@@ -30,7 +30,7 @@ pub struct AsideFolder {
 /// A folder that was not put in its place.
 #[derive(Debug)]
 pub enum Misplaced {
-    /// Something is there that may not be replaced: why, or nothing when nothing may.
+    /// Something is there that may not be replaced: the reason, or none if nothing may be replaced.
     Taken(Option<String>),
     /// The system's reason.
     Io(io::Error),
@@ -43,7 +43,7 @@ impl From<io::Error> for Misplaced {
 }
 
 impl AsideFolder {
-    /// A folder for `target`, with the rights of what is there, or of an ordinary one.
+    /// A folder for `target`, with the rights of what is there, or ordinary ones.
     ///
     /// # Errors
     /// The system's reason.
@@ -52,12 +52,12 @@ impl AsideFolder {
         Ok(Self { dir, target: target.to_owned(), _held: held, _noted: noted })
     }
 
-    /// Where it is.
+    /// Where it is now.
     pub fn path(&self) -> &Path {
         self.dir.path()
     }
 
-    /// Renames it into its place, which nothing may have.
+    /// Renames it into its place, which must be free.
     ///
     /// # Errors
     /// [`Misplaced`]
@@ -68,10 +68,10 @@ impl AsideFolder {
         Ok(())
     }
 
-    /// Renames it into its place. What is there goes, unless `foreign` says why it may not.
+    /// Renames it into its place. What is there is removed, unless `foreign` returns a reason why it may not be.
     ///
     /// # Errors
-    /// [`Misplaced`], with everything as it was.
+    /// [`Misplaced`], with everything as before.
     pub fn replace(self, foreign: impl Fn(&Path) -> Option<String>) -> Result<(), Misplaced> {
         sync_folder(self.path())?;
         for _ in 0..LOOKS {
@@ -107,7 +107,7 @@ impl AsideFolder {
         })
     }
 
-    /// Removes what was swapped out, unless somebody put something else there between the look and the swap.
+    /// Removes what was swapped out, unless somebody put something else there between the check and the swap.
     fn drop_earlier(self, foreign: impl Fn(&Path) -> Option<String>) -> Result<(), Misplaced> {
         if let Some(why) = foreign(self.path()) {
             rename::swap(self.path(), &self.target)?;
@@ -117,18 +117,18 @@ impl AsideFolder {
         Ok(())
     }
 
-    /// Swaps in three steps. What is moved out of the way comes back when ours is not taken.
+    /// Swaps in three steps. What was moved out of the way comes back if ours cannot take the place.
     fn exchange(&self) -> io::Result<()> {
         let earlier = self.move_away()?;
         if let Err(refused) = rename::to_new(self.path(), &self.target) {
-            // When even that fails it stays where it is, never to be removed.
+            // If even that fails, it stays under its other name and is never removed.
             rename::to_new(&earlier, &self.target)?;
             return Err(refused);
         }
         fs::remove_dir_all(&earlier)
     }
 
-    /// Renames what is in the place to NAME.earlier beside it, where it is found if this run is killed then.
+    /// Renames what is in the place to NAME.earlier beside it, where a user finds it if this run is killed then.
     fn move_away(&self) -> io::Result<PathBuf> {
         let name = under_way::shortened(self.target.file_name().unwrap_or_default());
         under_way::to_free_name(&self.target, &[name, OsStr::new(EARLIER)].into_iter().collect::<OsString>())
@@ -136,7 +136,7 @@ impl AsideFolder {
 
     fn done(self) {
         let Self { dir, target, .. } = self;
-        // It has another name by now, under which it stays.
+        // It has its final name by now, and must not be removed on drop.
         let _ = dir.keep();
         settle(&target);
     }
@@ -180,7 +180,7 @@ mod tests {
         let station = TempDir::new().unwrap();
         let target = station.path().join("today");
         aside(&target, "first").put_in_place().unwrap();
-        // The second look is at what the swap took away.
+        // The second check is of what was swapped out.
         let changed = |path: &Path| (path != target).then(|| "it is precious".to_owned());
         let kept = aside(&target, "second").replace(changed);
         assert!(matches!(kept, Err(Misplaced::Taken(Some(_)))), "{kept:?}");

@@ -1,5 +1,5 @@
-//! Who is still at work: a file or folder under way is locked by its owner, and the system frees the lock when that
-//! dies.
+//! Who is still at work: a file or folder under way is locked by the run that makes it, and the system frees the lock when that
+//! run dies.
 
 use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
 use std::io;
@@ -8,11 +8,11 @@ use std::path::Path;
 
 use nix::fcntl::OFlag;
 
-/// What came of trying a lock.
+/// The result of trying a lock.
 pub(super) enum Tried {
     /// It is ours until the file is dropped.
     Ours,
-    /// A program that runs has it.
+    /// A running program has it.
     Theirs,
     /// The file system has no locks.
     Unknown,
@@ -27,13 +27,13 @@ pub(super) fn try_lock(file: &File) -> Tried {
     }
 }
 
-/// Opens the file or folder `path` for its lock's sake. A link is not followed, and a FIFO not waited for.
+/// Opens the file or folder `path` in order to lock it. Does not follow a link, nor wait for a FIFO.
 pub(super) fn open(path: &Path) -> io::Result<File> {
     let flags = OFlag::O_NOFOLLOW | OFlag::O_NONBLOCK;
     OpenOptions::new().read(true).custom_flags(flags.bits()).open(path)
 }
 
-/// Whether `file` still goes by the name `path`, which whoever had the lock before may have removed.
+/// Whether `file` still has the name `path`; the previous holder of the lock may have removed it.
 pub(super) fn is_named(file: &File, path: &Path) -> bool {
     let same = |a: &Metadata, b: &Metadata| (a.dev(), a.ino()) == (b.dev(), b.ino());
     matches!((file.metadata(), fs::symlink_metadata(path)), (Ok(open), Ok(named)) if same(&open, &named))

@@ -1,4 +1,4 @@
-//! Looking at a place before anything is written to it.
+//! Checking a place before anything is written to it.
 
 use std::fs;
 use std::io;
@@ -7,10 +7,10 @@ use std::path::{Component, Path, PathBuf};
 
 use super::{WriteAsideError, folder_of, under_way};
 
-/// Whether a file may go to `path` as things are there. Its folder is [`check_folder`]'s.
+/// Checks that a file may be written to `path` as things stand. [`check_folder`] checks its folder.
 ///
 /// # Errors
-/// [`WriteAsideError`] when it is a link or no regular file, or is there and `overwrite` is false.
+/// [`WriteAsideError`] when it is a link or not a regular file, or exists and `overwrite` is false.
 pub fn check(path: &Path, overwrite: bool) -> Result<(), WriteAsideError> {
     let path = path.to_owned();
     let there = match fs::symlink_metadata(&path) {
@@ -30,13 +30,13 @@ pub fn check(path: &Path, overwrite: bool) -> Result<(), WriteAsideError> {
     }
 }
 
-/// Whether `folder` takes files, or, where it is not there and `may_be_made`, whether it could be made.
+/// Checks that files can be made in `folder`. If it does not exist and `may_be_made`, checks that it could be made.
 ///
 /// # Errors
 /// The system's reason.
 pub fn check_folder(folder: &Path, may_be_made: bool) -> io::Result<()> {
     match fs::metadata(folder) {
-        // Only the system knows of quotas, of read-only mounts, and of folders that have no files.
+        // Only trying it shows quotas, read-only mounts, and folders that cannot have files.
         Ok(_) => under_way::file(folder, None, None).map(drop),
         Err(error) if error.kind() == io::ErrorKind::NotFound && may_be_made && !is_link(folder) => {
             check_folder(folder_of(folder), true)
@@ -49,14 +49,14 @@ fn is_link(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|there| there.is_symlink())
 }
 
-/// Clears `folder` of what runs that were killed left in it. Of streams that are worth keeping, what there is goes by a
-/// name that nothing else has, which is returned.
+/// Clears `folder` of what killed runs left in it. Streams that are worth keeping get a name that is free; these names are
+/// returned.
 #[must_use]
 pub fn clear(folder: &Path) -> Vec<PathBuf> {
     under_way::clean(folder)
 }
 
-/// A place, however it is named: two paths that lead to the same file or folder, or would, are one.
+/// A place, however it is named: two paths that lead to the same file or folder, or would, are the same place.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Place(Identity);
 
@@ -64,9 +64,9 @@ pub struct Place(Identity);
 enum Identity {
     /// Device and inode of what is there.
     Taken(u64, u64),
-    /// Device and inode of the nearest folder that is there, and the path in it.
+    /// Device and inode of the nearest folder that exists, and the path in it.
     Free(u64, u64, PathBuf),
-    /// No folder is there.
+    /// No folder on the path exists.
     Nowhere(PathBuf),
 }
 
@@ -93,7 +93,7 @@ impl Place {
     }
 }
 
-/// `path` from the root on, without links and `..`; folders that are not there are taken as they would be made.
+/// `path` from the root on, without links and `..`; folders that do not exist count as if they were made.
 fn resolved(path: &Path) -> PathBuf {
     let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let mut resolved = PathBuf::new();

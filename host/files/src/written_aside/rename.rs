@@ -1,4 +1,4 @@
-//! Renames that move nothing out of the way, and the one that swaps.
+//! Renaming to a name that is free, and swapping two names.
 
 use std::io;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use nix::errno::Errno;
 use nix::fcntl::{RenameFlags, renameat2};
 
-/// Renames a file or folder to a name that nothing has.
+/// Renames a file or folder to a name that must be free.
 ///
 /// # Errors
 /// `AlreadyExists` when something has it, or the system's reason.
@@ -17,7 +17,8 @@ pub(super) fn to_new(from: &Path, to: &Path) -> io::Result<()> {
     }
 }
 
-/// [`to_new`] where the file system cannot. Claims keep other runs of this program away between the two calls, where there are any.
+/// [`to_new`] on a file system that cannot do it in one step. Where claims are held, they keep other runs of this program away
+/// between the two calls.
 fn to_new_by_looking(from: &Path, to: &Path) -> io::Result<()> {
     match std::fs::symlink_metadata(to) {
         Ok(_) => Err(io::ErrorKind::AlreadyExists.into()),
@@ -25,10 +26,10 @@ fn to_new_by_looking(from: &Path, to: &Path) -> io::Result<()> {
     }
 }
 
-/// Swaps two that are there. Whoever looks finds the one or the other.
+/// Swaps two existing names. At every moment each name has one of the two.
 ///
 /// # Errors
-/// `Unsupported` when the file system cannot, or the system's reason.
+/// `Unsupported` when the file system cannot do this, or the system's reason.
 pub(super) fn swap(one: &Path, other: &Path) -> io::Result<()> {
     match renameat2(None, one, None, other, RenameFlags::RENAME_EXCHANGE) {
         Err(Errno::EINVAL | Errno::ENOSYS) => Err(io::ErrorKind::Unsupported.into()),

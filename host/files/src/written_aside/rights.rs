@@ -1,11 +1,11 @@
-//! Owner, group and mode of what is replaced. What replaces it takes them on, so that whoever was shut out stays shut out.
+//! Owner, group and mode of what is replaced. What replaces it gets them too, so that whoever had no access still has none.
 
 use std::fs::{self, File, Permissions};
 use std::io;
 use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _, fchown};
 use std::path::Path;
 
-/// Who may do what with a file or folder.
+/// Owner, group and mode of a file or folder.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rights {
     owner: u32,
@@ -14,28 +14,28 @@ pub(super) struct Rights {
 }
 
 impl Rights {
-    /// Those of what is at `path`; none where nothing is.
+    /// Those of what is at `path`; none if nothing is there.
     pub(super) fn of(path: &Path) -> Option<Self> {
         let there = fs::symlink_metadata(path).ok()?;
-        // What is written into a folder is written by its owner.
+        // The owner must be able to write into the new folder.
         let needed = if there.is_dir() { 0o700 } else { 0 };
         Some(Self { owner: there.uid(), group: there.gid(), mode: there.mode() & 0o7777 | needed })
     }
 
-    /// The mode to make something with that is to have them: nobody may open it meanwhile who may not later.
+    /// The mode to create something with that will get these rights: nobody may open it before who may not open it later.
     pub(super) fn mode(self) -> u32 {
         self.mode & 0o777
     }
 
-    /// Gives them to what was `made`, as far as the system lets this user.
+    /// Gives these rights to what was `made`, as far as the system lets this user.
     ///
     /// # Errors
-    /// The system's, when it takes no mode.
+    /// The system's, when it refuses the mode.
     pub(super) fn give(self, made: &File) -> io::Result<()> {
         let Self { owner, group, mode } = self;
-        // Root alone gives things away.
+        // Only root may change the owner.
         let given = fchown(made, Some(owner), Some(group)).or_else(|_| fchown(made, None, Some(group)));
-        // Another group than the one that was meant may do what everybody may.
+        // If the group is not the intended one, it gets only the rights of others.
         let mode = if given.is_ok() { mode } else { mode & !0o2070 | (mode & 0o007) << 3 };
         made.set_permissions(Permissions::from_mode(mode))
     }

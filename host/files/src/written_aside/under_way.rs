@@ -1,11 +1,11 @@
-//! Files and folders that are under way, by names of ours, and those that killed runs left behind.
+//! Files and folders that are under way, under names of our own, and those that killed runs left behind.
 //!
 //! ```text
 //! .halfrow-XXXXXXXXXX.aside           a file or folder that is worth nothing until it is whole
-//! .halfrow-XXXXXXXXXX.NAME.partial    a stream for NAME that is worth keeping as far as it goes
-//! .halfrow-NAME.claim                 NAME is being made by somebody
+//! .halfrow-XXXXXXXXXX.NAME.partial    a stream for NAME that is worth keeping even if it is incomplete
+//! .halfrow-NAME.claim                 some run is making NAME
 //! ```
-//! Each is locked by the run that made it. A lock that can be taken means that its owner is gone.
+//! Each is locked by the run that made it. A lock that can be taken means that this run is gone.
 
 use std::collections::BTreeSet;
 use std::ffi::{OsStr, OsString};
@@ -26,11 +26,11 @@ const PREFIX: &str = ".halfrow-";
 const ASIDE: &str = ".aside";
 const PARTIAL: &str = ".partial";
 const CLAIM: &str = ".claim";
-/// Drawn characters of a name.
+/// How many characters of a name are drawn at random.
 const DRAWN: usize = 10;
-/// The longest name that one of ours is made of, in bytes, so that file systems take it.
+/// The most bytes of a name that go into one of ours, so that file systems accept it.
 const LONGEST: usize = 200;
-/// How often a name is drawn anew when another run took the fresh file for a dead one's.
+/// How often a name is drawn anew if another run mistook the new file for one of a dead run.
 const TRIES: usize = 100;
 
 static UNDER_WAY: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
@@ -39,12 +39,12 @@ fn under_way() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     UNDER_WAY.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Something of this run that [`abandon_all`] would remove. It is forgotten when this is dropped.
+/// Something of this run that [`abandon_all`] would remove, until this is dropped.
 #[derive(Debug)]
 pub(super) struct Noted(PathBuf);
 
 impl Noted {
-    /// Notes what was made before.
+    /// Notes something that is already made.
     pub(super) fn new(path: PathBuf) -> Self {
         under_way().insert(path.clone());
         Self(path)
@@ -61,7 +61,7 @@ impl Drop for Noted {
     }
 }
 
-/// Makes something, and notes it before a signal can come between.
+/// Makes something and notes it. [`abandon_all`] cannot come between the two.
 fn made<T>(make: impl FnOnce() -> io::Result<(T, PathBuf)>) -> io::Result<(T, Noted)> {
     let mut under_way = under_way();
     let (made, path) = make()?;
@@ -69,8 +69,8 @@ fn made<T>(make: impl FnOnce() -> io::Result<(T, PathBuf)>) -> io::Result<(T, No
     Ok((made, Noted(path)))
 }
 
-/// Removes all that is under way, for a program that must end at once, and lets nothing more be begun. Streams that are
-/// worth keeping stay for the next run to find. Says whether anything was under way.
+/// Removes everything that is under way, for a program that must end at once, and lets nothing new begin. Streams that are
+/// worth keeping stay for the next run to find. Returns whether anything was under way.
 pub fn abandon_all() -> bool {
     let under_way = under_way();
     let is_any = !under_way.is_empty();
@@ -81,7 +81,8 @@ pub fn abandon_all() -> bool {
     is_any
 }
 
-/// A locked file in `folder` that will be `kept_for`, if it is worth that; of an ordinary file's rights, or of those that are given.
+/// A locked file in `folder`, with the given rights or ordinary ones. If it is worth keeping, `kept_for` is the name that it is
+/// kept for.
 pub(super) fn file(
     folder: &Path,
     kept_for: Option<&OsStr>,
@@ -108,7 +109,7 @@ pub(super) fn file(
     Err(io::ErrorKind::ResourceBusy.into())
 }
 
-/// A locked folder in `parent`, with what holds its lock; of an ordinary folder's rights, or of those that are given.
+/// A locked folder in `parent`, with the given rights or ordinary ones, and the file that holds its lock.
 pub(super) fn folder(parent: &Path, rights: Option<Rights>) -> io::Result<(TempDir, File, Noted)> {
     for _ in 0..TRIES {
         let (folder, noted) = made(|| {
@@ -135,7 +136,7 @@ fn builder(suffix: &OsStr, mode: u32) -> tempfile::Builder<'static, '_> {
     builder
 }
 
-/// Takes the lock of what was just made. A run that cleans may have been faster, and have removed it.
+/// Takes the lock of what was just made. False if a run that cleans up was faster and removed it.
 fn is_ours(made: &File, path: &Path) -> bool {
     match lock::try_lock(made) {
         Tried::Theirs => false,
@@ -143,20 +144,20 @@ fn is_ours(made: &File, path: &Path) -> bool {
     }
 }
 
-/// The file that claims `target`.
+/// The path of the file that claims `target`.
 pub(super) fn claim_on(target: &Path) -> PathBuf {
     let name = shortened(target.file_name().unwrap_or_default());
     let parts = [OsStr::new(PREFIX), name, OsStr::new(CLAIM)];
     super::folder_of(target).join(parts.into_iter().collect::<OsString>())
 }
 
-/// The beginning of a name, to which something may be added.
+/// The beginning of a name, short enough to append to.
 pub(super) fn shortened(name: &OsStr) -> &OsStr {
     OsStr::from_bytes(&name.as_bytes()[..name.len().min(LONGEST)])
 }
 
-/// Clears `folder` of what runs that were killed left in it. Of streams that are worth keeping, what there is goes by a
-/// name that nothing else has, which is returned. What cannot be told or removed stays.
+/// Clears `folder` of what killed runs left in it. Streams that are worth keeping get a name that is free; these names are
+/// returned. What cannot be identified or removed stays.
 pub(super) fn clean(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries.filter(is_one_of_ours).filter_map(|entry| clear(&entry.path())).collect()
@@ -178,7 +179,7 @@ fn clear(path: &Path) -> Option<PathBuf> {
     }
 }
 
-/// Whether it has one of our names and may be what that says.
+/// Whether it has one of our names and is of the kind that the name says.
 fn is_one_of_ours(entry: &DirEntry) -> bool {
     let name = entry.file_name();
     let Some(rest) = name.as_bytes().strip_prefix(PREFIX.as_bytes()) else { return false };
@@ -197,13 +198,13 @@ fn is_worth_keeping(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == &PARTIAL[1..])
 }
 
-/// Gives a stream that ended early its name for good, NAME.partial, or with a number if that is taken.
+/// Gives a stream that ended early its final name, NAME.partial, with a number if that is taken.
 pub(super) fn kept(path: &Path) -> io::Result<PathBuf> {
     let name = path.file_name().unwrap_or_default().as_bytes();
     to_free_name(path, OsStr::from_bytes(name.get(PREFIX.len() + DRAWN + 1..).unwrap_or(name)))
 }
 
-/// Renames `path` to `name` beside it, or with a number if that is taken.
+/// Renames `path` to `name` in the same folder, with a number if that is taken.
 pub(super) fn to_free_name(path: &Path, name: &OsStr) -> io::Result<PathBuf> {
     for number in 1..1000 {
         let mut name = name.to_owned();

@@ -1,9 +1,9 @@
-//! How straight the houses stand: the measure of what the correction is for.
+//! How straight the houses stand, which measures what the correction is for.
 //!
-//! Every edge between two neighbouring façades is upright in the world, at one longitude θ. A fisheye bows it; corrected,
-//! it should run down one column. On the horizon both images have it in the column of θ, f · θ from the centre before an
-//! equidistant lens, and from there it is followed through the pixels, up and down. The scene only says where to begin and
-//! which rows show the edge, which is the same in both images, as the correction keeps the rows (Eq. 7).
+//! Every edge between two neighbouring façades is upright in the world, at one longitude θ. A fisheye lens bends it; corrected,
+//! it should run down one column. On the horizon both images have it in the column of θ, with an equidistant lens f · θ from the
+//! centre. From there it is followed through the pixels, up and down. The scene only says where to begin and which rows show
+//! the edge. Both are the same in the two images, as the correction keeps the rows (Eq. 7).
 
 use halfrow_model::Frame;
 use serde::{Deserialize, Serialize};
@@ -12,19 +12,19 @@ use super::facade::MARGIN;
 use super::sight::Sight;
 use super::town::{self, Edge, ROWS, Seen};
 
-/// Columns to either side of its expected place in which an edge is looked for.
+/// How many columns to either side of its expected place an edge is looked for.
 const REACH: usize = 6;
 
-/// The least step of samples that is an edge, as a share of the largest sample.
+/// The smallest step between samples that counts as an edge, as a share of the largest sample.
 const STEP: f64 = 1.0 / 32.0;
 
 /// The least number of rows in which an edge must be found to count.
 const LEAST_ROWS: usize = 32;
 
-/// How far upright edges are from straight columns.
+/// How far upright edges deviate from straight columns.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EdgeDeviation {
-    /// Edges that were measured.
+    /// How many edges were measured.
     pub edges: usize,
     /// The mean distance of an edge from its own mean column, over all rows of all edges, in pixels.
     pub mean_px: f64,
@@ -32,12 +32,12 @@ pub struct EdgeDeviation {
     pub max_px: f64,
 }
 
-/// An upright edge as it was found in a frame.
+/// An upright edge as found in a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundEdge {
     /// Its longitude in the world in radians, positive to the right.
     pub longitude: f64,
-    /// Rows, and the column at which each has the edge, to a fraction; from the horizon up, then from there down.
+    /// Rows, and the column of the edge in each, to a fraction; from the horizon up, then from there down.
     pub places: Vec<(usize, f64)>,
 }
 
@@ -55,9 +55,9 @@ impl FoundEdge {
     }
 }
 
-/// How far the edges of the street's houses are from straight columns in `frame`: the street rendered for `scene`, or
-/// what became of it. An edge counts that is found in most of the rows that show it. `None` when there is no such edge,
-/// as in another picture or one that is too small.
+/// How far the edges of the street's houses deviate from straight columns in `frame`, which is the street rendered for `scene`,
+/// corrected or not. An edge counts if it is found in most of the rows that show it. `None` if there is no such edge, as in
+/// another picture or one that is too small.
 #[must_use]
 pub fn edge_deviation<S: Sight>(frame: &Frame, scene: &S) -> Option<EdgeDeviation> {
     let edges = found_edges(frame, scene);
@@ -66,8 +66,8 @@ pub fn edge_deviation<S: Sight>(frame: &Frame, scene: &S) -> Option<EdgeDeviatio
     Some(EdgeDeviation { edges: edges.len(), mean_px: mean(&distances), max_px })
 }
 
-/// The edges of the street's houses that are found in most of the rows of `frame` that show them, from the left of the street
-/// to its right; `frame` is the street rendered for `scene`, or what became of it.
+/// The edges of the street's houses that are found in most of the rows of `frame` that show them, row of houses by row of houses.
+/// `frame` is the street rendered for `scene`, corrected or not.
 #[must_use]
 pub fn found_edges<S: Sight>(frame: &Frame, scene: &S) -> Vec<FoundEdge> {
     let found =
@@ -75,7 +75,7 @@ pub fn found_edges<S: Sight>(frame: &Frame, scene: &S) -> Vec<FoundEdge> {
     town::edges().filter_map(found).collect()
 }
 
-/// The rows of `frame` that have the edge, each with the column, if most of the rows that show it do.
+/// The rows of `frame` in which the edge is found, each with its column, if these are most of the rows that show it.
 fn places<S: Sight>(frame: &Frame, scene: &S, edge: &Edge) -> Option<Vec<(usize, f64)>> {
     let showing: Vec<usize> = (0..frame.height()).filter(|&row| shows(scene, edge, scene.y(row))).collect();
     let above = showing.partition_point(|&row| scene.y(row) < 0.0);
@@ -95,7 +95,7 @@ fn places<S: Sight>(frame: &Frame, scene: &S, edge: &Edge) -> Option<Vec<(usize,
     (found.len() >= LEAST_ROWS.max(showing.len() * 3 / 4)).then_some(found)
 }
 
-/// Whether the row at `y` shows the edge: plain wall of the one house on its left, of the other on its right.
+/// Whether the row at `y` shows the edge: plain wall of one house on its left and of the other on its right.
 fn shows<S: Sight>(scene: &S, edge: &Edge, y: f64) -> bool {
     let Some(x) = scene.imaged(edge.longitude, y) else { return false };
     let reach = REACH as f64 + 1.0;
@@ -104,7 +104,7 @@ fn shows<S: Sight>(scene: &S, edge: &Edge, y: f64) -> bool {
     left == near_left && right == near_right && left != right
 }
 
-/// The house, one of the two beside `edge`, whose plain wall is seen.
+/// Which of the two houses beside `edge` has the plain wall that is seen, if one has.
 fn wall_of(edge: &Edge, seen: Seen) -> Option<usize> {
     match seen {
         Seen::Facade { row, house, along, .. } if row == edge.row => {
@@ -128,20 +128,20 @@ impl Track {
     const ALPHA: f64 = 0.5;
     const BETA: f64 = 0.1;
 
-    /// Upright at its place on the horizon, if the lens images that.
+    /// Upright, at its place on the horizon, if the lens images that place.
     fn from_horizon<S: Sight>(scene: &S, edge: &Edge) -> Option<Self> {
         let column = scene.centre_x() + scene.on_horizon(edge.longitude)?;
         Some(Self { y: 0.0, column, slope: 0.0 })
     }
 
-    /// Moves on to the row at `y`, and says where the line should be there.
+    /// Moves on to the row at `y`, and returns where the line should be there.
     fn column_at(&mut self, y: f64) -> f64 {
         self.column += self.slope * (y - self.y);
         self.y = y;
         self.column
     }
 
-    /// Takes note that the line is at `column` on the present row.
+    /// Notes that the line is at `column` in the present row.
     fn update(&mut self, column: f64) {
         let residual = column - self.column;
         self.column += Self::ALPHA * residual;
@@ -171,7 +171,7 @@ mod tests {
     use super::*;
     use crate::scene::Scene;
 
-    /// A wall of 100 and one of 900: where they meet at 19.8, column 20, which begins at 19.5, has 0.3 of the first.
+    /// A wall of 100 and one of 900: if they meet at 19.8, column 20, which begins at 19.5, has 0.3 of the first.
     #[test]
     fn a_step_is_found_to_a_fraction_of_a_column() {
         let row: Vec<u16> = (0..40).map(|column| if column < 20 { 100 } else { 900 }).collect();

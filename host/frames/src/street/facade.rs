@@ -9,13 +9,13 @@ pub(super) const MARGIN: f64 = 0.8;
 const SHOP: f64 = 3.7;
 const STOREY: f64 = 3.0;
 const CORNICE: f64 = 0.45;
-/// The wished distance from window to window.
+/// The desired distance from window to window.
 const BAY: f64 = 2.3;
 
 const TRIM: Light = Light::new(0.80, 0.79, 0.76);
 const GLASS: Light = Light::new(0.045, 0.06, 0.075);
 const CURTAIN: Light = Light::new(0.42, 0.40, 0.36);
-/// What a pane mirrors of the sky, for each metre above its floor.
+/// How much of the sky a pane mirrors, per metre above its floor.
 const SKY_IN_GLASS: Light = Light::new(0.05, 0.07, 0.10);
 const LAMP: Light = Light::new(0.95, 0.75, 0.42);
 
@@ -45,7 +45,7 @@ pub(super) fn gable(side: Side, house: &House) -> Light {
     house.wall.mixed(Light::grey(0.3), 0.5).under(falling(side)).scaled(0.6)
 }
 
-/// The sun stands to the right behind the camera.
+/// The light that falls on a façade: the sun is behind the camera, to the right.
 fn falling(side: Side) -> Light {
     match side {
         Side::Left => Light::SUN,
@@ -54,7 +54,7 @@ fn falling(side: Side) -> Light {
     }
 }
 
-/// A cornice is bright on top and throws a shadow below.
+/// A cornice is bright on top and casts a shadow below.
 fn cornice(below_roof: f64) -> f64 {
     if below_roof < 0.3 { 1.05 } else { 0.55 }
 }

@@ -4,7 +4,7 @@ use super::ground::SHADOW;
 use super::light::Light;
 use super::town::CAMERA;
 
-/// Something upright that looks the same from all sides.
+/// Something upright that looks the same from every side.
 struct Figure {
     /// Where it stands.
     u: f64,
@@ -17,7 +17,7 @@ struct Figure {
 
 enum Kind {
     Post,
-    /// Somebody with a coat and trousers of these colours.
+    /// A person with a coat and trousers of these colours.
     Person(Light, Light),
 }
 
@@ -90,7 +90,7 @@ pub(super) fn shades(u: f64, w: f64) -> bool {
 }
 
 impl Figure {
-    /// Half of its width at `height` above the ground, where it has any.
+    /// Half of its width at `height` above the ground; none above its top and below the ground.
     fn width(&self, height: f64) -> Option<f64> {
         let share = height / self.height;
         if !(0.0..=1.0).contains(&share) {
@@ -109,7 +109,7 @@ impl Figure {
         })
     }
 
-    /// The light from it at `offset` from its axis and `height` above the ground, where it is that wide.
+    /// The light from it at `offset` from its axis and `height` above the ground, if it reaches that far.
     fn light(&self, offset: f64, height: f64) -> Option<Light> {
         let width = self.width(height).filter(|width| offset.abs() < *width)?;
         let (share, across) = (height / self.height, offset.abs());
@@ -128,7 +128,7 @@ impl Figure {
     }
 }
 
-/// A round surface, brighter on the side of the sun; `turn` goes from −1 to 1 across it.
+/// A round surface, brighter on the side towards the sun; `turn` goes from −1 to 1 across it.
 fn lit(colour: Light, turn: f64) -> Light {
     colour.under(Light::SHADE.mixed(Light::SUN, 0.55 + 0.45 * turn))
 }

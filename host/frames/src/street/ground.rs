@@ -40,7 +40,7 @@ fn pavement(u: f64, w: f64) -> Light {
     if joint(u) || joint(w) { SLAB.scaled(0.6) } else { SLAB.scaled(0.9 + 0.15 * speckle(u, w)) }
 }
 
-/// A broken line in the middle, an unbroken one on each side, and a zebra crossing.
+/// A broken line in the middle, a solid one on each side, and a zebra crossing.
 fn is_painted(u: f64, w: f64) -> bool {
     let middle = (KERBS.0 + KERBS.1) / 2.0;
     let zebra = (22.5..25.5).contains(&w);
@@ -51,7 +51,7 @@ fn is_painted(u: f64, w: f64) -> bool {
     w < 21.5 && (from_middle < 0.07 && w.rem_euclid(5.0) < 2.5 || (0.25..0.37).contains(&from_kerb))
 }
 
-/// Whether the houses on the right or something in the street stand in the sun.
+/// Whether the houses on the right or a figure in the street shade the place.
 fn is_shaded(u: f64, w: f64) -> bool {
     let houses = ROWS.iter().filter(|row| row.side == Side::Right).any(|row| {
         let at = |house: &&House| (house.from..house.to).contains(&w);

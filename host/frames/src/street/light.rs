@@ -1,4 +1,4 @@
-//! Linear light in three colours, and the reproducible irregularity of surfaces.
+//! Linear light in three colours, and reproducible irregularities of surfaces.
 
 use std::ops::Add;
 
@@ -13,10 +13,10 @@ pub(super) struct Light {
 impl Light {
     pub(super) const BLACK: Self = Self::new(0.0, 0.0, 0.0);
 
-    /// What falls on a surface that the sun reaches.
+    /// The light on a surface in the sun.
     pub(super) const SUN: Self = Self::new(1.0, 0.95, 0.86);
 
-    /// What falls on a surface in the shade, from the sky.
+    /// The light on a surface in the shade, from the sky.
     pub(super) const SHADE: Self = Self::new(0.33, 0.37, 0.44);
 
     pub(super) const fn new(red: f64, green: f64, blue: f64) -> Self {
@@ -36,7 +36,7 @@ impl Light {
         Self::new(self.red * falling.red, self.green * falling.green, self.blue * falling.blue)
     }
 
-    /// Whether the eye would tell this light from `other`.
+    /// Whether the eye can tell this light from `other`.
     pub(super) fn differs(self, other: Self) -> bool {
         let apart = |a: f64, b: f64| (a - b).abs() > 0.01;
         apart(self.red, other.red) || apart(self.green, other.green) || apart(self.blue, other.blue)
@@ -56,7 +56,7 @@ impl Add for Light {
     }
 }
 
-/// A number in 0..1 that belongs to the cell (`x`, `y`), as if drawn at random.
+/// A number in 0..1 for the cell (`x`, `y`), as if drawn at random.
 pub(super) fn speckle(x: f64, y: f64) -> f64 {
     let mix = |value: u64| (value ^ (value >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let cell = (x.floor() as i64 as u64) ^ (y.floor() as i64 as u64).rotate_left(32);

@@ -11,14 +11,14 @@ pub struct SceneLine {
     pub is_upright: bool,
 }
 
-/// The edges between neighbouring façades, the lines of the roofs, and where the façades stand on the ground, as far as they are
-/// ahead of the camera.
+/// The edges between neighbouring façades, the lines of the roofs, and the lines where the façades meet the ground, as far as
+/// they are ahead of the camera.
 #[must_use]
 pub fn lines() -> Vec<SceneLine> {
     ROWS.iter().flat_map(|row| upright(row).chain(level(row)).chain(foot(row))).collect()
 }
 
-/// Metres ahead of the camera from which on a line counts.
+/// How far ahead of the camera lines begin to count, in metres.
 const AHEAD: f64 = 0.5;
 
 /// From the ground to the lower of two neighbours' roofs.
@@ -40,14 +40,14 @@ fn level(row: &Row) -> impl Iterator<Item = SceneLine> {
     })
 }
 
-/// Where the whole row stands on the ground.
+/// Where the whole row meets the ground.
 fn foot(row: &Row) -> Option<SceneLine> {
     let (first, last) = row.seen()?;
     Some(SceneLine { ends: [first, last].map(|along| row.place(along, 0.0)), is_upright: false })
 }
 
 impl Row {
-    /// From where to where along it it is seen: ahead of the camera, and between the rows at the sides.
+    /// The first and last place along the row that are seen: ahead of the camera, and between the rows at the sides.
     fn seen(&self) -> Option<(f64, f64)> {
         let (first, last) = (self.houses.first()?.from, self.houses.last()?.to);
         if self.side != Side::Across {
@@ -60,7 +60,7 @@ impl Row {
         Some((first.max(-beside(Side::Left)?), last.min(beside(Side::Right)?)))
     }
 
-    /// The place on its façades so far along it and so high above the ground.
+    /// The place on its façades at `along` the row and `height` above the ground.
     fn place(&self, along: f64, height: f64) -> [f64; 3] {
         let down = CAMERA - height;
         match self.side {
@@ -76,7 +76,8 @@ mod tests {
     use super::*;
     use crate::street::town::{Seen, seen};
 
-    /// A little below a roof is its façade, unless something stands in front of it; a little above is none of that height.
+    /// A little below a roof there is its façade, unless something is in front of it; a little above there is none of that
+    /// height.
     #[test]
     fn lines_are_where_the_street_has_them() {
         let all = lines();

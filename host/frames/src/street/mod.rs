@@ -1,8 +1,8 @@
-//! A street seen through the fisheye lens: what a camera of the paper's kind delivers, with the truth about it known.
+//! A street seen through the fisheye lens: what a camera of the paper's kind delivers, of a scene that is known exactly.
 //!
-//! For each pixel some rays go out through the lens and come back with the colour of what they meet. The filter array
-//! keeps one colour of it, and the sensor adds its noise. The world is in metres from the camera, which looks along the
-//! street: u to the right, v down, w ahead, as the lens counts.
+//! For each pixel some rays go out through the lens and return the colour of what they meet. The filter array keeps one
+//! colour of it, and the sensor adds its noise. The world is in metres from the camera, which looks along the street: u to
+//! the right, v down, w ahead, as in the lens model.
 
 mod edges;
 mod facade;
@@ -25,11 +25,11 @@ use super::scene::Scene;
 use light::Light;
 use sensor::Sensor;
 
-/// Where in a pixel the rays pass, in pixels from its middle: four places, each in a row and a column of its own, two
-/// opposite ones first.
+/// Where in a pixel the rays pass, in pixels from its middle: four places, each in a row and a column of its own, beginning with
+/// two opposite ones.
 const RAYS: [(f64, f64); 4] = [(-0.375, -0.125), (0.375, 0.125), (0.125, -0.375), (-0.125, 0.375)];
 
-/// The cosine of the angle to the axis beyond which the lens passes no light: 93°, half the field of the paper's lens.
+/// The cosine of the angle to the axis beyond which the lens passes no light: 93°, half the field of view of the paper's lens.
 const RIM: f64 = -0.052;
 
 /// The street as `scene`'s sensor sees it.
@@ -63,8 +63,8 @@ fn rendered<S: Sight>(scene: &Scene, sight: &S) -> Result<Frame, FrameError> {
     })
 }
 
-/// The light of the pixel whose middle is (`x`, `y`) from the optical centre. Where the first two rays agree, two more
-/// would not tell anything else.
+/// The light of the pixel whose middle is (`x`, `y`) from the optical centre. If the first two rays agree, two more would
+/// add nothing.
 fn pixel<S: Sight>(sight: &S, x: f64, y: f64) -> Light {
     let [first, second, third, fourth] = RAYS.map(|(dx, dy)| (x + dx, y + dy));
     let through = |(x, y)| through(sight, x, y);

@@ -1,31 +1,31 @@
-//! The sensor: light into samples, with the noise of photons and of reading out.
+//! The sensor: from light to samples, with the noise of photons and of readout.
 
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 
-/// The sample of no light, as a share of the largest.
+/// The sample without light, as a share of the largest.
 const PEDESTAL: f64 = 0.01;
 
 /// Electrons that a full pixel holds.
 const FULL_WELL: f64 = 8000.0;
 
-/// The standard deviation of reading out, in electrons.
+/// The standard deviation of the readout, in electrons.
 const READ_NOISE: f64 = 6.0;
 
-/// The generator's stream, so that the street shares no numbers with the patterns.
+/// The generator's stream, so that the street shares no random numbers with the patterns.
 const STREAM: u64 = 56;
 
 /// Steps of the generator that a sample takes.
 const STEPS: u64 = 2;
 
-/// A sensor, whose noise goes on from pixel to pixel.
+/// A sensor, whose noise continues from pixel to pixel.
 pub(super) struct Sensor {
     random: Pcg32,
     max: f64,
 }
 
 impl Sensor {
-    /// A sensor whose samples reach `max`, behind its first `samples`.
+    /// A sensor whose samples go up to `max`, after it has delivered `samples` of them.
     pub(super) fn new(seed: u64, max: u16, samples: usize) -> Self {
         let mut random = Pcg32::new(seed, STREAM);
         random.advance(STEPS * samples as u64);
@@ -41,7 +41,7 @@ impl Sensor {
         (share.clamp(0.0, 1.0) * self.max + 0.5) as u16
     }
 
-    /// Nearly normal, of mean 0 and deviation 1: the sum of four uniform numbers of 16 bits, which is the same on every
+    /// A nearly normal number of mean 0 and deviation 1: from the sum of four uniform 16-bit numbers, which is the same on every
     /// machine.
     fn normal(&mut self) -> f64 {
         const UNIT: f64 = 65536.0;

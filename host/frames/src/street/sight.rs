@@ -1,10 +1,10 @@
-//! How a camera stands before the street.
+//! How a camera sees the street.
 
 use halfrow_model::{Camera, exact_inverse};
 
 use super::super::scene::Scene;
 
-/// A lens before a sensor that looks along the street. Points are in pixels from the optical centre, x to the right and y down.
+/// A lens and sensor that look along the street. Points are in pixels from the optical centre, x to the right and y down.
 pub trait Sight: Sync {
     /// The column of the optical centre.
     fn centre_x(&self) -> f64;
@@ -12,13 +12,13 @@ pub trait Sight: Sync {
     /// y of `row`.
     fn y(&self, row: usize) -> f64;
 
-    /// The direction that is seen at a point, as a unit vector: u right, v down, w ahead. None where the lens sees nothing.
+    /// The direction that is seen at a point, as a unit vector: u right, v down, w ahead. None if the lens sees nothing there.
     fn ray(&self, x: f64, y: f64) -> Option<[f64; 3]>;
 
-    /// x at which a longitude, in radians, is imaged on the horizon: its column in the exact projection (Eq. 6).
+    /// The x at which a longitude, in radians, is imaged on the horizon: its column in the exact projection (Eq. 6).
     fn on_horizon(&self, longitude: f64) -> Option<f64>;
 
-    /// x at which a longitude is imaged in the row at `y`.
+    /// The x at which a longitude, in radians, is imaged in the row at `y`.
     fn imaged(&self, longitude: f64, y: f64) -> Option<f64>;
 }
 
@@ -45,7 +45,7 @@ impl Sight for Scene {
     }
 }
 
-/// Through the lens that was calibrated.
+/// Through the calibrated lens.
 impl Sight for Camera {
     fn centre_x(&self) -> f64 {
         self.centre().0

@@ -6,10 +6,10 @@ use super::{facade, figures, ground, sky};
 /// The camera's height above the ground, in metres.
 pub(super) const CAMERA: f64 = 2.6;
 
-/// How far the houses reach back from their façade.
+/// How far the houses extend behind their façade, in metres.
 const DEPTH: f64 = 14.0;
 
-/// The way a row of houses faces.
+/// Which side of the street a row of houses is on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Side {
     /// Along the street at u = −distance.
@@ -23,20 +23,20 @@ pub(super) enum Side {
 /// One house of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct House {
-    /// Where its façade begins and ends along the row: w of the side rows, u of the one across.
+    /// Where its façade begins and ends along the row: w for the side rows, u for the one across.
     pub(super) from: f64,
     /// See [`Self::from`].
     pub(super) to: f64,
     /// The height of its roof above the ground.
     pub(super) roof: f64,
-    /// The colour of its walls. Neighbours are light and dark by turns, so that their edge can be measured.
+    /// The colour of its walls. Neighbours alternate between light and dark, so that their edge can be measured.
     pub(super) wall: Light,
 }
 
 /// Houses wall to wall.
 pub(super) struct Row {
     pub(super) side: Side,
-    /// From the camera to the façades.
+    /// From the camera to the façades, in metres.
     pub(super) distance: f64,
     pub(super) houses: &'static [House],
 }
@@ -117,14 +117,14 @@ pub(super) fn edges() -> impl Iterator<Item = Edge> {
     })
 }
 
-/// What a ray meets. Metres, as everywhere.
+/// What a ray meets. In metres, as everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Seen {
     /// Nothing.
     Sky,
     /// The ground at (u, w).
     Ground(f64, f64),
-    /// A façade: its row and house, and where on it along the row and above the ground.
+    /// A façade: its row and house, and the place on it, along the row and above the ground.
     Facade {
         /// The index of the row in [`ROWS`].
         row: usize,
@@ -161,7 +161,7 @@ pub(super) fn seen(ray: [f64; 3]) -> Seen {
     figures::seen(ray, distance).map_or(behind, Seen::Figure)
 }
 
-/// What `ray` meets of ground and houses, and how far away.
+/// Which house or ground `ray` meets, and how far away.
 fn built(ray: [f64; 3]) -> (f64, Seen) {
     let [u, v, w] = ray;
     let floor = if v > 0.0 { CAMERA / v } else { f64::INFINITY };
@@ -171,7 +171,7 @@ fn built(ray: [f64; 3]) -> (f64, Seen) {
 }
 
 impl Row {
-    /// What `ray` meets of the row that is `index` in [`ROWS`], and how far away.
+    /// What `ray` meets of this row, whose index in [`ROWS`] is `index`, and how far away.
     fn meets(&self, index: usize, [u, v, w]: [f64; 3]) -> Option<(f64, Seen)> {
         let (towards, sideways) = match self.side {
             Side::Left => (-u, w),
