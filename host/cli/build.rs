@@ -1,7 +1,8 @@
-//! Writes down what each code means, as the sources say it, and links the program at a fixed address, for where glibc loads it.
+//! Writes a table of what each code means, from the comments in the sources; and links the program at a fixed address if glibc
+//! loads it.
 //!
-//! A program that may lie anywhere has some 15,000 pointers put right by the loader before `main`, which copies every page
-//! that they lie on: as long as all of `halfrow --help` takes else. Libraries, heap and stack still lie at random addresses.
+//! In a position-independent program the loader relocates some 15,000 pointers before `main`, which copies every page that they
+//! are on. That takes as long as everything else in `halfrow --help`. Libraries, heap and stack are still at random addresses.
 
 #[path = "build/meanings.rs"]
 mod meanings;

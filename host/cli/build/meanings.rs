@@ -1,11 +1,11 @@
-//! What each code means, out of the comment of the variant that has it.
+//! What each code means, from the comment of the variant that has it.
 
 use std::path::Path;
 use std::{env, fs, io};
 
 use crate::sources::{Sources, Type, Words};
 
-/// Where types with codes are, from the folder of this package.
+/// The folders with the types that have codes, relative to this package.
 const FOLDERS: [&str; 12] = [
     "src",
     "../files/src",
@@ -20,26 +20,27 @@ const FOLDERS: [&str; 12] = [
     "../../fpga/sim/src",
     "../../protocol",
 ];
-/// Where codes are given to them.
+/// The files that give them their codes.
 const CODES: [&str; 4] = [
     "src/commands/codes.rs",
     "../judge/src/result/codes/files.rs",
     "../judge/src/result/codes/links.rs",
     "../program/src/codes.rs",
 ];
-/// Where those of `halfrow-station` are, of which this program only tells.
+/// The files with the codes of `halfrow-station`, which this program only explains.
 const CODES_OF_STATION: [&str; 2] = ["../station/src/codes.rs", "../station/src/commands/refusals.rs"];
-/// Types whose words in a report are their variants' names, and then those whose codes are: where both have one, the code's meaning stands.
+/// Types whose variants' names are words in a report, then those whose variants' names are codes. Where both have a name, the
+/// meaning of the code counts.
 const BY_NAME: [&str; 5] = ["Verdict", "CheckName", "Finding", "Defect", "NotExercised"];
 
-/// Writes `meanings.rs`: each code with its meaning, and the message of its error, or nothing; and `codes_of_station.rs`: each code of
-/// `halfrow-station`'s own with the names of its parameters.
+/// Writes `meanings.rs`, with each code, its meaning and the message of its error (empty if it has none); and
+/// `codes_of_station.rs`, with each code that only `halfrow-station` has and the names of its parameters.
 pub(crate) fn write() -> io::Result<()> {
     let mut sources = Sources::default();
     for folder in FOLDERS {
         sources.read(Path::new(folder))?;
     }
-    // What is said of a type is nearer to its code than what is said of a list.
+    // The comment of a type describes its code better than the comment of a list.
     let of_constants = sources.constants.iter().filter(|(text, _)| text.contains('-') && !text.contains(' '));
     let mut meanings: Vec<_> = of_constants
         .map(|(code, comment)| (code.clone(), Words { comment: comment.clone(), ..Words::default() }))
@@ -70,7 +71,7 @@ pub(crate) fn write() -> io::Result<()> {
     fs::write(Path::new(&folder).join("meanings.rs"), format!("&[\n{}]\n", lines.concat()))
 }
 
-/// The code that a line of a list gives, with the names of its parameters.
+/// The code that a line of a list defines, with the names of its parameters.
 fn coded(line: &str) -> Option<(&str, Vec<&str>)> {
     let (variant, rest) = line.split_once("=> \"")?;
     let names =
@@ -78,10 +79,10 @@ fn coded(line: &str) -> Option<(&str, Vec<&str>)> {
     Some((rest.split('"').next()?, names.split(", ").filter(|name| !name.is_empty()).collect()))
 }
 
-/// Adds the meanings of the codes that the list `text` gives.
+/// Adds the meanings of the codes that are defined in the source `text`.
 fn given(text: &str, types: &[Type], meanings: &mut Vec<(String, Words)>) {
     let inside = text.split("codes! {").nth(1).and_then(|rest| rest.split("\n}").next()).unwrap_or_default();
-    // A list names its types first, and what is known of one is taken where all its variants are known.
+    // A list names its type first. Of types of that name, the one is taken that has all the variants in the list.
     for part in inside.split("\n    }").flat_map(|part| part.split("\n    ;")) {
         let name = |line: &str| -> String {
             line.trim().chars().take_while(|letter| letter.is_alphanumeric()).collect()
@@ -111,7 +112,7 @@ fn given(text: &str, types: &[Type], meanings: &mut Vec<(String, Words)>) {
     }
 }
 
-/// The name that a type has where it is, of one that `text` imports by another.
+/// The original name of a type that `text` may import under another `name`.
 fn imported(text: &str, name: &str) -> String {
     let alias = format!(" as {name}");
     let before = text.split(&alias).next().filter(|_| text.contains(&alias));
@@ -119,7 +120,7 @@ fn imported(text: &str, name: &str) -> String {
     original.unwrap_or(name).to_owned()
 }
 
-/// `SamplesDiffer` as `samples-differ`.
+/// `SamplesDiffer` becomes `samples-differ`.
 fn kebab(name: &str) -> String {
     let letters = name.char_indices().map(|(place, letter)| match letter.is_uppercase() && place > 0 {
         true => format!("-{}", letter.to_lowercase()),
@@ -128,7 +129,7 @@ fn kebab(name: &str) -> String {
     letters.collect()
 }
 
-/// A comment without the marks that make links of names.
+/// A comment without the brackets that turn names into links.
 fn plain(comment: &str) -> String {
     comment.replace("[`", "`").replace("`]", "`")
 }

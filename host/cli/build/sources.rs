@@ -1,11 +1,11 @@
-//! What the sources of this repository say of their types: comments and messages of types and variants. They are read line by line, as
-//! rustfmt lays them out.
+//! What the sources of this repository say about their types: comments and messages of types and variants. The sources are read
+//! line by line, as rustfmt lays them out.
 
 use std::fs;
 use std::io;
 use std::path::Path;
 
-/// What a comment and an error's attribute say.
+/// The words about a type or variant: its comment and its error message.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Words {
     /// The comment.
@@ -22,11 +22,11 @@ pub(crate) struct Type {
     pub(crate) variants: Vec<(String, Words)>,
 }
 
-/// What was read of all files.
+/// What was read from all files.
 #[derive(Debug, Default)]
 pub(crate) struct Sources {
     pub(crate) types: Vec<Type>,
-    /// Words of constants that are text, or lists of texts: each text with the comment.
+    /// Constants that are a text or a list of texts: each text, with the constant's comment.
     pub(crate) constants: Vec<(String, String)>,
 }
 
@@ -89,7 +89,7 @@ impl Sources {
     }
 }
 
-/// `first` and the lines behind it, up to the one that ends in `end`; `first` alone when it is an attribute without brackets.
+/// `first` and the lines after it, up to the one that ends in `end`, or for an attribute in `]`.
 fn whole<'a>(first: &str, end: &str, lines: &mut impl Iterator<Item = &'a str>) -> String {
     let mut text = first.to_owned();
     let mut last = first.to_owned();
@@ -102,7 +102,7 @@ fn whole<'a>(first: &str, end: &str, lines: &mut impl Iterator<Item = &'a str>) 
     text
 }
 
-/// The name of a type that begins on a line.
+/// The name of the type whose declaration begins on this line, if one does.
 fn named(code: &str) -> Option<String> {
     let public = code.strip_prefix("pub").unwrap_or(code);
     let rest =
@@ -112,7 +112,7 @@ fn named(code: &str) -> Option<String> {
     Some(name.chars().take_while(|letter| letter.is_alphanumeric()).collect())
 }
 
-/// The texts in quotation marks, up to what stands behind them; a line's end behind a backslash joins its parts.
+/// The contents of the string literals in `code`. A backslash at the end of a line joins it to the next.
 fn literals(code: &str) -> Vec<String> {
     let (mut found, mut letters) = (Vec::new(), code.chars().peekable());
     while let Some(letter) = letters.next() {

@@ -1,4 +1,4 @@
-//! The station's program, which lies beside this one if it was built.
+//! The station's program, which is in the same folder as this one if it was built.
 
 use std::io;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 /// Its name.
 pub(crate) const STATION: &str = "halfrow-station";
 
-/// Where it would be.
+/// Its path, whether it exists or not.
 ///
 /// # Errors
 /// When the system does not say where this program is.

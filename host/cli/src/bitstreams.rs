@@ -1,29 +1,29 @@
-//! The boards that this project has bitstreams for: what `halfrow boards` lists of them, and what loads them.
+//! The boards for which this project has bitstreams: what `halfrow boards` lists about them, and what loads them.
 
 use serde::Serialize;
 
 /// A board of `fpga/boards`.
 #[derive(Debug, Serialize)]
 pub(crate) struct BitstreamBoard {
-    /// The name of its folder there.
+    /// The name of its folder in `fpga/boards`.
     pub(crate) name: &'static str,
     /// Its FPGA.
     pub(crate) device: &'static str,
-    /// The kinds of target that reach it, as `--board` takes them.
+    /// The kinds of target that reach it, as in `--board`.
     pub(crate) links: &'static [&'static str],
-    /// What makes its bitstreams, in the project's folder.
+    /// The command that makes its bitstreams, to be run in the project's folder.
     pub(crate) build: &'static str,
-    /// What that leaves to be loaded, in the project's folder.
+    /// The file to load that it makes, in the project's folder.
     pub(crate) bitstream: &'static str,
-    /// The target that the board is judged by with it, `PATH` for a serial port's.
+    /// The target with which the board is judged when it is loaded; `PATH` stands for the path of a serial port.
     pub(crate) target: &'static str,
-    /// What openFPGALoader calls the board.
+    /// The board's name in openFPGALoader.
     pub(crate) loader_name: &'static str,
-    /// Another program that loads it, without the file, for who has no openFPGALoader.
+    /// Another program that loads it, for users without openFPGALoader; without the file's name.
     pub(crate) other_loader: &'static str,
 }
 
-/// All of them. The loader's names are those of openFPGALoader 0.10 (`--list-boards`).
+/// All boards. The loader's names are those of openFPGALoader 0.10 (`--list-boards`).
 pub(crate) const BOARDS: [BitstreamBoard; 2] = [
     BitstreamBoard {
         name: "minispartan6plus",
@@ -48,7 +48,7 @@ pub(crate) const BOARDS: [BitstreamBoard; 2] = [
 ];
 
 impl BitstreamBoard {
-    /// The one of that name.
+    /// The board of that name.
     pub(crate) fn named(name: &str) -> Option<&'static Self> {
         BOARDS.iter().find(|board| board.name == name)
     }

@@ -1,4 +1,4 @@
-//! What is wrong with a call, or with a place that it names, where no part of the library is the one to say it.
+//! What is wrong with a call, or with a place that it names, for cases that no part of the library reports.
 
 use std::io;
 use std::path::PathBuf;

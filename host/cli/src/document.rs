@@ -1,4 +1,4 @@
-//! Results of commands as JSON documents, and why there are none.
+//! Results of commands as JSON documents, and why there is no result.
 
 use serde::Serialize;
 
@@ -18,7 +18,7 @@ pub(crate) fn result_text(
     json::document(&document).map_err(Failure::error)
 }
 
-/// Prints the result of a command that judges nothing, which is its only one.
+/// Prints the result of a command that judges nothing and has no other output: it fails if stdout does not take it.
 pub(crate) fn print_result(
     command: &str,
     exit_code: Exit,
@@ -28,7 +28,7 @@ pub(crate) fn print_result(
     print(&result_text(command, exit_code, board, rest)?)
 }
 
-/// Tells the result of a command that left files, which stand whether or not it can be told.
+/// Prints the result of a command that has written files. These stand, so that it does not fail if stdout does not take it.
 pub(crate) fn tell_result(
     command: &str,
     exit_code: Exit,
@@ -46,13 +46,13 @@ pub fn failure(command: &str, failure: &Failure) -> String {
     json::without_result(command, *exit, exit.verdict(), &named(codes::problem(*exit, error)))
 }
 
-/// The code of what a command failed by, if `explain` has more to say of it.
+/// The code of a command's failure, if `explain` has more to say about it.
 #[must_use]
 pub fn code(failure: &Failure) -> Option<String> {
     halfrow_program::codes::explained(codes::problem(failure.exit, &failure.error))
 }
 
-/// A problem with the flags of the settings that its words name.
+/// `problem`, with the flag added after each setting that its words name.
 fn named(problem: Problem) -> Problem {
     Problem {
         message: flags::named(&problem.message),

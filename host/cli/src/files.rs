@@ -1,4 +1,4 @@
-//! Where a command writes, looked at before anything is done.
+//! Where a command writes, checked before anything is done.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use crate::call_error::CallError;
 use crate::console;
 use halfrow::call::{Files, FilesError};
 
-/// Looks whether `files` can be read and written as they are to be, and clears what runs that were killed left there; says what is kept
+/// Checks that `files` can be read and written as intended, and clears what killed runs left there. Says on stderr what is kept
 /// of it.
 pub(crate) fn prepare_files(files: &Files) -> Result<(), FilesError> {
     files.check()?;
@@ -19,12 +19,12 @@ pub(crate) fn prepare_files(files: &Files) -> Result<(), FilesError> {
     Ok(())
 }
 
-/// Refuses `-`, which many programs take for stdout, as a place of frames: it would become a folder of that name.
+/// Refuses `-`, which means stdout to many programs, as a place for frames: it would become a folder of that name.
 pub(crate) fn refuse_stdout(place: &Path, option: &'static str) -> Result<(), CallError> {
     if place == Path::new("-") { Err(CallError::FramesToStdout { option }) } else { Ok(()) }
 }
 
-/// Makes a folder, and those that it lies in.
+/// Makes a folder and its parents.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), CallError> {
     std::fs::create_dir_all(folder)
         .map_err(|source| CallError::FolderNotMade { path: folder.to_owned(), source })

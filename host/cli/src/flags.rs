@@ -1,7 +1,7 @@
-//! The flags that the settings have that the libraries name in words: the one place where a remedy gets its flag.
+//! The flags of the settings that the libraries name in words: the only place where a remedy gets its flag.
 
-/// What sentences of the libraries say, and the flag for it, or what to call. None of them is part of another. A phrase is an order that
-/// reads well alone, with any figure after it, or a noun that keeps its sense wherever it stands.
+/// Phrases in the libraries' sentences, each with its flag or the command to run. No phrase is part of another. A phrase is an
+/// instruction that reads well alone, with any figure after it, or a noun that keeps its meaning wherever it stands.
 pub const FLAGS: [(&str, &str); 23] = [
     ("allow it to be overwritten", "--overwrite"),
     ("another place for the recording", "--record"),
@@ -28,7 +28,7 @@ pub const FLAGS: [(&str, &str); 23] = [
     ("Cargo's feature `sim`", "cargo run --release --features sim"),
 ];
 
-/// `text` with the flag behind each setting that it names, as in `take the board over (--take-over)`.
+/// `text` with the flag after each setting that it names, as in `take the board over (--take-over)`.
 #[must_use]
 pub fn named(text: &str) -> String {
     let mut text = text.to_owned();

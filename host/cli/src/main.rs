@@ -34,7 +34,7 @@ fn program() -> Exit {
     ended.unwrap_or_else(|failure| explain(&failure, cli.wants_json().then(|| cli.command_name())))
 }
 
-/// Says why there is no result: on stderr for people, and as JSON on stdout where that was asked for.
+/// Says why there is no result: on stderr for people, and as JSON on stdout if the call asked for it.
 fn explain(failure: &Failure, as_json_of: Option<&str>) -> Exit {
     let Failure { exit, error, .. } = failure;
     console::error(&flags::named(&format!("{error:#}")));

@@ -1,7 +1,7 @@
-//! Boards that several computers share: `pool:KIND` is whichever of that kind is free, for as long as this program runs.
+//! Boards that several computers share: `pool:KIND` is any free board of that kind, for as long as this program runs.
 //!
-//! `halfrow-station board hold` waits for one at the plant and holds it until its stdin ends, which it does when this program
-//! ends, however that comes about. This program links no database.
+//! `halfrow-station board hold` waits for a board at the plant and holds it until its stdin ends, which happens when this program
+//! ends, in whatever way. So this program needs no database.
 
 use std::ffi::OsStr;
 use std::io::{self, BufRead as _, BufReader};
@@ -17,14 +17,14 @@ use serde::Deserialize;
 use crate::beside::{self, STATION};
 use crate::console;
 
-/// The kind of a target that is any board of a kind.
+/// The kind of a target that means any board of some kind.
 pub(crate) const POOL: &str = "pool";
-/// How often somebody who waits is told so, in seconds, when nothing has changed.
+/// How often the wait is reported when nothing has changed, in seconds.
 const TOLD: u64 = 10;
 
-/// The board that was got, until the program ends.
+/// The board that was leased, until the program ends.
 static LENT: Mutex<Option<Lent>> = Mutex::new(None);
-/// Whether it was lost.
+/// Whether the lease was lost.
 static LOST: AtomicBool = AtomicBool::new(false);
 
 /// No board was got.
@@ -70,16 +70,16 @@ pub(crate) enum PoolError {
     },
 }
 
-/// A board that is held.
+/// A leased board.
 #[derive(Debug)]
 struct Lent {
     kind: String,
     target: Target,
-    /// The board goes back when it is closed, as the system does when the program ends.
+    /// Closing it returns the board. The system does so when the program ends.
     _until_closed: Option<ChildStdin>,
 }
 
-/// What the program says that leases.
+/// A message from the program that leases boards.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "lowercase")]
 enum Message {
@@ -88,7 +88,7 @@ enum Message {
     Lost { said: String },
 }
 
-/// The board that `target` stands for: itself, or whichever is got of its kind, for which it is waited the first time.
+/// The board that `target` means: itself, or one leased from the pool of its kind. The first call waits for that.
 ///
 /// # Errors
 /// [`PoolError`]
@@ -104,13 +104,13 @@ pub(crate) fn resolved(target: Target) -> Result<Target, PoolError> {
     Ok(lent.insert(lease(kind)?).target.clone())
 }
 
-/// Whether the board that was got is somebody else's by now, which ends what is done with it.
+/// Whether the lease of the board was lost, so that it may be somebody else's by now. That ends the run.
 #[must_use]
 pub fn is_lost() -> bool {
     LOST.load(Ordering::Relaxed)
 }
 
-/// Waits for a board of this kind.
+/// Waits for a board of this kind and leases it.
 fn lease(kind: String) -> Result<Lent, PoolError> {
     let mut child = hold(&kind).map_err(PoolError::NoStation)?;
     let until_closed = child.stdin.take();
@@ -144,7 +144,7 @@ fn lease(kind: String) -> Result<Lent, PoolError> {
 
 fn hold(kind: &str) -> io::Result<Child> {
     let arguments = ["board", "hold", "--", kind].map(OsStr::new);
-    // In a group of its own: a signal that ends this program from the keyboard leaves the board to it until it has ended.
+    // In a process group of its own: a signal from the keyboard does not reach it, so this program keeps the board until it ends.
     let mut command = Command::new(beside::station()?);
     command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).process_group(0).spawn()
 }
@@ -170,7 +170,7 @@ fn tell_wait(kind: &str, before: u32, seconds: u64) {
     console::diagnose(&format_args!("waiting for a board of the kind {kind}: {place}, {seconds} s"));
 }
 
-/// Hears when the board is lost: it is said so, or nobody holds it any more.
+/// Notes when the board is lost: by a message, or because the program that holds it has ended.
 fn watch(mut told: Option<BufReader<ChildStdout>>, mut child: Child) {
     let watched = thread::Builder::new().name("pool".to_owned()).spawn(move || {
         let said = match next(told.as_mut()) {

@@ -1,4 +1,4 @@
-//! Progress of a long run, for whoever watches: a bar on a terminal, plain lines otherwise, or nothing.
+//! Progress of a long run: a bar on a terminal, plain lines elsewhere, or nothing.
 
 use std::fmt::Write;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -11,7 +11,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use crate::console;
 
-/// What suits the standard error stream: a bar on a terminal, a line now and then elsewhere.
+/// Progress that suits stderr: a bar on a terminal, a line now and then elsewhere.
 #[must_use]
 pub(crate) fn for_stderr(quiet: bool) -> Box<dyn Progress> {
     if quiet {
@@ -23,7 +23,7 @@ pub(crate) fn for_stderr(quiet: bool) -> Box<dyn Progress> {
     }
 }
 
-/// What another program says while it is waited for: the last line on a terminal, every line elsewhere, or nothing.
+/// Shows what another program prints while it runs: its last line on a terminal, every line elsewhere, or nothing.
 pub(crate) enum Told {
     Nothing,
     Lines,
@@ -31,7 +31,7 @@ pub(crate) enum Told {
 }
 
 impl Told {
-    /// What suits the standard error stream.
+    /// What suits stderr.
     #[must_use]
     pub(crate) fn on_stderr(quiet: bool) -> Self {
         if quiet {
@@ -43,7 +43,7 @@ impl Told {
         }
     }
 
-    /// It says `line`.
+    /// The program has printed `line`.
     pub(crate) fn line(&self, line: &str) {
         match self {
             Self::Nothing => {}
@@ -55,7 +55,7 @@ impl Told {
         }
     }
 
-    /// It has ended.
+    /// The program has ended.
     pub(crate) fn done(&self) {
         if let Self::Last(bar) = self {
             bar.finish_and_clear();
@@ -63,17 +63,17 @@ impl Told {
     }
 }
 
-/// Puts behind a bar what others have named, of which a terminal is to obey nothing.
+/// Shows `words`, which come from elsewhere, beside a bar, with control characters spelt out.
 fn say(bar: &ProgressBar, words: &str) {
     bar.set_message(plain(words).into_owned());
 }
 
-/// The share of rows, and the time, from which on the rest can be told. The first rows wait for what is made once.
+/// The share of rows, and the time, from which on the time left is estimated. The first rows wait for one-time work.
 const TELLING_SHARE: f64 = 0.1;
 const TELLING_TIME: Duration = Duration::from_secs(5);
 
-/// The seconds that the rest of the `expected` rows will take, when `rows` of them took `time`; none as long as that
-/// tells little.
+/// The seconds that the rest of the `expected` rows will take, if `rows` of them took `time`; none while it is too early to
+/// estimate.
 fn seconds_left(rows: u64, expected: u64, time: Duration) -> Option<f64> {
     let share = rows as f64 / expected.max(1) as f64;
     let left = time.as_secs_f64() * (1.0 / share - 1.0).max(0.0);
@@ -88,7 +88,7 @@ struct Bar {
 
 impl Bar {
     fn new() -> Self {
-        // The library passes over what the terminal does not take.
+        // indicatif ignores what the terminal does not take.
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
         bar.set_style(
             ProgressStyle::with_template("{spinner} {msg}")
@@ -119,7 +119,7 @@ impl Bar {
         let template = "{bar:30} {pos}/{len} rows  {rate}{left}  {msg}";
         if let Ok(style) = ProgressStyle::with_template(template) {
             let rate = |state: &ProgressState, text: &mut dyn Write| {
-                // A watcher whose terminal went away needs no number.
+                // If this fails, the terminal is gone and nobody needs the number.
                 let _ = write!(text, "{:.0} rows/s", state.per_sec());
             };
             let left = |state: &ProgressState, text: &mut dyn Write| {
@@ -152,20 +152,20 @@ impl Bar {
 /// Steps of a soak's bar.
 const SOAK_STEPS: u64 = 1000;
 
-/// A soak's minutes, each of which is told once.
+/// The minutes of a soak, each of which is reported once.
 #[derive(Default)]
 struct Minutes(Mutex<Option<SoakBegun>>);
 
 /// A soak that has begun.
 struct SoakBegun {
-    /// When, by this computer's clock.
+    /// When it began, by this computer's clock.
     at: Instant,
-    /// Its last minute that was told.
+    /// The last minute that was reported.
     minute: u64,
 }
 
 impl Minutes {
-    /// How far it is, and whether another minute of it has passed.
+    /// How far the soak has come, and whether another minute of it has passed.
     fn words(&self, soaked: &Soaked) -> (String, bool) {
         let mut begun = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let begun = begun.get_or_insert_with(|| SoakBegun { at: Instant::now(), minute: 0 });
@@ -176,7 +176,7 @@ impl Minutes {
     }
 }
 
-/// How far a soak is which has been watched for `time`.
+/// How far a soak has come that has been watched for `time`.
 fn soak_line(soaked: &Soaked, time: Duration) -> String {
     let Soaked { frames, wrong, .. } = *soaked;
     let equal = if wrong == 0 { "all equal".to_owned() } else { format!("{} DIFFER", grouped(wrong)) };
@@ -247,7 +247,7 @@ impl Lines {
     }
 }
 
-/// What stands in a log after `time`.
+/// The line for a log after `time`.
 fn line(rows: u64, expected: u64, time: Duration) -> String {
     let rate = rows as f64 / time.as_secs_f64();
     let left = seconds_left(rows, expected, time).map(|seconds| format!(", {seconds:.0} s left"));

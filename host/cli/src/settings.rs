@@ -1,4 +1,4 @@
-//! The settings file: what a station always wants, in TOML.
+//! The settings file: options that a station always uses, in TOML.
 //!
 //! A value is taken from the first of these that gives it:
 //!
@@ -23,8 +23,8 @@ use toml::Spanned;
 use halfrow::model::Short;
 use halfrow::tables::text::{self, quoted, told};
 
-/// A settings file's values. Text is as it would be on the command line, and none of it is looked at here: a relative path
-/// starts where the program was started.
+/// A settings file's values. Text is as on the command line and is not checked here. A relative path starts at the folder in
+/// which the program was started.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
@@ -40,7 +40,7 @@ pub struct Settings {
     pub fit: Option<bool>,
     /// The folder that reports are written to.
     pub report: Option<PathBuf>,
-    /// Whether files that are there may be replaced.
+    /// Whether existing files may be replaced.
     pub overwrite: Option<bool>,
     /// The longest that a run may take, in seconds: 0 or more, and finite.
     #[serde(deserialize_with = "seconds")]
@@ -56,7 +56,7 @@ pub struct Settings {
     pub at_speed: Option<f64>,
     /// Whether to refuse anything but hardware.
     pub require_hardware: Option<bool>,
-    /// The seed of all that is random in a run.
+    /// The seed of everything random in a run.
     pub seed: Option<u64>,
 }
 
@@ -98,8 +98,8 @@ pub enum SettingsError {
 }
 
 impl Settings {
-    /// The settings of the file `explicit`, which must be there; without one, of `halfrow/settings.toml` in
-    /// `$XDG_CONFIG_HOME` or else `~/.config`, if that is there and may be read; without either, none.
+    /// The settings in the file `explicit`, which must exist. Without it, those in `halfrow/settings.toml` in
+    /// `$XDG_CONFIG_HOME`, or else in `~/.config`, if it exists and may be read. Otherwise no settings.
     ///
     /// # Errors
     /// [`SettingsError`] when the file cannot be read, is no TOML, or has a key or a value that settings do not have.
@@ -110,7 +110,7 @@ impl Settings {
         }
     }
 
-    /// The file that [`Self::load`] looks for, whether it is there or not.
+    /// The file that [`Self::load`] looks for, whether it exists or not.
     #[must_use]
     pub fn file(explicit: Option<&Path>) -> Option<PathBuf> {
         explicit.map(PathBuf::from).or_else(|| standard_path(|name| std::env::var_os(name)))
@@ -151,7 +151,7 @@ impl Settings {
         use io::ErrorKind::{NotADirectory, NotFound, PermissionDenied};
         match path.map(|path| Self::read(&path)) {
             None => Ok(Self::default()),
-            // Nobody named it, and the home of another user says nothing of this one's wishes.
+            // Nobody named this file, and a file in another user's home says nothing about what this user wants.
             Some(Err(SettingsError::Io { path, source })) if source.kind() == PermissionDenied => {
                 tracing::warn!(
                     "the settings file {} may not be read, and is passed over; HALFROW_SETTINGS=/dev/null does so \
@@ -188,8 +188,7 @@ impl Settings {
     }
 }
 
-/// The user's own settings file, as the XDG base directory specification has it: a relative `$XDG_CONFIG_HOME` counts for
-/// nothing.
+/// The user's own settings file, by the XDG base directory specification: a relative `$XDG_CONFIG_HOME` is ignored.
 fn standard_path(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
     let folder = variable("XDG_CONFIG_HOME").map(PathBuf::from).filter(|folder| folder.is_absolute());
     let home =

@@ -1,7 +1,7 @@
 //! Signals that end a command: Ctrl-C, SIGTERM, and SIGHUP from a terminal or connection that is gone.
 //!
-//! A command with a board listens for them ([`stop`]): the first is noted, so that it can end in order, and a second ends the
-//! program at once. Any other command ends at the first. However it ends, nothing half written stays.
+//! A command with a board asks for them ([`stop`]): the first one is noted, so that the command can end in order, and a second
+//! ends the program at once. Any other command ends at the first. However it ends, nothing half written stays.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -17,12 +17,12 @@ use crate::exit::Exit;
 use halfrow_files::written_aside;
 use halfrow_program::signals::is_ignored;
 
-/// How long the last words may take.
+/// How long the last message may take.
 const TOLD: Duration = Duration::from_millis(300);
 
-/// Holds the exit code of the first signal, and 0 before.
+/// The exit code of the first signal; 0 before any.
 static FIRST: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
-/// Whether somebody looks at it.
+/// Whether the command checks [`FIRST`].
 static IS_HEEDED: AtomicBool = AtomicBool::new(false);
 
 /// Signals that cannot be waited for.
@@ -38,7 +38,7 @@ pub struct Unheard(#[from] io::Error);
 /// [`Unheard`] when the system takes no handler or has no thread left.
 pub fn watch() -> Result<(), Unheard> {
     let mut wanted = vec![SIGINT, SIGTERM];
-    // Whoever starts a program with `nohup` wants it to outlive the terminal.
+    // A program that is started with `nohup` must outlive the terminal.
     if !is_ignored(SIGHUP) {
         wanted.push(SIGHUP);
     }
@@ -55,7 +55,8 @@ pub fn watch() -> Result<(), Unheard> {
     Ok(())
 }
 
-/// Holds the exit code of the first signal, and 0 before. Whoever asks for it must look at it: the program goes on.
+/// Where the exit code of the first signal appears; 0 before any. The caller must check it: after this call the first signal no
+/// longer ends the program.
 #[must_use]
 pub fn stop() -> Arc<AtomicUsize> {
     IS_HEEDED.store(true, Ordering::SeqCst);
@@ -77,7 +78,7 @@ fn receive(exit: Exit) {
     signal_hook::low_level::exit(exit.code().into());
 }
 
-/// Says it on stderr, where somebody reads that: the rest of the program may wait there for ever.
+/// Says it on stderr, on a thread with a time limit: the rest of the program may be blocked there for ever.
 fn tell(said: &'static str) {
     let (done, is_done) = mpsc::channel();
     let teller = thread::Builder::new().spawn(move || {

@@ -1,4 +1,4 @@
-//! The report for a terminal: what a technician sees at one glance, the verdict last.
+//! The report for a terminal: what a technician sees at a glance, with the verdict last.
 
 use std::fmt::Write as _;
 
@@ -12,18 +12,18 @@ use halfrow::words::{self, grouped, plain};
 
 use crate::flags;
 
-/// Columns that every line but the verdict's keeps to.
+/// The most columns of every line but the verdict's.
 const WIDTH: usize = 80;
-/// Rows of the table of frames.
+/// The most rows in the table of frames.
 const MOST_FRAMES: usize = 20;
-/// Differences of a soak.
+/// The most differences that are listed of a soak.
 const MOST_DIFFERENCES: usize = 10;
-/// Characters of a frame's name.
+/// The most characters of a frame's name.
 const MOST_NAME: usize = 30;
 /// Columns of the labels on the left.
 const LABEL: usize = 9;
 
-/// What stands behind a figure on its line.
+/// Units that stay on the same line as their figure.
 const UNITS: [&str; 17] = [
     "%", "B", "kB", "MB", "GB", "B/s", "kB/s", "MB/s", "Hz", "kHz", "MHz", "s", "ms", "µs", "min", "h",
     "bits",
@@ -35,7 +35,7 @@ const RED: Style = AnsiColor::Red.on_default().bold();
 const YELLOW: Style = AnsiColor::Yellow.on_default().bold();
 const DIM: Style = Style::new().dimmed();
 
-/// The report with ANSI colours, which the printing stream takes out where they do not belong.
+/// The report with ANSI colours, which the printing stream removes where they do not belong.
 #[must_use]
 pub fn render(report: &Report) -> String {
     let mut sections = vec![head(report), checks(report)];
@@ -73,7 +73,7 @@ fn head(report: &Report) -> String {
     text
 }
 
-/// A line for each check. The verdict's own is the last of the text, so it is not said twice.
+/// A line for each check. The finding that decides the verdict is at the end of the text, so it is not repeated here.
 fn checks(report: &Report) -> String {
     let widest = report.checks.iter().map(|check| check.name.name().len()).max().unwrap_or(0);
     let mut text = String::new();
@@ -85,7 +85,7 @@ fn checks(report: &Report) -> String {
     text
 }
 
-/// The table of frames; what is equal gives way when there are too many.
+/// The table of frames. If there are too many, equal ones are left out.
 fn frames(report: &Report) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING);
@@ -112,7 +112,7 @@ fn frames(report: &Report) -> String {
     text
 }
 
-/// A frame's name, and by what else it is told from another of the name.
+/// A frame's name, and what tells it from others of the same name.
 fn frame_label(frame: &FrameReport) -> String {
     let timing = match frame.timing {
         FrameTiming::LeastBlanking { .. } => None,
@@ -123,7 +123,7 @@ fn frame_label(frame: &FrameReport) -> String {
     std::iter::once(&*name).chain(timing).collect::<Vec<_>>().join(", ")
 }
 
-/// What a soak judged, and when something differed.
+/// What a soak judged, and when frames differed.
 fn soak(soak: &SoakReport) -> String {
     let mut text = String::new();
     push(&mut text, "soak", Style::new(), &wording::soak(soak));
@@ -184,7 +184,7 @@ fn advice(report: &Report) -> String {
     text
 }
 
-/// The verdict in one line, the last one.
+/// The verdict in one line, the last of the text.
 fn verdict(report: &Report) -> String {
     let style = match report.verdict() {
         Verdict::Pass => GREEN,
@@ -211,7 +211,7 @@ pub(crate) fn push(text: &mut String, word: &str, style: Style, words: &str) {
     push_after(text, &label(style, word), LABEL, words);
 }
 
-/// A word at the left, [`LABEL`] columns wide.
+/// A word at the left edge, [`LABEL`] columns wide.
 fn label(style: Style, word: &str) -> String {
     format!("{style}{word}{style:#}{:1$}", "", LABEL.saturating_sub(word.len()))
 }
@@ -228,7 +228,8 @@ fn push_after(text: &mut String, head: &str, indent: usize, words: &str) {
     }
 }
 
-/// The words of `text` on lines of at most `width` characters; a longer word has a line of its own, and a figure keeps its unit.
+/// The words of `text` on lines of at most `width` characters. A longer word has a line of its own, and a figure stays with its
+/// unit.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in inseparable(text) {
@@ -244,7 +245,7 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// The words of `text`, figures with their units and sizes (`629.6 kB`, `1920 x 1080`) as one.
+/// The words of `text`. A figure with its unit counts as one word, and so does a size (`629.6 kB`, `1920 x 1080`).
 fn inseparable(text: &str) -> Vec<String> {
     let is_figure = |word: &str| {
         word.rsplit(' ').next().is_some_and(|last| last.ends_with(|letter: char| letter.is_ascii_digit()))
@@ -263,7 +264,7 @@ fn inseparable(text: &str) -> Vec<String> {
     words
 }
 
-/// The end of a name that is too long, since that is where file names differ.
+/// A name that is too long is cut at its beginning, since file names differ at the end.
 fn shortened(name: &str) -> String {
     let letters = name.chars().count();
     if letters <= MOST_NAME {

@@ -1,16 +1,16 @@
-//! What a program was built from, as `--version --verbose` tells it.
+//! What a program was built from, as `--version --verbose` prints it.
 
-/// What a program alone knows of its build.
+/// What only the program itself knows about its build.
 #[derive(Clone, Copy, Debug)]
 pub struct Built {
-    /// The features of Cargo that were asked for.
+    /// The Cargo features that were enabled.
     pub features: &'static [&'static str],
-    /// The licences of all that may be built in, one a line, as `scripts/licences` writes them.
+    /// The licences of everything that may be built in, one per line, as `scripts/licences` writes them.
     pub licences: &'static str,
 }
 
 impl Built {
-    /// The lines that come behind the one with name and version.
+    /// The lines after the one with name and version.
     #[must_use]
     pub fn lines(&self) -> String {
         let features = if self.features.is_empty() { "none".to_owned() } else { self.features.join(", ") };
@@ -28,7 +28,7 @@ impl Built {
     }
 }
 
-/// Whether a call that asks for the version asks for all of it.
+/// Whether a call that asks for the version asks for the details too.
 pub(crate) fn is_asked(options: &[String]) -> bool {
     let short = |option: &str| {
         option.strip_prefix('-').is_some_and(|letters| !letters.starts_with('-') && letters.contains('v'))

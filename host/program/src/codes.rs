@@ -1,4 +1,4 @@
-//! The codes of errors that both programs have, and how a page tells codes.
+//! The codes of errors that both programs have, and how a page lists codes.
 
 use std::error::Error;
 
@@ -21,7 +21,7 @@ codes::codes! {
 const REFUSED: &str = "call-refused";
 /// A command that could not be carried out, in a sentence that says why.
 const FAILED: &str = "command-failed";
-/// Of what has no type of its own.
+/// The codes of errors without a type of their own.
 pub const UNTYPED: [&str; 3] = [REFUSED, FAILED, codes::FOREIGN];
 /// A command line that cannot be read.
 pub const USAGE: [&str; 6] = [
@@ -45,7 +45,7 @@ pub fn known(error: &(dyn Error + 'static)) -> Option<Coded> {
     lookup(error).or_else(|| codes::lookup(error))
 }
 
-/// Why a command came to no result, by the codes that `known` knows.
+/// Why a command has no result, with the code that `known` returns for the error.
 #[must_use]
 pub fn problem(
     exit: Exit,
@@ -59,7 +59,7 @@ pub fn problem(
     Problem { code: if exit == Exit::Usage { REFUSED } else { FAILED }.to_owned(), ..problem }
 }
 
-/// The code of `problem`; none when it has no type of its own, and so nothing more to be said of it.
+/// The code of `problem`; none if the error has no type of its own, so that `explain` has nothing more to say.
 #[must_use]
 pub fn explained(problem: Problem) -> Option<String> {
     Some(problem.code).filter(|code| !UNTYPED.contains(&code.as_str()))

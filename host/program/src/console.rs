@@ -1,8 +1,8 @@
-//! The standard streams. Nothing else of a program writes to them, and a stream that takes nothing ends no run.
+//! The standard streams. No other part of a program writes to them, and a stream that takes nothing ends no run.
 //!
-//! A stream that is closed is one that nobody wants to read, as `/dev/null` is: Rust's start-up code puts that there.
+//! A stream that is closed at the start counts as one that nobody reads: Rust's start-up code replaces it by `/dev/null`.
 
-// Here alone.
+// Allowed only here.
 #![allow(clippy::disallowed_methods)]
 
 use std::borrow::Cow;
@@ -18,7 +18,7 @@ use halfrow::words::plain;
 #[error("the result cannot be written to stdout; free some space where it goes, or send it elsewhere")]
 pub struct Unprinted(#[source] io::Error);
 
-/// Prints a result and a line's end to stdout. A reader that went away, as `head` does, has seen enough.
+/// Prints a result and a newline to stdout. That the reader went away, as `head` does, is no error.
 ///
 /// # Errors
 /// [`Unprinted`] when stdout does not take it.
@@ -26,10 +26,10 @@ pub fn print(text: &str) -> Result<(), Unprinted> {
     print_raw(&format!("{text}\n"))
 }
 
-/// Writes a document to stdout, with each of its bytes as it is. A terminal is shown what [`print()`] would show it.
+/// Writes a document to stdout, its bytes unchanged. A terminal gets it as by [`print()`].
 ///
 /// # Errors
-/// As [`print()`].
+/// Like [`print()`].
 pub fn hand_out(document: &[u8]) -> Result<(), Unprinted> {
     if io::stdout().is_terminal() {
         return print_raw(&String::from_utf8_lossy(document));
@@ -38,14 +38,14 @@ pub fn hand_out(document: &[u8]) -> Result<(), Unprinted> {
     taken(stdout.write_all(document).and_then(|()| stdout.flush()))
 }
 
-/// [`print()`] without a line's end of its own.
+/// Like [`print()`], without adding a newline.
 ///
 /// # Errors
-/// As [`print()`].
+/// Like [`print()`].
 pub(crate) fn print_raw(text: &str) -> Result<(), Unprinted> {
     let mut stdout = io::stdout().lock();
     let text = if stdout.is_terminal() { harmless(text) } else { text.into() };
-    // Put together first: the stripping of colours would write every piece of text by itself.
+    // Assembled first: the stripping of colours would write every piece of text separately.
     let mut bytes = AutoStream::new(Vec::new(), AutoStream::choice(&stdout));
     let styled = bytes.write_all(text.as_bytes());
     taken(styled.and_then(|()| stdout.write_all(&bytes.into_inner())).and_then(|()| stdout.flush()))
@@ -58,8 +58,8 @@ fn taken(written: io::Result<()>) -> Result<(), Unprinted> {
     }
 }
 
-/// Prints what is not the only result of a command: its files or its exit code say it, too. If stdout does not take it,
-/// stderr says so, once.
+/// Prints a result that the files or the exit code of the command show as well. If stdout does not take it, stderr says so,
+/// once.
 pub fn tell(text: &str) {
     static SAID: AtomicBool = AtomicBool::new(false);
     if let Err(unprinted) = print(text)
@@ -69,36 +69,36 @@ pub fn tell(text: &str) {
     }
 }
 
-/// Says on stderr what went wrong, if it can be said.
+/// Says on stderr what went wrong, as far as stderr takes it.
 pub fn error(what: &dyn Display) {
     diagnose(&format_args!("error: {what}"));
 }
 
-/// Says on stderr where more is said of the code of what went wrong, if it has one.
+/// Says on stderr where the code of an error is explained, if it has one.
 pub fn refer(code: Option<&str>) {
     if let Some(code) = code {
         diagnose(&format_args!("see `halfrow explain {code}`"));
     }
 }
 
-/// Asks on stderr for something that is typed behind it. Whoever types blind knows what is asked.
+/// Asks on stderr for something to be typed. A failure is ignored: whoever types without seeing it knows what is asked for.
 pub fn ask(what: &str) {
     diagnose_raw(&format!("{what}: "));
 }
 
-/// Writes a line to stderr, if that takes it, with what a terminal would obey spelt out.
+/// Writes a line to stderr, if that takes it, with control characters spelt out.
 pub fn diagnose(what: &dyn Display) {
     let lines: Vec<_> = what.to_string().split('\n').map(|line| plain(line).into_owned()).collect();
     diagnose_raw(&format!("{}\n", lines.join("\n")));
 }
 
-/// [`diagnose`] without a line's end of its own.
+/// Like [`diagnose`], without adding a newline, and with control characters kept.
 pub(crate) fn diagnose_raw(text: &str) {
-    // Nobody is left to be told that this cannot be told.
+    // If stderr fails, there is nowhere left to report it.
     let _ = anstream::stderr().lock().write_all(text.as_bytes());
 }
 
-/// What a terminal may obey is ends of lines, tabs and colours; what else it would is spelt out, as JSON would have it.
+/// `text` for a terminal: newlines, tabs and colours are kept, and other control characters are spelt out as in JSON.
 fn harmless(text: &str) -> Cow<'_, str> {
     let colours = |text: &str| {
         let digits = text
@@ -129,7 +129,7 @@ pub fn is_watched() -> bool {
     io::stderr().is_terminal()
 }
 
-/// Where the log goes: stderr, which takes it or does not.
+/// The writer of the log: stderr, whose failures are ignored.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Log;
 

@@ -1,4 +1,4 @@
-//! Faults of a program itself: a panic ends a command with an error, never by itself.
+//! Faults of the program itself: a panic becomes an error of the command and never ends the process by itself.
 
 use std::any::Any;
 use std::backtrace::{Backtrace, BacktraceStatus};
@@ -17,12 +17,12 @@ use crate::signals;
 )]
 pub struct InternalError(String);
 
-/// What the first panic of a program was, for a panic that comes through other threads loses its place.
+/// Message and place of the first panic, since a panic that comes through other threads loses its place.
 static FIRST: Mutex<Option<String>> = Mutex::new(None);
 
-/// What `run` ends with, as the process's exit code; a panic is an error, which is told.
+/// Runs `run` and returns its result as the process's exit code. A panic is reported and becomes an error.
 pub fn end(run: impl FnOnce() -> Exit) -> ExitCode {
-    // Where the system takes no handler, such a write ends the program, and nothing else is another.
+    // If the system takes no handler, such a write ends the program; nothing else changes.
     let _ = signals::outlive_file_limit();
     panic::set_hook(Box::new(note));
     let exit = guarded(run).unwrap_or_else(|fault| {
@@ -35,9 +35,10 @@ pub fn end(run: impl FnOnce() -> Exit) -> ExitCode {
 /// What `run` returns.
 ///
 /// # Errors
-/// [`InternalError`] when it panics, on whatever thread that it waits for; with the panic's place in a program that [`end`] runs.
+/// [`InternalError`] when it panics, or a thread panics whose panic it passes on. In a program that [`end`] runs, the error names
+/// the panic's place.
 pub fn guarded<T>(run: impl FnOnce() -> T) -> Result<T, InternalError> {
-    // An earlier one was dealt with.
+    // Earlier panics were dealt with.
     drop(first());
     panic::catch_unwind(AssertUnwindSafe(run)).map_err(|panic| {
         let said = first().or_else(|| said_by(&*panic).map(str::to_owned));
@@ -53,7 +54,7 @@ fn said_by(panic: &(dyn Any + Send)) -> Option<&str> {
     panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied())
 }
 
-/// Keeps what a panic says, and writes its backtrace where one is asked for with `RUST_BACKTRACE`.
+/// Keeps what a panic says, and writes its backtrace if `RUST_BACKTRACE` asks for one.
 fn note(panic: &PanicHookInfo<'_>) {
     let message = panic.payload_as_str().unwrap_or("a panic without a message");
     let place = panic.location().map_or_else(String::new, |place| format!(" ({place})"));
@@ -76,7 +77,7 @@ mod tests {
         assert!(said.contains("has failed: the moon fell;"), "{said}");
         panic::set_hook(Box::new(note));
         assert_eq!(guarded(|| 7).unwrap(), 7);
-        // One that somebody has dealt with says nothing of the next.
+        // A panic that was dealt with is not mistaken for the next.
         assert!(guarded(|| panic::catch_unwind(|| panic!("a cloud")).is_err()).unwrap());
         let said = guarded(|| panic!("the sky fell")).map(|()| 0).unwrap_err().to_string();
         assert!(said.contains("the sky fell (") && said.contains("guard.rs:"), "{said}");

@@ -1,4 +1,4 @@
-//! Documents as both programs print them.
+//! JSON documents as both programs print them.
 
 use halfrow::result::{Document, Problem, Schema};
 use halfrow::verdict::Verdict;
@@ -6,16 +6,16 @@ use serde::Serialize;
 
 use crate::exit::Exit;
 
-/// The result of a command, or why there is none, indented.
+/// The result of a command, or why there is none, as indented JSON.
 ///
 /// # Errors
-/// The encoder's.
+/// Those of the encoder.
 pub fn document(document: &Document<'_, impl Serialize>) -> Result<String, serde_json::Error> {
-    // A member of the rest stands for one of the same name that all have.
+    // By way of a value: a member of the rest then replaces a common one of the same name.
     serde_json::to_string_pretty(&serde_json::to_value(document)?)
 }
 
-/// The document of a command that failed, indented.
+/// The document of a command that failed, as indented JSON.
 #[must_use]
 pub fn without_result(command: &str, exit: Exit, verdict: Option<Verdict>, problem: &Problem) -> String {
     let (schema, error) = (Schema, Some(problem));
@@ -23,6 +23,6 @@ pub fn without_result(command: &str, exit: Exit, verdict: Option<Verdict>, probl
     document(&failed).unwrap_or_default()
 }
 
-/// What a document has beside what all have, when a command came to no result.
+/// The rest of a document, beside what all have, if a command has no result.
 #[derive(Serialize)]
 struct Nothing {}

@@ -1,14 +1,14 @@
-//! What the programs `halfrow` and `halfrow-station` stand on, so that scripts and people find the same in both.
+//! What the programs `halfrow` and `halfrow-station` have in common, so that both behave alike for scripts and people.
 //!
 //! * [`exit`]: the exit codes, which are the library's.
 //! * [`console`]: the one place that writes to stdout and stderr.
-//! * [`log`]: what goes to stderr when somebody wants to know.
+//! * [`log`]: what goes to stderr on request.
 //! * [`guard`]: a panic is an error with exit code 3, never 101.
-//! * [`json`]: what documents of both programs begin with, and [`codes`]: why there is no result.
-//! * [`mod@line`]: what a command line that asks for help, or is wrong, is told, and [`built`]: what `--version --verbose` tells.
+//! * [`json`]: the common part of documents, and [`codes`]: why there is no result.
+//! * [`mod@line`]: the answer to a command line that asks for help or is wrong, and [`built`]: to `--version --verbose`.
 //! * [`number`]: options that take a number within limits.
 //! * [`man_pages`]: man pages and completion scripts, and [`mod@reference`]: the page of all commands.
-//! * [`signals`]: those that are not to be heard.
+//! * [`signals`]: signals that are ignored or must not end the program.
 
 pub mod built;
 pub mod codes;

@@ -1,4 +1,4 @@
-//! How a command line is read, and what is told of one that leads to no command.
+//! Reading a command line, and answering one that leads to no command.
 
 use std::ffi::OsString;
 
@@ -11,18 +11,19 @@ use crate::console::{self, Unprinted};
 use crate::exit::Exit;
 use crate::{codes, json, variables};
 
-/// What `arguments` say, the program's name in front. Every option that takes a value takes `-1` for one: whoever gives it is told what the
-/// option takes, and not that `-1` is no option. An environment variable that is empty is none.
+/// The command line in `arguments`, the first of which is the program's name. Every option with a value accepts `-1` as its
+/// value, so that the error says what the option takes and not that `-1` is no option. An empty environment variable counts as
+/// unset.
 ///
 /// # Errors
-/// clap's own, which [`tell`] tells.
+/// clap's own, which [`tell`] prints.
 pub fn read<Line: Parser>(arguments: impl IntoIterator<Item = OsString>) -> clap::error::Result<Line> {
     let arguments: Vec<_> = arguments.into_iter().collect();
     let matched = |command: &mut Command| command.try_get_matches_from_mut(&arguments);
     let mut command = with_each(Line::command(), &|it| with_negative_numbers(variables::unless_empty(it)));
     let mut matches = match matched(&mut command) {
         Ok(matches) => matches,
-        // The help names every variable, also those that are empty.
+        // The help names every variable, even if it is empty.
         Err(told) if !told.use_stderr() => {
             return Err(matched(&mut with_each(Line::command(), &with_negative_numbers))
                 .err()
@@ -43,16 +44,16 @@ fn with_negative_numbers(argument: Arg) -> Arg {
     if takes_one { argument.allow_negative_numbers(true) } else { argument }
 }
 
-/// `command` with each argument, its commands' too, as `changed` makes it.
+/// `command` with `changed` applied to each argument, also to those of its subcommands.
 fn with_each(command: Command, changed: &dyn Fn(Arg) -> Arg) -> Command {
     command.mut_args(changed).mut_subcommands(|command| with_each(command, changed))
 }
 
-/// Tells what the reader of the command line of `program` has to tell: help and version on stdout, what is wrong with a call on
-/// stderr, and as JSON on stdout where that is asked for. With `--verbose` the version says what the program was built from.
+/// Prints what clap has to say about the command line of `program`: help and version to stdout, what is wrong with a call to
+/// stderr, and also as JSON to stdout if the call asks for it. With `--verbose` the version says what the program was built from.
 ///
 /// # Errors
-/// [`Unprinted`] when somebody asked for help or version, and stdout does not take it.
+/// [`Unprinted`] when the call asks for help or version, and stdout does not take it.
 pub fn tell(told: &clap::Error, program: &Command, built: Built) -> Result<Exit, Unprinted> {
     let mut text = told.render().ansi().to_string();
     let arguments = std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());

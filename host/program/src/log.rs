@@ -4,15 +4,15 @@ use tracing::level_filters::LevelFilter;
 
 use crate::console;
 
-/// Sends what is logged to stderr: warnings alone at `verbosity` 0, at 1 what happens, and above it every packet that is late or
-/// damaged. The first call in a process counts.
+/// Sends the log to stderr: only warnings at `verbosity` 0, what happens at 1, and above that every packet that is late or
+/// damaged. Only the first call in a process counts.
 pub fn to_stderr(verbosity: u8) {
     let level = match verbosity {
         0 => LevelFilter::WARN,
         1 => LevelFilter::INFO,
         _ => LevelFilter::DEBUG,
     };
-    // Somebody who embeds the program may log by ways of his own.
+    // It fails if an embedding program has already set up a log of its own.
     let _ = tracing_subscriber::fmt()
         .with_max_level(level)
         .with_writer(|| console::Log)

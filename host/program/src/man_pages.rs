@@ -1,4 +1,4 @@
-//! A program's man pages and its completion scripts, made of its command line.
+//! A program's man pages and completion scripts, made from its command line.
 
 use std::io;
 
@@ -10,13 +10,13 @@ pub use clap_complete::Shell;
 /// A man page of section 1.
 #[derive(Debug)]
 pub struct Page {
-    /// The file's name.
+    /// Its file name.
     pub name: String,
-    /// What it holds, for troff.
+    /// Its content, for troff.
     pub text: String,
 }
 
-/// The script by which `shell` completes calls of `program`, without a line's end behind it.
+/// The script with which `shell` completes calls of `program`, without a newline at its end.
 #[must_use]
 pub fn completions(shell: Shell, program: &mut Command) -> String {
     let name = program.get_name().to_owned();
@@ -28,7 +28,7 @@ pub fn completions(shell: Shell, program: &mut Command) -> String {
 /// The pages of all commands of `program` that are not hidden, then its own.
 ///
 /// # Errors
-/// What the renderer of pages says, which writes to memory alone.
+/// Those of the renderer, which writes only to memory.
 pub fn all(program: Command) -> io::Result<Vec<Page>> {
     let mut program = program.disable_help_subcommand(true);
     program.build();
@@ -49,7 +49,7 @@ fn collect(command: &Command, pages: &mut Vec<Page>) -> io::Result<()> {
     Ok(())
 }
 
-/// `page` with the names of values in its synopsis, where clap leaves them out.
+/// `page` with the names of values added to its synopsis, where clap leaves them out.
 fn with_value_names(command: &Command, page: &str) -> String {
     const SYNOPSIS: &str = ".SH SYNOPSIS\n";
     let Some((before, rest)) = page.split_once(SYNOPSIS) else { return page.to_owned() };

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use clap::builder::{NonEmptyStringValueParser, TypedValueParser};
 
-/// A number of `unit`, as `within` has it.
+/// A number of `unit`, in the range `within`.
 #[must_use]
 pub fn number(unit: &'static str, within: RangeInclusive<f64>) -> impl TypedValueParser<Value = f64> {
     NonEmptyStringValueParser::new().try_map(move |text| {
@@ -15,7 +15,7 @@ pub fn number(unit: &'static str, within: RangeInclusive<f64>) -> impl TypedValu
     })
 }
 
-/// Such a number as `wanted` names; what it may be depends on more than itself.
+/// A number as `wanted` names it, without limits: which values are legal depends on more than the value.
 #[must_use]
 pub fn any<T: FromStr + Clone + Send + Sync + 'static>(
     wanted: &'static str,
@@ -23,14 +23,14 @@ pub fn any<T: FromStr + Clone + Send + Sync + 'static>(
     NonEmptyStringValueParser::new().try_map(move |text| text.parse().map_err(|_| format!("give {wanted}")))
 }
 
-/// A whole number, as a seed is.
+/// A whole number, such as a seed.
 #[must_use]
 pub fn whole_number() -> impl TypedValueParser<Value = u64> {
     NonEmptyStringValueParser::new()
         .try_map(|text| text.parse().map_err(|_| format!("give a whole number, 0 to {}", u64::MAX)))
 }
 
-/// A number of seconds, as `within` has it.
+/// A number of seconds, in the range `within`.
 #[must_use]
 pub fn seconds(within: RangeInclusive<f64>) -> impl TypedValueParser<Value = Duration> {
     number("seconds", within).map(Duration::from_secs_f64)

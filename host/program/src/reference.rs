@@ -1,4 +1,4 @@
-//! The page of all commands of a program, in Markdown, as its command line has them.
+//! The page of all commands of a program, in Markdown, made from its command line.
 
 use std::fmt::Write as _;
 
@@ -17,7 +17,7 @@ pub fn page(head: &str, program: Command) -> String {
     page
 }
 
-/// A command without the options that all have, then those that it has.
+/// A command, without the options that all commands share, then its subcommands.
 fn section(command: &Command, before: &str, shared: &[Id], page: &mut String) {
     if command.is_hide_set() {
         return;
@@ -37,7 +37,7 @@ fn section(command: &Command, before: &str, shared: &[Id], page: &mut String) {
     }
 }
 
-/// The arguments of a command that `is_wanted` and that help shows; empty without any.
+/// The arguments of a command that `is_wanted` accepts and that the help shows; empty if there are none.
 fn table(command: &Command, is_wanted: impl Fn(&Arg) -> bool) -> String {
     let is_shown = |argument: &&Arg| {
         let by_clap = ["help", "version"].contains(&argument.get_id().as_str());
@@ -67,7 +67,7 @@ fn row(argument: &Arg) -> String {
     format!("| {} | {} |", names(argument).replace('|', "\\|"), told.replace('|', "\\|"))
 }
 
-/// The paragraphs of a help one behind the other. The first has no full stop, since alone it is the short help.
+/// The paragraphs of a help on one line. The first has no full stop of its own, since it is also the short help.
 fn on_one_line(help: &str) -> String {
     let paragraphs = help.split("\n\n").map(|it| it.split_whitespace().collect::<Vec<_>>().join(" "));
     let joined = paragraphs.reduce(|text, more| {

@@ -1,11 +1,12 @@
-//! What whoever started a program wants it to hear, and what it must not die of.
+//! Signals: those that the program was started to ignore, and one that must not end it.
 
 use std::io;
 use std::sync::Arc;
 
 use signal_hook::consts::SIGXFSZ;
 
-/// Whether whoever started the program wants it not to hear this signal, as far as the system tells: `nohup` does so with SIGHUP.
+/// Whether this signal was set to be ignored when the program was started, as `nohup` does with SIGHUP. False if the system does
+/// not say.
 #[must_use]
 pub fn is_ignored(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -14,8 +15,8 @@ pub fn is_ignored(signal: i32) -> bool {
     mask >> (signal - 1) & 1 == 1
 }
 
-/// Makes a write beyond the longest file that is allowed (`ulimit -f`, systemd's `LimitFSIZE`) fail like any other. The system would end
-/// the program without a word. A handler does it, which no program that is started from this one inherits.
+/// Makes a write beyond the allowed file size (`ulimit -f`, systemd's `LimitFSIZE`) fail like any other write. Otherwise the
+/// system would end the program without a word. This uses a handler, which programs started from this one do not inherit.
 ///
 /// # Errors
 /// The system's reason.

@@ -1,4 +1,4 @@
-//! The environment variables of a command line: an empty one is none, and a wrong one is told by its own name.
+//! The environment variables of a command line: an empty one counts as unset, and an error in one names the variable.
 
 use std::ffi::OsStr;
 
@@ -6,7 +6,7 @@ use clap::builder::Resettable;
 use clap::error::{ContextKind, ContextValue};
 use clap::{Arg, Command, Error};
 
-/// `argument` without its variable if that is empty, as CI files unset one.
+/// `argument`, without its variable if that is empty: CI files unset variables that way.
 pub(crate) fn unless_empty(argument: Arg) -> Arg {
     let value = argument.get_env().and_then(std::env::var_os);
     unless(value.is_some_and(|value| value.is_empty()), argument)
@@ -17,8 +17,8 @@ pub(crate) fn unless(left_out: bool, argument: Arg) -> Arg {
     if left_out { argument.env(Resettable::Reset) } else { argument }
 }
 
-/// `error`, told as the variable's where the value that it blames came from one: `read` without the variables of the arguments that it
-/// is asked about, `command`'s line gives another error or none.
+/// `error`, naming the environment variable if the value that it blames came from one. That is so if `command`'s line gives
+/// another error, or none, when it is read without the variable: `read` gets a test of which arguments to read without theirs.
 pub(crate) fn blamed(
     mut error: Error,
     command: &Command,

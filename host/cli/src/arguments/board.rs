@@ -42,17 +42,17 @@ pub(crate) struct BoardArguments {
     pub(crate) take_over: bool,
 }
 
-/// What most commands do without a board.
+/// The end of the help of most commands: what they do if no board is named.
 pub(crate) const MOCK: &str = " [default: mock]";
 
-/// Whether a command can do with a recording, which answers what it was asked and nothing else.
+/// Whether a command works with a recording, which answers only what it was asked when it was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Replays {
     Yes,
     No,
 }
 
-/// The help of `--board`, with what is done without one at its end.
+/// The help of `--board`. `without` is its end: what the command does if no board is named.
 fn help(replays: Replays, without: &str) -> String {
     let takes = |kind: &&kinds::Kind| replays == Replays::Yes || kind.board != BoardKind::Replay;
     let forms: Vec<_> = kinds::KINDS.iter().filter(takes).flat_map(kinds::Kind::targets).collect();
@@ -60,12 +60,12 @@ fn help(replays: Replays, without: &str) -> String {
     format!("The board: {forms}, or pool:KIND, which a plant shares; see `halfrow boards`{without}")
 }
 
-/// `argument` with that help if it is `--board`. In its place: clap puts a single one that is changed behind all others.
+/// `argument`, with that help if it is `--board`. For use on every argument: clap moves one that is changed by itself to the end.
 pub(crate) fn helped(argument: Arg, replays: Replays, without: &str) -> Arg {
     if argument.get_id() == "board" { argument.help(help(replays, without)) } else { argument }
 }
 
-/// Refuses a recording where a board is needed that answers anew.
+/// Refuses a recording where a board must answer new requests.
 pub(crate) fn refuse_recording(target: &Target) -> Result<(), Failure> {
     match kinds::of(target) {
         Some(kind) if kind.board == BoardKind::Replay => {
@@ -75,12 +75,12 @@ pub(crate) fn refuse_recording(target: &Target) -> Result<(), Failure> {
     }
 }
 
-/// `failure`, as one of what names the board.
+/// `failure`, attributed to the value of `--board`.
 pub(crate) fn wrong(failure: impl Into<Failure>) -> Failure {
     failure.into().in_value_of("--board")
 }
 
-/// Reads a target, and names its option when it is no text.
+/// Reads a target; it must be text in UTF-8.
 pub(crate) fn target() -> impl TypedValueParser<Value = Target> {
     OsStringValueParser::new().try_map(|text| match text.into_string() {
         Ok(text) => text.parse().map_err(|error: TargetError| error.to_string()),
@@ -99,7 +99,7 @@ impl BoardArguments {
         Ok(link::recording_file(&self.named(settings)?).map(Path::to_owned))
     }
 
-    /// The board that is named, or the pool of them.
+    /// The target that is named: a board or a pool; by default the mock.
     pub(crate) fn named(&self, settings: &Settings) -> Result<Target, Failure> {
         match (&self.board, &settings.board) {
             (Some(target), _) => Ok(target.clone()),
@@ -108,7 +108,7 @@ impl BoardArguments {
         }
     }
 
-    /// The board that is named, or that was got of the pool that is.
+    /// The board that is named, or the one that was leased from the pool that is named.
     pub(crate) fn target(&self, settings: &Settings) -> Result<Target, Failure> {
         pool::resolved(self.named(settings)?).map_err(|error| match error {
             PoolError::NoKind => wrong(Failure::call(error)),
@@ -116,7 +116,7 @@ impl BoardArguments {
         })
     }
 
-    /// Refuses a fault of the mock board that a run of `plan` never comes upon.
+    /// Refuses a fault of the mock board that has no effect in a run of `plan`.
     pub(crate) fn check_fault(&self, settings: &Settings, plan: &Plan) -> Result<(), Failure> {
         let target = self.target(settings)?;
         let fault = link::fault(&target).map_err(wrong)?;
@@ -139,14 +139,14 @@ impl BoardArguments {
         }
     }
 
-    /// The link to the board that is named, which is no recording; by default the mock, never a guess.
+    /// The link to the board that is named, which must not be a recording. The default is the mock; no board is ever guessed.
     pub(crate) fn candidate(&self, settings: &Settings) -> Result<Candidate, Failure> {
         let target = self.target(settings)?;
         refuse_recording(&target)?;
         link::open(&target).map_err(wrong)
     }
 
-    /// The link to the board that is named, which is the one in `recording` if there is one.
+    /// The link to the board that is named, or to the one in `recording` if there is one.
     pub(crate) fn candidate_of(
         &self,
         settings: &Settings,
@@ -172,7 +172,7 @@ impl BoardArguments {
         })
     }
 
-    /// [`Self::open_options`] where a link is measured: however poor it is, unless the call itself says what is too poor.
+    /// Like [`Self::open_options`], for measuring a link: without a retry limit, unless the call itself gives one.
     pub(crate) fn measuring_options(&self, settings: &Settings) -> Result<OpenOptions, Failure> {
         let options = self.open_options(settings)?;
         let retry_limit = if self.retry_limit.is_some() { options.retry_limit } else { RetryLimit::NONE };

@@ -1,7 +1,7 @@
-//! Which options a call gives, and which of them it leaves without effect.
+//! Which options a call gives, and which of them have no effect in it.
 //!
-//! An option that does nothing beside another one is refused when it stands on the command line, since somebody wants
-//! what it says. From the environment or the settings, which are the same for every call, it is passed over.
+//! An option that has no effect beside another one is refused on the command line, since the caller wants what it says. From
+//! the environment or the settings, which are the same for every call, it is ignored.
 
 use std::path::Path;
 
@@ -10,9 +10,9 @@ use clap::{ArgMatches, Args, Command, FromArgMatches};
 
 use halfrow::call::{self, VoidOption};
 
-/// The options of a call by their ids, which are those of clap, and where their values come from, those of its command among them.
+/// The options of a call, by their clap ids, that come from the command line or the environment, including those of its command.
 ///
-/// It has to be the first field of a command's arguments: what clap derives takes each field's values out of the
+/// It must be the first field of a command's arguments: the code that clap derives takes each field's values out of the
 /// matches, and with them where they come from.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Given {
@@ -20,7 +20,7 @@ pub(crate) struct Given {
     variables: Vec<String>,
 }
 
-/// What decides in the place of options.
+/// What makes options void.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Decider {
     /// A recording that is judged again.
@@ -29,17 +29,17 @@ pub(crate) enum Decider {
     Record,
     /// A table file, whatever it holds.
     Tables,
-    /// A time, for which the frames are chosen.
+    /// A time limit, by which the frames are chosen.
     Within,
     /// The model, which corrects without a board.
     Model,
-    /// Frames none of which is a file.
+    /// Frames of which none is a file.
     NoFrameFile,
     /// Samples without a header.
     Headerless,
-    /// Items none of which goes through a board.
+    /// Items of which none uses a board.
     NoBoardItem,
-    /// Items none of which takes the photographs of the paper.
+    /// Items of which none uses the paper's photographs.
     NoPhotographItem,
     /// Items without Fig. 4.
     NoFigure4,
@@ -47,10 +47,10 @@ pub(crate) enum Decider {
     NoSynthesisItem,
 }
 
-/// Options that tables are made from, and that a table file has too: they stand where both say the same.
+/// Options that tables are made from, and that a table file has too. They are accepted beside a file if both agree.
 pub(crate) const IN_TABLE_FILES: [&str; 4] = ["width", "height", "bits", "centre_x"];
 
-/// Options that mean nothing but making tables, or rendering built-in frames through their lens.
+/// Options that only serve to make tables, or to render built-in frames through their lens.
 const LENS: [&str; 10] = [
     "lens",
     "lens_pitch",
@@ -68,7 +68,7 @@ const LENS: [&str; 10] = [
 const BOARD: [&str; 4] = ["board", "timeout", "retry_limit", "take_over"];
 
 impl Decider {
-    /// The options that are of no use beside it.
+    /// The ids of the options that have no effect beside it.
     fn voids(self) -> Vec<&'static str> {
         let options: &[&[&str]] = match self {
             Self::Recording => &[call::BESIDE_RECORDING.options, &IN_TABLE_FILES, &LENS],
@@ -85,7 +85,7 @@ impl Decider {
         options.concat()
     }
 
-    /// Why, behind the option's name.
+    /// Why, as the words after the option's name.
     fn reason(self) -> &'static str {
         match self {
             Self::Recording => call::BESIDE_RECORDING.reason,
@@ -116,13 +116,13 @@ impl Given {
         self.flags.iter().any(|flag| flag == id)
     }
 
-    /// The first of the options that are void beside `decider` and on the command line, as it is written there.
+    /// The first option on the command line that is void beside `decider`, as it is written there.
     pub(crate) fn void_flag(&self, decider: Decider) -> Option<String> {
         decider.voids().into_iter().find(|id| self.is_flag(id)).map(written)
     }
 
-    /// Which place says what the option `id` stands for, if it is not the command line: the environment, or else the file `settings`,
-    /// which has these `keys`.
+    /// Where the value of the option `id` comes from, if not from the command line: the environment, or else the settings file
+    /// `settings`, which has these `keys`.
     pub(crate) fn place(&self, id: &str, settings: Option<&Path>, keys: &[&str]) -> Option<String> {
         if self.is_flag(id) {
             return None;
@@ -134,8 +134,8 @@ impl Given {
         Some(format!("`{id}` in the settings file {}", settings.display()))
     }
 
-    /// Refuses a flag that is void beside `decider`. Of what the environment or the settings, which have the keys
-    /// `settings`, say in vain is only told in the log.
+    /// Refuses a flag that is void beside `decider`. For void values from the environment, or from the settings, which have the
+    /// keys `settings`, there is only a line in the log.
     pub(crate) fn refuse_void(&self, decider: Decider, settings: &[&str]) -> Result<(), VoidOption> {
         if let Some(option) = self.void_flag(decider) {
             return Err(VoidOption { option, reason: decider.reason() });
@@ -151,7 +151,7 @@ impl Given {
     }
 }
 
-/// What an option that the environment and the settings may give, too, says.
+/// Reads the value of a yes-or-no option, which may also come from the environment.
 pub(crate) fn yes_or_no(text: &str) -> Result<bool, String> {
     match text.to_ascii_lowercase().as_str() {
         "1" | "yes" | "y" | "true" | "t" | "on" => Ok(true),
@@ -160,17 +160,17 @@ pub(crate) fn yes_or_no(text: &str) -> Result<bool, String> {
     }
 }
 
-/// An option as the command line has it.
+/// An option as it is written on the command line.
 pub(crate) fn written(id: &str) -> String {
     format!("--{}", id.replace('_', "-"))
 }
 
-/// The id of an option that the command line has as `written`.
+/// The id of an option that is `written` like this on the command line.
 pub(crate) fn id(written: &str) -> String {
     written.trim_start_matches('-').replace('-', "_")
 }
 
-/// By hand, since what clap derives does not say where a value comes from.
+/// Written by hand, since clap's derived code does not say where a value comes from.
 impl FromArgMatches for Given {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         let levels: Vec<_> =
@@ -209,14 +209,14 @@ mod tests {
     use super::*;
     use crate::commands::Cli;
 
-    /// The ids of the options that a command has by itself.
+    /// The ids of a command's own options.
     fn options(command: &str) -> Vec<String> {
         let line = Cli::line();
         let command = line.find_subcommand(command).unwrap();
         command.get_arguments().map(|argument| argument.get_id().to_string()).collect()
     }
 
-    /// [`Given::place`] tells it.
+    /// [`Given::place`] relies on this.
     #[test]
     fn a_variable_is_called_as_its_option() {
         fn check(command: &Command) {
@@ -229,7 +229,7 @@ mod tests {
         check(&Cli::line());
     }
 
-    /// A new option has to be put on one side or the other.
+    /// Every new option has to be assigned to one of the two lists.
     #[test]
     fn every_option_of_verify_is_void_or_does_something_beside_a_recording() {
         let stand =

@@ -1,4 +1,4 @@
-//! Frames that a user names: built-in ones and files.
+//! Frames that a user names: built-in frames and files.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -92,7 +92,7 @@ impl FrameName {
         }
     }
 
-    /// Whether it is a file, there or not, that can be read twice, as a pipe cannot.
+    /// Whether it is a file that can be read twice, as a pipe cannot. True also for a file that does not exist.
     pub(crate) fn can_be_read_twice(&self) -> bool {
         match self {
             Self::Builtin(_) => false,
@@ -105,7 +105,7 @@ impl FrameName {
         self.file().is_some_and(frames::is_photograph)
     }
 
-    /// The rows of the frame: of a file that is read as `how` says, or rendered for `scene`, whose size both must have.
+    /// The rows of the frame: read from a file as `how` says, or rendered for `scene`. A file must have the size of `scene`.
     pub(crate) fn rows(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<RowReader> {
         match self {
             Self::Builtin(builtin) => Ok(builtin.render(scene)?.into()),
@@ -117,7 +117,7 @@ impl FrameName {
         }
     }
 
-    /// The frame with these rows.
+    /// The frame with the rows of [`Self::rows`].
     pub(crate) fn frame(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<Decoded> {
         match self {
             Self::Builtin(builtin) => Ok(builtin.render(scene)?.into()),
@@ -126,15 +126,15 @@ impl FrameName {
     }
 }
 
-/// Says how the picture in the file `path` was fitted, if it was.
+/// Says on stderr how the picture in the file `path` was fitted, if it was.
 pub(crate) fn tell_fitting(path: &Path, fitting: Option<Fitting>, quiet: bool) {
     if let Some(fitting) = fitting.filter(|_| !quiet) {
         console::diagnose(&format_args!("fitted {}: {fitting}", path.display()));
     }
 }
 
-/// These frames, the files' read whole, which must fit `geometry`; and of those that were, `tell` is told how. What they were read
-/// from joins `inputs`.
+/// The frames with these names. Files are read whole and must have the size of `geometry`; `tell` is called with how each was
+/// fitted. The files are appended to `inputs`.
 pub(crate) fn frame_sources(
     names: Vec<FrameName>,
     how: &ReadOptions,

@@ -1,4 +1,4 @@
-//! The options that every run has which judges a board, and how it ends.
+//! The options of every command that judges a board, and how such a run ends.
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ use halfrow::run::{self, Circumstances, Finished, Lack, Plan, RunOptions};
 use halfrow::target::Target;
 use halfrow::verdict::Cause;
 
-/// How long a board may stay away where no number is given.
+/// How long a board may stay away if no number is given.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 #[derive(Debug, Args)]
@@ -63,7 +63,7 @@ pub(crate) struct RunArguments {
     pub(crate) lens: LensArguments,
 }
 
-/// Where a run writes, with the places taken.
+/// Where a run writes. The places are taken.
 pub(crate) struct Outputs {
     /// The report's folder.
     pub(crate) report: Option<ReportFolder>,
@@ -81,7 +81,7 @@ impl RunArguments {
         self.tables.read(given, &self.lens, settings)
     }
 
-    /// Tables and kernel to judge with, of `tables` if there are any, and the files that they and the lens were read from.
+    /// The tables and kernel to judge with, from `tables` if given, and the files that they and the lens were read from.
     pub(crate) fn chosen(
         &self,
         tables: Option<NamedTables>,
@@ -97,13 +97,13 @@ impl RunArguments {
         self.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new))
     }
 
-    /// Tables and lens that are files.
+    /// The files of the tables and the lens.
     pub(crate) fn input_files(&self, settings: &Settings) -> Vec<PathBuf> {
         let tables = self.tables.path(settings).map(PathBuf::as_path);
         tables.into_iter().chain(self.lens.file()).map(PathBuf::from).collect()
     }
 
-    /// Refuses tables and a lens that are files and cannot be read twice.
+    /// Refuses files of tables and lens that cannot be read twice.
     pub(crate) fn check_inputs(&self, settings: &Settings) -> Result<(), Failure> {
         self.lens.file().map_or(Ok(()), check_regular).map_err(Failure::call)?;
         let tables = self.tables.path(settings).map(PathBuf::as_path);
@@ -119,8 +119,8 @@ impl RunArguments {
         self.operator.clone().filter(|name| !name.trim().is_empty())
     }
 
-    /// How long a board may stay away: what the call says, where the `usual` stands for no number, or else the settings; none if neither
-    /// says anything.
+    /// How long a board may stay away: as the call says, with `usual` if it gives no number, else as the settings say; none if
+    /// neither says anything.
     pub(crate) fn patience(
         &self,
         settings: Option<f64>,
@@ -130,7 +130,7 @@ impl RunArguments {
         seconds("--reconnect", named.or(settings))
     }
 
-    /// How a run is made that judges with what was read from `inputs`.
+    /// The options of a run that judges with what was read from `inputs`.
     pub(crate) fn options(&self, inputs: Vec<Input>, settings: &Settings) -> Result<RunOptions, Failure> {
         let circumstances = Circumstances {
             arguments: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
@@ -159,7 +159,7 @@ impl RunArguments {
         self.report.as_deref().or(settings.report.as_deref())
     }
 
-    /// Looks at all that is read, `inputs` among it, and written, and takes the places of what is written.
+    /// Checks everything that the run reads, including `inputs`, and writes, and takes the places that it writes to.
     pub(crate) fn outputs(
         &self,
         inputs: Vec<PathBuf>,
@@ -189,8 +189,8 @@ impl RunArguments {
         Ok(Outputs { report, recording: recording.map_err(Failure::call)? })
     }
 
-    /// Writes the report of a run that a pool gave no board for, whose plan, options and input files `free` tells; and hands
-    /// the failure on.
+    /// Writes the report of a run for which a pool had no board, and returns the failure. `free` returns the plan, options and
+    /// input files of the run.
     pub(crate) fn without_board(
         &self,
         failure: Failure,
@@ -206,13 +206,13 @@ impl RunArguments {
         });
         match begun {
             Ok((plan, options, target, report)) => not_begun(failure, (&plan, &options), &target, report),
-            // It would have been told what is wrong with the call, had there been a board.
+            // With a board, the call would have failed by this error. Without one, the pool's failure counts.
             Err(_) => failure,
         }
     }
 }
 
-/// The time of an `option` in seconds.
+/// The time that `option` gives in seconds.
 pub(crate) fn seconds(option: &'static str, seconds: Option<f64>) -> Result<Option<Duration>, Failure> {
     call::seconds(option, seconds).map_err(|error| Failure::call(error).in_value_of(option))
 }
@@ -235,8 +235,8 @@ pub(crate) fn write_and_tell(
     Ok(report.cause.into())
 }
 
-/// Writes the report of a run that never began, as when its board cannot be opened, so that nobody takes an earlier one for its
-/// own; and hands the failure on. A call that is wrong is no run.
+/// Writes the report of a run that never began, for example because its board cannot be opened, so that nobody mistakes an
+/// earlier report for its own; and returns the failure. A wrong call is no run and has no report.
 pub(crate) fn not_begun(
     failure: Failure,
     (plan, options): (&Plan, &RunOptions),
@@ -258,7 +258,7 @@ pub(crate) fn not_begun(
     failure
 }
 
-/// Says what a verdict that stands lacks.
+/// Says on stderr what is missing beside a verdict that stands.
 pub(crate) fn tell(lack: &Lack) {
     if !lack.is_told {
         console::error(&flags::named(&lack.to_string()));

@@ -17,7 +17,7 @@ use halfrow::lenses::LensFile;
 use super::table_file::NamedTables;
 use halfrow::optics::{self, Chosen, EQUIDISTANT, Optics, OpticsError, PAPER_FIELD, TablesBy, View};
 
-/// The pixels of the paper's sensor, in micrometres.
+/// The pixel pitch of the paper's sensor, in micrometres.
 const DEFAULT_PITCH: f64 = 2.2;
 
 /// The options that say how tables are made.
@@ -89,7 +89,7 @@ pub(crate) struct LensArguments {
     centre_y: Option<f64>,
 }
 
-/// A lens by the name that the command line gives it.
+/// A lens as it is named on the command line.
 #[derive(Clone, Debug)]
 enum LensName {
     Equidistant(f64),
@@ -148,7 +148,7 @@ impl LensArguments {
         }
     }
 
-    /// Whether the option `id`, one of [`super::given::IN_TABLE_FILES`], says what `geometry` has.
+    /// Whether the option `id`, one of [`super::given::IN_TABLE_FILES`], agrees with `geometry`.
     pub(crate) fn agrees(&self, id: &str, geometry: &Geometry) -> bool {
         match id {
             "width" => self.width == Some(geometry.width()),
@@ -158,7 +158,7 @@ impl LensArguments {
         }
     }
 
-    /// The option by which the call says how tables are made, if it does.
+    /// The option with which the call says how tables are made, if it does.
     pub(crate) fn says_how(&self) -> Option<&'static str> {
         match (self.rows, self.projection) {
             (Some(_), _) => Some("--rows"),
@@ -177,7 +177,7 @@ impl LensArguments {
         }
     }
 
-    /// The frame and the lens before it.
+    /// The frame's geometry and its lens.
     pub(crate) fn optics(&self) -> Result<Optics, Failure> {
         self.check().map_err(Failure::call)?;
         match self.file() {
@@ -187,7 +187,7 @@ impl LensArguments {
         .map_err(Failure::call)
     }
 
-    /// Refuses options that say nothing beside the lens, or something else than it.
+    /// Refuses options that have no effect with this lens or contradict it.
     fn check(&self) -> anyhow::Result<()> {
         let scales = self.lens_pitch.is_some();
         let is_exact = self.projection == Some(Projection::Exact);
@@ -251,7 +251,7 @@ impl LensArguments {
         Ok(Optics::of_lens_file(input, &file, scale, &self.view(), self.by(Rows::Fitted))?)
     }
 
-    /// Pixels of the frame for each of a camera with pixels of `pitch`.
+    /// How many pixels of the frame correspond to one pixel of a camera with this `pitch`.
     fn scale_from(&self, pitch: f64) -> Result<f64, LensError> {
         let pitches = [pitch, self.pixel_pitch()];
         match pitches.into_iter().find(|pitch| !(pitch.is_finite() && *pitch > 0.0)) {
@@ -271,8 +271,7 @@ pub(crate) fn kernel(name: &OsStr) -> Result<Kernel, Failure> {
     Ok(optics::kernel(name)?)
 }
 
-/// Takes the tables `named` if there are some, and those of the lens otherwise; `kernel_name` replaces the file's
-/// kernel.
+/// The tables `named` if given, otherwise those of the lens; `kernel_name` replaces the kernel of the table file.
 pub(crate) fn choose(
     named: Option<NamedTables>,
     lens: &LensArguments,

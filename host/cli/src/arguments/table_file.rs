@@ -1,4 +1,4 @@
-//! `--tables`, and what comes before it.
+//! `--tables`, and what takes precedence over it.
 
 use std::path::{Path, PathBuf};
 
@@ -31,13 +31,13 @@ pub(crate) struct NamedTables {
 }
 
 impl TableArgument {
-    /// The file that is named, whether its tables will be taken or not.
+    /// The file that is named, whether or not its tables will be used.
     pub(crate) fn path<'a>(&'a self, settings: &'a Settings) -> Option<&'a PathBuf> {
         self.tables.as_ref().or(settings.tables.as_ref())
     }
 
-    /// The file to take the tables from; none for those of the lens options. Options that make tables are flags, and so come
-    /// before a file that the environment or `settings` names.
+    /// The file to take the tables from; none if the lens options make them. Options that make tables are flags, and so take
+    /// precedence over a file from the environment or `settings`.
     pub(crate) fn read(
         &self,
         given: &Given,

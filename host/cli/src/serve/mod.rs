@@ -1,10 +1,10 @@
-//! A board of this program for other programs: behind a pseudo-terminal or a TCP port.
+//! A board in this program for other programs, behind a pseudo-terminal or a TCP port.
 //!
 //! ```text
 //! other program ── pseudo-terminal or connection ──► Hosted ──► Link ──► mock or simulated board
 //! ```
 //!
-//! The board's clock, which is virtual, is kept at the wall's, so that its speed and its silences are real.
+//! The board's clock is virtual. It is kept at real time, so that speed and silences are real.
 
 mod pty;
 mod tcp;
@@ -23,11 +23,11 @@ use halfrow_protocol::Decoder;
 pub use pty::{Name, Pty};
 pub use tcp::Port;
 
-/// Bytes that may wait on either side before the other one has to.
+/// How many bytes may wait in either direction before the sender has to wait.
 const QUEUE: usize = 64 * 1024;
-/// How often a board is looked after that has moved bytes of late, since they may be under way on its wire.
+/// How often a board is served that has moved bytes recently, since more may be under way on its wire.
 const BUSY_TICK: Duration = Duration::from_millis(1);
-/// The same on a wire with a speed, where that would be too coarse.
+/// How often on a wire with a speed, for which [`BUSY_TICK`] would be too coarse.
 const PACED_TICK: Duration = Duration::from_micros(100);
 /// How often at other times.
 const IDLE_TICK: Duration = Duration::from_millis(20);
@@ -75,20 +75,20 @@ pub struct Traffic {
     pub to_board: u64,
     /// Bytes to the host.
     pub to_host: u64,
-    /// When the last whole packet came from the host that is attended to.
+    /// When the last whole packet came from the present host.
     pub heard: Option<Instant>,
 }
 
-/// Why a host is attended to no longer.
+/// Why a host is no longer served.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Left {
     /// It hung up.
     Host,
-    /// It was time to end.
+    /// `ended` said so.
     Ended,
 }
 
-/// A board with what is on its way to it and from it.
+/// A board with the bytes on their way to it and from it.
 pub struct Hosted {
     link: Box<dyn Link>,
     /// When the board's clock was 0.
@@ -98,7 +98,7 @@ pub struct Hosted {
     to_host: Vec<u8>,
     traffic: Traffic,
     moved_at: Instant,
-    /// What the present host says.
+    /// Decodes what the present host sends.
     said: Decoder,
 }
 
@@ -106,15 +106,15 @@ impl Hosted {
     /// The board that `target` names, switched on now.
     ///
     /// # Errors
-    /// [`OpenError`] as [`open`] has it.
+    /// [`OpenError`], like [`open`].
     pub fn open(target: &Target) -> Result<Self, OpenError> {
         let mut target = target.clone();
-        // The board is kept at the wall's time here: a link that sleeps as well would never catch up.
+        // The board is kept at real time here: a link that also sleeps would never catch up.
         target.options.retain(|(key, value)| (key.as_str(), value.as_str()) != ("pace", "real"));
         Ok(Self::new(open(&target)?.link))
     }
 
-    /// The board behind `link`, switched on now.
+    /// The board at the end of `link`, switched on now.
     #[must_use]
     pub fn new(link: Box<dyn Link>) -> Self {
         let now = Instant::now();
@@ -130,8 +130,8 @@ impl Hosted {
         }
     }
 
-    /// Passes bytes between the host behind `door` and the board, until the host hangs up or `ended` says so. The
-    /// next host finds the board as this one left it.
+    /// Passes bytes between the host at `door` and the board, until the host hangs up or `ended` says so. The next host
+    /// finds the board as this one left it.
     ///
     /// # Errors
     /// [`ServeError::Board`] when the board is gone.
@@ -145,7 +145,7 @@ impl Hosted {
             if ended(self.traffic) {
                 return self.leave(Left::Ended);
             }
-            // What comes now must find the board's clock at the wall's: it stands while nobody is attended to.
+            // The board's clock stands while no host is served, and must be at real time for what comes now.
             self.run_board()?;
             let before = self.traffic;
             if self.listen(door).and_then(|()| self.speak(door)).is_err() {
@@ -160,7 +160,7 @@ impl Hosted {
         }
     }
 
-    /// What the host said last still counts; what it did not wait for is nobody's.
+    /// What the host sent last still reaches the board; answers that it did not wait for are dropped.
     fn leave(&mut self, why: Left) -> Result<Left, ServeError> {
         self.run_board()?;
         self.to_board.clear();
@@ -175,7 +175,7 @@ impl Hosted {
             return;
         }
         let tick = if is_busy { BUSY_TICK } else { IDLE_TICK };
-        // A door that is gone is found out by the next attempt to use it.
+        // If the door is gone, the next attempt to use it shows that.
         let _ = is_ready(door.as_raw_fd(), !self.to_host.is_empty(), tick);
     }
 
@@ -188,7 +188,7 @@ impl Hosted {
         Ok(())
     }
 
-    /// Notes when the host said something that is a packet, among what it said behind the first `old` bytes.
+    /// Notes the time if there is a whole packet in what the host sent after the first `old` bytes.
     fn hear(&mut self, old: usize) {
         let mut bytes = &self.to_board[old..];
         while let Some(packet) = self.said.next(&mut bytes) {
@@ -205,7 +205,7 @@ impl Hosted {
         Ok(())
     }
 
-    /// Lets the board do all that it can have done by now.
+    /// Lets the board do everything that it could have done by now.
     fn run_board(&mut self) -> Result<(), ServeError> {
         while self.to_host.len() < QUEUE {
             let behind = self.switched_on.elapsed().saturating_sub(self.link.now());

@@ -1,4 +1,4 @@
-//! A pseudo-terminal, with a name of one's own if wanted.
+//! A pseudo-terminal, with a chosen name if wanted.
 
 use std::os::fd::{AsRawFd, RawFd};
 use std::os::unix::fs::symlink;
@@ -13,10 +13,10 @@ use nix::sys::termios::{SetArg, cfmakeraw, tcgetattr, tcsetattr};
 use super::{Hosted, Left, ServeError, Traffic};
 use halfrow::link::descriptor::never_block;
 
-/// How often it is looked whether a host has come.
+/// How often to check whether a host has come.
 const TICK: Duration = Duration::from_millis(5);
 
-/// A pseudo-terminal. Dropping it is what pulling the cable is to a serial port.
+/// A pseudo-terminal. Dropping it is like pulling the cable of a serial port.
 #[derive(Debug)]
 pub struct Pty {
     master: PtyMaster,
@@ -24,7 +24,7 @@ pub struct Pty {
 }
 
 impl Pty {
-    /// A new one, which passes on every byte as it is.
+    /// A new pseudo-terminal in raw mode, which passes every byte on unchanged.
     ///
     /// # Errors
     /// [`ServeError::Door`] when the system has none left.
@@ -72,7 +72,7 @@ impl AsRawFd for Pty {
     }
 }
 
-/// A symbolic link, which goes when it is dropped, unless it is another's by then.
+/// A symbolic link, which is removed when this is dropped, unless another server has replaced it.
 #[derive(Debug)]
 pub struct Name {
     path: PathBuf,
@@ -80,10 +80,10 @@ pub struct Name {
 }
 
 impl Name {
-    /// Links `path` to `target`. One that a killed server left behind, and that leads nowhere, is replaced.
+    /// Links `path` to `target`. Replaces a link that leads nowhere, such as one that a killed server left behind.
     ///
     /// # Errors
-    /// [`ServeError`] when there is something of that name, or the link cannot be made.
+    /// [`ServeError`] when anything else has that name, or the link cannot be made.
     pub fn link(path: &Path, target: &Path) -> Result<Self, ServeError> {
         let door = |source| ServeError::Door { what: format!("the link {}", path.display()), source };
         match fs::symlink_metadata(path) {

@@ -9,27 +9,27 @@ use std::time::{Duration, Instant};
 use super::{Hosted, ServeError, Traffic};
 use halfrow::link::descriptor::{is_ready, never_block};
 
-/// How often it is looked whether to end while nobody is connected.
+/// How often to check whether to end while nobody is connected.
 const TICK: Duration = Duration::from_millis(50);
 
-/// How long a second host waits for the first to leave. One that was killed leaves only when all that it sent is read.
+/// How long a second host waits for the first to leave. A host that was killed leaves only when everything that it sent is read.
 const GRACE: Duration = Duration::from_millis(100);
 
-/// When a host that is connected and says nothing gives way to another one.
+/// When a host that is connected but silent gives way to another one.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Patience {
-    /// How long it may be connected without a packet of the wire.
+    /// How long it may be connected before its first packet.
     pub(super) unheard: Duration,
-    /// How long behind its last packet: as long as the wire lets it hold the board.
+    /// How long it may be silent after its last packet: as long as the protocol lets it hold the board.
     pub(super) silent: Duration,
 }
 
 const PATIENCE: Patience = Patience { unheard: Duration::from_secs(2), silent: Duration::from_secs(10) };
 
-/// What ser2net says to a second host, so that it reads the same from here.
+/// What ser2net sends to a second host, so that hosts need not tell the two apart.
 const IN_USE: &[u8] = b"Port already in use\r\n";
 
-/// A port that is listened on.
+/// A TCP port that is listened on.
 #[derive(Debug)]
 pub struct Port {
     listener: TcpListener,
@@ -37,7 +37,7 @@ pub struct Port {
 }
 
 impl Patience {
-    /// Whether a host gives way that connected then and was last heard at `heard`.
+    /// Whether a host gives way that connected at `connected` and was last heard at `heard`.
     fn ends(self, connected: Instant, heard: Option<Instant>) -> bool {
         match heard {
             Some(heard) => heard.elapsed() >= self.silent,
@@ -47,10 +47,10 @@ impl Patience {
 }
 
 impl Port {
-    /// Listens on `address`, HOST:PORT, or a port of this computer alone. Port 0 is any that is free.
+    /// Listens on `address`: HOST:PORT, or a PORT that only this computer can reach. Port 0 is any free port.
     ///
     /// # Errors
-    /// [`ServeError::Address`] when it is none; [`ServeError::Door`] when it is taken or not this computer's.
+    /// [`ServeError::Address`] when it is not an address; [`ServeError::Door`] when it is taken or not this computer's.
     pub fn listen(address: &str) -> Result<Self, ServeError> {
         let local = address.parse::<u16>().map(|port| format!("127.0.0.1:{port}"));
         let has_port = |address: &str| {
@@ -78,8 +78,8 @@ impl Port {
         self.listener.local_addr().map_err(unknown)
     }
 
-    /// Serves `board` to one host after the other, until `ended` says so. Others are turned away meanwhile, unless the one
-    /// that is connected has sent no packet for some seconds: then it is, and the next one served.
+    /// Serves `board` to one host after the other, until `ended` says so. Other hosts are turned away meanwhile. But if the
+    /// connected host has sent no packet for some seconds, it is turned away and the next one served.
     ///
     /// # Errors
     /// [`ServeError::Board`] when the board is gone.
@@ -104,7 +104,7 @@ impl Port {
                     return true;
                 }
                 if let Some((mut host, _)) = next.take_if(|(_, since)| since.elapsed() > GRACE) {
-                    // One that does not wait for the answer needs none.
+                    // A host that does not wait for this answer does not need it.
                     let _ = host.write_all(IN_USE);
                 }
                 ended(traffic)
@@ -114,10 +114,10 @@ impl Port {
     }
 }
 
-/// Where hosts come in.
+/// The listener that lets hosts in.
 struct Entrance<'a> {
     listener: &'a TcpListener,
-    /// Whether the system lets nobody in, which has been told.
+    /// Whether the system lets nobody in. This has then been logged.
     is_shut: bool,
 }
 
@@ -140,7 +140,7 @@ impl Entrance<'_> {
         Some(host)
     }
 
-    /// Waits for the next host, or a tick. A host that cannot be let in is there all the time.
+    /// Waits for the next host, or a tick. While hosts cannot be let in, the listener is always ready, so this only sleeps.
     fn wait(&self) {
         if self.is_shut {
             thread::sleep(TICK);

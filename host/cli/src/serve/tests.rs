@@ -1,4 +1,4 @@
-//! A board that is served finds the time of day right, and is not kept from others by a host that is silent.
+//! A served board keeps real time, and a silent host does not keep it from others.
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
@@ -15,7 +15,7 @@ use super::{Hosted, Left, Port};
 use halfrow::link::descriptor::never_block;
 use halfrow::link::{Link, LinkError, open};
 
-/// A link whose clock can be set forward.
+/// A link whose clock can be set ahead.
 struct Shifted {
     link: Box<dyn Link>,
     by: Arc<Mutex<Duration>>,
@@ -48,7 +48,7 @@ fn mock() -> Box<dyn Link> {
     open(&"mock".parse().unwrap()).unwrap().link
 }
 
-/// The greeting of a host.
+/// The HELLO of a host.
 fn hello(host: u32) -> Vec<u8> {
     let hello = Hello { nonce: host, host, version_min: 1, version_max: 1, take_over: false };
     let request = Request::Hello(hello);
@@ -58,7 +58,7 @@ fn hello(host: u32) -> Vec<u8> {
     bytes
 }
 
-/// The reason for which the board turned a host away, if it did.
+/// Why the board turned a host away, if it did.
 fn refusal(mut bytes: &[u8]) -> Option<RefusalCode> {
     let mut decoder = Decoder::new();
     let packet = decoder.next(&mut bytes).unwrap().unwrap();
@@ -69,13 +69,13 @@ fn refusal(mut bytes: &[u8]) -> Option<RefusalCode> {
     }
 }
 
-/// What the second host is told when the first one, which is gone, was last heard `ago`.
+/// The refusal that a second host gets when the first one, which is gone, was last heard this long `ago`.
 fn second_host_is_told(ago: Duration) -> Option<RefusalCode> {
     let mut link = mock();
     let mut heard = Vec::new();
     link.exchange(&hello(1), &mut heard, Duration::ZERO).unwrap();
     assert_eq!(refusal(&heard), None);
-    // The board was switched on `ago`, and nobody has let its clock run since.
+    // The board was switched on this long ago, and its clock has stood still since.
     let by = Arc::new(Mutex::new(ago));
     let mut board = Hosted::new(Box::new(Shifted { link, by: Arc::clone(&by) }));
     *by.lock().unwrap() = Duration::ZERO;
@@ -100,7 +100,7 @@ fn a_host_that_was_silent_while_nobody_was_served_holds_the_board_no_longer() {
     assert_eq!(second_host_is_told(Duration::from_secs(1)), Some(RefusalCode::Held));
 }
 
-/// What the port says to a host while another one is connected that has sent `first`.
+/// What the port sends to a host while another one is connected that has sent `first`.
 fn told_beside(first: &[u8], patience: Patience) -> Vec<u8> {
     let mut port = Port::listen("127.0.0.1:0").unwrap();
     port.patience = patience;

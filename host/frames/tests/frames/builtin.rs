@@ -1,4 +1,4 @@
-//! The built-in frames: what each one promises.
+//! The built-in frames: that each one is what it promises.
 
 use std::collections::HashSet;
 
@@ -75,7 +75,7 @@ fn ramps_go_from_end_to_end_rounded_half_up() {
 
 #[test]
 fn bars_have_their_colours_in_every_phase() {
-    // Of white, yellow, cyan, green, magenta, red, blue and black: which bars have red, green and blue in them.
+    // Which of the bars white, yellow, cyan, green, magenta, red, blue and black contain red, green and blue.
     let (red, green, blue) = ("11001100", "11110000", "10101010");
     for phase in Phase::ALL {
         let frame = render(Builtin::Bars, &Scene { phase, ..scene(64, 2, BitDepth::Eight) });
@@ -103,8 +103,8 @@ fn neighbours_of_one_colour_alternate_in_the_checkerboard() {
     }
 }
 
-/// Each weight is seen by itself: wherever an output's seven taps hold an impulse, they hold only one, and over the frame
-/// every tap meets one of either kind in every interval of the kernel.
+/// Each weight shows by itself: no output has more than one impulse under its seven taps, and over the frame every tap meets an
+/// impulse of either kind in every interval of the kernel.
 #[test]
 fn impulses_meet_every_tap_in_every_interval_of_the_kernel() {
     let scene = Scene::default();
@@ -136,7 +136,7 @@ fn impulses_visit_every_column_both_ways() {
     }
 }
 
-/// The numbers that the PCG library's own demonstration prints for seed 42 and stream 54, and their upper bits.
+/// The numbers that the PCG library's own demonstration prints for seed 42 and stream 54; samples are their upper bits.
 #[test]
 fn noise_is_the_published_sequence_of_its_generator() {
     let published = [0xa15c_02b7_u32, 0x7b47_f409, 0xba1d_3330, 0x83d2_f293, 0xbfa4_784b, 0xcbed_606e];
@@ -147,7 +147,7 @@ fn noise_is_the_published_sequence_of_its_generator() {
     }
 }
 
-/// Half-way between two samples of one colour, Hermite is (G2 + G4)/2 + (2·R3 − R1 − R5)/8 and Keys is
+/// Halfway between two samples of one colour, Hermite is (G2 + G4)/2 + (2·R3 − R1 − R5)/8 and Keys is
 /// (9·G2 + 9·G4 − G0 − G6)/16 (Eqs. 12 and 18 at x = 1).
 #[test]
 fn extremes_drive_either_sum_beyond_both_ends_in_either_colour() {

@@ -1,4 +1,4 @@
-//! DNG files that Python's struct wrote byte by byte, and what must be read from them.
+//! DNG files that were written byte by byte with Python's struct module, and what must be read from them.
 
 use halfrow_frames::{DecodeError, Orientation, PictureSize, ReadOptions, decode, dng};
 use halfrow_model::{BitDepth, Frame, Phase};
@@ -10,7 +10,7 @@ const LITTLE: &str = "\
     0000010000001601030001000000020000001701040001000000100000008d82030002000000020002008e820100040000000201\
     010012c6010004000000010400001dc6040001000000ff0f000000000000";
 
-/// The same, high byte first.
+/// Like [`LITTLE`], high byte first.
 const BIG: &str = "\
     4d4d002a000000180000000101000fff0ffe080000110003000d0100000400000001000000040101000300000001000200000102\
     00030000000100100000010300030000000100010000010600030000000180230000011100040000000100000008011500030000\
@@ -19,7 +19,7 @@ const BIG: &str = "\
 
 const SAMPLES: [u16; 8] = [0, 1, 256, 4095, 4094, 2048, 17, 3];
 
-/// Where entries of 12 bytes begin, the tag being the first two.
+/// Where directory entries begin. An entry has 12 bytes; the first two are the tag.
 const PHOTOMETRIC: usize = 26 + 4 * 12;
 const REPEAT: usize = 26 + 9 * 12;
 const PATTERN: usize = 26 + 10 * 12;
@@ -34,7 +34,7 @@ fn hex(text: &str) -> Vec<u8> {
     digits.chunks(2).map(|pair| u8::try_from(pair[0] * 16 + pair[1]).unwrap()).collect()
 }
 
-/// [`LITTLE`] with other bytes at a place.
+/// [`LITTLE`] with other bytes at one place.
 fn altered(place: usize, bytes: &[u8]) -> Vec<u8> {
     let mut file = hex(LITTLE);
     file[place..place + bytes.len()].copy_from_slice(bytes);
@@ -67,7 +67,7 @@ fn the_pattern_is_the_phase() {
     }
 }
 
-/// White need not be a power of two less one; a camera of 14 bits has its white at 16383 at most.
+/// White need not be a power of two minus one. A camera of 14 bits has its white at 16383 at most.
 #[test]
 fn white_tells_the_depth() {
     assert_eq!(decode(&altered(WHITE + 8, &4000_u32.to_le_bytes()), &AS_WRITTEN).unwrap().samples(), SAMPLES);
@@ -86,10 +86,10 @@ fn what_is_no_plain_bayer_picture_is_refused_with_a_remedy() {
         (PATTERN + 4, 36_u32.to_le_bytes().to_vec(), "is no Bayer pattern"),
         // The same four colours, in one row of four.
         (REPEAT + 8, [1_u16, 4].map(u16::to_le_bytes).concat(), "is no Bayer pattern"),
-        // CFALayout 2, and BlackLevelDeltaV of 64, where CFARepeatPatternDim was.
+        // CFALayout 2, and BlackLevelDeltaV of 64, in place of CFARepeatPatternDim.
         (REPEAT, [50711_u16, 3, 1, 0, 2].map(u16::to_le_bytes).concat(), "CFALayout is staggered"),
         (REPEAT, [50716 | 10 << 16, 1_u32, 8].map(u32::to_le_bytes).concat(), "BlackLevelDeltaV is not 0"),
-        // A first picture in grey, as a preview is, whose raw samples lie elsewhere.
+        // A first picture in grey, such as a preview; the raw samples are elsewhere.
         (PHOTOMETRIC + 8, 1_u16.to_le_bytes().to_vec(), "as `dcraw -D -4 -T` does"),
         (VERSION, 50712_u16.to_le_bytes().to_vec(), "convert it to samples that are linear"),
     ];
@@ -99,7 +99,8 @@ fn what_is_no_plain_bayer_picture_is_refused_with_a_remedy() {
     }
 }
 
-/// [`LITTLE`] with an ActiveArea (top, left, bottom, right) of 32 bits each behind its end, where its CFARepeatPatternDim was.
+/// [`LITTLE`] with an ActiveArea (top, left, bottom, right) of 32 bits each, in place of its CFARepeatPatternDim. The values are
+/// appended to the file.
 fn with_active_area(area: [u32; 4]) -> Vec<u8> {
     let end = u32::try_from(hex(LITTLE).len()).unwrap();
     let entry = [50829 | 4 << 16, 4, end].map(u32::to_le_bytes).concat();
@@ -118,7 +119,7 @@ fn an_active_area_that_leaves_samples_out_is_refused() {
     assert!(matches!(decode(&broken_off, &AS_WRITTEN), Err(DecodeError::TiffDirectory { .. })));
 }
 
-/// BlackLevel where WhiteLevel was: a short, two of them, a long, and a fraction behind the end of the file.
+/// BlackLevel in place of WhiteLevel: as a short, two shorts, a long, and a fraction, which is appended to the file.
 #[test]
 fn black_that_is_not_0_is_refused() {
     let black = |kind: u32, count: u32, value: u32| {
@@ -135,7 +136,7 @@ fn black_that_is_not_0_is_refused() {
     }
 }
 
-/// PhotometricInterpretation as 32 bits, which the specification has in 16.
+/// PhotometricInterpretation as 32 bits, where the specification has 16.
 #[test]
 fn a_wide_colour_code_is_taken_in_either_byte_order() {
     let little = altered(PHOTOMETRIC + 2, &[4, 0, 1, 0, 0, 0, 0x23, 0x80, 0, 0]);

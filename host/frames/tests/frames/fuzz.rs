@@ -1,4 +1,4 @@
-//! Decoders that are handed anything at all.
+//! Decoders must survive any input.
 
 use std::io::Cursor;
 
@@ -21,7 +21,7 @@ fn files() -> Vec<Vec<u8>> {
     vec![as_pgm, as_png, as_tiff.into_inner(), as_dng.into_inner()]
 }
 
-/// The PNG with the right checksum behind every chunk that is left, so that damage reaches what lies behind the check.
+/// The PNG with the right checksum after every remaining chunk, so that the damage gets past the check.
 fn with_checksums(mut file: Vec<u8>) -> Vec<u8> {
     let mut chunk = 8;
     while let Some(&[a, b, c, d]) = file.get(chunk..).and_then(|rest| rest.first_chunk()) {
@@ -35,7 +35,7 @@ fn with_checksums(mut file: Vec<u8>) -> Vec<u8> {
     file
 }
 
-/// Drives every decoder with `bytes`, whatever they begin with: the body of a fuzzer. It must return.
+/// The body of a fuzzer: gives `bytes` to every decoder, whatever they begin with. It must return.
 fn fuzz_decode(bytes: &[u8]) {
     let how = ReadOptions::default();
     let mut results = vec![decode(bytes, &how), pgm::decode(bytes, &how), png::decode(bytes, &how)];

@@ -1,6 +1,6 @@
-//! Frames: files of every format, the built-in ones, previews.
+//! Frames: files of every format, built-in frames, previews.
 
-// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
+// clippy.toml allows this in #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used)]
 
 mod builtin;

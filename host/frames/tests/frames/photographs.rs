@@ -1,4 +1,4 @@
-//! Photographs that Pillow made and showed: `tests/photographs/make.py` says how. What it shows of each is beside it as a PNG.
+//! Photographs that were made with Pillow (`tests/photographs/make.py`). Beside each is a PNG of what Pillow shows of it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,8 +12,8 @@ use halfrow_model::{BitDepth, Phase};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 
-/// Every photograph that is read, with how far a sample may be from Pillow's: decoders of JPEG and of lossy WebP may round each
-/// step of theirs, and spread colours that were kept at half the size by filters of their own.
+/// Every photograph that is read, and the largest allowed difference from Pillow's samples: decoders of JPEG and lossy WebP may
+/// round in each step, and have different filters to enlarge colours that are stored at half the size.
 const READ: [(&str, u16); 19] = [
     ("baseline.jpg", 2),
     ("subsampled.jpg", 5),
@@ -48,14 +48,14 @@ fn of_eight_bits(phase: Phase) -> ReadOptions {
     ReadOptions { depth: BitDepth::Eight, phase, ..ReadOptions::default() }
 }
 
-/// What Pillow shows, under a filter array.
+/// What Pillow shows, and its samples under a filter array.
 fn shown(name: &str, phase: Phase) -> (RgbImage, Vec<u16>) {
     let image = read_rgb(&path(name)).unwrap();
     let samples = mosaic(&image, phase).unwrap().samples().to_vec();
     (image, samples)
 }
 
-/// The largest difference of two frames' samples.
+/// The largest difference between the samples of two frames.
 fn apart(found: &[u16], wanted: &[u16]) -> u16 {
     assert_eq!(found.len(), wanted.len());
     found.iter().zip(wanted).map(|(found, wanted)| found.abs_diff(*wanted)).max().unwrap()
@@ -74,7 +74,7 @@ fn photographs_are_what_another_program_shows() {
     }
 }
 
-/// 8 bits become 12 as v · 4095 / 255 to the nearest; of grey, too.
+/// 8 bits become 12 as v · 4095 / 255, rounded to the nearest; grey too.
 #[test]
 fn a_photograph_is_scaled_to_the_depth() {
     for name in ["lossless.webp", "grey.bmp"] {
@@ -113,7 +113,7 @@ fn fitted_pictures_are_cropped_about_their_centre_and_scaled() {
     }
 }
 
-/// A bright window in a dark wall: what cubic scaling adds at its edges is beyond white, of whatever kind the file is.
+/// A bright window in a dark wall: cubic scaling overshoots beyond white at its edges, whatever the format of the file.
 #[test]
 fn scaling_does_not_overshoot_white() {
     let (width, height) = (96, 64);
@@ -122,7 +122,7 @@ fn scaling_does_not_overshoot_white() {
     let picture = RgbImage { width, height, data };
     let mut png = Vec::new();
     encode_png_rgb(&picture, &mut png).unwrap();
-    // A BMP of its rows from the last one, after 54 bytes of heads.
+    // A BMP: 54 bytes of headers, then the rows from the last to the first.
     let mut bmp =
         [&b"BM"[..], &[0; 8], &[54, 0, 0, 0, 40, 0, 0, 0, 96, 0, 0, 0, 64, 0, 0, 0, 1, 0, 24, 0], &[0; 24]]
             .concat();
@@ -156,7 +156,7 @@ fn kinds_that_are_not_taken_are_named() {
     assert_eq!(refused(&bytes("cmyk.jpg")), "a CMYK JPEG");
     assert_eq!(refused(&bytes("animated.webp")), "an animated WebP");
     assert_eq!(refused(&bytes("picture.avif")), "an AVIF");
-    // The frame header of a baseline JPEG is ff c0, its length, its bits, its sides and its colours.
+    // The frame header of a baseline JPEG: ff c0, its length, the bits, the sides and the number of colours.
     let file = bytes("baseline.jpg");
     let header = file.windows(5).position(|window| window == [0xff, 0xc0, 0, 17, 8]).unwrap();
     for (place, value, what) in [
@@ -170,13 +170,13 @@ fn kinds_that_are_not_taken_are_named() {
         other[header + place] = value;
         assert_eq!(refused(&other), what);
     }
-    // A BMP's coding is at byte 30; 4 is that of a JPEG inside.
+    // A BMP's compression is at byte 30; 4 means a JPEG inside.
     let mut coded = bytes("colour.bmp");
     coded[30] = 4;
     assert_eq!(refused(&coded), "this kind of BMP");
 }
 
-/// A header that asks for 60000 x 60000 is refused before room for it is made.
+/// A header that asks for 60000 x 60000 is refused before memory is allocated for it.
 #[test]
 fn a_header_cannot_ask_for_more_than_is_decoded() {
     let (mut jpeg, mut bmp) = (bytes("baseline.jpg"), bytes("colour.bmp"));
@@ -189,7 +189,7 @@ fn a_header_cannot_ask_for_more_than_is_decoded() {
         assert!(matches!(error, DecodeError::TooManyPixels { width: 60_000, height: 60_000 }), "{error}");
         assert!(error.to_string().ends_with("above 100 megapixels; scale it down first"), "{error}");
     }
-    // The canvas of an extended WebP has its sides less one at byte 24, in three bytes each.
+    // An extended WebP has the sides of its canvas, minus one, at byte 24, in three bytes each.
     let mut webp = bytes("turned6.webp");
     assert_eq!(webp[12..16], *b"VP8X");
     for side in [24, 27] {
@@ -209,7 +209,7 @@ fn every_truncation_is_an_error() {
     }
 }
 
-/// A third of the samples and an end as in a whole file: what a decoder fills up.
+/// A third or half of the coded samples and an end marker as in a whole file: decoders would fill in the rest.
 #[test]
 fn a_jpeg_with_samples_missing_is_refused() {
     for name in ["baseline.jpg", "subsampled.jpg", "grey.jpg", "turned6.jpg"] {
@@ -223,7 +223,7 @@ fn a_jpeg_with_samples_missing_is_refused() {
     }
 }
 
-/// 10000 x 9999 in a few kilobytes: each block of 8 x 8 pixels takes a bit at least.
+/// 10000 x 9999 in a few kilobytes: each block of 8 x 8 pixels takes at least one bit.
 #[test]
 fn a_jpeg_of_fewer_bits_than_blocks_is_refused() {
     for (name, frame) in [("baseline.jpg", 0xc0), ("progressive.jpg", 0xc2)] {
@@ -235,7 +235,7 @@ fn a_jpeg_of_fewer_bits_than_blocks_is_refused() {
     }
 }
 
-/// Decoders of JPEG may round otherwise than Pillow's.
+/// Decoders of JPEG may round differently from Pillow's.
 #[test]
 fn photographs_are_shown_as_pictures_of_colours_too() {
     for (name, most) in READ {

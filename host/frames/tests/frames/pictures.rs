@@ -1,5 +1,5 @@
-//! PNG and TIFF files that Python's zlib and struct wrote byte by byte, and what must be read from them. The scaled
-//! samples were computed there with exact fractions.
+//! PNG and TIFF files that were written byte by byte with Python's zlib and struct modules, and what must be read from them.
+//! The scaled samples were computed in Python with exact fractions.
 
 use halfrow_frames::{DecodeError, Orientation, PictureSize, ReadOptions, decode, png, tiff};
 use halfrow_model::{BitDepth, Frame, FrameError, Phase};
@@ -13,7 +13,7 @@ const PNG_RGB8: &str = "89504e470d0a1a0a0000000d49484452000000040000000208020000
     00f0caea34000000234944415478da63e01291d330b2710b884ac9ab6068ea99b660d5967d272edd79f61f0068c50bc8\
     8217b7dc0000000049454e44ae426082";
 
-/// The same times 257 in 16 bits, with an alpha of 0x1234.
+/// The samples of [`PNG_RGB8`] times 257 in 16 bits, with an alpha of 0x1234.
 const PNG_RGBA16: &str = "89504e470d0a1a0a0000000d49484452000000040000000210060000002f38a1200000004d4944415478da01\
     4200bdff000a0a14141e1e1234282832323c3c1234464650505a5a123464646e6e787812340082828c8c9696\
     1234a0a0aaaab4b41234bebec8c8d2d21234dcdce6e6ffff12346a6119bff88fcad70000000049454e44ae42\
@@ -34,7 +34,7 @@ const TIFF_LITTLE: &str = "49492a0018000000000001000001ff0ffe0f00081100030009000
     0400010000000800000015010300010000000100000016010300010000000200000017010400010000001000\
     000000000000";
 
-/// The same, high byte first.
+/// Like [`TIFF_LITTLE`], high byte first.
 const TIFF_BIG: &str = "4d4d002a000000180000000101000fff0ffe0800001100030009010000030000000100040000010100030000\
     0001000200000102000300000001001000000103000300000001000100000106000300000001000100000111\
     0004000000010000000801150003000000010001000001160003000000010002000001170004000000010000\
@@ -119,7 +119,7 @@ fn bytes_after_the_end_of_a_png_are_an_error() {
 
 #[test]
 fn every_truncation_is_an_error() {
-    // The last four bytes of the grey TIFFs only say that no further picture follows.
+    // The last four bytes of the grey TIFFs only say that no other picture follows.
     for (text, dispensable) in
         [(PNG_GREY16, 0), (PNG_RGB8, 0), (TIFF_RGB8, 0), (TIFF_LITTLE, 4), (TIFF_BIG, 4)]
     {
@@ -155,7 +155,7 @@ fn a_header_cannot_ask_for_more_than_its_bytes_can_hold() {
     assert!(matches!(error(u16::MAX), DecodeError::TooLarge { width: 65535, height: 65535 }));
 }
 
-/// The directory of [`TIFF_LITTLE`] begins at byte 24, and each of its entries of 12 bytes ends in its value.
+/// The directory of [`TIFF_LITTLE`] begins at byte 24, and each entry, of 12 bytes, ends with its value.
 #[test]
 fn tiffs_that_are_no_plain_picture_are_refused_with_a_remedy() {
     let remedies = [
@@ -189,7 +189,7 @@ fn what_is_written_is_read_back_exactly() {
     }
 }
 
-/// 4 x 2 of this orientation, RGB or RGBA of 8 or 16 bits, every pixel grey: 1 to 8, 257 times as much in 16 bits.
+/// A TIFF of 4 x 2 with this orientation, RGB or RGBA with 8 or 16 bits, every pixel grey: 1 to 8, times 257 in 16 bits.
 fn oriented(orientation: u16, channels: u16, bits: u16) -> Vec<u8> {
     let short = |tag: u16, value: u16| [tag, 3, 1, 0, value, 0].map(u16::to_le_bytes).concat();
     let long = |tag: u16, value: u32| {
@@ -205,7 +205,7 @@ fn oriented(orientation: u16, channels: u16, bits: u16) -> Vec<u8> {
     [b"II*\0\x08\0\0\0\x0a\0", &entries[..], &[0; 4], &strip].concat()
 }
 
-/// A PNG of the same samples, its orientation in EXIF before the picture or `behind` it.
+/// A PNG of the same samples, with its orientation in EXIF before the picture or after it (`behind`).
 fn oriented_png(orientation: u16, channels: usize, bits: u16, behind: bool) -> Vec<u8> {
     let entry = [42, 8, 0, 1, 274, 3, 1, 0, orientation, 0, 0, 0].map(u16::to_le_bytes).concat();
     let block = [b"II", &entry[..]].concat();
@@ -233,7 +233,7 @@ fn oriented_png(orientation: u16, channels: usize, bits: u16, behind: bool) -> V
     file
 }
 
-/// By TIFF 6.0: orientation, width, and where the first row and column of the file are seen.
+/// By TIFF 6.0: orientation, width, and the samples in the order in which they are seen.
 const SEEN: [(u16, usize, [u16; 8]); 10] = [
     (1, 4, [1, 2, 3, 4, 5, 6, 7, 8]),
     (2, 4, [4, 3, 2, 1, 8, 7, 6, 5]),
@@ -243,7 +243,7 @@ const SEEN: [(u16, usize, [u16; 8]); 10] = [
     (6, 2, [5, 1, 6, 2, 7, 3, 8, 4]),
     (7, 2, [8, 4, 7, 3, 6, 2, 5, 1]),
     (8, 2, [4, 8, 3, 7, 2, 6, 1, 5]),
-    // No orientation that there is.
+    // Values that are not an orientation.
     (0, 4, [1, 2, 3, 4, 5, 6, 7, 8]),
     (9, 4, [1, 2, 3, 4, 5, 6, 7, 8]),
 ];
@@ -293,7 +293,7 @@ fn a_turned_tiff_is_fitted_as_it_is_seen() {
     assert!(matches!(upright, Err(DecodeError::OtherSize { width: 4, height: 2, .. })));
 }
 
-/// Full scale of 16 bits, which other programs write, is none of a frame's depths.
+/// Other programs write samples up to the full scale of 16 bits, which is not a depth of frames.
 #[test]
 fn samples_deeper_than_any_frame_are_to_be_scaled() {
     let mut deep = hex(TIFF_LITTLE);
@@ -306,7 +306,7 @@ fn samples_deeper_than_any_frame_are_to_be_scaled() {
     );
 }
 
-/// What stands for the samples here is spoilt, which only who unpacks it finds.
+/// The coded samples here are spoilt, which only unpacking them can show.
 #[test]
 fn a_picture_of_another_size_is_refused_before_it_is_unpacked() {
     let size = PictureSize::Exactly(64, 16);
@@ -320,7 +320,7 @@ fn a_picture_of_another_size_is_refused_before_it_is_unpacked() {
         let mut spoilt = oriented_png(6, 4, 16, behind);
         let start = spoilt.windows(4).position(|name| name == b"IDAT").unwrap() + 4;
         spoilt[start..start + 8].fill(0);
-        // Where EXIF stands behind the picture nobody knows yet how it lies.
+        // If EXIF comes after the picture, its orientation is not known yet.
         other(&spoilt, if behind { (4, 2) } else { (2, 4) });
     }
     let mut spoilt = oriented(6, 3, 8);

@@ -24,7 +24,7 @@ fn linear_samples_are_coded_for_the_screen() {
     }
 }
 
-/// By hand: 2048 · 255/4095 is 127.5, and 2047 just below; 514 · 255/1023 is 128.1.
+/// By hand: 2048 · 255/4095 is 127.5, and 2047 gives just less; 514 · 255/1023 is 128.1.
 #[test]
 fn coded_samples_are_brought_to_eight_bits() {
     let levels =
@@ -37,8 +37,8 @@ fn coded_samples_are_brought_to_eight_bits() {
     }
 }
 
-/// Worked by hand, in samples: at the red place the green is the mean of the four greens beside it and the blue that of
-/// the four at its corners.
+/// Computed by hand: at the red place, green is the mean of the four greens next to it, and blue that of the four blues at its
+/// corners.
 #[test]
 fn a_missing_colour_is_the_mean_of_its_neighbours() {
     let samples = [
@@ -59,7 +59,7 @@ fn a_missing_colour_is_the_mean_of_its_neighbours() {
     assert_eq!(pixel(1, 2), [coded(158), coded(51), coded(140)]);
 }
 
-/// By the definition, place after place: the colour of a place repeats every two rows and columns.
+/// The colour `wanted` at one place, directly by the definition.
 fn mean_of_neighbours(frame: &Frame, (row, column): (usize, usize), wanted: Colour) -> u8 {
     let colour = |row, column| frame.phase().colour(row, column);
     if colour(row, column) == wanted {

@@ -85,7 +85,7 @@ fn relatives_of_known_formats_are_refused_with_a_remedy() {
     assert!(matches!(error(b""), DecodeError::Empty));
 }
 
-/// Four samples of 10 bits whose bits tell where they went: 0x2a5 = 10_1010_0101 and so on.
+/// Four samples of 10 bits whose bits show where they went: 0x2a5 = 10_1010_0101 and so on.
 #[test]
 fn mipi10_holds_the_low_bits_of_the_first_sample_lowest() {
     let samples = [0x2a5, 0x3ff, 0x000, 0x002];

@@ -1,4 +1,4 @@
-//! The street: whether it is what a camera would see, and whether it measures the correction.
+//! The street: that it is what a camera would see, and that it measures the correction.
 
 use halfrow_frames::street::edge_deviation;
 use halfrow_frames::{Builtin, Scene};
@@ -13,8 +13,8 @@ fn corrected(scene: &Scene, frame: &Frame) -> Frame {
     correct(&tables, &Kernel::from(Interpolant::Hermite), frame).unwrap()
 }
 
-/// The outermost edge, at longitude −73.3°, bends by 102.1 columns at most. Of the stretched edges that at −48.8° remains
-/// the worst, with 26.9. Both were computed apart from this program, by bisecting Eq. 4.
+/// The outermost edge, at longitude −73.3°, bends by up to 102.1 columns. After the correction the edge at −48.8° is the worst,
+/// with 26.9. Both numbers were computed outside this program, by bisecting Eq. 4.
 #[test]
 fn the_correction_straightens_the_houses() {
     let scene = Scene::default();
@@ -42,7 +42,7 @@ fn the_optical_centre_moves_the_street() {
     let aside =
         Scene { geometry: geometry.with_centre(339.5).unwrap(), centre_y: Some(59.5), ..Scene::default() };
     let (first, second) = (street(&middle), street(&aside));
-    // The noise is another, as it comes in the order of the samples.
+    // The noise differs, as it is drawn in the order of the samples.
     let far = (0..80)
         .flat_map(|row| (0..600).map(move |column| (row, column)))
         .filter(|&(row, column)| first.row(row)[column].abs_diff(second.row(row + 10)[column + 20]) > 400);
@@ -56,7 +56,7 @@ fn no_light_comes_from_beyond_the_rim_of_the_lens() {
     let frame = street(&Scene { geometry, lens, ..Scene::default() });
     let radius = |row: usize, column: usize| (column as f64 - 319.5).hypot(row as f64 - 239.5);
     for (row, samples) in frame.rows().enumerate() {
-        // The black level is 1 % of full scale, and six electrons of 8000 are three steps.
+        // The black level is 1 % of full scale, and six of 8000 electrons are three steps.
         let outside = samples.iter().enumerate().filter(|(column, _)| radius(row, *column) > 208.0);
         assert!(outside.map(|(_, &sample)| sample).all(|sample| (25..60).contains(&sample)), "row {row}");
     }
@@ -79,8 +79,8 @@ fn the_sky_is_blue_and_above_the_ground() {
     assert!(mean(0..60, Colour::Green) > 3.0 * mean(1000..1060, Colour::Green));
 }
 
-/// Photons come as they like: their number varies by its own square root. Between two exposures of 8000 electrons at full
-/// scale, the difference of a sample has twice that variance, and twice that of reading out.
+/// The number of photons varies by its own square root. The difference of a sample between two exposures, of 8000 electrons at
+/// full scale, has twice that variance plus twice the variance of the readout.
 #[test]
 fn the_noise_is_that_of_photons_and_reading_out() {
     let geometry = Geometry::centred(1920, 8, BitDepth::Twelve).unwrap();

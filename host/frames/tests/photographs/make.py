@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Makes the photographs here, and of each what Pillow shows (NAME.png).
+"""Makes the photographs here, and for each a PNG of what Pillow shows (NAME.png).
 
     pip install Pillow numpy && ./make.py
 
-Made with Pillow 13.0.0 (libjpeg-turbo 3.2.0, libwebp). The tests read what is kept; nothing runs this again.
+Made with Pillow 13.0.0 (libjpeg-turbo 3.2.0, libwebp). The tests read the committed files; nothing runs this script again.
 """
 
 import numpy as np
@@ -13,14 +13,14 @@ WIDTH, HEIGHT = 72, 48
 
 
 def smooth(width, height):
-    """Slopes in each colour, without an edge: JPEG decoders may differ in how they spread colours over one."""
+    """A slope in each colour, without edges: JPEG decoders may differ in how they spread colours across an edge."""
     y, x = np.mgrid[0:height, 0:width]
     red, green, blue = 30 + 180 * x // (width - 1), 40 + 170 * y // (height - 1), 220 - 90 * (x + y) // (width + height - 2)
     return Image.fromarray(np.stack([red, green, blue], -1).astype("uint8"))
 
 
 def edged(width, height):
-    """The same with squares of other colours, for codings that keep every pixel."""
+    """Like smooth(), with squares of other colours, for codings that keep every pixel."""
     pixels = np.asarray(smooth(width, height)).copy()
     pixels[5:15, 7:22] = [230, 20, 10]
     pixels[20:41, 33:34] = [0, 255, 128]
@@ -28,7 +28,7 @@ def edged(width, height):
 
 
 def keep(name, image=None, **how):
-    """Saves an image, unless it is there, and what is seen of it."""
+    """Saves an image, if one is given, and what Pillow shows of the file."""
     if image is not None:
         image.save(name, **how)
     seen = ImageOps.exif_transpose(Image.open(name)).convert("RGB")
@@ -42,7 +42,7 @@ def turned(orientation):
 
 
 def fitted(source, name, size):
-    """What a crop about the centre and Catmull-Rom's filter (Pillow's bicubic) make of a picture."""
+    """Saves what a crop about the centre and the Catmull-Rom filter (Pillow's bicubic) make of a picture."""
     image = ImageOps.exif_transpose(Image.open(source)).convert("RGB")
     wide = image.width * size[1] > size[0] * image.height
     part = (image.height * size[0] // size[1], image.height) if wide else (image.width, image.width * size[1] // size[0])
