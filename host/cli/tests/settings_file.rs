@@ -1,6 +1,6 @@
-//! Settings files: what is read, and how a wrong one is refused.
+//! Settings files: what is read from them, and how wrong ones are refused.
 
-// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
+// clippy.toml allows this in #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used)]
 
 use std::fs;
@@ -18,7 +18,7 @@ fn load(text: &str) -> Result<Settings, SettingsError> {
     Settings::load(Some(&path))
 }
 
-/// The refusal's sentence from the file's name on.
+/// The sentence of the refusal, after the file's name.
 fn sentence(text: &str) -> String {
     let refused = load(text).unwrap_err().to_string();
     refused.split_once("station.toml, ").unwrap().1.to_owned()

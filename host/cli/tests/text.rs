@@ -1,6 +1,6 @@
-//! The report for a terminal, on reports made by hand.
+//! The report for a terminal, of reports made by hand.
 
-// clippy.toml allows these inside #[test] functions, but not in the functions that several tests call.
+// clippy.toml allows these in #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use halfrow::compare::{Comparison, Difference};
@@ -10,7 +10,7 @@ use halfrow::verdict::Cause;
 #[path = "../../../tests/tests/report_views/made.rs"]
 mod made;
 
-/// The text as a pipe gets it.
+/// The text without colours, as a pipe gets it.
 fn plain(report: &Report) -> String {
     anstream::adapter::strip_str(&halfrow_cli::text::render(report)).to_string()
 }
@@ -150,7 +150,7 @@ fn nothing_but_the_verdict_is_wider_than_80_columns() {
     }
 }
 
-/// Wherever a line ends, a figure stands with its unit.
+/// A line never ends between a figure and its unit.
 #[test]
 fn no_line_ends_within_a_figure() {
     let mut report = made::pass();
@@ -197,6 +197,6 @@ fn a_soak_says_what_was_judged_and_when_it_differed() {
     let judged = "soak 8 h 0 min of 8 h 0 min: 1,326,976 frames in 480 bursts, 2 of which differ differs after 2 h 13 min";
     assert!(words.contains(judged), "{text}");
     assert_eq!(text.matches("\ndiffers  after ").count(), 2, "{text}");
-    // A suspect that explains no counted differences claims no share of them.
+    // A suspect that explains none of the counted differences claims no share of them.
     assert!(!text.contains("explains"), "{text}");
 }

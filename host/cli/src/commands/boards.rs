@@ -22,7 +22,7 @@ pub(super) struct Arguments {
     ask: bool,
 }
 
-/// A kind of board that is no device, by one of the ways to name it.
+/// A kind of board that is not a device, in one of the forms of its target.
 #[derive(Serialize)]
 struct BuiltIn {
     #[serde(flatten)]
@@ -77,7 +77,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     Ok(Exit::Pass)
 }
 
-/// Has `device` say whether it is a board. One that answers by another target than the port's own is called by that.
+/// Asks `device` whether it is a board. If it answers at another target than the port's own, it is listed under that one.
 fn ask(device: &mut Found, probe: impl Fn(&Target) -> Answer) -> Result<(), TargetError> {
     let mut answer = probe(&device.target.parse()?);
     if matches!(answer, Answer::Failed { .. })
@@ -118,7 +118,7 @@ fn bitstream_text(board: &BitstreamBoard) -> String {
     )
 }
 
-/// What came of asking, or else of looking.
+/// The result of asking, or else of looking at the device from outside.
 fn state(device: &Found) -> String {
     match &device.answer {
         Some(Answer::Board { name, datapath }) => {

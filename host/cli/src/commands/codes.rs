@@ -171,11 +171,11 @@ codes::codes! {
 }
 
 fn known(error: &(dyn Error + 'static)) -> Option<Coded> {
-    // Those of other crates hold errors of the library, which it knows.
+    // Errors of other crates may contain an error of the library, whose code the library knows.
     lookup(error).filter(|coded| coded.code != codes::FOREIGN).or_else(|| program::known(error))
 }
 
-/// Why a command came to no result.
+/// Why a command has no result.
 pub(crate) fn problem(exit: Exit, error: &anyhow::Error) -> Problem {
     program::problem(exit, error, known)
 }
@@ -193,7 +193,7 @@ fn error_lists() -> impl Iterator<Item = &'static CodeList> {
     codes::LISTS.into_iter().chain([LISTS, program::lists()]).flatten()
 }
 
-/// Codes of errors that have no type of their own.
+/// Codes of errors without a type of their own.
 fn other_codes() -> impl Iterator<Item = &'static str> {
     let lost = [RECORDING_LOST, REPORT_LOST];
     codes::IO_CODES.into_iter().chain(program::USAGE).chain(lost).chain(program::UNTYPED)
@@ -225,10 +225,11 @@ pub(super) fn all() -> Vec<Value> {
     findings.chain(defects).chain(untouched).chain(errors).chain(others).collect()
 }
 
-/// What is asked for depends on this.
+/// What the remedy of a wrong latency depends on.
 const BY_ROWS: &str = "By which rows are late. In this example: ";
 
-/// What to do about an example of a finding. What it asks for by its suspect, another suspect does not.
+/// What to do about an example of a finding. If that depends on its suspect, the text says so, since another suspect needs
+/// something else.
 pub(super) fn act(example: &Finding) -> Option<String> {
     let remedy = example.remedy()?;
     Some(match example {
@@ -240,7 +241,7 @@ pub(super) fn act(example: &Finding) -> Option<String> {
     })
 }
 
-/// What a technician does about it; none where it is as another code says.
+/// What a technician does about it; none if the code of its suspect says that.
 pub(super) fn bench(example: &Finding) -> Option<String> {
     let asked = example.technician().filter(|_| !is_by_suspect(example))?;
     Some(if matches!(example, Finding::LatencyWrong(_)) { format!("{BY_ROWS}{asked}") } else { asked })

@@ -118,7 +118,7 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Whether all files are there and of the right size, before anything is written. Says how pictures are fitted.
+    /// Checks, before anything is written, that all files exist and have the right size. Says on stderr how pictures are fitted.
     fn check(&self, quiet: bool) -> anyhow::Result<()> {
         let files = self.inputs.iter().filter(|input| input.can_be_read_twice());
         for (input, path) in files.filter_map(|input| Some((input, input.file()?))) {
@@ -127,7 +127,7 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// Writes the preview of the frame with this index, turned by `orientation`, if one is asked for.
+    /// Writes the preview of the frame with this index, turned by `orientation`, if previews are asked for.
     fn write_preview(
         &self,
         places: &Places,
@@ -160,7 +160,7 @@ impl Arguments {
     }
 }
 
-/// Says what was written, by whom it was corrected, a board or else the model, and by which tables.
+/// Prints what was written, by which tables it was corrected, and by which kind of `board`, or by the model if none.
 fn report(as_json: bool, board: Option<BoardKind>, places: &Places, tables: &str) -> Result<Exit, Failure> {
     if as_json {
         let kind = board.map_or_else(|| "model".to_owned(), |kind| kind.to_string());

@@ -17,9 +17,9 @@ mod acts;
 mod known;
 mod lines;
 
-/// How like a code must be to what was asked for, 0 to 1, to be named in its place.
+/// How similar a code must be to an unknown one, 0 to 1, to be suggested.
 const LIKENESS: f64 = 0.8;
-/// Codes that are named at most.
+/// The most codes that are suggested.
 const MOST_LIKE: usize = 5;
 
 #[derive(Debug, Args)]
@@ -55,7 +55,7 @@ impl TypedValueParser for Code {
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let known = known();
-    // Verdicts are written in capitals, and all others in small letters.
+    // Verdicts are in capitals, everything else in small letters.
     let of = |code: &String| {
         [code.clone(), code.to_uppercase(), code.to_lowercase()].iter().find_map(|it| known.get(it))
     };
@@ -69,7 +69,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     Ok(Exit::Pass)
 }
 
-/// Names the codes that are most like one that is none.
+/// The error for an unknown code, which suggests the most similar codes.
 fn unknown(code: &str, known: &BTreeMap<String, Vec<Explanation>>) -> CallError {
     let wanted = code.to_lowercase().replace(['_', ' '], "-");
     let likeness = |known: &str| match known.contains(&wanted) {
@@ -87,7 +87,7 @@ fn unknown(code: &str, known: &BTreeMap<String, Vec<Explanation>>) -> CallError 
     CallError::CodeUnknown { code: code.to_owned(), remedy }
 }
 
-/// For people.
+/// An explanation as text for a terminal.
 fn text(it: &Explanation) -> String {
     let kind = it.of.replace('-', " ");
     let mut text = format!("{BOLD}{}{BOLD:#} ({kind})\n", it.code);

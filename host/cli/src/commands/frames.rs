@@ -35,7 +35,7 @@ pub(super) struct Arguments {
     overwrite: bool,
 }
 
-/// Hides an option of tables, which a frame has not: who gives one is told.
+/// Hides an option that makes tables, which frames do not have. A call that gives one is refused.
 fn without_tables(argument: Arg) -> Arg {
     let hidden = MAKING_TABLES.contains(&argument.get_id().as_str());
     argument.hide(hidden)

@@ -88,7 +88,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     }
 }
 
-/// Where a photograph comes from, as a kernel's file tells.
+/// Where a photograph comes from, as noted in a kernel file.
 #[derive(Serialize)]
 struct Origin {
     name: Option<String>,
@@ -106,7 +106,7 @@ fn paths(folders: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// The photographs, each of which counts once. Those that stand are turned to lie.
+/// The photographs, none of which may count twice. Those that are higher than wide are turned by a quarter.
 fn photographs(paths: &[PathBuf]) -> anyhow::Result<(Vec<Origin>, Vec<RgbImage>)> {
     let photographs: anyhow::Result<Vec<_>> = paths.iter().map(|path| photograph(path)).collect();
     let (origins, images): (Vec<Origin>, _) = photographs?.into_iter().unzip();
@@ -144,7 +144,7 @@ fn pictures(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
 
 fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     let paths = paths(&arguments.images).map_err(Failure::call)?;
-    // Training takes minutes, after which a refusal comes too late.
+    // Training takes minutes; a refusal after that would come too late.
     let files = Files::new(arguments.overwrite).reads(&context.settings_file).reads(&paths);
     prepare_files(&files.writes("--output", [&arguments.output])).map_err(Failure::call)?;
     let (origins, images) = photographs(&paths).map_err(Failure::call)?;
@@ -179,7 +179,7 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     Ok(Exit::Pass)
 }
 
-/// The gains of photographs by the kernel of the others, as far as they were measured.
+/// The gains of photographs with a kernel trained on the others, as far as measured.
 fn held_out(trained: &Trained) -> Option<Spread> {
     Spread::of(&trained.held_out.iter().flatten().copied().collect::<Vec<_>>())
 }
@@ -192,7 +192,7 @@ fn held_out_text(trained: &Trained) -> String {
     format!("{mean:+.2} dB ({least:+.2} to {most:+.2}{some})")
 }
 
-/// Where a kernel comes from, as its file tells.
+/// Where a kernel comes from, as noted in its file.
 fn about(origins: &[Origin], trained: &Trained) -> anyhow::Result<Map<String, Value>> {
     let model = |model: Model| json!({"warp": model.warp.name(), "radius_by_half_height": model.radius});
     let mut about = Map::new();

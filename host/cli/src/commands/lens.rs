@@ -54,22 +54,22 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     Ok(Exit::Pass)
 }
 
-/// What tables that are found in one way leave.
+/// The errors that tables made in one way leave.
 struct Left {
     by: TablesBy,
-    /// Of a grid.
+    /// The shape of a grid; none for row factors.
     shape: Option<GridShape>,
     residuals: Residuals,
 }
 
-/// What there is to say.
+/// What the command reports.
 struct Figures<'a> {
     optics: &'a Optics,
-    /// Eq. 9, fitted rows, and the grid if one has so few entries.
+    /// Eq. 9, fitted rows, and the grid, if one has few enough entries.
     all: Vec<Left>,
-    /// Why there is no grid.
+    /// Why there is no grid, if so.
     no_grid: Option<OpticsError>,
-    /// Why a board would not take the tables that are asked for.
+    /// Why a board would not take the requested tables, if so.
     illegal: Option<TableError>,
 }
 
@@ -98,7 +98,7 @@ impl<'a> Figures<'a> {
         Ok(Self { optics, all, no_grid, illegal })
     }
 
-    /// What the tables leave that are asked for.
+    /// The errors that the requested tables leave.
     fn used(&self) -> Option<&Left> {
         self.all.iter().find(|left| left.by == self.optics.by)
     }
@@ -130,7 +130,7 @@ impl<'a> Figures<'a> {
         lines.join("\n")
     }
 
-    /// The error that each way leaves.
+    /// Lines with the errors that each way leaves.
     fn errors(&self) -> Vec<String> {
         let Some(first) = self.all.first() else { return Vec::new() };
         let amounts = |Amounts { mean, max }: Amounts| format!("{mean:9.4} {max:9.4}");
@@ -201,7 +201,7 @@ impl<'a> Figures<'a> {
     }
 }
 
-/// Writes the picture and returns the error that is brightest in it, in pixels.
+/// Writes the picture, and returns the error that is shown brightest, in pixels.
 fn write_map(path: &Path, residuals: &Residuals, overwrite: bool) -> Result<f64, Failure> {
     let HeatMap { image, most } = HeatMap::new(&residuals.map);
     frames::write_rgb(path, &image, overwrite).map(|()| most).map_err(Failure::error)

@@ -38,10 +38,10 @@ pub(super) struct Line<Commands: Subcommand> {
 }
 
 impl Line<Command> {
-    /// The program's arguments.
+    /// Reads the program's arguments.
     pub(super) fn read() -> clap::error::Result<Self> {
         let arguments: Vec<OsString> = std::env::args_os().collect();
-        // The options of all commands would take as long to build as the rest of the program takes to start and end.
+        // Building the options of all commands would take as long as everything else from start to end.
         if let [_, only] = arguments.as_slice()
             && ["--help", "-h", "help"].iter().any(|help| only == help)
         {
@@ -51,7 +51,7 @@ impl Line<Command> {
     }
 }
 
-/// The commands: with their options, and by name alone, which is all that the help on the whole program tells.
+/// The commands: once with their options, and once by name only, which is all that the program's own help shows.
 macro_rules! commands {
     ($($(#[$about:meta])+ $variant:ident($arguments:ty), $name:literal;)+) => {
         #[derive(Debug, Subcommand)]
@@ -65,7 +65,7 @@ macro_rules! commands {
         }
 
         impl Command {
-            /// As the command line has it.
+            /// Its name on the command line.
             pub(super) fn name(&self) -> &'static str {
                 match self {
                     $(Self::$variant(_) => $name,)+

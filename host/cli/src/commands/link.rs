@@ -69,7 +69,7 @@ fn text(figures: &Figures) -> String {
     lines.join("\n")
 }
 
-/// What stands in the place of a figure that a wire without a speed has not.
+/// What replaces a figure that cannot be measured on a wire without a speed.
 const NOT_MEASURED: &str = "virtual clock: not measured";
 
 fn times(trips: &RoundTrips) -> String {

@@ -52,14 +52,14 @@ pub(super) struct Arguments {
     options: Vec<String>,
 }
 
-/// What was loaded, and what came of it.
+/// What was loaded, and how.
 #[derive(Serialize)]
 struct Loaded<'a> {
     file: &'a Path,
     onto: &'static str,
     command: Vec<String>,
     record: Option<&'a Record>,
-    /// Whether the board's build was compared with the file's, and so is the same.
+    /// Whether the board's build was compared with the file's. If so, it is the same.
     compared: bool,
 }
 
@@ -98,7 +98,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     print_or_tell(Exit::Pass, &text(&loaded, report.as_ref()))
 }
 
-/// Whether the board behind `target` can be greeted when it is loaded: then it is too late to refuse a call.
+/// Checks that the board at `target` can be greeted once it is loaded: then it is too late to refuse the call.
 fn check(target: &Target) -> Result<(), Failure> {
     if target.kind == pool::POOL {
         return Err(wrong(Failure::call(LoadError::OfPool { target: target.to_string() })));
@@ -127,7 +127,7 @@ fn onto(arguments: &Arguments, record: Option<&Record>) -> Result<&'static Bitst
     }
 }
 
-/// What makes a bitstream one that cannot be told from others.
+/// Why a bitstream cannot be identified, if so.
 fn warning(file: &Path, record: Option<&Record>) -> Option<String> {
     match record {
         None => Some(format!(
@@ -144,7 +144,7 @@ fn warning(file: &Path, record: Option<&Record>) -> Option<String> {
     }
 }
 
-/// What `target` says of itself, as soon as it says anything. A link may come and go while a board is loaded.
+/// What the board at `target` reports, as soon as it answers. Its link may come and go while it is loaded.
 fn greeted(
     target: &Target,
     limit: Duration,
@@ -164,7 +164,7 @@ fn greeted(
         }
         match next {
             Next::Never => return Err(failure),
-            // What a whole try has found says more than that another had no time.
+            // The failure of a complete try says more than that the last one had no time.
             Next::TooLate => return Err(last.unwrap_or(failure)),
             Next::MayDiffer if Instant::now() >= deadline => return Err(failure),
             Next::MayDiffer => last = Some(failure),
@@ -173,14 +173,14 @@ fn greeted(
     }
 }
 
-/// What another try is good for.
+/// Whether another try may help.
 enum Next {
     Never,
     MayDiffer,
     TooLate,
 }
 
-/// One try, within what `stop` allows, and what another is good for.
+/// One try, ended early by `stop`; with a failure, whether another try may help.
 fn greet(target: &Target, stop: Stop) -> Result<BoardReport, (Failure, Next)> {
     let again = |may_differ| if may_differ { Next::MayDiffer } else { Next::Never };
     let candidate = link::open(target).map_err(|error| {
@@ -197,7 +197,7 @@ fn greet(target: &Target, stop: Stop) -> Result<BoardReport, (Failure, Next)> {
     })
 }
 
-/// Refuses a board of another build than the file's.
+/// Refuses a board whose build is not the file's.
 fn compare(report: &BoardReport, record: &Record) -> Result<bool, Failure> {
     let board = report.identity.as_ref().map(|identity| identity.build.clone()).unwrap_or_default();
     if board.eq_ignore_ascii_case(&record.build) {

@@ -1,5 +1,5 @@
-//! The commands: one file each, called as the command; `overview` is `halfrow commands`, `completions` is `manual` as well, and `line` has
-//! the grammar of them all.
+//! The commands: one file each, with the name of the command. `overview` is `halfrow commands`, `completions` also has `manual`,
+//! and `line` has the grammar of all.
 
 mod boards;
 pub(crate) mod codes;
@@ -41,15 +41,15 @@ use line::{Command, Line};
 
 pub use crate::document::{code, failure};
 
-/// What every command is given beside its own arguments.
+/// What every command gets beside its own arguments.
 pub struct Context {
-    /// The settings file, if there is one.
+    /// The values of the settings file; the default without one.
     pub settings: Settings,
-    /// That file.
+    /// The path of that file, whether it exists or not.
     pub settings_file: Option<PathBuf>,
-    /// No progress.
+    /// Whether to show no progress.
     pub quiet: bool,
-    /// The result is wanted as JSON.
+    /// Whether the result is wanted as JSON.
     pub json: bool,
 }
 
@@ -57,14 +57,14 @@ pub struct Context {
 #[derive(Debug)]
 pub struct Cli(Line<Command>);
 
-/// A command that did not come to a result.
+/// Why a command has no result.
 #[derive(Debug)]
 pub struct Failure {
     /// The exit code.
     pub exit: Exit,
     /// Why, with its causes.
     pub error: anyhow::Error,
-    /// The option whose value it is that is wrong, as the command line has it, where that is known.
+    /// The option whose value is wrong, as written on the command line, if that is known.
     option: Option<&'static str>,
 }
 
@@ -74,12 +74,12 @@ impl Failure {
         Self::of(Exit::Usage, error)
     }
 
-    /// A failure that is not the caller's.
+    /// A failure for which the call is not to blame.
     pub fn error(error: impl Into<anyhow::Error>) -> Self {
         Self::of(Exit::Error, error)
     }
 
-    /// An input that is refused, as a board of another datapath is.
+    /// An input that is refused, like a board of another datapath.
     pub(crate) fn refused(error: impl Into<anyhow::Error>) -> Self {
         Self::of(Exit::Refused, error)
     }
@@ -89,7 +89,7 @@ impl Failure {
         Self { exit, error: error.into(), option: None }
     }
 
-    /// It, as one of the value of `option`, whatever place that comes from.
+    /// This failure, attributed to the value of `option`, wherever that comes from.
     pub(crate) fn in_value_of(self, option: &'static str) -> Self {
         Self { option: Some(option), ..self }
     }
@@ -126,7 +126,7 @@ impl From<Misfit> for Failure {
 }
 
 impl Cli {
-    /// What the program is called with.
+    /// The call on this program's command line.
     ///
     /// # Errors
     /// What is wrong with the call, or the help or version that it asks for.
@@ -134,13 +134,13 @@ impl Cli {
         Line::read().map(Self)
     }
 
-    /// What its command line is made of.
+    /// The grammar of the command line.
     #[must_use]
     pub fn line() -> clap::Command {
         Line::<Command>::command()
     }
 
-    /// How much to log: 0 for errors and warnings alone.
+    /// How much to log: 0 for errors and warnings only.
     #[must_use]
     pub fn verbosity(&self) -> u8 {
         self.0.verbose
@@ -158,7 +158,7 @@ impl Cli {
         self.0.command.name()
     }
 
-    /// Carries the command out.
+    /// Carries out the command.
     ///
     /// # Errors
     /// [`Failure`] with its exit code, when there is no result to print.
@@ -178,7 +178,7 @@ impl Cli {
         })
     }
 
-    /// A failure that names the place which a wrong value comes from, if that is not the command line.
+    /// `failure`, naming the place that a wrong value comes from, if that is not the command line.
     fn placed(&self, failure: Failure, file: Option<&Path>, keys: &[&str]) -> Failure {
         let id = failure.option.filter(|_| failure.exit == Exit::Usage).map(given::id);
         match id.and_then(|id| self.0.given.place(&id, file, keys)) {
@@ -230,7 +230,7 @@ fn has_document(command: &Command) -> bool {
     )
 }
 
-/// Prints what `exit` sums up. It stands if that cannot be printed, unless all that it says is that there was something to print.
+/// Prints the result that `exit` sums up. If it cannot be printed, `exit` stands, unless it is a mere [`Exit::Pass`].
 fn print_or_tell(exit: Exit, text: &str) -> Result<Exit, Failure> {
     if exit == Exit::Pass {
         print(text)?;
@@ -240,7 +240,7 @@ fn print_or_tell(exit: Exit, text: &str) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-/// Prints a JSON result, which is the command's only one.
+/// Prints a JSON result, the only output of the command.
 fn print_json(result: &impl serde::Serialize) -> Result<(), Failure> {
     print(&json_text(result)?)
 }
@@ -249,7 +249,7 @@ fn json_text(result: &impl serde::Serialize) -> Result<String, Failure> {
     serde_json::to_string_pretty(result).map_err(Failure::error)
 }
 
-/// Prints a result, which is the command's only one.
+/// Prints a result, the only output of the command.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     console::print(text).map_err(Failure::error)
 }

@@ -77,7 +77,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         material.board = Some(arguments.open(&context.settings)?);
     }
     let exhibits = make(&items, &mut material, context.quiet);
-    // Whatever happened, the next run must find the board free.
+    // Whatever has happened, the next run must find the board free.
     material.board.iter_mut().for_each(TestedBoard::close);
     let exhibits = exhibits?;
     let page = folder.write(&exhibits).map_err(Failure::error)?;
@@ -114,7 +114,7 @@ impl From<PaperError> for Failure {
     }
 }
 
-/// Every claim in a line.
+/// Prints every claim on a line.
 fn conclude(exhibits: &[Exhibit]) {
     for exhibit in exhibits {
         console::tell(exhibit.item.title());
@@ -141,7 +141,7 @@ fn line(claim: &Claim) -> String {
     format!("  {mark:<7} {}: {} ({paper}{})", claim.what, found.trim_end(), claim.condition())
 }
 
-/// What the board does wrong weighs more than what could not be reproduced.
+/// An error of the board weighs more than a number that could not be reproduced.
 fn exit(exhibits: &[Exhibit]) -> Exit {
     let missed = || exhibits.iter().flat_map(|exhibit| &exhibit.claims).filter(|claim| !claim.holds());
     if missed().any(|claim| claim.judges_board) {
@@ -162,7 +162,7 @@ impl Arguments {
         Item::ALL.into_iter().filter(wanted).collect()
     }
 
-    /// Refuses options that nothing would heed, and files in the way.
+    /// Refuses options without effect, and outputs that would replace existing files.
     fn check(&self, items: &[Item], context: &Context) -> anyhow::Result<()> {
         let any = |is_meant: fn(Item) -> bool| items.iter().any(|&item| is_meant(item));
         for (is_wanted, decider) in [

@@ -7,7 +7,7 @@ use super::{Failure, codes, print_json};
 use crate::call_error::CallError;
 use crate::exit::Exit;
 
-/// What the program prints as JSON, which is written by hand; the codes alone come from the program.
+/// The schema of what the program prints as JSON. It is written by hand; only the codes come from the program.
 const SCHEMA: &str = include_str!("../../../schema/halfrow-1.json");
 
 #[derive(Debug, Args)]

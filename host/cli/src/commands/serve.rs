@@ -25,7 +25,7 @@ pub(super) struct Arguments {
     link: Option<PathBuf>,
 }
 
-/// A port, or an address with one. Whether it is this computer's is found out later.
+/// A port, or an address with one. Whether the address is this computer's shows later.
 fn door(text: &str) -> Result<String, String> {
     let (host, port) = text.rsplit_once(':').unwrap_or(("127.0.0.1", text));
     match port.parse::<u16>() {

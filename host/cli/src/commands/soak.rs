@@ -16,7 +16,7 @@ use halfrow::frames::Builtin;
 use halfrow::result::SoakLength;
 use halfrow::run::{self, AtSpeed, FrameSource, Plan, RunOptions};
 
-/// How long a board may stay away when nothing is said of it: longer than it takes somebody to come by and plug it in again.
+/// How long a board may stay away if the call does not say: longer than it takes somebody to come by and plug it in again.
 const PATIENCE: Duration = Duration::from_secs(300);
 
 #[derive(Debug, Args)]
@@ -41,7 +41,7 @@ struct Length {
 }
 
 impl Length {
-    /// What clap leaves: one of them is given.
+    /// The length. clap makes sure that exactly one of the two is given.
     fn asked(&self) -> SoakLength {
         match (self.frames, self.hours) {
             (Some(frames), _) => SoakLength::Frames { frames },
@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let run = &arguments.run;
     let files = run.input_files(settings);
     run.check_inputs(settings)?;
-    // Whoever waits for a board of a pool has no run yet that a signal could end in order.
+    // While the call waits for a board of a pool, there is no run yet that a signal would have to end in order.
     let target = match run.board.target(settings) {
         Ok(target) => target,
         Err(failure) => {
@@ -78,14 +78,14 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 }
 
 impl Arguments {
-    /// What is streamed first, and how long the board makes frames on its own.
+    /// The plan and options: what is streamed first, and how long the board makes frames on its own.
     fn plan(&self, settings: &Settings) -> Result<(Plan, RunOptions), Failure> {
         let tables = self.run.table_file(&self.given, settings)?;
         let (chosen, inputs) = self.run.chosen(tables, settings)?;
         let plan = chosen.plan(self.run.lens.phase).frames([FrameSource::Builtin(Builtin::Noise)]);
         let plan =
             Plan { at_speed: AtSpeed::Soak(self.length.asked()), seed: self.run.seed(settings), ..plan };
-        // Settings are of all runs, and few of those last for hours.
+        // The settings are for all runs, most of which are short, so they may only make the soak more patient.
         let longer = settings.reconnect.filter(|&seconds| seconds > PATIENCE.as_secs_f64());
         let patience = self.run.patience(longer, PATIENCE)?.unwrap_or(PATIENCE);
         Ok((plan, RunOptions { reconnect: Some(patience), ..self.run.options(inputs, settings)? }))

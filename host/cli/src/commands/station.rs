@@ -19,7 +19,7 @@ pub(super) struct Arguments {
     arguments: Vec<OsString>,
 }
 
-/// Becomes the station, if it is there.
+/// Replaces this process with the station's program, if that is there.
 pub(super) fn run(arguments: &Arguments) -> Result<Infallible, Failure> {
     let not_started = |path: &Path, source| CallError::StationNotStarted { path: path.to_owned(), source };
     let path = beside::station()

@@ -73,7 +73,7 @@ fn about(source: &str) -> Option<serde_json::Map<String, serde_json::Value>> {
     Some(about)
 }
 
-/// What a table file is written as.
+/// The format of a table file.
 #[derive(Clone, Copy)]
 enum Format {
     Json,
@@ -81,7 +81,7 @@ enum Format {
 }
 
 impl Format {
-    /// The one that the name tells.
+    /// The format that the name's extension gives.
     fn of(path: &Path) -> Result<Self, CallError> {
         let extension = path.extension().map(OsStr::to_ascii_lowercase).unwrap_or_default();
         match extension.to_str() {
@@ -91,7 +91,7 @@ impl Format {
         }
     }
 
-    /// The files that stand for `path`.
+    /// The files that are written for `path`.
     fn places(self, path: &Path) -> Vec<PathBuf> {
         match self {
             Self::Json => vec![path.to_owned()],

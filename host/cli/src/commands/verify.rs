@@ -83,7 +83,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let (plan, options) = arguments.planned(recording.as_ref(), frames, context)?;
     if arguments.list {
         let target = board.target(settings)?;
-        // A device need not be there to know what a run over it costs.
+        // The cost of a run can be computed without the device.
         link::check(&target).map_err(board::wrong)?;
         return listing::list(&plan, &target, context.json);
     }
@@ -97,7 +97,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     }
 }
 
-/// Judges the board behind `candidate`, and keeps what it answers if there is a file for it.
+/// Judges the board at `candidate`, and records the link if there is a file for that.
 fn judge(
     mut candidate: Candidate,
     (plan, options): (&Plan, &RunOptions),
@@ -130,7 +130,7 @@ impl From<RestoreError> for Failure {
 }
 
 impl Arguments {
-    /// What is to be streamed, or was when `recording` was made, and where it comes from.
+    /// The plan and options of the run, or of the run in `recording`.
     fn planned(
         &self,
         recording: Option<&Recording>,
@@ -153,7 +153,7 @@ impl Arguments {
         Ok((plan, options))
     }
 
-    /// What is to be streamed on whatever board, and the files that it comes from.
+    /// The plan and options of the run whatever the board, and the files that they are read from.
     fn free(&self, context: &Context) -> Result<(Plan, RunOptions, Vec<PathBuf>), Failure> {
         let frames = self.frames(&context.settings)?;
         let files = self.input_files(&frames, &context.settings);
@@ -161,7 +161,7 @@ impl Arguments {
         Ok((plan, options, files))
     }
 
-    /// What the options say is to be streamed, and where it comes from.
+    /// The plan and options of the run, from the command's options.
     fn plan(&self, frames: Vec<FrameName>, context: &Context) -> Result<(Plan, RunOptions), Failure> {
         let settings = &context.settings;
         if frames.iter().all(|frame| frame.file().is_none()) {
@@ -174,7 +174,7 @@ impl Arguments {
             self.given.refuse_void(Decider::Record, &settings.keys()).map_err(Failure::call)?;
         }
         self.input.refuse_void(&self.given, settings)?;
-        // The report names each by its hash.
+        // The report names each file with its hash.
         self.run.check_inputs(settings)?;
         frames.iter().filter_map(FrameName::file).try_for_each(check_regular).map_err(wrong_frame)?;
         let tables = self.run.table_file(&self.given, settings)?;
@@ -182,19 +182,19 @@ impl Arguments {
         let (chosen, mut inputs) = self.run.chosen(tables, settings)?;
         let plan = self.plan_of(chosen, frames, &mut inputs, context)?;
         let plan = Plan { vary: self.vary(is_free), ..plan };
-        // A recording is of one link.
+        // A recording holds one connection only.
         let options = self.run.options(inputs, settings)?;
         let reconnect = options.reconnect.filter(|_| self.record.is_none());
         Ok((plan, RunOptions { reconnect, ..options }))
     }
 
-    /// What is varied in a run of which neither tables nor frames are named: what the call does not say.
+    /// What is varied if neither tables nor frames are named (`is_free`): whatever the call does not set.
     fn vary(&self, is_free: bool) -> Vary {
         let has_centre = self.given.is_flag("centre_x") || self.run.lens.file().is_some();
         Vary { centre: is_free && !has_centre, depth: is_free && !self.given.is_flag("bits") }
     }
 
-    /// What is to be streamed of `chosen` and `frames`, whose files join `inputs`.
+    /// The plan with the tables `chosen` and these `frames`, whose files are appended to `inputs`.
     fn plan_of(
         &self,
         chosen: Chosen,
@@ -222,7 +222,7 @@ impl Arguments {
         })
     }
 
-    /// The frames that are named; none stands for the built-in ones, which alone there is a choice of.
+    /// The frames that are named; none means all built-in frames, and `--within` chooses among these only.
     fn frames(&self, settings: &Settings) -> Result<Vec<FrameName>, Failure> {
         match settings.frame.as_deref() {
             _ if self.within.is_some() => return Ok(Vec::new()),
@@ -232,7 +232,7 @@ impl Arguments {
         .map_err(wrong_frame)
     }
 
-    /// Tables, lens and frames that are files.
+    /// The files of the tables, the lens and the frames.
     fn input_files(&self, frames: &[FrameName], settings: &Settings) -> Vec<PathBuf> {
         let frames = frames.iter().filter_map(FrameName::file).map(PathBuf::from);
         self.run.input_files(settings).into_iter().chain(frames).collect()

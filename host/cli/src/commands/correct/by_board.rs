@@ -1,4 +1,4 @@
-//! Frames corrected by a board, unjudged.
+//! Frames corrected by a board, not judged.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -18,8 +18,8 @@ use halfrow::run::{self, JUDGED};
 use halfrow::target::BoardKind;
 
 impl Job<'_> {
-    /// Corrects all frames, and returns the kind of board that did. What fails ends the rest; frames that are written by
-    /// then stay.
+    /// Corrects all frames, and returns the kind of board that did. The first failure ends the rest; frames written by then
+    /// stay.
     pub(super) fn by_board(
         &self,
         places: &Places,
@@ -46,7 +46,7 @@ impl Job<'_> {
             first_frame: 0,
         };
         let (mut unread, mut unwritten) = (None, None);
-        // Of the frames that are on their way.
+        // The orientations of the frames on their way through the board.
         let orientations = RefCell::new(VecDeque::new());
         let inputs = self.inputs.iter().map_while(|input| match input.frame(&self.how, &self.scene) {
             Ok(Decoded { frame, orientation, .. }) => {

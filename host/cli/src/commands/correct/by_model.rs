@@ -9,7 +9,7 @@ use halfrow::progress::Progress;
 use halfrow::reference;
 
 impl Job<'_> {
-    /// Corrects all frames. One that fails ends the rest; those that are written by then stay.
+    /// Corrects all frames. The first failure ends the rest; frames written by then stay.
     pub(super) fn by_model(&self, places: &Places, progress: &dyn Progress) -> Result<(), Failure> {
         places.make_folders().map_err(Failure::error)?;
         let corrector = || reference::corrector(&self.chosen.kernel);
@@ -55,7 +55,7 @@ impl Job<'_> {
     }
 }
 
-/// What is wrong with an input is the caller's to mend, unlike an output that cannot be written.
+/// A wrong input is the call's fault, unlike an output that cannot be written.
 fn unwritten(error: anyhow::Error) -> Failure {
     if error.is::<WriteError>() { Failure::error(error) } else { Failure::call(error) }
 }

@@ -1,4 +1,4 @@
-//! Where corrected frames and their previews are written to.
+//! Where corrected frames and their previews are written.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use halfrow_files::written_aside::Place;
 pub(super) struct Places {
     /// The corrected frames.
     pub(super) frames: Vec<PathBuf>,
-    /// Their previews; none when none is asked for.
+    /// Their previews; empty if none are asked for.
     pub(super) previews: Vec<PathBuf>,
     folders: Vec<PathBuf>,
 }
@@ -25,14 +25,14 @@ pub(super) struct Places {
 pub(super) struct Wanted<'a> {
     /// The file or folder of the frames.
     pub(super) output: &'a Path,
-    /// The format of the frames, when the call names it.
+    /// The format of the frames, if the call names it.
     pub(super) format: Option<Format>,
     /// The file or folder of the previews.
     pub(super) preview: Option<&'a Path>,
 }
 
 impl Places {
-    /// One file for one frame; for several, files of the inputs' names in a folder.
+    /// One file for one frame; for several, files in a folder, named after the inputs.
     pub(super) fn of(inputs: &[FrameName], wanted: &Wanted<'_>) -> anyhow::Result<Self> {
         let mut places = Self { frames: Vec::new(), previews: Vec::new(), folders: Vec::new() };
         let format = wanted.format.unwrap_or(Format::Pgm);
@@ -73,7 +73,7 @@ impl Places {
         inputs.iter().map(path).collect()
     }
 
-    /// No file twice.
+    /// Refuses to write two frames to the same file.
     fn check(&self) -> anyhow::Result<()> {
         let mut seen = HashSet::new();
         for path in self.frames.iter().chain(&self.previews) {
@@ -84,7 +84,7 @@ impl Places {
         Ok(())
     }
 
-    /// Adds these files to those of the call.
+    /// Adds these files to the files of the call.
     pub(super) fn add_to(&self, mut files: Files) -> Files {
         for (option, paths) in [("--output", &self.frames), ("--preview", &self.previews)] {
             let is_in = |path: &&PathBuf| self.folders.iter().any(|folder| path.parent() == Some(folder));
@@ -94,7 +94,7 @@ impl Places {
         files
     }
 
-    /// Makes the folders that are not there.
+    /// Makes the folders that do not exist.
     pub(super) fn make_folders(&self) -> Result<(), CallError> {
         for folder in &self.folders {
             make_folder(folder)?;

@@ -1,4 +1,5 @@
-//! What to do about errors whose message does not end in it: the act is filled in when the error happens, is another's, or is none yet.
+//! What to do about errors whose message does not end in such an act: because it is filled in when the error happens, belongs to
+//! another error, or is missing.
 
 /// What to do where tables of a station or of a plant contradict its records.
 const MEND_TABLES: &str = "mend first what `check` says of records, and if this is still reported, put back a copy \
@@ -228,13 +229,13 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     ("waveform-not-written", "check that the folder of the waveform exists, is writable and has space"),
 ];
 
-/// The act of the error `code`, whose message is `sentence`: the message's own, if it ends in one that is whole.
+/// The act for the error `code`, whose message is `sentence`: from [`ACTS`], else the message's own if it is complete.
 pub(super) fn of(code: &str, sentence: &str) -> Option<String> {
     let given = ACTS.iter().find(|(known, _)| *known == code).map(|&(_, act)| act.to_owned());
     given.or_else(|| of_message(sentence))
 }
 
-/// What a message ends in, unless a part of it is filled in when the error happens.
+/// The act at the end of a message, unless a part of it is filled in when the error happens.
 fn of_message(sentence: &str) -> Option<String> {
     let (_, act) = sentence.rsplit_once("; ")?;
     (act.contains(char::is_lowercase) && !act.contains('…')).then(|| act.to_owned())
@@ -245,10 +246,10 @@ mod tests {
     use super::*;
     use crate::commands::explain::known::known;
 
-    /// How an act begins that says first whose fault it is, since the reader of these can do no more than report it.
+    /// The only act for errors that the reader can only report; it begins with whose fault it is.
     const REPORTED: &str = "this is a fault of halfrow, so report it";
 
-    /// What acts begin with.
+    /// The verbs with which acts begin.
     const VERBS: [&str; 63] = [
         "add",
         "allow",
@@ -315,7 +316,7 @@ mod tests {
         "stop",
     ];
 
-    /// What tells how a run went, whose record has a `remedy`, or asks for nothing.
+    /// The codes without an act: they say how a run went, and its record has a `remedy` or nothing is to be done.
     const TOLD: &str = "board-swapped build-not-of-plan device-asked-for device-in-other-lane device-known device-new device-unsaid \
         identity-not-checked lane-armed lane-deaf lane-died lane-endless lane-idle lane-in-service lane-late lane-not-started \
         lane-put-back lane-silent lane-starts lane-stuck lane-taken-out lane-told-nonsense lane-told-to-end link-answers-wrong \
@@ -354,10 +355,10 @@ mod tests {
         let is_error = |of: &str| ["error", "station-error"].contains(&of);
         for it in known().into_values().flatten().filter(|it| is_error(&it.of)) {
             let message = if it.sentence.is_empty() { &it.meaning } else { &it.sentence };
-            // The rows of a matrix stand in brackets.
+            // The rows of a matrix are in brackets, with semicolons of their own.
             let outside = message.split(['[', ']']).step_by(2);
             let asked: usize = outside.map(|part| part.matches("; ").count()).sum();
-            // What is behind the last one is the remedy: of two, the first would be lost.
+            // The remedy is what follows the last semicolon: of two remedies, the first would be lost.
             assert!(asked < 2, "{}: {message}", it.code);
         }
     }

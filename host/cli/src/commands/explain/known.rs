@@ -1,4 +1,4 @@
-//! What is known of every code, and of the other words of a report.
+//! What is known about every code, and about the other words of a report.
 
 use std::collections::BTreeMap;
 
@@ -16,16 +16,16 @@ pub(super) const MEANINGS: &[(&str, &str, &str)] = include!(concat!(env!("OUT_DI
 /// The codes of `halfrow-station`'s own errors, each with the names of its parameters.
 const CODES_OF_STATION: &[(&str, &[&str])] = include!(concat!(env!("OUT_DIR"), "/codes_of_station.rs"));
 
-/// What is to be said of a code.
+/// What there is to say about a code.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(super) struct Explanation {
     pub(super) code: String,
-    /// finding, defect, not-exercised, error, station-error, verdict, check, line or fault.
+    /// What kind of word it is: finding, defect, not-exercised, error, station-error, verdict, check, line or fault.
     pub(super) of: String,
     pub(super) meaning: String,
-    /// A sentence with it, or with what stands for its parameters in capitals.
+    /// An example sentence, or a message with the names of its parameters in capitals.
     pub(super) sentence: String,
-    /// The verdict that it leads to; none when that is another's matter.
+    /// The verdict that it leads to; none if it does not decide the verdict.
     pub(super) verdict: Option<Verdict>,
     pub(super) fault: &'static str,
     #[serde(rename = "do")]
@@ -35,7 +35,7 @@ pub(super) struct Explanation {
     pub(super) place: &'static str,
 }
 
-/// Every code, and every other word of a report, with what is said of it.
+/// Every code, and every other word of a report, with its explanations.
 pub(super) fn known() -> BTreeMap<String, Vec<Explanation>> {
     let of_station = CODES_OF_STATION
         .iter()
@@ -70,7 +70,7 @@ pub(super) fn known() -> BTreeMap<String, Vec<Explanation>> {
     for part in examples::not_exercised() {
         add(&part.tagged().0, &|it| it.sentence = part.words());
     }
-    // A code may be called as a check is, or as a fault.
+    // A code may have the same name as a check or a fault.
     let mut all: BTreeMap<String, Vec<Explanation>> = BTreeMap::new();
     for it in known.into_values().chain(words()) {
         all.entry(it.code.clone()).or_default().push(it);
@@ -78,7 +78,8 @@ pub(super) fn known() -> BTreeMap<String, Vec<Explanation>> {
     all
 }
 
-/// The words of a report that are no codes: verdicts, checks, the words at the left of its lines, and the faults that a mock board can have.
+/// The words of a report that are not codes: verdicts, checks, the words at the left of its lines, and the faults that a mock
+/// board can have.
 fn words() -> impl Iterator<Item = Explanation> {
     let meaning = |name: &str| MEANINGS.iter().find(|(known, ..)| *known == name).map_or("", |(_, it, _)| it);
     let verdicts = [Verdict::Pass, Verdict::Fail, Verdict::Error].map(|verdict| Explanation {
@@ -112,7 +113,7 @@ fn words() -> impl Iterator<Item = Explanation> {
     faults.chain(checks).chain(lines::all()).chain(verdicts)
 }
 
-/// What a verdict asks for, whatever led to it.
+/// What to do after a verdict, whatever led to it.
 const fn act(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Pass => "Nothing. The line `limits` names what no frame put to the test.",
@@ -123,7 +124,7 @@ const fn act(verdict: Verdict) -> &'static str {
     }
 }
 
-/// What is known of a code by its kind alone.
+/// What is known about a code from its kind alone.
 fn of_entry(entry: &Value) -> Explanation {
     let text = |key: &str| entry[key].as_str().unwrap_or_default().to_owned();
     let parameters = entry["parameters"].as_array().into_iter().flatten().filter_map(Value::as_str);
@@ -162,7 +163,7 @@ fn of_entry(entry: &Value) -> Explanation {
     }
 }
 
-/// Whose fault it is, by the verdict.
+/// Whose fault it is, according to the verdict.
 fn fault(verdict: Option<Verdict>) -> &'static str {
     match verdict {
         Some(Verdict::Pass) => "nobody's: it is as it must be",
@@ -172,7 +173,7 @@ fn fault(verdict: Option<Verdict>) -> &'static str {
     }
 }
 
-/// A message with the names of what is filled in in capitals.
+/// A message template, with the names of its parameters in capitals.
 fn named_places(message: &str) -> String {
     let mut parts = message.split('{');
     let mut text = parts.next().unwrap_or_default().to_owned();
@@ -186,14 +187,14 @@ fn named_places(message: &str) -> String {
     text
 }
 
-/// With a capital and a full stop.
+/// `words` with a capital at the beginning and a full stop at the end.
 fn as_sentence(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }
 
 impl Explanation {
-    /// Takes what the sources say. Where there is no comment the message is one.
+    /// Takes what the sources say. Without a comment, the message serves as the meaning.
     fn say(&mut self, meaning: &str, message: &str) {
         self.sentence = named_places(message);
         self.acts = acts::of(&self.code, &self.sentence).into_iter().collect();

@@ -2,7 +2,7 @@
 
 use super::known::Explanation;
 
-/// A word, what stands behind it, whose matter that is, what to do about it (nothing, if empty), and where it stands in JSON.
+/// A word, what follows it on its line, whose concern that is, what to do about it (nothing, if empty), and where it is in JSON.
 struct Line {
     word: &'static str,
     meaning: &'static str,
@@ -11,7 +11,7 @@ struct Line {
     place: &'static str,
 }
 
-/// Whose matter a line is that only tells.
+/// Whose concern a line is that only informs.
 const NOBODYS: &str = "nobody's: it tells what was done";
 
 const LINES: &[Line] = &[
@@ -135,7 +135,7 @@ const LINES: &[Line] = &[
     },
 ];
 
-/// Each of them with what is said of it.
+/// The explanation of each line.
 pub(super) fn all() -> impl Iterator<Item = Explanation> {
     LINES.iter().map(|it| Explanation {
         code: it.word.to_owned(),

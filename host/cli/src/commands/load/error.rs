@@ -1,4 +1,4 @@
-//! Why a bitstream was not loaded, or is not what the board has.
+//! Why a bitstream was not loaded, or is not the one that the board runs.
 
 use std::io;
 use std::path::PathBuf;

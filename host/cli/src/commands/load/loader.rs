@@ -1,4 +1,4 @@
-//! openFPGALoader as a program of its own, under a deadline.
+//! Runs openFPGALoader as a child process, with a deadline.
 
 use std::io::{self, Read};
 use std::os::unix::process::CommandExt as _;
@@ -23,13 +23,13 @@ use halfrow::verdict::StoppedBy;
 
 /// The program.
 pub(super) const PROGRAM: &str = "openFPGALoader";
-/// How often the program is looked at.
+/// How often to check on the program.
 const LOOK: Duration = Duration::from_millis(10);
-/// The most that is kept of what it says, in bytes; a longer line is told in pieces.
+/// The most that is kept of its output, in bytes; a longer line is handled in pieces.
 const MOST_KEPT: usize = 2000;
-/// The lines that may wait to be told. One that says more waits.
+/// How many lines of output may be queued. Beyond that, the program has to wait.
 const QUEUE: usize = 64;
-/// How long its last words may take when it has ended, should something that it started hold its streams open.
+/// How long to read its last output after it has ended, in case something that it started holds its streams open.
 const LAST_WORDS: Duration = Duration::from_secs(2);
 
 /// A call of the loader.
@@ -38,12 +38,12 @@ pub(super) struct Call {
     /// Its options.
     options: Vec<String>,
     file: PathBuf,
-    /// What to call by hand when there is no such program.
+    /// What to call by hand if the program is not installed.
     other: String,
 }
 
 impl Call {
-    /// Loads `file` into the board that the loader knows by `board`, with `more` of its options.
+    /// A call that loads `file` into the board that the loader calls `board`, with the further options `more`.
     pub(super) fn new(board: &str, other: &str, file: &Path, more: &[String]) -> Self {
         let mut options = vec!["-b".to_owned(), board.to_owned()];
         options.extend(more.iter().cloned());
@@ -57,15 +57,15 @@ impl Call {
         [PROGRAM.to_owned()].into_iter().chain(self.options.iter().cloned()).chain([file]).collect()
     }
 
-    /// As a shell takes it.
+    /// The call as a line for a shell.
     pub(super) fn line(&self) -> String {
         self.words().iter().map(|word| shell_word(word)).collect::<Vec<_>>().join(" ")
     }
 
-    /// Runs it to its end, which `deadline` or whoever `stopped` names may hasten.
+    /// Runs it until it ends, until `deadline` has passed, or until `stopped` returns a reason.
     ///
     /// # Errors
-    /// When it did not end well.
+    /// When it did not end successfully.
     pub(super) fn run(
         &self,
         deadline: Duration,
@@ -105,7 +105,7 @@ struct Loader {
 impl Loader {
     fn start(call: &Call) -> Result<Self, Failure> {
         let not_run = |source| Failure::error(LoadError::LoaderNotStarted { call: call.line(), source });
-        // Where that signal is ignored, as whoever started this program may have wished, nobody learns how a child ended.
+        // If SIGCHLD is ignored, as it may have been when this program was started, the exit status of a child is lost.
         signal_hook::flag::register(SIGCHLD, Arc::default()).map_err(not_run)?;
         let mut command = Command::new(PROGRAM);
         command.args(&call.options).arg(&call.file).process_group(0);
@@ -131,7 +131,7 @@ impl Loader {
         }
     }
 
-    /// Hears it until it ends or has to.
+    /// Reads its output until it ends or must end.
     fn attended(&mut self, deadline: Instant, told: &Told, stopped: &dyn Fn() -> Option<StoppedBy>) -> End {
         loop {
             match self.lines.recv_timeout(LOOK) {
@@ -167,19 +167,19 @@ impl Loader {
         Pid::from_raw(self.child.id().cast_signed())
     }
 
-    /// Whether it has ended. It is not waited for yet: its number, which is its group's, might be another's then.
+    /// Whether it has ended. It is not reaped yet: its process id, which is also its group's, could then be reused.
     fn has_ended(&self) -> bool {
         let look = WaitPidFlag::WEXITED | WaitPidFlag::WNOHANG | WaitPidFlag::WNOWAIT;
         waitid(Id::Pid(self.id()), look) != Ok(WaitStatus::StillAlive)
     }
 
-    /// Sees that it is gone with all of its group, and returns how it ended and the last that it said.
+    /// Makes sure that it and its whole process group are gone. Returns its exit status and its last output.
     fn end(mut self, told: &Told) -> (io::Result<ExitStatus>, String) {
-        // Nothing is left to be killed when all have ended.
+        // This fails if all have ended already.
         let _ = killpg(self.id(), Signal::SIGKILL);
         let status = self.child.wait();
         let limit = Instant::now() + LAST_WORDS;
-        // What it left behind in another group may go on for ever.
+        // A process that it left in another group may hold the streams open for ever.
         while let Some(left) = limit.checked_duration_since(Instant::now())
             && let Ok(line) = self.lines.recv_timeout(left)
         {
@@ -190,7 +190,7 @@ impl Loader {
     }
 }
 
-/// Sends the lines of a stream, which end with a line feed or, where they are progress, a carriage return.
+/// Sends the lines of a stream, on a thread. They end with a line feed or, if they show progress, a carriage return.
 fn hear(stream: Box<dyn Read + Send>, lines: SyncSender<String>) -> io::Result<()> {
     let hear = move || {
         let mut line = Vec::new();

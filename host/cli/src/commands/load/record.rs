@@ -1,4 +1,4 @@
-//! What is known of a bitstream: the file beside it that `fpga/boards/record` writes when it is built.
+//! What is known about a bitstream: the file next to it that `fpga/boards/record` writes when it is built.
 
 use std::fs;
 use std::io;
@@ -12,28 +12,28 @@ use halfrow::files::check_regular;
 use halfrow::result::sha256;
 use halfrow::tables::text;
 
-/// How a bitstream was made. Keys that it does not know may come.
+/// How a bitstream was made. Unknown keys are ignored.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Record {
     /// The board, by its folder in `fpga/boards`.
     pub(super) board: String,
-    /// The FPGA that it is for, as the tools name it.
+    /// The FPGA that it is for, by the tools' name.
     pub(super) device: String,
-    /// The link, `fifo` or `uart`, and what else the build was asked for.
+    /// The link, `fifo` or `uart`, and other options of the build.
     pub(super) kind: String,
     /// The commit of the sources, in hexadecimal.
     pub(super) commit: String,
-    /// Whether the sources were others than the commit's.
+    /// Whether the sources differed from the commit.
     pub(super) modified: bool,
-    /// What the board says of itself as its build: eight hexadecimal digits.
+    /// What the board reports as its build: eight hexadecimal digits.
     pub(super) build: String,
     /// SHA-256 of the bitstream, in hexadecimal.
     pub(super) sha256: String,
-    /// What made it, with versions.
+    /// The tools that made it, with versions.
     pub(super) tools: String,
 }
 
-/// Where the record of a bitstream lies.
+/// The path of a bitstream's record.
 pub(super) fn place(bitstream: &Path) -> PathBuf {
     let mut name = bitstream.as_os_str().to_owned();
     name.push(".json");
@@ -43,7 +43,7 @@ pub(super) fn place(bitstream: &Path) -> PathBuf {
 /// The record of `bitstream`, if it has one.
 ///
 /// # Errors
-/// When the bitstream or its record cannot be read, or the one is not what the other tells of.
+/// When the bitstream or its record cannot be read, or the record describes another bitstream.
 pub(super) fn read(bitstream: &Path) -> Result<Option<Record>, anyhow::Error> {
     check_regular(bitstream)?;
     let bytes =

@@ -10,10 +10,10 @@ use halfrow::result::Variation;
 use halfrow::run::{self, Build, Part, Plan, Prices, Rates, Selection, Timing, usual_capabilities};
 use halfrow::target::Target;
 
-/// Links that prices are told for when the target does not say how fast its own is: two UARTs, and a FIFO.
+/// Links for which prices are given if the target does not say how fast its link is: two UARTs and a FIFO.
 const USUAL_LINKS: [(&str, f64); 3] =
     [("3 Mbaud", 300_000.0), ("12 Mbaud", 1_200_000.0), ("FIFO, 5 MB/s", 5_000_000.0)];
-/// A round trip over a link that nobody has asked, in seconds.
+/// The assumed round trip over a link that was not measured, in seconds.
 const ROUND_TRIP: f64 = 0.001;
 
 /// A frame that would be streamed.
@@ -34,12 +34,12 @@ struct OnLink {
     bytes_per_second: f64,
     round_trip: f64,
     parts: Vec<Priced>,
-    /// What every run has, greeting and one row included.
+    /// The seconds that every run takes at least, including the session's opening and one row.
     every_run: f64,
     whole_run: f64,
 }
 
-/// What a part adds to the least run.
+/// What a part adds to the shortest run.
 #[derive(Serialize)]
 struct Priced {
     part: String,
@@ -92,7 +92,7 @@ fn on_links(plan: &Plan, target: &Target) -> Vec<OnLink> {
         "sim" => BoardNature::Simulation,
         _ => BoardNature::Hardware,
     };
-    // What a recording holds has been streamed.
+    // A recording has already been streamed, at no cost now.
     if target.kind == "replay" {
         return Vec::new();
     }
@@ -104,13 +104,13 @@ fn on_links(plan: &Plan, target: &Target) -> Vec<OnLink> {
     }
 }
 
-/// The bytes a second that a target says of its link.
+/// The bytes per second of the link, if the target gives its speed.
 fn stated_rate(target: &Target) -> Option<f64> {
     let number = |key: &str| {
         let option = target.options.iter().find(|(name, _)| name == key);
         option.and_then(|(_, value)| value.parse::<f64>().ok()).filter(|rate| rate.is_finite() && *rate > 0.0)
     };
-    // A byte on a UART has ten bits.
+    // A byte takes ten bits on a UART.
     number("speed").or_else(|| number("baud").map(|baud| baud / 10.0))
 }
 
@@ -133,7 +133,7 @@ fn on_link(plan: &Plan, capabilities: &Capabilities, link: String, bytes_per_sec
     }
 }
 
-/// The prices, a line a part and a column a link.
+/// The prices, with a line for each part and a column for each link.
 fn table(links: &[OnLink]) -> Vec<String> {
     let line = |name: &str, amount: String, of: &dyn Fn(&OnLink) -> String| {
         links
