@@ -64,8 +64,8 @@ impl<'a> Bytes<'a> {
             .collect()
     }
 
-    /// The four bytes of the directory entry at `start`, the first one uppermost. For any other kind of value, a number that is not
-    /// a pattern.
+    /// The four bytes of the directory entry at `start`, the first one uppermost. For any other kind of value, a number that is
+    /// not a pattern.
     pub(super) fn four_bytes(&self, start: usize) -> Result<u32, DecodeError> {
         match (self.short(start.saturating_add(2))?, self.long(start.saturating_add(4))?) {
             (BYTE, 4) => self.array(start.saturating_add(8)).map(u32::from_be_bytes),

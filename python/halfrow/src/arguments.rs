@@ -1,4 +1,4 @@
-//! Arguments of a call, each taken as what it must be or refused by its name.
+//! Arguments of a call. Each is converted to its type, or refused by name.
 
 use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
@@ -8,10 +8,10 @@ use crate::kernel::KernelLike;
 use crate::lens::LensLike;
 use crate::tables::Tables;
 
-/// The longest look of a value that a message repeats.
+/// The longest representation of a value that a message repeats, in bytes.
 const LONGEST: usize = 40;
 
-/// Functions for `from_py_with`, called as the arguments that they take.
+/// Functions for `from_py_with`, each with the name of the argument that it takes.
 macro_rules! arguments {
     ($($name:ident: $kind:ty, $takes:literal;)+) => {$(
         pub(crate) fn $name<'py>(given: &Bound<'py, PyAny>) -> PyResult<$kind> {
@@ -40,7 +40,7 @@ fn wrong_kind(given: &Bound<'_, PyAny>, name: &str, takes: &str) -> PyErr {
     errors::wrong_value(format!("{name} is {}; give {takes}", look(given)))
 }
 
-/// A value as Python shows it, or its kind alone where that takes much room.
+/// A value as Python shows it, or only its type if that would be long.
 fn look(given: &Bound<'_, PyAny>) -> String {
     let shown = given.repr().map(|shown| shown.to_string()).ok();
     let shown = shown.filter(|shown| shown.len() <= LONGEST && !shown.contains('\n'));

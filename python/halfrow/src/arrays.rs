@@ -1,4 +1,4 @@
-//! NumPy's arrays as frames: taken as they are or refused, never copied.
+//! NumPy arrays as frames: taken as they are or refused, never copied.
 
 use std::ops::Range;
 
@@ -9,27 +9,27 @@ use numpy::{
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
-/// The samples of `array`, to be read; `what` is its name in the call.
+/// The samples of `array`, for reading; `what` is its name in the call.
 pub(crate) fn read<'py>(array: &Bound<'py, PyAny>, what: &str) -> PyResult<PyReadonlyArray2<'py, u16>> {
     let array = samples(array, what)?;
     array.try_readonly().map_err(|error| refused(error, what))
 }
 
-/// The samples of `array`, to be written.
+/// The samples of `array`, for writing; `what` is its name in the call.
 pub(crate) fn write<'py>(array: &Bound<'py, PyAny>, what: &str) -> PyResult<PyReadwriteArray2<'py, u16>> {
     let array = samples(array, what)?;
     array.try_readwrite().map_err(|error| refused(error, what))
 }
 
-/// Makes sure that `out` has no sample of `frame`. The flags of a borrow go by the object that owns the memory, of which NumPy makes one
-/// for each array over a buffer that is not its own.
+/// Makes sure that `out` shares no sample with `frame`. The borrow flags do not show this: they belong to the object that owns
+/// the memory, and NumPy makes one such object for each array over a foreign buffer.
 pub(crate) fn check_apart(frame: &Bound<'_, PyArray2<u16>>, out: &Bound<'_, PyArray2<u16>>) -> PyResult<()> {
     let (of_frame, of_out) = (addresses(frame), addresses(out));
     let is_apart = of_frame.end <= of_out.start || of_out.end <= of_frame.start;
     if is_apart { Ok(()) } else { Err(PyValueError::new_err(shared("out"))) }
 }
 
-/// Where the samples of an array are that has them one after the other.
+/// The addresses of the samples of a contiguous array.
 fn addresses(array: &Bound<'_, PyArray2<u16>>) -> Range<usize> {
     let start = array.data().addr();
     start..start + size_of::<u16>() * array.len()

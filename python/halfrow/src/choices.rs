@@ -1,4 +1,4 @@
-//! Arguments that are a word or a number of few.
+//! Arguments with a few possible words or numbers, and times.
 
 use std::time::Duration;
 
@@ -20,14 +20,14 @@ pub(crate) fn phase(name: &str) -> PyResult<Phase> {
     name.parse().map_err(errors::input::<UnknownPhase>)
 }
 
-/// The path of the model that is named, or else the fastest of this processor.
+/// The named path of the model, or without a name the fastest one on this processor.
 pub(crate) fn path(name: Option<&str>) -> PyResult<ModelPath> {
     let Some(name) = name else { return Ok(ModelPath::best()) };
     let path: ModelPath = name.parse().map_err(errors::input::<UnknownPath>)?;
     if path.is_available() { Ok(path) } else { Err(errors::input(UnavailablePath(path))) }
 }
 
-/// How tables are found: as `--rows`, `--projection` and `--entries` say it, and `otherwise` if they say nothing.
+/// How tables are made: as `rows`, `projection` and `entries` say, or `otherwise` if they leave it open.
 pub(crate) fn tables_by(
     rows: Option<&str>,
     projection: &str,
@@ -54,7 +54,7 @@ pub(crate) fn tables_by(
     }
 }
 
-/// A time in seconds, called `what`.
+/// A time in seconds; `what` is its name in the call.
 pub(crate) fn seconds(what: &'static str, seconds: Option<f64>) -> PyResult<Option<Duration>> {
     call::seconds(what, seconds).map_err(errors::input)
 }

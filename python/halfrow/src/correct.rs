@@ -10,13 +10,13 @@ use crate::kernel::KernelLike;
 use crate::tables::Tables;
 use crate::{arguments, arrays, choices, errors};
 
-/// Corrects frames by the reference model, bit for bit as a board must; several threads may use one at once.
+/// Corrects frames with the reference model, bit for bit as a board must. Several threads may use one Corrector at once.
 ///
-/// `kernel` takes the place of the tables'. `path` is one of `halfrow.MODEL_PATHS`, all of which give the same bits, by default
-/// the last and fastest.
+/// `kernel` replaces the tables' own. `path` is one of `halfrow.MODEL_PATHS`, which all give the same bits; the default is the
+/// last and fastest.
 #[pyclass(frozen, module = "halfrow")]
 pub(crate) struct Corrector {
-    /// Of the model, those that no call has just now.
+    /// The model's correctors that no call is using.
     idle: Mutex<Vec<model::Corrector>>,
     #[pyo3(get)]
     tables: Py<Tables>,
@@ -41,17 +41,17 @@ impl Corrector {
         Ok(Self { idle: Mutex::default(), tables: tables.unbind(), kernel, path })
     }
 
-    /// The path of the model that it takes.
+    /// The path of the model that is used.
     #[getter]
     fn path(&self) -> &'static str {
         self.path.name()
     }
 
-    /// The corrected `frame`, both uint16 of shape (height, width) as the tables have it, samples 0 to 2^bits − 1.
+    /// The corrected `frame`. Both are uint16 with the tables' shape (height, width) and samples of 0 to 2^bits − 1.
     ///
-    /// The samples are taken from where they are and go into `out`, or else into a new array; neither is copied, and no other
-    /// thread may write to them meanwhile. Python's lock is released. An array that is anything else is a TypeError or a
-    /// ValueError, a frame of another size or a sample too bright an InputError; `out` then holds nothing of use.
+    /// The result goes into `out`, or else into a new array. Neither array is copied, and no other thread may write to them
+    /// meanwhile. Python's lock is released. An array of another kind raises TypeError or ValueError, a frame of another size or
+    /// with too bright a sample InputError; the content of `out` is then undefined.
     #[pyo3(signature = (frame, out = None))]
     fn correct<'py>(
         &self,
@@ -80,7 +80,7 @@ impl Corrector {
     fn run(&self, tables: &TableSet, samples: &[u16], output: &mut [u16]) -> Result<(), FrameError> {
         let idle = || self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let taken = idle().pop();
-        // The path was found to be available.
+        // `new` has made sure that the path is available.
         let mut corrector = taken
             .or_else(|| model::Corrector::new(self.path, &self.kernel).ok())
             .unwrap_or_else(|| model::Corrector::oracle(&self.kernel));
@@ -98,7 +98,7 @@ fn check_size(tables: &TableSet, shape: &[usize]) -> PyResult<()> {
     Err(errors::input(CorrectError::Size { frame_width: shape[1], frame_height: shape[0], width, height }))
 }
 
-/// The corrected `frame`, as `Corrector(tables, kernel=kernel, path=path).correct(frame, out)`.
+/// The corrected `frame`, like `Corrector(tables, kernel=kernel, path=path).correct(frame, out)`.
 #[pyfunction]
 #[pyo3(signature = (frame, tables, *, kernel = None, out = None, path = None))]
 pub(crate) fn correct<'py>(

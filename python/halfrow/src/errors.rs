@@ -8,47 +8,49 @@ use halfrow::optics::OpticsError;
 use halfrow::result::Problem;
 use pyo3::prelude::*;
 
-/// What the command line says of a value that is none.
+/// The command line's code for a wrong value.
 const VALUE_WRONG: &str = "usage-value-wrong";
-/// And of two options of which one leaves nothing for the other.
+/// And for two options that exclude each other.
 const CONFLICT: &str = "usage-arguments-conflict";
 
-/// And of a name of tables that says nothing of their format.
+/// And for a file name of tables that gives no format.
 const TABLES_FORMAT: &str = "tables-format-unknown";
-/// And of a system that gives no thread.
+/// The code for a system that has no thread left.
 const NO_THREAD: &str = "run-thread-missing";
-/// What the command line finds before it begins: a name of no format, and what is there already.
+/// Errors of writing that are the call's: a name without a format, and files that exist. The command line finds them before it
+/// begins.
 const NOT_WRITTEN: [&str; 3] = ["file-exists", "frame-extension-unknown", "report-exists"];
 
-/// Whose an error is, which tells the exception's class.
+/// Who is to blame for an error, which decides the exception's class.
 #[derive(Clone, Copy)]
 pub(crate) enum Whose {
-    /// The call or what it names: `halfrow.InputError`, a `ValueError`, too. The command line exits with 2 then.
+    /// The call or something that it names: `halfrow.InputError`, which is also a `ValueError`. The command line exits with 2
+    /// then.
     Call,
-    /// Anything else's: `halfrow.HalfrowError`.
+    /// Anything else: `halfrow.HalfrowError`.
     World,
 }
 
 impl Whose {
-    /// The call's, or not.
+    /// `Call` if it is the call's fault, else `World`.
     pub(crate) const fn of_call(is_of_call: bool) -> Self {
         if is_of_call { Self::Call } else { Self::World }
     }
 }
 
-/// The exception for a call that is wrong by `error`, or names what is.
+/// The exception for `error` in a call or in something that it names.
 pub(crate) fn input<E: Error + 'static>(error: E) -> PyErr {
     raised(Whose::Call, &error)
 }
 
-/// The exception for a lens, tables or a kernel that cannot be had. Those of another datapath are refused as a board of one is.
+/// The exception for a lens, tables or a kernel that cannot be used. Tables of another datapath are refused like a board of one.
 pub(crate) fn optics(error: impl Into<OpticsError>) -> PyErr {
     let error = error.into();
     let is_of_call = !error.is_other_datapath() && !matches!(error, OpticsError::Damaged(_));
     raised(Whose::of_call(is_of_call), &error)
 }
 
-/// The exception for `error`, which the call cannot help.
+/// The exception for `error`, for which the call is not to blame.
 pub(crate) fn failed<E: Error + 'static>(error: E) -> PyErr {
     raised(Whose::World, &error)
 }
@@ -59,7 +61,8 @@ pub(crate) fn unwritten<E: Error + 'static>(error: E) -> PyErr {
     exception(Whose::of_call(NOT_WRITTEN.contains(&problem.code.as_str())), &problem)
 }
 
-/// The exception for tables that are to be written to `path`, which names no format of theirs: the command line's.
+/// The exception for tables that are to be written to `path`, whose name gives no format of tables: the same as the command
+/// line's.
 pub(crate) fn no_tables(path: &Path) -> PyErr {
     let told =
         format!("{} names no format of tables; end it in .json, or in .mem for $readmemh", path.display());
@@ -68,7 +71,7 @@ pub(crate) fn no_tables(path: &Path) -> PyErr {
     exception(Whose::Call, &problem)
 }
 
-/// The exception for a run that the system gives no thread, as `error` says.
+/// The exception for a run for which the system has no thread, as `error` says.
 pub(crate) fn no_thread(error: &io::Error) -> PyErr {
     let told = format!(
         "this computer has no thread left to judge on ({error}); end other programs, or allow this user more processes, then run again"
@@ -76,7 +79,8 @@ pub(crate) fn no_thread(error: &io::Error) -> PyErr {
     exception(Whose::World, &Problem::new(NO_THREAD, told))
 }
 
-/// The exception for an option that `error` says cannot be taken from Python: in the words of whoever called, and not of this package.
+/// The exception for an option that could not be converted from Python, as `error` says. It names the option as the caller
+/// wrote it, not the types of this package.
 pub(crate) fn not_taken(py: Python<'_>, error: &PyErr) -> PyErr {
     let Some(reason) = error.cause(py) else { return error.clone_ref(py) };
     let told = error.value(py).to_string();
@@ -89,12 +93,12 @@ pub(crate) fn raised(whose: Whose, error: &(dyn Error + 'static)) -> PyErr {
     exception(whose, &Problem::of(error))
 }
 
-/// The exception for an argument of no use, by a message that ends in what to do.
+/// The exception for a wrong argument. The message ends in what to do.
 pub(crate) fn wrong_value(message: impl Into<String>) -> PyErr {
     exception(Whose::Call, &Problem::new(VALUE_WRONG, message))
 }
 
-/// The exception for an argument that says nothing beside another.
+/// The exception for an argument that has no effect beside another, or needs another.
 pub(crate) fn conflict(message: impl Into<String>) -> PyErr {
     exception(Whose::Call, &Problem::new(CONFLICT, message))
 }

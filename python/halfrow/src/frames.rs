@@ -1,4 +1,4 @@
-//! Frames in files, and frames to look at.
+//! Frames in files, and frames as pictures.
 
 use std::path::PathBuf;
 
@@ -11,9 +11,9 @@ use crate::{arguments, arrays, choices, errors};
 
 /// Reads the frame in the file `path`: uint16 of shape (height, width), each sample 0 to 2^bits − 1.
 ///
-/// The bytes tell the format: PGM, PNG, TIFF, DNG, JPEG, WebP, BMP. Samples are taken as they are, never rescaled; a colour picture is
-/// mosaicked in `phase`. `raw` (u8, u16le, mipi10, mipi12) is the layout of a file without a header, which then needs `width`
-/// and `height`. Raises InputError when the file cannot be read or holds no such frame.
+/// The file's bytes determine its format: PGM, PNG, TIFF, DNG, JPEG, WebP, BMP. Raw samples are taken as they are, never
+/// rescaled; a colour picture is mosaicked in `phase`. `raw` (u8, u16le, mipi10, mipi12) is the layout of a file without a
+/// header, which also needs `width` and `height`. Raises InputError when the file cannot be read or holds no such frame.
 #[pyfunction]
 #[pyo3(signature = (path, *, bits = 12, phase = "grbg", raw = None, width = None, height = None))]
 pub(crate) fn read_frame<'py>(
@@ -48,7 +48,7 @@ pub(crate) fn read_frame<'py>(
 }
 
 /// Writes `frame`, uint16 of shape (height, width), to the file `path`, in the format of its extension: .pgm, .png, .tif, .dng,
-/// or .raw (16 bits, low byte first). The file is whole or as it was; one that is there is replaced only with `overwrite`.
+/// or .raw (16 bits, low byte first). The file is whole or as before; an existing one is replaced only with `overwrite`.
 #[pyfunction]
 #[pyo3(signature = (path, frame, *, bits = 12, phase = "grbg", overwrite = false))]
 pub(crate) fn write_frame(
@@ -63,8 +63,8 @@ pub(crate) fn write_frame(
     py.detach(|| frames::write(&path, &frame, overwrite)).map_err(errors::unwritten)
 }
 
-/// A picture of `frame` to look at: uint8 of shape (height, width, 3), red, green and blue coded as sRGB, each missing colour
-/// the mean of its neighbours. Neither black level nor white balance is touched.
+/// A picture of `frame` for viewing: uint8 of shape (height, width, 3), red, green and blue coded as sRGB. Each missing colour is
+/// the mean of its neighbours. Neither black level nor white balance is applied.
 #[pyfunction]
 #[pyo3(signature = (frame, *, bits = 12, phase = "grbg"))]
 pub(crate) fn demosaic<'py>(

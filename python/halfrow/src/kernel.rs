@@ -1,4 +1,4 @@
-//! Kernels.
+//! Interpolation kernels.
 
 use std::path::PathBuf;
 
@@ -21,10 +21,10 @@ pub(crate) struct Kernel {
     pub(crate) kernel: model::Kernel,
     /// The notes of its file.
     pub(crate) about: Option<Map<String, Value>>,
-    /// What it is called.
+    /// Its name.
     #[pyo3(get)]
     pub(crate) name: String,
-    /// What it was asked for by: its name or its file. None of weights.
+    /// The name or file by which it was requested; none if it was made from weights.
     pub(crate) asked: Option<PathBuf>,
     /// The file that it was read from.
     pub(crate) file: Option<Input>,
@@ -40,8 +40,9 @@ impl Kernel {
         Ok(Self { kernel, about, name: name.display().to_string(), asked: Some(name), file })
     }
 
-    /// The kernel of real weights: an array of float64 of shape (65, 5), a row for x = 0, 1/32, …, 2 with the weights of
-    /// G0, R1, G4, R5 and G6, each −2 to 2 − 2⁻¹⁴, rounded to 14 fractional bits. The weights of G2 and R3 follow from them.
+    /// The kernel with these real weights: an array of float64 of shape (65, 5), with a row for each x = 0, 1/32, …, 2 and the
+    /// weights of G0, R1, G4, R5 and G6, each −2 to 2 − 2⁻¹⁴, rounded to 14 fractional bits. The weights of G2 and R3 follow
+    /// from them.
     #[staticmethod]
     #[pyo3(signature = (weights, *, name = "own"))]
     fn from_weights(
@@ -61,7 +62,7 @@ impl Kernel {
         Ok(Self { kernel, about: None, name: name.to_owned(), asked: None, file: None })
     }
 
-    /// The samples that it reads: 5 or 7.
+    /// How many samples it reads: 5 or 7.
     #[getter]
     fn taps(&self) -> u8 {
         match self.kernel.taps() {
@@ -70,7 +71,7 @@ impl Kernel {
         }
     }
 
-    /// The weights, float64 of shape (65, 5), as `from_weights` takes them.
+    /// The weights: float64 of shape (65, 5), as `from_weights` takes them.
     #[getter]
     fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let weights = self.kernel.nodes().as_flattened().iter();
@@ -78,8 +79,8 @@ impl Kernel {
         numpy::PyArray1::from_vec(py, weights).reshape([model::NODES, model::WEIGHT_NAMES.len()])
     }
 
-    /// Writes it to a kernel file (JSON), where the notes of a file that it was read from stay. A file that is there is replaced
-    /// only with `overwrite`.
+    /// Writes it to a kernel file (JSON), with the notes of the file that it was read from. An existing file is replaced only
+    /// with `overwrite`.
     #[pyo3(signature = (path, *, overwrite = false))]
     fn write(&self, path: PathBuf, overwrite: bool) -> PyResult<()> {
         let file = KernelFile { kernel: self.kernel.clone(), about: self.about.clone() };
@@ -103,7 +104,7 @@ pub(crate) enum KernelLike<'py> {
 }
 
 impl KernelLike<'_> {
-    /// It.
+    /// The kernel.
     pub(crate) fn taken(self) -> PyResult<Kernel> {
         match self {
             Self::Kernel(kernel) => Ok(kernel.get().clone()),

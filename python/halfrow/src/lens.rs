@@ -1,4 +1,4 @@
-//! Lenses, and the frames behind them.
+//! Lenses, and the frames seen through them.
 
 use std::path::PathBuf;
 
@@ -10,16 +10,17 @@ use pyo3::prelude::*;
 
 use crate::{arguments, choices, errors, frames};
 
-/// A fisheye lens before frames of some size.
+/// A fisheye lens, for frames of some size.
 ///
 /// `lens` is a file of OpenCV's fisheye model (FileStorage, camera_info, camchain) or of OCamCalib, or "equidistant:RADIUS"
-/// with the radius of the image of 180 degrees in pixels; without it the lens is that of the paper, R = 1106.697 pixels.
+/// with the radius of the image of 180 degrees in pixels. The default is the paper's lens, R = 1106.697 pixels.
 ///
-/// `width` (even, 64 to 2592) and `height` (1 to 2048) are those of the lens file's pictures, or else 1920 x 1080; frames of
-/// another size scale the lens, and must have the same shape. `bits` is 8, 10 or 12. `centre_x` and `centre_y`, column and row
-/// of the lens's axis, are the file's, or else the middle. `field_of_view` is the angle across the image circle, in degrees.
+/// `width` (even, 64 to 2592) and `height` (1 to 2048) are by default those of the lens file's pictures, or else 1920 x 1080.
+/// Frames of another size scale the lens, and must have the same aspect ratio. `bits` is 8, 10 or 12. `centre_x` and `centre_y`,
+/// the column and row of the lens's axis, are by default the file's, or else the middle. `field_of_view` is the angle across the
+/// image circle, in degrees.
 ///
-/// Raises InputError when a file cannot be read or holds no such lens, or when such frames cannot have it.
+/// Raises InputError when a file cannot be read or holds no such lens, or when the lens is not possible with such frames.
 #[pyclass(frozen, module = "halfrow")]
 pub(crate) struct Lens {
     pub(crate) optics: Optics,
@@ -80,21 +81,21 @@ impl Lens {
         self.optics.camera.field_of_view().to_degrees()
     }
 
-    /// Rows that lie outside of the image circle. Row factors do not stretch them, and a grid not exactly.
+    /// How many rows are outside the image circle. Row factors do not stretch them, and a grid does not do so exactly.
     #[getter]
     fn rows_outside_circle(&self) -> usize {
         self.optics.camera.rows_outside_circle()
     }
 
-    /// Where a ray `degrees` off the axis is imaged, in columns from the axis; None where the lens has no image of it.
+    /// Where a ray `degrees` off the axis is imaged, in columns from the axis; None if the lens does not image it.
     fn column(&self, degrees: f64) -> Option<f64> {
         self.optics.camera.lens().column(degrees.to_radians())
     }
 
-    /// The built-in frame `name`, one of `halfrow.BUILTIN_FRAMES`, as an equidistant lens of this R sees it: uint16 of shape
+    /// The built-in frame `name`, one of `halfrow.BUILTIN_FRAMES`, as seen through an equidistant lens of this R: uint16 of shape
     /// (height, width).
     ///
-    /// `phase` is grbg, rggb, bggr or gbrg; `seed` is that of noise.
+    /// `phase` is grbg, rggb, bggr or gbrg; `seed` is the seed of noise.
     #[pyo3(signature = (name, *, phase = "grbg", seed = 1))]
     fn frame<'py>(
         &self,
@@ -147,7 +148,7 @@ pub(crate) enum LensLike<'py> {
 }
 
 impl LensLike<'_> {
-    /// It.
+    /// The lens, with its frames.
     pub(crate) fn taken(self) -> PyResult<Optics> {
         match self {
             Self::Lens(lens) => Ok(lens.get().optics.clone()),

@@ -1,4 +1,4 @@
-//! `halfrow._halfrow`: the library `halfrow` behind the Python package of that name, which python/halfrow/python wraps.
+//! `halfrow._halfrow`: the library `halfrow` as an extension module, which the Python package in python/halfrow/python wraps.
 //!
 //! ```text
 //!  arrays ── NumPy's samples, never copied      errors ── codes, messages, remedies
@@ -26,7 +26,7 @@ mod watched;
 
 use pyo3::pymodule;
 
-/// Boards judged, and frames corrected, by the library `halfrow`.
+/// Judges boards and corrects frames with the library `halfrow`.
 #[pymodule]
 mod _halfrow {
     use halfrow::frames::Builtin;

@@ -1,4 +1,4 @@
-//! From the options of a call to what a run does, and how.
+//! From the options of a call to the plan and options of a run.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -42,21 +42,21 @@ pub(crate) struct Options<'py> {
     pub(crate) record: Option<PathBuf>,
     pub(crate) overwrite: bool,
     pub(crate) progress: Option<Bound<'py, PyAny>>,
-    /// The options that say something else than they do when they are left out.
+    /// The names of the options whose value is not the default.
     given: Vec<String>,
 }
 
-/// What is to be judged, how, and what it is read from.
+/// What is judged and how, and the files that this is read from.
 pub(crate) struct Planned {
     pub(crate) plan: Plan,
     pub(crate) options: RunOptions,
-    /// Tables, lens and frames that are files.
+    /// The files of tables, lens and frames.
     pub(crate) inputs: Vec<PathBuf>,
-    /// The kernel, by name or file, unless it is the tables' own.
+    /// The name or file of the kernel, unless it is the tables' own.
     pub(crate) kernel: Option<PathBuf>,
 }
 
-/// What the options say of tables and kernel.
+/// A plan, the files that it was read from, and the name or file of its kernel.
 struct Judged {
     plan: Plan,
     files: Vec<Input>,
@@ -64,7 +64,7 @@ struct Judged {
 }
 
 impl Options<'_> {
-    /// What the run in `recording` did, if there is one, or else what the options say; it ends early by `stop`.
+    /// The run in `recording`, if there is one, else the run that the options describe. `stop` ends it early.
     pub(crate) fn planned(&mut self, recording: Option<&Recording>, stop: Stop) -> PyResult<Planned> {
         let timeout = choices::seconds("timeout", self.timeout)?;
         let stop = stop.wall_limit(timeout);
@@ -82,7 +82,7 @@ impl Options<'_> {
         Ok(Planned { plan, options, inputs: Vec::new(), kernel: None })
     }
 
-    /// Refuses options that do nothing beside what is `voided` by.
+    /// Refuses options that have no effect, as `voided` lists them.
     fn refuse(&self, voided: &Voided) -> PyResult<()> {
         let named = |option: &str| if option == call::FRAMES { "frames" } else { option }.to_owned();
         let is_given = |option: &str| self.given.contains(&named(option));
@@ -141,7 +141,7 @@ impl Options<'_> {
         Ok(Judged { plan, files, kernel })
     }
 
-    /// To judge with the tables of the call, or else with those of the paper's lens, and the files that they came from.
+    /// A plan with the tables of the call, or else with those of the paper's lens, and the files that they came from.
     fn of_tables(&mut self, phase: Phase) -> PyResult<Judged> {
         let own;
         let tables = match &self.tables {
@@ -184,13 +184,13 @@ impl Options<'_> {
     }
 }
 
-/// The frame in the file `path`, and what it was read from.
+/// The frame in the file `path`, and the file as an input of the run.
 fn read(path: &Path, how: &ReadOptions) -> Result<(Frame, Input), ReadError> {
     let file = FrameFile::read(path)?;
     Ok((file.decode(how)?.frame, Input::of_bytes(path, file.bytes())))
 }
 
-/// Frame `place` of a call: an array, `builtin:NAME` or a file, which joins `files`.
+/// Frame `place` of a call: an array, `builtin:NAME`, or a file, which is appended to `files`.
 fn source(
     given: &Bound<'_, PyAny>,
     place: usize,

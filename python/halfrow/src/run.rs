@@ -1,4 +1,4 @@
-//! A run that is over.
+//! A finished run.
 
 use std::path::PathBuf;
 
@@ -17,12 +17,12 @@ pub(crate) struct Run {
 
 #[pymethods]
 impl Run {
-    /// All of it, as `halfrow schema` describes it.
+    /// The whole result as JSON, as `halfrow schema` describes it.
     fn json(&self) -> PyResult<String> {
         report::json(&self.finished.report).map_err(errors::failed)
     }
 
-    /// A copy has the same frames behind it.
+    /// A copy shares the same frames.
     fn __copy__(this: Bound<'_, Self>) -> Bound<'_, Self> {
         this
     }
@@ -31,13 +31,13 @@ impl Run {
         this
     }
 
-    /// None leaves the process: the frames stay here.
+    /// Pickled, it becomes None: its frames stay in this process.
     fn __reduce__(this: Bound<'_, Self>) -> (Bound<'_, PyType>, ()) {
         let py = this.py();
         (py.None().into_bound(py).get_type(), ())
     }
 
-    /// The verdict, every check, who is suspected, and what to do: a line each.
+    /// The verdict, every check, the suspects, and what to do: one line each.
     fn text(&self) -> String {
         wording::summary(&self.finished.report)
     }

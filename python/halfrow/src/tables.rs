@@ -1,4 +1,4 @@
-//! Tables: what a board is given beside frames.
+//! Tables: what a board gets beside frames.
 
 use std::path::PathBuf;
 
@@ -14,18 +14,18 @@ use crate::kernel::{Kernel, KernelLike};
 use crate::lens::{Lens, LensLike};
 use crate::{arguments, choices, errors};
 
-/// What a kernel without a name is called.
+/// The name of a kernel that comes with a table file.
 const OF_FILE: &str = "the table file's";
 
-/// Row factors, or a grid of them, with the kernel and the frames that they are for. Made by `from_lens` or `read`.
+/// Row factors or a grid of factors, with a kernel, for frames of some size. Made by `from_lens` or `read`.
 #[pyclass(frozen, module = "halfrow")]
 pub(crate) struct Tables {
     pub(crate) chosen: Chosen,
-    /// The notes of the table file, unless its kernel was replaced, of which they may tell.
+    /// The notes of the table file; none if its kernel was replaced, since they may describe that.
     about: Option<Map<String, Value>>,
-    /// What the kernel is called.
+    /// The name of the kernel.
     kernel_name: String,
-    /// What the kernel was asked for by, unless it is the table file's.
+    /// The name or file by which the kernel was requested, unless it is the table file's.
     pub(crate) kernel_asked: Option<PathBuf>,
     /// The files that they were read from.
     pub(crate) files: Vec<Input>,
@@ -35,9 +35,9 @@ pub(crate) struct Tables {
 impl Tables {
     /// The tables for `lens`: a Lens, a lens file, "equidistant:RADIUS", or the paper's lens.
     ///
-    /// `projection` is "rows", one factor a row, or "exact", a grid of at most `entries` factors (2048), which boards with
-    /// datapath 2 take. `rows` says how row factors are found: "fitted" (of a lens file) or "equation-9" (of the others).
-    /// `kernel` is a Kernel, one of `halfrow.KERNELS`, or a kernel file. Raises InputError.
+    /// `projection` is "rows", one factor per row, or "exact", a grid of at most `entries` entries (default 2048), for boards
+    /// with datapath 2. `rows` says how row factors are found: "fitted" (the default for a lens file) or "equation-9" (the
+    /// default for other lenses). `kernel` is a Kernel, one of `halfrow.KERNELS`, or a kernel file. Raises InputError.
     #[staticmethod]
     #[pyo3(signature = (lens = None, *, projection = "rows", rows = None, entries = None, kernel = None))]
     fn from_lens(
@@ -60,10 +60,10 @@ impl Tables {
         Self::with_kernel(chosen, &from, Some(kernel), files)
     }
 
-    /// The tables in a file that `write` or `halfrow tables` has written: NAME.json, or NAME.mem, or either of them, for two files of memory
-    /// images.
+    /// The tables in a file that `write` or `halfrow tables` has written: NAME.json, or for two files with memory images
+    /// NAME.mem or either of the two.
     ///
-    /// `kernel` takes the place of the file's. Raises InputError, which names the file and the place in it.
+    /// `kernel` replaces the file's. Raises InputError, which names the file and the place in it.
     #[staticmethod]
     #[pyo3(signature = (path, *, kernel = None))]
     fn read(
@@ -85,8 +85,8 @@ impl Tables {
         Ok(Self { about, ..Self::with_kernel(chosen, &path.display().to_string(), kernel, files)? })
     }
 
-    /// Writes them with their kernel to NAME.json, where the notes of a file that they were read from stay, or to two files of
-    /// memory images for NAME.mem. Files that are there are replaced only with `overwrite`.
+    /// Writes them with their kernel to NAME.json, with the notes of the file that they were read from, or for NAME.mem to two
+    /// files with memory images. Existing files are replaced only with `overwrite`.
     #[pyo3(signature = (path, *, overwrite = false))]
     fn write(&self, path: PathBuf, overwrite: bool) -> PyResult<()> {
         let (tables, kernel) = (&self.chosen.tables, &self.chosen.kernel);
@@ -128,32 +128,32 @@ impl Tables {
         f64::from(self.chosen.tables.geometry().centre2()) / 2.0
     }
 
-    /// 1 for one factor a row, 2 for a grid.
+    /// 1 for one factor per row, 2 for a grid.
     #[getter]
     fn datapath(&self) -> u16 {
         datapath_of(&self.chosen.tables).id()
     }
 
-    /// v and k of a grid: 2^v rows from one grid row to the next, 2^k columns from one node to the next. None of row factors.
+    /// v and k of a grid: 2^v rows from one grid row to the next, 2^k columns from one node to the next. None for row factors.
     #[getter]
     fn grid_shape(&self) -> Option<(u32, u32)> {
         self.chosen.tables.shape().map(|shape| (shape.v(), shape.k()))
     }
 
-    /// The entries in a board's order, in units of 2^-24: uint32 of shape (entries,), one a row for row factors.
+    /// The entries in a board's order, in units of 2^-24: uint32 of shape (entries,). Row factors are one per row.
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_vec(py, self.chosen.tables.entries().collect())
     }
 
-    /// The row factor of each row, above 0 to 1: float64 of shape (height,). None of a grid.
+    /// The factor of each row, above 0 and up to 1: float64 of shape (height,). None for a grid.
     #[getter]
     fn row_factors<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         let fractions = self.chosen.tables.row_factors()?.iter().copied().map(RowFactor::fraction);
         Some(PyArray1::from_vec(py, fractions.collect()))
     }
 
-    /// The column that each output sample comes from, to the 2^-13 that the datapath keeps: float64 of shape (height, width).
+    /// The column that each output sample comes from, in the datapath's resolution of 2^-13: float64 of shape (height, width).
     fn sources<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let (tables, (height, width)) = (&self.chosen.tables, (self.height(), self.width()));
         let rows = py.detach(|| {
@@ -177,13 +177,13 @@ impl Tables {
         Kernel { kernel, about: None, name: self.kernel_name.clone(), asked: self.kernel_asked.clone(), file }
     }
 
-    /// The lens that built-in frames are seen through; for tables of a file, which does not say it, the paper's.
+    /// The lens that built-in frames are seen through. For tables from a file, which does not contain it, this is the paper's.
     #[getter]
     fn lens(&self) -> Lens {
         Lens { optics: self.chosen.optics.clone() }
     }
 
-    /// Where they come from, in words.
+    /// A description of where they come from.
     #[getter]
     fn source(&self) -> &str {
         &self.chosen.source
@@ -193,21 +193,21 @@ impl Tables {
         format!("<Tables: {}, {} x {}, {} bits>", self.source(), self.width(), self.height(), self.bits())
     }
 
-    /// Whether a board would be given the same: factors, frames and kernel.
+    /// Whether a board would get the same tables: the same factors, frame geometry and kernel.
     fn __eq__(&self, other: &Self) -> bool {
         (&self.chosen.tables, &self.chosen.kernel) == (&other.chosen.tables, &other.chosen.kernel)
     }
 }
 
 impl Tables {
-    /// Those of the paper's lens.
+    /// The tables for the paper's lens.
     pub(crate) fn of_paper() -> PyResult<Self> {
         let optics = Lens::seen(None, &View::default())?.optics;
         let chosen = optics::choose(None, optics, None).map_err(errors::optics)?;
         Self::with_kernel(chosen, "", None, Vec::new())
     }
 
-    /// The tables `chosen`, which come from `from`, with their own kernel unless there is another.
+    /// The tables `chosen`, which come from `from`, with `kernel` if given, else with their own.
     fn with_kernel(
         mut chosen: Chosen,
         from: &str,

@@ -1,4 +1,4 @@
-//! A board judged.
+//! Judging a board.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use crate::plan::{Options, Planned};
 use crate::run::Run;
 use crate::watched::watched;
 
-/// Judges the board behind `board`; halfrow/_verify.py says how.
+/// Judges the board at the target `board`; halfrow/_verify.py documents the options.
 #[pyfunction]
 pub(crate) fn verify(
     py: Python<'_>,
@@ -39,7 +39,7 @@ pub(crate) fn verify(
         .writes_claimed("record", asked.record.as_deref())
         .writes_report("report", asked.report.as_deref());
     files.check().map_err(errors::input)?;
-    // The name of a recording that is kept says what it is.
+    // There is no need to report recordings that are kept: their names say what they are.
     _ = files.clear_leftovers();
     let report = asked.report.as_deref().map(|path| ReportFolder::prepare(path, asked.overwrite));
     let report = report.transpose().map_err(errors::input)?;
@@ -58,7 +58,7 @@ fn not_opened(error: OpenError) -> PyErr {
     errors::raised(Whose::of_call(error.class() == Class::Call), &error)
 }
 
-/// All that a run needs.
+/// Everything that a run needs.
 struct Job {
     plan: Plan,
     options: RunOptions,
@@ -86,7 +86,7 @@ impl Job {
         let mut finished = run::verify(&self.plan, candidate, &self.options, progress).map_err(|error| {
             NotRun { whose: Whose::of_call(!error.is_other_datapath()), error: error.into() }
         })?;
-        // A verdict that stands is not lost with its evidence, and a PASS without it is none: the report tells.
+        // A lost recording or report does not raise: the report says what is missing, and a PASS without its evidence is no PASS.
         if let Some(error) = lost.get() {
             finished.lose_recording(error);
         }

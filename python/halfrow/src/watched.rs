@@ -1,4 +1,4 @@
-//! Work on a thread of its own, while the one that called listens to Python's signals and tells of progress.
+//! Work on a thread of its own, while the calling thread handles Python's signals and reports progress.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,19 +12,20 @@ use pyo3::prelude::*;
 
 use crate::errors;
 
-/// How long a signal may wait for somebody to look.
+/// How long a signal may have to wait.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// What the work tells.
+/// A message from the work.
 enum Told<T> {
     Event(Event),
     Result(T),
 }
 
-/// The result of `work`, whose events go to `listener`. Python's lock is free meanwhile.
+/// The result of `work`, whose events go to `listener`. Python's lock is released meanwhile.
 ///
-/// A signal handler or a listener that raises, as Ctrl-C does, sets `is_stopped`; the exception is passed on as soon as the work
-/// has ended in order, or at once when another is raised before; the work then goes on to that end behind it.
+/// If a signal handler (such as that of Ctrl-C) or the listener raises, `is_stopped` is set, and the exception is passed on when
+/// the work has ended in order. If another exception is raised before that, it is passed on at once, and the work ends by itself
+/// on its thread.
 pub(crate) fn watched<T: Send + 'static>(
     py: Python<'_>,
     listener: Option<&Bound<'_, PyAny>>,
@@ -34,7 +35,7 @@ pub(crate) fn watched<T: Send + 'static>(
     let (sender, told) = mpsc::channel();
     let worker = thread::Builder::new().name("run".to_owned()).spawn(move || {
         let events = sender.clone();
-        // Whoever called may be gone.
+        // The caller may be gone.
         let result = work(&move |event| _ = events.send(Told::Event(event)));
         _ = sender.send(Told::Result(result));
     });
@@ -63,7 +64,7 @@ pub(crate) fn watched<T: Send + 'static>(
     }
 }
 
-/// Goes on with the panic of a worker that has left no result.
+/// Resumes the panic of a worker that has left no result.
 fn without_result(worker: JoinHandle<()>) -> PyErr {
     match worker.join() {
         Err(panic) => std::panic::resume_unwind(panic),
@@ -73,7 +74,7 @@ fn without_result(worker: JoinHandle<()>) -> PyErr {
     }
 }
 
-/// Calls `listener` with the event's kind, its words and its rows.
+/// Calls `listener` with the event's kind, words and rows.
 fn tell(listener: Option<&Bound<'_, PyAny>>, event: &Event) -> PyResult<()> {
     let Some(listener) = listener else { return Ok(()) };
     let (kind, words, rows) = match event {
@@ -81,7 +82,7 @@ fn tell(listener: Option<&Bound<'_, PyAny>>, event: &Event) -> PyResult<()> {
         Event::RowsExpected(rows) => ("rows-expected", String::new(), *rows),
         Event::Frame(name) => ("frame", name.clone(), 0),
         Event::Rows(rows) => ("rows", String::new(), *rows),
-        // A soak's, which this package does not begin.
+        // An event of a soak, which this package never starts.
         Event::Soaked(_) => return Ok(()),
         Event::Done => ("done", String::new(), 0),
     };
