@@ -1,4 +1,4 @@
-"""A laboratory on this computer: labgrid's coordinator and exporter, and mock boards behind TCP.
+"""A lab on this computer: labgrid's coordinator and exporter, and mock boards behind TCP.
 
 HALFROW_PROGRAMS is the folder of the programs halfrow and halfrow-station.
 """
@@ -15,11 +15,11 @@ import pytest
 
 PROGRAMS = pathlib.Path(os.environ["HALFROW_PROGRAMS"])
 LABGRID = pathlib.Path(sys.executable).parent
-# How long something is waited for that must come: it ends hangs alone.
+# How long to wait for something that must come. This only ends hangs.
 HANG = 120.0
 
 BOARDS = {"good": "mock", "bad": "mock,fault=stuck-data", "first": "mock", "second": "mock"}
-# Groups of the exporter, each with what it exports; the port of a board by its name.
+# The exporter's groups, each with what it exports. The ports of the boards are filled in by name.
 EXPORTED = """
 good:
   NetworkSerialPort: {{host: 127.0.0.1, port: {good}, protocol: raw}}
@@ -36,11 +36,11 @@ telnet:
 nobody:
   NetworkSerialPort: {{host: 127.0.0.1, port: {nobody}, protocol: raw}}
 """
-# Places, and what is in them.
+# The places, and what is in them.
 PLACES = {
     "cam-good": ["bench/good/NetworkSerialPort"],
     "cam-bad": ["bench/bad/NetworkSerialPort"],
-    # Whose hosts are killed: the board's session holds them for ten seconds from then on.
+    # Boards whose hosts are killed: their sessions hold them for ten seconds after that.
     "cam-first": ["bench/first/NetworkSerialPort"],
     "cam-second": ["bench/second/NetworkSerialPort"],
     "cam-telnet": ["bench/telnet/NetworkSerialPort"],
@@ -51,7 +51,7 @@ PLACES = {
 
 
 def wait_for(what, look):
-    """What `look` returns, once it is something."""
+    """What `look` returns, as soon as that is true."""
     begun = time.monotonic()
     while not (seen := look()):
         assert time.monotonic() - begun < HANG, f"no {what}"
@@ -77,7 +77,7 @@ def running(*command, **more):
 
 @contextlib.contextmanager
 def served(board, *where):
-    """The target that leads to a mock board: behind a pseudo-terminal, or `where`."""
+    """The target of a mock board, behind a pseudo-terminal or as `where` says."""
     with running(PROGRAMS / "halfrow", "serve", "--board", board, *where, stdout=subprocess.PIPE, text=True) as process:
         yield process.stdout.readline().split()[-1]
 
@@ -90,14 +90,14 @@ class Lab:
         self.process = process
 
     def client(self, *words, user="alice", check=True):
-        """What labgrid's own client says."""
+        """The output of labgrid's own client."""
         env = dict(os.environ, LG_COORDINATOR=self.coordinator, LG_HOSTNAME="bench", LG_USERNAME=user)
         done = subprocess.run([LABGRID / "labgrid-client", *words], env=env, capture_output=True, text=True, timeout=HANG)
         assert not check or done.returncode == 0, done
         return done.stdout
 
     def clients(self, calls):
-        """The same of several calls, at once."""
+        """Runs several calls of labgrid's client at once."""
         with concurrent.futures.ThreadPoolExecutor() as pool:
             list(pool.map(lambda words: self.client(*words), calls))
 

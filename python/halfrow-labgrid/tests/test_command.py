@@ -1,4 +1,4 @@
-"""The program halfrow-labgrid, where its coordinator stops in the middle."""
+"""The program halfrow-labgrid, with a coordinator that stops in the middle."""
 import json
 import signal
 import subprocess
@@ -7,7 +7,8 @@ import sys
 import pytest
 from conftest import LABGRID
 
-# The program, whose coordinator (a process) is stopped at a call of a method once it is connected, and goes on at a call of another one.
+# The program, with its coordinator process stopped when it calls a given method after it has connected, and continued when it
+# calls another one.
 PROGRAM = """
 import os, signal, sys
 from labgrid.remote.client import ClientSession
@@ -41,14 +42,14 @@ command.main()
 
 
 class Hold:
-    """The program's hold of a place, and what frees the place behind it."""
+    """A hold of a place by the program, and what frees the place afterwards."""
 
     def __init__(self, lab, place):
         self.lab = lab
         self.of = ["--place", place, "--coordinator", lab.coordinator, "--user", "u1"]
 
     def told(self, stops, goes_on=""):
-        """What is said last while the coordinator stops and goes on at calls of these methods."""
+        """The program's last line when the coordinator stops and continues at calls of these methods."""
         hold = [sys.executable, "-c", PROGRAM, str(self.lab.process.pid), stops, goes_on, "hold", *self.of]
         try:
             done = subprocess.run(hold, stdin=subprocess.DEVNULL, capture_output=True, text=True)

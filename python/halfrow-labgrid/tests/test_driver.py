@@ -1,4 +1,4 @@
-"""The driver and the strategy, in environments as labgrid's users write them."""
+"""The driver and the strategy, in environments such as labgrid's users write."""
 import os
 import signal
 import subprocess
@@ -46,7 +46,7 @@ imports:
 
 @pytest.fixture(scope="module")
 def alice(lab):
-    """Who has every place: labgrid's session of this process knows of those that she had when it began."""
+    """The user who has every place: labgrid's session in this process knows only the places that she had when it began."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("LG_HOSTNAME", "bench")
         patch.setenv("LG_USERNAME", "alice")
@@ -124,7 +124,7 @@ def test_a_run_that_is_interrupted_gives_the_board_back(environment, tmp_path):
     kept.mkdir()
 
     def interrupts():
-        # The board is taken once something of its run is kept.
+        # The board is in use once something of its run is recorded.
         wait_for("recording", lambda: any(path.stat().st_size for path in kept.iterdir()))
         os.kill(os.getpid(), signal.SIGINT)
 

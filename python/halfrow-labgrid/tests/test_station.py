@@ -1,4 +1,4 @@
-"""A station's lanes whose boards labgrid lends."""
+"""Lanes of a station whose boards labgrid lends."""
 import contextlib
 import json
 import os
@@ -11,7 +11,7 @@ import threading
 import pytest
 from conftest import HANG, LABGRID, PROGRAMS, wait_for
 
-# Of the project's own scripts.
+# From the project's own scripts.
 sys.path.insert(0, str(pathlib.Path(__file__).parents[3] / "scripts"))
 from lanes import PLAN  # noqa: E402
 
@@ -39,7 +39,7 @@ program = "{LABGRID / 'halfrow-labgrid'}"
         command = [PROGRAMS / "halfrow-station", "lanes", "--any-disk", "--settings", self.settings]
         env = dict(os.environ, LG_HOSTNAME="bench")
         with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=env) as process:
-            # Whoever waits for news of a station that hangs hears no more.
+            # If the station hangs, this ends the wait for its output.
             watchdog = threading.Timer(HANG, process.kill)
             watchdog.start()
             try:
@@ -124,7 +124,7 @@ def test_a_coordinator_that_is_away_is_an_error(lab, station):
 
 
 def holders_of(process):
-    """The processes that hold places for this one."""
+    """The processes that hold places for `process`."""
     children = pathlib.Path(f"/proc/{process.pid}/task").glob("*/children")
     ids = [int(word) for child in children for word in child.read_text().split()]
     return [one for one in ids if b"halfrow-labgrid" in pathlib.Path(f"/proc/{one}/cmdline").read_bytes()]
@@ -132,7 +132,7 @@ def holders_of(process):
 
 @pytest.fixture
 def hung(lab, station, request):
-    """A station in the middle of a run that takes long, on the board of a place."""
+    """A station in the middle of a long run, on the board of a place."""
     slow = station(request.param)
     longer = [("width = 64", "width = 640"), ("height = 8", "height = 480"), ("radius = 10.0", "radius = 400.0")]
     plan = PLAN.replace('frames = ["builtin:noise"]', 'frames = ["builtin:noise"]\nrepeat = 1000')

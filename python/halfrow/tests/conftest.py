@@ -1,4 +1,4 @@
-"""What the tests share: small frames, a lens file from OpenCV, and the program, which has the same answers."""
+"""What the tests share: small tables, a lens file from OpenCV, and the program, whose answers must be the same."""
 import json
 import os
 import pathlib
@@ -19,19 +19,19 @@ LENSES = ROOT / "host/judge/tests/lenses/files"
 
 @pytest.fixture
 def opencv():
-    """What OpenCV 4.10 wrote of a fisheye camera of 1280 x 720."""
+    """A file that OpenCV 4.10 wrote for a fisheye camera of 1280 x 720."""
     return LENSES / "opencv-4.10.yml"
 
 
 @pytest.fixture(scope="session")
 def small():
-    """Tables for frames of 128 x 32, which a board is quick to judge with."""
+    """Tables for frames of 128 x 32, with which a board is judged quickly."""
     return halfrow.Tables.from_lens(halfrow.Lens("equidistant:80", width=128, height=32))
 
 
 @pytest.fixture(scope="session")
 def program():
-    """The program, by which what this package does is held to account: runs it and returns its exit code and its JSON."""
+    """Runs the program, with which this package is compared, and returns its exit code and its JSON."""
     halfrow_program = pathlib.Path(os.environ["HALFROW_PROGRAMS"]) / "halfrow"
 
     def run(*arguments):
@@ -43,7 +43,7 @@ def program():
 
 @pytest.fixture
 def steps_beside():
-    """How many steps another thread takes while a call runs, if the interpreter takes its lock from nobody."""
+    """How many steps another thread takes while a call runs. The interpreter takes its lock from no thread meanwhile."""
     interval = sys.getswitchinterval()
     sys.setswitchinterval(1000)
     steps, done = [0], threading.Event()
@@ -51,7 +51,7 @@ def steps_beside():
     def count():
         while not done.is_set():
             steps[0] += 1
-            # Gives the lock to whoever waits for it.
+            # Lets another thread have the lock.
             time.sleep(0)
 
     def beside(call):
@@ -68,7 +68,7 @@ def steps_beside():
 
 
 def until(seen, patience=100):
-    """Waits for `seen` to be true, whose end only a hang comes to."""
+    """Waits for `seen` to be true. The time limit only ends hangs."""
     ends = time.monotonic() + patience
     while not seen():
         assert time.monotonic() < ends, "waited in vain"

@@ -1,4 +1,4 @@
-"""The board of docs/board-in-python.md, with hosts that go away without a word; scripts/handbook judges it."""
+"""The board of docs/board-in-python.md, with hosts that vanish; scripts/handbook judges it."""
 import socket
 import struct
 import subprocess
@@ -25,7 +25,7 @@ def test_a_host_whose_connection_is_reset_makes_room_for_the_next_one(port, smal
     for said in (b"", b"abc", b"\0" * 100):
         with socket.create_connection(("127.0.0.1", port)) as host:
             host.sendall(said)
-            # To be closed by a reset, as by a kernel whose program was killed with something unread.
+            # Close by a reset, as the kernel does when a program is killed with data unread.
             host.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
     report = halfrow.verify(f"tcp:127.0.0.1:{port}", tables=small, frames="builtin:bars", at_speed=0)
     assert report.passed, report.text

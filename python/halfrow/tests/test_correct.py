@@ -1,4 +1,4 @@
-"""Corrected frames: the samples against the program, the memory against NumPy's own account of it."""
+"""Corrected frames: the samples compared with the program, the memory with NumPy's own account of it."""
 import ctypes
 import threading
 import tracemalloc
@@ -43,7 +43,7 @@ def test_nothing_is_copied(small):
     corrector, frame, out = halfrow.Corrector(tables), noise(tables), np.zeros((1080, 1920), np.uint16)
     before = out.ctypes.data
     assert corrector.correct(frame, out) is out and out.ctypes.data == before
-    # NumPy tells tracemalloc of its buffers: none is made beside `out`, and one without it.
+    # NumPy reports its buffers to tracemalloc: none is made beside `out`, and one without `out`.
     tracemalloc.start()
     try:
         corrector.correct(frame, out)
@@ -89,12 +89,12 @@ def test_other_arrays_are_refused_and_never_copied(small):
     refused(lambda: correct(frame, out=frame), ValueError, "shares memory")
     refused(lambda: correct(frame, out=np.zeros(frame.shape)), TypeError, "float64")
     refused(lambda: correct(frame, path="fast"), ValueError, "fast")
-    # To be read alone is no reason to refuse an input.
+    # A read-only input is not refused.
     frame.flags.writeable = False
     correct(frame)
 
 
-# Of one memory, arrays that NumPy itself takes for those of strangers: each has a base of its own.
+# Arrays over the same memory that NumPy does not recognise as related: each has a base of its own.
 VIEWS = {
     "frombuffer": lambda memory: np.frombuffer(memory, np.uint16),
     "memoryview": lambda memory: np.asarray(memoryview(memory).cast("H")),
@@ -149,7 +149,7 @@ def test_a_sample_too_bright_is_named(small, place):
 def test_the_interpreters_lock_is_released(steps_beside):
     tables = halfrow.Tables.from_lens()
     corrector, frame = halfrow.Corrector(tables, path="reference"), noise(tables)
-    # What keeps the lock is told from what does not.
+    # A call that keeps the lock can be told from one that releases it.
     assert steps_beside(lambda: sum(range(1_000_000))) == 0
     until(lambda: steps_beside(lambda: corrector.correct(frame)) > 0)
 

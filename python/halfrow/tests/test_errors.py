@@ -1,4 +1,4 @@
-"""What is refused: with the codes of the program, and with what Python's own libraries raise."""
+"""What is refused: with the program's codes, and with the exceptions of Python's own libraries."""
 import os
 import pathlib
 import pickle
@@ -57,7 +57,7 @@ def refused_as_by_the_program(program, call, arguments, code):
     assert (error.code, error.parameters) == (told["code"], named), arguments
     assert code in (None, error.code)
     assert isinstance(error, halfrow.InputError) == (exit_code == 2), arguments
-    # The program names the flags of what the library has in words.
+    # The program adds the flags for what the library names in words.
     causes = [re.sub(r" \(--[a-z-]+\)", "", cause["message"]) for cause in told["causes"]]
     assert [cause.message for cause in error.causes] == causes
 
@@ -66,7 +66,7 @@ SMALL = ["--radius", 80, "--width", 128, "--height", 32]
 
 
 def verify(options, **named):
-    """A call of both, with `options` of the program and those that are `named` here; the code comes last."""
+    """A call of verify here with the arguments `named`, and the same call of the program with `options`."""
     tables = halfrow.Tables.from_lens(halfrow.Lens("equidistant:80", width=128, height=32))
     return lambda: halfrow.verify("mock", tables=tables, **named), ["verify", *SMALL, *options]
 
@@ -112,7 +112,7 @@ def test_no_input_of_a_run_is_overwritten(tmp_path, program, monkeypatch):
     halfrow.Kernel("keys").write("k.json")
     halfrow.write_frame("f.pgm", np.zeros((32, 128), np.uint16))
     os.link("f.pgm", "link.pgm")
-    # A name need not be text.
+    # A file name need not be valid text.
     odd = os.fsdecode(b"odd-\xff.pgm")
     os.link("f.pgm", odd)
     assert halfrow.verify("mock", tables=tables, frames="builtin:black", at_speed=0, record="r.rec").passed
@@ -201,7 +201,7 @@ def test_a_run_that_gets_no_thread_is_an_error():
             print(error.code, error.remedy)
         """
     )
-    # Nor would NumPy get any, which does not ask for one then.
+    # NumPy would not get a thread either; with this variable it does not ask for one.
     alone = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
     refused = ["strace", "-f", "-qq", "-o", os.devnull, "-e", "inject=clone,clone3:error=EAGAIN"]
     ended = subprocess.run([*refused, sys.executable, "-c", judged], env=alone, capture_output=True, text=True)

@@ -1,4 +1,4 @@
-"""Frames in files and built-in ones, against the program and other programs' formats."""
+"""Frames in files and built-in frames, compared with the program and with other programs' formats."""
 import numpy as np
 import pytest
 
@@ -43,7 +43,7 @@ def test_a_picture_to_look_at_has_three_colours():
     frame[0::2, 1::2] = 4095
     picture = halfrow.demosaic(frame)
     assert (picture.shape, picture.dtype) == ((4, 6, 3), np.uint8)
-    # Of grbg, those are the red ones.
+    # In grbg, these are the red samples.
     assert (picture == [255, 0, 0]).all()
     assert (halfrow.demosaic(frame, phase="gbrg") == [0, 0, 255]).all()
 

@@ -1,4 +1,4 @@
-"""The notebook, executed as its reader would; what it says of itself it asserts."""
+"""The notebook, executed as its reader would do it. What it claims, it asserts itself."""
 import nbclient
 import nbformat
 import pytest
@@ -14,7 +14,7 @@ def test_a_notebook_runs(path):
     notebook = nbformat.read(path, as_version=4)
     nbformat.validate(notebook)
     code = [cell for cell in notebook.cells if cell.cell_type == "code"]
-    # Kept without outputs, which would differ by the computer.
+    # It is committed without outputs, which would differ between computers.
     assert not any(cell.outputs or cell.execution_count for cell in code)
     nbclient.NotebookClient(notebook, timeout=None, resources={"metadata": {"path": FOLDER}}).execute()
     outputs = [output for cell in code for output in cell.outputs]

@@ -1,4 +1,4 @@
-"""What docs/python.md and the README say, done as they say it."""
+"""Runs the examples in docs/python.md and the README."""
 import re
 import shutil
 

@@ -1,4 +1,4 @@
-"""The pytest plugin, in a pytest of its own."""
+"""The pytest plugin, in a separate pytest."""
 import json
 
 import pytest
@@ -61,7 +61,7 @@ def judged(board, **options):
 
 
 def kept(pytester):
-    """The reports that are kept: the sentence of each, by its place."""
+    """The reports that are kept: the headline of each, by its folder."""
     folder = pytester.path / "kept"
     read = lambda file: json.loads(file.read_text())["headline"]  # noqa: E731
     return {str(file.parent.relative_to(folder)): read(file) for file in folder.rglob("report.json")}
@@ -73,7 +73,7 @@ def named(result):
 
 
 def test_every_failing_test_has_a_folder_of_its_own(pytester):
-    """However much their names are alike, and however long they are."""
+    """However similar and however long their names are."""
     cases = ["a/b", "a b", "a+b", "x" * 300, "y" + "x" * 300]
     pytester.makepyfile(SMALL + f"""
 @pytest.mark.parametrize("case", {cases}, ids={cases})
@@ -122,7 +122,7 @@ def test_it(halfrow_board):
 
 
 def test_a_test_that_is_tried_again_begins_anew(pytester):
-    """As pytest-rerunfailures has it."""
+    """As pytest-rerunfailures does it."""
     pytester.makeconftest("""
 from _pytest.runner import runtestprotocol
 

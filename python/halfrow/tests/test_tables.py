@@ -1,4 +1,4 @@
-"""Tables, lenses and kernels against the program and against arithmetic done here."""
+"""Tables, lenses and kernels, compared with the program and with arithmetic done here."""
 import json
 import pickle
 
@@ -42,7 +42,7 @@ def test_row_factors_are_those_of_equation_9():
     expected = np.floor(2**24 * np.sqrt(80**2 - y**2) / 80 + 0.5)
     assert np.array_equal(tables.units, expected)
     assert np.array_equal(tables.row_factors, expected / 2**24)
-    # Every sample comes from the column that the factor takes it to (DATAPATH.md), to half of 2^-13.
+    # Every sample comes from the column that its factor gives (DATAPATH.md), to within half of 2^-13.
     columns = np.arange(128)
     sources = 63.5 + tables.row_factors[:, None] * (columns - 63.5)
     assert np.abs(tables.sources() - sources).max() <= 2**-14
@@ -58,7 +58,7 @@ def test_the_papers_lens_is_the_default():
 
 
 def test_a_calibrated_lens_images_rays_as_its_polynomial_says(opencv):
-    # fx and D of the file; r(theta) is OpenCV's: theta·(1 + k1·theta² + …).
+    # fx and D from the file; r(theta) is OpenCV's: theta·(1 + k1·theta² + …).
     k = [-0.0125, 0.0031, -0.0042, 0.0007]
     theta = np.radians(60)
     r = theta * (1 + sum(k * theta ** (2 * n) for n, k in enumerate(k, 1)))
@@ -108,7 +108,7 @@ def test_notes_stay_with_what_they_are_about(tmp_path, small):
     tables, kernel = noted("tables.json"), noted("kernel.json")
     assert notes(halfrow.Tables.read(tables), "again.json") == about
     assert notes(halfrow.Kernel(kernel), "kernel_again.json") == about
-    # They may tell of the kernel that is no longer there.
+    # The notes may describe the kernel that was replaced.
     assert notes(halfrow.Tables.read(tables, kernel=kernel), "other.json") is None
     assert notes(halfrow.Tables.read(tables).kernel, "its_kernel.json") is None
     assert halfrow.Tables.read(tables) == small

@@ -1,4 +1,4 @@
-"""Boards judged: reports, files, progress, signals."""
+"""Judging boards: reports, files, progress, signals."""
 import copy
 import dataclasses
 import hashlib
@@ -29,7 +29,7 @@ def test_a_sound_board_passes(small):
     assert {check.outcome for check in report.checks} == {"passed"}
     samples = sum(frame.comparison.samples for frame in report.frames)
     assert samples == len(report.frames) * 128 * 32
-    # Half a row, and the clocks that the board says its pipeline takes (DATAPATH.md, "Latency").
+    # Half a row, and the clocks that the board reports for its pipeline (DATAPATH.md, "Latency").
     assert report.latency.least == report.latency.most == 64 + report.board.identity.latency
     assert report.text.startswith("PASS (mock board: no hardware was tested)")
 
@@ -50,7 +50,7 @@ def test_the_result_is_that_of_the_program(program):
     tables = halfrow.Tables.from_lens(halfrow.Lens("equidistant:80", width=128, height=32))
     ours = halfrow.verify("mock,fault=stuck-data", tables=tables, frames=["builtin:street"], seed=7)
     assert exit_code == 1
-    # All but what it was called with, when, how long it took, and how many bytes what each run draws for itself becomes on the wire.
+    # Everything but the arguments, the times, and the bytes on the wire, which depend on what each run draws at random.
     of_run = {"seconds", "bytes_in", "bytes_out"}
 
     def stable(document):
@@ -60,7 +60,7 @@ def test_the_result_is_that_of_the_program(program):
     assert stable(ours.document) == stable(theirs)
 
 
-# Members of a report that its `document` alone has. A new one is a field, or stands here as one that a script needs seldom.
+# Members of a report that only its `document` has. A new one must become a field, or be listed here as rarely needed by scripts.
 IN_THE_DOCUMENT_ALONE = {
     "Report": {"command", "schema", "exit_code", "evidence", "lacks", "within", "soak"},
     "Identity": {"least_blanking", "table_banks", "row_banks_in", "row_banks_out", "bursts", "entered", "grids"},
@@ -128,7 +128,7 @@ def test_a_report_names_the_kernel_s_file_by_its_hash(tmp_path, small):
 
 
 def test_what_is_hashed_is_what_was_judged(tmp_path, small):
-    """What replaces a file between two times that it is opened would be named by a hash that is not that of what was judged."""
+    """Each file is opened only once: if it were replaced in between, the report would have the hash of what was not judged."""
     small.write(tmp_path / "t.json")
     halfrow.write_frame(tmp_path / "own.pgm", small.lens.frame("noise"))
     judged = 'import halfrow; halfrow.verify(tables=halfrow.Tables.read("t.json"), frames=["own.pgm"], at_speed=0)'
@@ -294,7 +294,7 @@ PROGRAM = textwrap.dedent(
 
 @pytest.fixture
 def served():
-    """A board behind TCP, where one that was not given back is held against whoever comes next; and its target."""
+    """A board behind TCP, and its target. If it is not given back, the next host finds it held."""
     program = os.path.join(os.environ["HALFROW_PROGRAMS"], "halfrow")
     served = subprocess.Popen([program, "serve", "--tcp", "0"], stdout=subprocess.PIPE, text=True)
     yield served, next(word for word in served.stdout.readline().split() if word.startswith("tcp:"))
@@ -304,14 +304,14 @@ def served():
 
 @pytest.fixture
 def judging(served):
-    """A program that judges that board for longer than anybody waits."""
+    """A program that judges that board for longer than the test waits."""
     with subprocess.Popen([sys.executable, "-c", PROGRAM, served[1]], stdout=subprocess.PIPE, text=True) as child:
         yield child
         child.kill()
 
 
 def lines_until(child, wanted):
-    """Reads what `child` says up to a line that begins so, which a program that goes on as if nothing had happened never says."""
+    """Reads the output of `child` up to a line that begins with `wanted`. A program that ignores the signal never prints it."""
     for line in child.stdout:
         if line.startswith(wanted):
             return

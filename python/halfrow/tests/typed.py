@@ -1,4 +1,4 @@
-"""What mypy --strict must take, and what it must refuse: an `ignore` that nothing needs is an error, too."""
+"""What mypy --strict must accept, and what it must refuse: an unneeded `ignore` is also an error."""
 from typing import Optional, Tuple
 
 import halfrow

@@ -1,6 +1,6 @@
-"""halfrow for labgrid: the driver and the strategy of a board that halfrow judges.
+"""halfrow for labgrid: a driver and a strategy for boards that halfrow judges.
 
-labgrid knows both once this module is imported, which `imports: [halfrow_labgrid]` in its environment does.
+labgrid knows both once this module is imported, for example by `imports: [halfrow_labgrid]` in its environment.
 """
 from .driver import HalfrowDriver
 from .report import BoardFailed, HalfrowError, NotJudged, Report, WrongCall

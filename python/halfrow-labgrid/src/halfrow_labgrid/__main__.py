@@ -1,4 +1,4 @@
-"""`python -m halfrow_labgrid`, as the program halfrow-labgrid."""
+"""`python -m halfrow_labgrid`: the same as the program halfrow-labgrid."""
 from .command import main
 
 main()

@@ -38,11 +38,11 @@ def tell(**said: object) -> None:
 
 
 def wait(loop: asyncio.AbstractEventLoop) -> None:
-    """Until stdin ends or somebody ends this process. labgrid's session lives on meanwhile."""
+    """Waits until stdin ends or a signal ends this process. labgrid's session goes on meanwhile."""
     over = asyncio.Event()
 
     def read() -> None:
-        # Not by Python's own stdin, whose lock nobody else gets while it waits.
+        # Not through sys.stdin: while it waits, nobody else can get its lock.
         while os.read(0, 4096):
             pass
         loop.call_soon_threadsafe(over.set)
@@ -66,7 +66,7 @@ def act(of: argparse.Namespace) -> None:
 
 
 def main() -> None:
-    # What labgrid logs beside its errors is of no use to a program.
+    # Apart from its errors, labgrid's log is of no use to a program.
     logging.basicConfig(level=logging.CRITICAL)
     try:
         act(arguments())

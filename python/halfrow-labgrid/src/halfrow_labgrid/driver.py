@@ -1,4 +1,4 @@
-"""A driver that has halfrow judge the board at a serial port."""
+"""A driver that lets halfrow judge the board at a serial port."""
 from __future__ import annotations
 
 import contextlib
@@ -17,25 +17,25 @@ from labgrid.util.proxy import proxymanager
 
 from .report import Report, error, read, wrong_call
 
-# What halfrow itself needs beyond the time of a run, in seconds.
+# How long halfrow itself may take beyond the time of a run, in seconds.
 GRACE = 30.0
 # How long halfrow may take to give a board back, in seconds.
 ENDING = 5.0
 LOOK = 0.5
-# The exit code of a wrong call, which no board mends.
+# The exit code of a wrong call, which waiting for the board does not help.
 CALL_WRONG = 2
 OPTION = re.compile(r"[a-z][a-z-]*")
-# What the driver says itself.
+# The options that the driver sets itself.
 OWN = {"board", "json", "timeout"}
 
 
 @target_factory.reg_driver
 @attr.s(eq=False)
 class HalfrowDriver(Driver):
-    """Judges the board at a serial port, by the program `halfrow`: `tools: {halfrow: PATH}`, or where the shell finds it.
+    """Judges the board at a serial port with the program `halfrow`, that of `tools: {halfrow: PATH}` or the one on the search path.
 
     Args:
-        options (dict): options of `halfrow verify` for every call, without the leading `--`, as `{radius: 10.0, frame: [a.pgm, b.pgm]}`
+        options (dict): options of `halfrow verify` for every call, without the leading `--`: `{radius: 10.0, frame: [a.pgm, b.pgm]}`
         timeout (float): the longest that a run may take, in seconds
     """
 
@@ -51,7 +51,7 @@ class HalfrowDriver(Driver):
 
     @property
     def board(self) -> str:
-        """The board as halfrow names it."""
+        """The board's target for halfrow."""
         if isinstance(self.port, SerialPort):
             return f"serial:{self.port.port},baud={self.port.speed}"
         if self.port.protocol != "raw":
@@ -66,10 +66,10 @@ class HalfrowDriver(Driver):
     @Driver.check_active
     @step(args=["options"], result=True)
     def verify(self, **options: Any) -> Report:
-        """Judges the board; `options` are as the driver's own, which they replace.
+        """Judges the board. `options` are like the driver's own, which they replace.
 
-        Returns the report of a PASS. Raises BoardFailed for FAIL, NotJudged for ERROR and WrongCall for what halfrow does not
-        take, each with its report.
+        Returns the report of a PASS. Raises BoardFailed for FAIL, NotJudged for ERROR, and WrongCall for a call that halfrow
+        refuses, each with its report.
         """
         asked = list(words({**self.options, **replaced(options)}))
         timeout = ["--timeout", str(self.timeout)]
@@ -79,9 +79,9 @@ class HalfrowDriver(Driver):
     @Driver.check_active
     @step()
     def wait(self, patience: float = 30.0) -> Dict[str, Any]:
-        """Waits until the board answers, for so many seconds; returns what `halfrow info` tells of it.
+        """Waits until the board answers, for at most `patience` seconds, and returns what `halfrow info` prints about it.
 
-        Raises NotJudged if it does not, and WrongCall at once for what halfrow does not take.
+        Raises NotJudged if it does not answer, and WrongCall at once for a call that halfrow refuses.
         """
         begun = time.monotonic()
         while True:
@@ -113,7 +113,7 @@ class HalfrowDriver(Driver):
 
 
 def end(process: "subprocess.Popen[str]") -> None:
-    """Ends a halfrow that is at work still, by a signal upon which it gives the board back if it can."""
+    """Ends a halfrow that is still at work, first by a signal at which it gives the board back if it can."""
     process.terminate()
     try:
         with contextlib.suppress(subprocess.TimeoutExpired):
@@ -123,14 +123,14 @@ def end(process: "subprocess.Popen[str]") -> None:
 
 
 def replaced(options: Mapping[str, Any]) -> Dict[str, Any]:
-    """Names of Python's as those of options."""
+    """The options under their names on the command line."""
     return {name.replace("_", "-"): value for name, value in options.items()}
 
 
 def words(options: Mapping[str, Any]) -> Iterator[str]:
-    """The words of a command line: a list says an option several times, true says it without a value, and false or None not at all.
+    """The words of a command line. A list gives an option several times, true without a value; false or None leaves it out.
 
-    An empty list is refused: whoever gives it found nothing where something was looked for.
+    An empty list is refused: most likely the caller looked for something and found nothing.
     """
     for name, value in options.items():
         if not OPTION.fullmatch(name) or name in OWN:
@@ -141,5 +141,5 @@ def words(options: Mapping[str, Any]) -> Iterator[str]:
             if one is True:
                 yield f"--{name}"
             elif one is not False and one is not None:
-                # In one word, so that a value that begins with a hyphen is one.
+                # As one word, so that a value may begin with a hyphen.
                 yield f"--{name}={one}"

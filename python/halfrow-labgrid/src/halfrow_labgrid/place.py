@@ -1,4 +1,4 @@
-"""A place of labgrid's that is acquired for as long as its holder wants it, and the serial port that is in it."""
+"""A labgrid place that is acquired for as long as its holder wants it, and the serial port in it."""
 from __future__ import annotations
 
 import asyncio
@@ -15,23 +15,23 @@ from labgrid.remote.common import Place, ResourceEntry
 from labgrid.remote.generated import labgrid_coordinator_pb2 as messages
 from labgrid.util.proxy import proxymanager
 
-# How long the coordinator may take to say all that it knows, in seconds.
+# How long the coordinator may take to answer, in seconds.
 PATIENCE = 10.0
-# How long an exporter may take to open the port of a place that was acquired, in seconds.
+# How long an exporter may take to open the port of an acquired place, in seconds.
 PORT_PATIENCE = 10.0
 LOOK = 0.05
 
 PORT = "NetworkSerialPort"
-# Of several ports in a place, the one that is meant.
+# The name of the port to use if a place has several.
 NAMED = "halfrow"
 
-# What the coordinator answers where it acquires nothing. Behind any other error it may have.
+# The answers with which the coordinator has not acquired the place. After any other error it may have.
 DENIED = {grpc.StatusCode.INVALID_ARGUMENT, grpc.StatusCode.FAILED_PRECONDITION, grpc.StatusCode.PERMISSION_DENIED}
 
 
 @attr.s(auto_attribs=True, frozen=True, auto_exc=True)
 class Refused(Exception):
-    """What a place cannot be held for: `why` is a word for programs, `details` are its figures and names."""
+    """Why a place cannot be held: `why` is a word for programs, `details` are its figures and names."""
 
     why: str
     details: Mapping[str, str] = {}
@@ -39,7 +39,7 @@ class Refused(Exception):
 
 @attr.s(auto_attribs=True, frozen=True)
 class Port:
-    """Where the port of a place is; `speed` in baud where its exporter says one."""
+    """Where the port of a place is; `speed` is in baud, if its exporter gives one."""
 
     host: str
     port: int
@@ -47,10 +47,10 @@ class Port:
 
 
 class Coordinator:
-    """A session at labgrid's coordinator under the name of `user` on this computer."""
+    """A session with labgrid's coordinator, under the name of `user` on this computer."""
 
     def __init__(self, address: str, user: str) -> None:
-        # labgrid's session takes its name from there.
+        # labgrid's session takes its name from this variable.
         os.environ["LG_USERNAME"] = user
         self.loop = ensure_event_loop()
         self._address = address
@@ -59,7 +59,7 @@ class Coordinator:
         try:
             self._wait(self._session.start())
         except Refused:
-            # What was asked is under way still, and would complain when the program ends.
+            # The request is still pending, and would cause a complaint when the program ends.
             self.close()
             raise
 
@@ -76,16 +76,16 @@ class Coordinator:
         self._wait(self._session.close())
 
     def _place(self, name: str) -> Place:
-        # labgrid's own look-up takes a part of a name for the name.
+        # labgrid's own look-up also accepts a part of a name.
         try:
             return self._session.places[name]
         except KeyError:
             raise Refused("unknown", {"known": ", ".join(sorted(self._session.places))}) from None
 
     def acquire(self, name: str) -> None:
-        """Acquires the place, anew if this very user has it from a time that ended without a release.
+        """Acquires the place. If this same user still has it, since an earlier hold ended without a release, acquires it anew.
 
-        Where it fails, the place is not left acquired, as far as the coordinator answers.
+        On failure the place is not left acquired, as far as the coordinator answers.
         """
         place = self._place(name)
         if place.acquired == self.name:
@@ -104,12 +104,12 @@ class Coordinator:
             raise
 
     def _give_back(self, name: str) -> None:
-        """Releases the place behind an error, which is the one to be told."""
+        """Releases the place after an error. Only that error is reported."""
         with suppress(Refused):
             self.release(name)
 
     def release(self, name: str) -> None:
-        """Releases the place if this very user has it."""
+        """Releases the place if this same user has it."""
         request = messages.ReleasePlaceRequest(placename=name, fromuser=self.name)
         try:
             self._wait(self._session.stub.ReleasePlace(request))
@@ -118,7 +118,7 @@ class Coordinator:
         self._wait(self._session.sync_with_coordinator())
 
     def free(self, name: str) -> None:
-        """As release, of a place that must be there."""
+        """Like release, but the place must exist."""
         self._place(name)
         self.release(name)
 
@@ -136,7 +136,7 @@ class Coordinator:
         raise Refused("port-away")
 
     def _entry(self, place: Place) -> ResourceEntry:
-        # Not by labgrid's own table, in which a port hides another of the same name.
+        # Not through labgrid's own table, in which a port hides another of the same name.
         ports = list(self._ports(place))
         named = [entry for name, entry in ports if name == NAMED]
         if len(named or ports) > 1:
@@ -146,7 +146,7 @@ class Coordinator:
         raise Refused("no-port")
 
     def _ports(self, place: Place) -> Iterator[Tuple[str, ResourceEntry]]:
-        """The ports of the acquired place, each by the name that it has there."""
+        """The ports of the acquired place, each with its name in that place."""
         for path in place.acquired_resources:
             exporter, group, cls, name = path
             if cls != PORT:
@@ -159,7 +159,7 @@ class Coordinator:
 
 
 def reached(entry: ResourceEntry) -> Port:
-    """Where a raw port is reached from here, through labgrid's own tunnel if it asks for one."""
+    """Where a raw port can be reached from here, through labgrid's tunnel if it needs one."""
     resource = target_factory.make_resource(Target("halfrow"), entry.cls, None, entry.args)
     resource.extra = entry.extra
     if resource.protocol != "raw":
@@ -170,7 +170,7 @@ def reached(entry: ResourceEntry) -> Port:
 
 @contextmanager
 def ended_by(end: Callable[[], None]) -> Iterator[None]:
-    """Calls `end` behind what is within, whatever happens; of two errors the first is told."""
+    """Calls `end` after the body, whatever happens. Of two errors, the first is reported."""
     try:
         yield
     except BaseException:
@@ -182,7 +182,7 @@ def ended_by(end: Callable[[], None]) -> Iterator[None]:
 
 @contextmanager
 def held(coordinator: Coordinator, name: str) -> Iterator[Port]:
-    """The port of the place, which is acquired within and released behind, whatever happens."""
+    """The port of the place, which is acquired for the body and released after it, whatever happens."""
     coordinator.acquire(name)
     with ended_by(partial(coordinator.release, name)):
         yield coordinator.port(name)

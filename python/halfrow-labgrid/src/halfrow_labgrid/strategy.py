@@ -22,21 +22,21 @@ class Status(enum.Enum):
 
 
 def named(status: Union[Status, str]) -> Status:
-    """The status that may be called by its name."""
+    """`status`, which may be given by its name."""
     return Status[status] if isinstance(status, str) else status
 
 
 @target_factory.reg_driver
 @attr.s(eq=False)
 class HalfrowStrategy(Strategy):
-    """Takes a board from one state to another; with a driver of labgrid's PowerProtocol it switches it, too.
+    """Takes a board from one state to another. With a driver of labgrid's PowerProtocol it also switches the power.
 
-    `off` cuts the power; `on` gives it and waits until the board answers; `judged` has it judged and keeps the report. A board that
-    is judged is not judged again until it was on or off between. What is no PASS is raised, and leaves the board on. A transition that
-    fails on its way leaves the status `unknown`, from which the next one goes the whole way.
+    `off` cuts the power; `on` switches it on and waits until the board answers; `judged` judges the board and keeps the report. A
+    judged board is judged again only after it was on or off in between. Anything but PASS is raised, and leaves the board on. A
+    transition that fails midway leaves the status `unknown`, from which the next one goes through all states.
 
     Args:
-        patience (float): how long a board may take to answer once it is on, in seconds
+        patience (float): how long a board may take to answer when it is on, in seconds
     """
 
     bindings = {"halfrow": "HalfrowDriver", "power": {"PowerProtocol", None}}
@@ -44,18 +44,18 @@ class HalfrowStrategy(Strategy):
     patience: float = attr.ib(default=30.0, converter=float)
     status: Status = attr.ib(default=Status.unknown, converter=named)
     report: Optional[Report] = attr.ib(default=None, init=False)
-    """What the board came to, where it is judged."""
+    """The report of the board, if it is judged."""
 
     @step(args=["status"])
     def transition(self, status: Union[Status, str], *, step: object = None) -> None:
-        """Takes the board to `status`, by all that lies between."""
+        """Takes the board to `status`, through all states in between."""
         wanted = named(status)
         if wanted is Status.unknown:
             raise StrategyError("nothing leads to `unknown`; ask for off, on or judged")
         if wanted is self.status:
             return
         self.report = None
-        # What fails on its way leaves a board of which nobody knows how far it came, and the next transition goes the whole way.
+        # If a transition fails midway, it is not known how far the board has come, and the next one goes through all states.
         was, self.status = self.status, Status.unknown
         if wanted is Status.off:
             self._off()
@@ -67,7 +67,7 @@ class HalfrowStrategy(Strategy):
         self.status = wanted
 
     def force(self, status: Union[Status, str]) -> None:
-        """Takes `status` for the board's, without touching it; no report is known of it."""
+        """Assumes that the board has `status`, without touching it. There is no report then."""
         forced, self.report = named(status), None
         if forced in (Status.on, Status.judged):
             self.target.activate(self.halfrow)

@@ -1,4 +1,4 @@
-"""Boards that straighten fisheye Bayer video, judged; and frames corrected bit for bit as such a board must.
+"""Judges boards that straighten fisheye Bayer video, and corrects frames bit for bit as such a board must.
 
     import halfrow
 
@@ -7,8 +7,8 @@
     report = halfrow.verify("mock", tables=tables)
     assert report.passed, report.text
 
-Frames are NumPy arrays of uint16 of shape (height, width), a Bayer sample each, 0 to 2^bits − 1. An array of another
-kind is refused, and `correct` copies none.
+Frames are NumPy arrays of uint16 of shape (height, width), one Bayer sample of 0 to 2^bits − 1 each. Arrays of another
+kind are refused, and `correct` copies none.
 """
 from ._errors import HalfrowError, InputError, Problem
 from ._halfrow import (

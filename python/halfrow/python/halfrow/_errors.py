@@ -1,4 +1,4 @@
-"""What is raised: the library's errors with their codes."""
+"""The exceptions: the library's errors with their codes."""
 from __future__ import annotations
 
 import json
@@ -11,28 +11,28 @@ class Problem:
     """Why something could not be done, or what led to it."""
 
     code: str
-    """What it is: stable, for programs. docs/CODES.md lists all."""
+    """Its code: stable, for programs. docs/CODES.md lists all."""
     parameters: Dict[str, Any]
     """Its figures and names."""
     message: str
-    """It in one sentence."""
+    """What is wrong, in one sentence."""
     remedy: Optional[str]
     """What to do about it, if that is known."""
 
 
 class HalfrowError(Exception):
-    """Something could not be done. Its text is its sentence and those of its causes."""
+    """Something could not be done. Its text is its message, followed by those of its causes."""
 
     code: str
-    """What it is: stable, for programs; that of the command line."""
+    """Its code: stable, for programs; the same as on the command line."""
     parameters: Dict[str, Any]
     """Its figures and names."""
     message: str
-    """It in one sentence, without its causes."""
+    """What is wrong, in one sentence, without its causes."""
     remedy: Optional[str]
     """What to do about it, if that is known."""
     causes: Tuple[Problem, ...]
-    """What led to it, the nearest first."""
+    """What led to it, the most direct cause first."""
 
     def __init__(
         self,
@@ -57,9 +57,9 @@ class HalfrowError(Exception):
 
 
 def _cause(causes: object, **problem: Any) -> Problem:
-    # Causes stand in a row, and have none of their own.
+    # Causes are a flat list, and have no causes of their own.
     return Problem(**problem)
 
 
 class InputError(HalfrowError, ValueError):
-    """The call, or a file that it names, is wrong. The command line ends with exit code 2 then."""
+    """The call, or a file that it names, is wrong. The command line then ends with exit code 2."""

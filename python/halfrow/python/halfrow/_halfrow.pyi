@@ -27,13 +27,13 @@ __all__ = [
 
 __version__: str
 VERSION: str
-"""The version and, in brackets, the commit."""
+"""The version, with the commit in brackets."""
 KERNELS: List[str]
 """The names of all named kernels."""
 BUILTIN_FRAMES: List[str]
 """The names of all built-in frames."""
 MODEL_PATHS: List[str]
-"""The paths of the model that this processor has, from the slowest; all give the same bits."""
+"""The paths of the model that this processor supports, the slowest first; all give the same bits."""
 
 @final
 class Kernel:

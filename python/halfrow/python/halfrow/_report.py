@@ -14,7 +14,7 @@ from ._errors import Problem
 
 @dataclass(frozen=True)
 class Finding:
-    """What was found, as a code with parameters; docs/CODES.md lists all."""
+    """What was found, as a code with parameters; docs/CODES.md lists all codes."""
 
     code: str
     parameters: Dict[str, Any]
@@ -22,7 +22,7 @@ class Finding:
 
 @dataclass(frozen=True)
 class Identity:
-    """What a board says of itself."""
+    """What a board reports about itself."""
 
     name: str
     serial: str
@@ -34,26 +34,26 @@ class Identity:
     max_width: int
     max_height: int
     depths: Tuple[int, ...]
-    """Bits of a sample that it takes."""
+    """The bits per sample that it takes."""
     taps: int
     """5 or 7."""
     latency: int
     """L: pixel clocks beyond half a row."""
     ring: int
-    """M: samples of its line memory."""
+    """M: samples that its line memory holds."""
     clock_hz: int
-    """Its pixel clock; 0 when it stands for no real time."""
+    """The frequency of its pixel clock; 0 if it is not known."""
 
 
 @dataclass(frozen=True)
 class Board:
-    """Which board it was."""
+    """The board that was judged."""
 
     kind: str
     """mock, sim, replay or hardware."""
     target: str
     identity: Optional[Identity]
-    """None when it never answered."""
+    """None if it never answered."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ class Suspect:
     place: str
     evidence: str
     designer: str
-    """Where to look in the design."""
+    """Where to look in the design of the board."""
     technician: str
     """What to do with the board."""
 
@@ -97,7 +97,7 @@ class Difference:
 
 @dataclass(frozen=True)
 class Comparison:
-    """How a frame compares with what the model makes of it."""
+    """How a frame from the board compares with the model's."""
 
     samples: int
     differences: int
@@ -113,12 +113,12 @@ class Frame:
     """builtin:NAME, the file's path, or frames[N] for an array."""
     number: int
     sha256: str
-    """Of its samples, 16 bits little endian."""
+    """The hash of its samples, as 16-bit little-endian words."""
     phase: str
     generation: int
     comparison: Comparison
     rows: int
-    """Rows that came back."""
+    """How many rows came back."""
     seconds: float
 
 
@@ -136,7 +136,7 @@ class Latency:
 
 @dataclass(frozen=True)
 class EdgeDeviation:
-    """How far the façades' edges of the built-in street are from straight, in pixels."""
+    """How far the edges of the façades in the built-in street deviate from straight lines, in pixels."""
 
     edges: int
     mean_px: float
@@ -145,7 +145,7 @@ class EdgeDeviation:
 
 @dataclass(frozen=True)
 class Street:
-    """The built-in street's edges, as the lens bends them and as the board leaves them."""
+    """The edges of the built-in street, as the lens bends them and as the board leaves them."""
 
     before: EdgeDeviation
     after: EdgeDeviation
@@ -153,7 +153,7 @@ class Street:
 
 @dataclass(frozen=True)
 class NotExercised:
-    """Something that the frames of a PASS did not put to the test."""
+    """Something that the frames of a PASS did not test."""
 
     code: str
     parameters: Dict[str, Any]
@@ -162,12 +162,12 @@ class NotExercised:
 
 @dataclass(frozen=True)
 class Coverage:
-    """What the run finds of the single faults of the Verilog that were measured."""
+    """How many of the measured single faults of the Verilog such a run finds."""
 
     found: int
     faults: int
     equivalent: int
-    """Faults more that are proven to make no difference."""
+    """How many further faults are proven to make no difference."""
 
 
 @dataclass(frozen=True)
@@ -184,7 +184,7 @@ class Link:
     retries: int
     round_trip_us: Optional[int]
     seconds: float
-    """Of the link's clock."""
+    """By the link's clock."""
 
 
 @dataclass(frozen=True)
@@ -220,7 +220,7 @@ class Facts:
     """RFC 3339, UTC."""
     ended: str
     seconds: float
-    """Of the wall's clock."""
+    """By this computer's clock."""
     host: str
     files: Tuple[File, ...]
 
@@ -230,19 +230,19 @@ class Report:
     """What a run of verify found."""
 
     verdict: str
-    """PASS: everything was judged, all of it equal. FAIL: the link was clean and the board differs. ERROR: not judged."""
+    """PASS: everything was judged and is equal. FAIL: the link was clean and the board differs. ERROR: not judged."""
     cause: str
     """Why the verdict is what it is: equal, different, station, busy, refused, nothing-judged or stopped-by-…"""
     headline: str
     """The result in one sentence."""
     remedy: Optional[str]
-    """What to do next; None under PASS."""
+    """What to do next; None for PASS."""
     technician: Optional[str]
-    """What a technician does with a board that is wrong; None under PASS and ERROR."""
+    """What a technician should do with a wrong board; None for PASS and ERROR."""
     finding: Finding
     """The result as a code."""
     error: Optional[Problem]
-    """Why there is no judgement; None under PASS and FAIL."""
+    """Why there is no judgement; None for PASS and FAIL."""
     board: Board
     suspects: Tuple[Suspect, ...]
     """The parts that the pattern of differences points at, the likeliest first."""
@@ -256,21 +256,21 @@ class Report:
     tables: TablesUsed
     run: Facts
     text: str = field(repr=False, default="")
-    """The verdict, every check, who is suspected and what to do: a line each."""
+    """The verdict, every check, the suspects, and what to do: one line each."""
     document: Dict[str, Any] = field(repr=False, compare=False, default_factory=dict)
-    """All of it, as `halfrow schema` describes the result of verify."""
-    # What the process that made the run has beside it; no field, since it is no data.
+    """The whole result, as `halfrow schema` describes it for verify."""
+    # The run itself, which only the process that made it has. Not a field, since it is not data.
     _run: ClassVar[Optional[_halfrow.Run]] = None
 
     @property
     def passed(self) -> bool:
-        """Whether everything was judged, and all of it equal."""
+        """Whether everything was judged and is equal."""
         return self.verdict == "PASS"
 
     def save(self, folder: Union[str, os.PathLike[str]], *, overwrite: bool = False) -> None:
-        """Writes report.json, report.xml (JUnit) and report.html into `folder`, which must not be there unless `overwrite`.
+        """Writes report.json, report.xml (JUnit) and report.html into `folder`, which must not exist unless `overwrite`.
 
-        Only in the process that made the run, which alone has its frames.
+        Works only in the process that made the run, since no other has its frames.
         """
         if self._run is None:
             raise ValueError(
@@ -284,7 +284,7 @@ class Report:
 
 
 def of(run: _halfrow.Run) -> Report:
-    """The report of a run that is over."""
+    """The report of a finished run."""
     document = json.loads(run.json())
     found: Report = _made(Report, document)
     report = dataclasses.replace(found, text=run.text(), document=document)

@@ -1,4 +1,4 @@
-"""A board judged."""
+"""Judging a board."""
 from __future__ import annotations
 
 import os
@@ -39,34 +39,35 @@ def verify(
     overwrite: bool = False,
     progress: Optional[Progress] = None,
 ) -> _report.Report:
-    """Judges the board behind `board`, as `halfrow verify` does, and returns what was found, whatever it is.
+    """Judges the board at `board`, as `halfrow verify` does, and returns what was found, whatever the verdict.
 
-    board: a target as the command line has it: mock, mock,fault=stuck-data,bit=7, usb, serial:/dev/ttyUSB1, tcp:bench:3001,
+    board: a target as on the command line: mock, mock,fault=stuck-data,bit=7, usb, serial:/dev/ttyUSB1, tcp:bench:3001,
         replay:run.rec.
-    tables: what to judge with; the paper's when not given, and then other centres and depths as well.
-    kernel: takes the place of the tables': a Kernel, one of halfrow.KERNELS, or a kernel file.
-    frames: what to stream instead of all built-in frames, one or several, never none: "builtin:street", a file, or an array of uint16
-        of shape (height, width) of the tables' size and depth; `phase` is their Bayer phase.
-    repeat: how often, 1 to 1000.
-    seed: of noise, gaps, link test and what the board makes on its own.
-    at_speed: seconds of the board's clock for which it makes frames at its full pixel clock, 0 for none; 3 on hardware and
-        three frames on any other board when not given.
+    tables: the tables to judge with; by default the paper's. If frames are not given either, other optical centres and depths are
+        tested as well.
+    kernel: replaces the tables' own: a Kernel, one of halfrow.KERNELS, or a kernel file.
+    frames: what to stream instead of all built-in frames, one or several but not none: "builtin:street", a file, or an array
+        of uint16 of shape (height, width), of the tables' size and depth; `phase` is their Bayer phase.
+    repeat: how often to stream them, 1 to 1000.
+    seed: the seed of noise, gaps, the link test and the frames that the board makes.
+    at_speed: for how many seconds of the board's clock it makes frames at its full pixel clock, 0 for none; by default 3 on
+        hardware, and three frames on any other board.
     within: judge within this many seconds, by the parts of the run that find the most faults per second.
     fail_fast: end with the first frame that differs.
-    timeout: seconds that the run may take, of this computer's clock or the link's, whichever is over first.
-    reconnect: seconds that a board which goes away may stay away; without it that ends the run.
-    retry_limit: how many packets may be sent again: 16, and this percentage of all sent; 5 when not given.
-    take_over: take the board from another host that holds it.
-    require_hardware: refuse to judge anything else.
+    timeout: how many seconds the run may take, by this computer's clock or the link's, whichever ends it first.
+    reconnect: for how many seconds a board that goes away may stay away; by default its going away ends the run.
+    retry_limit: how many packets may be sent again: 16, and this percentage of all sent; by default 5.
+    take_over: take the board over from another host that holds it.
+    require_hardware: refuse to judge anything but hardware.
     report: a folder for report.json, report.xml (JUnit) and report.html.
     record: a file for every byte of the run with its time, for replay:FILE.
     overwrite: replace what an earlier run has written.
-    progress: is called in this thread with ("step", words, 0), ("rows-expected", "", rows), ("frame", name, 0),
-        ("rows", "", rows that came back since) and ("done", "", 0); what it raises ends the run.
+    progress: a function that is called in this thread with ("step", words, 0), ("rows-expected", "", rows), ("frame", name, 0),
+        ("rows", "", rows that came back since the last call) and ("done", "", 0); an exception from it ends the run.
 
-    Python's lock is released. Ctrl-C, or any signal handler that raises, ends the run, gives the board back, and raises here; a
-    second one raises at once, and leaves the run to give the board back behind it.
-    Raises InputError where the call is wrong or does not fit the board, HalfrowError where no board could be opened.
+    Python's lock is released. Ctrl-C, or any signal handler that raises, ends the run, gives the board back, and then raises here.
+    A second one raises at once, while the run gives the board back in the background.
+    Raises InputError if the call is wrong or does not fit the board, and HalfrowError if no board could be opened.
     """
     if isinstance(frames, (str, os.PathLike)) or isinstance(frames, np.ndarray) and frames.ndim == 2:
         frames = (frames,)

@@ -1,10 +1,10 @@
-"""The pytest plugin: a board for tests, and what halfrow found attached to those that fail.
+"""The pytest plugin: a board for tests, with halfrow's reports attached to tests that fail.
 
     def test_the_board(halfrow_board):
         assert halfrow_board.verify(at_speed=10).passed
 
-`pytest --halfrow-board serial:/dev/ttyUSB1 --halfrow-report reports` judges that board instead of the mock, and keeps the reports of
-failing tests.
+`pytest --halfrow-board serial:/dev/ttyUSB1 --halfrow-report reports` judges that board instead of the mock, and keeps the reports
+of failing tests.
 """
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ from . import HalfrowError, Report, verify
 _REPORTS = pytest.StashKey[List[Report]]()
 # The files of a report.
 _FILES = ("report.html", "report.json", "report.xml")
-# In the folder of --halfrow-report: what was kept there, a name a line.
+# A file in the folder of --halfrow-report that lists what was kept there, one name per line.
 _LIST = ".halfrow-kept"
-# Characters of a test's id that its folder's name has of it. File systems take 255 bytes, and a character may have three.
+# How many characters of a test's id go into its folder's name. File systems take 255 bytes, and a character may have three.
 _LENGTH = 75
 
 
 class JudgedBoard:
-    """The board of a test. Every report is kept until the test is over."""
+    """The board of a test. Every report is kept until the test has ended."""
 
     def __init__(self, target: str, reports: List[Report]) -> None:
         self.target = target
-        """As --halfrow-board names it."""
+        """The target that --halfrow-board names."""
         self.reports = reports
-        """What was found so far, the first first."""
+        """The reports so far, the oldest first."""
 
     def verify(self, **options: Any) -> Report:
         """Judges the board; the options are those of halfrow.verify."""
@@ -44,26 +44,26 @@ class JudgedBoard:
 
 
 class _Folder:
-    """Where the reports of failing tests are kept, each test's in a folder of its own."""
+    """The folder in which the reports of failing tests are kept, each test's in a folder of its own."""
 
     def __init__(self, named: str, beside: pathlib.Path) -> None:
         self.named = pathlib.Path(named)
-        # A test may leave the folder that pytest was called in.
+        # Absolute, since a test may change the working directory.
         self.place = beside / named
 
     def begin(self) -> None:
-        """Removes what an earlier run has kept."""
+        """Removes the reports of an earlier run."""
         with contextlib.suppress(FileNotFoundError, NotADirectoryError):
             for name in (self.place / _LIST).read_text("utf-8").splitlines():
                 self._clear(name)
             (self.place / _LIST).unlink()
 
     def clear(self, item: pytest.Item) -> None:
-        """Removes what an earlier try of the test has kept."""
+        """Removes the reports of an earlier try of the test."""
         self._clear(_folder_name(item.nodeid))
 
     def keep(self, item: pytest.Item, number: int, report: Report) -> str:
-        """Keeps the report, and says where."""
+        """Keeps the report, and returns a line that says where."""
         name = _folder_name(item.nodeid)
         place = self.place / name / str(number)
         try:
@@ -76,7 +76,7 @@ class _Folder:
         return f"\nreport: {self.named / name / str(number)}"
 
     def _clear(self, name: str) -> None:
-        # Nothing that somebody else has put there.
+        # Leaves what others have put there.
         reports = [place for place in (self.place / name).glob("*") if place.name.isdecimal() and place.is_dir()]
         for place in reports:
             for file in _FILES:
@@ -90,7 +90,7 @@ _FOLDER = pytest.StashKey[Optional[_Folder]]()
 
 
 def _folder_name(test: str) -> str:
-    """A name that no other test has: of all that a file system takes of this one's, and a hash."""
+    """A folder name that no other test has: as much of the test's id as a file system takes, and a hash."""
     readable = re.sub(r"[^\w.-]+", "-", test).strip("-")[-_LENGTH:]
     return f"{readable}-{hashlib.sha256(test.encode(errors='surrogatepass')).hexdigest()[:8]}"
 
@@ -117,7 +117,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_sessionstart(session: pytest.Session) -> None:
     folder = session.config.stash[_FOLDER]
-    # A worker of pytest-xdist begins when others may have kept something.
+    # When a worker of pytest-xdist begins, others may already have kept reports.
     if folder is None or session.config.getoption("collectonly") or hasattr(session.config, "workerinput"):
         return
     try:
@@ -128,11 +128,11 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 @pytest.fixture
 def halfrow_board(request: pytest.FixtureRequest) -> JudgedBoard:
-    """The board that --halfrow-board names; what is found is attached to the test if it fails."""
+    """The board that --halfrow-board names. Its reports are attached to the test if that fails."""
     folder = request.config.stash[_FOLDER]
     if folder is not None:
         folder.clear(request.node)
-    # A test that is tried again begins anew.
+    # A test that is tried again begins without reports.
     reports: List[Report] = []
     request.node.stash[_REPORTS] = reports
     return JudgedBoard(request.config.getoption("--halfrow-board"), reports)
