@@ -28,14 +28,14 @@ SECONDS = 120
 
 
 def pages():
-    """README.md, and the chapters in the order of SUMMARY.md."""
+    """README.md, then the chapters in the order of SUMMARY.md."""
     yield ROOT / "README.md"
     for target in re.findall(r"\]\(([^)]+\.md)\)", (DOCS / "SUMMARY.md").read_text()):
         yield (DOCS / target).resolve()
 
 
 class Block:
-    """Commands of a page, and what is said about them."""
+    """Commands of a page, and what the page says about them."""
 
     def __init__(self, page, line, says, reason):
         self.page, self.line, self.text, self.expected = page, line, [], None
@@ -48,7 +48,8 @@ class Block:
 
 
 def pieces(page):
-    """A page in pieces: what it is (its fence's first line, `indented`, `prose` or `comment`), the line where it begins, its lines."""
+    """A page in pieces, each with its kind (the fence's first line, `indented`, `prose` or `comment`), its first line number and
+    its lines."""
     piece = None
     for number, line in enumerate(page.read_text().split("\n"), 1):
         if piece and piece[0].startswith("```"):
@@ -71,7 +72,7 @@ def pieces(page):
 
 
 def blocks(page):
-    """The blocks of commands of a page, each with what it prints where that stands behind it."""
+    """The blocks of commands of a page, each with its expected output if that follows it."""
     found, last, reason, whole = [], None, None, None
     for kind, line, lines in pieces(page):
         if kind == "comment":
@@ -92,13 +93,13 @@ def blocks(page):
 
 
 def pattern(lines):
-    """What stands for the lines that are expected."""
+    """A pattern that matches the expected lines."""
     whole = [r"(?:.*\n)*?" if line.strip() == "…" else re.escape(line.rstrip()).replace("…", ".*") + r"[ ]*\n" for line in lines]
     return re.compile("".join(whole))
 
 
 class Scratch:
-    """A folder of its own for a page, and what goes on in it."""
+    """A scratch folder for a page, and the processes that run in it."""
 
     def __init__(self, programs):
         self.folder = tempfile.TemporaryDirectory(prefix="handbook-")
@@ -115,7 +116,7 @@ class Scratch:
         return subprocess.Popen(command, cwd=self.folder.name, env=self.environment, text=True, start_new_session=True, **streams)
 
     def run(self, block):
-        """What is wrong with a block, if anything."""
+        """Runs a block, and returns what is wrong with it, if anything."""
         text = "\n".join(block.text)
         if block.is_background:
             started = self.shell(text, stdout=subprocess.PIPE)
@@ -141,7 +142,7 @@ class Scratch:
 
 
 def options():
-    """The options of every command, by its name; those of all commands are in each."""
+    """The options of every command, by its name. Options that all commands share are in each."""
     known = {}
     for page, program in ("COMMANDS.md", "halfrow"), ("STATION-COMMANDS.md", "halfrow-station"):
         name = program
@@ -154,7 +155,7 @@ def options():
 
 
 def unknown(page, known):
-    """What a page calls and no command has."""
+    """Commands and options that a page uses and that do not exist."""
     text = page.read_text()
     for call in re.finditer(r"(?:`|^|^ +|sudo -u halfrow )(halfrow(?:-station)?)((?: [^`\n|#;]*)?)", text, re.M):
         program, words = call[1], call[2].split(" -- ")[0].split()
@@ -173,7 +174,7 @@ def unknown(page, known):
 
 
 def changed(page):
-    """Fences that say which file they are from, and are not in it."""
+    """Fences that claim to be from a file and are not in it."""
     for kind, line, lines in pieces(page):
         if (source := re.match(r"```\w+ from=(\S+)", kind)) and "\n".join(lines) not in (page.parent / source[1]).read_text():
             yield f"{page.relative_to(ROOT)}:{line}: these lines do not stand in {source[1]}"

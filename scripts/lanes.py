@@ -1,11 +1,11 @@
-"""A station at work, for scripts: boards in, verdicts out."""
+"""Runs a station for scripts: boards in, verdicts out."""
 import contextlib
 import json
 import subprocess
 
 from workspace import ROOT
 
-# A plan whose runs take a moment.
+# A plan whose runs are short.
 PLAN = (ROOT / "host/station/tests/station/quick.toml").read_text()
 
 
@@ -26,7 +26,7 @@ class Station:
 
     @contextlib.contextmanager
     def at_work(self, **streams):
-        """The program, which does not outlive whoever started it, and keeps no disk busy."""
+        """The running program, which is killed at the end, so that it does not outlive its caller or keep a disk busy."""
         process = self.start(**streams)
         try:
             yield process
@@ -35,7 +35,7 @@ class Station:
             process.wait()
 
     def judge(self, runs, seen=lambda: None, at_end=lambda process: None):
-        """Judges so many boards, in all lanes at once; returns each verdict that was shown, with what `seen` returned then."""
+        """Judges this many boards, in all lanes at once. Returns each verdict that was shown, with what `seen` returned then."""
         shown, given, busy = {}, 0, set()
         with self.at_work(stdin=subprocess.PIPE, stdout=subprocess.PIPE) as station:
             for line in station.stdout:
@@ -58,7 +58,7 @@ class Station:
         return list(shown.values())
 
     def restarts(self):
-        """Nothing when it starts on what it finds, and nothing is wrong there then; else what it said."""
+        """Starts the station on what is there, then checks that. Returns an empty text, or what they said is wrong."""
         started = self.start(stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         _, complaints = started.communicate()
         checked = subprocess.run([self.program, "check", "--data", self.data], capture_output=True, text=True)

@@ -1,4 +1,4 @@
-"""Where the sources are, and what is built of them, for scripts."""
+"""Where the sources are and what is built from them, for scripts."""
 import os
 import pathlib
 import subprocess
@@ -9,7 +9,7 @@ TARGET = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
 
 
 def built(*how):
-    """The folder of the programs as the sources have them now, built with these options of cargo's."""
+    """Builds the programs from the present sources, with these options of cargo, and returns their folder."""
     build = ["cargo", "build", *how, "--quiet", "--locked", "--package", "halfrow-cli", "--package", "halfrow-station"]
     subprocess.run(build, cwd=ROOT, check=True)
     return TARGET / ("release" if "--release" in how else "debug")

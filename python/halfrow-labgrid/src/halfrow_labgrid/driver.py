@@ -32,10 +32,11 @@ OWN = {"board", "json", "timeout"}
 @target_factory.reg_driver
 @attr.s(eq=False)
 class HalfrowDriver(Driver):
-    """Judges the board at a serial port with the program `halfrow`, that of `tools: {halfrow: PATH}` or the one on the search path.
+    """Judges the board at a serial port with the program `halfrow`: that of `tools: {halfrow: PATH}`, or the one the shell finds.
 
     Args:
-        options (dict): options of `halfrow verify` for every call, without the leading `--`: `{radius: 10.0, frame: [a.pgm, b.pgm]}`
+        options (dict): options of `halfrow verify` for every call, without the leading `--`, as in
+            `{radius: 10.0, frame: [a.pgm, b.pgm]}`
         timeout (float): the longest that a run may take, in seconds
     """
 

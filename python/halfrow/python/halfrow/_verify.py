@@ -65,8 +65,8 @@ def verify(
     progress: a function that is called in this thread with ("step", words, 0), ("rows-expected", "", rows), ("frame", name, 0),
         ("rows", "", rows that came back since the last call) and ("done", "", 0); an exception from it ends the run.
 
-    Python's lock is released. Ctrl-C, or any signal handler that raises, ends the run, gives the board back, and then raises here.
-    A second one raises at once, while the run gives the board back in the background.
+    Python's lock is released. Ctrl-C, or any signal handler that raises, ends the run, gives the board back, and then raises
+    here. A second one raises at once, while the run gives the board back in the background.
     Raises InputError if the call is wrong or does not fit the board, and HalfrowError if no board could be opened.
     """
     if isinstance(frames, (str, os.PathLike)) or isinstance(frames, np.ndarray) and frames.ndim == 2:
