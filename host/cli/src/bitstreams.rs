@@ -13,7 +13,7 @@ pub(crate) struct BitstreamBoard {
     pub(crate) links: &'static [&'static str],
     /// The command that makes its bitstreams, to be run in the project's folder.
     pub(crate) build: &'static str,
-    /// The file to load that it makes, in the project's folder.
+    /// The file that it makes and that is loaded, in the project's folder.
     pub(crate) bitstream: &'static str,
     /// The target with which the board is judged when it is loaded; `PATH` stands for the path of a serial port.
     pub(crate) target: &'static str,

@@ -28,7 +28,8 @@ pub(crate) fn print_result(
     print(&result_text(command, exit_code, board, rest)?)
 }
 
-/// Prints the result of a command that has written files. These stand, so that it does not fail if stdout does not take it.
+/// Prints the result of a command that has written files. The files remain, so it does not fail if stdout does not take
+/// the result.
 pub(crate) fn tell_result(
     command: &str,
     exit_code: Exit,

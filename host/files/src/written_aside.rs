@@ -69,7 +69,7 @@ impl Aside {
     pub fn stream(path: &Path, overwrite: bool) -> Result<Self, WriteAsideError> {
         check(path, overwrite)?;
         let claim = if overwrite { None } else { Some(Claim::take(path)?) };
-        // Whoever had the claim before may have put its file in place.
+        // The previous holder of the claim may have put its file in place.
         check(path, overwrite)?;
         Self::begun(path, overwrite, path.file_name(), claim)
     }

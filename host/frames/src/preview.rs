@@ -173,8 +173,8 @@ impl Site {
     }
 }
 
-/// Red, green and blue at `row` and `column`: the sample itself for its own colour, and for each other colour the mean of the
-/// neighbours, of eight, that have it.
+/// Red, green and blue at `row` and `column`: the sample itself for its own colour, and for each other colour the mean of
+/// those of its eight neighbours that have it.
 fn pixel(frame: &Frame, row: usize, column: usize) -> [u16; 3] {
     let mut means = [Mean::default(); 3];
     let first = column.saturating_sub(1);

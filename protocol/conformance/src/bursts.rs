@@ -85,7 +85,7 @@ pub(crate) fn every_second_frame_of_an_alternating_burst_is_the_shadows(on: &dyn
         (FRAME, 1),
         "the active ones are as before"
     );
-    // These tables were committed once and are in the shadow bank again: their generation is 0 all the same.
+    // After this commit the golden tables, once generation 1, are in the shadow bank, where their generation is 0.
     bench.done(&TableSet::unstretched(HEIGHT).commit(2, 1));
     activate(&mut bench, &configuration(HEIGHT), 1);
     let both = bench.signed(&Burst { burst: 4, frames: 2, first_frame: u16::MAX, ..alternating });

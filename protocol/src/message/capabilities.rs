@@ -230,7 +230,7 @@ impl Capabilities {
     pub fn known_datapath(&self) -> Result<Datapath, UnknownDatapath> {
         match self.datapath.try_into()? {
             Datapath::RowFactors => Ok(Datapath::RowFactors),
-            // A capability of its own reports this one; here every board names datapath 1.
+            // A separate capability reports this one; every board names datapath 1 here.
             Datapath::Grids => Err(UnknownDatapath { id: self.datapath }),
         }
     }

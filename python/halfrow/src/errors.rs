@@ -43,7 +43,8 @@ pub(crate) fn input<E: Error + 'static>(error: E) -> PyErr {
     raised(Whose::Call, &error)
 }
 
-/// The exception for a lens, tables or a kernel that cannot be used. Tables of another datapath are refused like a board of one.
+/// The exception for a lens, tables or a kernel that cannot be used. Tables of another datapath are refused
+/// like a board of another datapath.
 pub(crate) fn optics(error: impl Into<OpticsError>) -> PyErr {
     let error = error.into();
     let is_of_call = !error.is_other_datapath() && !matches!(error, OpticsError::Damaged(_));

@@ -22,7 +22,7 @@ impl Rights {
         Some(Self { owner: there.uid(), group: there.gid(), mode: there.mode() & 0o7777 | needed })
     }
 
-    /// The mode to create something with that will get these rights: nobody may open it before who may not open it later.
+    /// The mode to create something with before it gets these rights: nobody may open it in between who may not open it later.
     pub(super) fn mode(self) -> u32 {
         self.mode & 0o777
     }

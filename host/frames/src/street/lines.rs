@@ -76,8 +76,7 @@ mod tests {
     use super::*;
     use crate::street::town::{Seen, seen};
 
-    /// A little below a roof there is its façade, unless something is in front of it; a little above there is none of that
-    /// height.
+    /// Just below a roof is its façade, unless something is in front of it; just above, no façade has that height.
     #[test]
     fn lines_are_where_the_street_has_them() {
         let all = lines();
