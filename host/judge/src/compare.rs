@@ -33,10 +33,10 @@ pub struct Comparison {
     #[serde(default)]
     pub bits: u16,
     /// Differences in each row.
-    #[serde(with = "crate::result::comparison")]
+    #[serde(with = "crate::result::counts_as_runs")]
     pub by_row: Vec<u32>,
     /// Differences in each column.
-    #[serde(with = "crate::result::comparison")]
+    #[serde(with = "crate::result::counts_as_runs")]
     pub by_column: Vec<u32>,
 }
 
