@@ -70,7 +70,7 @@ pub(super) fn not_exercised(
         some(samples.output.constant(depth), |bits| NotExercised::OutputBits { bits }),
         some(column_lines(&tables, board), |lines| NotExercised::ColumnAddress { lines }),
         some(line_memory_lines(&tables, board), |lines| NotExercised::LineMemoryAddress { lines }),
-        some(row_table_lines(&tables, board), |lines| NotExercised::RowTableAddress { lines }),
+        some(entry_lines(&tables, board), |lines| NotExercised::RowTableAddress { lines }),
         some(factor_bits(&tables), |bits| NotExercised::RowFactorBits { bits }),
         some(nodes, |nodes| NotExercised::KernelNodes { nodes }),
         some(taps, |taps| NotExercised::Taps { taps }),
@@ -112,16 +112,17 @@ fn look_back(tables: &TableSet) -> Option<i64> {
     Some(width as i64 - 1 - ends.min()? + width as i64 / 2 - 1)
 }
 
-/// Address lines of the board's row table that separate no two rows of different factors.
-fn row_table_lines(tables: &[&TableSet], board: &Identity) -> Vec<usize> {
+/// Address lines of the memory of row factors and grids that separate no two different entries.
+fn entry_lines(tables: &[&TableSet], board: &Identity) -> Vec<usize> {
     let tells = |line: &usize| {
         tables.iter().any(|tables| {
-            let factors: Vec<_> = tables.entries().collect();
-            let above = (0..factors.len()).filter(|row| row >> line & 1 == 1);
-            above.into_iter().any(|row| factors[row] != factors[row - (1 << line)])
+            let entries: Vec<_> = tables.entries().collect();
+            (0..entries.len())
+                .any(|entry| entry >> line & 1 == 1 && entries[entry] != entries[entry - (1 << line)])
         })
     };
-    lines(board.max_height.into()).filter(|line| !tells(line)).collect()
+    let room = board.grids.map_or(board.max_height, |grids| grids.entries.max(board.max_height));
+    lines(room.into()).filter(|line| !tells(line)).collect()
 }
 
 fn factor_bits(tables: &[&TableSet]) -> Vec<usize> {
@@ -191,6 +192,7 @@ mod tests {
     use halfrow_model::{BitDepth, Geometry, Interpolant, Kernel, Phase};
 
     use super::*;
+    use crate::result::GridsReport;
 
     fn board(taps: u8) -> Identity {
         Identity {
@@ -286,6 +288,16 @@ mod tests {
         let [none, half] = [24, 23].map(|bit| generation(127, Interpolant::Hermite, |_| 1 << bit));
         let unused = (1..65).filter(|node| ![8, 24, 40, 56].contains(node)).collect();
         assert!(found(7, &[&none, &half]).contains(&NotExercised::KernelNodes { nodes: unused }));
+    }
+
+    /// One factor for all rows separates no two entries, and 4,096 of them have twelve address lines.
+    #[test]
+    fn the_memory_of_a_grid_has_lines_beyond_those_of_the_rows() {
+        let grids = GridsReport { entries: 4096, least_blanking: 32, width: 192 };
+        let roomy = Identity { grids: Some(grids), ..board(7) };
+        let unmoved = generation(127, Interpolant::Hermite, |_| 1 << 24);
+        let parts = not_exercised(&roomy, &[&unmoved], SampleLevels::default());
+        assert!(parts.contains(&NotExercised::RowTableAddress { lines: (0..12).collect() }), "{parts:?}");
     }
 
     /// It depends on the kernel and on the board.
