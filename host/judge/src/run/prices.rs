@@ -211,12 +211,12 @@ impl<'a> Prices<'a> {
 
     /// Writing the plan's tables and reading them back.
     pub(super) fn upload(&self) -> f64 {
-        self.upload_of(self.plan.tables.geometry().height())
+        self.upload_of(self.plan.tables.entries().len())
     }
 
-    /// Writing tables of `height` rows and reading them back.
-    pub(super) fn upload_of(&self, height: usize) -> f64 {
-        let written = [(Table::RowFactors, height), (Table::Kernel, halfrow_model::NODES)];
+    /// Writing tables of so many row factors or entries of a grid, and reading them back.
+    pub(super) fn upload_of(&self, entries: usize) -> f64 {
+        let written = [(Table::RowFactors, entries), (Table::Kernel, halfrow_model::NODES)];
         let write = |(table, entries): (Table, usize)| {
             let at_once = Board::entries_at_once(table);
             let packets = (0..entries).step_by(at_once).map(|first| at_once.min(entries - first));
@@ -284,7 +284,7 @@ pub fn usual_capabilities(plan: &Plan, nature: BoardNature) -> Capabilities {
             entries: 2048,
             ks: 1 << 5 | 1 << 6,
             grid_blanking: 32,
-            grid_width: 192,
+            grid_width: 144,
         }),
         nature,
         name: String::new(),
