@@ -12,8 +12,8 @@ use crate::board::Tally;
 use crate::coverage::Faults;
 use crate::frames::street;
 use crate::result::{
-    Check, CheckName, CoverageReport, Finding, FrameTotals, LinkReport, Outcome, Problem, Report, RunReport,
-    Schema, SoakReport, StreetReport, Suspect, TablesReport, wording,
+    Check, CheckName, CoverageReport, Finding, FrameReport, FrameTotals, LinkReport, Outcome, Problem,
+    Report, RunReport, Schema, SoakReport, StreetReport, Suspect, TablesReport, wording,
 };
 use crate::verdict::Cause;
 
@@ -162,12 +162,12 @@ fn skip_the_rest(checks: &mut Vec<Check>) {
     checks.sort_by_key(|check| check.name);
 }
 
-/// The edges of the built-in street, when it was streamed whole and kept.
+/// The edges of the built-in street, when it was streamed whole, came back whole, and was kept.
 fn street(plan: &Plan, seen: &Seen) -> Option<StreetReport> {
     let street = seen.evidence.all().iter().find(|evidence| {
-        seen.frames
-            .get(evidence.index)
-            .is_some_and(|frame| frame.name == STREET && frame.first_rows.is_none())
+        let is_whole =
+            |frame: &FrameReport| frame.first_rows.is_none() && frame.rows == evidence.expected.height();
+        seen.frames.get(evidence.index).is_some_and(|frame| frame.name == STREET && is_whole(frame))
     })?;
     Some(StreetReport {
         before: street::edge_deviation(&street.input, &plan.scene(0))?,
