@@ -34,8 +34,8 @@ pub fn grouped(number: impl Copy + ToString) -> String {
 pub fn bytes(number: u64) -> String {
     match number {
         0..1_000 => format!("{number} B"),
-        1_000..1_000_000 => format!("{:.1} kB", number as f64 / 1e3),
-        1_000_000..1_000_000_000 => format!("{:.1} MB", number as f64 / 1e6),
+        1_000..999_950 => format!("{:.1} kB", number as f64 / 1e3),
+        999_950..999_950_000 => format!("{:.1} MB", number as f64 / 1e6),
         _ => format!("{:.1} GB", number as f64 / 1e9),
     }
 }
@@ -57,7 +57,7 @@ pub fn percent(share: f64) -> String {
 pub fn hertz(frequency: u32) -> String {
     match frequency {
         0..1_000 => format!("{frequency} Hz"),
-        1_000..1_000_000 => format!("{:.1} kHz", f64::from(frequency) / 1e3),
+        1_000..999_950 => format!("{:.1} kHz", f64::from(frequency) / 1e3),
         _ => format!("{:.1} MHz", f64::from(frequency) / 1e6),
     }
 }
@@ -68,8 +68,8 @@ pub fn span(seconds: f64) -> String {
     // NaN becomes 0 here and is written as `NaN s`.
     let whole = seconds.round().max(0.0) as u64;
     match whole {
-        0..60 if seconds > 0.0 && seconds < 1e-3 => format!("{:.1} µs", seconds * 1e6),
-        0..60 if seconds < 1.0 => format!("{:.1} ms", seconds.max(0.0) * 1e3),
+        0..60 if seconds > 0.0 && seconds < 999.95e-6 => format!("{:.1} µs", seconds * 1e6),
+        0..60 if seconds < 999.95e-3 => format!("{:.1} ms", seconds.max(0.0) * 1e3),
         0..60 => format!("{seconds:.1} s"),
         60..3600 => format!("{} min {} s", whole / 60, whole % 60),
         _ => format!("{} h {} min", grouped(whole / 3600), whole % 3600 / 60),
@@ -120,6 +120,16 @@ mod tests {
     fn a_time_is_told_in_two_units() {
         let spans = [0.000_032, 0.0216, 3.0, 800.0, 24_480.0, 4_000_000.0].map(span);
         assert_eq!(spans, ["32.0 µs", "21.6 ms", "3.0 s", "13 min 20 s", "6 h 48 min", "1,111 h 6 min"]);
+    }
+
+    #[test]
+    fn no_number_is_rounded_to_a_thousand_of_its_unit() {
+        assert_eq!(
+            [999_949, 999_950, 999_949_999, 999_950_000].map(bytes),
+            ["999.9 kB", "1.0 MB", "999.9 MB", "1.0 GB"]
+        );
+        assert_eq!([999_949, 999_950].map(hertz), ["999.9 kHz", "1.0 MHz"]);
+        assert_eq!([0.000_999_96, 0.999_96, 59.96].map(span), ["1.0 ms", "1.0 s", "1 min 0 s"]);
     }
 
     #[test]
