@@ -224,8 +224,8 @@ fn kernel(value: &Value) -> Result<Kernel, ContentError> {
 fn weights(node: usize, value: &Value) -> Result<[i16; 5], ContentError> {
     let values = list(Place::Node { node }, value, WEIGHT_NAMES.len())?;
     let mut weights = [0; WEIGHT_NAMES.len()];
-    for ((weight, value), tap) in weights.iter_mut().zip(values).zip(WEIGHT_NAMES) {
-        *weight = number(Place::Weight { node, tap }, value, &(i16::MIN..=i16::MAX))?;
+    for ((place, value), weight) in weights.iter_mut().zip(values).zip(WEIGHT_NAMES) {
+        *place = number(Place::Weight { node, weight }, value, &(i16::MIN..=i16::MAX))?;
     }
     Ok(weights)
 }

@@ -43,11 +43,13 @@ pub(super) fn is_name(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mem"))
 }
 
-/// The name that both files share if `path` is one of them and exists; otherwise `path` itself.
+/// The name that both files share if `path` looks like the name of one of them; but `path` itself if that is what both files
+/// there share.
 fn name_of_both(path: &Path) -> PathBuf {
     let name = path.with_extension("");
     let is_one = is_name(path) && PARTS.iter().any(|part| name.extension().is_some_and(|it| it == *part));
-    if is_one && path.exists() { name.with_extension("") } else { path.to_owned() }
+    let is_shared = || !path.exists() && paths(path).iter().any(|file| file.exists());
+    if is_one && !is_shared() { name.with_extension("") } else { path.to_owned() }
 }
 
 /// Writes both files for `path`, named by [`paths`], and returns their names. Neither is put in place before both are
@@ -65,7 +67,7 @@ pub fn write(
     // So that two runs that overwrite each other leave both files of one run, not one file of each.
     let _turn = Claim::wait(path)?;
     let written = [
-        Aside::written(&rows, overwrite, |out| out.write_all(row_factors_text(tables).as_bytes()))?,
+        Aside::written(&rows, overwrite, |out| out.write_all(tables_text(tables).as_bytes()))?,
         Aside::written(&nodes, overwrite, |out| out.write_all(kernel_text(kernel).as_bytes()))?,
     ];
     written.into_iter().try_for_each(Aside::put_in_place)?;
@@ -79,7 +81,7 @@ pub fn write(
 /// [`TableFileError`] when one of them cannot be read or is no memory image of tables.
 pub fn read(path: &Path) -> Result<(TableSet, Kernel, [Input; 2]), TableFileError> {
     let [rows, nodes] = paths(&name_of_both(path));
-    let (tables, rows) = read_one(rows, parse_row_factors)?;
+    let (tables, rows) = read_one(rows, parse_tables)?;
     let (kernel, nodes) = read_one(nodes, parse_kernel)?;
     Ok((tables, kernel, [rows, nodes]))
 }
@@ -97,7 +99,7 @@ fn read_one<T>(path: PathBuf, parse: fn(&str) -> Result<T, MemError>) -> Result<
 
 /// The memory image of the row factors or the grid.
 #[must_use]
-pub fn row_factors_text(tables: &TableSet) -> String {
+pub fn tables_text(tables: &TableSet) -> String {
     let geometry = tables.geometry();
     let what = match tables.shape() {
         None => "row factors Q = 2^24 / k for $readmemh: 25 bits a word, row 0 first",
@@ -138,11 +140,11 @@ fn lines(lines: impl Iterator<Item = String>) -> String {
     lines.flat_map(|line| [line, "\n".to_owned()]).collect()
 }
 
-/// The table set of the memory image `text`. Its comments must give the geometry, like those of [`row_factors_text`].
+/// The table set of the memory image `text`. Its comments must give the geometry, like those of [`tables_text`].
 ///
 /// # Errors
 /// [`MemError`] for the first thing that is wrong: the datapath, the geometry, the words from the top.
-pub fn parse_row_factors(text: &str) -> Result<TableSet, MemError> {
+pub fn parse_tables(text: &str) -> Result<TableSet, MemError> {
     match datapath(text)? {
         Datapath::RowFactors => Ok(TableSet::from_units(geometry(text)?, &units(text)?)?),
         Datapath::Grids => {

@@ -47,7 +47,7 @@ pub enum Place {
         /// The node, 0 to 64.
         node: usize,
         /// The weight's name, one of [`halfrow_model::WEIGHT_NAMES`].
-        tap: &'static str,
+        weight: &'static str,
     },
 }
 
@@ -104,7 +104,7 @@ impl fmt::Display for Place {
             Self::RowFactor { row } => write!(f, "the row factor of row {row}"),
             Self::GridEntry { entry } => write!(f, "entry {entry} of `grid`"),
             Self::Node { node } => write!(f, "node {node} of `kernel`"),
-            Self::Weight { node, tap } => write!(f, "the weight {tap} of node {node}"),
+            Self::Weight { node, weight } => write!(f, "the weight {weight} of node {node}"),
             whole => write!(f, "`{}`", whole.key()),
         }
     }

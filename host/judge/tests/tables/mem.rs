@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use halfrow::tables::mem::{self, kernel_text, parse_kernel, parse_row_factors, row_factors_text};
+use halfrow::tables::mem::{self, kernel_text, parse_kernel, parse_tables, tables_text};
 use halfrow::tables::{MemError, Place, TableFileError};
 use halfrow_files::written_aside::WriteAsideError;
 use halfrow_model::{
@@ -22,7 +22,7 @@ fn row_factors_are_seven_digits_under_a_comment_with_the_geometry() {
                     0000001\n\
                     0df84a8\n\
                     1000000\n";
-    assert_eq!(row_factors_text(&tables()), expected);
+    assert_eq!(tables_text(&tables()), expected);
 }
 
 #[test]
@@ -44,7 +44,7 @@ fn node_16_of_the_hermite_kernel_is_that_of_eq_18() {
 
 #[test]
 fn nothing_but_ascii_goes_to_verilog() {
-    assert!(row_factors_text(&tables()).is_ascii());
+    assert!(tables_text(&tables()).is_ascii());
     assert!(kernel_text(&Interpolant::Keys.into()).is_ascii());
 }
 
@@ -58,13 +58,13 @@ fn every_built_in_kernel_is_read_back_as_it_was() {
 
 #[test]
 fn row_factors_are_read_back_with_their_geometry() {
-    assert_eq!(parse_row_factors(&row_factors_text(&tables())), Ok(tables()));
+    assert_eq!(parse_tables(&tables_text(&tables())), Ok(tables()));
 }
 
 #[test]
 fn upper_case_blank_lines_and_other_comments_are_read_over() {
-    let text = row_factors_text(&tables()).replace("0df84a8", "\r\n  // by hand\n\n  0DF84A8  ");
-    assert_eq!(parse_row_factors(&text), Ok(tables()));
+    let text = tables_text(&tables()).replace("0df84a8", "\r\n  // by hand\n\n  0DF84A8  ");
+    assert_eq!(parse_tables(&text), Ok(tables()));
 }
 
 #[test]
@@ -126,11 +126,10 @@ fn a_missing_or_foreign_file_is_named() {
 fn a_header_without_a_number_names_the_number() {
     let places = [Place::Datapath, Place::Bits, Place::Width, Place::Height, Place::Centre2];
     for place in places {
-        let text = row_factors_text(&tables()).replace(&format!("{}=", place.key()), "x=");
-        assert_eq!(parse_row_factors(&text), Err(MemError::Header(place)));
+        let text = tables_text(&tables()).replace(&format!("{}=", place.key()), "x=");
+        assert_eq!(parse_tables(&text), Err(MemError::Header(place)));
     }
-    let refused =
-        parse_row_factors(&row_factors_text(&tables()).replace("width=64", "width=-64")).unwrap_err();
+    let refused = parse_tables(&tables_text(&tables()).replace("width=64", "width=-64")).unwrap_err();
     let sentence =
         "its comments give no whole number as `width=`; write the file again with `halfrow tables`";
     assert_eq!(refused.to_string(), sentence);
@@ -138,7 +137,7 @@ fn a_header_without_a_number_names_the_number() {
 
 #[test]
 fn a_geometry_that_the_datapath_does_not_have_is_refused() {
-    let refuse = |old, new| parse_row_factors(&row_factors_text(&tables()).replace(old, new)).unwrap_err();
+    let refuse = |old, new| parse_tables(&tables_text(&tables()).replace(old, new)).unwrap_err();
     assert_eq!(refuse("bits=12", "bits=9"), MemError::Bits { found: 9 });
     assert!(matches!(refuse("width=64", "width=65"), MemError::Geometry(_)));
     let count = TableError::Count { row_factors: 3, height: 4 };
@@ -148,7 +147,7 @@ fn a_geometry_that_the_datapath_does_not_have_is_refused() {
 #[test]
 fn a_line_that_is_no_word_is_named() {
     for word in ["0df84a", "0df84a88", "0df84ag", "+df84a8", "xxxxxxx", "@000001", "0df84a8 // Q"] {
-        let refused = parse_row_factors(&row_factors_text(&tables()).replace("0df84a8", word)).unwrap_err();
+        let refused = parse_tables(&tables_text(&tables()).replace("0df84a8", word)).unwrap_err();
         assert_eq!(refused, MemError::Word { line: 4, found: word.to_owned(), digits: 7 });
     }
     let refused = parse_kernel("// datapath=1\n0001\n").unwrap_err();
@@ -160,7 +159,7 @@ fn a_line_that_is_no_word_is_named() {
 #[test]
 fn a_row_factor_that_no_board_could_use_is_refused() {
     for (word, units) in [("0000000", 0), ("1000001", 0x100_0001), ("fffffff", 0xfff_ffff)] {
-        let refused = parse_row_factors(&row_factors_text(&tables()).replace("0df84a8", word));
+        let refused = parse_tables(&tables_text(&tables()).replace("0df84a8", word));
         assert_eq!(
             refused,
             Err(MemError::Tables(TableError::RowFactor { row: 1, source: RowFactorError { units } }))
@@ -173,4 +172,15 @@ fn a_kernel_with_a_node_too_few_is_refused() {
     let text = kernel_text(&Interpolant::Linear.into());
     let shorter = text.trim_end().rsplit_once('\n').unwrap().0;
     assert_eq!(parse_kernel(shorter), Err(MemError::Kernel(KernelError::Count(64))));
+}
+
+#[test]
+fn an_image_that_is_missing_is_reported_under_the_name_that_was_given() {
+    let folder = tempfile::tempdir().unwrap();
+    let given = folder.path().join("line.steps.mem");
+    let refused = mem::read(&given).unwrap_err();
+    assert!(refused.to_string().contains("/line.steps.mem"), "{refused}");
+    // Unless the name of both ends so.
+    mem::write(&given, &tables(), &Interpolant::Hermite.into(), false).unwrap();
+    assert_eq!(mem::read(&given).unwrap().0, tables());
 }

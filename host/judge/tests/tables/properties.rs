@@ -1,8 +1,8 @@
 //! Properties of table files over random tables and random damage.
 
-use halfrow::tables::mem::{kernel_text, parse_kernel, parse_row_factors, row_factors_text};
+use halfrow::tables::mem::{kernel_text, parse_kernel, parse_tables, tables_text};
 use halfrow::tables::{KernelFile, TableFile};
-use halfrow_model::{BitDepth, Geometry, Kernel, TableSet};
+use halfrow_model::{BitDepth, Geometry, GridShape, Kernel, TableSet};
 use proptest::array::uniform5;
 use proptest::collection::{btree_map, vec};
 use proptest::prelude::*;
@@ -10,6 +10,24 @@ use proptest::sample::{Index, select};
 use serde_json::{Map, Value};
 
 fn table_sets() -> impl Strategy<Value = TableSet> {
+    prop_oneof![row_factors(), grids()]
+}
+
+/// Grids of any shape, whose offsets and entries are drawn: legal or not, as files hold both.
+fn grids() -> impl Strategy<Value = TableSet> {
+    let sizes = (32_usize..=300, 1_usize..40, select(BitDepth::ALL.to_vec()));
+    let shapes = (select(GridShape::V.collect::<Vec<_>>()), select(GridShape::K.collect::<Vec<_>>()));
+    (sizes, shapes).prop_flat_map(|((pairs, height, depth), (v, k))| {
+        let (width, shape) = (2 * pairs, GridShape::new(v, k).unwrap());
+        let entries = shape.entries(&Geometry::centred(width, height, depth).unwrap());
+        (0..=2 * width as u32 - 2, vec(0_u32..1 << 25, entries)).prop_map(move |(centre2, entries)| {
+            let geometry = Geometry::new(width, height, depth, centre2).unwrap();
+            TableSet::from_grid(geometry, shape, &entries).unwrap()
+        })
+    })
+}
+
+fn row_factors() -> impl Strategy<Value = TableSet> {
     let sizes = (32_usize..=1296, 1_usize..40, select(BitDepth::ALL.to_vec()));
     sizes.prop_flat_map(|(pairs, height, depth)| {
         let width = 2 * pairs;
@@ -51,12 +69,12 @@ fn table_files() -> impl Strategy<Value = TableFile> {
 
 /// JSON objects with the keys of a table file and values of any kind.
 fn near_misses() -> impl Strategy<Value = String> {
-    let keys = ["datapath", "width", "height", "bits", "centre2", "step", "kernel", "about", "other"];
+    let keys = ["width", "height", "bits", "centre2", "v", "k", "step", "grid", "kernel", "about", "other"];
     let value = prop_oneof![values(), (0..70_i64).prop_map(Value::from), (0..3000_i64).prop_map(Value::from)];
-    btree_map(select(keys.to_vec()), value, 0..9).prop_map(|members| {
+    (btree_map(select(keys.to_vec()), value, 0..9), 1..=2).prop_map(|(members, datapath)| {
         let mut members: Map<_, _> =
             members.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-        members.insert("datapath".to_owned(), Value::from(1));
+        members.insert("datapath".to_owned(), Value::from(datapath));
         Value::Object(members).to_string()
     })
 }
@@ -65,7 +83,7 @@ fn near_misses() -> impl Strategy<Value = String> {
 fn read_every_way(text: &str) {
     let _ = TableFile::parse(text);
     let _ = KernelFile::parse(text);
-    let _ = parse_row_factors(text);
+    let _ = parse_tables(text);
     let _ = parse_kernel(text);
 }
 
@@ -83,7 +101,7 @@ proptest! {
 
     #[test]
     fn every_memory_image_is_read_back_as_it_was(tables in table_sets(), kernel in kernels()) {
-        prop_assert_eq!(parse_row_factors(&row_factors_text(&tables)), Ok(tables));
+        prop_assert_eq!(parse_tables(&tables_text(&tables)), Ok(tables));
         prop_assert_eq!(parse_kernel(&kernel_text(&kernel)), Ok(kernel));
     }
 
@@ -103,7 +121,7 @@ proptest! {
         damage in vec((any::<Index>(), any::<u8>()), 1..4),
         end in any::<Index>(),
     ) {
-        for text in [file.to_json(), row_factors_text(&file.tables), kernel_text(&file.kernel)] {
+        for text in [file.to_json(), tables_text(&file.tables), kernel_text(&file.kernel)] {
             let mut bytes = text.into_bytes();
             for (place, byte) in &damage {
                 let place = place.index(bytes.len());

@@ -178,7 +178,7 @@ fn a_row_factor_that_is_zero_or_too_large_is_named_with_its_row() {
 #[test]
 fn a_weight_of_two_is_said_not_to_fit() {
     let refused = refusal(|file| file["kernel"][32][2] = json!(32768));
-    let place = Place::Weight { node: 32, tap: "g4" };
+    let place = Place::Weight { node: 32, weight: "g4" };
     assert!(matches!(&refused, ContentError::Range { place: named, found: 32768, .. } if *named == place));
     says(
         &refused,
@@ -190,7 +190,7 @@ fn a_weight_of_two_is_said_not_to_fit() {
 #[test]
 fn a_weight_below_minus_two_is_refused() {
     let refused = refusal(|file| file["kernel"][64][0] = json!(-32769));
-    let place = Place::Weight { node: 64, tap: "g0" };
+    let place = Place::Weight { node: 64, weight: "g0" };
     assert!(matches!(&refused, ContentError::Range { place: named, .. } if *named == place), "{refused:?}");
 }
 
@@ -226,7 +226,7 @@ fn every_number_must_be_whole() {
         assert!(matches!(refused, ContentError::Kind { place, .. } if place.key() == key), "{refused:?}");
     }
     let refused = refusal(|file| file["kernel"][0][1] = json!(0.5));
-    assert!(matches!(refused, ContentError::Kind { place: Place::Weight { node: 0, tap: "r1" }, .. }));
+    assert!(matches!(refused, ContentError::Kind { place: Place::Weight { node: 0, weight: "r1" }, .. }));
 }
 
 #[test]
