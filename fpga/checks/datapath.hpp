@@ -130,13 +130,3 @@ inline uint32_t signature(const Row &row) {
         crc = crc32(crc, sample, 2);
     return crc;
 }
-
-// The signature of a burst's frame whose row y has the factor steps[y].
-inline uint32_t signature(const Frame &frame, const std::vector<int64_t> &steps, const Kernel &kernel, uint32_t seed, uint16_t number) {
-    uint32_t all = 0;
-    for (size_t row = 0; row < steps.size(); row++) {
-        Row samples = content(seed, number, row, frame.width, frame.bits);
-        all = crc32(all, signature(corrected(frame, steps[row], kernel, samples)), 4);
-    }
-    return all;
-}

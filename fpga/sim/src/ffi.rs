@@ -86,7 +86,7 @@ pub(crate) struct FifoOutputs {
 #[cfg(feature = "builds")]
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
-#[expect(missing_docs, reason = "the ports of that name in fpga/rtl/halfrow_core.v")]
+#[expect(missing_docs, reason = "the ports of that name in fpga/rtl/core/halfrow_core.v")]
 pub struct CoreInputs {
     pub rst: bool,
     pub enable: bool,
@@ -112,7 +112,7 @@ pub struct CoreInputs {
 #[cfg(feature = "builds")]
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
-#[expect(missing_docs, reason = "the ports of that name in fpga/rtl/halfrow_core.v")]
+#[expect(missing_docs, reason = "the ports of that name in fpga/rtl/core/halfrow_core.v")]
 pub struct CoreOutputs {
     pub prepared: bool,
     pub out_valid: bool,

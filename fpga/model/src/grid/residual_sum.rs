@@ -24,8 +24,9 @@ pub struct ResidualSum {
 }
 
 impl ResidualSum {
-    /// Adds `amount`.
+    /// Adds `amount`. One that is no number is as wrong as can be, and must not get lost in the largest.
     pub fn add(&mut self, amount: f64) {
+        let amount = if amount.is_nan() { f64::INFINITY } else { amount };
         self.count += 1;
         self.sum += amount;
         self.max = self.max.max(amount);
