@@ -172,10 +172,17 @@ fn entries_go_with_another_geometry_of_the_same_size() {
     let geometry = |width, centre2| Geometry::new(width, 9, BitDepth::Ten, centre2).unwrap();
     let lens = Equidistant::from_radius(500.0).unwrap();
     let rows = TableSet::from_lens(geometry(96, 95), &lens, None).unwrap();
-    for tables in [rows, identity(geometry(96, 95), shape(2, 5))] {
+    let entries = vec![ONE - 4096; shape(2, 5).entries(&geometry(96, 95))];
+    let grid = TableSet::from_grid(geometry(96, 95), shape(2, 5), &entries).unwrap();
+    for tables in [rows, grid] {
         let moved = tables.with_geometry(geometry(96, 30)).unwrap();
         assert!(moved.entries().eq(tables.entries()) && moved.geometry().centre2() == 30);
         assert_eq!(moved.shape(), tables.shape());
+        for row in 0..10 {
+            assert_eq!(tables.values_about(&geometry(96, 30), row), moved.values(row));
+        }
+        assert_ne!(moved.values(0), tables.values(0));
+        assert_eq!(tables.values_about(&geometry(128, 30), 0), None);
     }
     assert!(identity(geometry(96, 95), shape(2, 5)).with_geometry(geometry(128, 30)).is_err());
 }

@@ -35,11 +35,15 @@ pub(super) enum Stretch {
 }
 
 impl Stretch {
-    /// The stretch of a row by the tables, if they have the row.
-    pub(super) fn of(tables: &TableSet, row: usize) -> Option<Self> {
+    /// The stretch of a row by the tables in a frame of `geometry`, if they have the row and are as wide. The values of a grid
+    /// depend on the optical centre that the board has, whichever frames the grid was made for.
+    pub(super) fn of(tables: &TableSet, geometry: &Geometry, row: usize) -> Option<Self> {
+        if tables.geometry().width() != geometry.width() {
+            return None;
+        }
         match tables.shape() {
             None => tables.row_factor(row).map(|factor| Self::Factor(factor.get())),
-            Some(_) => tables.values(row).map(|values| Self::Grid(Rc::new(values))),
+            Some(_) => tables.values_about(geometry, row).map(|values| Self::Grid(Rc::new(values))),
         }
     }
 }

@@ -52,8 +52,9 @@ impl<'a> Witness<'a> {
     /// What the row must be made with.
     pub(super) fn tables(&self) -> RowTables<'a> {
         let Uploaded { tables, kernel, .. } = self.uploaded;
-        let stretch = Stretch::of(tables, self.row).unwrap_or(Stretch::Factor(0));
-        RowTables { geometry: tables.geometry(), stretch, kernel }
+        let geometry = tables.geometry();
+        let stretch = Stretch::of(tables, geometry, self.row).unwrap_or(Stretch::Factor(0));
+        RowTables { geometry, stretch, kernel }
     }
 
     /// Its position in the run.

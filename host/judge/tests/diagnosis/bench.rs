@@ -290,10 +290,21 @@ pub(crate) fn off_centre() -> Bench {
 /// Frames that are corrected with a grid of 7 nodes and 8 grid rows.
 pub(crate) fn grid() -> Bench {
     let geometry = Geometry::centred(192, 24, BitDepth::Twelve).unwrap();
+    gridded(geometry, Interpolant::Hermite)
+}
+
+/// The same in 8 bits, with the optical centre at column 75 and a seven-tap kernel.
+pub(crate) fn off_centre_grid() -> Bench {
+    let geometry = Geometry::new(192, 24, BitDepth::Eight, 150).unwrap();
+    gridded(geometry, Interpolant::Keys)
+}
+
+fn gridded(geometry: Geometry, judged: Interpolant) -> Bench {
     let lens = Equidistant::from_radius(130.0).unwrap();
-    let camera = Camera::new(geometry, lens.into(), (95.5, 11.5), 180.0).unwrap();
+    let centre = (f64::from(geometry.centre2()) / 2.0, 11.5);
+    let camera = Camera::new(geometry, lens.into(), centre, 180.0).unwrap();
     let shape = halfrow_model::GridShape::new(2, 5).unwrap();
-    Bench::of(camera.grid_by_formula(shape), 256, Interpolant::Hermite)
+    Bench::of(camera.grid_by_formula(shape), 256, judged)
 }
 
 /// Whether the suspect is the part at `place`, or several bits of one word among which its bit is.

@@ -2,9 +2,9 @@
 //! grid row and node.
 
 use halfrow::result::Suspect;
-use halfrow_model::{Interpolant, Kernel, TableSet, correct};
+use halfrow_model::{BitDepth, Geometry, Interpolant, Kernel, TableSet, correct};
 
-use crate::bench::{Bench, Generation, Seen, assert_named, fault, grid, is_told};
+use crate::bench::{Bench, Generation, Seen, assert_named, fault, grid, is_told, off_centre_grid};
 use crate::scenes::Random;
 
 /// Grid rows of [`grid`], and its columns, including the one of the offsets.
@@ -171,6 +171,27 @@ fn stale_grids_are_named_frame_by_frame() {
             assert!(only.evidence().contains(clause), "{}", only.evidence());
         }
     }
+}
+
+/// The board takes frame 2's centre, and the entries of the decoy.
+#[test]
+fn stale_grids_are_named_in_a_frame_with_another_centre() {
+    let mut bench = off_centre_grid();
+    let middle = Geometry::centred(192, 24, BitDepth::Eight).unwrap();
+    let stale = bench.generations[0].tables.clone();
+    bench.generations[0].tables = stale.with_geometry(middle).unwrap();
+    let mut seen = Seen { frames: Vec::new(), evidence: Vec::new() };
+    for (index, (generation, input, expected)) in bench.sound_frames().into_iter().enumerate() {
+        let Generation { tables, kernel, .. } = &bench.generations[usize::from(generation) - 1];
+        let tables = if index == 2 { &stale } else { tables };
+        let found = correct(tables, kernel, &input).unwrap();
+        seen.take(generation, input, expected, found);
+    }
+    let suspects = bench.judge(&seen);
+    let [only] = &suspects[..] else { panic!("{suspects:#?}") };
+    assert_eq!((only.part(), only.explained), ("stale tables", 1.0));
+    let clause = "frame 2 with the row factors of generation 1 and the kernel of generation 2";
+    assert!(only.evidence().contains(clause), "{}", only.evidence());
 }
 
 #[test]

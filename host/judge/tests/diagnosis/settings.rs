@@ -1,17 +1,17 @@
 //! Boards that ignore a setting.
 
 use halfrow::result::Suspect;
-use halfrow_model::{BitDepth, Frame, Geometry, TableSet, correct};
+use halfrow_model::{BitDepth, Frame, Geometry, correct};
 
-use crate::bench::{Bench, Generation, Seen, off_centre};
+use crate::bench::{Bench, Generation, Seen, off_centre, off_centre_grid};
 
-/// The bench with 8 bits and a centre of its own, and a decoy whose centre is the middle.
-fn bench() -> Bench {
-    let mut bench = off_centre();
-    let decoy = &mut bench.generations[0];
-    let factors: Vec<_> = decoy.tables.row_factors().unwrap().to_vec();
-    decoy.tables = TableSet::new(Geometry::centred(192, 24, BitDepth::Eight).unwrap(), factors).unwrap();
-    bench
+/// The benches of 8 bits and a centre of their own, behind a decoy whose centre is the middle.
+fn benches() -> [Bench; 2] {
+    [off_centre(), off_centre_grid()].map(|mut bench| {
+        let tables = &mut bench.generations[0].tables;
+        *tables = tables.with_geometry(Geometry::centred(192, 24, BitDepth::Eight).unwrap()).unwrap();
+        bench
+    })
 }
 
 /// The suspect for a board that makes each frame, by its index, with the settings that `made` gives.
@@ -20,7 +20,7 @@ fn diagnose(bench: &Bench, made: impl Fn(usize, &Geometry) -> Geometry) -> Suspe
     for (index, (generation, input, expected)) in bench.sound_frames().into_iter().enumerate() {
         let Generation { tables, kernel, .. } = &bench.generations[usize::from(generation) - 1];
         let geometry = made(index, tables.geometry());
-        let tables = TableSet::new(geometry, tables.row_factors().unwrap().to_vec()).unwrap();
+        let tables = tables.with_geometry(geometry).unwrap();
         let samples = input.samples().to_vec();
         let put_in = Frame::new(input.width(), geometry.depth(), input.phase(), samples).unwrap();
         seen.take(generation, input, expected, correct(&tables, kernel, &put_in).unwrap());
@@ -34,27 +34,37 @@ fn diagnose(bench: &Bench, made: impl Fn(usize, &Geometry) -> Geometry) -> Suspe
 
 #[test]
 fn a_centre_that_is_not_taken_is_named() {
-    let middle = diagnose(&bench(), |_, own| Geometry::centred(192, 24, own.depth()).unwrap());
-    assert_eq!(middle.place(), "the setting of the optical centre");
-    assert!(middle.evidence().starts_with("taking the middle of the row instead"), "{}", middle.evidence());
+    for bench in benches() {
+        let middle = diagnose(&bench, |_, own| Geometry::centred(192, 24, own.depth()).unwrap());
+        assert_eq!(middle.place(), "the setting of the optical centre");
+        assert!(
+            middle.evidence().starts_with("taking the middle of the row instead"),
+            "{}",
+            middle.evidence()
+        );
+    }
 }
 
 /// Frame 2 is the first after the decoy.
 #[test]
 fn a_centre_that_is_taken_a_frame_late_is_named() {
-    let late = diagnose(&bench(), |index, own| match index {
-        2 => Geometry::centred(192, 24, own.depth()).unwrap(),
-        _ => *own,
-    });
-    assert_eq!(late.place(), "the setting of the optical centre");
-    assert!(late.evidence().starts_with("keeping that of the frame before"), "{}", late.evidence());
+    for bench in benches() {
+        let late = diagnose(&bench, |index, own| match index {
+            2 => Geometry::centred(192, 24, own.depth()).unwrap(),
+            _ => *own,
+        });
+        assert_eq!(late.place(), "the setting of the optical centre");
+        assert!(late.evidence().starts_with("keeping that of the frame before"), "{}", late.evidence());
+    }
 }
 
 #[test]
 fn a_depth_that_is_not_taken_is_named() {
-    let deep = diagnose(&bench(), |_, own| {
-        Geometry::new(own.width(), own.height(), BitDepth::Twelve, own.centre2()).unwrap()
-    });
-    assert_eq!(deep.place(), "the setting of the depth");
-    assert!(deep.evidence().starts_with("taking 12 bits instead"), "{}", deep.evidence());
+    for bench in benches() {
+        let deep = diagnose(&bench, |_, own| {
+            Geometry::new(own.width(), own.height(), BitDepth::Twelve, own.centre2()).unwrap()
+        });
+        assert_eq!(deep.place(), "the setting of the depth");
+        assert!(deep.evidence().starts_with("taking 12 bits instead"), "{}", deep.evidence());
+    }
 }

@@ -63,12 +63,8 @@ fn tables<'b>(
     row: &Witness<'b>,
 ) -> Option<RowTables<'b>> {
     let uploaded = |generation| case.uploaded.iter().rfind(|uploaded| uploaded.generation == generation);
-    let width = row.geometry().width();
     let stretch = match made.factors {
-        Some(generation) => {
-            let tables = uploaded(generation)?.tables;
-            Stretch::of(tables, row.row).filter(|_| tables.geometry().width() == width)?
-        }
+        Some(generation) => Stretch::of(uploaded(generation)?.tables, row.geometry(), row.row)?,
         None => Stretch::Factor(RowFactor::ONE.get()),
     };
     let kernel = match made.kernel {

@@ -85,7 +85,7 @@ fn with_grids<'a>(defect: Defect, grids: BTreeMap<u8, TableSet>, ring: usize) ->
 /// What a row is made with under another grid; none if that leaves the row as it should be.
 fn with_grid<'a>(witness: &Witness<'a>, grid: &TableSet) -> Option<RowTables<'a>> {
     let own = witness.tables();
-    let stretch = Stretch::of(grid, witness.row).filter(|stretch| *stretch != own.stretch)?;
+    let stretch = Stretch::of(grid, own.geometry, witness.row).filter(|stretch| *stretch != own.stretch)?;
     Some(RowTables { stretch, ..own })
 }
 

@@ -2,10 +2,10 @@
 
 use halfrow_model::{BitDepth, Geometry};
 
-use crate::diagnosis::Case;
 use crate::diagnosis::datapath::{RowTables, Stretch};
 use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
 use crate::diagnosis::witnesses::{Witness, Witnesses};
+use crate::diagnosis::{Case, Uploaded};
 use crate::result::{Defect, Instead};
 
 /// The optical centre and the depth, each with the values that the board may use instead.
@@ -17,7 +17,6 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
         .collect()
 }
 
-/// Rows of a grid are left out, since their values were computed for their own centre.
 fn centre(case: Case<'_>, instead: Instead) -> Hypothesis<'_> {
     Hypothesis::new(Defect::CentreIgnored { instead }, move |witness| {
         let own = witness.geometry();
@@ -26,8 +25,7 @@ fn centre(case: Case<'_>, instead: Instead) -> Hypothesis<'_> {
             Instead::FirstFrame => made_for(&case, 0)?.centre2(),
             Instead::FrameBefore => made_for(&case, witness.frame.checked_sub(1)?)?.centre2(),
         };
-        let is_factor = matches!(witness.tables().stretch, Stretch::Factor(_));
-        is_factor.then(|| made_by(&case, witness, own.depth(), centre2)).flatten()
+        made_by(&case, witness, own.depth(), centre2)
     })
 }
 
@@ -53,7 +51,11 @@ fn made_for<'a>(case: &Case<'a>, index: usize) -> Option<&'a Geometry> {
 fn made_by(case: &Case<'_>, witness: &Witness<'_>, depth: BitDepth, centre2: u32) -> Option<Prediction> {
     let own = witness.geometry();
     let geometry = Geometry::new(own.width(), own.height(), depth, centre2).ok()?;
-    let tables = RowTables { geometry: &geometry, ..witness.tables() };
-    let made = || Prediction::partly(tables.corrected(witness.samples()), tables.foretold(case.ring));
-    (geometry != *own).then(made)
+    if geometry == *own {
+        return None;
+    }
+    let Uploaded { tables, kernel, .. } = witness.uploaded;
+    let stretch = Stretch::of(tables, &geometry, witness.row)?;
+    let tables = RowTables { geometry: &geometry, stretch, kernel };
+    Some(Prediction::partly(tables.corrected(witness.samples()), tables.foretold(case.ring)))
 }
