@@ -21,11 +21,11 @@ pub fn probe(target: &Target) -> Answer {
         Ok(Capabilities { name, datapath, .. }) => Answer::Board { name, datapath },
         Err(BoardError::Held { .. }) => Answer::Held,
         Err(BoardError::NoAnswer { heard: Heard { bytes: 0, .. }, .. }) => Answer::Silent,
-        Err(BoardError::NoAnswer { heard: Heard { bytes, .. }, .. }) => Answer::Babble { bytes },
-        Err(error @ (BoardError::NotABoard | BoardError::Version { .. })) => {
-            Answer::Foreign { reason: error.to_string() }
-        }
+        Err(BoardError::NoAnswer { heard: Heard { packets: 0, bytes, .. }, .. }) => Answer::Babble { bytes },
         Err(error) if error.cause() == Cause::Busy => Answer::Busy,
+        Err(error) if error.is_of_somebody() || error.is_answer() => {
+            Answer::Foreign { reason: Problem::of(&error).sentence() }
+        }
         Err(error) => Answer::Failed { reason: Problem::of(&error).sentence() },
     }
 }

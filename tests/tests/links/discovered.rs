@@ -121,3 +121,24 @@ fn what_talks_and_is_no_board_is_told_from_silence() {
     assert!(text.contains(" bytes came, no answer among them"), "{text}");
     receiver.join().unwrap();
 }
+
+/// A loopback plug returns what is sent; a modem or the console of a system says something of its own as well.
+#[test]
+fn what_echoes_is_another_device_and_no_port_that_cannot_be_asked() {
+    for (own, said) in [("", "the line returns what is sent to it"), ("\r\nERROR\r\n", "has a console")] {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let target = format!("tcp:{}", listener.local_addr().unwrap());
+        let echo = std::thread::spawn(move || {
+            let (mut host, _) = listener.accept().unwrap();
+            let mut heard = [0; 256];
+            while let Ok(read @ 1..) = host.read(&mut heard) {
+                // The host may be gone by now.
+                let _ = host.write_all(&[&heard[..read], own.as_bytes()].concat());
+            }
+        });
+        let answer = look_at(&target, &["--ask"])["answer"].clone();
+        assert_eq!(answer["state"], "foreign", "{answer}");
+        assert!(answer["reason"].as_str().unwrap().contains(said), "{answer}");
+        echo.join().unwrap();
+    }
+}
