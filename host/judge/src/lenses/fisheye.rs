@@ -124,10 +124,12 @@ fn coefficients(keys: &Keys<'_>) -> Result<[f64; 4], LensContentError> {
 fn size(keys: &Keys<'_>) -> Result<Option<(usize, usize)>, LensContentError> {
     let sides = if let Some((key, value)) = keys.find(&SIZE) {
         numbers(key, value)?
-    } else if let (Some((width, columns)), Some((height, rows))) = (keys.find(&WIDTH), keys.find(&HEIGHT)) {
-        vec![number(width, columns)?, number(height, rows)?]
-    } else {
+    } else if keys.find(&WIDTH).is_none() && keys.find(&HEIGHT).is_none() {
         return Ok(None);
+    } else {
+        let (width, columns) = keys.get("image width", &WIDTH)?;
+        let (height, rows) = keys.get("image height", &HEIGHT)?;
+        vec![number(width, columns)?, number(height, rows)?]
     };
     match sides[..] {
         [0.0, 0.0] => Ok(None),

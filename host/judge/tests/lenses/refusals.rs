@@ -33,7 +33,10 @@ fn other_distortion_models_are_refused_by_name() {
     }
     says(OPENCV_YAML, "image_width: 1280", "xi: 1.2", "omnidirectional (it has `xi`)");
     says(OPENCV_YAML, "image_width: 1280", "fisheye_model: 0", "`fisheye_model` is 0");
-    assert!(LensFile::parse(&with(OPENCV_YAML, "image_width: 1280", "fisheye_model: 1")).is_ok());
+    assert!(
+        LensFile::parse(&with(OPENCV_YAML, "image_width: 1280", "image_width: 1280\nfisheye_model: 1"))
+            .is_ok()
+    );
 }
 
 #[test]
@@ -133,6 +136,16 @@ fn image_sizes_that_cannot_be_are_refused() {
         says(CAMCHAIN, "[1280, 720]", size, "not two whole numbers from 1 to 65535");
     }
     says(DSL215, "480 752", "480 0", "not two whole numbers");
+}
+
+/// Taken for none at all, it would let the lens through unscaled for frames of any size.
+#[test]
+fn half_an_image_size_is_refused() {
+    let rows = "it has no image height: none of the keys image_height, height; add one";
+    says(OPENCV_YAML, "image_height: 720\n", "", rows);
+    says(CAMERA_INFO, "image_height: 720", "image_hight: 720", rows);
+    let columns = "it has no image width: none of the keys image_width, width; add one";
+    says(OPENCV_YAML, "image_width: 1280\n", "", columns);
 }
 
 #[test]
