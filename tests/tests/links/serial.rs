@@ -146,12 +146,12 @@ fn a_port_that_hangs_up_says_so_at_once() {
 #[test]
 fn what_the_errors_of_serial_ports_mean_to_scripts() {
     let path = std::path::PathBuf::from("/dev/ttyUSB1");
-    let rate =
-        SerialError::Rate { path, chip: "an FT2232H", baud: 7_000_000, nearest: vec![6_000_000, 12_000_000] };
+    let (chip, nearest) = ("a high-speed FTDI chip", vec![6_000_000, 12_000_000]);
+    let rate = SerialError::Rate { path, chip, baud: 7_000_000, nearest };
     assert_eq!(
         rate.to_string(),
-        "an FT2232H, which is behind /dev/ttyUSB1, cannot make 7000000 baud; the nearest that it makes: 6000000 and \
-         12000000"
+        "a high-speed FTDI chip, which is behind /dev/ttyUSB1, cannot make 7000000 baud; the nearest that it makes: \
+         6000000 and 12000000"
     );
     assert_eq!(rate.class(), Class::Call);
 }

@@ -167,7 +167,7 @@ fn check_rate(path: &Path, baud: u32) -> Result<(), SerialError> {
     };
     let speed = Speed::of(device.device_version);
     let chip = match speed {
-        Speed::High => "an FT2232H",
+        Speed::High => "a high-speed FTDI chip",
         Speed::Full => "a full-speed FTDI chip",
     };
     let refused = |nearest| SerialError::Rate { path: path.to_owned(), chip, baud, nearest };
