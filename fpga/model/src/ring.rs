@@ -12,7 +12,7 @@ impl TableSet {
     /// its row (DATAPATH.md, "Ring" and "Legal").
     ///
     /// # Errors
-    /// [`TableError::BeforeFirst`], [`TableError::BehindLast`], [`TableError::LookAhead`] or [`TableError::LookBack`] for
+    /// [`TableError::BeforeFirst`], [`TableError::AfterLast`], [`TableError::LookAhead`] or [`TableError::LookBack`] for
     /// the first row that breaks a condition.
     pub fn check_ring(&self, ring: usize) -> Result<(), TableError> {
         match self.stored() {
@@ -44,7 +44,7 @@ impl TableSet {
             return Err(TableError::BeforeFirst { row, raise: -first });
         }
         match excess(end >> 13, last) {
-            Some(excess) => Err(TableError::BehindLast { row, excess }),
+            Some(excess) => Err(TableError::AfterLast { row, excess }),
             None => Ok([first >> 13, end >> 13]),
         }
     }

@@ -80,7 +80,7 @@ pub enum TableError {
         "row {row} ends {excess} columns right of the frame; lower the offsets of its grid rows, or make the grid from \
          the lens again"
     )]
-    BehindLast {
+    AfterLast {
         /// The first such row.
         row: usize,
         /// Columns too far right.

@@ -23,7 +23,7 @@ pub fn probe(target: &Target) -> Answer {
         Err(BoardError::NoAnswer { heard: Heard { bytes: 0, .. }, .. }) => Answer::Silent,
         Err(BoardError::NoAnswer { heard: Heard { packets: 0, bytes, .. }, .. }) => Answer::Babble { bytes },
         Err(error) if error.cause() == Cause::Busy => Answer::Busy,
-        Err(error) if error.is_of_somebody() || error.is_answer() => {
+        Err(error) if error.shows_device() || error.is_answer() => {
             Answer::Foreign { reason: Problem::of(&error).sentence() }
         }
         Err(error) => Answer::Failed { reason: Problem::of(&error).sentence() },

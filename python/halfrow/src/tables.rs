@@ -79,7 +79,7 @@ impl Tables {
             (file, vec![input])
         };
         let about = file.about.take().filter(|_| kernel.is_none());
-        let optics = Optics::before(file.tables.geometry());
+        let optics = Optics::paper_lens_for(file.tables.geometry());
         let chosen = optics.and_then(|optics| optics::choose(Some((&path, file)), optics, None));
         let chosen = chosen.map_err(errors::optics)?;
         Ok(Self { about, ..Self::with_kernel(chosen, &path.display().to_string(), kernel, files)? })

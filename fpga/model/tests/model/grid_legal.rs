@@ -46,12 +46,12 @@ fn a_row_may_end_anywhere_in_its_last_column() {
     // n[63] = 63 up to q = 64·8192 − 1.
     assert_eq!(uniform(63, [offset(8191), ONE, ONE]).check_ring(64), Ok(()));
     assert_eq!(
-        uniform(63, [offset(8192), ONE, ONE]).check_ring(64),
-        Err(TableError::BehindLast { row: 0, excess: 1 })
+        bent(63, [offset(8192), ONE, ONE]).check_ring(64),
+        Err(TableError::AfterLast { row: 0, excess: 1 })
     );
     // Modulo 2^12 columns this end would lie in the row again, but it is still refused.
-    let far = uniform(0, [(1 << 25) - 1, 0, 0]).check_ring(64).unwrap_err();
-    assert!(matches!(far, TableError::BehindLast { row: 0, excess: 1984 }), "{far:?}");
+    let far = bent(0, [(1 << 25) - 1, 0, 0]).check_ring(64).unwrap_err();
+    assert!(matches!(far, TableError::AfterLast { row: 0, excess: 1984 }), "{far:?}");
 }
 
 #[test]
@@ -97,7 +97,7 @@ proptest! {
         };
         let first = (0..height).find(|row| !is_legal(row));
         let named = tables.check_ring(ring).err().map(|error| match error {
-            TableError::BeforeFirst { row, .. } | TableError::BehindLast { row, .. }
+            TableError::BeforeFirst { row, .. } | TableError::AfterLast { row, .. }
             | TableError::LookAhead { row, .. } | TableError::LookBack { row, .. } => row,
             other => panic!("{other}"),
         });

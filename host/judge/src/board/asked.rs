@@ -70,14 +70,14 @@ pub(super) struct Stray {
 pub(super) struct LastAsked(VecDeque<Asked>);
 
 impl LastAsked {
-    pub(super) fn asked(&mut self, asking: &Asking<'_>, sequence: u16, now: Duration) {
+    pub(super) fn note_request(&mut self, asking: &Asking<'_>, sequence: u16, now: Duration) {
         self.0.truncate(KEPT - 1);
         let (kind, changes) = (asking.kind(), asking.changes());
         self.0.push_front(Asked { sequence, kind, changes, begun: now, took: None, again: 0 });
     }
 
     /// Notes that the last request is sent once more. Returns whether that may change the board.
-    pub(super) fn asked_again(&mut self) -> bool {
+    pub(super) fn note_repeat(&mut self) -> bool {
         self.0.front_mut().is_some_and(|asked| {
             asked.again += 1;
             asked.changes
@@ -85,7 +85,7 @@ impl LastAsked {
     }
 
     /// Takes a packet. Returns what it shows if it is neither a row nor the first answer to a request.
-    pub(super) fn answered(&mut self, packet: &Packet<'_>, now: Duration) -> Option<Stray> {
+    pub(super) fn take_answer(&mut self, packet: &Packet<'_>, now: Duration) -> Option<Stray> {
         let kind = Kind::from_code(packet.header.kind);
         if kind == Some(Kind::RowOut) {
             return None;
@@ -146,14 +146,14 @@ mod tests {
     fn stray(last: &mut LastAsked, sequence: u16, kind: Kind, payload: &[u8]) -> Option<bool> {
         let header = Header { kind: kind.code(), sequence, reply: true, session: 1, window: 0 };
         let packet = Packet { header, payload };
-        last.answered(&packet, Duration::ZERO).map(|stray| stray.changed)
+        last.take_answer(&packet, Duration::ZERO).map(|stray| stray.changed)
     }
 
     /// WIRE.md numbers packets with 16 bits, so the 65,536th row after a request has that request's number.
     #[test]
     fn a_refused_row_is_no_second_answer_to_a_request_of_its_number() {
         let mut last = LastAsked::default();
-        last.asked(&Asking::Bytes(Kind::TableWrite, &[]), 7, Duration::ZERO);
+        last.note_request(&Asking::Bytes(Kind::TableWrite, &[]), 7, Duration::ZERO);
         assert_eq!(stray(&mut last, 7, Kind::TableWrite, &[]), None);
         let refusal = |kind: Kind| {
             let mut payload = Vec::new();

@@ -114,7 +114,7 @@ impl Conduct {
     }
 
     /// The ROW_OUT packets that came, without copies made by a link.
-    pub(super) fn came(&self) -> u32 {
+    pub(super) fn rows_came(&self) -> u32 {
         self.came
     }
 

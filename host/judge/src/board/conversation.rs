@@ -184,7 +184,7 @@ impl Conversation {
     pub(super) fn tell(&mut self, asking: &Asking<'_>) {
         let sequence = self.next_sequence();
         self.counted.is_blind = true;
-        self.session.asked.asked(asking, sequence, self.now());
+        self.session.asked.note_request(asking, sequence, self.now());
         self.queue_packet(asking.kind(), sequence, |payload| asking.write(payload));
     }
 
@@ -222,9 +222,9 @@ impl Conversation {
     }
 
     /// Notes a retry that was needless: the first answer came `took` after its request.
-    pub(super) fn was_late(&mut self, took: Duration) {
+    pub(super) fn note_late(&mut self, took: Duration) {
         self.tally.late += 1;
-        self.lateness.is_known(took);
+        self.lateness.note_needless(took);
     }
 
     /// Moves bytes both ways, at most for `wait`, and counts them and the time.
@@ -264,7 +264,7 @@ impl Conversation {
                     if self.session.number != 0 {
                         self.session.window = self.session.window.max(packet.header.window);
                         self.session.conduct.packet(&packet, self.session.rows_sent);
-                        if let Some(stray) = self.session.asked.answered(&packet, now) {
+                        if let Some(stray) = self.session.asked.take_answer(&packet, now) {
                             strays.push(stray);
                             continue;
                         }
@@ -291,6 +291,6 @@ impl Conversation {
         let changes =
             if is_second { &mut self.session.doubled_changes } else { &mut self.session.repeated_changes };
         *changes += u64::from(changed);
-        needless.into_iter().for_each(|took| self.was_late(took));
+        needless.into_iter().for_each(|took| self.note_late(took));
     }
 }

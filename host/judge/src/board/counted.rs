@@ -51,7 +51,7 @@ impl Counted {
     }
 
     /// This many more packets are known to have had an effect.
-    pub(super) fn came(&mut self, packets: u64) {
+    pub(super) fn note_had(&mut self, packets: u64) {
         self.had += packets;
     }
 
@@ -85,7 +85,7 @@ impl Conversation {
         let retries = self.tally.retries;
         let status = self.ask_for_status(clear, step)?;
         if step == Step::Request {
-            self.count_behind(retries);
+            self.count_after(retries);
         }
         Ok(status)
     }
@@ -150,7 +150,7 @@ impl Conversation {
     }
 
     /// The same if something was repeated since there were `retries`: a loss that is known by then cannot hide a later copy.
-    pub(super) fn count_behind(&mut self, retries: u64) {
+    pub(super) fn count_after(&mut self, retries: u64) {
         if self.tally.retries > retries {
             self.count();
         }
@@ -192,10 +192,10 @@ mod tests {
     #[test]
     fn a_board_that_counts_fewer_packets_than_it_answered_was_set_back() {
         let mut counted = Counted::default();
-        counted.came(4);
+        counted.note_had(4);
         counted.take(&Status { packets: 4, ..Status::default() }, 9, 9);
         assert_eq!(counted.wrong, None);
-        counted.came(1);
+        counted.note_had(1);
         counted.take(&Status { packets: 4, ..Status::default() }, 10, 10);
         assert_eq!(counted.wrong, Some(Miscount { counted: 4, sent: 5 }));
     }

@@ -335,7 +335,7 @@ impl BoardError {
 
     /// Whether something answers or holds the port, but is no board for this run at present.
     #[must_use]
-    pub(crate) fn is_of_somebody(&self) -> bool {
+    pub(crate) fn shows_device(&self) -> bool {
         match self {
             Self::Link { source, .. } => matches!(**source, LinkError::InUse { .. }),
             Self::Held { .. }

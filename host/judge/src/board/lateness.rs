@@ -22,12 +22,12 @@ pub(super) struct Lateness {
 
 impl Lateness {
     /// The first answer came `took` after its request, and another one followed: nothing was lost.
-    pub(super) fn is_known(&mut self, took: Duration) {
+    pub(super) fn note_needless(&mut self, took: Duration) {
         self.known = self.known.max(took);
     }
 
     /// An answer came after `time`; its request had been repeated `again` times.
-    pub(super) fn took(&mut self, again: u32, time: Duration) {
+    pub(super) fn note_duration(&mut self, again: u32, time: Duration) {
         let is_prompt = again == 0 && time < Step::Request.deadline().fixed;
         self.prompt = if is_prompt { self.prompt.saturating_add(1) } else { 0 };
         if again >= SELDOM_LOST {
@@ -50,25 +50,25 @@ mod tests {
     #[test]
     fn what_seems_late_is_late_until_answers_come_at_once() {
         let (mut late, long) = (Lateness::default(), Duration::from_secs(3));
-        late.took(2, long);
+        late.note_duration(2, long);
         assert_eq!(late.longest(), Duration::ZERO);
-        late.took(3, long);
+        late.note_duration(3, long);
         for _ in 1..PROMPT {
-            late.took(0, Duration::ZERO);
+            late.note_duration(0, Duration::ZERO);
         }
         assert_eq!(late.longest(), long);
-        late.took(1, Duration::ZERO);
-        (1..PROMPT).for_each(|_| late.took(0, Duration::ZERO));
+        late.note_duration(1, Duration::ZERO);
+        (1..PROMPT).for_each(|_| late.note_duration(0, Duration::ZERO));
         assert_eq!(late.longest(), long, "one that was not, begins anew");
-        late.took(0, Duration::ZERO);
+        late.note_duration(0, Duration::ZERO);
         assert_eq!(late.longest(), Duration::ZERO);
     }
 
     #[test]
     fn what_is_known_to_be_late_stays_so() {
         let (mut late, long) = (Lateness::default(), Duration::from_secs(3));
-        late.is_known(long);
-        (0..10 * PROMPT).for_each(|_| late.took(0, Duration::ZERO));
+        late.note_needless(long);
+        (0..10 * PROMPT).for_each(|_| late.note_duration(0, Duration::ZERO));
         assert_eq!(late.longest(), long);
     }
 }

@@ -120,7 +120,7 @@ impl Board {
         let from = self.conversation.queued();
         self.conversation.queue_damaged(request);
         self.conversation.queue_misnamed(request);
-        self.conversation.damage_behind(from)
+        self.conversation.damage_after(from)
     }
 
     /// The same with ROW_ACKs that acknowledge all rows before `row_sequence`.
@@ -192,7 +192,7 @@ impl Board {
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
-    pub(crate) fn credit_behind_reset(&mut self) -> Result<u32, BoardError> {
+    pub(crate) fn credit_after_reset(&mut self) -> Result<u32, BoardError> {
         let reset = Reset { level: ResetLevel::Rows, next_row: self.credit() };
         let request = Request::Reset(reset);
         let answer = self.conversation.ask(&Asking::Request(&request), Step::Request, |_| true)?;
@@ -210,7 +210,7 @@ impl Board {
     }
 
     /// Waits until `row`, which was given and is not acknowledged, comes with a count of at least `repeats`. It is asked for
-    /// first if `repeats` is not 0. Each retry asks for it again, together with the row `behind` it, which pushes it out of the
+    /// first if `repeats` is not 0. Each retry asks for it again, together with the row `after` it, which pushes it out of the
     /// core.
     ///
     /// # Errors
@@ -218,13 +218,13 @@ impl Board {
     pub(crate) fn again(
         &mut self,
         row: (&RowPlace, &[u16]),
-        behind: Option<(&RowPlace, &[u16])>,
+        after: Option<(&RowPlace, &[u16])>,
         repeats: u16,
     ) -> Result<CameAgain, BoardError> {
         let (attempts, place) = (Step::Row.deadline().attempts, row.0);
         for attempt in 0..attempts {
             let asked = if attempt > 0 { 2 } else { repeats.min(1).into() };
-            for (place, samples) in iter::once(row).chain(behind).take(asked) {
+            for (place, samples) in iter::once(row).chain(after).take(asked) {
                 self.conversation.queue_row(place, samples);
             }
             let bytes = self.conversation.queued() + halfrow_protocol::MAX_PACKET;
@@ -269,7 +269,7 @@ impl Board {
 
     /// The ROW_OUT packets that came in this session. Each counts once, however often the link delivers it.
     pub(crate) fn rows_came(&self) -> u32 {
-        self.conversation.session.conduct.came()
+        self.conversation.session.conduct.rows_came()
     }
 
     /// The refusal of the row that was sent in the packet `number`, if that row is the last that was refused.
@@ -293,7 +293,7 @@ impl Board {
     /// [`BoardError`] when the board refuses to drop it, or does not answer.
     pub(crate) fn cut(&mut self, burst: &Burst, bytes: usize) -> Result<(), BoardError> {
         self.conversation.tell(&Asking::Request(&Request::Burst(*burst)));
-        self.drop_rows_behind(bytes, 0)
+        self.drop_rows_after(bytes, 0)
     }
 
     /// Drops all rows as soon as `bytes` bytes without meaning have gone to the board. Before that, up to `given` rows may come
@@ -301,7 +301,7 @@ impl Board {
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses, or does not answer.
-    pub(crate) fn drop_rows_behind(&mut self, bytes: usize, given: u32) -> Result<(), BoardError> {
+    pub(crate) fn drop_rows_after(&mut self, bytes: usize, given: u32) -> Result<(), BoardError> {
         self.conversation.session.unwanted = given;
         self.conversation.queue_zeros(bytes);
         let dropped = self.drop_rows();

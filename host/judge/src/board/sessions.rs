@@ -52,7 +52,7 @@ impl Board {
         // An answer in another session must be heard too.
         let welcome = conversation.under_session(0, |conversation| greet(conversation, &options))?;
         if welcome.session == conversation.session.number {
-            conversation.count_behind(before.retries);
+            conversation.count_after(before.retries);
         } else {
             conversation.leave_session();
             conversation.session.number = welcome.session;

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use super::hypothesis::{Hypothesis, Score};
 use super::witnesses::Witnesses;
-use crate::result::{Account, Defect, Suspect, wording};
+use crate::result::{Account, Defect, Reading, Suspect, wording};
 
 /// Differing rows on which every hypothesis is tried.
 const SCREENED: usize = 48;
@@ -89,9 +89,10 @@ pub(super) fn suspects(ranked: &[Ranked], summary: impl FnOnce() -> Suspect) -> 
 fn entries<'r>(ranked: impl Iterator<Item = &'r Ranked>, alike: usize) -> (Vec<Ranked>, usize) {
     let mut words: Vec<Ranked> = Vec::new();
     for (place, candidate) in ranked.enumerate() {
-        let is_known = place < alike && words.iter_mut().any(|word| word.takes(candidate));
-        if !is_known {
-            words.push(candidate.clone());
+        let same_word = words.iter_mut().filter(|_| place < alike).find_map(|word| word.same_word(candidate));
+        match same_word {
+            Some((reading, bit)) => reading.alike.push(bit),
+            None => words.push(candidate.clone()),
         }
     }
     let others = words.len().saturating_sub(1);
@@ -99,26 +100,24 @@ fn entries<'r>(ranked: impl Iterator<Item = &'r Ranked>, alike: usize) -> (Vec<R
 }
 
 impl Ranked {
-    /// Takes over the bit of another candidate if that breaks the same word.
-    fn takes(&mut self, other: &Self) -> bool {
+    /// Its reading of a word and the bit of the other candidate, if that breaks the same word.
+    fn same_word(&mut self, other: &Self) -> Option<(&mut Reading, u32)> {
         let (own, of_other) = (&mut self.defect, &other.defect);
-        let (reading, bit) = match (own, of_other) {
+        match (own, of_other) {
             (
                 Defect::RowFactorBitWrong { row, reading, .. },
                 Defect::RowFactorBitWrong { row: other, bit, .. },
-            ) if row == other => (reading, *bit),
+            ) if row == other => Some((reading, *bit)),
             (
                 Defect::GridEntryBitWrong { column, row, reading, .. },
                 Defect::GridEntryBitWrong { column: at, row: other, bit, .. },
-            ) if (&*column, &*row) == (at, other) => (reading, *bit),
+            ) if (&*column, &*row) == (at, other) => Some((reading, *bit)),
             (
                 Defect::KernelWordBitWrong { node, weight, reading, .. },
                 Defect::KernelWordBitWrong { node: other, weight: of, bit, .. },
-            ) if (&*node, &*weight) == (other, of) => (reading, *bit),
-            _ => return false,
-        };
-        reading.alike.push(bit);
-        true
+            ) if (&*node, &*weight) == (other, of) => Some((reading, *bit)),
+            _ => None,
+        }
     }
 
     /// Whether it explains everything, as the best does, and agrees with the best on whether the defect was there from the run's

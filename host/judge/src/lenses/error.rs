@@ -232,7 +232,7 @@ pub enum LensContentError {
 impl From<TableError> for LensContentError {
     fn from(error: TableError) -> Self {
         match error {
-            TableError::BeforeFirst { row, .. } | TableError::BehindLast { row, .. } => {
+            TableError::BeforeFirst { row, .. } | TableError::AfterLast { row, .. } => {
                 Self::RowOutside { row }
             }
             other => Self::Tables(other),

@@ -132,7 +132,7 @@ impl Optics {
     ///
     /// # Errors
     /// Like [`Self::of_equidistant`].
-    pub fn before(geometry: &Geometry) -> Result<Self, OpticsError> {
+    pub fn paper_lens_for(geometry: &Geometry) -> Result<Self, OpticsError> {
         let (width, height) = (Some(geometry.width()), Some(geometry.height()));
         let view = View { width, height, depth: geometry.depth(), ..View::default() };
         Self::of_equidistant(Equidistant::default(), &view, TablesBy::Equation9)

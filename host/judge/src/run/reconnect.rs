@@ -97,7 +97,7 @@ impl WayBack {
         let options = OpenOptions { nonce, stop: self.options.stop.after(spent), ..self.options.clone() };
         Board::open_any(link, &options).map_err(|OpenFailed { error, .. }| {
             tracing::debug!("not there yet: {error}");
-            error.is_of_somebody().then(|| End::board(CheckName::Identity, &error))
+            error.shows_device().then(|| End::board(CheckName::Identity, &error))
         })
     }
 }

@@ -108,7 +108,7 @@ impl TablesText {
 
     fn of_file(&self, path: &Path, kernel: Option<&OsStr>) -> Result<FromFile, OpticsError> {
         let (file, input) = TableFile::read(path)?;
-        let optics = Optics::before(file.tables.geometry())?;
+        let optics = Optics::paper_lens_for(file.tables.geometry())?;
         Ok((optics::choose(Some((path, file)), optics, kernel)?, Some(input)))
     }
 

@@ -21,9 +21,9 @@ impl Conversation {
     ) -> Result<OwnedPacket, BoardError> {
         let retries = self.tally.retries;
         let answer = self.ask_until_answered(asking, step, accept)?;
-        self.counted.came(1);
+        self.counted.note_had(1);
         if step == Step::Request && asking.kind() != Kind::Status {
-            self.count_behind(retries);
+            self.count_after(retries);
             self.count_doubled();
         }
         Ok(answer)
@@ -37,12 +37,12 @@ impl Conversation {
     ) -> Result<OwnedPacket, BoardError> {
         let (kind, sequence, begun) = (asking.kind(), self.next_sequence(), self.now());
         let attempts = step.deadline().attempts;
-        self.session.asked.asked(asking, sequence, begun);
+        self.session.asked.note_request(asking, sequence, begun);
         let mut attempt = 0;
         while attempt < attempts {
             if attempt > 0 {
                 tracing::info!("{kind} was not answered; asking again");
-                self.session.repeated_changes += u64::from(self.session.asked.asked_again());
+                self.session.repeated_changes += u64::from(self.session.asked.note_repeat());
                 self.count_retry()?;
             }
             if attempt == 0 || self.queued() == 0 {
@@ -54,7 +54,7 @@ impl Conversation {
             while let Some(wait) = deadline.checked_sub(self.waited).filter(|wait| !wait.is_zero()) {
                 let late = self.tally.late;
                 if let Some(answer) = self.answer_within(wait, asking, sequence, &accept)? {
-                    self.took(attempt, self.since(begun));
+                    self.note_duration(attempt, self.since(begun));
                     self.tally.answered += u64::from(answer.header.kind == kind.code());
                     return Ok(answer);
                 }
@@ -98,8 +98,8 @@ impl Conversation {
     }
 
     /// Notes how long something took to come that was asked for `again` more times.
-    pub(in crate::board) fn took(&mut self, again: u32, time: Duration) {
-        self.lateness.took(again, time);
+    pub(in crate::board) fn note_duration(&mut self, again: u32, time: Duration) {
+        self.lateness.note_duration(again, time);
     }
 
     /// Asks, and takes the expected part of the reply.

@@ -10,7 +10,7 @@ const MISNAMED: [usize; 3] = [0, 4, 5];
 
 impl Conversation {
     /// How many packets with a wrong CRC, and how many broken otherwise, are queued after the first `bytes` bytes.
-    pub(in crate::board) fn damage_behind(&self, bytes: usize) -> [u32; 2] {
+    pub(in crate::board) fn damage_after(&self, bytes: usize) -> [u32; 2] {
         let (mut decoder, [mut crc, mut framing]) = (Decoder::new(), [0; 2]);
         let mut queued = &self.outgoing[bytes..];
         while let Some(packet) = decoder.next(&mut queued) {

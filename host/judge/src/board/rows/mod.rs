@@ -220,11 +220,11 @@ impl<'a> Stream<'a> {
         )?;
         self.conversation.session.acknowledged = self.missing();
         self.conversation.tally.strays += std::mem::take(&mut self.arrivals.old_refusals);
-        self.conversation.counted.came((self.came() - came).into());
+        self.conversation.counted.note_had((self.came() - came).into());
         taken?;
         if self.missing() > missing {
             let took = self.conversation.waited.saturating_sub(self.missing_since);
-            self.conversation.took(self.attempts - 1, took);
+            self.conversation.note_duration(self.attempts - 1, took);
             self.late.came(missing, self.attempts - 1, took);
             self.attempts = 1;
             // A row that is asked for again is sent even without credit, so `missing` may pass `sent`.
@@ -234,7 +234,7 @@ impl<'a> Stream<'a> {
         for row in std::mem::take(&mut self.arrivals.copies) {
             self.conversation.tally.strays += 1;
             if let Some(took) = self.late.came_again(row) {
-                self.conversation.was_late(took);
+                self.conversation.note_late(took);
                 // An earlier copy is still being answered, and the missing row waits in the queue after it.
                 self.progress_at = self.conversation.waited;
                 self.attempts = self.attempts.min(2);

@@ -24,12 +24,12 @@ pub(super) struct KernelWord {
     /// Its node, 0 to 64.
     pub(super) node: usize,
     /// Its weight, an index of [`WEIGHT_NAMES`].
-    pub(super) tap: usize,
+    pub(super) weight_index: usize,
 }
 
 /// The words that every differing sample depends on.
 pub(super) fn common_words(witnesses: &Witnesses<'_>) -> Vec<KernelWord> {
-    let weights = |node| (0..WEIGHT_NAMES.len()).map(move |tap| KernelWord { node, tap });
+    let weights = |node| (0..WEIGHT_NAMES.len()).map(move |weight_index| KernelWord { node, weight_index });
     common_nodes(witnesses).into_iter().flat_map(weights).collect()
 }
 
@@ -54,19 +54,19 @@ fn common_nodes(witnesses: &Witnesses<'_>) -> Vec<usize> {
 impl KernelWord {
     /// The word in a kernel, in units of 2^-14.
     pub(super) fn of(self, kernel: &Kernel) -> Option<i16> {
-        kernel.nodes().get(self.node)?.get(self.tap).copied()
+        kernel.nodes().get(self.node)?.get(self.weight_index).copied()
     }
 
     /// The kernel with this word replaced.
     pub(super) fn replaced(self, kernel: &Kernel, weight: i16) -> Option<Kernel> {
         let mut nodes = kernel.nodes().to_vec();
-        *nodes.get_mut(self.node)?.get_mut(self.tap)? = weight;
+        *nodes.get_mut(self.node)?.get_mut(self.weight_index)? = weight;
         Kernel::from_nodes(nodes).ok()
     }
 
     /// The name of the weight.
     pub(super) fn weight(self) -> String {
-        WEIGHT_NAMES.get(self.tap).copied().unwrap_or_default().to_owned()
+        WEIGHT_NAMES.get(self.weight_index).copied().unwrap_or_default().to_owned()
     }
 
     /// The word with each of its bits broken.

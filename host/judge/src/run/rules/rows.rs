@@ -122,7 +122,7 @@ impl Rules<'_, '_> {
 
     /// After a RESET no row is inside, so the window must be as far ahead as there are input banks.
     fn window(&mut self) -> Result<(), End> {
-        let rows = self.run.board.credit_behind_reset().map_err(of_board)?;
+        let rows = self.run.board.credit_after_reset().map_err(of_board)?;
         let banks = self.capabilities.row_banks_in.into();
         if rows != banks {
             let (right, found) = (Answer::Credit { rows: banks }, Answer::Credit { rows });
@@ -230,14 +230,14 @@ impl Rules<'_, '_> {
         self.give(0);
         self.give(1);
         let (first, second) = (self.place(0), self.place(1));
-        let (row, behind) = ((&first, frame.row(0)), (&second, frame.row(1)));
+        let (row, after) = ((&first, frame.row(0)), (&second, frame.row(1)));
         let retries = self.run.board.tally().retries;
         let mut at_first = None;
         for repeats in 0..=AGAIN {
             let came = self
                 .run
                 .board
-                .again(row, Some(behind), repeats)
+                .again(row, Some(after), repeats)
                 .map_err(|error| of_rows(Rule::Again, error))?;
             let is_right = right.as_ref().is_none_or(|right| right.row(0) == came.samples);
             let is_counted = came.repeats == repeats || !self.is_calm(retries)?;
@@ -267,8 +267,8 @@ impl Rules<'_, '_> {
             self.give(0);
             self.give(1);
             let given = mem::take(&mut self.given).rows;
-            self.run.board.drop_rows_behind(bytes, given).map_err(of_board)?;
-            // Whatever row was last before, only row 0 may be first now.
+            self.run.board.drop_rows_after(bytes, given).map_err(of_board)?;
+            // Whatever row was the last before, none but row 0 is the first.
             for row in [1, 2] {
                 let place = RowPlace { row_sequence: self.run.board.acknowledged(), ..self.place(row) };
                 self.row_refused(Rule::RowPlace, place, RefusalCode::Row)?;

@@ -97,7 +97,7 @@ impl Account {
         let finding = end.check().2.clone();
         let before = self.report.frames - u64::from(played.watched.frames);
         match first {
-            None => *first = Some(counted_behind(before, end)),
+            None => *first = Some(counted_after(before, end)),
             Some(first) => tell_more(first, &suspects),
         }
         if self.has_room() {
@@ -154,8 +154,8 @@ impl Account {
     }
 }
 
-/// A burst's difference with its frame counted from the beginning of the soak, of which `before` frames came before the burst.
-fn counted_behind(before: u64, mut end: End) -> End {
+/// What differed in a burst with `before` frames of the soak in front of it.
+fn counted_after(before: u64, mut end: End) -> End {
     if let End::Failed { finding: Finding::DiffersAtSpeed { first, .. }, .. } = &mut end {
         *first = counted(before + u64::from(*first));
     }
