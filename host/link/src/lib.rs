@@ -52,6 +52,11 @@ pub use wire::WireLink;
 #[cfg(feature = "sim")]
 pub use halfrow_sim::TraceError;
 
+/// What a line of this rate carries: a byte is a start bit, eight data bits and a stop bit.
+pub(crate) fn bytes_per_second(baud: u32) -> f64 {
+    f64::from(baud) / 10.0
+}
+
 /// A byte pipe to a board. It can be sent to another thread, so several boards can be judged at the same time.
 ///
 /// Both directions move in one call, so a host cannot deadlock with a board that waits to be read: what the board sends is taken

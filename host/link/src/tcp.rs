@@ -6,7 +6,7 @@ use std::os::fd::AsRawFd;
 use std::time::{Duration, Instant};
 
 use super::descriptor::{Gone, Pump, never_block};
-use super::{Link, LinkError, OpenError};
+use super::{Link, LinkError, OpenError, bytes_per_second};
 use crate::Class;
 use crate::options::{positive, read, set};
 use crate::target::Target;
@@ -144,7 +144,7 @@ impl Link for TcpLink {
     }
 
     fn bytes_per_second(&self) -> Option<f64> {
-        self.baud.map(|baud| f64::from(baud) / 10.0)
+        self.baud.map(bytes_per_second)
     }
 
     fn name(&self) -> String {

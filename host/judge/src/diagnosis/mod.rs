@@ -48,6 +48,18 @@ pub struct Case<'a> {
     pub evidence: &'a [Evidence],
 }
 
+impl<'a> Case<'a> {
+    /// What was uploaded under this generation last.
+    fn uploaded_as(&self, generation: u8) -> Option<Uploaded<'a>> {
+        self.uploaded.iter().rfind(|uploaded| uploaded.generation == generation).copied()
+    }
+}
+
+/// Lines of the address of a memory of so many entries.
+fn address_bits(entries: usize) -> u32 {
+    usize::BITS - entries.saturating_sub(1).leading_zeros()
+}
+
 /// The defects that explain the differences best, at most three, the likeliest first; none if nothing differs.
 ///
 /// If several explain all of them, their evidence says so. Where no defect explains most of them, the first suspect is `unknown`

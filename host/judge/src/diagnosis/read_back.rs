@@ -84,6 +84,10 @@ impl<'a> Words<'a> {
         self.bytes.len() / self.word_bytes()
     }
 
+    fn entries(self) -> usize {
+        self.count() / self.per_entry()
+    }
+
     /// The word at `index`, as an unsigned number.
     fn word(self, index: usize) -> Option<u32> {
         let length = self.word_bytes();

@@ -11,6 +11,9 @@ use crate::result::Evidence;
 /// 2^64 divided by the golden ratio. Its multiples modulo 2^64 are spread evenly.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 
+/// If more rows than this differ, they are not explained entry by entry.
+const FEW_ROWS: usize = 8;
+
 /// A row that was kept: its input, the output, and the output of the reference.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Witness<'a> {
@@ -105,6 +108,11 @@ impl<'a> Witnesses<'a> {
         }
     }
 
+    /// The rows that differ, if they are few enough to be explained one by one; otherwise none.
+    pub(super) fn few_rows(&self) -> &[usize] {
+        if self.rows.len() <= FEW_ROWS { &self.rows } else { &[] }
+    }
+
     /// At most `count` differing rows, and as many equal rows that come after the first difference.
     pub(super) fn sample(&self, count: usize) -> impl Iterator<Item = &Witness<'a>> {
         self.differing.iter().take(count).chain(self.equal.iter().take(count))
@@ -128,17 +136,13 @@ impl<'a> Witnesses<'a> {
             .iter()
             .filter_map(|evidence| Some(self.case.frames.get(evidence.index)?.generation))
             .collect();
-        used.into_iter().filter_map(|generation| uploaded(&self.case, generation)).collect()
+        used.into_iter().filter_map(|generation| self.case.uploaded_as(generation)).collect()
     }
-}
-
-fn uploaded<'a>(case: &Case<'a>, generation: u8) -> Option<Uploaded<'a>> {
-    case.uploaded.iter().rfind(|uploaded| uploaded.generation == generation).copied()
 }
 
 /// The rows of one frame, which may have only its first rows. A frame that does not fit its tables gives none.
 fn rows<'a>(case: &Case<'a>, evidence: &'a Evidence) -> Vec<Witness<'a>> {
-    let uploaded = case.frames.get(evidence.index).and_then(|frame| uploaded(case, frame.generation));
+    let uploaded = case.frames.get(evidence.index).and_then(|frame| case.uploaded_as(frame.generation));
     let Some(uploaded) = uploaded.filter(|uploaded| fits(evidence, uploaded.tables.geometry())) else {
         return Vec::new();
     };

@@ -1,11 +1,9 @@
 //! The lenses and sensors on which corrections are compared.
 
+use halfrow::optics::PAPER_FIELD;
 use halfrow_model::{
     BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, LensError, Profile,
 };
-
-/// The paper's frame.
-pub(super) const FULL_HD: (usize, usize) = (1920, 1080);
 
 /// The paper's whole sensor.
 pub(super) const SENSOR: (usize, usize) = (2592, 1944);
@@ -18,9 +16,6 @@ const FINER: f64 = 6.0 / 2.2;
 
 /// Column and row of the DSL215's axis in its measurement.
 const MEASURED_CENTRE: (f64, f64) = (364.430_465, 229.581_672);
-
-/// The image circle, in degrees across.
-const FIELD: f64 = 180.0;
 
 /// Names of the lenses.
 pub(super) const PAPER: &str = "the paper's lens";
@@ -78,5 +73,5 @@ fn dsl215() -> Result<CalibratedLens, LensError> {
 }
 
 fn camera(size: (usize, usize), lens: CalibratedLens, centre: (f64, f64)) -> Result<Camera, CameraError> {
-    Camera::new(Geometry::centred(size.0, size.1, BitDepth::Twelve)?, lens, centre, FIELD)
+    Camera::new(Geometry::centred(size.0, size.1, BitDepth::Twelve)?, lens, centre, PAPER_FIELD)
 }

@@ -93,26 +93,30 @@ fn shown(name: &str, image: &RgbImage, corners: [Corner; 2]) -> [Picture; 3] {
     for (corner, (colour, _)) in corners.into_iter().zip(FRAMES) {
         frame(&mut framed, corner, colour);
     }
-    let detail = |index: usize| Picture {
+    let detail = |index: usize, Corner { row, column }: Corner| Picture {
         name: format!("fig-12-{name}-{}", FRAMES[index].1).to_lowercase(),
         caption: format!("Fig. 12, {name}: the detail in {}.", FRAMES[index].1),
-        drawing: Drawing::Pixels(cut(image, corners[index]), ZOOM),
+        drawing: Drawing::Pixels(cut(image, (column, row), SIZE), ZOOM),
     };
     let whole = Picture {
         name: format!("fig-12-{name}").to_lowercase(),
         caption: format!("Fig. 12, {name}."),
         drawing: Drawing::Pixels(framed, 1),
     };
-    [whole, detail(0), detail(1)]
+    [whole, detail(0, corners[0]), detail(1, corners[1])]
 }
 
-fn cut(image: &RgbImage, corner: Corner) -> RgbImage {
-    let (width, height) = SIZE;
+/// The part of `image` of this size whose upper left corner is at this column and row.
+pub(super) fn cut(
+    image: &RgbImage,
+    (column, top): (usize, usize),
+    (width, height): (usize, usize),
+) -> RgbImage {
     let row = |row: usize| {
-        let start = 3 * (row * image.width + corner.column);
-        image.data[start..start + 3 * width].to_vec()
+        let start = 3 * (row * image.width + column);
+        &image.data[start..start + 3 * width]
     };
-    RgbImage { width, height, data: (corner.row..corner.row + height).flat_map(row).collect() }
+    RgbImage { width, height, data: (top..top + height).flat_map(row).copied().collect() }
 }
 
 /// Draws a line two pixels wide along the inner edge of a detail.

@@ -1,15 +1,16 @@
 //! What each way of making tables leaves of the exact projection, by lens, frame and optical centre.
 
 use halfrow::frames::parallel;
+use halfrow::optics::{PAPER_SIZE, TablesBy};
 use halfrow_model::{Camera, CameraError, Equidistant, GridResidual, GridResiduals};
 
-use super::cameras::{self, DSL215, FISHEYE_MODEL, FULL_HD, PAPER, SENSOR};
+use super::cameras::{self, DSL215, FISHEYE_MODEL, PAPER, SENSOR};
 use super::exhibit::{Accepted, Cell, Claim, Exhibit, Table};
 use super::ways::Way;
 use super::{Item, PaperError};
 
 /// Entries of the smallest bank that a board with grids may have, and of the bank for the full sensor.
-const BANK: usize = 2048;
+const BANK: usize = TablesBy::LEAST_ENTRIES;
 const LARGE_BANK: usize = 4096;
 
 /// A lens and a frame.
@@ -24,12 +25,12 @@ struct Case {
 }
 
 const CASES: [Case; 11] = [
-    case(PAPER, || cameras::paper(FULL_HD), BANK, 0.0013),
-    case("a lens with R = 960", || cameras::equidistant(FULL_HD, 960.0, (959.5, 539.5)), BANK, 0.0099),
-    case(PAPER, || aside(FULL_HD, (640.0, 360.0)), BANK, 0.0028),
-    case(PAPER, || aside(FULL_HD, (0.0, 0.0)), BANK, 0.064),
-    case(DSL215, || cameras::dsl215_before(FULL_HD), BANK, 0.0063),
-    case(DSL215, || cameras::dsl215_aside(FULL_HD), BANK, 0.0063),
+    case(PAPER, || cameras::paper(PAPER_SIZE), BANK, 0.0013),
+    case("a lens with R = 960", || cameras::equidistant(PAPER_SIZE, 960.0, (959.5, 539.5)), BANK, 0.0099),
+    case(PAPER, || aside(PAPER_SIZE, (640.0, 360.0)), BANK, 0.0028),
+    case(PAPER, || aside(PAPER_SIZE, (0.0, 0.0)), BANK, 0.064),
+    case(DSL215, || cameras::dsl215_before(PAPER_SIZE), BANK, 0.0063),
+    case(DSL215, || cameras::dsl215_aside(PAPER_SIZE), BANK, 0.0063),
     case(DSL215, cameras::measured, BANK, 0.024),
     case(FISHEYE_MODEL, cameras::fisheye_model, BANK, 0.0019),
     case(PAPER, || cameras::paper(SENSOR), LARGE_BANK, 0.036),

@@ -2,7 +2,8 @@
 
 use halfrow_model::{Camera, Equidistant, Frame, Interpolant, Kernel, Phase, correct};
 
-use super::cameras::{self, DSL215, FULL_HD, PAPER};
+use super::cameras::{self, DSL215, PAPER};
+use super::details::cut;
 use super::exhibit::{Accepted, Cell, Claim, Drawing, Exhibit, Picture, Table};
 use super::ways::Way;
 use super::{Item, PaperError};
@@ -10,13 +11,11 @@ use crate::Residuals;
 use halfrow::frames::HeatMap;
 use halfrow::frames::preview::{RgbImage, demosaic};
 use halfrow::frames::street::{FoundEdge, found_edges, seen_by};
+use halfrow::optics::{PAPER_SIZE, TablesBy};
 
 /// R of Fig. 5 in pixels, and a frame that contains its circle: an even number of columns, with the axis on a whole one.
 const RADIUS: f64 = 100.0;
 const MAP: (usize, usize) = (202, 201);
-
-/// Entries of the grids: as many as every board with datapath 2 has room for.
-const ENTRIES: usize = 2048;
 
 /// The upper left corner of a façade's picture, column and row, and its size in columns and rows: the houses to the left, between
 /// −63° and −23° through the paper's lens.
@@ -47,8 +46,10 @@ pub(super) fn exhibit() -> Result<Exhibit, PaperError> {
          column of all.",
     );
     maps(&mut exhibit)?;
-    let cameras =
-        [(PAPER, "paper", cameras::paper(FULL_HD)?), (DSL215, "dsl215", cameras::dsl215_before(FULL_HD)?)];
+    let cameras = [
+        (PAPER, "paper", cameras::paper(PAPER_SIZE)?),
+        (DSL215, "dsl215", cameras::dsl215_before(PAPER_SIZE)?),
+    ];
     let facades = cameras.map(|(lens, file, camera)| Facades::of(lens, file, &camera));
     let [paper, measured] = facades;
     let facades = [paper?, measured?];
@@ -65,7 +66,8 @@ pub(super) fn exhibit() -> Result<Exhibit, PaperError> {
 fn maps(exhibit: &mut Exhibit) -> Result<(), PaperError> {
     let lens = Equidistant::from_radius(RADIUS)?;
     let camera = cameras::equidistant(MAP, lens.radius(), (RADIUS, RADIUS))?;
-    let left = Way::ALL.map(|way| Ok((way, Residuals::of(&camera, &way.tables(&camera, ENTRIES)?))));
+    let left =
+        Way::ALL.map(|way| Ok((way, Residuals::of(&camera, &way.tables(&camera, TablesBy::LEAST_ENTRIES)?))));
     let left = left.into_iter().collect::<Result<Vec<_>, PaperError>>()?;
     let most = left.iter().map(|(_, left)| left.circle.amounts.max).fold(0.0, f64::max);
     let samples = (MAP.1 * MAP.1) as f64;
@@ -111,7 +113,7 @@ impl Facades {
         let fisheye = seen_by(camera, Phase::Grbg, 1)?;
         let kernel = Kernel::from(Interpolant::Hermite);
         let corrected = Way::ALL.map(|way| {
-            let frame = correct(&way.tables(camera, ENTRIES)?, &kernel, &fisheye)?;
+            let frame = correct(&way.tables(camera, TablesBy::LEAST_ENTRIES)?, &kernel, &fisheye)?;
             let edges = found_edges(&frame, camera);
             Ok((way, frame, edges))
         });
@@ -184,7 +186,7 @@ impl Bend {
 
 /// The façades to the left, with a line where each edge would be straight.
 fn facade(frame: &Frame, edges: &[FoundEdge]) -> RgbImage {
-    let mut image = cut(&demosaic(frame));
+    let mut image = cut(&demosaic(frame), CORNER, SIZE);
     for edge in edges {
         let Some(column) = (edge.mean_column().round() as usize).checked_sub(CORNER.0) else { continue };
         let rows = edge.places.iter().filter_map(|(row, _)| row.checked_sub(CORNER.1));
@@ -194,15 +196,6 @@ fn facade(frame: &Frame, edges: &[FoundEdge]) -> RgbImage {
         }
     }
     image
-}
-
-fn cut(image: &RgbImage) -> RgbImage {
-    let row = |row: usize| {
-        let start = 3 * (row * image.width + CORNER.0);
-        &image.data[start..start + 3 * SIZE.0]
-    };
-    let data = (CORNER.1..CORNER.1 + SIZE.1).flat_map(row).copied().collect();
-    RgbImage { width: SIZE.0, height: SIZE.1, data }
 }
 
 fn bends(facades: &[Facades]) -> Table {

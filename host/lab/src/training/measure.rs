@@ -4,6 +4,7 @@ use halfrow_model::{Frame, Interpolant, Kernel, TableSet};
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 
+use super::model::even;
 use super::{Model, TrainingError, Warp};
 use crate::paper::psnr;
 use halfrow::frames::parallel;
@@ -158,8 +159,7 @@ fn score(condition: Condition, photograph: &RgbImage, reference: &Frame, correct
 
 /// Red, green and blue of every pixel; an odd last column is left out.
 fn colours(image: &RgbImage) -> Vec<u16> {
-    let rows = image.data.chunks_exact(3 * image.width);
-    rows.flat_map(|row| &row[..3 * (image.width & !1)]).copied().map(u16::from).collect()
+    even(image).data.into_iter().map(u16::from).collect()
 }
 
 /// `frame` with noise of the standard deviation `deviation`, the same noise in every call.

@@ -89,7 +89,8 @@ impl Model {
     }
 }
 
-fn even(image: &RgbImage) -> RgbImage {
+/// The same without an odd last column.
+pub(super) fn even(image: &RgbImage) -> RgbImage {
     let width = image.width & !1;
     let rows = image.data.chunks_exact(3 * image.width);
     let data = rows.flat_map(|row| &row[..3 * width]).copied().collect();

@@ -14,7 +14,7 @@ use serialport::{ClearBuffer, ErrorKind, FlowControl, SerialPort, TTYPort};
 
 use super::descriptor::{Gone, Pump, never_block};
 use super::sysfs::usb_device;
-use super::{Link, LinkError, OpenError};
+use super::{Link, LinkError, OpenError, bytes_per_second};
 use crate::ftdi::{self, Speed};
 use crate::target::Target;
 use options::SerialOptions;
@@ -113,8 +113,7 @@ impl Link for SerialLink {
     }
 
     fn bytes_per_second(&self) -> Option<f64> {
-        // A start bit, eight data bits, a stop bit.
-        Some(f64::from(self.options.baud) / 10.0)
+        Some(bytes_per_second(self.options.baud))
     }
 
     fn is_exclusive(&self) -> bool {

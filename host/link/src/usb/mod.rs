@@ -30,7 +30,7 @@ use threads::Threads;
 use transport::Libusb;
 
 use super::serial::{Holder, keepers};
-use super::{Link, LinkError};
+use super::{Link, LinkError, bytes_per_second};
 use crate::target::Target;
 use crate::{LineErrors, OpenError};
 
@@ -41,9 +41,6 @@ pub use transport::UsbFailure;
 
 /// What an FPGA with two synchronisers gets through an asynchronous FIFO: about 5 MB/s. The data sheet says 8.
 const FIFO_BYTES_PER_SECOND: f64 = 5e6;
-
-/// Bits of a byte on a line: a start bit, eight data bits, a stop bit.
-const BITS_PER_BYTE: f64 = 10.0;
 
 /// The longest wait, so that a request to stop is noticed. The waits of a run for frames made by the board are no longer either.
 const HEED: Duration = Duration::from_millis(250);
@@ -79,7 +76,7 @@ impl UsbLink {
         let ready = Ftdi { transport: &transport, chip, channel, name: &name }.make_ready(&options)?;
         let (what, bytes_per_second) = match ready {
             Ready::Fifo => ("FIFO".to_owned(), FIFO_BYTES_PER_SECOND),
-            Ready::Uart { baud } => (format!("{baud} baud"), f64::from(baud) / BITS_PER_BYTE),
+            Ready::Uart { baud } => (format!("{baud} baud"), bytes_per_second(baud)),
         };
         let (packet, is_line) = (chip.packet(), ready != Ready::Fifo);
         let unpack = Box::new(move |transfer: &[u8], data: &mut Vec<u8>, errors: &mut LineErrors| {

@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use halfrow_model::{RowFactor, source_by_entry};
 
 use super::first_where;
-use super::row_factor::{FEW_ROWS, with_entry};
+use super::row_factor::with_entry;
 use super::table_word::{Word, changed};
 use crate::diagnosis::Uploaded;
 use crate::diagnosis::datapath::{RowTables, Stretch};
@@ -22,8 +22,7 @@ const FRAMES: usize = 32;
 /// The factors that rows were really made with, if few rows differ. Each generation is searched separately: a cell that lost
 /// several bits holds another value in each. Entries that are one bit off were tried before.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
-    let rows = if witnesses.rows.len() <= FEW_ROWS { &witnesses.rows[..] } else { &[] };
-    rows.iter().filter_map(|&row| any_value(witnesses, row)).collect()
+    witnesses.few_rows().iter().filter_map(|&row| any_value(witnesses, row)).collect()
 }
 
 /// What a row was made with instead of its entry in the tables of one generation.

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use halfrow_model::{Kernel, NODES, RowFactor};
 
-use super::row_factor::FEW_ROWS;
 use crate::diagnosis::Case;
 use crate::diagnosis::datapath::{RowTables, Stretch};
 use crate::diagnosis::hypothesis::Hypothesis;
@@ -62,24 +61,22 @@ fn tables<'b>(
     blank: &'b Kernel,
     row: &Witness<'b>,
 ) -> Option<RowTables<'b>> {
-    let uploaded = |generation| case.uploaded.iter().rfind(|uploaded| uploaded.generation == generation);
     let stretch = match made.factors {
-        Some(generation) => Stretch::of(uploaded(generation)?.tables, row.geometry(), row.row)?,
+        Some(generation) => Stretch::of(case.uploaded_as(generation)?.tables, row.geometry(), row.row)?,
         None => Stretch::Factor(RowFactor::ONE.get()),
     };
     let kernel = match made.kernel {
-        Some(generation) => uploaded(generation)?.kernel,
+        Some(generation) => case.uploaded_as(generation)?.kernel,
         None => blank,
     };
     Some(RowTables { geometry: row.geometry(), stretch, kernel })
 }
 
 fn defect(witnesses: &Witnesses<'_>, frames: BTreeMap<usize, Vec<MadeWith>>) -> Defect {
-    let rows = if witnesses.rows.len() <= FEW_ROWS { witnesses.rows.clone() } else { Vec::new() };
     let stale = frames.into_iter().map(|(index, made_with)| {
         let known = witnesses.case.frames.get(index);
         let (frame, committed) = known.map_or((0, 0), |frame| (frame.number, frame.generation));
         StaleFrames { frame, committed, made_with }
     });
-    Defect::StaleTables { rows, frames: stale.collect() }
+    Defect::StaleTables { rows: witnesses.few_rows().to_vec(), frames: stale.collect() }
 }

@@ -3,9 +3,9 @@
 use halfrow_model::{RowFactor, TableSet};
 
 use super::{StuckLine, with_grids};
-use crate::diagnosis::Uploaded;
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::Witnesses;
+use crate::diagnosis::{Uploaded, address_bits};
 use crate::result::Defect;
 
 /// Every data and address line, and entries read from one place too early or too late.
@@ -14,11 +14,10 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     generations.retain(|uploaded| uploaded.tables.shape().is_some());
     let entries = generations.iter().map(|uploaded| uploaded.tables.entries().len()).max();
     let Some(entries) = entries else { return Vec::new() };
-    let address_bits = usize::BITS - (entries - 1).leading_zeros();
     let lines = Lines { generations, ring: witnesses.case.ring };
     StuckLine::all(RowFactor::BITS)
         .map(|line| lines.data(line))
-        .chain(StuckLine::all(address_bits).map(|line| lines.address(line)))
+        .chain(StuckLine::all(address_bits(entries)).map(|line| lines.address(line)))
         .chain([-1, 1].map(|distance| lines.neighbour(distance)))
         .collect()
 }

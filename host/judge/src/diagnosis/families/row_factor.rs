@@ -8,13 +8,9 @@ use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
 use crate::diagnosis::witnesses::{Witness, Witnesses};
 use crate::result::Defect;
 
-/// If more rows than this differ, they are not explained entry by entry.
-pub(super) const FEW_ROWS: usize = 8;
-
 /// Every bit of the entry of every differing row, if few rows differ.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
-    let rows = if witnesses.rows.len() <= FEW_ROWS { &witnesses.rows[..] } else { &[] };
-    rows.iter().flat_map(|&row| entry(witnesses, row)).collect()
+    witnesses.few_rows().iter().flat_map(|&row| entry(witnesses, row)).collect()
 }
 
 fn entry<'a>(witnesses: &Witnesses<'a>, row: usize) -> Vec<Hypothesis<'a>> {

@@ -43,8 +43,7 @@ fn depth(case: Case<'_>, instead: Instead) -> Hypothesis<'_> {
 /// Size, depth and centre of the frame at `index`.
 fn made_for<'a>(case: &Case<'a>, index: usize) -> Option<&'a Geometry> {
     let generation = case.frames.get(index)?.generation;
-    let uploaded = case.uploaded.iter().rfind(|uploaded| uploaded.generation == generation)?;
-    Some(uploaded.tables.geometry())
+    Some(case.uploaded_as(generation)?.tables.geometry())
 }
 
 /// The row with these settings; none if they are its own.

@@ -4,9 +4,9 @@ use halfrow_model::{Kernel, NODES, RowFactor, WEIGHT_NAMES};
 
 use super::StuckLine;
 use super::row_factor::with_entry;
-use crate::diagnosis::Uploaded;
 use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
 use crate::diagnosis::witnesses::Witnesses;
+use crate::diagnosis::{Uploaded, address_bits};
 use crate::result::Defect;
 
 /// Bits of a weight, and of a node's number.
@@ -17,13 +17,12 @@ const NODE_BITS: u32 = 7;
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let Some(geometry) = witnesses.geometry() else { return Vec::new() };
     let ring = witnesses.case.ring;
-    let row_bits = usize::BITS - (geometry.height() - 1).leading_zeros();
     let generations = witnesses.generations();
     let weights =
         (0..WEIGHT_NAMES.len()).flat_map(|tap| StuckLine::all(WEIGHT_BITS).map(move |line| (tap, line)));
     StuckLine::all(RowFactor::BITS)
         .map(move |line| factor_data(line, ring))
-        .chain(StuckLine::all(row_bits).map(move |line| factor_address(line, ring)))
+        .chain(StuckLine::all(address_bits(geometry.height())).map(move |line| factor_address(line, ring)))
         .chain([-1, 1].map(|distance| neighbour(distance, ring)))
         .chain(StuckLine::all(NODE_BITS).map(|line| node_address(&generations, line)))
         .chain(weights.map(|(tap, line)| weight_data(&generations, tap, line)))

@@ -4,6 +4,7 @@ use halfrow_model::WEIGHT_NAMES;
 
 use super::Words;
 use crate::board::Table;
+use crate::diagnosis::address_bits;
 use crate::result::{Account, Defect, Suspect};
 
 /// The most suspects that are named.
@@ -55,10 +56,9 @@ fn explained(line: &Line<'_>, expected: Words<'_>, found: Words<'_>) -> Option<u
 
 /// The lines for which it is known what every word reads as.
 fn lines(words: Words<'_>) -> impl Iterator<Item = Line<'_>> {
-    let address_bits = address_bits(words);
     let levels = [0, 1];
     let data = (0..words.bits()).flat_map(move |bit| levels.map(|level| (bit, level)));
-    let address = (0..address_bits).flat_map(move |bit| levels.map(|level| (bit, level)));
+    let address = (0..address_bits(words.entries())).flat_map(move |bit| levels.map(|level| (bit, level)));
     data.flat_map(move |(bit, level)| data_lines(words, bit, level))
         .chain(address.map(move |(bit, level)| address_line(words, bit, level)))
         .chain([shifted(words, -1), shifted(words, 1)])
@@ -67,12 +67,7 @@ fn lines(words: Words<'_>) -> impl Iterator<Item = Line<'_>> {
 
 /// The address lines stuck at 0 for writing alone. One stuck at 1 shows only right entries, and cells that were never written.
 fn write_lines(words: Words<'_>) -> impl Iterator<Item = Line<'_>> {
-    (0..address_bits(words)).map(move |bit| write_address_line(words, bit))
-}
-
-fn address_bits(words: Words<'_>) -> u32 {
-    let entries = words.count() / words.per_entry();
-    usize::BITS - entries.saturating_sub(1).leading_zeros()
+    (0..address_bits(words.entries())).map(move |bit| write_address_line(words, bit))
 }
 
 /// A data line of the whole table or, in a kernel, of the memory of one weight.
