@@ -223,14 +223,29 @@ impl<'a> Stream<'a> {
         self.conversation.counted.note_had((self.came() - came).into());
         taken?;
         if self.missing() > missing {
-            let took = self.conversation.waited.saturating_sub(self.missing_since);
-            self.conversation.note_duration(self.attempts - 1, took);
-            self.late.came(missing, self.attempts - 1, took);
-            self.attempts = 1;
-            // A row that is asked for again is sent even without credit, so `missing` may pass `sent`.
-            self.sent = self.sent.max(self.missing());
-            self.go_on();
+            self.note_progress(missing);
         }
+        self.note_copies();
+        if self.arrivals.gap && self.attempts == 1 && self.most > 1 {
+            // Rows come in order, so the missing one was made and got lost on the way back.
+            return self.ask_again();
+        }
+        Ok(())
+    }
+
+    /// The row `missing`, which was waited for, has come.
+    fn note_progress(&mut self, missing: u32) {
+        let took = self.conversation.waited.saturating_sub(self.missing_since);
+        self.conversation.note_duration(self.attempts - 1, took);
+        self.late.came(missing, self.attempts - 1, took);
+        self.attempts = 1;
+        // A row that is asked for again is sent even without credit, so `missing` may pass `sent`.
+        self.sent = self.sent.max(self.missing());
+        self.go_on();
+    }
+
+    /// Takes the rows that came once more.
+    fn note_copies(&mut self) {
         for row in std::mem::take(&mut self.arrivals.copies) {
             self.conversation.tally.strays += 1;
             if let Some(took) = self.late.came_again(row) {
@@ -240,11 +255,6 @@ impl<'a> Stream<'a> {
                 self.attempts = self.attempts.min(2);
             }
         }
-        if self.arrivals.gap && self.attempts == 1 && self.most > 1 {
-            // Rows come in order, so the missing one was made and got lost on the way back.
-            return self.ask_again();
-        }
-        Ok(())
     }
 
     /// How long the oldest missing row may take: all rows in flight travel before it.
