@@ -47,12 +47,12 @@ impl Passing {
         Reply::read(&Packet { header: self.header, payload: &self.payload }).ok()
     }
 
-    /// The same packet with another reply in it.
+    /// The same packet with another reply in it, of that reply's kind.
     #[must_use]
     pub fn saying(&self, reply: &Reply<'_>) -> Self {
         let mut payload = Vec::new();
         reply.write(&mut payload);
-        Self { header: self.header, payload }
+        Self { header: Header { kind: reply.kind().code(), ..self.header }, payload }
     }
 }
 

@@ -91,9 +91,8 @@ fn a_board_that_answers_damaged_packets_fails() {
                     kind: Kind::TableWrite.code(),
                     detail: 0,
                 };
-                let mut header = packet.header;
-                (header.kind, header.sequence) = (Kind::Refusal.code(), number.wrapping_add(1));
-                let own = Passing { header, payload: Vec::new() }.saying(&Reply::Refusal(refusal));
+                let mut own = packet.saying(&Reply::Refusal(refusal));
+                own.header.sequence = number.wrapping_add(1);
                 vec![own, packet]
             }
         }

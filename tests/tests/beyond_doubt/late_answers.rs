@@ -60,9 +60,7 @@ fn a_row_that_is_refused_is_not_right() {
             return vec![packet];
         }
         let refusal = Refusal { code: RefusalCode::Row, kind: Kind::RowIn.code(), detail: 0 };
-        let mut refused = packet.saying(&Reply::Refusal(refusal));
-        refused.header.kind = Kind::Refusal.code();
-        vec![refused]
+        vec![packet.saying(&Reply::Refusal(refusal))]
     });
     assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
 }
@@ -92,10 +90,7 @@ fn refusing(code: RefusalCode, sessions: usize) -> Report {
         if toward == Toward::Board || !packet.is(Kind::Configure) || greetings > sessions {
             return vec![packet];
         }
-        let mut refusal =
-            packet.saying(&Reply::Refusal(Refusal { code, kind: Kind::Configure.code(), detail: 0 }));
-        refusal.header.kind = Kind::Refusal.code();
-        vec![refusal]
+        vec![packet.saying(&Reply::Refusal(Refusal { code, kind: Kind::Configure.code(), detail: 0 }))]
     })
 }
 

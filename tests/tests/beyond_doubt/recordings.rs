@@ -125,9 +125,7 @@ fn a_recording_of_a_board_that_was_taken_over_is_judged_as_it_was() {
             return vec![packet];
         }
         let held = Refusal { code: RefusalCode::Held, kind: Kind::Hello.code(), detail: 5 };
-        let mut refused = packet.saying(&Reply::Refusal(held));
-        refused.header.kind = Kind::Refusal.code();
-        vec![refused]
+        vec![packet.saying(&Reply::Refusal(held))]
     };
     let (plan, options) = (System::TINY.plan(), RunOptions::default());
     let candidate = Altered::new(&halfrow_mock::Options::default(), alter).candidate();

@@ -14,9 +14,7 @@ fn refusing(kind: Kind, code: RefusalCode) -> Report {
         if toward == Toward::Board || !packet.is(kind) {
             return packet;
         }
-        let mut refusal = packet.saying(&Reply::Refusal(Refusal { code, kind: kind.code(), detail: 0 }));
-        refusal.header.kind = Kind::Refusal.code();
-        refusal
+        packet.saying(&Reply::Refusal(Refusal { code, kind: kind.code(), detail: 0 }))
     })
 }
 

@@ -287,8 +287,7 @@ fn tables_of_the_other_bank_are_written_while_a_row_is_inside() {
     let is_empty = |payload: &[u8]| payload.len() == 7;
     let report = answering(Kind::TableWrite, is_empty, |packet| {
         let refusal = Refusal { code: RefusalCode::Busy, kind: Kind::TableWrite.code(), detail: 0 };
-        let header = halfrow_protocol::Header { kind: Kind::Refusal.code(), ..packet.header };
-        Passing { header, payload: packet.payload }.saying(&Reply::Refusal(refusal))
+        packet.saying(&Reply::Refusal(refusal))
     });
     assert_eq!(broken(&report).0, Rule::Inside);
 }

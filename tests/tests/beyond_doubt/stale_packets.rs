@@ -163,8 +163,7 @@ impl FirstSession {
     /// Ends the session instead of answering STATUS.
     fn end(&self, packet: &Passing) -> Vec<Passing> {
         let refusal = Refusal { code: RefusalCode::Session, kind: Kind::Status.code(), detail: 0 };
-        let mut lost = packet.saying(&Reply::Refusal(refusal));
-        lost.header.kind = Kind::Refusal.code();
+        let lost = packet.saying(&Reply::Refusal(refusal));
         self.is_cut.store(self.ends.1 == Ends::Cut, Ordering::Relaxed);
         self.is_stopped.store(self.ends.1 == Ends::Stopped, Ordering::Relaxed);
         Vec::from_iter((self.ends.1 == Ends::SessionLost).then_some(lost))
@@ -292,13 +291,13 @@ fn no_check_of_a_doubtful_session_is_told_of_the_next_one() {
 }
 
 /// The report behind a link that brings a packet of an earlier session, with the number of HELLO, before the answer to HELLO.
-fn behind_stale(kind: Kind, reply: &'static Reply<'static>) -> Report {
+fn after_stale(reply: &'static Reply<'static>) -> Report {
     judge(&System::TINY, move |toward, packet: Passing| {
         if toward == Toward::Board || !packet.is(Kind::Hello) {
             return vec![packet];
         }
         let mut stale = packet.saying(reply);
-        (stale.header.kind, stale.header.session) = (kind.code(), 77);
+        stale.header.session = 77;
         vec![stale, packet]
     })
 }
@@ -307,9 +306,9 @@ fn behind_stale(kind: Kind, reply: &'static Reply<'static>) -> Report {
 #[test]
 fn what_is_of_an_earlier_session_is_no_answer_to_a_greeting() {
     const BUSY: Refusal = Refusal { code: RefusalCode::Busy, kind: Kind::Configure.code(), detail: 0 };
-    for (kind, reply) in [(Kind::Reset, &Reply::Reset), (Kind::Refusal, &Reply::Refusal(BUSY))] {
-        let report = behind_stale(kind, reply);
-        assert_eq!(report.verdict(), Verdict::Pass, "{kind}: {}", report.headline());
+    for reply in [&Reply::Reset, &Reply::Refusal(BUSY)] {
+        let report = after_stale(reply);
+        assert_eq!(report.verdict(), Verdict::Pass, "{reply:?}: {}", report.headline());
     }
 }
 
@@ -323,7 +322,7 @@ fn a_refusal_that_an_earlier_program_was_told_is_not_this_one_s() {
         }
         let refusal = Refusal { code: RefusalCode::Held, kind: Kind::Hello.code(), detail: 37 };
         let mut stale = packet.saying(&Reply::Refusal(refusal));
-        (stale.header.kind, stale.header.sequence) = (Kind::Refusal.code(), 1);
+        stale.header.sequence = 1;
         vec![stale, packet]
     };
     let candidate = Altered::new(&halfrow_mock::Options::default(), alter).candidate();
