@@ -42,6 +42,15 @@ impl Ended {
         }
         said
     }
+
+    /// The result in one sentence: of a run, or of a call that was refused.
+    ///
+    /// # Panics
+    /// Like [`Self::json`].
+    #[must_use]
+    pub fn headline(&self) -> String {
+        documents::headline(&self.json())
+    }
 }
 
 /// A command that will start `halfrow` with `arguments`, in an environment without any setting for it.

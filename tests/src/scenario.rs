@@ -6,7 +6,8 @@ use serde_json::Value;
 
 use crate::not_tested::not_tested;
 use crate::parallel;
-use crate::program::{Ended, error_sentence, halfrow};
+use crate::program::documents::headline;
+use crate::program::{Ended, halfrow};
 use crate::served::Served;
 
 /// The boards on which a scenario makes sense.
@@ -203,11 +204,6 @@ fn run_those_that_suit(scenarios: &[Scenario], board: &str) -> Vec<Value> {
         not_tested(&what, &format!("none of them suits {board}"));
     }
     run_all(scenarios, board)
-}
-
-/// The result in one sentence: of a run, or of a call that was refused.
-fn headline(said: &Value) -> String {
-    said["headline"].as_str().map_or_else(|| error_sentence(said), str::to_owned)
 }
 
 /// The headline, and the place of the first suspect and the evidence for it.

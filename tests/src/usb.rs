@@ -14,7 +14,7 @@ use halfrow_mock::Board;
 use halfrow_pipe::Pipe;
 
 use crate::patience::wait_until;
-use crate::program::{Ended, error_sentence, halfrow};
+use crate::program::{Ended, halfrow};
 use crate::scenario::Scenario;
 use crate::scenarios::{BROKEN_BOARDS, MISFITS, SOUND_BOARDS};
 
@@ -134,13 +134,6 @@ pub fn serial_port(board: &Plugged, channel: u8) -> PathBuf {
 #[must_use]
 pub fn verify(target: &str) -> Ended {
     halfrow(["verify", "--json", "--board", target, "--width", "128", "--height", "16"])
-}
-
-/// The headline of a run, or the error of a call that was refused.
-#[must_use]
-pub fn sentence(ended: &Ended) -> String {
-    let said = ended.json();
-    said["headline"].as_str().map_or_else(|| error_sentence(&said), str::to_owned)
 }
 
 /// The scenarios about a board that are not of the paper's size. None is about a link: QEMU's chip stays plugged in when the link

@@ -31,6 +31,12 @@ pub fn assert_valid(document: &Value) {
     }
 }
 
+/// The result in one sentence: of a run, or of a call that was refused.
+#[must_use]
+pub fn headline(document: &Value) -> String {
+    document["headline"].as_str().map_or_else(|| error_sentence(document), str::to_owned)
+}
+
 /// Why a document has no result, with the causes; empty if it has one.
 #[must_use]
 pub fn error_sentence(document: &Value) -> String {

@@ -16,7 +16,7 @@ mod taken_over;
 mod tcp;
 mod unplugged;
 
-use halfrow_tests::program::{Ended, error_sentence, halfrow};
+use halfrow_tests::program::{Ended, halfrow};
 use halfrow_tests::served::Served;
 
 /// The options of a frame so small that a whole run takes a moment.
@@ -43,8 +43,7 @@ fn passes(served: &Served) {
 #[track_caller]
 fn ends(ended: &Ended, code: i32, sentence: &str) {
     assert_eq!(ended.code, Some(code), "{}{}", ended.stdout, ended.stderr);
-    let said = ended.json();
-    let headline = said["headline"].as_str().map_or_else(|| error_sentence(&said), str::to_owned);
+    let headline = ended.headline();
     assert!(headline.contains(sentence), "{headline}");
-    assert_eq!(said["exit_code"], code);
+    assert_eq!(ended.json()["exit_code"], code);
 }

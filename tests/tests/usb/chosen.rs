@@ -4,7 +4,7 @@ use std::fs::File;
 
 use halfrow_ft2232h::{ChipOptions, Plugged};
 use halfrow_tests::program::halfrow;
-use halfrow_tests::usb::{QemuBoard, chip, plug, sentence, serial_port, verify};
+use halfrow_tests::usb::{QemuBoard, chip, plug, serial_port, verify};
 use serde_json::Value;
 
 fn plug_second(serial: &str) -> Plugged {
@@ -23,7 +23,7 @@ fn of_two_boards_the_user_chooses_one() {
         "several boards could be meant; choose one: usb:HR000001 (miniSpartan6+, FT2232H at {first}), usb:HR000002 \
          (miniSpartan6+, FT2232H at {second})"
     );
-    assert_eq!(sentence(&ended), expected);
+    assert_eq!(ended.headline(), expected);
     for target in ["usb:HR000002".to_owned(), format!("usb:{second}")] {
         let ended = verify(&target);
         assert_eq!(ended.code, Some(0), "{ended:?}");
@@ -39,7 +39,7 @@ fn boards_of_one_name_are_told_by_their_places() {
     assert_eq!(ended.code, Some(2), "{ended:?}");
     for board in [&first, &second] {
         let place = board.bus_name();
-        assert!(sentence(&ended).contains(&format!("usb:{place} (")), "{ended:?}");
+        assert!(ended.headline().contains(&format!("usb:{place} (")), "{ended:?}");
     }
     assert_eq!(verify(&format!("usb:{}", second.bus_name())).code, Some(0));
 }
@@ -50,8 +50,8 @@ fn a_name_that_nobody_has_gets_the_names_that_there_are() {
     let _board = plug("");
     let ended = verify("usb:HR000009");
     assert_eq!(ended.code, Some(3), "{ended:?}");
-    assert!(sentence(&ended).contains("no FTDI chip is called `HR000009`"), "{ended:?}");
-    assert!(sentence(&ended).contains("usb:HR000001 (miniSpartan6+, FT2232H at"), "{ended:?}");
+    assert!(ended.headline().contains("no FTDI chip is called `HR000009`"), "{ended:?}");
+    assert!(ended.headline().contains("usb:HR000001 (miniSpartan6+, FT2232H at"), "{ended:?}");
 }
 
 #[test]
@@ -60,8 +60,8 @@ fn a_chip_that_boards_do_not_have_is_never_taken_unasked() {
     let _board = QemuBoard::new("");
     let ended = verify("usb");
     assert_eq!(ended.code, Some(2), "{ended:?}");
-    assert!(sentence(&ended).contains("no FT2232H or FT232H is plugged in"), "{ended:?}");
-    assert!(sentence(&ended).contains("usb:QEMU0001"), "{ended:?}");
+    assert!(ended.headline().contains("no FT2232H or FT232H is plugged in"), "{ended:?}");
+    assert!(ended.headline().contains("usb:QEMU0001"), "{ended:?}");
 }
 
 #[test]

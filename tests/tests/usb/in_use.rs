@@ -7,7 +7,7 @@ use std::time::SystemTime;
 
 use halfrow_tests::patience::wait_until;
 use halfrow_tests::program::{Running, command};
-use halfrow_tests::usb::{plug, plug_and_watch, sentence, serial_port, verify};
+use halfrow_tests::usb::{plug, plug_and_watch, serial_port, verify};
 
 /// A shell that has a serial port open.
 struct Holding(Child);
@@ -46,7 +46,7 @@ fn a_program_keeps_the_serial_port_that_it_has_open() {
     let ended = verify("usb");
     assert_eq!(ended.code, Some(4), "{ended:?}");
     let by = format!("{} is in use by sh (process {})", port.display(), holding.0.id());
-    assert!(sentence(&ended).contains(&by), "{ended:?}");
+    assert!(ended.headline().contains(&by), "{ended:?}");
     assert_eq!(made(&port), before);
     drop(holding);
     assert_eq!(verify("usb").code, Some(0));
@@ -74,7 +74,7 @@ fn two_programs_do_not_share_a_channel() {
     let ended = verify("usb");
     assert_eq!(ended.code, Some(4), "{ended:?}");
     assert!(
-        sentence(&ended).contains("channel B of usb:HR000001 is in use by program (process"),
+        ended.headline().contains("channel B of usb:HR000001 is in use by program (process"),
         "{ended:?}"
     );
     drop(link);

@@ -1,7 +1,7 @@
 //! Boards behind an FT2232H are judged like boards in this process.
 
 use halfrow_ft2232h::{ChipOptions, Plugged};
-use halfrow_tests::usb::{chip, sentence, uart, verify};
+use halfrow_tests::usb::{chip, uart, verify};
 
 #[test]
 #[ignore = "needs scripts/in-linux"]
@@ -37,6 +37,6 @@ fn what_lay_in_the_chip_before_does_no_harm() {
         (ended.code, ended.json()["link"]["damaged_in"].as_u64()),
         (Some(0), Some(0)),
         "{}",
-        sentence(&ended)
+        ended.headline()
     );
 }

@@ -2,7 +2,7 @@
 
 use halfrow_ft2232h::Plugged;
 use halfrow_tests::scenarios::all;
-use halfrow_tests::usb::{chip, is_quick, run_all, sentence, serial_port, uart, verify};
+use halfrow_tests::usb::{chip, is_quick, run_all, serial_port, uart, verify};
 
 fn plug(options: &str) -> Plugged {
     Plugged::new(chip(uart(), options), 0).unwrap()
@@ -24,5 +24,5 @@ fn a_board_that_is_pulled_out() {
     let board = plug(",fault=disconnect,byte=30000,toward=host");
     let ended = verify(&target(&board));
     assert_eq!(ended.code, Some(3), "{ended:?}");
-    assert!(sentence(&ended).contains("the link broke"), "{ended:?}");
+    assert!(ended.headline().contains("the link broke"), "{ended:?}");
 }

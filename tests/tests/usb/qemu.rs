@@ -1,7 +1,7 @@
 //! The link drives a chip that this project did not make.
 
 use halfrow_tests::program::{Running, command};
-use halfrow_tests::usb::{QEMU_CHIP, QemuBoard, QemuChipOut, sentence, verify};
+use halfrow_tests::usb::{QEMU_CHIP, QemuBoard, QemuChipOut, verify};
 
 #[test]
 #[ignore = "needs scripts/in-linux"]
@@ -17,7 +17,7 @@ fn boards_behind_qemu_s_chip_are_told_apart() {
     let _broken = QemuBoard::new(",fault=stuck-data");
     let ended = verify(QEMU_CHIP);
     assert_eq!(ended.code, Some(1), "{ended:?}");
-    assert!(sentence(&ended).contains("data bit 5, stuck at 1"), "{ended:?}");
+    assert!(ended.headline().contains("data bit 5, stuck at 1"), "{ended:?}");
 }
 
 #[test]
@@ -31,7 +31,7 @@ fn qemu_s_chip_is_pulled_out_in_the_middle_and_comes_back() {
     let out = QemuChipOut::pull();
     let ended = run.end();
     assert_eq!(ended.code, Some(3), "{ended:?}");
-    assert!(sentence(&ended).contains("went away at"), "{ended:?}");
+    assert!(ended.headline().contains("went away at"), "{ended:?}");
     drop(board);
     drop(out);
     let _board = QemuBoard::new("");

@@ -4,7 +4,7 @@ use std::os::unix::process::CommandExt as _;
 
 use halfrow_ft2232h::{ChannelMode, ChipOptions, Eeprom, Plugged};
 use halfrow_tests::program::{command, finish};
-use halfrow_tests::usb::{chip, plug, sentence, uart, verify};
+use halfrow_tests::usb::{chip, plug, uart, verify};
 
 #[test]
 #[ignore = "needs scripts/in-linux"]
@@ -26,7 +26,7 @@ fn an_eeprom_that_contradicts_the_target_is_explained() {
         let _board = Plugged::new(chip(options, ""), 0).unwrap();
         let ended = verify(target);
         assert_eq!(ended.code, Some(3), "{target}: {ended:?}");
-        assert!(sentence(&ended).contains(words), "{target}: {ended:?}");
+        assert!(ended.headline().contains(words), "{target}: {ended:?}");
     }
 }
 
@@ -41,7 +41,7 @@ fn what_the_chip_cannot_do_is_a_wrong_call() {
     ] {
         let ended = verify(target);
         assert_eq!(ended.code, Some(2), "{target}: {ended:?}");
-        assert!(sentence(&ended).contains(words), "{target}: {ended:?}");
+        assert!(ended.headline().contains(words), "{target}: {ended:?}");
     }
 }
 
@@ -51,5 +51,5 @@ fn a_user_without_permission_is_told_how_to_get_it() {
     let _board = plug("");
     let ended = finish(command(["verify", "--json", "--board", "usb"]).uid(65534));
     assert_eq!(ended.code, Some(3), "{ended:?}");
-    assert!(sentence(&ended).contains("may not open the USB device usb:HR000001"), "{ended:?}");
+    assert!(ended.headline().contains("may not open the USB device usb:HR000001"), "{ended:?}");
 }

@@ -2,7 +2,7 @@
 
 use halfrow_tests::dice::Dice;
 use halfrow_tests::patience::come_to_an_end;
-use halfrow_tests::usb::{plug, sentence, verify};
+use halfrow_tests::usb::{plug, verify};
 
 /// Pulls the plug at byte `byte` on the way `toward` the board or the host.
 fn pull(byte: usize, toward: &str) {
@@ -14,7 +14,7 @@ fn pull(byte: usize, toward: &str) {
         (Some(3), Some("ERROR")),
         "byte {byte} {toward}: {ended:?}"
     );
-    assert!(sentence(&ended).contains("went away at"), "byte {byte} {toward}: {ended:?}");
+    assert!(ended.headline().contains("went away at"), "byte {byte} {toward}: {ended:?}");
     drop(board);
 }
 
