@@ -40,6 +40,8 @@ pub struct Scenario {
     pub sentence: &'static str,
     /// What it may say instead where host and board both keep real time, since then it depends on which of them is late.
     pub when_late: &'static [&'static str],
+    /// Whether it takes ten seconds and more behind an emulated chip.
+    pub is_slow: bool,
 }
 
 /// A scenario that did not end as expected.
@@ -91,6 +93,11 @@ impl Scenario {
     /// The same scenario, which may also end with one of these `sentences` where either end may be late.
     pub(crate) const fn or_when_late(self, sentences: &'static [&'static str]) -> Self {
         Self { when_late: sentences, ..self }
+    }
+
+    /// The same scenario, which takes long.
+    pub(crate) const fn slow(self) -> Self {
+        Self { is_slow: true, ..self }
     }
 
     /// The same scenario for other boards.

@@ -38,5 +38,5 @@ const fn expect(
 ) -> Scenario {
     // Options describe a mock, unless the scenario says otherwise.
     let on = if options.is_empty() { On::AnyBoard } else { On::MockOnly };
-    Scenario { name, on, options, arguments, verdict, exit_code, sentence, when_late: &[] }
+    Scenario { name, on, options, arguments, verdict, exit_code, sentence, when_late: &[], is_slow: false }
 }

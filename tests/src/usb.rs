@@ -20,9 +20,6 @@ use crate::scenarios::{BROKEN_BOARDS, MISFITS, SOUND_BOARDS};
 
 pub use qemu::{QEMU_CHIP, QemuBoard, QemuChipOut};
 
-/// Scenarios that take ten seconds and more.
-const SLOW: &[&str] = &["the highest frame", "a serial line", "a distant board"];
-
 /// How many bytes a board has sent to its host.
 #[derive(Clone, Debug, Default)]
 pub struct Said(Arc<AtomicU64>);
@@ -145,7 +142,7 @@ pub fn of_boards() -> impl Iterator<Item = &'static Scenario> {
 /// Whether a scenario takes a few seconds only.
 #[must_use]
 pub fn is_quick(scenario: &&Scenario) -> bool {
-    scenario.has_own_size() && !SLOW.contains(&scenario.name)
+    scenario.has_own_size() && !scenario.is_slow
 }
 
 /// Runs each of `scenarios` on its own board, which `plug` makes by its options and `target` names, and prints how long each

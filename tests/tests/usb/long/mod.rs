@@ -20,8 +20,16 @@ fn behind_qemu_s_chip(part: usize) {
 
 macro_rules! parts {
     ($($name:ident: $part:literal),*) => {
-        /// As many as there are parts, so that none is left out.
-        const _: () = assert!([$($part),*].len() == PARTS);
+        /// Part 0, 1 and so on, as many as there are, so that none is left out.
+        const _: () = {
+            let parts = [$($part),*];
+            assert!(parts.len() == PARTS);
+            let mut place = 0;
+            while place < PARTS {
+                assert!(parts[place] == place);
+                place += 1;
+            }
+        };
         $(mod $name {
             #[test]
             #[ignore = "long"]
