@@ -63,9 +63,9 @@ impl WholeBoard {
         played
     }
 
-    /// Commits tables for the frame that comes `behind` frames after the next one.
-    fn commit(&mut self, tables: &TableSet, kernel: &Kernel, behind: u16) {
-        let first_frame = self.next_frame.wrapping_add(behind);
+    /// Commits tables for the frame that comes `ahead` frames after the next one.
+    fn commit(&mut self, tables: &TableSet, kernel: &Kernel, ahead: u16) {
+        let first_frame = self.next_frame.wrapping_add(ahead);
         self.board.upload(tables, kernel).unwrap();
         self.board.commit(tables, kernel, first_frame, generation(first_frame)).unwrap();
     }

@@ -348,7 +348,7 @@ fn a_wrong_crc_of_what_entered_is_the_counts_fault_and_not_the_row_s() {
 
 /// What follows the samples means nothing on a board that lacks capability 11.
 #[test]
-fn without_the_capability_nothing_is_read_behind_the_samples() {
+fn without_the_capability_nothing_is_read_after_the_samples() {
     let report = judge_each(&TINY, |toward, mut packet| {
         if packet.is(Kind::RowOut) {
             packet.payload.last_mut().into_iter().for_each(|byte| *byte ^= 1);

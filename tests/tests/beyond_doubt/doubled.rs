@@ -89,9 +89,9 @@ fn a_late_request_is_no_fault_of_a_board_that_missed_an_acknowledgement() {
 fn a_late_request_is_no_fault_of_a_board_that_missed_one_that_asks() {
     let harmless = [0, 2, 4, 6].map(|number| ((Kind::TableCrc, 1), (Kind::Configure, number), 3));
     // The kernel of one corner replaces the next one's, with no stream between the loss and the copy.
-    let behind_no_stream = ((Kind::TableCrc, 40), (Kind::TableWrite, 19), 11);
-    let behind_a_stream = ((Kind::TableCrc, 1), (Kind::Expect, 4), 20);
-    no_sound_board_fails(&[&harmless[..], &[behind_no_stream, behind_a_stream]].concat());
+    let after_no_stream = ((Kind::TableCrc, 40), (Kind::TableWrite, 19), 11);
+    let after_a_stream = ((Kind::TableCrc, 1), (Kind::Expect, 4), 20);
+    no_sound_board_fails(&[&harmless[..], &[after_no_stream, after_a_stream]].concat());
 }
 
 /// Old greetings of this host that arrive late. They open session after session, until one has the number of the session that was

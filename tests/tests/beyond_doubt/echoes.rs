@@ -51,11 +51,11 @@ impl Link for Echoes {
     }
 }
 
-/// The report on a sound board, with the wire's rules, whose line echoes after `behind` bytes.
-fn echoing(behind: usize, beside: bool) -> Report {
+/// The report on a sound board, with the wire's rules, whose line echoes once it was sent `after` bytes.
+fn echoing(after: usize, beside: bool) -> Report {
     let plan = Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() };
     let candidate = open("mock");
-    let link = Box::new(Echoes { link: candidate.link, left: behind, beside });
+    let link = Box::new(Echoes { link: candidate.link, left: after, beside });
     judge_by_plan(&plan, Candidate { link, ..candidate })
 }
 
@@ -63,9 +63,9 @@ fn echoing(behind: usize, beside: bool) -> Report {
 fn a_line_that_begins_to_echo_makes_no_sound_board_fail() {
     for beside in [false, true] {
         let (mut named, mut errors) = (0, 0);
-        for behind in (3_000..).step_by(4_001) {
-            let report = echoing(behind, beside);
-            let what = format!("behind {behind} bytes, beside: {beside}: {}", report.headline());
+        for after in (3_000..).step_by(4_001) {
+            let report = echoing(after, beside);
+            let what = format!("after {after} bytes, beside: {beside}: {}", report.headline());
             assert_ne!(report.verdict(), Verdict::Fail, "{what}");
             if report.verdict() == Verdict::Pass {
                 break;

@@ -12,13 +12,13 @@ use halfrow_tests::system::{failed_check, judge_by_plan};
 use super::rules::{broken, carried_out, plan, refusal, said_by};
 
 /// The report on a board with packets that `alter` rewrites, each into those that it returns.
-fn behind(alter: impl FnMut(Toward, Passing) -> Vec<Passing> + Send + 'static) -> Report {
+fn altering(alter: impl FnMut(Toward, Passing) -> Vec<Passing> + Send + 'static) -> Report {
     judge_by_plan(&plan(), Altered::new(&Options::default(), alter).candidate())
 }
 
 /// The report on a board that receives packets of `kind` as `alter` changes them.
 fn hearing(kind: Kind, alter: impl Fn(&mut Vec<u8>) + Send + 'static) -> Report {
-    behind(move |toward, mut packet| {
+    altering(move |toward, mut packet| {
         if toward == Toward::Board && packet.is(kind) {
             alter(&mut packet.payload);
         }
@@ -33,7 +33,7 @@ fn answering(
     alter: impl Fn(Passing) -> Passing + Send + 'static,
 ) -> Report {
     let mut meant = None;
-    behind(move |toward, packet| {
+    altering(move |toward, packet| {
         if toward == Toward::Board {
             let is_meant = packet.is(kind) && is_meant(&packet.payload);
             meant = is_meant.then_some(packet.header.sequence);
@@ -93,7 +93,7 @@ const DEPTH: usize = 12;
 /// The report on a board that stores what `stored` makes of a configuration that it refuses.
 fn storing(stored: impl Fn(&mut Vec<u8>) + Send + 'static) -> Report {
     let (mut swallowed, mut stored_so_far) = (None, 0);
-    behind(move |toward, packet| {
+    altering(move |toward, packet| {
         let is_refused = packet.is(Kind::Configure) && packet.payload.starts_with(&[65, 0]);
         if toward == Toward::Board && is_refused {
             let mut other = packet.clone();
@@ -167,7 +167,7 @@ fn configurations_wait_for_rows_that_are_kept_and_for_those_inside_before_they_a
 fn samples_beyond_their_depth_go_in_as_they_are() {
     for clips in [false, true] {
         let mut depth = 12;
-        let report = behind(move |toward, mut packet| {
+        let report = altering(move |toward, mut packet| {
             // Those that must be refused are wider.
             if toward == Toward::Board && packet.is(Kind::Configure) && packet.payload.starts_with(&[64, 0]) {
                 depth = *packet.payload.get(DEPTH).unwrap_or(&depth);
@@ -304,7 +304,7 @@ fn signatures_are_expected_of_the_rows_that_they_are_for() {
 
 /// The report on a board whose counters `alter` changes.
 fn counting(alter: impl Fn(&mut Status) + Send + 'static) -> Report {
-    behind(move |toward, packet| match packet.reply() {
+    altering(move |toward, packet| match packet.reply() {
         Some(Reply::Status(mut status)) if toward == Toward::Host => {
             alter(&mut status);
             vec![packet.saying(&Reply::Status(status))]
@@ -333,7 +333,7 @@ fn a_board_that_counts_less_than_came_fails() {
 #[test]
 fn a_row_that_comes_again_with_other_fields_fails() {
     for field in 0..4 {
-        let report = behind(move |toward, packet| match packet.reply() {
+        let report = altering(move |toward, packet| match packet.reply() {
             Some(Reply::RowOut(row)) if toward == Toward::Host && row.repeats > 1 => {
                 let mut row = row;
                 match field {
@@ -377,7 +377,7 @@ fn an_answer_that_ends_too_early_is_wrong() {
 /// were uploaded since the last RESET.
 fn trapping_less(is_lost: impl Fn(u16, bool) -> bool + Send + 'static) -> Report {
     let mut is_told = false;
-    behind(move |_, packet| {
+    altering(move |_, packet| {
         is_told = packet.is(Kind::Expect) || is_told && !packet.is(Kind::Reset);
         match packet.reply() {
             Some(Reply::Trap(Some(kept))) if is_lost(kept.row, is_told) => {
@@ -389,7 +389,7 @@ fn trapping_less(is_lost: impl Fn(u16, bool) -> bool + Send + 'static) -> Report
 }
 
 #[test]
-fn what_is_expected_stays_behind_a_reset_and_rows_far_down_are_trapped() {
+fn what_is_expected_stays_after_a_reset_and_rows_far_down_are_trapped() {
     for report in [trapping_less(|_, is_told| !is_told), trapping_less(|row, _| row >= 20)] {
         assert_eq!(broken(&report).0, Rule::Trap);
     }

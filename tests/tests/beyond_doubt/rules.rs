@@ -218,7 +218,7 @@ fn a_link_that_loses_all_that_a_board_says_for_a_while_makes_no_sound_board_fail
 
 /// The report does not tell a user of `verify` to run it.
 #[test]
-fn a_row_that_does_not_come_back_behind_what_was_refused_is_told_of() {
+fn a_row_that_does_not_come_back_after_what_was_refused_is_told_of() {
     let report = saying(|packet| {
         let row = |row: RowOut<'_>| (row.place.frame, row.place.row);
         let is_lost = matches!(packet.reply(), Some(Reply::RowOut(out)) if row(out) == (FRAME, 1));
@@ -260,7 +260,7 @@ fn a_link_that_loses_what_must_be_refused_does_not() {
 }
 
 #[test]
-fn a_row_that_comes_back_wrong_behind_what_was_refused_fails() {
+fn a_row_that_comes_back_wrong_after_what_was_refused_fails() {
     let report = saying(|packet| {
         let Some(Reply::RowOut(row)) = packet.reply() else { return Some(packet) };
         if row.place.frame != FRAME || row.place.row != 2 {

@@ -33,7 +33,7 @@ fn altered_once(
 }
 
 #[test]
-fn a_frame_that_was_wrong_at_speed_fails_though_no_record_comes_behind_it() {
+fn a_frame_that_was_wrong_at_speed_fails_though_no_record_comes_after_it() {
     // One record: 18 bytes, which begin with its signature, after the packet's own fields, the last of which is the count of
     // records.
     let first_alone = |payload: &mut Vec<u8>| {
@@ -47,7 +47,7 @@ fn a_frame_that_was_wrong_at_speed_fails_though_no_record_comes_behind_it() {
 }
 
 #[test]
-fn a_table_that_was_another_fails_though_no_entry_is_read_behind_that() {
+fn a_table_that_was_another_fails_though_no_entry_is_read_after_that() {
     for place in 0..4 {
         let report = altered_once(Kind::TableCrc, place, |payload| payload[0] ^= 1, Kind::TableRead);
         assert_eq!(report.verdict(), Verdict::Fail, "{place}: {}", report.headline());

@@ -115,7 +115,7 @@ fn what_another_session_says_that_it_has_must_free_no_bank() {
 
 /// Only in the sessions that the rules open.
 #[test]
-fn tables_must_stay_behind_a_greeting() {
+fn tables_must_stay_after_a_greeting() {
     let mut greetings = 0;
     let altered = move |toward, packet: Passing| {
         greetings += usize::from(toward == Toward::Host && packet.is(Kind::Hello));

@@ -314,7 +314,7 @@ fn over_a_link_that_loses(every: usize, spoilt: bool) -> Report {
 
 /// The first BURST arrives once more before the third, which the board then refuses.
 #[test]
-fn what_a_board_says_behind_an_old_burst_does_not_end_a_soak() {
+fn what_a_board_says_after_an_old_burst_does_not_end_a_soak() {
     let (mut bursts, mut first) = (0, None);
     let board = Altered::new(&slow(), move |toward, packet: Passing| {
         let is_burst = toward == Toward::Board && packet.is(Kind::Burst);

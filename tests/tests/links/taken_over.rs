@@ -89,13 +89,13 @@ fn judged(candidate: Candidate, take_over: bool) -> Report {
 #[test]
 fn a_board_that_was_taken_over_is_left_to_who_took_it() {
     for take_over in [false, true] {
-        for behind in [300, 3_000, 9_000] {
+        for after in [300, 3_000, 9_000] {
             let candidate = open("mock");
-            let end = End(Arc::new(Mutex::new(Line { link: candidate.link, left: behind })));
+            let end = End(Arc::new(Mutex::new(Line { link: candidate.link, left: after })));
             let link = Box::new(end.clone());
             let shared = Candidate { link, ..candidate };
             let report = judged(shared.reopened_by(move || Ok::<_, OpenError>(end.clone())), take_over);
-            let what = format!("take over: {take_over}, behind {behind}: {}", report.headline());
+            let what = format!("take over: {take_over}, after {after}: {}", report.headline());
             assert_eq!(report.cause, Cause::Busy, "{what}");
             assert!(report.headline().contains("another host holds the board"), "{what}");
             assert!(report.link.reconnections.is_empty(), "{what}");
