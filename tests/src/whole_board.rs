@@ -13,6 +13,8 @@ use crate::cases::{Build, Case, GridNeeds, Played};
 pub struct WholeBoard {
     board: Board,
     next_frame: u16,
+    /// Never 0, which is no generation, and never that of the tables before.
+    next_generation: u8,
 }
 
 impl WholeBoard {
@@ -23,7 +25,7 @@ impl WholeBoard {
     #[must_use]
     pub fn open(link: Box<dyn Link>) -> Self {
         let board = Board::open(link, &OpenOptions::default()).unwrap();
-        Self { board, next_frame: 0 }
+        Self { board, next_frame: 0, next_generation: 1 }
     }
 
     /// The build of this board, for which cases are drawn.
@@ -67,7 +69,8 @@ impl WholeBoard {
     fn commit(&mut self, tables: &TableSet, kernel: &Kernel, ahead: u16) {
         let first_frame = self.next_frame.wrapping_add(ahead);
         self.board.upload(tables, kernel).unwrap();
-        self.board.commit(tables, kernel, first_frame, generation(first_frame)).unwrap();
+        self.board.commit(tables, kernel, first_frame, self.next_generation).unwrap();
+        self.next_generation = self.next_generation % 255 + 1;
     }
 
     fn stream(&mut self, frames: &[&Frame], played: &mut Played) {
@@ -80,11 +83,6 @@ impl WholeBoard {
             .map(|(frame, index)| NumberedFrame { number: first.wrapping_add(index), frame });
         self.board.stream(&mut Collector { frames: frames.collect::<Vec<_>>().into_iter(), played }).unwrap();
     }
-}
-
-/// Never 0, which is no generation, and never that of the tables before.
-fn generation(first_frame: u16) -> u8 {
-    (first_frame % 255) as u8 + 1
 }
 
 /// What comes out of [`WholeBoard::play`] according to the model.
