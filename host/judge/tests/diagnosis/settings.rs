@@ -5,7 +5,7 @@ use halfrow_model::{BitDepth, Frame, Geometry, correct};
 
 use crate::bench::{Bench, Generation, Seen, off_centre, off_centre_grid};
 
-/// The benches of 8 bits and a centre of their own, behind a decoy whose centre is the middle.
+/// The benches with 8 bits and a centre of their own, and a decoy whose centre is the middle.
 fn benches() -> [Bench; 2] {
     [off_centre(), off_centre_grid()].map(|mut bench| {
         let tables = &mut bench.generations[0].tables;

@@ -268,7 +268,7 @@ impl Rules<'_, '_> {
             self.give(1);
             let given = mem::take(&mut self.given).rows;
             self.run.board.drop_rows_after(bytes, given).map_err(of_board)?;
-            // Whatever row was the last before, none but row 0 is the first.
+            // Whatever row was last before, only row 0 may be first now.
             for row in [1, 2] {
                 let place = RowPlace { row_sequence: self.run.board.acknowledged(), ..self.place(row) };
                 self.row_refused(Rule::RowPlace, place, RefusalCode::Row)?;

@@ -154,7 +154,7 @@ impl Account {
     }
 }
 
-/// What differed in a burst with `before` frames of the soak in front of it.
+/// A burst's difference with its frame counted from the beginning of the soak, of which `before` frames came before the burst.
 fn counted_after(before: u64, mut end: End) -> End {
     if let End::Failed { finding: Finding::DiffersAtSpeed { first, .. }, .. } = &mut end {
         *first = counted(before + u64::from(*first));
