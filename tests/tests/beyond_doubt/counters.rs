@@ -1,6 +1,6 @@
 //! A board's counters, compared with what the host saw and with each other.
 
-use halfrow::result::{CheckName, NotExercised, Report};
+use halfrow::result::{CheckName, Finding, NotExercised, Report};
 use halfrow::verdict::Verdict;
 use halfrow_protocol::message::Status;
 use halfrow_protocol::{Kind, Reply};
@@ -112,4 +112,20 @@ fn fewer_packets_than_were_answered_are_no_pass_and_no_fail() {
     let report = with_counter(|status| status.packets = status.packets.saturating_sub(30));
     assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
     assert!(report.headline().contains("packets that came to it"), "{}", report.headline());
+}
+
+/// A row of 64 samples takes W/2 + 12 pixel clocks in the mock.
+#[test]
+fn both_latencies_that_a_board_counts_are_compared_with_those_of_its_rows() {
+    let told = |least, most| Finding::LatencyMiscounted {
+        least: 44,
+        most: 44,
+        counted_least: least,
+        counted_most: most,
+    };
+    let least = with_counter(|status| status.least_latency -= (status.least_latency > 0) as u32);
+    let most = with_counter(|status| status.most_latency += (status.most_latency > 0) as u32);
+    for (report, right) in [(least, told(43, 44)), (most, told(44, 45))] {
+        assert_eq!((report.verdict(), &report.finding), (Verdict::Fail, &right), "{}", report.headline());
+    }
 }
