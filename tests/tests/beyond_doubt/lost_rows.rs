@@ -1,8 +1,8 @@
 //! Rows that do not come back: the board's fault only when the board itself says so.
 
 use halfrow::link::{Candidate, Link};
-use halfrow::result::Report;
-use halfrow::verdict::Verdict;
+use halfrow::result::{Finding, Report};
+use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
 use halfrow_protocol::message::Status;
 use halfrow_protocol::{Kind, Reply};
@@ -162,4 +162,51 @@ fn a_row_that_the_board_does_not_admit_to_is_no_fail() {
         let report = withheld(denial);
         assert_eq!(report.verdict(), Verdict::Error, "{what}: {}", report.headline());
     }
+}
+
+/// It comes as soon as the host has dropped it and plays its frame again.
+#[test]
+fn a_row_that_comes_when_its_frame_is_played_again_was_lost_on_the_way() {
+    let (mut lost, mut is_over) = (0, false);
+    let report = judge(&System::TINY, move |toward, packet| {
+        is_over |= lost > 0 && toward == Toward::Board && packet.is(Kind::Reset);
+        let loses = !is_over && toward == Toward::Host && is_row_out(&packet, 3);
+        lost += usize::from(loses);
+        if loses { Vec::new() } else { vec![packet] }
+    });
+    assert_eq!((report.verdict(), report.cause), (Verdict::Error, Cause::Station), "{}", report.headline());
+    assert_eq!(report.finding, Finding::RowLostOnce { row: 3, frame: 0 });
+}
+
+/// A board that says something else than it is asked is asked in vain what became of the row.
+#[test]
+fn a_row_is_not_swallowed_where_echoes_come_back_otherwise() {
+    let mut is_lost = false;
+    let report = judge(&System::TINY, move |toward, mut packet| {
+        is_lost |= toward == Toward::Host && is_row_out(&packet, 3);
+        if is_lost && toward == Toward::Host && packet.is(Kind::Echo) {
+            packet.payload[0] ^= 1;
+        }
+        withhold(packet, |_| {})
+    });
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
+    assert_eq!(report.finding, Finding::RowLostAmongOthers { row: 3, frame: 0 });
+}
+
+/// A row that is asked for is not answered if the board has let it go, so nobody misses it: what is lost so may have been the row.
+#[test]
+fn a_row_is_not_swallowed_where_packets_are_missing_of_which_nobody_hears() {
+    let (mut is_lost, mut is_asked) = (false, false);
+    let report = judge(&System::TINY, move |toward, packet| {
+        is_lost |= toward == Toward::Host && is_row_out(&packet, 3);
+        if toward == Toward::Board {
+            is_asked = (is_asked || is_lost && packet.is(Kind::Echo)) && !packet.is(Kind::Reset);
+            if is_asked && row_of_request(&packet) == Some(3) {
+                return Vec::new();
+            }
+        }
+        withhold(packet, |_| {})
+    });
+    assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
+    assert_eq!(report.finding, Finding::RowLostAmongOthers { row: 3, frame: 0 });
 }
