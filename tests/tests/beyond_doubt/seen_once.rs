@@ -1,6 +1,6 @@
 //! What a board has said in a whole packet stands, whatever the link does afterwards.
 
-use halfrow::result::{CheckName, Report};
+use halfrow::result::{BurstCount, CheckName, Finding, Report};
 use halfrow::verdict::Verdict;
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Passing, Toward, judge};
@@ -46,6 +46,20 @@ fn a_frame_that_was_wrong_at_speed_fails_though_no_record_comes_after_it() {
     assert!(report.headline().contains("differs at speed"), "{}", report.headline());
 }
 
+/// The same record, right in its signature, with another count of samples behind that.
+#[test]
+fn a_count_that_was_wrong_at_speed_fails_though_no_record_comes_behind_it() {
+    let first_alone = |payload: &mut Vec<u8>| {
+        payload.truncate(28);
+        payload[9] = 1;
+        payload[14] ^= 1;
+    };
+    let report = altered_once(Kind::Records, 0, first_alone, Kind::Records);
+    let is_told =
+        matches!(report.finding, Finding::MiscountedAtSpeed { count: BurstCount::Samples, frame: 0, .. });
+    assert!(report.verdict() == Verdict::Fail && is_told, "{}", report.headline());
+}
+
 #[test]
 fn a_table_that_was_another_fails_though_no_entry_is_read_after_that() {
     for place in 0..4 {
@@ -53,5 +67,15 @@ fn a_table_that_was_another_fails_though_no_entry_is_read_after_that() {
         assert_eq!(report.verdict(), Verdict::Fail, "{place}: {}", report.headline());
         let failed = report.checks.iter().find(|check| check.name == CheckName::ReadBack).unwrap();
         assert!(failed.detail().contains("CRC"), "{place}: {}", failed.detail());
+    }
+}
+
+/// What a board says under its own CRC is no fault of a link's.
+#[test]
+fn an_echo_that_is_another_is_the_board_s_fault() {
+    // The one in front of them is empty, and tells how long an answer takes.
+    for place in [1, 2] {
+        let report = altered_once(Kind::Echo, place, |payload| payload[0] ^= 1, Kind::TableRead);
+        assert_eq!((report.verdict(), &report.finding), (Verdict::Fail, &Finding::EchoWrong {}));
     }
 }

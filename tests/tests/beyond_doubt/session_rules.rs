@@ -1,9 +1,10 @@
 //! Boards that are sound except in what opens a session, what ends one, and what they count.
 
 use halfrow::result::{Answer, CheckName, Counter, Finding, Report, Rule};
+use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
-use halfrow_protocol::message::Status;
-use halfrow_protocol::{Kind, Reply};
+use halfrow_protocol::message::{Refusal, RefusalCode, Reset, ResetLevel, Status};
+use halfrow_protocol::{Kind, Packet, Reply, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{failed_check, judge_by_plan, open};
 
@@ -164,4 +165,27 @@ fn a_row_that_is_taken_where_it_must_be_refused_is_told_of_though_nothing_is_sai
     let report = judge_by_plan(&plan(), open("mock,fault=rows-anywhere"));
     let (rule, _, found) = broken(&report);
     assert_eq!((rule, found), (Rule::RowPlace, &Answer::Taken {}));
+}
+
+/// Behind the RESET by which the host closes its session the board is whose it may be.
+#[test]
+fn another_host_may_take_a_board_whose_session_is_closed() {
+    let (mut opened, mut is_closed) = (0, false);
+    let altered = move |toward, packet: Passing| {
+        let request = Request::read(&Packet { header: packet.header, payload: &packet.payload });
+        match (toward, request) {
+            (Toward::Board, Ok(Request::Reset(Reset { level: ResetLevel::Session, .. }))) => is_closed = true,
+            (Toward::Board, Ok(Request::Hello(_))) => opened += usize::from(is_closed),
+            (Toward::Host, _) if packet.is(Kind::Hello) && opened > 0 => {
+                let held = Refusal { code: RefusalCode::Held, kind: Kind::Hello.code(), detail: 90 };
+                let mut refusal = packet.saying(&Reply::Refusal(held));
+                refusal.header.kind = Kind::Refusal.code();
+                return vec![refusal];
+            }
+            _ => {}
+        }
+        vec![packet]
+    };
+    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
 }
