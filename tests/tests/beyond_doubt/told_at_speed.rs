@@ -1,0 +1,102 @@
+//! What is told of frames that a board makes on its own: no more than was seen of them.
+
+use halfrow::result::{BurstCount, Defect, Finding, NotExercised, Repetition, Report};
+use halfrow::run::{Part, Plan, Selection};
+use halfrow::verdict::Verdict;
+use halfrow_mock::Options;
+use halfrow_protocol::message::{FrameRecord, Records, TrappedRow};
+use halfrow_protocol::{Kind, Packet, Reply, Request};
+use halfrow_tests::altered::{Altered, Passing, Toward, judge_each};
+use halfrow_tests::system::{System, judge_by_plan};
+
+/// A board of which `change` makes another first record of its burst number `which`, from 1.
+fn with_record(which: usize, change: fn(&mut FrameRecord)) -> impl FnMut(Toward, Passing) -> Passing + Send {
+    let (mut names, mut is_done) = (Vec::new(), false);
+    move |toward, packet| {
+        let request = Request::read(&Packet { header: packet.header, payload: &packet.payload });
+        if let (Toward::Board, Ok(Request::Burst(burst))) = (toward, request)
+            && !names.contains(&burst.burst)
+        {
+            names.push(burst.burst);
+        }
+        match packet.reply() {
+            Some(Reply::Records(found)) if toward == Toward::Host && names.len() == which && !is_done => {
+                let mut records: Vec<_> = found.records().collect();
+                records.iter_mut().take(1).for_each(|record| {
+                    change(record);
+                    is_done = true;
+                });
+                let bytes: Vec<_> = records.iter().map(FrameRecord::to_bytes).collect();
+                packet.saying(&Reply::Records(Records { bytes: &bytes, ..found }))
+            }
+            _ => packet,
+        }
+    }
+}
+
+/// Rows as wide were streamed in front of the first burst, and of the first corner none were.
+#[test]
+fn a_clock_too_many_is_a_matter_of_speed_where_rows_as_wide_were_right_without() {
+    let judged = |which| judge_each(&System::TINY, with_record(which, |record| record.most_latency += 1));
+    let late = |finding: &Finding| {
+        matches!(finding, Finding::MiscountedAtSpeed { frame: 0, count: BurstCount::MostLatency, .. })
+    };
+    let burst = judged(1);
+    assert!(burst.verdict() == Verdict::Fail && late(&burst.finding), "{}", burst.headline());
+    assert!(
+        matches!(burst.suspects[0].defect, Defect::OnlyAtSpeed { row: None, .. }),
+        "{:?}",
+        burst.suspects
+    );
+    let corner = judged(2);
+    let is_told = matches!(&corner.finding, Finding::InCorner { found, .. } if late(found));
+    assert!(corner.verdict() == Verdict::Fail && is_told, "{}", corner.headline());
+    assert!(
+        matches!(corner.suspects[0].defect, Defect::SeenAtSpeed { row: None, .. }),
+        "{:?}",
+        corner.suspects
+    );
+}
+
+/// It takes another seed than it is given, and says another signature of the row that it keeps than that has.
+#[test]
+fn a_row_that_was_kept_under_another_signature_shows_nothing() {
+    let report = judge_each(&System::TINY, |toward, mut packet| {
+        if toward == Toward::Board && packet.is(Kind::Burst) {
+            // WIRE.md, BURST: burst, frames, seed.
+            packet.payload[8] ^= 1;
+        }
+        match packet.reply() {
+            Some(Reply::Trap(Some(kept))) => {
+                packet.saying(&Reply::Trap(Some(TrappedRow { signature: !kept.signature, ..kept })))
+            }
+            _ => packet,
+        }
+    });
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
+    let Finding::DiffersAtSpeed { repetition, .. } = report.finding else { panic!("{}", report.headline()) };
+    assert!(matches!(repetition, Repetition::NothingTrapped { .. }), "{repetition:?}");
+}
+
+/// What a PASS by the first row of a frame and by three frames at speed, with or without a pause in one of them, leaves of the table.
+fn unused_lines(pauses: bool) -> (Report, bool) {
+    let change = if pauses { |record: &mut FrameRecord| record.pauses = 7 } else { |_: &mut FrameRecord| {} };
+    let mut alter = with_record(1, change);
+    let parts = Selection::least().with(Part::AtSpeed, 3);
+    let plan = Plan { parts: Some(parts), fail_fast: false, ..System { height: 16, ..System::TINY }.plan() };
+    let board = Altered::new(&Options::default(), move |toward, packet| vec![alter(toward, packet)]);
+    let report = judge_by_plan(&plan, board.candidate());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
+    let is_unused =
+        |part: &NotExercised| matches!(part, NotExercised::RowTableAddress { lines } if lines.contains(&0));
+    let is_told = report.not_exercised.iter().any(is_unused);
+    (report, is_told)
+}
+
+#[test]
+fn frames_with_pauses_put_nothing_to_the_test_that_streamed_rows_did_not() {
+    let (report, unused) = unused_lines(false);
+    assert!(!unused, "{:?}", report.not_exercised);
+    let (report, unused) = unused_lines(true);
+    assert!(unused, "{:?}", report.not_exercised);
+}
