@@ -4,9 +4,12 @@ use std::sync::{Arc, Mutex};
 
 use halfrow::board::{Board, OpenOptions};
 use halfrow::frames::Builtin;
+use halfrow::link::Candidate;
+use halfrow::progress::Silent;
 use halfrow::result::{CheckName, EqualAtSpeed, Finding, NoBurst, NotExercised, Outcome, Report, SoakLength};
-use halfrow::run::{AtSpeed, Build, FrameSource, Part, Plan, Prices, Rates, Selection};
-use halfrow::verdict::Verdict;
+use halfrow::run::{AtSpeed, Build, FrameSource, Part, Plan, Prices, Rates, RunOptions, Selection, verify};
+use halfrow::target::BoardKind;
+use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
 use halfrow_model::{BitDepth, Equidistant, Geometry, GridShape, Interpolant, TableSet};
 use halfrow_protocol::Kind;
@@ -205,4 +208,39 @@ fn a_grid_beside_which_there_is_no_decoy_is_judged_without_one() {
     let report = judge_by_plan(&Plan { at_speed, ..plan }, open("mock"));
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     assert!(report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
+}
+
+/// A plan of no frame, of which only frames are to be judged.
+#[test]
+fn a_run_in_which_nothing_came_back_is_no_pass() {
+    let _alone = crate::RUNS.lock();
+    let plan = Plan { frames: Vec::new(), at_speed: AtSpeed::Off, ..plan(Some(Selection::least())) };
+    let report = judge_by_plan(&plan, open("mock"));
+    assert_eq!(
+        (report.verdict(), report.cause),
+        (Verdict::Error, Cause::NothingJudged),
+        "{}",
+        report.headline()
+    );
+    assert_eq!(report.finding, Finding::NothingJudged {});
+}
+
+/// Also where it is behind a link to the outside, and says itself what it is.
+#[test]
+fn a_board_that_says_that_it_is_a_mock_is_no_hardware() {
+    let _alone = crate::RUNS.lock();
+    let judged = |require_hardware| {
+        let candidate = Candidate { kind: BoardKind::Hardware, ..open("mock") };
+        let options = RunOptions { require_hardware, ..RunOptions::default() };
+        verify(&plan(Some(Selection::least())), candidate, &options, &Silent).unwrap().report
+    };
+    assert_eq!(judged(false).verdict(), Verdict::Pass);
+    let report = judged(true);
+    assert_eq!(
+        (report.verdict(), report.cause),
+        (Verdict::Error, Cause::NothingJudged),
+        "{}",
+        report.headline()
+    );
+    assert_eq!(report.finding, Finding::HardwareRequired { board: BoardKind::Mock });
 }
