@@ -139,4 +139,18 @@ mod tests {
         let taken = Pump::default().exchange(near.as_raw_fd(), &[], &mut incoming, Duration::MAX).unwrap();
         assert_eq!((taken, incoming.as_slice()), (0, b"here".as_slice()));
     }
+
+    #[test]
+    fn what_came_before_the_other_end_hung_up_is_taken_before_that_is_said() {
+        let (near, mut far) = UnixStream::pair().unwrap();
+        never_block(near.as_raw_fd()).unwrap();
+        far.write_all(b"last").unwrap();
+        drop(far);
+        let (mut pump, mut incoming) = (Pump::default(), Vec::new());
+        let mut exchange =
+            |incoming: &mut Vec<u8>| pump.exchange(near.as_raw_fd(), b"more", incoming, Duration::ZERO);
+        assert_eq!(exchange(&mut incoming).unwrap(), 0);
+        assert_eq!(incoming, b"last");
+        assert!(matches!(exchange(&mut incoming), Err(Gone::HungUp)));
+    }
 }

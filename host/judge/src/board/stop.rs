@@ -71,3 +71,17 @@ impl fmt::Debug for Stop {
             .finish()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_counts_on_from_what_had_passed_when_a_link_was_opened_again() {
+        let [one, two, eight, ten] = [1, 2, 8, 10].map(Duration::from_secs);
+        let stop = Stop::default().link_limit(Some(ten)).after(eight);
+        assert!(stop.check(two, Duration::ZERO).is_ok());
+        let ended = stop.check(two + one, one);
+        assert!(matches!(ended, Err(BoardError::Timeout { limit, silent }) if (limit, silent) == (ten, one)));
+    }
+}

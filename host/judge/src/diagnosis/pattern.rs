@@ -70,3 +70,21 @@ fn brightness(differing: &[Witness<'_>]) -> Option<bool> {
         _ => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_are_told_by_what_they_have_in_common() {
+        let told = |places: &[usize]| extent(places, 8).unwrap();
+        assert_eq!(extent(&[], 8), None);
+        assert_eq!(told(&[3]), Extent::One { at: 3 });
+        assert_eq!(told(&[0, 1, 2, 3, 4, 5, 6, 7]), Extent::Every {});
+        assert_eq!(told(&[5, 6, 7]), Extent::From { first: 5 });
+        assert_eq!(told(&[0, 1, 2]), Extent::Between { first: 0, last: 2 });
+        assert_eq!(told(&[0, 2, 6]), Extent::Even { count: 3 });
+        assert_eq!(told(&[1, 7]), Extent::Odd { count: 2 });
+        assert_eq!(told(&[1, 2, 7]), Extent::Some { count: 3, total: 8, first: 1, last: 7 });
+    }
+}

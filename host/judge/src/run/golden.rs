@@ -179,4 +179,16 @@ mod tests {
             judge_row(&GoldenRow { interpolant: Interpolant::Hermite, corrected }).unwrap_err().to_string();
         assert!(error.contains("has 2601 at column 5") && error.contains("finds 2600"), "{error}");
     }
+
+    /// The golden row as a frame, whose CRC is that of what the other program computed.
+    #[test]
+    fn a_frame_that_comes_out_otherwise_is_told_with_both_crcs() {
+        let geometry = Geometry::new(64, 1, BitDepth::Twelve, 63).unwrap();
+        let tables = TableSet::from_units(geometry, &[ROW_FACTOR]).unwrap();
+        let crc = crc32fast::hash(&little_endian(&ROWS[0].corrected));
+        let judged = |crc| judge_frame(&tables, &frame(64, 1).unwrap(), Interpolant::Hermite, crc);
+        assert_eq!(judged(crc), Ok(64));
+        let (interpolant, expected) = (Interpolant::Hermite, crc ^ 1);
+        assert_eq!(judged(expected), Err(GoldenError::Frame { interpolant, expected, found: crc }));
+    }
 }

@@ -282,6 +282,20 @@ mod tests {
         Prepared { name, number, generation: 2, sha256, input: Arc::clone(&frame), expected: frame }
     }
 
+    fn manner() -> Manner {
+        Manner {
+            claimed_latency: 44,
+            latency_limit: 64,
+            fail_fast: false,
+            keep_equal: false,
+            evidence_bytes: 0,
+            names_entered: false,
+            variation: None,
+            first_rows: None,
+            pauses: vec![0; HEIGHT],
+        }
+    }
+
     fn give(judge: &mut RowJudge<'_>, frame: u16, row: usize, sample: u16) {
         let samples = &[sample; 64];
         let (first_latency, last_latency, pauses, generation) = (44, 44, 0, 2);
@@ -305,19 +319,8 @@ mod tests {
         [7, 8].into_iter().for_each(|number| sender.send(Ok(frame(number))).unwrap());
         drop(sender);
         let mut seen = Seen::default();
-        let manner = Manner {
-            claimed_latency: 44,
-            latency_limit: 64,
-            fail_fast: false,
-            keep_equal: false,
-            evidence_bytes: 0,
-            names_entered: false,
-            variation: None,
-            first_rows: None,
-            pauses: vec![0; HEIGHT],
-        };
         let mut judge =
-            RowJudge::new(source.iter().take(2), &mut seen, manner, FrameTiming::Gaps { seed: 0 }, &Silent);
+            RowJudge::new(source.iter().take(2), &mut seen, manner(), FrameTiming::Gaps { seed: 0 }, &Silent);
         let sent = |judge: &mut RowJudge<'_>| judge.next_frame().map(|frame| frame.number);
         assert_eq!((sent(&mut judge), sent(&mut judge)), (Some(7), Some(8)));
         [0, 1].into_iter().for_each(|row| give(&mut judge, 7, row, 7));
@@ -334,5 +337,24 @@ mod tests {
             seen.frames.iter().map(|frame| (frame.rows, frame.comparison.differences)).collect();
         assert_eq!(found, [(4, 128), (4, 0)]);
         assert_eq!(seen.latency.unwrap().rows, 8);
+    }
+
+    /// No frame behind it is sent, so that all that comes back is right.
+    #[test]
+    fn a_frame_that_cannot_be_made_is_told_when_all_before_have_come_back() {
+        let (sender, source) = channel();
+        let name = || String::from("street");
+        let cannot = Frame::new(64, BitDepth::Twelve, Phase::Grbg, vec![0; 1]).unwrap_err();
+        sender.send(Ok(frame(7))).unwrap();
+        sender.send(Err(PrepareError::Render { name: name(), source: cannot })).unwrap();
+        drop(sender);
+        let mut seen = Seen::default();
+        let timing = FrameTiming::Gaps { seed: 0 };
+        let mut judge = RowJudge::new(source.iter().take(3), &mut seen, manner(), timing, &Silent);
+        assert_eq!(judge.next_frame().map(|frame| frame.number), Some(7));
+        assert!(judge.next_frame().is_none());
+        (0..HEIGHT).for_each(|row| give(&mut judge, 7, row, 7));
+        let told = judge.finish().unwrap_err();
+        assert!(matches!(told, PrepareError::Render { name, .. } if name == "street"));
     }
 }

@@ -2,7 +2,7 @@
 
 use halfrow::board::Table;
 use halfrow::diagnosis::{Uploaded, read_back};
-use halfrow::result::Suspect;
+use halfrow::result::{Defect, Suspect};
 use halfrow_model::{BitDepth, Geometry, Interpolant, Kernel, TableSet};
 
 use crate::bench::grid;
@@ -180,4 +180,19 @@ fn wrong_entries_of_a_grid_are_counted_or_named_by_their_line() {
     assert!(suspects[0].evidence().contains("the first of 2 wrong words"), "{}", suspects[0].evidence());
     let suspects = read_grid(|_, word| *word |= 1 << 9);
     assert_eq!(first(&suspects), ("row table, data bit 9".to_owned(), 1.0));
+}
+
+/// Of entries A, B, A, A, the second one wrong. Were address line 0 stuck for writing, the first would read B as well, and nothing is
+/// known of the others.
+#[test]
+fn a_line_that_explains_one_word_of_two_is_not_named() {
+    let [a, b] = [1 << 23, 1 << 22];
+    let geometry = Geometry::centred(64, 4, BitDepth::Twelve).unwrap();
+    let tables = TableSet::from_units(geometry, &[a, b, a, a]).unwrap();
+    let suspects = read(&tables, Table::RowFactors, &bytes(&[b, b + 3, a, a]));
+    assert_eq!(suspects.len(), 1, "{suspects:?}");
+    let Defect::TableWordWrong { entry: 0, wrong: 2, .. } = suspects[0].defect else {
+        panic!("{suspects:?}")
+    };
+    assert_eq!(suspects[0].explained, 0.5);
 }
