@@ -6,6 +6,8 @@
 //!  OUT: taken out of service by a person, or because its process cannot be killed; or it owes a check, and shows no verdict
 //! ```
 
+use std::mem::discriminant;
+
 use halfrow::Verdict;
 
 use crate::plan::mock::is_mock;
@@ -156,7 +158,7 @@ impl Lane {
     }
 
     /// Keeps the reason why it did not take the serial number of the board that came, as long as that board stays
-    /// without one.
+    /// without one and the lane has nothing new to say.
     pub(super) fn miss(&mut self, why: Said) {
         self.missed = Some(why);
     }
@@ -179,7 +181,7 @@ impl Lane {
             Event::Start { operator } => self.start(operator),
             Event::Abort => self.abort(),
             Event::Out { why } => self.free().map(|()| {
-                self.waiting = None;
+                (self.waiting, self.missed) = (None, None);
                 self.phase = Phase::Out { why };
                 None
             }),
@@ -281,6 +283,7 @@ impl Lane {
 
     /// Takes what its run reports. A report that does not fit the phase is late, and changes nothing.
     fn told(&mut self, event: Event) -> Option<Effect> {
+        let before = discriminant(&self.phase);
         let phase = std::mem::replace(&mut self.phase, Phase::Idle);
         let (phase, effect) = match (phase, event) {
             (Phase::Running { of, .. }, Event::Begun { run }) => {
@@ -312,6 +315,10 @@ impl Lane {
         let is_settled = matches!(phase, Phase::Idle | Phase::Ended);
         self.phase =
             if is_settled && self.is_stuck { Phase::Out { why: Saying::Unkillable.into() } } else { phase };
+        let has_reason = matches!(self.phase, Phase::Out { .. } | Phase::Unsaved { .. });
+        if has_reason && discriminant(&self.phase) != before {
+            self.missed = None;
+        }
         effect
     }
 }

@@ -94,3 +94,29 @@ fn a_number_whose_board_came_to_a_lane_that_does_not_take_it_waits_for_no_other(
         assert!(!noted(&floor).contains(&serial(0)), "{why}: it goes with its board");
     }
 }
+
+/// docs/station.md says of OUT and UNSAVED that their reason is there. After a verdict the label is still to be scanned again.
+#[test]
+fn a_number_that_was_not_given_does_not_hide_why_its_lane_is_out_or_saved_nothing() {
+    let noted = |floor: &Floor| floor.lanes()[0].note().map(ToString::to_string).unwrap_or_default();
+    let full = || Event::Unsaved { why: Said::of(&std::io::Error::other("the disk is full")) };
+    let [_, (_, mut owes), (_, mut running), ..] = taking_nothing();
+    for floor in [&mut owes, &mut running] {
+        floor.scan(&serial(0), WEBER, at(1)).unwrap();
+        floor.happened(0, Event::Present(true), at(2));
+        assert!(noted(floor).contains(&serial(0)), "{}", noted(floor));
+    }
+    owes.act(0, Act::Out, WEBER).unwrap();
+    assert_eq!((words(&owes)[0], noted(&owes).as_str()), (Word::Out, "taken out by a person"));
+    let mut ended = running.clone();
+    ended.happened(0, Event::Ended(shown(Verdict::Pass)), at(3));
+    assert!(noted(&ended).contains(&serial(0)), "{}", noted(&ended));
+    running.happened(0, full(), at(3));
+    assert_eq!((words(&running)[0], noted(&running).as_str()), (Word::Unsaved, "the disk is full"));
+    // The next board comes while it is tried again to save the result.
+    running.happened(0, Event::Present(false), at(4));
+    running.scan(&serial(2), WEBER, at(5)).unwrap();
+    running.happened(0, Event::Present(true), at(6));
+    running.happened(0, full(), at(7));
+    assert!(noted(&running).contains(&serial(2)), "{}", noted(&running));
+}
