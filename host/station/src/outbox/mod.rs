@@ -236,7 +236,14 @@ fn left(store: &SharedStore, sink: &dyn Sink) -> Result<Left, StoreError> {
 }
 
 fn beat(store: &SharedStore, sink: &mut dyn Sink, standing: &mut Standing) {
-    let left = left(store, sink).unwrap_or_default();
+    let read = left(store, sink);
+    match &read {
+        Ok(left) => standing.left = Some(*left),
+        Err(error) => {
+            tracing::error!("what waits for {} cannot be counted: {}", sink.name(), Said::of(error));
+        }
+    }
+    let Some(left) = standing.left else { return };
     let heard = sink.beat(left.entries, left.dead);
     match &heard {
         Ok(Some(clock)) => store.with(|store| store.heard_plant(*clock)),
@@ -245,7 +252,7 @@ fn beat(store: &SharedStore, sink: &mut dyn Sink, standing: &mut Standing) {
     }
     // If something waits, whether that is taken says more.
     if matches!(heard, Ok(Some(_))) && left.entries == left.dead {
-        standing.there(sink.name(), 0, || Ok(left));
+        standing.there(sink.name(), 0, || read);
     }
 }
 
@@ -318,33 +325,57 @@ mod tests {
         }
     }
 
+    /// A sink that keeps what it is told in a beat.
+    struct Listening(Option<(u32, u32)>);
+
+    impl Sink for Listening {
+        fn name(&self) -> &str {
+            "mes"
+        }
+        fn take(&mut self, _: &Parcel) -> Result<(), Undelivered> {
+            Ok(())
+        }
+        fn beat(&mut self, unsent: u32, dead: u32) -> Result<Option<HeardClock>, Said> {
+            self.0 = Some((unsent, dead));
+            Ok(None)
+        }
+    }
+
+    /// A store with three entries for that sink, of which one waits for a person.
+    fn store(place: &Folder) -> SharedStore {
+        let mut store = crate::store::Store::open(place).unwrap();
+        store.sends_to(vec!["mes".to_owned()]).unwrap();
+        ["1", "2", "3"].iter().for_each(|number| store.note("weber", "scan", "1", number).unwrap());
+        let first = place.due("mes", clock::now_ms(), i64::MAX).unwrap().remove(0);
+        let dead = Tried::Dead { said: Said::uncoded("no".to_owned()) };
+        store.tried("mes", &[(first, dead)], clock::now_ms()).unwrap();
+        SharedStore::new(store)
+    }
+
     /// It hears of both in a beat, and the plant shows where a person has to look at something.
     #[test]
     fn what_waits_for_a_person_is_told_from_what_is_tried_again() {
-        struct Listening(Option<(u32, u32)>);
-        impl Sink for Listening {
-            fn name(&self) -> &str {
-                "mes"
-            }
-            fn take(&mut self, _: &Parcel) -> Result<(), Undelivered> {
-                Ok(())
-            }
-            fn beat(&mut self, unsent: u32, dead: u32) -> Result<Option<HeardClock>, Said> {
-                self.0 = Some((unsent, dead));
-                Ok(None)
-            }
-        }
+        let place = tempfile::tempdir().unwrap();
+        let mut sink = Listening(None);
+        beat(&store(&Folder::new(place.path())), &mut sink, &mut Standing::default());
+        assert_eq!(sink.0, Some((3, 1)));
+    }
+
+    /// The plant would show that nothing waits just when the store is in trouble.
+    #[test]
+    fn a_sink_hears_no_other_figures_while_the_outbox_cannot_be_read() {
         let place = tempfile::tempdir().unwrap();
         let folder = Folder::new(place.path());
-        let mut store = crate::store::Store::open(&folder).unwrap();
-        store.sends_to(vec!["mes".to_owned()]).unwrap();
-        ["1", "2", "3"].iter().for_each(|number| store.note("weber", "scan", "1", number).unwrap());
-        let first = folder.due("mes", clock::now_ms(), i64::MAX).unwrap().remove(0);
-        let dead = Tried::Dead { said: Said::uncoded("no".to_owned()) };
-        store.tried("mes", &[(first, dead)], clock::now_ms()).unwrap();
-        let mut sink = Listening(None);
-        beat(&SharedStore::new(store), &mut sink, &mut Standing::default());
-        assert_eq!(sink.0, Some((3, 1)));
+        let (store, mut standing) = (store(&folder), Standing::default());
+        beat(&store, &mut Listening(None), &mut standing);
+        std::fs::rename(folder.database(), place.path().join("away")).unwrap();
+        let heard = |standing: &mut Standing| {
+            let mut sink = Listening(None);
+            beat(&store, &mut sink, standing);
+            sink.0
+        };
+        assert_eq!(heard(&mut standing), Some((3, 1)), "as before");
+        assert_eq!(heard(&mut Standing::default()), None, "nothing was ever read");
     }
 
     #[test]

@@ -11,6 +11,8 @@ pub(super) struct Standing {
     is_away: bool,
     /// It did not take something for a time.
     is_behind: bool,
+    /// How much it did not have when that was read last.
+    pub(super) left: Option<Left>,
 }
 
 /// How much a sink does not have.
