@@ -100,6 +100,11 @@ pub(super) enum PublishError {
          there if you know whose it is, and ask whoever keeps the plant if not"
     )]
     Untrusted { plan: String },
+    /// Its product has a slash.
+    #[error(
+        "the product `{product}` has a slash, where settings and `plan back` would end it; give the plan a product without a slash"
+    )]
+    Slash { product: String },
     /// Its last statement has the last number that there is.
     #[error("the plan {plan} has had the last number that there is; publish it under another name")]
     NoNumber { plan: String },
@@ -115,6 +120,9 @@ pub(super) fn publish(Publish { settings, file, signed }: &Publish) -> Result<Ex
     let plan = Plan::load(file).map_err(Failure::call)?;
     let bundle = Bundle::of(file, &plan)?;
     let name = PlanName::from(&plan);
+    if name.product.contains('/') {
+        return Err(Failure::call(PublishError::Slash { product: name.product }));
+    }
     let mut desk = signed.desk(settings)?;
     // Whoever signed it, runs may have been judged by it.
     let before = desk.at.published_version(&name, &plan.version)?;

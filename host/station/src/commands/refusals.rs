@@ -20,6 +20,7 @@ codes::codes! {
         NoVersion [plan, version] => "plan-version-unknown",
         Untrusted [plan] => "plan-statement-untrusted",
         NoNumber [plan] => "plan-without-number",
+        Slash [product] => "plan-product-with-slash",
     }
     ;
     EngineEnded => "engine-ended"

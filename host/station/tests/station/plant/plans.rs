@@ -354,6 +354,24 @@ fn a_station_starts_with_what_it_has_when_the_plant_does_not_answer() {
     );
 }
 
+/// Settings and `plan back` name a plan by its product and its name, with a slash between.
+#[test]
+fn a_plan_whose_product_has_a_slash_is_not_published() {
+    let made = Published::new();
+    let text = fs::read_to_string(made.path("plan.toml")).unwrap();
+    for (product, name, code) in [("CAM/T", "quick", 2), ("CAM-T", "quick/final", 0)] {
+        let renamed =
+            text.replace("\"CAM-T\"", &format!("\"{product}\"")).replace("\"quick\"", &format!("\"{name}\""));
+        fs::write(made.path("plan.toml"), renamed).unwrap();
+        let did = made.publish("engel.key");
+        assert_eq!(did.code, Some(code), "{did:?}");
+        assert_eq!(did.complained.contains("a product without a slash"), code == 2, "{did:?}");
+    }
+    let settings = fs::read_to_string(made.path("station.toml")).unwrap();
+    fs::write(made.path("station.toml"), settings.replace("CAM-T/quick", "CAM-T/quick/final")).unwrap();
+    assert_eq!(made.fetch().said, "CAM-T/quick/final 1, number 1, is new\n");
+}
+
 #[test]
 fn what_is_no_plan_of_its_own_folder_or_no_key_is_refused() {
     let made = Published::new();
