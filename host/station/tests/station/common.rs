@@ -1,5 +1,6 @@
 //! What all tests use: a plan, serial numbers, the program, and a view of what it stored.
 
+use std::fmt::Debug;
 use std::fs::{self, File};
 use std::os::unix::fs::{FileTypeExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
@@ -39,7 +40,24 @@ pub(crate) fn script(folder: &Path, name: &str, lines: &str) -> PathBuf {
 }
 
 /// How long to wait for what must happen: the limit only ends hangs.
-const HANG: Duration = Duration::from_secs(120);
+pub(crate) const HANG: Duration = Duration::from_secs(120);
+
+/// Waits until `is_so`, which `what` names.
+pub(crate) fn until(what: &str, mut is_so: impl FnMut() -> bool) {
+    until_found(what, || if is_so() { Ok(()) } else { Err("not so") });
+}
+
+/// Waits until `look` finds what `what` names; before that it returns what there is instead.
+pub(crate) fn until_found<T, E: Debug>(what: &str, mut look: impl FnMut() -> Result<T, E>) -> T {
+    let begun = Instant::now();
+    loop {
+        match look() {
+            Ok(found) => return found,
+            Err(instead) => assert!(begun.elapsed() < HANG, "still waiting for {what}: {instead:?}"),
+        }
+        thread::sleep(Duration::from_millis(20));
+    }
+}
 
 /// The writing end of the FIFO at `path`, as soon as a reader has opened it. The reader waits until it is dropped.
 pub(crate) fn held_up(path: &Path) -> File {

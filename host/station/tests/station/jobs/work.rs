@@ -8,7 +8,7 @@ use nix::unistd::Pid;
 use serde_json::Value;
 
 use super::{any, job, plan, run_out, settings, shared};
-use crate::common::{Did, program};
+use crate::common::{Did, program, until};
 use crate::plant::server::Server;
 
 fn work(server: &Server, name: &str) -> (tempfile::TempDir, Command) {
@@ -18,6 +18,11 @@ fn work(server: &Server, name: &str) -> (tempfile::TempDir, Command) {
     command.args(["work", "--once", "--json", "--settings"]).arg(path);
     command.stdout(Stdio::piped()).stderr(Stdio::piped());
     (folder, command)
+}
+
+/// Waits until somebody has claimed a job.
+fn until_claimed(server: &Server) {
+    until("a claim", || !server.rows("SELECT 1 FROM job WHERE state = 'claimed'").is_empty());
 }
 
 #[test]
@@ -68,9 +73,7 @@ fn a_worker_that_is_killed_leaves_a_job_that_another_one_does() {
     plant.add_jobs(&job(&plan, &any), 1).unwrap();
     let (folder, mut command) = work(&server, "12");
     let mut first = command.spawn().unwrap();
-    while server.rows("SELECT 1 FROM job WHERE state = 'claimed'").is_empty() {
-        std::thread::sleep(std::time::Duration::from_millis(20));
-    }
+    until_claimed(&server);
     first.kill().unwrap();
     first.wait().unwrap();
     let (_other, mut command) = work(&server, "13");
@@ -129,10 +132,10 @@ fn a_station_judges_so_many_jobs_at_once_and_ends_all_of_them_when_it_is_told_to
     let open =
         || crate::common::query(&folder.path().join("data"), "SELECT lane FROM run WHERE state = 'open'");
     let both = "SELECT 1 FROM job WHERE state = 'claimed' HAVING count(*) = 2";
-    while server.rows(both).is_empty() || open().len() < 2 {
+    until("two runs of two jobs", || {
         assert_eq!(worker.try_wait().unwrap(), None, "it ends");
-        std::thread::sleep(std::time::Duration::from_millis(20));
-    }
+        !server.rows(both).is_empty() && open().len() == 2
+    });
     // Both places are taken: the third board is free, and its job waits.
     assert_eq!(
         server.rows("SELECT state, count(*) FROM job GROUP BY state ORDER BY state"),
@@ -159,9 +162,7 @@ fn a_run_that_was_ended_since_its_job_was_cancelled_says_so_and_blames_nobody() 
     let id = plant.add_jobs(&job(&plan, &any), 1).unwrap().remove(0);
     let (folder, mut command) = work(&server, "12");
     let worker = command.spawn().unwrap();
-    while server.rows("SELECT 1 FROM job WHERE state = 'claimed'").is_empty() {
-        std::thread::sleep(std::time::Duration::from_millis(20));
-    }
+    until_claimed(&server);
     assert!(plant.cancel_job(&id, "engel", "a mistake").unwrap());
     let did = Did::from(worker.wait_with_output().unwrap());
     let ended: Value = serde_json::from_str(&did.said).unwrap();
@@ -183,14 +184,14 @@ fn a_station_takes_no_job_while_another_one_has_its_name() {
     plant.add_jobs(&job(&plan, &any), 1).unwrap();
     let (_second, mut command) = work(&server, "12");
     let mut second = command.spawn().unwrap();
-    while second.try_wait().unwrap().is_none() {
+    until("the end of the second one", || {
         if !server.rows("SELECT 1 FROM job WHERE fence > 0").is_empty() {
             second.kill().unwrap();
             second.wait().unwrap();
             panic!("it has taken the job");
         }
-        std::thread::sleep(std::time::Duration::from_millis(20));
-    }
+        second.try_wait().unwrap().is_some()
+    });
     let did = Did::from(second.wait_with_output().unwrap());
     assert!(
         did.code == Some(3) && did.complained.contains("another station of this plant is called 12"),

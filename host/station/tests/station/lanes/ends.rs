@@ -15,7 +15,7 @@ use nix::unistd::Pid;
 use serde_json::Value;
 
 use super::floor::{HANG, Running, SERIALS, Station};
-use crate::common::program;
+use crate::common::{program, until};
 
 /// A board that accepts the connection and stays silent.
 pub(crate) fn silent_board() -> (TcpListener, String) {
@@ -128,9 +128,7 @@ fn no_board_is_taken_while_the_station_closes() {
     let folder = Folder::new(&settings.data);
     let engine = Engine::start(settings, Store::open(&folder).unwrap(), program().to_owned()).unwrap();
     let is_ready = |lane: &LaneState| lane.state == Word::Ready;
-    while !engine.lanes().iter().all(is_ready) {
-        thread::sleep(Duration::from_millis(20));
-    }
+    until("lanes that are ready", || engine.lanes().iter().all(is_ready));
     engine.label(1, Some(0), SERIALS[0], "weber", None);
     let (mut board, _) = listener.accept().unwrap();
     let database = rusqlite::Connection::open(folder.database()).unwrap();

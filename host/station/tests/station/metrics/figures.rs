@@ -3,14 +3,12 @@
 use std::fs;
 use std::path::Path;
 use std::process::Command;
-use std::thread;
-use std::time::Duration;
 
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
 use super::text::{Figures, assert_sound, promtool, told};
-use crate::common;
+use crate::common::{self, until_found};
 use crate::lanes::ends::{connected, silent_board};
 use crate::pages::station::{PUBLIC, SERIALS, Serving, Station};
 use crate::plant::server::Server;
@@ -28,13 +26,11 @@ pub(super) fn scan(serving: &Serving, lane: &str, serial: &str) {
 
 /// The figures, as soon as this one has this value.
 pub(super) fn once(serving: &Serving, name: &str, value: f64) -> Figures {
-    loop {
+    until_found(&format!("{name} to be {value}"), || {
         let figures = Figures::of(serving);
-        if figures.at(name) == value {
-            return figures;
-        }
-        thread::sleep(Duration::from_millis(20));
-    }
+        let found = figures.at(name);
+        if found == value { Ok(figures) } else { Err(found) }
+    })
 }
 
 pub(super) fn in_state(serving: &Serving, lane: &str, state: &str) -> Figures {

@@ -9,14 +9,9 @@ fn failed() -> (Station, Serving, String) {
         .where_instead("plan.toml", "not-checked", "if-present");
     let serving = station.serve();
     let operator = serving.operator();
-    let scan = operator.post("/scan", &[("text", SERIALS[0])]).with("accept", "application/json");
-    // The board is only seen once the station has looked for it.
-    while !scan.send().text().contains("\"is_taken\":true") {}
-    let mut failed = Vec::new();
-    while failed.is_empty() {
-        failed = station.query("SELECT id FROM run WHERE verdict = 'FAIL'");
-    }
-    (station, serving, failed.remove(0))
+    operator.post("/scan", &[("text", SERIALS[0])]).until_taken();
+    let failed = station.until_failed();
+    (station, serving, failed)
 }
 
 fn page(browser: &Browser, path: &str) -> String {

@@ -3,10 +3,8 @@
 use std::collections::BTreeMap;
 use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
-use std::time::Duration;
 
-/// How long to wait for an answer: the limit only ends hangs.
-const HANG: Duration = Duration::from_secs(120);
+use crate::common::{HANG, until_found};
 
 /// An answer.
 #[derive(Clone, Debug)]
@@ -128,6 +126,19 @@ impl Request {
     pub(crate) fn send(&self) -> Answer {
         let text = self.text();
         exchange(self.port, text.as_bytes()).unwrap_or_else(|error| panic!("no answer to {self:?}: {error}"))
+    }
+
+    /// Sends it until the answer contains `text`, and returns that answer's body.
+    pub(crate) fn until(&self, text: &str) -> String {
+        until_found(text, || {
+            let answer = self.send().text();
+            if answer.contains(text) { Ok(answer) } else { Err(answer) }
+        })
+    }
+
+    /// Sends a scan until it is taken: a board is only seen once the station has looked for it.
+    pub(crate) fn until_taken(self) {
+        self.with("accept", "application/json").until("\"is_taken\":true");
     }
 
     /// The lines of an answer that does not end, including those of its head.

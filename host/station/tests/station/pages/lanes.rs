@@ -2,11 +2,10 @@
 
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::net::TcpStream;
-use std::time::Duration;
 
 use serde_json::Value;
 
-use crate::common::{NO_AUDIT, plant_settings};
+use crate::common::{HANG, NO_AUDIT, plant_settings, until};
 use crate::pages::station::{SERIALS, Serving, Station};
 
 /// The page's stream of news.
@@ -15,7 +14,7 @@ struct Live(BufReader<TcpStream>);
 impl Live {
     fn of(serving: &Serving) -> Self {
         let mut stream = TcpStream::connect(("127.0.0.1", serving.port)).unwrap();
-        stream.set_read_timeout(Some(Duration::from_secs(120))).unwrap();
+        stream.set_read_timeout(Some(HANG)).unwrap();
         write!(stream, "GET /live HTTP/1.1\r\nhost: 127.0.0.1:{}\r\n\r\n", serving.port).unwrap();
         Self(BufReader::new(stream))
     }
@@ -158,11 +157,8 @@ fn every_language_says_it_in_its_words() {
     let station = Station::private(1);
     let serving = station.serve();
     for (preferred, word) in [("de-AT", "BEREIT"), ("zh", "就绪"), ("fr", "READY")] {
-        let mut seen = String::new();
         // The board is only seen once the station has looked for it.
-        while !seen.contains("lane ready") {
-            seen = serving.here().get("/").with("accept-language", preferred).send().text();
-        }
+        let seen = serving.here().get("/").with("accept-language", preferred).until("lane ready");
         assert!(seen.contains(word), "{preferred}: {seen}");
     }
     let here = serving.here();
@@ -208,12 +204,8 @@ fn the_page_says_plan_station_and_operator_when_it_was_saved_and_the_day() {
     let station = Station::public(1);
     let serving = station.serve();
     let operator = serving.operator();
-    let scan = operator.post("/scan", &[("text", SERIALS[0])]).with("accept", "application/json");
-    while !scan.send().text().contains("\"is_taken\":true") {}
-    let mut page = String::new();
-    while !page.contains("lane pass") {
-        page = operator.get("/").send().text();
-    }
+    operator.post("/scan", &[("text", SERIALS[0])]).until_taken();
+    let page = operator.get("/").until("lane pass");
     assert!(page.contains("<b class=\"plans\">CAM-T quick 1</b> · Station <b>12</b>"), "{page}");
     assert!(page.contains("Weber <span class=\"role\">(operator)</span>"), "{page}");
     let (_, saved) = page.split_once("class=\"saved\"").unwrap();
@@ -238,9 +230,7 @@ fn the_page_counts_what_is_not_at_the_plant_and_nothing_that_other_sinks_do_not_
     let sink = "[[sink]]\nname = \"share\"\nfolder = \"nowhere\"\nformat = \"record\"";
     let station = Station::with(1, &format!("[web]\nlisten = \"127.0.0.1:0\"\n{plant}{sink}"));
     let serving = station.serve();
-    let scan =
-        || serving.here().post("/scan", &[("text", SERIALS[0])]).with("accept", "application/json").send();
-    while !scan().text().contains("\"is_taken\":true") {}
+    serving.here().post("/scan", &[("text", SERIALS[0])]).until_taken();
     seen(&serving, "lane pass");
     let unsent = |of: &str| station.query(&format!("SELECT count(*) FROM outbox WHERE {of}")).remove(0);
     for control in ["sink = 'share'", "sink = 'plant' AND kind = 'audit'"] {
@@ -264,9 +254,7 @@ fn what_comes_long_behind_the_beat_that_its_page_heard_is_not_done() {
     let beat = || Live::of(&serving).next().2["beat"].as_str().unwrap().to_owned();
     let old = beat();
     // A scan of the lane's barcode changes nothing here.
-    while post("/scan", "HR:LANE:1", &old)["is_taken"] == true {
-        std::thread::sleep(Duration::from_millis(50));
-    }
+    until("a beat that is too old", || post("/scan", "HR:LANE:1", &old)["is_taken"] == false);
     let (_, milliseconds) = old.split_once('-').unwrap();
     for (beat, of) in
         [(old.as_str(), "old"), (&format!("1-{milliseconds}"), "of another start"), ("x", "none")]
@@ -279,7 +267,7 @@ fn what_comes_long_behind_the_beat_that_its_page_heard_is_not_done() {
     }
     assert_eq!(station.query("SELECT act FROM audit"), Vec::<String>::new());
     // With a recent beat, once the board is seen.
-    while post("/scan", SERIALS[0], &beat())["is_taken"] != true {}
+    until("a board that is seen", || post("/scan", SERIALS[0], &beat())["is_taken"] == true);
 }
 
 /// A station whose lane has a serial number, and is started by `start`.
@@ -295,11 +283,7 @@ fn started_by(start: &str) -> (Station, Serving) {
 
 /// The page of the lanes, as soon as it contains `state`.
 fn seen(serving: &Serving, state: &str) -> String {
-    let mut page = String::new();
-    while !page.contains(state) {
-        page = serving.here().get("/").send().text();
-    }
-    page
+    serving.here().get("/").until(state)
 }
 
 /// As on a full disk.

@@ -1,15 +1,11 @@
 //! Whether pages say everything in the reader's language.
 
+use crate::common::until;
 use crate::pages::station::{Browser, SERIALS, Station};
 
 /// Waits for the verdict on what was scanned in the lane, and returns the page of that run.
 fn run_of(here: &Browser, lane: &str, word: &str, language: &str) -> String {
-    let page = loop {
-        let page = here.get("/").send().text();
-        if page.contains(&format!("lane {word}")) {
-            break page;
-        }
-    };
+    let page = here.get("/").until(&format!("lane {word}"));
     let lane = page.split(&format!("id=\"lane-{lane}\"")).nth(1).unwrap();
     let run = lane.split("data-run=\"").nth(1).unwrap().split('"').next().unwrap();
     let run = here.get(&format!("/runs/{run}")).with("accept-language", language).send().text();
@@ -17,8 +13,7 @@ fn run_of(here: &Browser, lane: &str, word: &str, language: &str) -> String {
 }
 
 fn scan(here: &Browser, serial: &str, lane: &str) {
-    let scan = here.post("/scan", &[("text", serial), ("lane", lane)]).with("accept", "application/json");
-    while !scan.clone().send().text().contains("\"is_taken\":true") {}
+    here.post("/scan", &[("text", serial), ("lane", lane)]).until_taken();
 }
 
 #[test]
@@ -37,10 +32,10 @@ fn nothing_that_an_operator_is_told_stays_english_in_another_language() {
         let refused = scan("CA0131103629", "1", language);
         assert!(refused.contains(said), "{refused}");
     }
-    while !scan(SERIALS[0], "1", "de").contains("wird auf Platz 1 geprüft") {}
+    until("a scan that is taken", || scan(SERIALS[0], "1", "de").contains("wird auf Platz 1 geprüft"));
     assert_eq!(here.post("/lanes/2/out", &[]).send().status, 303);
     let page = |language: &str| here.get("/").with("accept-language", language).send().text();
-    while !page("en").contains("lane fail") {}
+    here.get("/").until("lane fail");
     for (language, said) in [
         ("de", ["Abtastwerten weichen ab", "durch eine Person", "gesichert ", "Bitstream neu laden"]),
         ("zh", ["个样值中", "由人员停用", "已保存 ", "请重新加载比特流"]),
@@ -106,9 +101,13 @@ fn under_the_fail_of_the_mock_board_nobody_is_told_to_put_the_own_board_aside() 
     run_of(&here, "1", "pass", "en");
     let page = |language: &str| here.get("/").with("accept-language", language).send().text();
     // Now and then a fault is drawn that goes unfound.
-    while !page("en").contains("lane fail") {
-        here.post("/scan", &[("text", "HR:MOCK"), ("lane", "1")]).send();
-    }
+    until("a FAIL of the mock board", || {
+        let is_there = page("en").contains("lane fail");
+        if !is_there {
+            here.post("/scan", &[("text", "HR:MOCK"), ("lane", "1")]).send();
+        }
+        is_there
+    });
     for (language, said, aside) in [
         ("en", "the mock board failed, as it must", "put the board aside"),
         ("de", "Mock-Platine SCHLECHT, wie verlangt", "Platine aussondern"),

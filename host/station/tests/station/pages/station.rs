@@ -13,7 +13,7 @@ use tempfile::TempDir;
 
 use super::http::{Answer, Request, escaped};
 pub(crate) use crate::common::SERIALS;
-use crate::common::{self, guarded_plan, program};
+use crate::common::{self, guarded_plan, program, until_found};
 
 /// The name under which browsers reach a station that others can reach.
 pub(crate) const PUBLIC: &str = "station12.example";
@@ -120,6 +120,14 @@ impl Station {
     /// Reads the database without the program.
     pub(crate) fn query(&self, text: &str) -> Vec<String> {
         common::query(&self.path("data"), text)
+    }
+
+    /// Waits for a FAIL, and returns its run.
+    pub(crate) fn until_failed(&self) -> String {
+        until_found("a FAIL", || {
+            let found = self.query("SELECT id FROM run WHERE verdict = 'FAIL'").pop();
+            found.ok_or_else(|| self.query("SELECT verdict FROM run"))
+        })
     }
 }
 

@@ -1,12 +1,11 @@
 //! Lanes of a station whose plant is away.
 
 use std::fs;
-use std::time::Duration;
 
 use halfrow_station::store::{Folder, Store};
 
 use super::server::Server;
-use crate::common::plant_settings;
+use crate::common::{plant_settings, until, until_found};
 use crate::lanes::floor::{SERIALS, Station};
 
 /// A station of this name, with `more` under `[plant]` in its settings.
@@ -22,9 +21,10 @@ pub(crate) fn station(server: &Server, name: &str, more: &str) -> Station {
 
 /// Waits until the station has nothing more to send.
 pub(super) fn await_sent(station: &Station) {
-    while station.query("SELECT count(*) FROM outbox WHERE done_ms IS NULL") != ["0"] {
-        std::thread::sleep(Duration::from_millis(50));
-    }
+    until_found("an outbox with nothing to send", || {
+        let unsent = station.query("SELECT kind || ' ' || subject FROM outbox WHERE done_ms IS NULL");
+        if unsent.is_empty() { Ok(()) } else { Err(unsent) }
+    });
 }
 
 #[test]
@@ -82,9 +82,7 @@ fn no_more_is_judged_than_may_be_unsent() {
     assert_eq!(station.query("SELECT count(*) FROM run"), ["2"]);
     // The plant is back, and gets what waits before another scan would be refused.
     server.again();
-    while server.rows("SELECT id FROM run").len() < 2 {
-        std::thread::sleep(Duration::from_millis(50));
-    }
+    until("two runs at the plant", || server.rows("SELECT id FROM run").len() >= 2);
     // The station learns of it a moment later.
     await_sent(&station);
     running.scan(SERIALS[2]);

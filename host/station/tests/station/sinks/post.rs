@@ -16,7 +16,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use super::{SEND, command, did, send};
-use crate::common::{Did, program, query};
+use crate::common::{Did, program, query, until};
 use crate::history::released::history;
 use crate::lanes::floor::{HANG, SERIALS, Station};
 use crate::plant::link::certificates;
@@ -348,9 +348,8 @@ fn the_log_says_once_that_a_sink_takes_nothing_and_once_that_it_does_again() {
     };
     running.scan(SERIALS[0]);
     running.state("1", "PASS");
-    while station.query("SELECT count(*) FROM outbox WHERE kind = 'run' AND attempts > 1") != ["2"] {
-        thread::sleep(Duration::from_millis(50));
-    }
+    let tried = "SELECT count(*) FROM outbox WHERE kind = 'run' AND attempts > 1";
+    until("two entries that were tried again", || station.query(tried) == ["2"]);
     told(1, "WARN the sink share takes nothing, and all waits for it: the folder ");
     told(1, "WARN the sink mes does not take the run ");
     told(0, "is sent again");

@@ -66,16 +66,12 @@ fn no_page_violates_a_rule_of_axe() {
         );
         let serving = station.serve();
         let (here, own) = (serving.here(), format!("http://127.0.0.1:{}", serving.port));
-        let scan = here.post("/scan", &[("text", SERIALS[0]), ("lane", "1")]);
-        while !scan.clone().with("accept", "application/json").send().text().contains("\"is_taken\":true") {}
-        let mut failed = Vec::new();
-        while failed.is_empty() {
-            failed = station.query("SELECT id FROM run WHERE verdict = 'FAIL'");
-        }
+        here.post("/scan", &[("text", SERIALS[0]), ("lane", "1")]).until_taken();
+        let failed = station.until_failed();
         let mut page = Chromium::open(&format!("{own}/"));
         violations(&mut page, &axe, &own, "/", &mut found);
         if lanes == 1 {
-            let (run, unit) = (format!("/runs/{}", failed[0]), format!("/unit?serial={}", SERIALS[0]));
+            let (run, unit) = (format!("/runs/{failed}"), format!("/unit?serial={}", SERIALS[0]));
             for path in ["/login", "/history", &run, &unit, "/yield", "/yield?by=day", "/pareto", "/nothing"]
             {
                 violations(&mut page, &axe, &own, path, &mut found);

@@ -5,6 +5,7 @@ use std::time::Duration;
 use serde_json::{Value, json};
 
 use super::chromium::Chromium;
+use crate::common::until;
 use crate::pages::station::{Browser, SERIALS, Serving, Station};
 
 /// A station of `lanes` lanes. The third has a board that cannot be reached, the sixth a button.
@@ -18,8 +19,7 @@ fn station(lanes: usize) -> Station {
 
 /// Lets `serial` be tested in `lane`, or wait there.
 fn scan(here: &Browser, serial: &str, lane: &str) {
-    let scan = here.post("/scan", &[("text", serial), ("lane", lane)]).with("accept", "application/json");
-    while !scan.clone().send().text().contains("\"is_taken\":true") {}
+    here.post("/scan", &[("text", serial), ("lane", lane)]).until_taken();
 }
 
 /// Opens the page in `language`, at this size.
@@ -127,10 +127,10 @@ fn without_a_script_nothing_that_is_typed_is_thrown_away() {
     page.wait("document.readyState === 'complete' && document.activeElement.name === 'text'");
     page.call("Input.insertText", json!({ "text": "CA967803" }));
     let lanes = |page: &Chromium| page.asked.iter().filter(|address| address.ends_with("/still")).count();
-    while lanes(&page) < 3 {
+    until("lanes that are loaded anew", || {
         page.wait("true");
-        std::thread::sleep(Duration::from_millis(50));
-    }
+        lanes(&page) >= 3
+    });
     let field = "[document.activeElement.name, document.activeElement.value]";
     assert_eq!(page.evaluate(field), json!(["text", "CA967803"]));
     let seen = page.evaluate("[...document.querySelectorAll('#floor, iframe, form.hand')].map(one => [one.tagName, one.checkVisibility()]).join()");
