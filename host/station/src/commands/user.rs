@@ -1,9 +1,13 @@
 //! `halfrow-station user`
 
-use std::io::{self, BufRead as _, IsTerminal as _};
+use std::io::{self, BufRead as _, IsTerminal as _, Stdin};
 use std::os::fd::AsRawFd as _;
 
 use clap::{Args, Subcommand};
+use nix::errno::Errno;
+use nix::poll::{PollFd, PollFlags, poll};
+use nix::sys::signal::{SigSet, SigmaskHow, Signal};
+use nix::sys::signalfd::{SfdFlags, SignalFd};
 use nix::sys::termios::{self, LocalFlags, SetArg};
 
 use super::beginning::SettingsFile;
@@ -80,25 +84,60 @@ fn word(role: Role) -> &'static str {
 /// Reads a line of stdin. A terminal shows a prompt, and hides what is typed.
 fn asked(what: &str) -> Result<String, Failure> {
     let stdin = io::stdin();
-    let hidden = if stdin.is_terminal() {
+    let line = if stdin.is_terminal() {
         console::ask(what);
-        termios::tcgetattr(stdin.as_raw_fd()).ok()
+        typed(&stdin)
     } else {
-        None
+        read(&stdin)
     };
-    let show = |is_shown: bool| {
-        if let Some(mut settings) = hidden.clone() {
-            settings.local_flags.set(LocalFlags::ECHO, is_shown);
-            // If a terminal cannot hide it, the line is read all the same.
-            let _ = termios::tcsetattr(stdin.as_raw_fd(), SetArg::TCSANOW, &settings);
-        }
-    };
-    show(false);
+    Ok(line.map_err(Failure::call)?.trim_end_matches(['\r', '\n']).to_owned())
+}
+
+fn read(stdin: &Stdin) -> io::Result<String> {
     let mut line = String::new();
-    let read = stdin.lock().read_line(&mut line);
-    show(true);
-    read.map_err(Failure::call)?;
-    Ok(line.trim_end_matches(['\r', '\n']).to_owned())
+    stdin.lock().read_line(&mut line)?;
+    Ok(line)
+}
+
+/// Reads a line that the terminal hides. A signal that ends the program waits until the terminal shows what is typed
+/// again.
+fn typed(stdin: &Stdin) -> io::Result<String> {
+    let held_up: SigSet = [Signal::SIGINT, Signal::SIGQUIT, Signal::SIGTERM, Signal::SIGHUP, Signal::SIGTSTP]
+        .into_iter()
+        .collect();
+    let signals = SignalFd::with_flags(&held_up, SfdFlags::SFD_CLOEXEC)?;
+    loop {
+        let before = held_up.thread_swap_mask(SigmaskHow::SIG_BLOCK)?;
+        show(stdin, false);
+        let is_typed = until_typed(stdin, &signals);
+        let line = is_typed.and_then(|is_typed| if is_typed { read(stdin).map(Some) } else { Ok(None) });
+        show(stdin, true);
+        before.thread_set_mask()?;
+        // The signal only stopped the program for a time, or is ignored.
+        if let Some(line) = line? {
+            return Ok(line);
+        }
+    }
+}
+
+/// Shows or hides what is typed. If a terminal cannot hide it, the line is read all the same.
+fn show(stdin: &Stdin, is_shown: bool) {
+    if let Ok(mut settings) = termios::tcgetattr(stdin.as_raw_fd()) {
+        settings.local_flags.set(LocalFlags::ECHO, is_shown);
+        let _ = termios::tcsetattr(stdin.as_raw_fd(), SetArg::TCSANOW, &settings);
+    }
+}
+
+/// Whether a line was typed before a signal came.
+fn until_typed(stdin: &Stdin, signals: &SignalFd) -> io::Result<bool> {
+    let mut either = [stdin.as_raw_fd(), signals.as_raw_fd()].map(|fd| PollFd::new(fd, PollFlags::POLLIN));
+    while let Err(error) = poll(&mut either, -1) {
+        if error != Errno::EINTR {
+            return Err(error.into());
+        }
+    }
+    let [_, signalled] = either.map(|fd| fd.revents().is_some_and(|events| !events.is_empty()));
+    Ok(!signalled)
 }
 
 impl From<UserError> for Failure {

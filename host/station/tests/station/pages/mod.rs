@@ -8,5 +8,6 @@ pub(crate) mod http;
 mod lanes;
 mod languages;
 mod places;
+mod prompt;
 pub(crate) mod station;
 mod table;
