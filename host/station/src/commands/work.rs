@@ -89,6 +89,9 @@ fn take_jobs(work: &Work<'_>, arguments: &Arguments, at_once: u32, stop: Stop<'_
     thread::scope(|scope| {
         let hands: Vec<_> = (1..at_once)
             .map(|number| thread::Builder::new().name(format!("hand {number}")).spawn_scoped(scope, hand))
+            .inspect(|begun| {
+                is_over.fetch_or(begun.is_err(), Ordering::Relaxed);
+            })
             .collect();
         let mut ended = hand();
         for other in hands {

@@ -8,7 +8,7 @@ use nix::unistd::Pid;
 use serde_json::Value;
 
 use super::{any, job, plan, run_out, settings, shared};
-use crate::common::{Did, program, until};
+use crate::common::{Did, HANG, program, until};
 use crate::plant::server::Server;
 
 fn work(server: &Server, name: &str) -> (tempfile::TempDir, Command) {
@@ -152,6 +152,23 @@ fn a_station_judges_so_many_jobs_at_once_and_ends_all_of_them_when_it_is_told_to
     fs::write(&path, text + "at_once = 0\n").unwrap();
     let refused = Did::from(command.output().unwrap());
     assert!(refused.code == Some(2) && refused.complained.contains("give 1 to 64"), "{refused:?}");
+}
+
+/// It would take fewer at a time for as long as it runs, and nobody would know.
+#[test]
+fn a_station_without_a_thread_for_each_of_its_jobs_ends_and_says_so() {
+    let (server, _plant) = shared(0);
+    let folder = crate::common::folder();
+    let path = settings(&server, folder.path(), "12");
+    fs::write(&path, fs::read_to_string(&path).unwrap() + "at_once = 8\n").unwrap();
+    let mut traced = Command::new("timeout");
+    traced.arg(HANG.as_secs().to_string());
+    // Of the threads that the first one starts, the fourth and all later ones fail.
+    traced.args(["strace", "-f", "-b", "execve", "-qq", "-o"]).arg(folder.path().join("calls"));
+    traced.args(["-e", "trace=clone3", "-e", "signal=none", "-e", "inject=clone3:error=EAGAIN:when=4+"]);
+    traced.arg(program()).args(["work", "--any-disk", "--settings"]).arg(&path);
+    let did = Did::from(traced.output().unwrap());
+    assert!(did.code == Some(3) && did.complained.contains("temporarily unavailable"), "{did:?}");
 }
 
 #[test]
