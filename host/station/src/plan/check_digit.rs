@@ -84,7 +84,8 @@ fn mod_97(number: &str) -> bool {
         'A'..='Z' => Some((100 * value + letter.to_digit(36)?) % 97),
         _ => None,
     };
-    number.chars().try_fold(0, read) == Some(1)
+    // Two of them are the check digits.
+    number.chars().count() >= 3 && number.chars().try_fold(0, read) == Some(1)
 }
 
 fn mod_43(number: &str) -> bool {
@@ -160,11 +161,12 @@ mod tests {
     #[test]
     fn what_is_too_short_or_too_long_or_no_number_does_not_hold() {
         for check in CheckDigit::ALL.into_iter().filter(|&check| check != CheckDigit::None) {
-            for number in ["", "0", "X", "é", "-"] {
+            for number in ["", "0", "1", "X", "é", "-"] {
                 assert!(!check.holds(number), "{check} `{number}`");
             }
         }
         assert!(!CheckDigit::Mod11.holds("50306406152"), "the eleventh digit would weigh nothing");
+        assert!(!CheckDigit::Mod97.holds("01"), "two check digits of nothing");
         assert!(CheckDigit::None.holds("anything"));
     }
 }
