@@ -33,7 +33,7 @@ pub enum BundleError {
         "the plan names a file {PLAN}, which it is called itself where it is unpacked; give that file another name"
     )]
     Plan,
-    /// Where a file's name ends would not be plain.
+    /// A file's name has control characters, with which nobody could tell where the name ends.
     #[error("the plan names {name:?}, which has control characters; give that file another name")]
     Control {
         /// The name.
@@ -132,7 +132,10 @@ impl Bundle {
     /// [`BundleError`] when it is not what its hash says.
     pub(super) fn unpacked(text: &str, expected: &str) -> Result<Unpacked, BundleError> {
         let malformed = || BundleError::Malformed { sha256: expected.to_owned() };
-        let Self { text, files, .. } = serde_json::from_str(text).map_err(|_| malformed())?;
+        let Self { schema, text, files } = serde_json::from_str(text).map_err(|_| malformed())?;
+        if schema != SCHEMA {
+            return Err(malformed());
+        }
         let mut unpacked = Vec::new();
         let mut hashes = Vec::new();
         for BundledFile { path, base64 } in files {
@@ -233,5 +236,16 @@ mod tests {
         }
         // The control.
         assert!(unpacked("a/b").is_ok());
+    }
+
+    #[test]
+    fn a_bundle_of_a_later_format_is_not_taken_for_one_of_this() {
+        let unpacked = |schema| {
+            let bundle = Bundle { schema, text: "text".to_owned(), files: Vec::new() };
+            Bundle::unpacked(&bundle.text(), &plan_hash("text", &[]))
+        };
+        assert!(matches!(unpacked(2), Err(BundleError::Malformed { .. })));
+        // The control.
+        assert!(unpacked(1).is_ok());
     }
 }
