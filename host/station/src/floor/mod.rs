@@ -159,20 +159,13 @@ impl Floor {
     /// # Errors
     /// [`ScanError`] when it is refused; nothing has changed then.
     pub fn scan(&mut self, text: &str, operator: &str, now: Duration) -> Result<Answer, ScanError> {
-        match Scan::read(text)? {
-            Scan::Lane(name) => {
-                let lane = self.named(&name)?;
-                self.armed = Some(lane);
-                Ok(Answer { lane: Some(lane), effect: None, said: Saying::Armed { lane: name }.into() })
-            }
-            Scan::Act(act) => self.act(self.meant()?, act, operator),
-            Scan::Mock => self.mock(self.meant()?, operator),
-            Scan::Serial(serial) => match self.meant() {
-                Ok(lane) => self.give(lane, &serial, operator),
-                Err(_) if self.scan_then_plug => self.keep(serial, operator, now),
-                Err(error) => Err(error),
-            },
+        let scan = Scan::read(text)?;
+        let is_of_lane = matches!(scan, Scan::Lane(_));
+        let answer = self.scanned(scan, self.armed, operator, now)?;
+        if !is_of_lane {
+            self.armed = None;
         }
+        Ok(answer)
     }
 
     /// Takes what `operator` scanned for this lane, whichever lane's barcode somebody else scanned before.
@@ -186,10 +179,31 @@ impl Floor {
         operator: &str,
         now: Duration,
     ) -> Result<Answer, ScanError> {
-        let others = self.armed.replace(lane);
-        let answer = self.scan(text, operator, now);
-        self.armed = others;
-        answer
+        self.scanned(Scan::read(text)?, Some(lane), operator, now)
+    }
+
+    /// Takes what was scanned for the lane `armed`, if one was named.
+    fn scanned(
+        &mut self,
+        scan: Scan,
+        armed: Option<usize>,
+        operator: &str,
+        now: Duration,
+    ) -> Result<Answer, ScanError> {
+        match scan {
+            Scan::Lane(name) => {
+                let lane = self.named(&name)?;
+                self.armed = Some(lane);
+                Ok(Answer { lane: Some(lane), effect: None, said: Saying::Armed { lane: name }.into() })
+            }
+            Scan::Act(act) => self.act(self.meant(armed)?, act, operator),
+            Scan::Mock => self.mock(self.meant(armed)?, operator),
+            Scan::Serial(serial) => match self.meant(armed) {
+                Ok(lane) => self.give(lane, &serial, operator),
+                Err(_) if self.scan_then_plug => self.keep(serial, operator, now),
+                Err(error) => Err(error),
+            },
+        }
     }
 
     /// Does with a lane what `operator` asked for with a barcode or a button.
@@ -205,7 +219,6 @@ impl Floor {
             Act::In => Saying::PutBack { lane: name },
         };
         let effect = self.lane(lane)?.take(act.event(operator))?;
-        self.armed = None;
         Ok(Answer { lane: Some(lane), effect, said: said.into() })
     }
 
@@ -231,10 +244,10 @@ impl Floor {
         }
     }
 
-    /// The lane that a scan is for.
-    fn meant(&self) -> Result<usize, ScanError> {
+    /// The lane that a scan is for, if `armed` was named before.
+    fn meant(&self, armed: Option<usize>) -> Result<usize, ScanError> {
         let only = (self.lanes.len() == 1).then_some(0);
-        self.armed.or(only).ok_or(ScanError::WhichLane { lanes: self.lanes.len() })
+        armed.or(only).ok_or(ScanError::WhichLane { lanes: self.lanes.len() })
     }
 
     fn named(&self, name: &str) -> Result<usize, ScanError> {
@@ -259,7 +272,6 @@ impl Floor {
         let accepted = self.read(plans, serial, operator)?;
         self.refuse_elsewhere(lane, &accepted)?;
         let effect = self.lane(lane)?.take(Event::Given(accepted))?;
-        self.armed = None;
         // Its board is found, so the next one that is plugged in is another.
         self.pending.take_if(|pending| pending.serial == serial);
         let (serial, name) = (serial.to_owned(), self.name(lane).to_owned());
@@ -276,7 +288,6 @@ impl Floor {
         let product = self.rules.get(plan).map_or_else(String::new, |rule| rule.product.clone());
         let accepted = Accepted { plan, product, serial, operator: operator.to_owned() };
         let effect = self.lane(lane)?.take(Event::Given(accepted))?;
-        self.armed = None;
         let said = Saying::MockJudged { lane: self.name(lane).to_owned() };
         Ok(Answer { lane: Some(lane), effect, said: said.into() })
     }

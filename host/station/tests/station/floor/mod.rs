@@ -233,6 +233,16 @@ fn a_scan_goes_to_the_lane_that_was_scanned_and_never_to_a_guess() {
     assert_eq!(floor.scan(&serial(1), WEBER, at(0)).unwrap().lane, Some(2));
 }
 
+/// Two people scan at the same time: one of them on a page that has chosen its lane.
+#[test]
+fn a_barcode_of_a_lane_is_obeyed_wherever_it_was_scanned() {
+    let mut floor = floor(&[SCAN, SCAN, SCAN], false);
+    (0..3).for_each(|lane| assert_eq!(plug(&mut floor, lane), None));
+    floor.scan_for(0, "HR:LANE:2", WEBER, at(0)).unwrap();
+    assert_eq!(floor.scan_for(0, &serial(0), WEBER, at(0)).unwrap().lane, Some(0));
+    assert_eq!(floor.scan(&serial(1), WEBER, at(0)).unwrap().lane, Some(1), "the lane that was scanned");
+}
+
 #[test]
 fn a_product_chooses_its_plan() {
     let mut floor = floor(&[SCAN], false);
