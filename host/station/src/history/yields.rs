@@ -210,11 +210,8 @@ fn cells(
     parts.extend(rest.map(|part| (statements::YIELD_HOURS, [part.from_ms, part.until_ms])));
     let mut cells = BTreeMap::<_, Counts>::new();
     for (text, [from, until]) in parts.into_iter().filter(|(_, [from, until])| from < until) {
-        for (plan, station, lane, day, counts) in
-            of.rows("to be counted", text, values![from, until], counted)?
-        {
-            let Some(plan) = plans.get(&plan).cloned() else { continue };
-            let cell = DayCell { plan, station, lane, day };
+        let counted = |row: &Found<'_>| counted(row, plans);
+        for (cell, counts) in of.rows("to be counted", text, values![from, until], counted)? {
             if wanted.is_wanted(&cell) {
                 cells.entry(cell).or_default().add(&counts);
             }
@@ -236,13 +233,15 @@ fn in_days(Period { from_ms, until_ms }: Period) -> (Range<i64>, [Period; 2]) {
     (first..end, [Period { from_ms, until_ms: first * DAY_MS }, Period { from_ms: behind, until_ms }])
 }
 
-/// Plan, station, lane and day of a row, and what was counted there.
-fn counted(row: &Found<'_>) -> Result<(String, String, String, i64, Counts), DatabaseError> {
+/// The cell of a row, and what was counted there.
+fn counted(row: &Found<'_>, plans: &BTreeMap<String, PlanName>) -> Result<(DayCell, Counts), DatabaseError> {
+    let plan = plans.get(row.text(0)?).cloned().ok_or(DatabaseError::Dangling { what: "a plan" })?;
+    let cell = DayCell { plan, station: row.get(1)?, lane: row.get(2)?, day: row.get(3)? };
     let [runs, errors, crashes, units, first] = [4, 5, 6, 7, 8].map(|column| count(row, column));
     let (first, rest) = (first?, Counts::default());
     let (runs, errors, crashes, units) = (runs?, errors?, crashes?, units?);
     let counts = Counts { runs, errors, crashes, units, first, last: first, ..rest };
-    Ok((row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?, counts))
+    Ok((cell, counts))
 }
 
 /// A unit that was judged more than once.
