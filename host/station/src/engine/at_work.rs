@@ -225,7 +225,7 @@ impl AtWork {
     /// Publishes what became of a scan, and carries out its effect.
     fn answer(&mut self, number: u64, scanned: String, answer: Result<Answer, ScanError>) {
         let (is_taken, lane, effect, said) = match answer {
-            Ok(Answer { lane: Some(lane), effect, said }) => match self.unless_refused(lane, effect) {
+            Ok(Answer { lane: Some(lane), effect, said }) => match self.admit(lane, effect) {
                 Ok(effect) => (true, Some(lane), effect, said),
                 Err(why) => (false, Some(lane), None, why),
             },
@@ -258,38 +258,38 @@ impl AtWork {
     fn happened(&mut self, lane: usize, event: Event) {
         let effect = self.floor.happened(lane, event, self.now());
         // When plugging a board in started the run, it is the lane that says why it was not begun.
-        let effect = self.unless_refused(lane, effect).ok().flatten();
+        let effect = self.admit(lane, effect).ok().flatten();
         self.publish(lane);
         self.effect(lane, effect);
     }
 
-    /// The effect, unless it would test a unit again that passed already, or too much is not at the plant yet. Then
-    /// the error says why, and so does the lane.
-    fn unless_refused(&mut self, lane: usize, effect: Option<Effect>) -> Result<Option<Effect>, Said> {
+    /// The effect, unless it would begin a run that must not begin: then the lane and the error say why not.
+    fn admit(&mut self, lane: usize, effect: Option<Effect>) -> Result<Option<Effect>, Said> {
         let Some(Effect::Begin(of)) = &effect else { return Ok(effect) };
-        let Some(PlanFile { plan, .. }) = self.shared.settings.plans.get(of.plan) else { return Ok(effect) };
-        let asked = self.asked.get_mut(lane).and_then(Option::take);
-        let folder = Folder::new(&self.shared.settings.data);
-        if let Some(why) = unsent::refuses(&self.shared.settings, &folder) {
-            self.floor.happened(lane, Event::NotBegun { why: why.clone() }, self.now());
-            return Err(why);
-        }
-        let why = match folder.again(plan, &of.serial, "scan it once more") {
-            Ok(None) => return Ok(effect),
-            Ok(Some(error @ AgainError::Asked { .. })) => {
-                if asked.as_deref() == Some(of.serial.as_str()) {
-                    return Ok(effect);
-                }
-                if let Some(asked) = self.asked.get_mut(lane) {
-                    *asked = Some(of.serial.clone());
-                }
-                Said::of(&error)
-            }
-            Ok(Some(error)) => Said::of(&error),
-            Err(error) => Said::of(&error),
-        };
+        let Some(why) = self.why_not(lane, of) else { return Ok(effect) };
         self.floor.happened(lane, Event::NotBegun { why: why.clone() }, self.now());
         Err(why)
+    }
+
+    /// Why this unit must not be tested now: too much is not at the plant yet, or it passed already. Some plans only
+    /// ask for its label once more then; if the next scan in the lane is of the same label, it is tested.
+    fn why_not(&mut self, lane: usize, of: &Accepted) -> Option<Said> {
+        let PlanFile { plan, .. } = self.shared.settings.plans.get(of.plan)?;
+        let asked = self.asked.get_mut(lane)?;
+        let was_asked = asked.take().as_ref() == Some(&of.serial);
+        let folder = Folder::new(&self.shared.settings.data);
+        if let Some(why) = unsent::refuses(&self.shared.settings, &folder) {
+            return Some(why);
+        }
+        match folder.again(plan, &of.serial, "scan it once more") {
+            Ok(None) => None,
+            Ok(Some(AgainError::Asked { .. })) if was_asked => None,
+            Ok(Some(error)) => {
+                *asked = matches!(error, AgainError::Asked { .. }).then(|| of.serial.clone());
+                Some(Said::of(&error))
+            }
+            Err(error) => Some(Said::of(&error)),
+        }
     }
 
     /// Carries out an effect. The state is published first, so that a lamp says nothing that the screen does not.
