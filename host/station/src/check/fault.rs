@@ -41,7 +41,7 @@ pub enum Fault {
         /// Why.
         source: Box<StoreError>,
     },
-    /// A plant has not the record of a run, or another text under its hash.
+    /// The plant does not have the record of a run, or has another text under the record's hash.
     #[error(
         "the record {sha256} of run {run} is not there, or not as it was sent; remove what the table `record` has under this hash, and have \
          the station that sent it send again by `halfrow-station outbox again plant`"

@@ -116,7 +116,7 @@ pub(super) struct SharedAlready {
     pub(super) board: String,
 }
 
-/// A place of a board that is none.
+/// A text that names no place of a board, such as a serial port or an address.
 #[derive(Debug, thiserror::Error)]
 #[error("`{kind}` is no kind of board; write one as `halfrow boards` lists them")]
 pub(super) struct NoBoardKind {

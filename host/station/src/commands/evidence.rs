@@ -48,7 +48,7 @@ pub(super) struct EvidenceLost {
     pub(super) run: String,
 }
 
-/// Evidence that a run has had, and that was removed since it was old.
+/// Evidence that a run had, and that was removed because it was older than the settings keep evidence.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "{names} of the run {run}: removed since older evidence is not kept here; a copy of the station's folder from before may have it"

@@ -73,7 +73,7 @@ pub enum ScanError {
         /// What there is.
         known: String,
     },
-    /// Nobody knows for which lane it is.
+    /// The station has several lanes, and no lane was named for this scan.
     #[error("there are {lanes} lanes; scan the barcode of one first, HR:LANE:NAME")]
     WhichLane {
         /// How many.

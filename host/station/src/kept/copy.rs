@@ -26,7 +26,7 @@ pub struct Copied {
 /// A folder that is not copied. Nothing that looks like a copy is left then.
 #[derive(Debug, thiserror::Error)]
 pub enum CopyError {
-    /// There is something where the copy shall be.
+    /// The folder for the copy has something in it already.
     #[error("{} is there already and not empty; name another folder", path.display())]
     Exists {
         /// The folder.

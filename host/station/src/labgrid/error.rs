@@ -100,7 +100,7 @@ pub enum LabgridError {
         /// The place.
         place: String,
     },
-    /// Its bytes are wrapped.
+    /// The place's serial port is exported by a protocol that adds bytes of its own to the board's.
     #[error(
         "the port of labgrid's place {place} is exported by {protocol}, and halfrow needs raw bytes; have ser2net serve it by plain TCP, and \
          export that as a NetworkSerialPort with protocol: raw"

@@ -24,7 +24,7 @@ pub enum SerialError {
     /// Nothing at all.
     #[error("there is no serial number; scan the board's label")]
     Empty,
-    /// It is longer than any.
+    /// It is longer than any serial number may be, as when two labels were read together.
     #[error(
         "a serial number of {characters} characters is longer than {MOST_CHARACTERS}; scan one label at a time"
     )]
@@ -32,7 +32,7 @@ pub enum SerialError {
         /// How many it has.
         characters: usize,
     },
-    /// It holds what no label has.
+    /// It has a character that no label has.
     #[error(
         "character {place} of the serial number is {character:?}, not printable ASCII; scan the label again"
     )]

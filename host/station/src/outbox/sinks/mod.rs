@@ -85,7 +85,7 @@ pub enum SinkError {
         /// Why.
         source: Box<dyn std::error::Error + Send + Sync>,
     },
-    /// It is not known to be the other side.
+    /// The server's certificate does not show that it is the one that the settings name.
     #[error(transparent)]
     Certificate(#[from] CertificateError),
     /// It answers that it cannot, for now.
@@ -96,7 +96,7 @@ pub enum SinkError {
         /// Its answer's number.
         status: u16,
     },
-    /// It lets nobody in, or is elsewhere.
+    /// The server lets the station do nothing at this address: its token is wrong, or the address is.
     #[error("{host} answers {status} to everything; check the address and the token in the settings")]
     Closed {
         /// The other side.
@@ -112,7 +112,7 @@ pub enum SinkError {
         /// What it says.
         said: String,
     },
-    /// It takes others, and not this.
+    /// The server refuses this one entry, and takes others.
     #[error("{host} answers {status} to this ({answer}); correct there what it complains of, and release it")]
     Rejected {
         /// The other side.
