@@ -12,7 +12,7 @@ pub use plant::check_plant;
 pub use superseded::Superseded;
 
 use crate::plan::plan_hash;
-use crate::published::Kept;
+use crate::published::KeptPlans;
 use crate::record::{Blobs, PlanRecord, Record, UnnamedRecord};
 use crate::store::{Folder, OpenRun, Rebinding, Rebuilt, Removed, Snapshot, StoreError, TABLES};
 
@@ -69,7 +69,7 @@ pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
 /// # Errors
 /// [`StoreError`] when a folder cannot be read.
 pub(crate) fn foreign(folder: &Folder) -> Result<Vec<Fault>, StoreError> {
-    let found = Kept::of(folder.path()).foreign().map_err(|source| folder.refused(source))?;
+    let found = KeptPlans::of(folder.path()).foreign().map_err(|source| folder.refused(source))?;
     Ok(found.into_iter().map(|path| Fault::Foreign { path }).collect())
 }
 

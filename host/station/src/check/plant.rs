@@ -8,7 +8,7 @@ use halfrow::result::sha256;
 use super::compare::compare;
 use super::{Checked, Fault, is_as_hashed};
 use crate::record::Record;
-use crate::store::{Kept, Rebinding, Rebuilt, Snapshot, StoreError, TABLES};
+use crate::store::{KeptRun, Rebinding, Rebuilt, Snapshot, StoreError, TABLES};
 
 /// Tables of a station that are empty at a plant, each with its key.
 const EMPTY: [(&str, &str); 2] = [("outbox", "sink, kind, subject"), ("origin", "id")];
@@ -66,11 +66,11 @@ struct Look<'a> {
 impl Look<'_> {
     /// Goes through all runs in the order in which they began.
     fn at_runs(&mut self, told: &mut dyn FnMut(usize)) -> Result<(), StoreError> {
-        let mut behind = String::new();
+        let mut after = String::new();
         loop {
-            let page = self.plant.kept_runs(&behind)?;
+            let page = self.plant.kept_runs(&after)?;
             let Some(last) = page.last() else { return Ok(()) };
-            behind.clone_from(&last.run);
+            after.clone_from(&last.run);
             for kept in &page {
                 self.runs += 1;
                 match self.record(kept) {
@@ -83,7 +83,7 @@ impl Look<'_> {
     }
 
     /// The record of a run, if it is as it was sent.
-    fn record(&mut self, Kept { run, sha256: hash, text, .. }: &Kept) -> Result<Record, Fault> {
+    fn record(&mut self, KeptRun { run, sha256: hash, text, .. }: &KeptRun) -> Result<Record, Fault> {
         let text = text.as_ref().filter(|text| sha256([text.as_bytes()]) == *hash);
         let text = text.ok_or_else(|| Fault::Unkept { run: run.clone(), sha256: hash.clone() })?;
         let record = Record::parse(text.as_bytes());
@@ -94,7 +94,7 @@ impl Look<'_> {
         Ok(record)
     }
 
-    fn at_run(&mut self, kept: &Kept, mut record: Record) -> Result<(), StoreError> {
+    fn at_run(&mut self, kept: &KeptRun, mut record: Record) -> Result<(), StoreError> {
         // A unit has the id of the first run that arrived, not of the first that began.
         let known = match self.rebuilt.unit_of(&record.run)? {
             None => self.plant.unit_of(&record.run.product, &record.run.serial)?,
@@ -111,7 +111,7 @@ impl Look<'_> {
     }
 
     /// Whether no other run of its job counts. Among runs without a judgement only the plant knows which one had the job.
-    fn counts(&self, kept: &Kept, record: &Record) -> Result<bool, StoreError> {
+    fn counts(&self, kept: &KeptRun, record: &Record) -> Result<bool, StoreError> {
         let Some(job) = &record.run.job else { return Ok(true) };
         if record.conclusion.verdict == Verdict::Error {
             return Ok(kept.nth > 0);

@@ -149,7 +149,7 @@ pub(super) fn outbox(settings: &Settings, engine: &Engine) -> Result<Outbox, Fai
 pub(super) fn sinks(settings: &Settings, store: &mut Store) -> Result<Vec<Box<dyn Sink>>, Failure> {
     let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
     if let Some(plant) = &settings.plant {
-        let station = settings.presence(store.origin()?);
+        let station = settings.introduction(store.origin()?);
         sinks.push(Box::new(PlantSink::new(plant.address()?, station, store.folder().clone())));
     }
     for sink in &settings.sinks {

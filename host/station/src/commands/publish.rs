@@ -21,8 +21,8 @@ use crate::guard::guarded;
 use crate::history::PlanName;
 use crate::plan::Plan;
 use crate::published::{
-    Bundle, BundleError, FetchError, Fetched, Kept, Offer, PublicKey, SigningError, SigningKey, Statement,
-    look_whole, offered,
+    Bundle, BundleError, FetchError, Fetched, KeptPlans, Offer, PublicKey, SigningError, SigningKey,
+    Statement, look_whole, offered,
 };
 use crate::said::Said;
 use crate::settings::{Published, Settings};
@@ -39,7 +39,7 @@ pub(super) struct Publish {
     /// The plan
     file: PathBuf,
     #[command(flatten)]
-    signed: Signed,
+    signer: Signer,
 }
 
 /// Make an earlier version of a plan the valid one again
@@ -53,12 +53,12 @@ pub(super) struct Back {
     #[arg(value_name = "VERSION")]
     earlier: String,
     #[command(flatten)]
-    signed: Signed,
+    signer: Signer,
 }
 
 /// Who publishes.
 #[derive(Debug, Args)]
-struct Signed {
+struct Signer {
     /// The engineer's key, as `plan key` makes it
     #[arg(long, value_name = "FILE")]
     key: PathBuf,
@@ -116,14 +116,14 @@ pub(super) fn key(file: &Path) -> Result<Exit, Failure> {
     print(&key.public().to_string())
 }
 
-pub(super) fn publish(Publish { settings, file, signed }: &Publish) -> Result<Exit, Failure> {
+pub(super) fn publish(Publish { settings, file, signer }: &Publish) -> Result<Exit, Failure> {
     let plan = Plan::load(file).map_err(Failure::call)?;
     let bundle = Bundle::of(file, &plan)?;
     let name = PlanName::from(&plan);
     if name.product.contains('/') {
         return Err(Failure::call(PublishError::Slash { product: name.product }));
     }
-    let mut desk = signed.desk(settings)?;
+    let mut desk = signer.desk(settings)?;
     // Whoever signed it, runs may have been judged by it.
     let before = desk.at.published_version(&name, &plan.version)?;
     let is_other = |(text, _): &(String, String)| {
@@ -136,11 +136,11 @@ pub(super) fn publish(Publish { settings, file, signed }: &Publish) -> Result<Ex
     desk.state(&name, &plan.version, &plan.sha256, Some(&bundle))
 }
 
-pub(super) fn back(Back { settings, plan, earlier: version, signed }: &Back) -> Result<Exit, Failure> {
+pub(super) fn back(Back { settings, plan, earlier: version, signer }: &Back) -> Result<Exit, Failure> {
     let none = || Failure::call(PublishError::NoVersion { plan: plan.clone(), version: version.clone() });
     let (product, name) = plan.split_once('/').ok_or_else(none)?;
     let name = PlanName { product: product.to_owned(), plan: name.to_owned() };
-    let mut desk = signed.desk(settings)?;
+    let mut desk = signer.desk(settings)?;
     let said = desk.at.published_version(&name, version)?.ok_or_else(none)?;
     let statement = desk.trusted(&name, &said)?;
     if statement.version != *version {
@@ -150,7 +150,7 @@ pub(super) fn back(Back { settings, plan, earlier: version, signed }: &Back) -> 
     desk.state(&name, version, &statement.sha256, None)
 }
 
-impl Signed {
+impl Signer {
     /// The desk at the plant that the settings name.
     fn desk(&self, settings: &SettingsFile) -> Result<Desk<'_>, Failure> {
         let published = published(settings)?;
@@ -241,7 +241,7 @@ fn text(found: &[Holds]) -> String {
 pub(super) fn fetch_all(settings: &SettingsFile) -> Result<Exit, Failure> {
     let published = published(settings)?;
     let mut said = Vec::new();
-    for fetched in fetched(&Kept::of(&published.data), offers(&published))? {
+    for fetched in fetched(&KeptPlans::of(&published.data), offers(&published))? {
         let Fetched { statement: Statement { version, number, .. }, is_new } = fetched?;
         said.push(format!("{version}, number {number}{}", if is_new { ", is new" } else { "" }));
     }
@@ -257,7 +257,7 @@ pub(super) fn fetch_at_start(path: &Path) -> Result<(), Failure> {
     if published.plans.is_empty() {
         return Ok(());
     }
-    let kept = Kept::of(&published.data);
+    let kept = KeptPlans::of(&published.data);
     let is_missing = |plan: &&PlanName| kept.statement(plan, published.trusts()).is_none();
     let missing: Vec<_> = published.plans.iter().filter(is_missing).map(PlanName::to_string).collect();
     if !missing.is_empty() {
@@ -284,7 +284,7 @@ type Offers = Result<Vec<Result<Offer, FetchError>>, Failure>;
 
 fn offers(published: &Published) -> Offers {
     let mut at = Plant::connect(&address(published)?)?;
-    let (kept, trusted) = (Kept::of(&published.data), published.trusts());
+    let (kept, trusted) = (KeptPlans::of(&published.data), published.trusts());
     Ok(published.plans.iter().map(|plan| offered(&mut at, &kept, plan, trusted)).collect())
 }
 
@@ -307,12 +307,12 @@ fn offers_in_time(published: Published) -> Option<Offers> {
 }
 
 /// Keeps every plan that can be kept, and returns the outcome for each.
-fn fetched(kept: &Kept, offers: Offers) -> Result<Vec<Result<Fetched, FetchError>>, Failure> {
+fn fetched(kept: &KeptPlans, offers: Offers) -> Result<Vec<Result<Fetched, FetchError>>, Failure> {
     Ok(offers?.into_iter().map(|offer| offer?.keep(kept)).collect())
 }
 
 /// The same, but returns only the first error, if there is one.
-fn all_fetched(kept: &Kept, offers: Offers) -> Result<(), Failure> {
+fn all_fetched(kept: &KeptPlans, offers: Offers) -> Result<(), Failure> {
     fetched(kept, offers)?.into_iter().try_for_each(|fetched| Ok(fetched.map(drop)?))
 }
 

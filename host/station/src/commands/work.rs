@@ -54,7 +54,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let signal = Signal::heed()?;
     let mut store = arguments.disk.opens(&settings.data)?;
     recovered(&mut store)?;
-    let presence = settings.presence(store.origin()?);
+    let introduction = settings.introduction(store.origin()?);
     let sinks = sinks(&settings, &mut store)?;
     let store = SharedStore::new(store);
     let outbox = Outbox::start(&store, sinks)?;
@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let work = Work { settings: &settings, plant, store, program: OWN_PROGRAM.into(), worker };
     let stop = || signal.by();
     let at_once = settings.work.as_ref().map_or(1, |work| work.at_once);
-    let ended = match work.introduce(&presence, !arguments.once, &stop) {
+    let ended = match work.introduce(&introduction, !arguments.once, &stop) {
         Ok(()) => take_jobs(&work, arguments, at_once, &stop),
         Err(error) => Err(Failure::error(error)),
     };

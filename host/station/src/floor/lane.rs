@@ -193,7 +193,7 @@ impl Lane {
                 self.owes = owes;
                 Ok(None)
             }
-            told => Ok(self.told(told)),
+            report => Ok(self.reported(report)),
         }
     }
 
@@ -282,7 +282,7 @@ impl Lane {
     }
 
     /// Takes what its run reports. A report that does not fit the phase is late, and changes nothing.
-    fn told(&mut self, event: Event) -> Option<Effect> {
+    fn reported(&mut self, event: Event) -> Option<Effect> {
         let before = discriminant(&self.phase);
         let phase = std::mem::replace(&mut self.phase, Phase::Idle);
         let (phase, effect) = match (phase, event) {

@@ -229,8 +229,8 @@ fn in_days(Period { from_ms, until_ms }: Period) -> (Range<i64>, [Period; 2]) {
     if first >= end {
         return (0..0, [Period { from_ms, until_ms }, Period { from_ms: 0, until_ms: 0 }]);
     }
-    let behind = end.saturating_mul(DAY_MS);
-    (first..end, [Period { from_ms, until_ms: first * DAY_MS }, Period { from_ms: behind, until_ms }])
+    let after = end.saturating_mul(DAY_MS);
+    (first..end, [Period { from_ms, until_ms: first * DAY_MS }, Period { from_ms: after, until_ms }])
 }
 
 /// The cell of a row, and what was counted there.
@@ -316,13 +316,13 @@ fn waived(
 }
 
 /// What a line is for, in addition to the plan: the first day of its time, its station, and its lane there.
-type Place = (Option<i64>, Option<String>, Option<String>);
+type Group = (Option<i64>, Option<String>, Option<String>);
 
 /// Adds the cells up to lines.
 fn lines(cells: &BTreeMap<DayCell, Counts>, by: By) -> Vec<Yield> {
-    let mut groups = BTreeMap::<(PlanName, Place), Counts>::new();
+    let mut groups = BTreeMap::<(PlanName, Group), Counts>::new();
     for (cell, counts) in cells {
-        groups.entry((cell.plan.clone(), place(cell, by))).or_default().add(counts);
+        groups.entry((cell.plan.clone(), group(cell, by))).or_default().add(counts);
     }
     let mut lines: Vec<_> = groups.into_iter().map(|(key, counts)| line(key, &counts, by)).collect();
     if matches!(by, By::Day | By::Week) {
@@ -336,7 +336,7 @@ fn lines(cells: &BTreeMap<DayCell, Counts>, by: By) -> Vec<Yield> {
     lines
 }
 
-fn place(cell: &DayCell, by: By) -> Place {
+fn group(cell: &DayCell, by: By) -> Group {
     match by {
         By::Plan => (None, None, None),
         By::Day => (Some(cell.day), None, None),
@@ -347,7 +347,7 @@ fn place(cell: &DayCell, by: By) -> Place {
     }
 }
 
-fn line((plan, (day, station, lane)): (PlanName, Place), counts: &Counts, by: By) -> Yield {
+fn line((plan, (day, station, lane)): (PlanName, Group), counts: &Counts, by: By) -> Yield {
     let day = day.and_then(date);
     Yield {
         plan,

@@ -8,7 +8,7 @@ use std::os::unix::fs::{DirBuilderExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
 use crate::check::{Fault, check, foreign};
-use crate::published::{BundleError, Kept};
+use crate::published::{BundleError, KeptPlans};
 use crate::record::{Blobs, Piece, synced};
 use crate::store::{ASIDE, Folder, Snapshot, Store, StoreError};
 
@@ -205,11 +205,11 @@ fn into(from: &Folder, aside: &Path) -> Result<Copied, CopyError> {
     };
     File::open(to.database()).and_then(private).map_err(refused)?;
     let spools = to.spools();
-    let (blobs, plans) = (aside.join("blobs"), Kept::of(aside));
+    let (blobs, plans) = (aside.join("blobs"), KeptPlans::of(aside));
     for folder in [&spools, &blobs, plans.folder()] {
         private_folder(folder).map_err(refused)?;
     }
-    Kept::of(from.path()).copy_to(&plans)?;
+    KeptPlans::of(from.path()).copy_to(&plans)?;
     let copy = match Snapshot::take(&to) {
         Err(StoreError::Older { .. }) => {
             // Opening it for writing brings it up to date.

@@ -46,7 +46,7 @@ pub struct Patience {
 
 /// What a lane reported, and how it ended.
 #[derive(Debug)]
-pub struct Heard {
+pub struct LaneReport {
     /// Every try of a step that came to an end.
     pub steps: Vec<StepRecord>,
     /// How it ended.
@@ -87,7 +87,7 @@ pub fn supervise(
     spool: &Path,
     patience: Patience,
     attendant: &mut dyn Attendant,
-) -> Heard {
+) -> LaneReport {
     let mut steps = Vec::new();
     let end = match Lane::start(program, job, spool) {
         Ok(mut lane) => {
@@ -96,7 +96,7 @@ pub fn supervise(
         }
         Err(error) => End::Died(Saying::LaneNotStarted { error: error.to_string() }.into()),
     };
-    Heard { steps, end }
+    LaneReport { steps, end }
 }
 
 struct Lane {

@@ -271,7 +271,7 @@ fn logged_round(
 }
 
 /// How long to wait after a round; `vain` counts the rounds before it for which the sink was away.
-fn wait_behind(round: Round, vain: &mut u32) -> Duration {
+fn wait_after(round: Round, vain: &mut u32) -> Duration {
     if round.is_away {
         let wait = back_off::ms(*vain);
         *vain = vain.saturating_add(1);
@@ -300,7 +300,7 @@ fn send(store: &SharedStore, mut sink: Box<dyn Sink>, stopped: &Receiver<()>) {
         } else if worked.elapsed() > IDLE {
             sink.rest();
         }
-        if stopped.recv_timeout(wait_behind(round, &mut vain)) == Err(RecvTimeoutError::Disconnected) {
+        if stopped.recv_timeout(wait_after(round, &mut vain)) == Err(RecvTimeoutError::Disconnected) {
             return;
         }
     }
@@ -383,9 +383,9 @@ mod tests {
         let (away, idle) = (Round { is_away: true, ..Round::default() }, Round::default());
         let mut vain = 0;
         for (round, most_ms) in [(away, 1_000), (away, 2_000), (away, 4_000), (idle, 200), (away, 1_000)] {
-            let wait = wait_behind(round, &mut vain).as_millis();
+            let wait = wait_after(round, &mut vain).as_millis();
             assert!((3 * most_ms / 4..=most_ms).contains(&wait), "{wait} ms, not {most_ms}");
         }
-        assert_eq!(wait_behind(Round { sent: 1, ..idle }, &mut vain), Duration::ZERO, "there may be more");
+        assert_eq!(wait_after(Round { sent: 1, ..idle }, &mut vain), Duration::ZERO, "there may be more");
     }
 }

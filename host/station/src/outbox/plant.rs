@@ -3,13 +3,13 @@
 use super::{Sink, Undelivered};
 use crate::clock::HeardClock;
 use crate::said::Said;
-use crate::store::{Folder, Parcel, Plant, PlantAddress, PlantError, Presence, SINK_OF_PLANT};
+use crate::store::{Folder, Introduction, Parcel, Plant, PlantAddress, PlantError, SINK_OF_PLANT};
 
 /// A plant, which is connected to when there is something to send.
 #[derive(Debug)]
 pub struct PlantSink {
     address: PlantAddress,
-    station: Presence,
+    station: Introduction,
     /// What the station keeps, and which of it the plant has.
     kept: Folder,
     plant: Option<Plant>,
@@ -20,7 +20,7 @@ pub struct PlantSink {
 impl PlantSink {
     /// The plant at `address`, which is told of `station`, whose folder is `kept`.
     #[must_use]
-    pub fn new(address: PlantAddress, station: Presence, kept: Folder) -> Self {
+    pub fn new(address: PlantAddress, station: Introduction, kept: Folder) -> Self {
         Self { address, station, kept, plant: None, clock: None }
     }
 
@@ -83,7 +83,7 @@ mod tests {
     /// The plant shows both next to the station's name, and the second one calls for a person.
     #[test]
     fn a_plant_hears_how_much_waits_and_how_much_of_that_for_a_person() {
-        let presence = Presence {
+        let introduction = Introduction {
             name: "12".to_owned(),
             origin: "here".to_owned(),
             program: "0".to_owned(),
@@ -94,7 +94,7 @@ mod tests {
         // Nothing answers there.
         let address = PlantAddress::new("postgres://halfrow@127.0.0.1:1/plant", None, None).unwrap();
         let folder = tempfile::tempdir().unwrap();
-        let mut sink = PlantSink::new(address, presence, Folder::new(folder.path()));
+        let mut sink = PlantSink::new(address, introduction, Folder::new(folder.path()));
         sink.beat(7, 2).unwrap_err();
         assert_eq!((sink.station.unsent, sink.station.dead), (7, 2));
     }

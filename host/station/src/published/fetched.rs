@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::bundle::Unpacked;
 use super::kept::Signed;
-use super::{Bundle, BundleError, Kept, PublicKey, Statement};
+use super::{Bundle, BundleError, KeptPlans, PublicKey, Statement};
 use crate::history::PlanName;
 use crate::input_error::InputError;
 use crate::plan::Plan;
@@ -82,7 +82,7 @@ pub struct Offer {
 /// [`FetchError`]
 pub fn offered(
     plant: &mut Plant,
-    kept: &Kept,
+    kept: &KeptPlans,
     plan: &PlanName,
     trusted: &[PublicKey],
 ) -> Result<Offer, FetchError> {
@@ -109,7 +109,7 @@ impl Offer {
     ///
     /// # Errors
     /// [`FetchError`]; what is kept stays as it was.
-    pub fn keep(self, kept: &Kept) -> Result<Fetched, FetchError> {
+    pub fn keep(self, kept: &KeptPlans) -> Result<Fetched, FetchError> {
         let Self { signed, statement, bundle, is_new } = self;
         let Some(text) = bundle else { return Ok(Fetched { statement, is_new }) };
         let plan = Bundle::unpacked(&text, &statement.sha256)?;

@@ -16,7 +16,7 @@ use crate::record::is_hash;
 
 /// A folder of plans, each by its hash, and of what holds for each name.
 #[derive(Clone, Debug)]
-pub struct Kept {
+pub struct KeptPlans {
     folder: PathBuf,
 }
 
@@ -34,7 +34,7 @@ impl Signed {
     }
 }
 
-impl Kept {
+impl KeptPlans {
     /// The plans of the station whose folder is `data`.
     #[must_use]
     pub fn of(data: &Path) -> Self {

@@ -16,7 +16,7 @@ mod signed;
 
 pub use bundle::{Bundle, BundleError};
 pub use fetched::{FetchError, Fetched, Offer, look_whole, offered};
-pub use kept::Kept;
+pub use kept::KeptPlans;
 pub use signed::{PublicKey, SigningError, SigningKey, Statement};
 
 use crate::history::PlanName;

@@ -6,7 +6,7 @@ use halfrow::verdict::StoppedBy;
 
 use super::Order;
 use crate::labgrid::{Held, LaneBoard, Place};
-use crate::lane::supervisor::{Attendant, End, Heard, Patience, supervise};
+use crate::lane::supervisor::{Attendant, End, LaneReport, Patience, supervise};
 use crate::lane::{Job, Message};
 use crate::said::Said;
 
@@ -17,7 +17,7 @@ pub(super) fn supervised(
     spool: &Path,
     patience: Patience,
     attendant: &mut dyn Attendant,
-) -> Heard {
+) -> LaneReport {
     let place = match order.board {
         // The mock needs no board.
         LaneBoard::Lent(place) if !job.is_mock => place,
@@ -31,7 +31,7 @@ pub(super) fn supervised(
             held.give_back();
             heard
         }
-        Err(end) => Heard { steps: Vec::new(), end },
+        Err(end) => LaneReport { steps: Vec::new(), end },
     }
 }
 

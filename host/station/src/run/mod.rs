@@ -20,7 +20,7 @@ pub use recovered::{recover, recover_run};
 
 use crate::ids::NoRandomness;
 use crate::labgrid::LaneBoard;
-use crate::lane::supervisor::{Attendant, EVENTS, End, Heard, LOG};
+use crate::lane::supervisor::{Attendant, EVENTS, End, LOG, LaneReport};
 use crate::lane::{Job, Message, Ruling, kept_frame};
 use crate::plan::limits::Maker;
 use crate::plan::serial::{Serial, SerialError};
@@ -261,10 +261,10 @@ fn record(
     plan: PlanRecord,
     order: &Order<'_>,
     selected: &Selected,
-    (heard, device): (Heard, DeviceSeen),
+    (heard, device): (LaneReport, DeviceSeen),
     took: Duration,
 ) -> Record {
-    let Heard { mut steps, end } = heard;
+    let LaneReport { mut steps, end } = heard;
     let ended_ms = clock::now_ms();
     let seconds = took.as_secs_f64();
     let measurements = judged(Maker::Run, &[("run.seconds", Some(seconds))], &selected.limits);

@@ -24,7 +24,7 @@ use crate::input_error::{Fault, InputError, text_of};
 use crate::labgrid::LaneBoard;
 use crate::plan::Plan;
 use crate::published::PublicKey;
-use crate::store::{Presence, SINK_OF_PLANT};
+use crate::store::{Introduction, SINK_OF_PLANT};
 use crate::web::Address;
 
 /// The version of the settings' own format.
@@ -200,12 +200,12 @@ impl Settings {
 
     /// What a station whose folder has the id `origin` tells the plant of itself.
     #[must_use]
-    pub fn presence(&self, origin: String) -> Presence {
+    pub fn introduction(&self, origin: String) -> Introduction {
         let plan =
             |PlanFile { plan, .. }: &PlanFile| format!("{} {} {}", plan.product, plan.name, plan.version);
         let plans = self.plans.iter().map(plan).collect::<Vec<_>>().join("\n");
         let program = halfrow::VERSION.to_owned();
-        Presence { name: self.name.clone(), origin, program, plans, unsent: 0, dead: 0 }
+        Introduction { name: self.name.clone(), origin, program, plans, unsent: 0, dead: 0 }
     }
 
     /// The lanes as they are before any board comes.

@@ -7,13 +7,13 @@ use toml::Spanned;
 use super::{PlanFile, PlantSettings};
 use crate::input_error::Fault;
 use crate::plan::Plan;
-use crate::published::{Kept, PLACE, PublicKey, named_by};
+use crate::published::{KeptPlans, PLACE, PublicKey, named_by};
 
 /// Every plan that was named so far, each once.
 #[derive(Debug)]
 pub(super) struct Plans<'a> {
     folder: &'a Path,
-    kept: Kept,
+    kept: KeptPlans,
     trusted: Vec<PublicKey>,
     named: Vec<PlanFile>,
 }
@@ -22,7 +22,7 @@ impl<'a> Plans<'a> {
     /// No plans yet, of settings in `folder`, for the station that keeps its results in `data`.
     pub(super) fn beside(folder: &'a Path, data: &Path, plant: Option<&PlantSettings>) -> Self {
         let trusted = plant.map(|plant| plant.trusts.clone()).unwrap_or_default();
-        Self { folder, kept: Kept::of(data), trusted, named: Vec::new() }
+        Self { folder, kept: KeptPlans::of(data), trusted, named: Vec::new() }
     }
 
     /// The index of this plan among them; it is loaded when it is named first.

@@ -47,9 +47,9 @@ pub use folder::Folder;
 use generation::{Log, Opened};
 pub use outbox::{AuditLine, DEAD_SHOWN, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Standing, Tried, Unsent};
 pub use plant::{
-    Claim, Job, Kept, LEASE_MS, Lease, NewJob, PlanOfJob, Plant, PlantAddress, PlantAddressError, PlantError,
-    PlantLink, PlantPool, Presence, STATES, SharedBoard, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
-    publications, waiters,
+    Claim, Introduction, Job, KeptRun, LEASE_MS, Lease, NewJob, PlanOfJob, Plant, PlantAddress,
+    PlantAddressError, PlantError, PlantLink, PlantPool, STATES, SharedBoard, Turn, Waiter, Waiting, Wanted,
+    Worker, boards, jobs, publications, waiters,
 };
 pub use retention::Removed;
 pub use retest_policy::AgainError;

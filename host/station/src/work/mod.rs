@@ -26,7 +26,7 @@ use crate::record::JobClaim;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch, recover_run};
 use crate::said::Said;
 use crate::settings::{PlanFile, Settings};
-use crate::store::{Claim, InLane, PlantError, PlantLink, Presence, SharedStore, StoreError, Worker};
+use crate::store::{Claim, InLane, Introduction, PlantError, PlantLink, SharedStore, StoreError, Worker};
 
 /// The operator in records and in the plant's audit.
 const OPERATOR: &str = "job";
@@ -268,7 +268,7 @@ impl Work<'_> {
     /// [`PlantError`] when it is there and refuses.
     pub fn introduce(
         &self,
-        station: &Presence,
+        station: &Introduction,
         may_be_away: bool,
         stop: &dyn Fn() -> Option<StoppedBy>,
     ) -> Result<(), PlantError> {

@@ -16,7 +16,7 @@ mod prune;
 pub use address::{PlantAddress, PlantAddressError};
 pub use boards::{LEASE_MS, Lease, SharedBoard, Turn, Waiter, Waiting, boards, waiters};
 pub use jobs::{Claim, Job, NewJob, STATES, Wanted, Worker, jobs};
-pub use kept::{Kept, PlanOfJob};
+pub use kept::{KeptRun, PlanOfJob};
 pub use link::PlantLink;
 pub use plans::publications;
 pub use pool::PlantPool;
@@ -121,7 +121,7 @@ impl PlantError {
 
 /// What a station tells the plant of itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Presence {
+pub struct Introduction {
     /// The station's name.
     pub name: String,
     /// The id of its folder.
@@ -205,8 +205,8 @@ impl Plant {
     ///
     /// # Errors
     /// [`PlantError::OtherStation`] when another station has its name.
-    pub fn see(&mut self, station: &Presence) -> Result<HeardClock, PlantError> {
-        let Presence { name, origin, program, plans, unsent, dead } = station;
+    pub fn see(&mut self, station: &Introduction) -> Result<HeardClock, PlantError> {
+        let Introduction { name, origin, program, plans, unsent, dead } = station;
         let seen_ms = self.carry_out("to hear of a station", |to| {
             let of = values![name, origin, program, plans, *unsent, *dead];
             to.first(sql::SEEN, of, |row| row.get(0))

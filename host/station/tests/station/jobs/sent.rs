@@ -21,7 +21,7 @@ fn became(sends: bool, is_cancelled: bool) -> (bool, Option<bool>) {
     let settings = Settings::load_plant(&settings(&server, folder.path(), "12")).unwrap();
     let work = at_work(&settings, program().to_owned());
     let (origin, kept) = work.store.with(|store| (store.origin().unwrap(), store.folder().clone()));
-    let sink = PlantSink::new(server.address(), settings.presence(origin), kept);
+    let sink = PlantSink::new(server.address(), settings.introduction(origin), kept);
     let sinks: Vec<Box<dyn Sink>> = if sends { vec![Box::new(sink)] } else { Vec::new() };
     let outbox = Outbox::start(&work.store, sinks).unwrap();
     let claim = work.claim().unwrap().unwrap();

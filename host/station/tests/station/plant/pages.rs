@@ -7,7 +7,7 @@ use std::process::Command;
 use halfrow_station::store::{Plant, PlantError};
 use halfrow_station::store::{Waiter, Wanted};
 
-use super::sent::{presence, send};
+use super::sent::{introduction, send};
 use super::server::Server;
 use crate::common::{program, query};
 use crate::history::made::Made;
@@ -103,9 +103,9 @@ fn the_pages_show_every_station_and_only_look() {
     let (made, _) = send(history(), server.address());
     let mut plant = Plant::connect(&server.address()).unwrap();
     let other = "018f0000-0000-7000-8000-000000000000".to_owned();
-    plant.see(&presence("station 8", other.clone())).unwrap();
+    plant.see(&introduction("station 8", other.clone())).unwrap();
     // A second station of the same name is refused, and changes nothing.
-    let twin = plant.see(&presence("station 7", other)).unwrap_err();
+    let twin = plant.see(&introduction("station 7", other)).unwrap_err();
     assert!(matches!(&twin, PlantError::OtherStation { name } if name == "station 7"), "{twin:?}");
     let (_folder, serving) = served(&server);
     let browser = serving.here();

@@ -1,7 +1,7 @@
 //! What arrives at the plant is what the station has.
 
 use halfrow_station::outbox::{PlantSink, Round, round};
-use halfrow_station::store::{PlantAddress, Presence, SINK_OF_PLANT, SharedStore, Store};
+use halfrow_station::store::{Introduction, PlantAddress, SINK_OF_PLANT, SharedStore, Store};
 
 use super::server::Server;
 use super::tables::is_as;
@@ -33,13 +33,13 @@ pub(crate) fn send_as(name: &str, made: Made, address: PlantAddress) -> (Made, R
 
 /// The plant at this address, as the sink of a station of this name.
 pub(super) fn sink(name: &str, store: &mut Store, address: PlantAddress) -> PlantSink {
-    PlantSink::new(address, presence(name, store.origin().unwrap()), store.folder().clone())
+    PlantSink::new(address, introduction(name, store.origin().unwrap()), store.folder().clone())
 }
 
-/// The presence of a station of this name.
-pub(crate) fn presence(name: &str, origin: String) -> Presence {
+/// What a station of this name says of itself.
+pub(crate) fn introduction(name: &str, origin: String) -> Introduction {
     let plans = "CAM-T final 1\nCAM-T intake 1".to_owned();
-    Presence { name: name.to_owned(), origin, program: "halfrow 0".to_owned(), plans, unsent: 0, dead: 0 }
+    Introduction { name: name.to_owned(), origin, program: "halfrow 0".to_owned(), plans, unsent: 0, dead: 0 }
 }
 
 /// Makes the station forget what it has sent.
