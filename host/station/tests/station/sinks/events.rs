@@ -7,12 +7,13 @@ use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde_json::Value;
 use tempfile::TempDir;
 
 use super::send;
+use crate::common::until;
 use crate::history::made::{End, Made, Run};
 use crate::plant::link::certificates;
 
@@ -51,12 +52,7 @@ impl Broker {
             trusted = vec!["--cafile".to_owned(), at("ca.pem")];
         }
         fs::write(path("broker.conf"), text).unwrap();
-        let mut broker = Command::new("sh");
-        let broker =
-            broker.args(["-c", MOSQUITTO, &path("broker.conf")]).stderr(Stdio::null()).spawn().unwrap();
-        while TcpStream::connect(("127.0.0.1", port)).is_err() {
-            thread::sleep(Duration::from_millis(20));
-        }
+        let broker = listening(&path("broker.conf"), port);
         let mut listener = Command::new("stdbuf");
         listener.args(["-oL", "mosquitto_sub", "-W", LONGEST]);
         listener.args([
@@ -97,6 +93,18 @@ impl Broker {
         let login = "user = \"station\"\npassword_file = \"broker.password\"";
         format!("[[sink]]\nname = \"wall\"\nmqtt = \"{url}\"\n{login}\n{more}\n")
     }
+}
+
+/// A broker of this configuration, which listens at this port.
+fn listening(configuration: &str, port: u16) -> Child {
+    let mut broker = Command::new("sh");
+    let mut broker = broker.args(["-c", MOSQUITTO, configuration]).stderr(Stdio::null()).spawn().unwrap();
+    until("a broker that listens", || {
+        let ended = broker.try_wait().unwrap();
+        assert!(ended.is_none(), "mosquitto is not installed, or does not get port {port}: {ended:?}");
+        TcpStream::connect(("127.0.0.1", port)).is_ok()
+    });
+    broker
 }
 
 impl Drop for Broker {
