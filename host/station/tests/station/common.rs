@@ -2,9 +2,11 @@
 
 use std::fmt::Debug;
 use std::fs::{self, File};
+use std::net::TcpListener;
 use std::os::unix::fs::{FileTypeExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant, SystemTime};
@@ -70,6 +72,22 @@ pub(crate) fn held_up(path: &Path) -> File {
     let fifo = path.to_owned();
     thread::spawn(move || sender.send(File::options().write(true).open(fifo)));
     opened.recv_timeout(HANG).unwrap().unwrap()
+}
+
+/// A board that accepts the connection and stays silent.
+pub(crate) fn silent_board() -> (TcpListener, String) {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let target = format!("tcp:{}", listener.local_addr().unwrap());
+    (listener, target)
+}
+
+/// Says that something is over when it is dropped, however the test ends.
+pub(crate) struct Over<'a>(pub(crate) &'a AtomicBool);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
 }
 
 /// `[plant]` of a station whose results go to `url`, however full the disk of the tests is.

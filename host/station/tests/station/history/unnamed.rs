@@ -14,7 +14,7 @@ use halfrow_station::store::Folder;
 
 use super::commands::did;
 use super::made::{BEGIN_MS, End, Made, Run, id};
-use crate::common::query;
+use crate::common::{Over, query};
 use crate::runs::bench::{PLAN, Station};
 
 const HOUR: Duration = Duration::from_secs(3600);
@@ -229,15 +229,6 @@ fn evidence_of_a_run_without_its_row_stays_however_long_it_lay_there() {
     made.finish(&run, head, plan);
     assert_eq!(query(made.as_ref(), "SELECT sha256 FROM attachment"), [hash]);
     is_sound(&made.folder());
-}
-
-/// Ends what the other threads do, however the test ends.
-struct Over<'a>(&'a AtomicBool);
-
-impl Drop for Over<'_> {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
 }
 
 /// Runs are recorded while one thread removes what no row names as fast as it can, and another makes all of it look old. What has

@@ -15,14 +15,7 @@ use nix::unistd::Pid;
 use serde_json::Value;
 
 use super::floor::{HANG, Running, SERIALS, Station};
-use crate::common::{program, until};
-
-/// A board that accepts the connection and stays silent.
-pub(crate) fn silent_board() -> (TcpListener, String) {
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let target = format!("tcp:{}", listener.local_addr().unwrap());
-    (listener, target)
-}
+use crate::common::{program, silent_board, until};
 
 /// Waits until the lane has connected, and keeps the connection.
 pub(crate) fn connected(listener: &TcpListener) {

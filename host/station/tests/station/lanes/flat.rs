@@ -9,9 +9,9 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use serde_json::Value;
 
-use super::ends::{connected, lane_of, silent_board};
+use super::ends::{connected, lane_of};
 use super::floor::{Running, Station};
-use crate::common::PLAN;
+use crate::common::{PLAN, silent_board};
 
 /// The resources of a process.
 #[derive(Clone, Copy, Debug)]

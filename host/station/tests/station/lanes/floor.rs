@@ -6,22 +6,18 @@ use std::path::PathBuf;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{self, Receiver};
 use std::thread;
-use std::time::Duration;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::common;
 
-pub(crate) use crate::common::SERIALS;
+pub(crate) use crate::common::{HANG, SERIALS};
 
 /// A plan whose serial numbers are [`SERIALS`].
 pub(crate) fn plan() -> String {
     common::guarded_plan("CAM-T", "CA")
 }
-
-/// How long to wait for what must come: the limit only ends hangs.
-pub(crate) const HANG: Duration = Duration::from_secs(120);
 
 /// A folder with settings.
 pub(crate) struct Station {

@@ -4,14 +4,13 @@
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::process::Command;
-use std::time::{Duration, Instant};
 
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
-use super::ends::{connected, silent_board};
+use super::ends::connected;
 use super::floor::{SERIALS, Station};
-use crate::common::program;
+use crate::common::{program, silent_board, until_found};
 
 /// Prints what is in `answer`, and keeps a diary of its arguments and of the end of its stdin.
 const LENDER: &str = r#"#!/bin/sh
@@ -41,12 +40,10 @@ fn diary(station: &Station) -> Vec<String> {
 
 /// Waits until the diary has this many lines.
 fn written(station: &Station, lines: usize) -> Vec<String> {
-    let begun = Instant::now();
-    while diary(station).len() < lines {
-        assert!(begun.elapsed() < Duration::from_secs(120), "{:?}", diary(station));
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    diary(station)
+    until_found(&format!("{lines} lines of the diary"), || {
+        let diary = diary(station);
+        if diary.len() >= lines { Ok(diary) } else { Err(diary) }
+    })
 }
 
 const FREE: &str = "free --place cam-1 --user halfrow-12-1 --coordinator bench:20408";

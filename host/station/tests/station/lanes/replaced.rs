@@ -3,9 +3,9 @@
 use std::fs;
 use std::process::Command;
 
-use super::ends::{connected, lane_of, silent_board};
+use super::ends::{connected, lane_of};
 use super::floor::{Running, SERIALS, Station};
-use crate::common::{program, script};
+use crate::common::{program, script, silent_board};
 
 /// Starts the station by a program file of its own; returns that file as well.
 fn started(station: &Station) -> (Running, std::path::PathBuf) {

@@ -8,8 +8,8 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
 use super::text::{Figures, assert_sound, promtool, told};
-use crate::common::{self, until_found};
-use crate::lanes::ends::{connected, silent_board};
+use crate::common::{self, silent_board, until_found};
+use crate::lanes::ends::connected;
 use crate::pages::station::{PUBLIC, SERIALS, Serving, Station};
 use crate::plant::server::Server;
 

@@ -12,14 +12,11 @@ use tempfile::TempDir;
 
 use super::figures::{in_state, once, scan};
 use super::rules::example;
-use crate::common::plant_settings;
+use crate::common::{HANG, plant_settings, until};
 use crate::pages::http::{Request, escaped};
 use crate::pages::station::{SERIALS, Serving, Station};
 use crate::plant::pages::served;
 use crate::plant::server::Server;
-
-/// How long to wait for what must come: the limit only ends hangs.
-const HANG: Duration = Duration::from_secs(120);
 
 /// Prometheus with the example's configuration. It ends with its test.
 struct Prometheus {
@@ -61,17 +58,9 @@ impl Prometheus {
             .spawn()
             .unwrap_or_else(|error| panic!("prometheus: {error}; apt-get install prometheus"));
         let prometheus = Self { _folder: folder, port, process };
-        prometheus.wait("it listens", || std::net::TcpStream::connect(("127.0.0.1", port)).is_ok());
-        prometheus.wait("it is ready", || prometheus.get("/-/ready").0 == 200);
+        until("Prometheus to listen", || std::net::TcpStream::connect(("127.0.0.1", port)).is_ok());
+        until("Prometheus to be ready", || prometheus.get("/-/ready").0 == 200);
         prometheus
-    }
-
-    fn wait(&self, what: &str, is_so: impl Fn() -> bool) {
-        let begun = Instant::now();
-        while !is_so() {
-            assert!(begun.elapsed() < HANG, "not so: {what}");
-            thread::sleep(Duration::from_millis(50));
-        }
     }
 
     fn get(&self, path: &str) -> (u16, String) {

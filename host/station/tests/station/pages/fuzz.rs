@@ -6,6 +6,7 @@ use halfrow_station::web::routes;
 use rand::TryRng as _;
 use rand::rngs::SysRng;
 
+use crate::history::generated::Draw;
 use crate::pages::http::{Request, exchange};
 use crate::pages::station::{SERIALS, Station};
 
@@ -13,16 +14,11 @@ use crate::pages::station::{SERIALS, Station};
 const SHORT: u64 = 5;
 
 /// Pseudo-random numbers, the same ones for the same seed.
-struct Drawn(u64);
+struct Drawn(Draw);
 
 impl Drawn {
-    /// A number below `most` (splitmix64).
     fn below(&mut self, most: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((mixed ^ (mixed >> 31)) % most as u64) as usize
+        self.0.below(most as u64) as usize
     }
 
     fn of<'a>(&mut self, all: &[&'a str]) -> &'a str {
@@ -82,7 +78,7 @@ fn no_request_ends_the_program_or_is_answered_with_its_own_fault() {
     let here = serving.here();
     let mut seed = [0; 8];
     SysRng.try_fill_bytes(&mut seed).unwrap();
-    let mut drawn = Drawn(u64::from_le_bytes(seed));
+    let mut drawn = Drawn(Draw(u64::from_le_bytes(seed)));
     println!("seed {seed:?}");
     let paths: Vec<_> = routes().iter().map(|route| route.path).collect();
     let seconds = std::env::var("HALFROW_FUZZ_SECONDS").map_or(SHORT, |text| text.parse().unwrap());

@@ -15,6 +15,7 @@ use halfrow_station::record::{RunCause, StepOutcome, StepRecord};
 
 use super::bench::{Did, PLAN, Station};
 use super::identity::{device, one_after_the_other};
+use crate::common::silent_board;
 
 #[test]
 fn a_sound_board_passes_and_its_record_reads_back() {
@@ -158,13 +159,6 @@ fn a_call_that_is_wrong_begins_no_run() {
     station.plan(&PLAN.replace("schema = 1", "schema = 9"));
     assert_eq!(station.run("CAT00001", "mock").code, Some(2));
     assert!(!station.data().exists());
-}
-
-/// A board that accepts the connection but stays silent keeps the lane busy for some seconds.
-pub(crate) fn silent_board() -> (TcpListener, String) {
-    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
-    let target = format!("tcp:{}", listener.local_addr().unwrap());
-    (listener, target)
 }
 
 /// The process id of the lane, once it has connected to the board and the station has heard from it.

@@ -18,6 +18,7 @@ use halfrow_station::store::{SharedStore, Store};
 
 use super::bench::{PLAN, Station, program};
 use super::unsaved::{Call, numbered};
+use crate::common::Over;
 
 /// A run that nobody ends or watches.
 struct Unwatched;
@@ -78,15 +79,6 @@ fn all_calls(station: &Station, store: &SharedStore, lane: &Path) -> Vec<Call> {
     let all = numbered(&fs::read_to_string(log).unwrap());
     // strace cannot kill at a call that does not return, nor at the one that starts the program.
     all.into_iter().filter(|(name, _)| !["execve", "exit_group"].contains(&name.as_str())).collect()
-}
-
-/// Ends the other thread, even when the test fails.
-struct Over<'a>(&'a AtomicBool);
-
-impl Drop for Over<'_> {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
 }
 
 /// Whether the lane was killed before it had sent everything, which makes its run an ERROR.

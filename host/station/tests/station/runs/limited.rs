@@ -4,7 +4,8 @@ use std::fs;
 use std::process::{Command, Stdio};
 
 use super::bench::{Did, PLAN, Station, program};
-use super::ends::{lane_of, silent_board};
+use super::ends::lane_of;
+use crate::common::silent_board;
 use crate::pages::station as pages;
 
 fn with(station: &Station, more: &[&str]) -> Did {

@@ -22,6 +22,7 @@ use std::time::{Duration, Instant};
 use halfrow_station::store::{Plant, PlantAddress, PlantLink};
 use tempfile::TempDir;
 
+use crate::common::Over;
 use crate::history::generated::Draw;
 use crate::jobs::{any, board, job, plan, run_out};
 use crate::plant::server::Server;
@@ -206,15 +207,6 @@ impl Trial {
              UPDATE board SET until_ms = 0 WHERE name = '{board}' AND holder IS NOT NULL"
         );
         lock(&self.server).client("plant").batch_execute(&text).unwrap();
-    }
-}
-
-/// Ends a trial when dropped.
-struct Over<'a>(&'a AtomicBool);
-
-impl Drop for Over<'_> {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
     }
 }
 

@@ -9,10 +9,9 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
+use crate::common::HANG;
 use crate::pages::station::Serving;
 
-/// How long to wait for what must come: the limit only ends hangs.
-const HANG: Duration = Duration::from_secs(120);
 /// How often a condition is checked.
 const LOOK: Duration = Duration::from_millis(20);
 
