@@ -4,21 +4,18 @@ use std::fs;
 use std::net::{TcpListener, TcpStream};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use serde_json::json;
 use tempfile::TempDir;
 
 use super::chromium::Chromium;
 use super::live::{NOT_LIVE, WATCH};
-use crate::common::folder;
+use crate::common::{folder, until};
 use crate::pages::station::{PUBLIC, Serving, Station};
 
 /// The most milliseconds until the page is live again, apart from delays of a busy machine.
 const AGAIN: f64 = 5000.0;
-/// How long to wait for the proxy: the limit only ends hangs.
-const HANG: Duration = Duration::from_secs(60);
 /// Debian puts servers into folders that are not on a user's path.
 const NGINX: &str = "PATH=\"$PATH:/usr/sbin:/usr/local/sbin\" exec nginx -p \"$0\" -c nginx.conf -e stderr";
 
@@ -66,12 +63,11 @@ impl Proxy {
         let mut nginx = Command::new("sh");
         let nginx = nginx.args(["-c", NGINX]).arg(folder.path()).stderr(Stdio::null()).spawn().unwrap();
         let mut proxy = Self { nginx, port, _folder: folder };
-        let begun = Instant::now();
-        while TcpStream::connect(("127.0.0.1", port)).is_err() {
+        until("nginx to listen", || {
             let ended = proxy.nginx.try_wait().unwrap();
-            assert!(ended.is_none() && begun.elapsed() < HANG, "nginx does not listen: {ended:?}");
-            thread::sleep(Duration::from_millis(10));
-        }
+            assert!(ended.is_none(), "nginx has ended: {ended:?}");
+            TcpStream::connect(("127.0.0.1", port)).is_ok()
+        });
         proxy
     }
 }
@@ -105,8 +101,9 @@ fn open(proxy: &Proxy) -> Chromium {
     page
 }
 
-#[test]
-fn behind_a_proxy_that_says_502_the_page_is_live_again_by_itself() {
+/// Ends the station behind a proxy and starts it again; returns how many milliseconds after the last beat its page was not
+/// live, and how many after the start live again.
+fn without_the_station() -> [f64; 2] {
     let station = Station::public(1);
     let serving = station.serve();
     let proxy = Proxy::before(serving.port);
@@ -117,18 +114,31 @@ fn behind_a_proxy_that_says_502_the_page_is_live_again_by_itself() {
     drop(serving);
     page.wait("window.died > 0");
     let silent = page.evaluate("window.died - window.beat").as_f64().unwrap();
-    println!("behind a proxy, not live {silent:.0} ms after the last beat");
-    assert!(silent < 2.0 * NOT_LIVE, "not live after {silent} ms");
     assert_eq!(page.evaluate("fetch('/today').then(answer => answer.status)"), json!(502));
     let _again: Serving = station.serve();
     let back = page.evaluate("performance.now()").as_f64().unwrap();
     page.wait("window.rose > 0");
     let rose = page.evaluate("window.rose").as_f64().unwrap() - back;
-    println!("behind a proxy, live again {rose:.0} ms after it was back");
-    assert!(rose < 2.0 * AGAIN, "live after {rose} ms");
     page.scan(crate::common::SERIALS[0], "Enter", Duration::ZERO);
     page.wait("document.querySelector('.lane.pass') !== null");
     assert_eq!(station.query("SELECT DISTINCT operator_id FROM run"), ["Weber"]);
+    [silent, rose]
+}
+
+#[test]
+fn behind_a_proxy_that_says_502_the_page_is_live_again_by_itself() {
+    let [silent, rose] = without_the_station();
+    println!(
+        "behind a proxy, not live {silent:.0} ms after the last beat, live again {rose:.0} ms after it was back"
+    );
+}
+
+#[test]
+#[ignore = "for scripts/soak: a figure of a machine that does nothing else"]
+fn behind_a_proxy_that_says_502_the_page_is_soon_live_again() {
+    let [silent, rose] = without_the_station();
+    assert!(silent < 2.0 * NOT_LIVE, "not live after {silent} ms");
+    assert!(rose < 2.0 * AGAIN, "live after {rose} ms");
 }
 
 /// A station that others can reach sends news only to people who are logged in, so this page is not live.
