@@ -16,7 +16,7 @@ fn waiter(name: &str) -> Waiter {
 }
 
 #[test]
-fn who_waits_longest_is_the_next_and_a_job_comes_behind_people() {
+fn who_waits_longest_is_the_next_and_a_job_comes_after_people() {
     let (server, mut plant, _) = with_a_job();
     let [first, second, third] = ["first", "second", "third"].map(|name| {
         thread::sleep(std::time::Duration::from_millis(2));

@@ -217,7 +217,7 @@ fn a_plan_for_hardware_judges_the_mock_by_its_frames_alone() {
 
 /// The second lane shows that the station has checked its lanes meanwhile.
 #[test]
-fn a_checked_lane_asks_its_store_behind_its_runs_alone() {
+fn a_checked_lane_asks_its_store_after_its_runs_alone() {
     let station = Station::with(&["mock"], "");
     let port = station.path("port");
     let other =

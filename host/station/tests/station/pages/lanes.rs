@@ -243,7 +243,7 @@ fn the_page_counts_what_is_not_at_the_plant_and_nothing_that_other_sinks_do_not_
 
 /// A request names the last beat that its page got. After that, another board may be in the lane.
 #[test]
-fn what_comes_long_behind_the_beat_that_its_page_heard_is_not_done() {
+fn what_comes_long_after_the_beat_that_its_page_heard_is_not_done() {
     let station = Station::private(1);
     let serving = station.serve();
     let here = serving.here();

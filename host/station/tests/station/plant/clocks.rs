@@ -48,7 +48,7 @@ fn no_run_begins_while_the_clocks_of_station_and_plant_are_apart() {
 }
 
 #[test]
-fn no_run_begins_behind_one_that_is_dated_ahead() {
+fn no_run_begins_after_one_that_is_dated_ahead() {
     let server = Server::prepared();
     let of_plant = station(&server, "12", "");
     let mut made = Made::new();

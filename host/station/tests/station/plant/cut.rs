@@ -25,7 +25,7 @@ fn a_connection_that_is_cut_at_any_commit_loses_nothing_and_doubles_nothing() {
 fn cut_at(numbers: impl IntoIterator<Item = usize>) {
     let server = Server::prepared();
     for number in numbers {
-        for cut in [Cut::Before, Cut::Behind, Cut::Pretended] {
+        for cut in [Cut::Before, Cut::After, Cut::Pretended] {
             server
                 .client("plant")
                 .batch_execute("TRUNCATE plan, unit, run, record, audit, station CASCADE")
@@ -40,7 +40,7 @@ fn cut_at(numbers: impl IntoIterator<Item = usize>) {
             let [unsent] = &made.now().unsent().unwrap()[..] else { panic!("nothing was cut") };
             let there = server
                 .rows("SELECT id FROM run UNION ALL SELECT id FROM audit UNION ALL SELECT id FROM waiver");
-            let surplus = usize::from(cut == Cut::Behind);
+            let surplus = usize::from(cut == Cut::After);
             assert_eq!(there.len() + unsent.entries as usize, 10 + surplus, "{cut:?} {number}");
             due(&made);
             let (made, rest) = send(made, address);

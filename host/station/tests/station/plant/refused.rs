@@ -185,7 +185,7 @@ fn a_plant_that_went_back_is_brought_up_to_date_beside_the_copy_of_the_first_tim
 
 /// What an earlier program has read in a transaction holds until that is over.
 #[test]
-fn a_plant_is_brought_up_to_date_behind_what_an_earlier_program_has_under_way() {
+fn a_plant_is_brought_up_to_date_after_what_an_earlier_program_has_under_way() {
     let server = Server::start();
     older(&server);
     let mut busy = server.client("plant");

@@ -12,7 +12,7 @@ pub(crate) enum Cut {
     /// The server never sees the COMMIT.
     Before,
     /// The server carries it out, and nobody learns of it.
-    Behind,
+    After,
     /// The server never sees it, but the station is told that it was carried out.
     Pretended,
 }
@@ -53,7 +53,7 @@ pub(crate) fn way(to: u16, cuts: impl Fn(usize) -> Option<Cut> + Send + Sync + '
 fn carry_out(cut: Cut, commit: &[u8], mut client: &TcpStream, mut server: &TcpStream) -> bool {
     match cut {
         Cut::Before => {}
-        Cut::Behind => {
+        Cut::After => {
             let _ = client.shutdown(Shutdown::Both);
             if server.write_all(commit).is_ok() {
                 // It has carried it out by the time it waits for more.

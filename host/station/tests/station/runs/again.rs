@@ -38,7 +38,7 @@ fn a_unit_that_passed_is_tested_again_as_the_plan_says() {
 
 /// An ERROR says nothing about a unit that passed.
 #[test]
-fn a_unit_that_passed_has_passed_though_an_error_came_behind() {
+fn a_unit_that_passed_has_passed_though_an_error_came_after() {
     let station = Station::with(&plan("ask"));
     assert_eq!(station.run("CAT00001", "mock").code, Some(0));
     let error = meant(&station, "CAT00001", "tcp:127.0.0.1:1");

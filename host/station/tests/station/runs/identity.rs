@@ -102,7 +102,7 @@ pub(super) fn one_after_the_other(boards: Vec<String>, before: impl Fn() + Send 
 }
 
 #[test]
-fn a_board_that_is_swapped_behind_the_identity_step_is_not_judged() {
+fn a_board_that_is_swapped_after_the_identity_step_is_not_judged() {
     for (plan, outcomes) in
         [(PLAN.to_owned(), &["passed", "error"][..]), (with_link(), &["passed", "error", "skipped"])]
     {
@@ -209,7 +209,7 @@ fn an_engineer_binds_anew_with_a_reason_that_is_kept() {
 
 /// A run that a clock set back would put before the change would be replayed in the wrong order.
 #[test]
-fn a_run_behind_a_change_of_a_binding_has_a_later_id_whatever_the_clock_says() {
+fn a_run_after_a_change_of_a_binding_has_a_later_id_whatever_the_clock_says() {
     let mut made = Made::new();
     made.run(&Run::of("CAT00017", End::Pass));
     let change =

@@ -154,7 +154,7 @@ impl Sink for Looking {
 }
 
 #[test]
-fn what_a_sink_has_is_known_before_it_has_all_that_is_behind_it() {
+fn what_a_sink_has_is_known_before_it_has_all_that_comes_after_it() {
     let place = tempfile::tempdir().unwrap();
     let folder = Folder::new(place.path());
     let mut store = Store::open(&folder).unwrap();

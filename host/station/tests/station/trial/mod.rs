@@ -102,7 +102,7 @@ impl Trial {
                 if bytes >= RUN { (120, &happened.cuts) } else { (20, &happened.other_cuts) };
             (drawn < most).then(|| {
                 counted.fetch_add(1, Ordering::Relaxed);
-                if drawn.is_multiple_of(2) { Cut::Before } else { Cut::Behind }
+                if drawn.is_multiple_of(2) { Cut::Before } else { Cut::After }
             })
         };
         let port = way(server.port(), cut);

@@ -53,7 +53,7 @@ const ALL_SEEN: &str = "[...seen.values()].filter(late => late !== undefined).le
 
 #[test]
 #[ignore = "for scripts/soak: a figure of a machine that does nothing else"]
-fn verdicts_are_soon_on_the_screen_behind_their_commit() {
+fn verdicts_are_soon_on_the_screen_after_their_commit() {
     let station = Station::private(LANES);
     let serving = station.serve();
     let (mut page, here) = (open(&serving), serving.here());
