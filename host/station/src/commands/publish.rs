@@ -100,9 +100,9 @@ pub(super) enum PublishError {
          there if you know whose it is, and ask whoever keeps the plant if not"
     )]
     Untrusted { plan: String },
-    /// Its product has a slash.
+    /// A plan whose product has a slash cannot be published: settings name a plan by its product and its name with a slash between.
     #[error(
-        "the product `{product}` has a slash, where settings and `plan back` would end it; give the plan a product without a slash"
+        "the product `{product}` has a slash, which would end it in settings; give the plan a product without a slash"
     )]
     Slash { product: String },
     /// Its last statement has the last number that there is.
