@@ -181,7 +181,7 @@ fn tables_that_read_back_wrong_over_a_link_that_breaks_are_looked_at_again() {
     }
 }
 
-/// They are not judged again when their frame is sent once more.
+/// The rows are not judged again when their frame is sent once more.
 #[test]
 fn rows_of_a_frame_that_the_link_broke_in_count_in_a_session_that_is_whole_alone() {
     let report = unplugged_in_the_middle_of_a_frame(Wrong::Once, Some(LIMIT));

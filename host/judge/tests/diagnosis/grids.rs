@@ -190,7 +190,7 @@ fn stale_grids_are_named_in_a_frame_with_another_centre() {
     let suspects = bench.judge(&seen);
     let [only] = &suspects[..] else { panic!("{suspects:#?}") };
     assert_eq!((only.part(), only.explained), ("stale tables", 1.0));
-    let clause = "frame 2 with the row factors of generation 1 and the kernel of generation 2";
+    let clause = "making frame 2 with the factors of generation 1 instead of 2";
     assert!(only.evidence().contains(clause), "{}", only.evidence());
 }
 
