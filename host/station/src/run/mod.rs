@@ -343,8 +343,12 @@ fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> 
     let text = "text/plain; charset=utf-8";
     let told = [(EVENTS, "application/jsonl"), (LOG, text), (kept_frame::NOT_KEPT, text)];
     let told = told.map(|(name, media_type)| (name.to_owned(), media_type));
-    // A lane that was not started has no folder.
-    let frames = kept_frame::names(spool).unwrap_or_default().into_iter().map(|name| (name, "image/png"));
+    let frames = match kept_frame::names(spool) {
+        // A lane that was not started has no folder.
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
+        names => names.map_err(|source| BlobError::Read { path: spool.to_owned(), source })?,
+    };
+    let frames = frames.into_iter().map(|name| (name, "image/png"));
     for (name, media_type) in told.into_iter().chain(frames) {
         let path = spool.join(&name);
         let bytes = match fs::read(&path) {

@@ -90,6 +90,21 @@ fn no_verdict_is_shown_that_the_disk_did_not_take() {
     starve(|all| [1, all / 3, all / 2, 2 * all / 3].map(|place| place.max(1)).to_vec());
 }
 
+/// A run of CAT00002 in which the call `name` fails once, the `number`-th time, and that call with the file that it is for; none if
+/// there are not as many.
+fn failing(station: &Station, board: &str, name: &str, number: usize) -> (Did, Option<String>) {
+    let (trace, inject) = (station.path("failed"), format!("inject={name}:error=EIO:when={number}"));
+    let output = Command::new("strace")
+        .args(["-qq", "-y", "-e", &format!("trace={name}"), "-e", &inject, "-o"])
+        .arg(&trace)
+        .arg(program())
+        .args(station.run_arguments("CAT00002", board))
+        .output()
+        .unwrap();
+    let trace = std::fs::read_to_string(trace).unwrap();
+    (output.into(), trace.lines().find(|line| line.contains("(INJECTED)")).map(str::to_owned))
+}
+
 /// A disk reports a lost write once, and accepts what comes later. Three calls bring evidence to the disk, for the file, its
 /// name, and the name of its folder; each is checked when it alone fails.
 #[test]
@@ -100,25 +115,8 @@ fn evidence_that_the_disk_did_not_take_at_once_is_none() {
     for number in 1.. {
         // Evidence then makes its folder anew.
         std::fs::remove_dir_all(station.data().join("blobs")).unwrap();
-        let trace = station.path("failed");
-        let did: Did = Command::new("strace")
-            .args([
-                "-qq",
-                "-y",
-                "-e",
-                "trace=fsync",
-                "-e",
-                &format!("inject=fsync:error=EIO:when={number}"),
-                "-o",
-            ])
-            .arg(&trace)
-            .arg(program())
-            .args(station.run_arguments("CAT00002", "mock"))
-            .output()
-            .unwrap()
-            .into();
-        let trace = std::fs::read_to_string(trace).unwrap();
-        let Some(failed) = trace.lines().find(|line| line.contains("(INJECTED)")) else { break };
+        let (did, failed) = failing(&station, "mock", "fsync", number);
+        let Some(failed) = failed else { break };
         if failed.contains("/data/blobs") {
             assert_eq!(did.code, Some(3), "{failed}: {did:?}");
             assert!(did.said.contains("UNSAVED CAT00002: keep this board apart"), "{failed}: {did:?}");
@@ -128,6 +126,28 @@ fn evidence_that_the_disk_did_not_take_at_once_is_none() {
         assert_eq!(after.code, Some(0), "{failed}: {after:?}");
     }
     assert_eq!(seen, 3);
+}
+
+/// What the lane kept of a FAIL stays in its spool when the system does not say what is there.
+#[test]
+fn frames_that_cannot_be_listed_are_not_left_out() {
+    let station = Station::with(PLAN);
+    station.run("CAT00001", "mock");
+    for number in 1.. {
+        let (did, failed) = failing(&station, "mock,fault=stuck-data", "getdents64", number);
+        let failed = failed.expect("the spool is listed");
+        if !failed.contains("/data/spool/") {
+            continue;
+        }
+        assert_eq!(did.code, Some(3), "{failed}: {did:?}");
+        assert!(did.said.contains("UNSAVED CAT00002: keep this board apart"), "{failed}: {did:?}");
+        // The next run recovers it.
+        assert_eq!(station.run("CAT00003", "mock").code, Some(0));
+        let hash = station.query("SELECT record_sha256 FROM run WHERE verdict = 'ERROR' ORDER BY id DESC");
+        let record = std::fs::read_to_string(station.store().blobs().path(&hash[0])).unwrap();
+        assert!(record.contains("-should.png"), "{record}");
+        return;
+    }
 }
 
 /// From every call on.
