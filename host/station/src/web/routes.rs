@@ -36,9 +36,18 @@ pub struct Route {
 }
 
 impl Route {
-    /// For content that never changes, such as what has its hash in its address.
+    /// For content that never changes, because its hash is in its address.
     pub(super) fn for_ever(self) -> Self {
-        Self { handler: self.handler.layer(middleware::from_fn(for_ever::for_ever)), ..self }
+        self.tagged(for_ever::ONLY_VERSION.to_owned())
+    }
+
+    /// For content that never changes until another version of the program makes it.
+    pub(super) fn while_program_is_same(self) -> Self {
+        self.tagged(for_ever::of_program())
+    }
+
+    fn tagged(self, tag: String) -> Self {
+        Self { handler: self.handler.layer(middleware::from_fn_with_state(tag, for_ever::for_ever)), ..self }
     }
 }
 

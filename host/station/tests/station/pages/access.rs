@@ -283,12 +283,28 @@ fn what_never_changes_is_shown_from_no_cache_to_whoever_has_logged_out() {
     let station = Station::public(1);
     let serving = station.serve();
     let browser = serving.operator();
-    let known = browser.get("/runs/1/export/csv").with("if-none-match", "\"1\"");
+    let known = browser.get("/runs/1/evidence/1").with("if-none-match", "\"1\"");
     assert_eq!(known.send().status, 304);
     // The control: the run does not exist, so nothing could be sent.
     assert_eq!(known.clone().without("if-none-match").send().status, 404);
     assert_eq!(browser.post("/logout", &[]).send().status, 303);
     assert_eq!(known.send().status, 401);
+}
+
+/// Another program may write an export and draw a picture differently.
+#[test]
+fn what_this_program_makes_of_a_run_is_not_what_an_earlier_one_made() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let browser = serving.operator();
+    let own = format!("\"{}\"", halfrow::result::sha256([halfrow::VERSION]));
+    for path in ["/runs/1/export/csv", "/runs/1/preview/1", "/runs/1/difference/1/2"] {
+        let asked = |tag: &str| browser.get(path).with("if-none-match", tag).send();
+        // The run does not exist, so nothing could be sent.
+        assert_eq!(asked("\"1\"").status, 404, "{path}");
+        let known = asked(&own);
+        assert_eq!((known.status, known.header("etag")), (304, Some(own.as_str())), "{path}");
+    }
 }
 
 #[test]
