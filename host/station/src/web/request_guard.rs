@@ -140,7 +140,7 @@ async fn machine(
     };
     let (of, token) = (app.clone(), token.to_owned());
     let asked = app.blocking(&stranger, move || of.access().machine(&token, peer)).await;
-    match asked.map_err(troubled)? {
+    match asked.map_err(troubled)?.map_err(|error| troubled(Trouble::secret(&stranger, &error)))? {
         Machine::Waits(wait) => Err(troubled(Trouble::waits(&stranger, wait))),
         Machine::Unknown => {
             let visit = told(stranger, "token refused", peer.to_string()).await?;

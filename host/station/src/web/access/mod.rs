@@ -182,23 +182,22 @@ impl Access {
     }
 
     /// The machine that asks with this token from `peer`. It may wait for the disk.
-    pub(super) fn machine(&self, token: &str, peer: IpAddr) -> Machine {
+    ///
+    /// # Errors
+    /// [`SecretError`] when the file of tokens cannot be read; that is no failure of the machine.
+    pub(super) fn machine(&self, token: &str, peer: IpAddr) -> Result<Machine, SecretError> {
         let tokens = match &self.people {
-            People::Listed { tokens: Some(file), .. } => Tokens::load_or_none(file),
-            _ => Ok(Tokens::default()),
+            People::Listed { tokens: Some(file), .. } => Tokens::load_or_none(file)?,
+            _ => Tokens::default(),
         };
-        let tokens = tokens.unwrap_or_else(|error| {
-            tracing::error!("{:#}", anyhow::Error::from(error));
-            Tokens::default()
-        });
         // From here on nothing may wait for the disk, because others wait for the locks.
         let Some(name) = tokens.reader(&self.key, token) else {
             let wait = locked(&self.refused).attempt(network(peer), Instant::now());
-            return wait.map_or(Machine::Unknown, Machine::Waits);
+            return Ok(wait.map_or(Machine::Unknown, Machine::Waits));
         };
         // A right token never waits: nobody guesses 256 bits, and behind a proxy others have the same address.
         let is_noted = locked(&self.machines).has(name, peer);
-        Machine::Known { name: name.to_owned(), is_noted }
+        Ok(Machine::Known { name: name.to_owned(), is_noted })
     }
 
     /// Notes that the audit has this machine from `peer`.

@@ -234,3 +234,26 @@ fn a_machine_with_a_token_reads_them_in_the_format_that_it_asks_for() {
     assert_eq!(plain.header("content-type"), Some("text/plain; version=0.0.4; charset=utf-8"));
     assert!(plain.text().contains("# TYPE halfrow_runs_total counter\n") && !plain.text().contains("EOF"));
 }
+
+/// It is not the machine that is wrong, so it is told to ask again, however often it asked.
+#[test]
+fn a_file_of_tokens_that_cannot_be_read_makes_no_token_wrong() {
+    let station = Station::public(1);
+    let token = String::from_utf8(station.token(&["add", "prometheus", "--scope", "read"]).stdout).unwrap();
+    let serving = station.serve();
+    let bearer = format!("Bearer {}", token.trim());
+    let asked = serving.browser(PUBLIC).get("/metrics").without("cookie").with("authorization", &bearer);
+    let file = station.path("tokens.toml");
+    let right = fs::read(&file).unwrap();
+    fs::write(&file, "no tokens\n").unwrap();
+    for _ in 0..12 {
+        assert_eq!(asked.send().status, 503);
+    }
+    fs::write(&file, right).unwrap();
+    assert_eq!(asked.send().status, 200);
+    let noted = "SELECT act FROM audit WHERE act LIKE 'token%'";
+    assert_eq!(station.query(noted), ["token"]);
+    // The control.
+    assert_eq!(asked.with("authorization", "Bearer 00").send().status, 401);
+    assert_eq!(station.query(noted), ["token", "token refused"]);
+}
