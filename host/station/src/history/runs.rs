@@ -128,6 +128,11 @@ impl RunLine {
         })
     }
 
+    /// Whether it is a judgement that counts.
+    pub(crate) fn is_judgement(&self) -> bool {
+        self.nth > 0 && matches!(self.verdict.as_deref(), Some("PASS" | "FAIL"))
+    }
+
     fn place(&self) -> Place {
         Place { started_ms: self.started_ms, id: self.id.clone() }
     }

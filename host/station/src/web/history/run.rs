@@ -192,7 +192,7 @@ fn facts(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
             }))
             (show::pair(visit.say("history.lane"), html! { (show::said(&line.station)) " · " (show::said(&line.lane)) }))
             (show::pair(visit.say("history.operator"), show::said(&line.operator)))
-            @if matches!(line.verdict.as_deref(), Some("PASS" | "FAIL")) {
+            @if line.is_judgement() {
                 (show::pair(visit.say("run.judgement"), line.nth))
             }
             (show::pair(visit.say("run.board"), html! {

@@ -75,7 +75,7 @@ fn of(visit: &Visit, asked: &Asked, unit: &Unit) -> Markup {
 
 /// The plans under which the unit first failed and passed in the end.
 fn flips(visit: &Visit, unit: &Unit) -> Markup {
-    let judged = |run: &&UnitRun| matches!(run.line.verdict.as_deref(), Some("PASS" | "FAIL"));
+    let judged = |run: &&UnitRun| run.line.is_judgement();
     let mut plans: Vec<_> = unit.runs.iter().filter(judged).map(|run| run.line.plan.as_str()).collect();
     plans.sort_unstable();
     plans.dedup();
@@ -125,7 +125,7 @@ fn story(visit: &Visit, run: &UnitRun) -> Markup {
                 span.soft {
                     " · " (show::said(&line.plan)) " " (show::said(&line.version))
                     " · " (visit.say("history.lane")) " " (show::said(&line.lane)) " · " (show::said(&line.operator))
-                    @if matches!(line.verdict.as_deref(), Some("PASS" | "FAIL")) {
+                    @if line.is_judgement() {
                         " · " (visit.words.fill("history.nth", &[("number", &line.nth.to_string())]))
                     }
                 }

@@ -4,6 +4,7 @@ use halfrow_station::history::unit::units;
 use halfrow_station::record::RunCause;
 
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use super::served::Served;
 
 #[test]
 fn a_unit_has_its_runs_and_nobody_elses_with_all_that_belongs_to_them() {
@@ -35,4 +36,28 @@ fn a_serial_number_that_was_never_tested_is_no_unit() {
     let mut made = Made::new();
     made.run(&Run::of("S1", End::Pass));
     assert_eq!(units(&made.now(), "S").unwrap(), Vec::new());
+}
+
+/// The mock that checks a shift is to FAIL, and its runs count nowhere.
+#[test]
+fn runs_that_do_not_count_are_no_judgements_of_a_unit() {
+    let mut made = Made::new();
+    let mut ids = Vec::new();
+    for serial in ["HR:MOCK:1", "S1"] {
+        for (end, hour) in [End::Fail(&["memory"]), End::Pass].into_iter().zip(0..) {
+            let started_ms = BEGIN_MS + hour * HOUR_MS;
+            ids.push(made.run(&Run { started_ms, ..Run::of(serial, end) }));
+        }
+    }
+    let served = Served::of(made);
+    let told = |path: &str| {
+        let page = served.page(path);
+        ["First FAIL, in the end PASS", " · judgement ", "Number of this judgement"]
+            .map(|words| page.contains(words))
+    };
+    assert_eq!(told("/unit?serial=HR%3AMOCK%3A1"), [false; 3]);
+    assert_eq!(told(&format!("/runs/{}", ids[0])), [false; 3]);
+    // The control.
+    assert_eq!(told("/unit?serial=S1"), [true, true, false]);
+    assert_eq!(told(&format!("/runs/{}", ids[2])), [false, false, true]);
 }
