@@ -17,7 +17,7 @@ use crate::floor::Starts;
 use crate::input_error::Fault;
 use crate::lane::{MEMORIES_MIB, MEMORY_MIB};
 use crate::published::named_by;
-use crate::web::Address;
+use crate::web::{Address, AddressError};
 
 /// What to do about a wrong key: where all keys are listed.
 const KEYS: &str = "the table \"All settings\" of docs/station.md names every key";
@@ -147,13 +147,25 @@ fn sinks(folder: &Path, read: &SettingsText) -> Result<Vec<SinkSettings>, Fault>
 /// Where the pages are. If others can reach them, people must log in.
 fn address(read: &SettingsText) -> Result<Address, Fault> {
     let WebText { listen, public, hosts } = &read.web;
-    let at = |text: &Option<Spanned<String>>| text.as_ref().map(|text| text.span().start);
-    let place = at(listen).or(at(public)).unwrap_or(0);
-    let text = |text: &Option<Spanned<String>>| text.as_ref().map(|text| text.get_ref().clone());
-    let listen = text(listen).unwrap_or_else(|| LISTEN.to_owned());
-    let address = Address::new(&listen, text(public).as_deref(), hosts)
-        .map_err(|error| Fault::input(place, "the address", error))?;
+    let [of_listen, of_public] =
+        [listen, public].map(|text| text.as_ref().map_or(0, |text| text.span().start));
+    let listen = listen.as_ref().map_or(LISTEN, |text| text.get_ref());
+    let public = public.as_ref().map(|text| text.get_ref().as_str());
+    let names = hosts.as_ref().map_or(&[][..], |hosts| hosts.get_ref());
+    let address = Address::new(listen, public, names).map_err(|error| {
+        let place = match error {
+            AddressError::Listen(_) => of_listen,
+            AddressError::Public(_) => of_public,
+        };
+        Fault::input(place, "the address", error)
+    })?;
     if !address.is_private() && read.access.is_none() {
+        let is_open = |public| Address::new(listen, public, &[]).is_ok_and(|address| !address.is_private());
+        let place = match hosts {
+            _ if is_open(None) => of_listen,
+            Some(hosts) if !is_open(public) => hosts.span().start,
+            _ => of_public,
+        };
         let what = "others can reach these pages, and nobody logs in";
         let remedy = "write [access] with users, or listen on 127.0.0.1 without `public` and `hosts`";
         return Err(Fault::wrong(place, what, remedy));
@@ -162,7 +174,7 @@ fn address(read: &SettingsText) -> Result<Address, Fault> {
         let what = format!(
             "of all that arrives at {listen} nothing would be answered: no name is known by which browsers ask"
         );
-        return Err(Fault::wrong(place, what, "write `hosts`, or `public` behind a proxy"));
+        return Err(Fault::wrong(of_listen, what, "write `hosts`, or `public` behind a proxy"));
     }
     Ok(address)
 }

@@ -69,8 +69,7 @@ pub(super) struct ScannerText {
 pub(super) struct WebText {
     pub(super) listen: Option<Spanned<String>>,
     pub(super) public: Option<Spanned<String>>,
-    #[serde(default)]
-    pub(super) hosts: Vec<String>,
+    pub(super) hosts: Option<Spanned<Vec<String>>>,
 }
 
 /// `[access]`

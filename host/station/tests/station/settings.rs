@@ -224,6 +224,31 @@ const WRONG: &[(&str, &str, &str)] = &[
     ),
     ("{lane}", "{line}", "station.toml:28: nothing is known that is called {line}; write one of {lane}"),
     ("./print", "./brint", "there is no program"),
+    (
+        "[[on-error]]",
+        "[web]\nlisten = \"127.0.0.1:1\"\npublic = \"station12\"\n[[on-error]]",
+        "station.toml:31: the address cannot be used: `station12` is not where browsers find a station",
+    ),
+    (
+        "[[on-error]]",
+        "[web]\nlisten = \"127.0.0.1\"\npublic = \"https://a.example\"\n[[on-error]]",
+        "station.toml:30: the address cannot be used: `127.0.0.1` is no address to listen on",
+    ),
+    (
+        "[[on-error]]",
+        "[web]\nlisten = \"127.0.0.1:1\"\npublic = \"https://a.example\"\n[[on-error]]",
+        "station.toml:31: others can reach these pages, and nobody logs in",
+    ),
+    (
+        "[[on-error]]",
+        "[web]\nhosts = [\"localhost\", \"a.example\"]\n[[on-error]]",
+        "station.toml:30: others can reach these pages, and nobody logs in",
+    ),
+    (
+        "[[on-error]]",
+        "[web]\nlisten = \"0.0.0.0:1\"\nhosts = [\"a.example\"]\n[[on-error]]",
+        "station.toml:30: others can reach these pages, and nobody logs in",
+    ),
     ("deadline = 2.5", "deadline = -1.0", "station.toml:31: -1 s is no such time"),
 ];
 
