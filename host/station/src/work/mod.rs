@@ -36,7 +36,7 @@ const IDLE_MS: u64 = 1_000;
 const AWAY_MS: u64 = 5_000;
 /// How many times the station tries to tell the plant that a board is out.
 const TRIES_OUT: u32 = 40;
-/// The time between two checks whether the plant has a run, or a wait is over.
+/// The time between two checks whether a wait is over.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// A job that came to no run.

@@ -3,12 +3,15 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::LOOK;
 use crate::said::Said;
 use crate::store::{Folder, LEASE_MS, SINK_OF_PLANT, Snapshot, StoreError};
 
 /// How long a plant that answers may take nothing: as long as a plant may be away before a lease runs out.
 const PATIENCE: Duration = Duration::from_millis(LEASE_MS.unsigned_abs());
+
+/// How often it is looked whether the plant has a run: the outbox looks no oftener for what it could send, and each look opens the
+/// database.
+const LOOK: Duration = Duration::from_millis(200);
 
 /// The state of a run at the plant.
 #[derive(Debug)]
