@@ -1,7 +1,7 @@
 //! Brings a database to the version that this program knows, on either engine.
 
 use std::fs::{self, File};
-use std::io::{self, BufReader, Read as _};
+use std::io::{self, Read as _};
 use std::iter;
 use std::path::{Path, PathBuf};
 
@@ -17,6 +17,9 @@ use crate::record::synced;
 pub(super) const NEWEST: &str = "SELECT max(n) FROM schema_version";
 /// Notes that the database has another version.
 const NOTE: &str = "INSERT INTO schema_version (n, sha256, applied_ms) VALUES ($1, $2, $3)";
+
+/// How many bytes of two copies are compared at a time: a database may have gigabytes.
+const BLOCK: usize = 64 << 10;
 
 /// Applies all schemas that `database`, which is at `path`, does not have yet, in one transaction: whatever happens, it has the
 /// version that was found, or the newest. Before a database that holds results is changed, it is copied: to a file beside it, or
@@ -133,14 +136,20 @@ fn free_name(path: &Path, version: i64, aside: &Path) -> io::Result<PathBuf> {
 }
 
 fn hold_the_same(one: &Path, other: &Path) -> io::Result<bool> {
-    let [one, other] = [File::open(one)?, File::open(other)?];
-    if one.metadata()?.len() != other.metadata()?.len() {
+    let [mut one, mut other] = [File::open(one)?, File::open(other)?];
+    let mut left = one.metadata()?.len();
+    if left != other.metadata()?.len() {
         return Ok(false);
     }
-    for (one, other) in BufReader::new(one).bytes().zip(BufReader::new(other).bytes()) {
-        if one? != other? {
+    let [mut of_one, mut of_other] = [vec![0; BLOCK], vec![0; BLOCK]];
+    while left > 0 {
+        let size = usize::try_from(left).map_or(BLOCK, |left| left.min(BLOCK));
+        one.read_exact(&mut of_one[..size])?;
+        other.read_exact(&mut of_other[..size])?;
+        if of_one[..size] != of_other[..size] {
             return Ok(false);
         }
+        left -= size as u64;
     }
     Ok(true)
 }
@@ -199,6 +208,28 @@ mod tests {
         let found = [missing(10, Some(10)), missing(10, Some(9)), missing(3_000_000, Some(999_999))];
         assert_eq!(found, [0, 1, 3]);
         assert_eq!([missing(10, Some(0)), missing(10, None)], [1, 0]);
+    }
+
+    #[test]
+    fn copies_are_the_same_if_every_byte_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let [one, other] = ["one", "other"].map(|name| folder.path().join(name));
+        for length in [0, 1, 65_535, 65_536, 65_537, 200_000] {
+            let bytes = vec![7; length];
+            fs::write(&one, &bytes).unwrap();
+            fs::write(&other, &bytes).unwrap();
+            assert!(hold_the_same(&one, &other).unwrap(), "{length}");
+            for place in [0, length / 2, length.saturating_sub(1)] {
+                let mut bytes = bytes.clone();
+                if let Some(byte) = bytes.get_mut(place) {
+                    *byte = 8;
+                    fs::write(&other, &bytes).unwrap();
+                    assert!(!hold_the_same(&one, &other).unwrap(), "{place} of {length}");
+                }
+            }
+            fs::write(&other, [&bytes[..], &[7]].concat()).unwrap();
+            assert!(!hold_the_same(&one, &other).unwrap(), "one more than {length}");
+        }
     }
 
     #[test]
