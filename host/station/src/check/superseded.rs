@@ -41,7 +41,7 @@ pub(super) fn superseded(
         let row = match snapshot.verdict_of(run)? {
             None if open.contains(run) => None,
             None => continue,
-            row => row,
+            Some(stored) => Some(stored.verdict),
         };
         let Some(verdict) = verdict.filter(|said| *said != row.unwrap_or(Verdict::Error)) else { continue };
         if blobs.get(sha256).is_ok() {

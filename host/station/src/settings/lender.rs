@@ -1,11 +1,11 @@
 //! Which board a lane has: one of this computer's own, or one that labgrid lends.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use halfrow::link::{self, kinds};
 use halfrow::target::{BoardKind, Target};
 
-use super::read::{not_empty, seconds};
+use super::read::{not_empty, program, seconds};
 use super::stable;
 use super::text::{LabgridText, LaneText, SettingsText};
 use crate::input_error::Fault;
@@ -23,10 +23,9 @@ pub(super) struct Lender {
 impl Lender {
     /// What the settings say, in a file whose folder is `folder`.
     pub(super) fn of(folder: &Path, read: &SettingsText) -> Result<Self, Fault> {
-        let LabgridText { coordinator, program, deadline } = &read.labgrid;
-        let program = program.as_ref().map(not_empty).transpose()?.unwrap_or_else(|| PROGRAM.to_owned());
-        // A name without a folder is searched for in `PATH`.
-        let program = if program.contains('/') { folder.join(program) } else { PathBuf::from(program) };
+        let LabgridText { coordinator, program: written, deadline } = &read.labgrid;
+        let written = written.as_ref().map(not_empty).transpose()?.unwrap_or_else(|| PROGRAM.to_owned());
+        let program = program(folder, &written);
         let coordinator = coordinator.as_ref().map(not_empty).transpose()?;
         let deadline = seconds(deadline.as_ref(), DEADLINE)?;
         let station = read.station.name.get_ref().trim().to_owned();

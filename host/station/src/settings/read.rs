@@ -288,8 +288,7 @@ fn hooks(folder: &Path, read: &SettingsText) -> Result<Vec<Hook>, Fault> {
 
 fn hook(folder: &Path, on: Verdict, text: &HookText) -> Result<Hook, Fault> {
     let written = not_empty(&text.program)?;
-    // A name without a folder is searched for in `PATH`.
-    let program = if written.contains('/') { folder.join(&written) } else { PathBuf::from(&written) };
+    let program = program(folder, &written);
     if written.contains('/') && !program.is_file() {
         let what = format!("there is no program {}", program.display());
         return Err(Fault::wrong(
@@ -307,6 +306,11 @@ fn hook(folder: &Path, on: Verdict, text: &HookText) -> Result<Hook, Fault> {
     }
     let arguments = text.arguments.iter().map(|argument| argument.get_ref().clone()).collect();
     Ok(Hook { on, program, arguments, deadline: seconds(text.deadline.as_ref(), DEADLINE)? })
+}
+
+/// The program that is written so in a file whose folder is `folder`. A name without a folder is searched for in `PATH`.
+pub(super) fn program(folder: &Path, written: &str) -> PathBuf {
+    if written.contains('/') { folder.join(written) } else { PathBuf::from(written) }
 }
 
 /// The first word in braces that stands for nothing.

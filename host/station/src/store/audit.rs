@@ -25,6 +25,20 @@ impl Line<'_> {
         to.execute(sql::ADD_AUDIT, values![id, at_ms, operator, act, subject, detail])?;
         outbox::enter(to, sinks, Kind::Audit, id)
     }
+
+    /// Carries out `change`, and enters the line if it changed any row. Returns how many rows it changed.
+    pub(super) fn enter_if_done(
+        self,
+        to: &mut dyn Database,
+        sinks: &[String],
+        change: impl FnOnce(&mut dyn Database) -> Result<u64, DatabaseError>,
+    ) -> Result<u64, DatabaseError> {
+        let changed = change(to)?;
+        if changed > 0 {
+            self.enter(to, sinks)?;
+        }
+        Ok(changed)
+    }
 }
 
 impl Store {
@@ -46,12 +60,7 @@ impl Store {
         let at_ms = clock::now_ms();
         let id = ids::new(at_ms)?.to_string();
         let sinks = Arc::clone(&self.sinks);
-        self.change(doing, |to| {
-            let changed = change(to)?;
-            if changed > 0 {
-                Line { id: &id, at_ms, operator, act, subject, detail }.enter(to, &sinks)?;
-            }
-            Ok(changed)
-        })
+        let line = Line { id: &id, at_ms, operator, act, subject, detail };
+        self.change(doing, |to| line.enter_if_done(to, &sinks, change))
     }
 }

@@ -91,6 +91,13 @@ pub struct Stored {
     pub nth: i64,
 }
 
+impl Stored {
+    fn of(row: &Found<'_>) -> Result<Self, DatabaseError> {
+        let (verdict, exit_code) = (row.get(0)?, row.get(1)?);
+        Ok(Self { verdict, exit_code, record_sha256: row.get(2)?, nth: row.get(3)? })
+    }
+}
+
 /// The store, and the right to write to it.
 #[derive(Debug)]
 pub struct Store {
@@ -327,12 +334,7 @@ impl Folder {
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
     pub fn verdict_of(&self, run: &str) -> Result<Option<Stored>, StoreError> {
-        self.read("to tell a verdict", |from| {
-            from.first(statements::VERDICT_OF, values![run], |row| {
-                let (verdict, exit_code) = (row.get(0)?, row.get(1)?);
-                Ok(Stored { verdict, exit_code, record_sha256: row.get(2)?, nth: row.get(3)? })
-            })
-        })
+        self.read("to tell a verdict", |from| from.first(statements::VERDICT_OF, values![run], Stored::of))
     }
 
     /// What `read` finds by a connection of its own.

@@ -4,11 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
-use halfrow::Verdict;
-
 use super::audit::Line;
 use super::database::values;
-use super::{Folder, Snapshot, Store, StoreError, generation, statements as sql};
+use super::{Folder, Snapshot, Store, StoreError, Stored, generation, statements as sql};
 use crate::clock;
 use crate::ids;
 use crate::ids::NoRandomness;
@@ -57,8 +55,8 @@ impl Snapshot {
     }
 
     /// The verdict of a run; none if the run is open or not there.
-    pub(crate) fn verdict_of(&self, run: &str) -> Result<Option<Verdict>, StoreError> {
-        let found = self.rows("to tell a verdict", sql::VERDICT_OF, values![run], |row| row.get(0))?;
+    pub(crate) fn verdict_of(&self, run: &str) -> Result<Option<Stored>, StoreError> {
+        let found = self.rows("to tell a verdict", sql::VERDICT_OF, values![run], Stored::of)?;
         Ok(found.into_iter().next())
     }
 

@@ -228,14 +228,9 @@ impl Plant {
     ) -> Result<bool, StoreError> {
         let at_ms = clock::now_ms();
         let id = ids::new(at_ms)?.to_string();
+        let line = Line { id: &id, at_ms, operator, act, subject, detail };
         self.carry_out("a change", |database| {
-            database.transaction(|to| {
-                let is_changed = change(to)? > 0;
-                if is_changed {
-                    Line { id: &id, at_ms, operator, act, subject, detail }.enter(to, &[])?;
-                }
-                Ok(is_changed)
-            })
+            database.transaction(|to| Ok(line.enter_if_done(to, &[], change)? > 0))
         })
     }
 }
