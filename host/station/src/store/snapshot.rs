@@ -176,7 +176,7 @@ impl Snapshot {
     /// All rows of the table `name`, by its `key`.
     #[must_use]
     pub fn table(&self, name: &'static str, key: &'static str) -> Rows<'_> {
-        Rows::by(move |behind| self.read("to tell a table", |reader| page(reader, name, key, behind)))
+        Rows::by(move |after| self.read("to tell a table", |reader| page(reader, name, key, after)))
     }
 
     /// What `row` makes of each row of the query `text` with `values`.
@@ -264,7 +264,7 @@ impl Rebuilt {
 
     /// All rows of the table `name`, by its `key`.
     pub fn table(&mut self, name: &'static str, key: &'static str) -> Rows<'_> {
-        Rows::by(move |behind| page(&mut *self.database, name, key, behind).map_err(refused))
+        Rows::by(move |after| page(&mut *self.database, name, key, after).map_err(refused))
     }
 
     /// Runs `change` in a transaction.

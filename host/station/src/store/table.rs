@@ -87,18 +87,18 @@ impl Iterator for Rows<'_> {
     }
 }
 
-/// The next rows of the table `name` after the key `behind`, in the order of the columns `key`, a list with commas between.
+/// The next rows of the table `name` after the key `after`, in the order of the columns `key`, a list with commas between.
 pub(super) fn page(
     reader: &mut dyn Database,
     name: &str,
     key: &str,
-    behind: Option<&Key>,
+    after: Option<&Key>,
 ) -> Result<Vec<(Key, Row)>, DatabaseError> {
     let columns: Vec<_> = key.split(", ").collect();
     let places: Vec<_> = (1..=columns.len()).map(|place| format!("${place}")).collect();
-    let from = behind.map(|_| format!("WHERE ({key}) > ({})", places.join(", ")));
+    let from = after.map(|_| format!("WHERE ({key}) > ({})", places.join(", ")));
     let text = format!("SELECT * FROM {name} {} ORDER BY {key} LIMIT {PAGE}", from.unwrap_or_default());
-    let values: Vec<_> = behind.into_iter().flatten().map(Value::from).collect();
+    let values: Vec<_> = after.into_iter().flatten().map(Value::from).collect();
     reader.all(&text, &values, |row| {
         let row = row.columns()?;
         let of_key = |column: &&str| row.iter().find(|(name, _)| name == column).map(|(_, value)| *value);

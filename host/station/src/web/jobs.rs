@@ -28,7 +28,7 @@ struct Asked {
     state: String,
     /// Only those that were added before this one.
     #[serde(default)]
-    behind: String,
+    after: String,
 }
 
 async fn page(State(app): State<App>, visit: Visit, Query(asked): Query<Asked>) -> Result<Response, Trouble> {
@@ -36,9 +36,9 @@ async fn page(State(app): State<App>, visit: Visit, Query(asked): Query<Asked>) 
         Some(state) => vec![state],
         None => STATES.to_vec(),
     };
-    let behind = asked.behind.clone();
+    let after = asked.after.clone();
     let found = app
-        .look(&visit, move |now| Ok((jobs(now, &states, &behind, MOST)?, boards(now)?, waiters(now)?)))
+        .look(&visit, move |now| Ok((jobs(now, &states, &after, MOST)?, boards(now)?, waiters(now)?)))
         .await?;
     let (jobs, boards, waiting) = found;
     let content = html! {
@@ -46,7 +46,7 @@ async fn page(State(app): State<App>, visit: Visit, Query(asked): Query<Asked>) 
         (states_to_choose(&visit, &asked.state))
         @if jobs.is_empty() { p.nothing { (visit.say("jobs.none")) } } @else { (table(&visit, &jobs)) }
         @if let Some(last) = jobs.last().filter(|_| jobs.len() == MOST as usize) {
-            p { a href=(format!("/jobs?state={}&behind={}", asked.state, last.id)) { (visit.say("jobs.more")) } }
+            p { a href=(format!("/jobs?state={}&after={}", asked.state, last.id)) { (visit.say("jobs.more")) } }
         }
         h2 { (visit.say("jobs.boards")) }
         @if boards.is_empty() { p.nothing { (visit.say("jobs.no_boards")) } } @else { (shelf(&visit, &boards)) }

@@ -245,13 +245,13 @@ fn claimed(to: &mut dyn Database, worker: &Worker) -> Result<Option<Claim>, Data
     })
 }
 
-/// The jobs in these of the [`STATES`], the newest first: at most `most`, following the job with the id `behind` unless that is
+/// The jobs in these of the [`STATES`], the newest first: at most `most`, following the job with the id `after` unless that is
 /// empty.
 ///
 /// # Errors
 /// [`StoreError`] when the plant cannot be read.
-pub fn jobs(of: &Snapshot, states: &[&str], behind: &str, most: u32) -> Result<Vec<Job>, StoreError> {
-    of.rows("to tell its jobs", sql::JOBS, values![&states.join(" "), behind, most], job)
+pub fn jobs(of: &Snapshot, states: &[&str], after: &str, most: u32) -> Result<Vec<Job>, StoreError> {
+    of.rows("to tell its jobs", sql::JOBS, values![&states.join(" "), after, most], job)
 }
 
 fn job(row: &Row<'_>) -> Result<Job, DatabaseError> {

@@ -30,11 +30,11 @@ pub struct PlanOfJob {
 }
 
 impl Snapshot {
-    /// The next runs of a plant after the one of the id `after`, in the order in which they began; none after the last.
+    /// The next runs of a plant after the one with the id `after`, in the order in which they began; none after the last.
     ///
     /// # Errors
-    /// [`StoreError`] when the database cannot be read, as of all that follow.
-    pub fn kept_runs(&self, after: &str) -> Result<Vec<KeptRun>, StoreError> {
+    /// [`StoreError`] when the database cannot be read.
+    pub fn kept_runs(&self, after: &str) -> Result<Vec<Kept>, StoreError> {
         self.rows("to tell its runs", sql::KEPT_RUNS, values![after], |row| {
             let (run, unit_id, nth) = (row.get(0)?, row.get(1)?, row.get(2)?);
             Ok(KeptRun { run, unit_id, nth, sha256: row.get(3)?, text: row.get(4)? })

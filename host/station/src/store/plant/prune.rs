@@ -24,20 +24,20 @@ impl Plant {
     ) -> Result<u64, StoreError> {
         let bound = ids::first_of(before_ms);
         self.audited(operator, PRUNE, &bound, reason, |_| Ok(1))?;
-        let (mut behind, mut removed) = (String::new(), 0);
+        let (mut after, mut removed) = (String::new(), 0);
         loop {
             let last: Option<String> = self.carry_out("to tell old runs", |database| {
-                database.one(sql::NEXT_RUNS, values![&behind, &bound], |row| row.get(0))
+                database.one(sql::NEXT_RUNS, values![&after, &bound], |row| row.get(0))
             })?;
             let Some(last) = last else { return Ok(removed) };
             removed += self.carry_out("to be pruned", |database| {
                 database.transaction(|to| {
-                    let steps = to.execute(sql::PRUNE_STEPS, values![&behind, &last])?;
-                    Ok(steps + to.execute(sql::PRUNE_MEASUREMENTS, values![&behind, &last])?)
+                    let steps = to.execute(sql::PRUNE_STEPS, values![&after, &last])?;
+                    Ok(steps + to.execute(sql::PRUNE_MEASUREMENTS, values![&after, &last])?)
                 })
             })?;
             told(removed);
-            behind = last;
+            after = last;
         }
     }
 }

@@ -164,8 +164,8 @@ fn the_jobs_and_the_boards_that_are_shared_are_on_a_page_of_their_own() {
         assert!(page.contains(expected), "{expected}: {page}");
     }
     assert_eq!(page.matches("any ulx3s").count(), 99, "a hundred are on a page");
-    let behind = page.split("&amp;behind=").nth(1).unwrap().split('"').next().unwrap();
-    let older = text(&browser, &format!("/jobs?state=&behind={behind}"));
+    let after = page.split("&amp;after=").nth(1).unwrap().split('"').next().unwrap();
+    let older = text(&browser, &format!("/jobs?state=&after={after}"));
     assert_eq!(older.matches("any ulx3s").count(), 2);
     assert_eq!(text(&browser, "/jobs?state=claimed").matches("any ulx3s").count(), 1);
     assert!(text(&browser, "/jobs?state=done").contains("There is no such job"));
