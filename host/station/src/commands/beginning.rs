@@ -70,9 +70,9 @@ impl SettingsFile {
         path::absolute(&self.settings).map_err(Failure::call)
     }
 
-    /// Loads them by [`load_plant`].
-    pub(super) fn load_plant(&self) -> Result<Settings, Failure> {
-        load_plant(&self.settings)
+    /// Loads them by [`load_without_lanes`].
+    pub(super) fn load_without_lanes(&self) -> Result<Settings, Failure> {
+        load_without_lanes(&self.settings)
     }
 }
 
@@ -84,9 +84,9 @@ pub(super) fn settings(path: &Path) -> Result<Settings, Failure> {
 
 /// The settings in the file `path` for a command that needs no lanes: a plant has none, nor has a station that only
 /// takes jobs.
-pub(super) fn load_plant(path: &Path) -> Result<Settings, Failure> {
+pub(super) fn load_without_lanes(path: &Path) -> Result<Settings, Failure> {
     let path = path::absolute(path).map_err(Failure::call)?;
-    Settings::load_plant(&path).map_err(Failure::call)
+    Settings::load_without_lanes(&path).map_err(Failure::call)
 }
 
 /// The last signal received, which ends what is under way.

@@ -133,7 +133,7 @@ pub(super) struct NoKind {
 }
 
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
-    let settings = settings.load_plant()?;
+    let settings = settings.load_without_lanes()?;
     let address = plant(&settings)?.address()?;
     match what {
         What::Share(share) => {

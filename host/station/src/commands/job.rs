@@ -118,7 +118,7 @@ pub(super) struct NoWord {
 }
 
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
-    let settings = settings.load_plant()?;
+    let settings = settings.load_without_lanes()?;
     let address = plant(&settings)?.address()?;
     match what {
         What::Add(add) => add_jobs(&mut Plant::connect(&address)?, add),

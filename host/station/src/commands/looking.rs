@@ -9,7 +9,7 @@ use halfrow::words::plain;
 use jiff::Timestamp;
 use serde::Serialize;
 
-use super::beginning::load_plant;
+use super::beginning::load_without_lanes;
 use super::plant::plant;
 use super::{Failure, print};
 use crate::exit::Exit;
@@ -48,7 +48,7 @@ impl Results {
     /// The results as they are now.
     pub(super) fn snapshot(&self) -> Result<Snapshot, Failure> {
         if let Some(path) = &self.plant {
-            let address = plant(&load_plant(path)?)?.address()?.patient();
+            let address = plant(&load_without_lanes(path)?)?.address()?.patient();
             return Ok(Snapshot::of_plant(Plant::connect(&address)?)?);
         }
         let data = self.data.as_deref().unwrap_or(Path::new("."));

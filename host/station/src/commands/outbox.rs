@@ -76,7 +76,7 @@ struct Left {
 }
 
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
-    let settings = settings.load_plant()?;
+    let settings = settings.load_without_lanes()?;
     let folder = Folder::new(&settings.data);
     match what {
         What::List { json } => {

@@ -97,7 +97,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
                 Plant::connect(&address()?.patient())?.prune(before_ms, operator, reason, &mut told)?;
             print(&format!("{removed} rows were removed; every record is kept"))
         }
-        What::Serve => serve(settings.load_plant()?),
+        What::Serve => serve(settings.load_without_lanes()?),
     }
 }
 

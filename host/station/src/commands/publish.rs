@@ -25,7 +25,7 @@ use crate::published::{
     Statement, look_whole, offered,
 };
 use crate::said::Said;
-use crate::settings::{Published, Settings};
+use crate::settings::{PlansOfPlant, Settings};
 use crate::store::{Plant, PlantAddress, PlantPool, publications};
 
 /// How long the plant may take to say which plans hold, when a station that has them all begins its work.
@@ -253,7 +253,7 @@ pub(super) fn fetch_all(settings: &SettingsFile) -> Result<Exit, Failure> {
 /// one is missing.
 pub(super) fn fetch_at_start(path: &Path) -> Result<(), Failure> {
     let path = path::absolute(path).map_err(Failure::call)?;
-    let Ok(published) = Settings::published(&path) else { return Ok(()) };
+    let Ok(published) = Settings::plans_of_plant(&path) else { return Ok(()) };
     if published.plans.is_empty() {
         return Ok(());
     }
@@ -282,7 +282,7 @@ pub(super) fn fetch_at_start(path: &Path) -> Result<(), Failure> {
 /// What the plant offers for each plan.
 type Offers = Result<Vec<Result<Offer, FetchError>>, Failure>;
 
-fn offers(published: &Published) -> Offers {
+fn offers(published: &PlansOfPlant) -> Offers {
     let mut at = Plant::connect(&address(published)?)?;
     let (kept, trusted) = (KeptPlans::of(&published.data), published.trusts());
     Ok(published.plans.iter().map(|plan| offered(&mut at, &kept, plan, trusted)).collect())
@@ -290,7 +290,7 @@ fn offers(published: &Published) -> Offers {
 
 /// The same within [`IN_TIME`], because a plant may accept a connection and never say anything. The thread that asks
 /// is then abandoned, and keeps nothing.
-fn offers_in_time(published: Published) -> Option<Offers> {
+fn offers_in_time(published: PlansOfPlant) -> Option<Offers> {
     let (answer, answered) = mpsc::channel();
     let ask = move || {
         let offers = guarded(|| offers(&published)).map_err(Failure::error).flatten();
@@ -317,12 +317,12 @@ fn all_fetched(kept: &KeptPlans, offers: Offers) -> Result<(), Failure> {
 }
 
 /// What the settings take from the plant.
-pub(super) fn published(settings: &SettingsFile) -> Result<Published, Failure> {
-    Settings::published(&settings.path()?).map_err(Failure::call)
+pub(super) fn published(settings: &SettingsFile) -> Result<PlansOfPlant, Failure> {
+    Settings::plans_of_plant(&settings.path()?).map_err(Failure::call)
 }
 
 /// Where the plant is.
-pub(super) fn address(Published { plant, .. }: &Published) -> Result<PlantAddress, Failure> {
+pub(super) fn address(PlansOfPlant { plant, .. }: &PlansOfPlant) -> Result<PlantAddress, Failure> {
     Ok(plant.as_ref().ok_or_else(|| Failure::call(NoPlant))?.address()?)
 }
 

@@ -39,7 +39,7 @@ enum What {
 }
 
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
-    let settings = settings.load_plant()?;
+    let settings = settings.load_without_lanes()?;
     let no_file = "the settings name no file of tokens; write tokens = \"tokens.toml\" into [access]";
     let file = settings.access.as_ref().and_then(|access| access.tokens.as_ref());
     let file = file.ok_or_else(|| Failure::call(anyhow::anyhow!(no_file)))?;

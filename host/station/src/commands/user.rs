@@ -48,7 +48,7 @@ enum What {
 }
 
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
-    let settings = settings.load_plant()?;
+    let settings = settings.load_without_lanes()?;
     let no_file = "the settings name no file of users; write [access] with users = \"users.toml\"";
     let access = settings.access.as_ref().ok_or_else(|| Failure::call(anyhow::anyhow!(no_file)))?;
     match what {

@@ -48,7 +48,7 @@ pub(super) struct NoWork;
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     fetch_at_start(&arguments.settings.path()?)?;
-    let settings = arguments.settings.load_plant()?;
+    let settings = arguments.settings.load_without_lanes()?;
     let address = plant(&settings)?.address()?;
     let worker = worker(&settings)?;
     let signal = Signal::heed()?;

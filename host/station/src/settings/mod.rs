@@ -47,7 +47,7 @@ pub struct Settings {
     pub scanner: Scanner,
     /// Every plan that a lane or `[work]` names.
     pub plans: Vec<PlanFile>,
-    /// The lanes: at least one, unless the settings were loaded by [`Self::load_plant`].
+    /// The lanes: at least one, unless the settings were loaded by [`Self::load_without_lanes`].
     pub lanes: Vec<LaneSettings>,
     /// What is started when a verdict is saved.
     pub hooks: Vec<Hook>,
@@ -76,7 +76,7 @@ pub struct AccessSettings {
 
 /// The plans that settings take from the plant, whether they were fetched or not.
 #[derive(Clone, Debug)]
-pub struct Published {
+pub struct PlansOfPlant {
     /// The station's folder.
     pub data: PathBuf,
     /// Where the plant is.
@@ -85,7 +85,7 @@ pub struct Published {
     pub plans: Vec<PlanName>,
 }
 
-impl Published {
+impl PlansOfPlant {
     /// The keys of those whose plans are taken.
     #[must_use]
     pub fn trusts(&self) -> &[PublicKey] {
@@ -172,7 +172,7 @@ impl Settings {
     ///
     /// # Errors
     /// Like [`Self::load`].
-    pub fn load_plant(path: &Path) -> Result<Self, InputError> {
+    pub fn load_without_lanes(path: &Path) -> Result<Self, InputError> {
         Self::load_for(path, false)
     }
 
@@ -180,8 +180,8 @@ impl Settings {
     ///
     /// # Errors
     /// Like [`Self::load`].
-    pub fn published(path: &Path) -> Result<Published, InputError> {
-        understood(path, |text| read::published(path, text))
+    pub fn plans_of_plant(path: &Path) -> Result<PlansOfPlant, InputError> {
+        understood(path, |text| read::plans_of_plant(path, text))
     }
 
     fn load_for(path: &Path, has_lanes: bool) -> Result<Self, InputError> {

@@ -10,7 +10,7 @@ use super::lender::Lender;
 use super::plans::Plans;
 use super::text::{AccessText, HookText, LaneText, OrderText, SettingsText, StartText, WebText, WorkText};
 use super::{
-    AccessSettings, Hook, LaneSettings, PlantSettings, Published, SCHEMA, Scanner, Settings, SinkSettings,
+    AccessSettings, Hook, LaneSettings, PlansOfPlant, PlantSettings, SCHEMA, Scanner, Settings, SinkSettings,
     WORDS, WorkSettings,
 };
 use crate::floor::Starts;
@@ -113,7 +113,7 @@ fn read(text: &str) -> Result<SettingsText, Fault> {
 }
 
 /// The plans that the settings of `text` take from the plant, the station's folder, and where the plant is.
-pub(super) fn published(path: &Path, text: &str) -> Result<Published, Fault> {
+pub(super) fn plans_of_plant(path: &Path, text: &str) -> Result<PlansOfPlant, Fault> {
     let read = read(text)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let of_lanes = read.lane.iter().map(|lane| &lane.plans);
@@ -122,7 +122,7 @@ pub(super) fn published(path: &Path, text: &str) -> Result<Published, Fault> {
     plans.sort();
     plans.dedup();
     let plant = read.plant.as_ref().map(|plant| PlantSettings::of(folder, plant)).transpose()?;
-    Ok(Published { data: folder.join(not_empty(&read.station.data)?), plant, plans })
+    Ok(PlansOfPlant { data: folder.join(not_empty(&read.station.data)?), plant, plans })
 }
 
 /// Whether a job can name this among what it needs.

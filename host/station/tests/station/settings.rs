@@ -145,7 +145,7 @@ fn a_plan_of_the_plant_is_fetched_for_lanes_and_for_jobs() {
     let text = REST.replace("[\"b.toml\"]", "[\"plant:CAM-T/final\", \"b.toml\"]");
     let text = text.replace("[\"a.toml\"]", "[\"plant:CAM-T/jobs\", \"plant:CAM-T/final\"]");
     fs::write(&path, text).unwrap();
-    let published = Settings::published(&path).unwrap();
+    let published = Settings::plans_of_plant(&path).unwrap();
     let names: Vec<_> = published.plans.iter().map(|plan| (&plan.product[..], &plan.plan[..])).collect();
     assert_eq!(names, [("CAM-T", "final"), ("CAM-T", "jobs")]);
     assert_eq!(published.data, folder.path().join("data"));

@@ -128,7 +128,7 @@ fn what_a_worker_could_not_save_is_closed_before_it_takes_another_job() {
 fn a_verdict_is_told_though_the_store_does_not_say_whether_the_plant_has_it() {
     let (server, ..) = with_a_job();
     let folder = folder();
-    let settings = Settings::load_plant(&settings(&server, folder.path(), "12")).unwrap();
+    let settings = Settings::load_without_lanes(&settings(&server, folder.path(), "12")).unwrap();
     let work = at_work(&settings, program().to_owned());
     let database = rusqlite::Connection::open(folder.path().join("data/station.db")).unwrap();
     database.execute_batch("ALTER TABLE outbox RENAME TO elsewhere").unwrap();

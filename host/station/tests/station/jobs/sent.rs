@@ -18,7 +18,7 @@ use crate::common::{folder, program};
 fn became(sends: bool, is_cancelled: bool) -> (bool, Option<bool>) {
     let (server, mut plant, id) = with_a_job();
     let folder = folder();
-    let settings = Settings::load_plant(&settings(&server, folder.path(), "12")).unwrap();
+    let settings = Settings::load_without_lanes(&settings(&server, folder.path(), "12")).unwrap();
     let work = at_work(&settings, program().to_owned());
     let (origin, kept) = work.store.with(|store| (store.origin().unwrap(), store.folder().clone()));
     let sink = PlantSink::new(server.address(), settings.introduction(origin), kept);
@@ -63,7 +63,7 @@ impl Sink for Refusing {
 fn what_the_plant_does_not_take_holds_no_board_and_says_why() {
     let (server, ..) = with_a_job();
     let folder = folder();
-    let settings = Settings::load_plant(&settings(&server, folder.path(), "12")).unwrap();
+    let settings = Settings::load_without_lanes(&settings(&server, folder.path(), "12")).unwrap();
     let work = at_work(&settings, program().to_owned());
     let outbox = Outbox::start(&work.store, vec![Box::new(Refusing)]).unwrap();
     let judged = judged(&work);

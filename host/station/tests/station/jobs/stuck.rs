@@ -18,7 +18,7 @@ fn a_board_whose_lane_cannot_be_killed_is_taken_out_and_not_given_back() {
     let path = settings(&server, folder.path(), "12");
     let text = std::fs::read_to_string(&path).unwrap();
     std::fs::write(&path, text.replace("[station]", "[station]\nsilence = 5")).unwrap();
-    let settings = Settings::load_plant(&path).unwrap();
+    let settings = Settings::load_without_lanes(&path).unwrap();
     let stuck = Stuck::in_folder(folder.path());
     let work = at_work(&settings, stuck.program.clone());
     let claim = work.claim().unwrap().unwrap();
