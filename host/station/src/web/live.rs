@@ -44,7 +44,7 @@ pub(super) struct Became {
 
 /// An event for pages.
 #[derive(Clone, Debug)]
-pub(super) enum What {
+pub(super) enum EventKind {
     /// A beat, with its moment.
     Beat(String),
     Lane(Box<LaneState>),
@@ -58,9 +58,9 @@ pub(super) enum What {
 
 /// An event with its number. Numbers follow each other without a gap.
 #[derive(Clone, Debug)]
-pub(super) struct Told {
+pub(super) struct Event {
     pub(super) id: u64,
-    pub(super) what: What,
+    pub(super) what: EventKind,
 }
 
 /// Everything as it is at one moment.
@@ -78,7 +78,7 @@ pub(super) struct Now {
 #[derive(Debug)]
 pub(super) struct Live {
     now: Mutex<Now>,
-    pages: broadcast::Sender<Told>,
+    pages: broadcast::Sender<Event>,
     asked: Mutex<HashMap<u64, oneshot::Sender<Became>>>,
     numbers: AtomicU64,
     /// When it began, by a monotonic clock.
@@ -108,7 +108,7 @@ impl Live {
     }
 
     /// Everything as it is, and the events from then on.
-    pub(super) fn follow(&self) -> (Now, broadcast::Receiver<Told>) {
+    pub(super) fn follow(&self) -> (Now, broadcast::Receiver<Event>) {
         let now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
         (Now { beat: self.moment(), ..now.clone() }, self.pages.subscribe())
     }
@@ -151,14 +151,14 @@ impl Live {
 
     fn hear(&self, news: News) {
         let what = match news {
-            News::Lane(state) => What::Lane(Box::new(state)),
-            News::Doing { lane, run, what, rows } => What::Doing(lane, Doing { run, what, rows }),
+            News::Lane(state) => EventKind::Lane(Box::new(state)),
+            News::Doing { lane, run, what, rows } => EventKind::Doing(lane, Doing { run, what, rows }),
             News::Scan { number, scanned, is_taken, lane, said } => {
-                What::Scan(Became { number, scanned, is_taken, lane, said })
+                EventKind::Scan(Became { number, scanned, is_taken, lane, said })
             }
-            News::Hook { lane, said, .. } => What::Hook { lane, said },
+            News::Hook { lane, said, .. } => EventKind::Hook { lane, said },
         };
-        let answered = if let What::Scan(became) = &what { Some(became.clone()) } else { None };
+        let answered = if let EventKind::Scan(became) = &what { Some(became.clone()) } else { None };
         self.tell(what);
         if let Some(became) = answered {
             let mut asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
@@ -167,10 +167,10 @@ impl Live {
         }
     }
 
-    fn tell(&self, what: What) {
+    fn tell(&self, what: EventKind) {
         let mut now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
         match &what {
-            What::Lane(state) => {
+            EventKind::Lane(state) => {
                 let is_over = state.run.is_none();
                 if is_over {
                     now.doing.remove(&state.lane);
@@ -179,12 +179,12 @@ impl Live {
                     known.clone_from(state);
                 }
             }
-            What::Doing(lane, doing) => drop(now.doing.insert(lane.clone(), doing.clone())),
-            What::Beat(_) | What::Scan(_) | What::Hook { .. } => {}
+            EventKind::Doing(lane, doing) => drop(now.doing.insert(lane.clone(), doing.clone())),
+            EventKind::Beat(_) | EventKind::Scan(_) | EventKind::Hook { .. } => {}
         }
         now.id += 1;
         // This fails when no page is open.
-        let _ = self.pages.send(Told { id: now.id, what });
+        let _ = self.pages.send(Event { id: now.id, what });
     }
 }
 
@@ -201,7 +201,7 @@ fn listen(engine: &Engine, mut heard: Receiver<News>, told: &Weak<Live>) {
         if beat.elapsed() >= BEAT {
             beat = Instant::now();
             if engine.is_well() {
-                live.tell(What::Beat(live.moment()));
+                live.tell(EventKind::Beat(live.moment()));
             }
         }
     }

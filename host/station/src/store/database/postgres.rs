@@ -23,22 +23,22 @@ const FAREWELL: Duration = Duration::from_secs(1);
 
 /// A connection to a PostgreSQL server.
 pub(crate) struct Postgres {
-    /// Declared before `line` so that it is dropped first: this ends the connection, for whose end the line waits.
+    /// Declared before `connection` so that it is dropped first: this ends the connection, for whose end that one waits.
     client: Client,
-    line: Line,
+    connection: Connection,
     /// Prepared statements, by their text.
     ready: HashMap<String, Statement>,
 }
 
 /// What a connection runs on.
-struct Line {
+struct Connection {
     runtime: Runtime,
-    connection: JoinHandle<Result<(), tokio_postgres::Error>>,
+    task: JoinHandle<Result<(), tokio_postgres::Error>>,
     /// How long to wait for the server's answer; for ever if none.
     patience: Option<Duration>,
 }
 
-impl Line {
+impl Connection {
     /// Waits for the server's answer. If none comes in time, the connection is ended.
     fn wait<T>(
         &self,
@@ -48,18 +48,18 @@ impl Line {
         match self.runtime.block_on(async { timeout(patience, answer).await }) {
             Ok(answered) => Ok(answered?),
             Err(_) => {
-                self.connection.abort();
+                self.task.abort();
                 Err(silent(patience))
             }
         }
     }
 }
 
-impl Drop for Line {
+impl Drop for Connection {
     fn drop(&mut self) {
-        let Self { runtime, connection, .. } = self;
+        let Self { runtime, task, .. } = self;
         // A server that does not hear of the end notices it by itself.
-        let _ = runtime.block_on(async { timeout(FAREWELL, connection).await });
+        let _ = runtime.block_on(async { timeout(FAREWELL, task).await });
     }
 }
 
@@ -92,15 +92,15 @@ impl Postgres {
             return Err(silent(reached));
         };
         let (client, connection) = connected?;
-        let connection = runtime.spawn(connection);
-        Ok(Self { client, line: Line { runtime, connection, patience }, ready: HashMap::new() })
+        let connection = Connection { task: runtime.spawn(connection), runtime, patience };
+        Ok(Self { client, connection, ready: HashMap::new() })
     }
 
     fn ready(&mut self, text: &str) -> Result<Statement, DatabaseError> {
         if let Some(statement) = self.ready.get(text) {
             return Ok(statement.clone());
         }
-        let statement = self.line.wait(self.client.prepare(&Engine::Postgres.words(text)))?;
+        let statement = self.connection.wait(self.client.prepare(&Engine::Postgres.words(text)))?;
         self.ready.insert(text.to_owned(), statement.clone());
         Ok(statement)
     }
@@ -116,19 +116,19 @@ impl Database for Postgres {
     }
 
     fn batch(&mut self, text: &str) -> Result<(), DatabaseError> {
-        self.line.wait(self.client.batch_execute(text))
+        self.connection.wait(self.client.batch_execute(text))
     }
 
     fn execute(&mut self, text: &str, values: &[Value<'_>]) -> Result<u64, DatabaseError> {
         let statement = self.ready(text)?;
         let values: Vec<_> = values.iter().map(|value| value as &(dyn ToSql + Sync)).collect();
-        self.line.wait(self.client.execute(&statement, &values))
+        self.connection.wait(self.client.execute(&statement, &values))
     }
 
     fn each(&mut self, text: &str, values: &[Value<'_>], row: Each<'_>) -> Result<(), DatabaseError> {
         let statement = self.ready(text)?;
-        let mut rows = pin!(self.line.wait(self.client.query_raw(&statement, values))?);
-        while let Some(one) = self.line.wait(rows.try_next())? {
+        let mut rows = pin!(self.connection.wait(self.client.query_raw(&statement, values))?);
+        while let Some(one) = self.connection.wait(rows.try_next())? {
             row(&Row::Postgres(&one))?;
         }
         Ok(())

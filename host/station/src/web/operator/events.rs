@@ -14,7 +14,7 @@ use tokio::sync::broadcast::Receiver;
 
 use super::lane::LaneEvent;
 use crate::clock;
-use crate::web::live::{Became, Now, Told, What};
+use crate::web::live::{Became, Event, EventKind, Now};
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
@@ -35,7 +35,7 @@ pub(super) async fn events(State(app): State<App>, visit: Visit) -> Result<Respo
 struct Follower {
     app: App,
     visit: Visit,
-    told: Receiver<Told>,
+    told: Receiver<Event>,
 }
 
 /// The next event. The stream ends for a page that lags too far behind, which then connects anew, and for one whose user has
@@ -48,7 +48,7 @@ async fn next(
         Some(first) => first,
         None => {
             let told = of.told.recv().await.ok()?;
-            if matches!(told.what, What::Beat(_)) && !of.app.access().is_open() {
+            if matches!(told.what, EventKind::Beat(_)) && !of.app.access().is_open() {
                 of.app.user(&of.visit, Some(of.visit.session.clone()), false).await.ok()?.ok()??;
             }
             news(&of.visit, &told)
@@ -64,24 +64,24 @@ fn snapshot(mark: &str, visit: &Visit, now: &Now) -> String {
     event_text(now.id, "snapshot", &json!({ "mark": mark, "beat": now.beat, "lanes": lanes }))
 }
 
-fn news(visit: &Visit, told: &Told) -> String {
+fn news(visit: &Visit, told: &Event) -> String {
     let id = told.id;
     match &told.what {
-        What::Beat(beat) => event_text(id, "beat", &{
+        EventKind::Beat(beat) => event_text(id, "beat", &{
             let clock = clock::local(clock::now_ms()).strftime("%H:%M:%S").to_string();
             json!({ "clock": clock, "beat": beat })
         }),
-        What::Lane(state) => event_text(id, "lane", &LaneEvent::new(visit, state, None)),
-        What::Doing(lane, doing) => event_text(id, "doing", &{
+        EventKind::Lane(state) => event_text(id, "lane", &LaneEvent::new(visit, state, None)),
+        EventKind::Doing(lane, doing) => event_text(id, "doing", &{
             let told = super::lane::doing(visit, doing);
             let rows = doing.rows.map(|(done, of)| [done, of]);
             json!({ "lane": lane, "run": doing.run, "what": told.text, "lang": told.foreign, "rows": rows })
         }),
         // Only whoever scanned gets the whole answer: the scan may have been a badge.
-        What::Scan(Became { is_taken, lane, .. }) => {
+        EventKind::Scan(Became { is_taken, lane, .. }) => {
             event_text(id, "scan", &json!({ "is_taken": is_taken, "lane": lane }))
         }
-        What::Hook { lane, said } => {
+        EventKind::Hook { lane, said } => {
             event_text(id, "hook", &json!({ "lane": lane, "said": visit.words.tell(said).text }))
         }
     }
