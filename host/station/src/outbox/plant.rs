@@ -32,7 +32,7 @@ impl PlantSink {
                 let mut plant = kept.map_or_else(|| Plant::connect(&self.address), Ok)?;
                 let clock = plant.see(&self.station)?;
                 if let Some(run) = self.kept.newest_sent(SINK_OF_PLANT)? {
-                    plant.still_has(&run)?;
+                    plant.refuse_loss_of(&run)?;
                 }
                 self.clock = Some(clock);
                 plant

@@ -18,7 +18,7 @@ impl Store {
 
     /// Refuses a run that a plant would take for earlier or later than it is. The dates of a station that sends nothing to a
     /// plant do not matter: its runs are in order among themselves.
-    pub(super) fn refuses_misdated(&self, run: &RunHead) -> Result<(), StoreError> {
+    pub(super) fn refuse_misdated(&self, run: &RunHead) -> Result<(), StoreError> {
         if !self.sinks.iter().any(|sink| sink == SINK_OF_PLANT) {
             return Ok(());
         }

@@ -37,18 +37,18 @@ impl Folder {
     }
 
     /// Refuses a folder in which a restore is at work, or was when its program was killed: what begins there would be in its way.
-    pub(super) fn has_no_restore(&self) -> Result<(), StoreError> {
+    pub(super) fn refuse_unfinished_restore(&self) -> Result<(), StoreError> {
         let is_unfinished = self.0.join(ASIDE).exists() && !self.database().exists();
         if is_unfinished { Err(StoreError::Unrestored { folder: self.0.clone() }) } else { Ok(()) }
     }
 
     /// Refuses a folder that has evidence and no database: no station may start from scratch there.
-    pub(super) fn has_kept_database(&self) -> Result<(), StoreError> {
+    pub(super) fn refuse_lost_database(&self) -> Result<(), StoreError> {
         self.refuse_lost(fs::metadata(self.database()).is_err())
     }
 
     /// The same for a `database` without any table, as where it was copied without its write-ahead log.
-    pub(super) fn has_kept_tables(&self, database: &mut dyn Database) -> Result<(), StoreError> {
+    pub(super) fn refuse_lost_tables(&self, database: &mut dyn Database) -> Result<(), StoreError> {
         let tables = database.one("SELECT count(*) FROM sqlite_schema", &[], |row| row.get::<i64>(0));
         let tables = tables.map_err(|source| StoreError::of_file(&self.database(), "to be read", source))?;
         self.refuse_lost(tables == 0)

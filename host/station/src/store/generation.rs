@@ -185,7 +185,7 @@ pub(super) fn of_left_log(folder: &Folder) -> Result<(Log, Generations), StoreEr
 
 /// Refuses a log that belongs to another database; a station may start meanwhile. A database that this process writes to is not
 /// examined: its log is known, and to open and close the file would release the locks that SQLite has on it.
-pub(super) fn has_own_log(folder: &Folder) -> Result<(), StoreError> {
+pub(super) fn refuse_other_log(folder: &Folder) -> Result<(), StoreError> {
     if id(fs::metadata(folder.database())).is_some_and(|id| written().contains(&id)) {
         return Ok(());
     }
@@ -279,7 +279,7 @@ pub(super) fn begin(
 }
 
 /// Refuses a database in which SQLite finds anything wrong.
-pub(super) fn is_whole(folder: &Folder, database: &mut dyn Database) -> Result<(), StoreError> {
+pub(super) fn refuse_damaged(folder: &Folder, database: &mut dyn Database) -> Result<(), StoreError> {
     let found = database.one("PRAGMA integrity_check(1)", &[], |row| row.get::<String>(0));
     let damage = match found {
         Ok(said) if said == "ok" => return Ok(()),

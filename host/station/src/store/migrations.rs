@@ -29,14 +29,14 @@ pub(super) fn apply(database: &mut dyn Database, path: &Path, now_ms: i64) -> Re
     let refused = |source| StoreError::refused(engine, path, "a new version", source);
     database.batch(&engine.words(SCHEMA_VERSION)).map_err(refused)?;
     let found = newest(database).map_err(refused)?;
-    not_newer(path, found)?;
+    refuse_newer(path, found)?;
     let (had, new): (Vec<_>, Vec<_>) = (1_i64..).zip(SCHEMAS).partition(|(version, _)| *version <= found);
     for (version, schema) in had {
         check(database, path, version, &sha256([schema]))?;
     }
     let Some((next, _)) = new.first() else { return Ok(()) };
     if found > 0 && engine == Engine::Sqlite {
-        has_room(path)?;
+        refuse_full_disk(path)?;
         copy(database, path, *next)?;
     }
     let change = |to: &mut dyn Database| {
@@ -59,8 +59,8 @@ pub(super) fn newest(database: &mut dyn Database) -> Result<i64, DatabaseError> 
 }
 
 /// Refuses the database in the file `path` if its version, `found`, is not this program's.
-pub(super) fn is_known(path: &Path, found: i64) -> Result<(), StoreError> {
-    not_newer(path, found)?;
+pub(super) fn refuse_unknown_version(path: &Path, found: i64) -> Result<(), StoreError> {
+    refuse_newer(path, found)?;
     let known = SCHEMAS.len() as i64;
     if found < known {
         return Err(StoreError::Older { path: path.to_owned(), found, known });
@@ -68,7 +68,7 @@ pub(super) fn is_known(path: &Path, found: i64) -> Result<(), StoreError> {
     Ok(())
 }
 
-fn not_newer(path: &Path, found: i64) -> Result<(), StoreError> {
+fn refuse_newer(path: &Path, found: i64) -> Result<(), StoreError> {
     let known = SCHEMAS.len() as i64;
     if found > known {
         return Err(StoreError::Newer { path: path.to_owned(), found, known });
@@ -78,7 +78,7 @@ fn not_newer(path: &Path, found: i64) -> Result<(), StoreError> {
 
 /// Refuses when the disk has no room for a copy of the database in the file `path`. A change that runs out of room is rolled
 /// back.
-fn has_room(path: &Path) -> Result<(), StoreError> {
+fn refuse_full_disk(path: &Path) -> Result<(), StoreError> {
     let folder = path.parent().unwrap_or(path);
     let refused = |source| StoreError::Folder { folder: folder.to_owned(), source };
     let disk = statvfs(folder).map_err(|error| refused(error.into()))?;

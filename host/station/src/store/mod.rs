@@ -120,7 +120,7 @@ impl Store {
     /// # Errors
     /// [`StoreError`] when another program has it, or it cannot be made, read or written.
     pub fn open(folder: &Folder) -> Result<Self, StoreError> {
-        folder.has_no_restore()?;
+        folder.refuse_unfinished_restore()?;
         for place in ["blobs", "spool"] {
             // Whatever the umask, nobody else may put another database there.
             let made = DirBuilder::new().recursive(true).mode(0o750).create(folder.0.join(place));
@@ -128,8 +128,8 @@ impl Store {
         }
         let lock = folder.lock()?;
         // A restore may have begun meanwhile.
-        folder.has_no_restore()?;
-        folder.has_kept_database()?;
+        folder.refuse_unfinished_restore()?;
+        folder.refuse_lost_database()?;
         let (log, known) = generation::of_left_log(folder)?;
         let known = generation::choose(folder, &lock, log, known)?;
         let mut writer = folder.writer()?;
@@ -139,9 +139,9 @@ impl Store {
             tracing::warn!(
                 "station.db-wal was left by a program that was killed; all of station.db is looked at first, which takes a while"
             );
-            generation::is_whole(folder, &mut *writer)?;
+            generation::refuse_damaged(folder, &mut *writer)?;
         }
-        folder.has_kept_tables(&mut *writer)?;
+        folder.refuse_lost_tables(&mut *writer)?;
         migrations::apply(&mut *writer, &folder.database(), clock::now_ms())?;
         let opened = generation::begin(folder, &lock, &mut *writer, known)?;
         writer.leave_log(false);
@@ -210,7 +210,7 @@ impl Store {
     /// [`StoreError::BeingJudged`] when the lane or the unit has an open run already; others when the database does not take it,
     /// or the station's clock disagrees with the plant's or with the last run.
     pub fn begin(&mut self, run: RunHead, plan: &PlanRecord) -> Result<RunHead, StoreError> {
-        self.refuses_misdated(&run)?;
+        self.refuse_misdated(&run)?;
         match self.change("to begin a run", |to| rows::open(to, &run, plan)) {
             Ok((unit_id, fence)) => Ok(RunHead { unit_id, fence, ..run }),
             Err(StoreError::Database { source, .. }) if source.is_conflict() => {
@@ -268,7 +268,7 @@ impl Store {
         let stored = self.folder.verdict_of(run)?.ok_or_else(otherwise)?;
         let record = Record::parse(&self.folder.blobs().get(&stored.record_sha256)?)?;
         // If another file had the name, SQLite would have read it together with the log of this one.
-        self.has_its_name()?;
+        self.refuse_replaced()?;
         let is_same = stored.verdict == record.conclusion.verdict && record.run.id == run;
         if is_same { Ok((stored, record)) } else { Err(otherwise()) }
     }
@@ -297,9 +297,9 @@ impl Store {
         doing: &'static str,
         change: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,
     ) -> Result<T, StoreError> {
-        self.has_its_name()?;
+        self.refuse_replaced()?;
         let changed = self.read(doing, |writer| writer.transaction(change))?;
-        self.has_its_name()?;
+        self.refuse_replaced()?;
         if let Err(error) = self.opened.changed(&self.folder, &self.lock, &mut *self.writer) {
             tracing::warn!("station.db may still be taken for an earlier copy of it: {error}");
         }
@@ -308,7 +308,7 @@ impl Store {
 
     /// Refuses to go on when another file has the name of the database that was opened, or another database was written over it:
     /// what is written now would be lost. The same for the lock file, which keeps others from the folder by its name alone.
-    fn has_its_name(&self) -> Result<(), StoreError> {
+    fn refuse_replaced(&self) -> Result<(), StoreError> {
         let lock = self.folder.lock_file();
         if !self.opened.is_there(&self.folder) {
             Err(StoreError::Replaced { path: self.folder.database() })

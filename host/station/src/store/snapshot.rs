@@ -51,13 +51,13 @@ impl Snapshot {
     /// # Errors
     /// [`StoreError`] when the database is not there or cannot be read.
     pub fn take(folder: &Folder) -> Result<Self, StoreError> {
-        folder.has_kept_database()?;
+        folder.refuse_lost_database()?;
         if folder.database().try_exists().is_ok_and(|is_there| !is_there) {
             return Err(StoreError::NoResults { folder: folder.0.clone() });
         }
-        generation::has_own_log(folder)?;
+        generation::refuse_other_log(folder)?;
         let mut reader = folder.reader()?;
-        folder.has_kept_tables(&mut *reader)?;
+        folder.refuse_lost_tables(&mut *reader)?;
         let reader = RefCell::new(reader);
         let snapshot = Self { of: Of::Station(folder.clone()), reader };
         let found = snapshot.read("to be read", |reader| {
@@ -65,7 +65,7 @@ impl Snapshot {
             // The transaction begins with the first read.
             reader.one(migrations::NEWEST, &[], |row| row.get(0))
         })?;
-        migrations::is_known(&folder.database(), found)?;
+        migrations::refuse_unknown_version(&folder.database(), found)?;
         Ok(snapshot)
     }
 

@@ -157,7 +157,7 @@ impl Plant {
             }
             migrations::newest(database)
         })?;
-        migrations::is_known(&plant.shown, found)?;
+        migrations::refuse_unknown_version(&plant.shown, found)?;
         Ok(plant)
     }
 
@@ -168,7 +168,7 @@ impl Plant {
     /// [`PlantError::Store`] when it is not there or its tables are newer, [`PlantError::Collation`].
     pub fn prepare(address: &PlantAddress) -> Result<usize, PlantError> {
         let mut plant = Self::reach(address)?;
-        plant.sorts_as_a_station()?;
+        plant.refuse_other_collation()?;
         plant.carry_out("to be prepared", |database| database.batch(LOCK))?;
         migrations::apply(&mut *plant.database, &plant.shown, clock::now_ms())?;
         Ok(sql::SCHEMAS.len())
@@ -182,21 +182,21 @@ impl Plant {
         match parcel {
             Parcel::Run { record, text, sha256 } => {
                 self.bring("a run", |to| arrived::run(to, record, text, sha256))?;
-                self.has_run(&record.run.id, sha256)
+                self.read_back_run(&record.run.id, sha256)
             }
             Parcel::Waiver { id, waiver } => {
                 if self.hash_of(&waiver.run)?.is_none() {
                     return Err(PlantError::NotYet { run: waiver.run.clone() });
                 }
                 self.bring("a waiver", |to| arrived::waiver(to, id, waiver))?;
-                self.has(sql::WAIVER_BY_ID, id)
+                self.read_back(sql::WAIVER_BY_ID, id)
             }
             Parcel::Audit(line) => {
                 let is_entered = self.bring("a line of the audit", |to| arrived::audit(to, line))?;
                 if let Some([product, serial]) = line.unit.as_ref().filter(|_| !is_entered) {
                     return Err(PlantError::NotYet { run: format!("of {product} {serial}") });
                 }
-                self.has(sql::AUDIT_BY_ID, &line.id)
+                self.read_back(sql::AUDIT_BY_ID, &line.id)
             }
         }
     }
@@ -218,7 +218,7 @@ impl Plant {
     ///
     /// # Errors
     /// [`PlantError::Lost`] when it does not.
-    pub fn still_has(&mut self, run: &str) -> Result<(), PlantError> {
+    pub fn refuse_loss_of(&mut self, run: &str) -> Result<(), PlantError> {
         self.hash_of(run)?.map(drop).ok_or_else(|| PlantError::Lost { run: run.to_owned() })
     }
 
@@ -245,7 +245,7 @@ impl Plant {
         Ok(Self { shown, database: Box::new(database) })
     }
 
-    fn sorts_as_a_station(&mut self) -> Result<(), PlantError> {
+    fn refuse_other_collation(&mut self) -> Result<(), PlantError> {
         let (collation, encoding): (String, String) =
             self.carry_out("to tell its collation", |database| {
                 let text = "SELECT datcollate::text, pg_encoding_to_char(encoding)::text FROM pg_database
@@ -266,7 +266,7 @@ impl Plant {
         })?)
     }
 
-    fn has_run(&mut self, run: &str, ours: &str) -> Result<(), PlantError> {
+    fn read_back_run(&mut self, run: &str, ours: &str) -> Result<(), PlantError> {
         match self.hash_of(run)? {
             Some((theirs, true)) if theirs == ours => Ok(()),
             Some((theirs, _)) if theirs != ours => {
@@ -276,7 +276,7 @@ impl Plant {
         }
     }
 
-    fn has(&mut self, text: &str, subject: &str) -> Result<(), PlantError> {
+    fn read_back(&mut self, text: &str, subject: &str) -> Result<(), PlantError> {
         let found =
             self.carry_out("to be read back", |database| database.first(text, values![subject], |_| Ok(())))?;
         found.ok_or_else(|| PlantError::NotKept { subject: subject.to_owned() })
@@ -293,7 +293,7 @@ impl Plant {
         self.carry_out(doing, |database| {
             database.transaction(|to| {
                 let found = migrations::newest(to)?;
-                match migrations::is_known(&shown, found) {
+                match migrations::refuse_unknown_version(&shown, found) {
                     Ok(()) => act(to).map(Ok),
                     Err(other) => Ok(Err(other)),
                 }
