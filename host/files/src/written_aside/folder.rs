@@ -110,11 +110,23 @@ impl AsideFolder {
     /// Removes what was swapped out, unless somebody put something else there between the check and the swap.
     fn drop_earlier(self, foreign: impl Fn(&Path) -> Option<String>) -> Result<(), Misplaced> {
         if let Some(why) = foreign(self.path()) {
-            rename::swap(self.path(), &self.target)?;
+            self.bring_back()?;
             return Err(Misplaced::Taken(Some(why)));
         }
         settle(&self.target);
         Ok(())
+    }
+
+    /// Puts what was swapped out back into its place, which ours may have left meanwhile.
+    fn bring_back(self) -> io::Result<()> {
+        let back =
+            rename::swap(self.path(), &self.target).or_else(|_| rename::to_new(self.path(), &self.target));
+        if back.is_err() {
+            // Under the name that it has now, a later run would remove it.
+            let _ = under_way::to_free_name(self.path(), &earlier(&self.target));
+            let _ = self.dir.keep();
+        }
+        back
     }
 
     /// Swaps in three steps. What was moved out of the way comes back if ours cannot take the place.
@@ -130,8 +142,7 @@ impl AsideFolder {
 
     /// Renames what is in the place to NAME.earlier beside it, where a user finds it if this run is killed then.
     fn move_away(&self) -> io::Result<PathBuf> {
-        let name = under_way::shortened(self.target.file_name().unwrap_or_default());
-        under_way::to_free_name(&self.target, &[name, OsStr::new(EARLIER)].into_iter().collect::<OsString>())
+        under_way::to_free_name(&self.target, &earlier(&self.target))
     }
 
     fn done(self) {
@@ -140,6 +151,12 @@ impl AsideFolder {
         let _ = dir.keep();
         settle(&target);
     }
+}
+
+/// The name of what was in the place `target`, while it is out of the way.
+fn earlier(target: &Path) -> OsString {
+    let name = under_way::shortened(target.file_name().unwrap_or_default());
+    [name, OsStr::new(EARLIER)].into_iter().collect()
 }
 
 #[cfg(test)]
@@ -185,6 +202,23 @@ mod tests {
         let kept = aside(&target, "second").replace(changed);
         assert!(matches!(kept, Err(Misplaced::Taken(Some(_)))), "{kept:?}");
         assert_eq!((text(&target), entries(station.path())), ("first".to_owned(), 1));
+    }
+
+    #[test]
+    fn what_came_meanwhile_is_not_removed_when_ours_has_left_its_place() {
+        let station = TempDir::new().unwrap();
+        let (target, moved) = (station.path().join("today"), station.path().join("moved"));
+        aside(&target, "first").put_in_place().unwrap();
+        let changed = |path: &Path| {
+            (path != target).then(|| {
+                fs::rename(&target, &moved).unwrap();
+                "it is precious".to_owned()
+            })
+        };
+        let kept = aside(&target, "second").replace(changed);
+        assert!(matches!(kept, Err(Misplaced::Taken(Some(_)))), "{kept:?}");
+        assert_eq!((text(&target), text(&moved)), ("first".to_owned(), "second".to_owned()));
+        assert_eq!(entries(station.path()), 2);
     }
 
     #[test]
