@@ -89,7 +89,7 @@ impl AsideFolder {
             match rename::swap(self.path(), &self.target) {
                 Ok(()) => return self.drop_earlier(foreign),
                 Err(error) if error.kind() == io::ErrorKind::Unsupported => {
-                    self.exchange()?;
+                    self.exchange(foreign)?;
                     self.done();
                     return Ok(());
                 }
@@ -129,15 +129,19 @@ impl AsideFolder {
         back
     }
 
-    /// Swaps in three steps. What was moved out of the way comes back if ours cannot take the place.
-    fn exchange(&self) -> io::Result<()> {
+    /// Swaps in three steps. What was moved out of the way comes back if it may not be replaced or ours cannot take the place.
+    fn exchange(&self, foreign: impl Fn(&Path) -> Option<String>) -> Result<(), Misplaced> {
         let earlier = self.move_away()?;
+        if let Some(why) = foreign(&earlier) {
+            rename::to_new(&earlier, &self.target)?;
+            return Err(Misplaced::Taken(Some(why)));
+        }
         if let Err(refused) = rename::to_new(self.path(), &self.target) {
             // If even that fails, it stays under its other name and is never removed.
             rename::to_new(&earlier, &self.target)?;
-            return Err(refused);
+            return Err(refused.into());
         }
-        fs::remove_dir_all(&earlier)
+        Ok(fs::remove_dir_all(&earlier)?)
     }
 
     /// Renames what is in the place to NAME.earlier beside it, where a user finds it if this run is killed then.
@@ -222,12 +226,22 @@ mod tests {
     }
 
     #[test]
+    fn where_folders_cannot_be_swapped_what_came_after_the_look_comes_back() {
+        let station = TempDir::new().unwrap();
+        let target = station.path().join("today");
+        aside(&target, "first").put_in_place().unwrap();
+        let kept = aside(&target, "second").exchange(|_| Some("it is precious".to_owned()));
+        assert!(matches!(kept, Err(Misplaced::Taken(Some(_)))), "{kept:?}");
+        assert_eq!((text(&target), entries(station.path())), ("first".to_owned(), 1));
+    }
+
+    #[test]
     fn where_folders_cannot_be_swapped_the_earlier_one_comes_back_when_the_new_one_is_not_taken() {
         let station = TempDir::new().unwrap();
         let target = station.path().join("today");
         aside(&target, "first").put_in_place().unwrap();
         let second = aside(&target, "second");
-        second.exchange().unwrap();
+        second.exchange(|_| None).unwrap();
         second.done();
         assert_eq!((text(&target), entries(station.path())), ("second".to_owned(), 1));
         let killed = aside(&target, "killed");
@@ -238,7 +252,8 @@ mod tests {
         fs::rename(earlier, &target).unwrap();
         let third = aside(&target, "third");
         fs::remove_dir_all(third.path()).unwrap();
-        assert_eq!(third.exchange().unwrap_err().kind(), io::ErrorKind::NotFound);
+        let refused = third.exchange(|_| None);
+        assert!(matches!(&refused, Err(Misplaced::Io(error)) if error.kind() == io::ErrorKind::NotFound));
         assert_eq!((text(&target), entries(station.path())), ("second".to_owned(), 1));
     }
 }
