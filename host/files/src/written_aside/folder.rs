@@ -141,7 +141,11 @@ impl AsideFolder {
             rename::to_new(&earlier, &self.target)?;
             return Err(refused.into());
         }
-        Ok(fs::remove_dir_all(&earlier)?)
+        // Ours is in its place, whatever becomes of the earlier one.
+        if let Err(error) = fs::remove_dir_all(&earlier) {
+            tracing::warn!(path = %earlier.display(), %error, "it is replaced, and not removed; remove it");
+        }
+        Ok(())
     }
 
     /// Renames what is in the place to NAME.earlier beside it, where a user finds it if this run is killed then.
@@ -233,6 +237,17 @@ mod tests {
         let kept = aside(&target, "second").exchange(|_| Some("it is precious".to_owned()));
         assert!(matches!(kept, Err(Misplaced::Taken(Some(_)))), "{kept:?}");
         assert_eq!((text(&target), entries(station.path())), ("first".to_owned(), 1));
+    }
+
+    /// A file is no folder that could be removed.
+    #[test]
+    fn where_folders_cannot_be_swapped_the_new_one_stays_though_the_earlier_one_cannot_be_removed() {
+        let station = TempDir::new().unwrap();
+        let target = station.path().join("today");
+        fs::write(&target, "first").unwrap();
+        aside(&target, "second").exchange(|_| None).unwrap();
+        assert_eq!(text(&target), "second");
+        assert_eq!(fs::read_to_string(station.path().join("today.earlier")).unwrap(), "first");
     }
 
     #[test]
