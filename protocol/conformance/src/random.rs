@@ -145,8 +145,8 @@ struct Observer {
     bench: Bench,
     /// The greatest window since the session began or since the last RESET.
     credit: u32,
-    /// The count that the next ROW_OUT carries; none if it is not known.
-    next_count: Option<u16>,
+    /// The count that the next ROW_OUT carries.
+    next_count: u16,
 }
 
 impl Observer {
@@ -158,11 +158,11 @@ impl Observer {
                 Reply::Hello(welcome) => self.enter(welcome.session, window),
                 Reply::Reset => self.credit = window,
                 Reply::RowOut(out) => {
-                    assert!(self.next_count.is_none_or(|count| count == packet.header.sequence));
+                    assert_eq!(packet.header.sequence, self.next_count);
                     assert_eq!(packet.header.session, self.bench.session);
                     assert_eq!(out.packed.len(), samples::packed_length(out.place.width.into()));
                     assert_ne!(out.generation, 0, "a row without tables");
-                    self.next_count = Some(packet.header.sequence.wrapping_add(1));
+                    self.next_count = packet.header.sequence.wrapping_add(1);
                 }
                 _ => {}
             }
@@ -176,7 +176,7 @@ impl Observer {
     fn enter(&mut self, session: u8, window: u32) {
         if session != self.bench.session {
             (self.bench.session, self.bench.window) = (session, 0);
-            (self.credit, self.next_count) = (window, Some(0));
+            (self.credit, self.next_count) = (window, 0);
         }
     }
 
@@ -213,18 +213,18 @@ impl Observer {
         };
         self.receive(&bytes);
     }
+}
 
-    /// A HELLO after two zeros must be answered, and a frame must come out unchanged.
-    fn recover(mut self) {
-        self.bench.receive(&[0, 0]);
-        self.bench.greet(&Hello { nonce: 0xffff_0000, host: 1, take_over: true, ..HELLO });
-        self.bench.done(&Request::Reset(Reset { level: ResetLevel::Tables, next_row: 0 }));
-        make_ready(&mut self.bench, HEIGHT);
-        let heard = self.bench.send_all(HEIGHT, 0..2);
-        assert_eq!(rows_of(&heard), [0, 1]);
-        for (number, packet) in (0..).zip(&heard) {
-            assert_eq!(samples_of(&packet.row()), row(HEIGHT, number).samples);
-        }
+/// A HELLO after two zeros must be answered, and a frame must come out unchanged.
+fn recover(mut bench: Bench) {
+    bench.receive(&[0, 0]);
+    bench.greet(&Hello { nonce: 0xffff_0000, host: 1, take_over: true, ..HELLO });
+    bench.done(&Request::Reset(Reset { level: ResetLevel::Tables, next_row: 0 }));
+    make_ready(&mut bench, HEIGHT);
+    let heard = bench.send_all(HEIGHT, 0..2);
+    assert_eq!(rows_of(&heard), [0, 1]);
+    for (number, packet) in (0..).zip(&heard) {
+        assert_eq!(samples_of(&packet.row()), row(HEIGHT, number).samples);
     }
 }
 
@@ -232,11 +232,11 @@ pub(crate) fn whatever_comes_the_board_keeps_its_promises_and_answers_the_next_h
     proptest!(cases(on, 1, concat!(env!("CARGO_MANIFEST_DIR"), "/proptest-regressions/random.txt")), |(build in build(on),
         events in prop::collection::vec(event(), 0..40),)| {
         let bench = ready(on, &build, HEIGHT);
-        let mut observer = Observer { bench, credit: 0, next_count: Some(0) };
+        let mut observer = Observer { bench, credit: 0, next_count: 0 };
         for event in events {
             observer.meet(event);
         }
-        observer.recover();
+        recover(observer.bench);
     });
 }
 
@@ -247,6 +247,6 @@ pub(crate) fn any_bytes_in_any_pieces_are_survived(on: &dyn Boards) {
         for piece in bytes.chunks(size) {
             bench.receive(piece);
         }
-        Observer { bench, credit: 0, next_count: None }.recover();
+        recover(bench);
     });
 }
