@@ -121,9 +121,4 @@ impl Bench {
         assert_eq!(told.burst, burst.burst);
         told.records
     }
-
-    /// How far the burst has come. The board drops its records before frame `unread`.
-    pub(crate) fn burst_state(&mut self, unread: u32) -> BurstState {
-        self.records(unread).state
-    }
 }

@@ -79,11 +79,11 @@ pub(crate) fn a_repeated_hello_ends_nothing(on: &dyn Boards) {
 pub(crate) fn ten_seconds_of_silence_end_a_burst_and_its_session(on: &dyn Boards) {
     let Some(mut bench) = under_way(on) else { return };
     bench.now += Duration::from_millis(9900);
-    assert_eq!(bench.burst_state(0), BurstState::UnderWay);
+    assert_eq!(bench.records(0).state, BurstState::UnderWay);
     bench.now += Duration::from_millis(9900);
     bench.say(&Request::RowAck);
     bench.now += Duration::from_millis(9900);
-    assert_eq!(bench.burst_state(0), BurstState::UnderWay, "any packet of the session will do");
+    assert_eq!(bench.records(0).state, BurstState::UnderWay, "any packet of the session will do");
     bench.now += Duration::from_millis(10_100);
     assert_eq!(bench.refused(&Request::Records { from: 0 }), (RefusalCode::Session, 0));
     bench.greet(&HELLO);
