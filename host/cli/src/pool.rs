@@ -115,31 +115,41 @@ fn lease(kind: String) -> Result<Lent, PoolError> {
     let mut child = hold(&kind).map_err(PoolError::NoStation)?;
     let until_closed = child.stdin.take();
     let mut told = child.stdout.take().map(BufReader::new);
+    match held(&kind, told.as_mut()) {
+        Ok(target) => {
+            watch(told, child);
+            Ok(Lent { kind, target, _until_closed: until_closed })
+        }
+        Err(error) => {
+            // It ends when nobody talks to it any more, and returns the board if it has one.
+            drop((until_closed, told));
+            let _ = child.wait();
+            Err(error)
+        }
+    }
+}
+
+/// Where the board is that the program holds, as soon as it holds one of this kind.
+fn held(kind: &str, mut told: Option<&mut BufReader<ChildStdout>>) -> Result<Target, PoolError> {
     let mut last = None;
-    while let Some(message) = next(told.as_mut())? {
+    while let Some(message) = next(told.as_deref_mut())? {
         match message {
             Message::Waits { before, seconds } => {
                 let is_news = last.is_none_or(|(was, at)| was != before || seconds >= at + TOLD);
                 if is_news {
                     last = Some((before, seconds));
-                    tell_wait(&kind, before, seconds);
+                    tell_wait(kind, before, seconds);
                 }
             }
             Message::Held { board, target } => {
                 console::diagnose(&format_args!("the board {board} is ours, at {target}"));
-                let target = target.parse().map_err(|source| PoolError::Target {
-                    board: board.clone(),
-                    target: target.clone(),
-                    source,
-                })?;
-                watch(told, child);
-                return Ok(Lent { kind, target, _until_closed: until_closed });
+                let parsed = target.parse();
+                return parsed.map_err(|source| PoolError::Target { board, target, source });
             }
             Message::Lost { .. } => break,
         }
     }
-    let _ = child.wait();
-    Err(PoolError::None { kind })
+    Err(PoolError::None { kind: kind.to_owned() })
 }
 
 fn hold(kind: &str) -> io::Result<Child> {
