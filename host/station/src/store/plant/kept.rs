@@ -34,7 +34,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
-    pub fn kept_runs(&self, after: &str) -> Result<Vec<Kept>, StoreError> {
+    pub fn kept_runs(&self, after: &str) -> Result<Vec<KeptRun>, StoreError> {
         self.rows("to tell its runs", sql::KEPT_RUNS, values![after], |row| {
             let (run, unit_id, nth) = (row.get(0)?, row.get(1)?, row.get(2)?);
             Ok(KeptRun { run, unit_id, nth, sha256: row.get(3)?, text: row.get(4)? })
