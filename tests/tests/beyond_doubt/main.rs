@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod answered_twice;
+mod anywhere;
 mod asked_again;
 mod at_speed;
 mod capabilities;
