@@ -1,12 +1,21 @@
-//! What an earlier session has left in a board is nothing to a run.
+//! What an earlier session has left is nothing to a run, and what a run leaves is a board that is free.
 
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use halfrow::board::{Board, NumberedFrame, OpenOptions, ReturnedRow, RowTiming, RowTraffic};
+use halfrow::board::{Board, NumberedFrame, OpenOptions, ReturnedRow, RowTiming, RowTraffic, Stop};
 use halfrow::link::{Candidate, Link, LinkError};
+use halfrow::progress::Silent;
+use halfrow::result::Report;
+use halfrow::run::{RunOptions, verify};
+use halfrow::verdict::{Cause, StoppedBy};
+use halfrow_mock::Options;
 use halfrow_model::{Frame, Kernel, Phase, TableSet};
+use halfrow_protocol::message::{Reset, ResetLevel, Welcome};
+use halfrow_protocol::{Packet, Reply, Request};
+use halfrow_tests::altered::{Altered, Passing, Toward, judge};
 use halfrow_tests::system::{System, open};
 
 use crate::conduct::passes;
@@ -78,4 +87,60 @@ fn tables_that_were_left_under_the_generations_of_a_run_are_dropped() {
             passes(&System::TINY.judge_candidate(Candidate { link: Box::new(shared), ..candidate }));
         }
     }
+}
+
+/// It has the number of the greeting that the run sends, which it is no answer to, and opens an earlier session.
+#[test]
+fn an_answer_to_an_old_greeting_opens_no_session() {
+    let mut is_done = false;
+    passes(&judge(&System::TINY, move |toward, packet| match packet.reply() {
+        Some(Reply::Hello(welcome)) if toward == Toward::Host && !std::mem::replace(&mut is_done, true) => {
+            let session = welcome.session + 100;
+            let mut old = packet.saying(&Reply::Hello(Welcome { nonce: !welcome.nonce, session, ..welcome }));
+            old.header.session = session;
+            vec![old, packet]
+        }
+        _ => vec![packet],
+    }));
+}
+
+/// What a host says of its sessions: whether each greeting takes the board over, and how many times it closes one.
+fn sessions(options: &RunOptions, is_stopped: Arc<AtomicBool>) -> (Report, Vec<bool>, usize) {
+    let (sender, said) = std::sync::mpsc::channel();
+    let alter = move |toward, packet: Passing| {
+        let request = Request::read(&Packet { header: packet.header, payload: &packet.payload });
+        match (toward, request) {
+            (Toward::Board, Ok(Request::Hello(hello))) => sender.send(Some(hello.take_over)).unwrap(),
+            (Toward::Board, Ok(Request::Reset(Reset { level: ResetLevel::Session, .. }))) => {
+                sender.send(None).unwrap();
+            }
+            (Toward::Board, Ok(Request::RowIn(_))) => is_stopped.store(true, Ordering::Relaxed),
+            _ => {}
+        }
+        vec![packet]
+    };
+    let candidate = Altered::new(&Options::default(), alter).candidate();
+    let report = verify(&System::TINY.plan(), candidate, options, &Silent).unwrap().report;
+    let said: Vec<_> = said.iter().collect();
+    let closed = said.iter().filter(|it| it.is_none()).count();
+    (report, said.into_iter().flatten().collect(), closed)
+}
+
+/// Behind a session that was closed on purpose the board may be another host's.
+#[test]
+fn a_board_is_taken_over_once() {
+    let options = RunOptions { take_over: true, ..RunOptions::default() };
+    let (report, taken, _) = sessions(&options, Arc::default());
+    passes(&report);
+    assert!(taken.len() > 3 && taken[0] && !taken[1..].contains(&true), "{taken:?}");
+}
+
+#[test]
+fn a_run_that_is_stopped_leaves_a_board_that_is_free() {
+    let is_stopped = Arc::new(AtomicBool::new(false));
+    let asked = Arc::clone(&is_stopped);
+    let stop = Stop::when(move || asked.load(Ordering::Relaxed).then_some(StoppedBy::Person));
+    let (report, _, closed) = sessions(&RunOptions { stop, ..RunOptions::default() }, is_stopped);
+    assert_eq!(report.cause, Cause::Stopped(StoppedBy::Person), "{}", report.headline());
+    assert_eq!(closed, 1);
 }
