@@ -1,10 +1,15 @@
 //! A board's counters, compared with what the host saw and with each other.
 
+use std::time::Duration;
+
+use halfrow::board::{Board, OpenOptions};
+use halfrow::link_test;
 use halfrow::result::{CheckName, Finding, NotExercised, Report};
 use halfrow::verdict::Verdict;
+use halfrow_mock::Options;
 use halfrow_protocol::message::Status;
 use halfrow_protocol::{Kind, Reply};
-use halfrow_tests::altered::judge_each;
+use halfrow_tests::altered::{Altered, judge_each};
 use halfrow_tests::system::System;
 
 use crate::conduct::{fails, passes};
@@ -64,8 +69,9 @@ fn counters_are_compared_with_what_the_host_saw() {
 
 #[test]
 fn damaged_packets_that_nobody_missed_are_only_noted() {
-    let report = with_counter(|status| status.crc_errors = 5);
+    let report = with_counter(|status| (status.crc_errors, status.framing_errors) = (3, 2));
     passes(&report);
+    assert_eq!(report.link.damaged_out, 5);
     let counters = report.checks.iter().find(|check| check.name == CheckName::Counters).unwrap();
     assert!(
         counters
@@ -128,4 +134,18 @@ fn both_latencies_that_a_board_counts_are_compared_with_those_of_its_rows() {
     for (report, right) in [(least, told(43, 44)), (most, told(44, 45))] {
         assert_eq!((report.verdict(), &report.finding), (Verdict::Fail, &right), "{}", report.headline());
     }
+}
+
+/// One is asked in front of the second session of a test, and one at its end.
+#[test]
+fn damaged_packets_of_both_sessions_of_a_link_test_add_up() {
+    let board = Altered::new(&Options::default(), |_, packet| match packet.reply() {
+        Some(Reply::Status(status)) => {
+            vec![packet.saying(&Reply::Status(Status { crc_errors: 3, framing_errors: 4, ..status }))]
+        }
+        _ => vec![packet],
+    });
+    let mut board = Board::open(board.candidate().link, &OpenOptions::default()).unwrap();
+    let figures = link_test::run(&mut board, Duration::from_millis(20), 1).unwrap();
+    assert_eq!(figures.errors.damaged_out, 2 * 7);
 }

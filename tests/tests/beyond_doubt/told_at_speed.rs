@@ -1,7 +1,9 @@
 //! What is told of frames that a board makes on its own: no more than was seen of them.
 
-use halfrow::result::{BurstCount, Defect, Finding, NotExercised, Repetition, Report};
-use halfrow::run::{Part, Plan, Selection};
+use halfrow::result::{
+    BurstCount, CheckName, Defect, Finding, NotExercised, Outcome, Repetition, Report, SoakLength,
+};
+use halfrow::run::{AtSpeed, Part, Plan, Selection};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_protocol::message::{FrameRecord, Records, TrappedRow};
@@ -99,4 +101,24 @@ fn frames_with_pauses_put_nothing_to_the_test_that_streamed_rows_did_not() {
     assert!(!unused, "{:?}", report.not_exercised);
     let (report, unused) = unused_lines(true);
     assert!(unused, "{:?}", report.not_exercised);
+}
+
+#[test]
+fn a_soak_with_a_pause_was_none_at_full_speed() {
+    let mut alter = with_record(2, |record| record.pauses = 7);
+    // Bursts of a minute have 1153 frames: (64·8 + 8) clocks each.
+    let slow = Options { pixel_clock: 10_000, ..Options::default() };
+    let board = Altered::new(&slow, move |toward, packet| vec![alter(toward, packet)]);
+    let soak = AtSpeed::Soak(SoakLength::Frames { frames: 3000 });
+    let report =
+        judge_by_plan(&Plan { at_speed: soak, fail_fast: false, ..System::TINY.plan() }, board.candidate());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
+    let check = report.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap();
+    assert_eq!(check.outcome, Outcome::Skipped, "{}", check.detail());
+    assert!(
+        matches!(check.finding, Finding::PausedAtSpeed { frames: 3000, paused: 1 }),
+        "{}",
+        check.detail()
+    );
+    assert!(report.not_exercised.contains(&NotExercised::FullSpeed {}));
 }
