@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use halfrow::board::{Board, OpenOptions};
+use halfrow::board::{Board, BoardNature, Capabilities, OpenOptions};
 use halfrow::frames::Builtin;
 use halfrow::link::Candidate;
 use halfrow::progress::Silent;
@@ -12,7 +12,7 @@ use halfrow::target::BoardKind;
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
 use halfrow_model::{BitDepth, Equidistant, Geometry, GridShape, Interpolant, TableSet};
-use halfrow_protocol::Kind;
+use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{System, failed_check, judge_by_plan, open};
 
@@ -227,20 +227,25 @@ fn a_run_in_which_nothing_came_back_is_no_pass() {
 
 /// Also where it is behind a link to the outside, and says itself what it is.
 #[test]
-fn a_board_that_says_that_it_is_a_mock_is_no_hardware() {
+fn a_board_that_says_that_it_is_none_is_no_hardware() {
     let _alone = crate::RUNS.lock();
-    let judged = |require_hardware| {
-        let candidate = Candidate { kind: BoardKind::Hardware, ..open("mock") };
+    let judged = |nature, require_hardware| {
+        let alter = move |_, packet: Passing| match packet.reply() {
+            Some(Reply::Capabilities(capabilities)) => {
+                vec![packet.saying(&Reply::Capabilities(Capabilities { nature, ..capabilities }))]
+            }
+            _ => vec![packet],
+        };
+        let candidate = Altered::new(&Options::default(), alter).candidate();
+        let candidate = Candidate { kind: BoardKind::Hardware, ..candidate };
         let options = RunOptions { require_hardware, ..RunOptions::default() };
         verify(&plan(Some(Selection::least())), candidate, &options, &Silent).unwrap().report
     };
-    assert_eq!(judged(false).verdict(), Verdict::Pass);
-    let report = judged(true);
-    assert_eq!(
-        (report.verdict(), report.cause),
-        (Verdict::Error, Cause::NothingJudged),
-        "{}",
-        report.headline()
-    );
-    assert_eq!(report.finding, Finding::HardwareRequired { board: BoardKind::Mock });
+    assert_eq!(judged(BoardNature::Hardware, true).verdict(), Verdict::Pass);
+    for (nature, board) in [(BoardNature::Mock, BoardKind::Mock), (BoardNature::Simulation, BoardKind::Sim)] {
+        assert_eq!(judged(nature, false).verdict(), Verdict::Pass);
+        let report = judged(nature, true);
+        assert_eq!((report.verdict(), report.cause), (Verdict::Error, Cause::NothingJudged));
+        assert_eq!(report.finding, Finding::HardwareRequired { board });
+    }
 }
