@@ -340,3 +340,35 @@ fn a_narrower_depth_and_a_shifted_centre_are_no_obstacle() {
     });
     assert_eq!(certain(&suspects), ("kernel word", "kernel node 20, weight g4, bit 12".to_owned()));
 }
+
+/// Bit 6 stuck at 1 in even columns, which is a quarter of all samples, and every sample of odd ones one brighter: a third of what
+/// differs is no cause of it.
+#[test]
+fn a_part_that_explains_less_than_half_is_not_named_first() {
+    let suspects = diagnose(&narrow(), |_, _, expected| {
+        let altered = |(place, &sample): (usize, &u16)| if place % 2 == 0 { sample | 64 } else { sample ^ 1 };
+        expected.samples().iter().enumerate().map(altered).collect()
+    });
+    assert_eq!((suspects[0].part(), suspects[0].explained), ("unknown", 0.0), "{suspects:#?}");
+    let [_, stuck, ..] = &suspects[..] else { panic!("{suspects:#?}") };
+    assert!((0.2..0.5).contains(&stuck.explained), "{stuck:#?}");
+    assert_eq!(stuck.place(), "corrected samples, bit 6, stuck at 1");
+    // Where nothing explains everything, nothing else explains it as well.
+    assert!(suspects.iter().all(|suspect| suspect.others() == 0), "{suspects:#?}");
+}
+
+/// 2047 is half of what 12 bits hold.
+#[test]
+fn samples_are_bright_that_are_more_than_half() {
+    let evidence = |least: u16| {
+        let suspects = diagnose(&narrow(), |_, _, expected| {
+            let altered = |&sample: &u16| if sample > least { sample ^ (1 + sample % 3) } else { sample };
+            expected.samples().iter().map(altered).collect()
+        });
+        assert_eq!(suspects[0].part(), "unknown", "{suspects:#?}");
+        suspects[0].evidence()
+    };
+    let (bright, any) = (evidence(2047), evidence(1500));
+    let clause = "of half the range and above";
+    assert!(bright.contains(clause) && !any.contains(clause), "{bright}; {any}");
+}
