@@ -29,7 +29,7 @@ fn two_late_rows_of_each_frame_are_not_one() {
     assert!(!late.are_one_row() && late.are_some(), "{late:?}");
 }
 
-/// A pipeline of another depth makes every row late.
+/// A pipeline of another depth would make every row late.
 #[test]
 fn one_late_row_is_not_the_depth_of_the_pipeline() {
     let report = late(|row| row == 3);
