@@ -16,9 +16,11 @@ use halfrow_model::{Frame, Kernel, Phase, TableSet};
 use halfrow_protocol::message::{Reset, ResetLevel, Welcome};
 use halfrow_protocol::{Packet, Reply, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge};
+use halfrow_tests::patience::LIMIT;
 use halfrow_tests::system::{System, open};
 
 use crate::conduct::passes;
+use crate::stale_packets::cut_when_told;
 
 /// A link to a board that stays when it is dropped.
 #[derive(Clone)]
@@ -143,4 +145,34 @@ fn a_run_that_is_stopped_leaves_a_board_that_is_free() {
     let (report, _, closed) = sessions(&RunOptions { stop, ..RunOptions::default() }, is_stopped);
     assert_eq!(report.cause, Cause::Stopped(StoppedBy::Person), "{}", report.headline());
     assert_eq!(closed, 1);
+}
+
+/// It goes away behind its first row. Whoever has it when it comes back came later.
+#[test]
+fn whoever_has_a_board_that_comes_back_keeps_it() {
+    let is_cut = Arc::new(AtomicBool::new(false));
+    let (cut, taken) = (Arc::clone(&is_cut), Arc::new(Mutex::new(Vec::new())));
+    let seen = Arc::clone(&taken);
+    let board = move || {
+        let (cut, seen) = (Arc::clone(&cut), Arc::clone(&seen));
+        let alter = move |toward, packet: Passing| {
+            match Request::read(&Packet { header: packet.header, payload: &packet.payload }) {
+                Ok(Request::Hello(hello)) if toward == Toward::Board => {
+                    seen.lock().unwrap().push(hello.take_over);
+                }
+                Ok(Request::RowIn(_)) if toward == Toward::Board => cut.store(true, Ordering::Relaxed),
+                _ => {}
+            }
+            vec![packet]
+        };
+        Altered::new(&Options::default(), alter).candidate()
+    };
+    let first = board();
+    let link = cut_when_told(first.link, is_cut);
+    let candidate = Candidate { link, reopen: Some(Box::new(move || Ok(board().link))), ..first };
+    let options = RunOptions { take_over: true, reconnect: Some(LIMIT), ..RunOptions::default() };
+    let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
+    passes(&report);
+    let taken = taken.lock().unwrap();
+    assert!(taken.len() > 3 && taken[0] && !taken[1..].contains(&true), "{taken:?}");
 }
