@@ -6,7 +6,6 @@ use halfrow::progress::Silent;
 use halfrow::result::{CheckName, Report, WithinReport};
 use halfrow::run::{AtSpeed, Misfit, Plan, RunOptions, Vary, WithinError, verify};
 use halfrow::verdict::Verdict;
-use halfrow_model::{BitDepth, Equidistant, Geometry, GridShape, Interpolant, TableSet};
 use halfrow_tests::system::{System, failed_check, open};
 
 const ROWS: usize = 16;
@@ -131,30 +130,4 @@ fn no_share_of_faults_is_told_of_a_board_that_they_were_not_measured_in() {
     let told = halfrow::report::wording::within(within(&report)).pop().unwrap();
     assert!(told.starts_with("coverage of this plan was not measured"), "{told}");
     assert!(told.ends_with("64 x 16"), "{told}");
-}
-
-/// The entries of a grid lie otherwise in a frame of fewer rows, so that frames are whole.
-#[test]
-fn of_a_grid_whole_frames_are_taken_and_told() {
-    let _alone = crate::RUNS.lock();
-    let geometry = Geometry::centred(192, 8, BitDepth::Twelve).unwrap();
-    let lens = Equidistant::from_radius(100.0).unwrap();
-    // Three segments: the offset and four nodes, of three grid rows each.
-    let tables = TableSet::from_grid(geometry, GridShape::new(6, 6).unwrap(), &[1 << 24; 15]).unwrap();
-    let grid = Plan::new(tables, Interpolant::Hermite.into()).seen_through(lens);
-    let judged = |seconds| {
-        let within = Some(Duration::from_secs_f64(seconds));
-        judged("mock,speed=100000", &Plan { within, ..grid.clone() })
-    };
-    let Err(Misfit::Within(WithinError::TooFew { least, .. })) = judged(0.1) else { panic!() };
-    for factor in [1.0, 1.1, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0] {
-        let report = judged(factor * least).unwrap();
-        assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
-        let streamed: usize = report.frames.iter().map(|frame| frame.rows).sum();
-        let parts = &within(&report).parts;
-        let beside = |part: &str| ["at speed", "corners", "rules"].contains(&part);
-        let told: usize = parts.iter().filter(|it| !beside(&it.part)).map(|it| it.taken).sum();
-        assert_eq!(told, streamed, "{factor}: {parts:?}");
-        assert!(streamed.is_multiple_of(8), "{factor}: {streamed}");
-    }
 }
