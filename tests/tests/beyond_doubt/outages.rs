@@ -346,3 +346,42 @@ fn what_went_over_a_link_that_broke_for_good_counts_once() {
     };
     assert_eq!(sent(None), sent(Some(Duration::ZERO)));
 }
+
+/// The report on a board whose answer number `nth` to TABLE_CRC is wrong, over a link that breaks right after it. A sound board comes
+/// back. With how often the board was asked.
+fn wrong_sum_before_an_outage(nth: usize) -> (Report, usize) {
+    let is_cut = Arc::new(AtomicBool::new(false));
+    let asked = Arc::new(AtomicUsize::new(0));
+    let (cut, counted) = (Arc::clone(&is_cut), Arc::clone(&asked));
+    let alter = move |toward, mut packet: Passing| {
+        if toward == Toward::Host
+            && packet.is(Kind::TableCrc)
+            && counted.fetch_add(1, Ordering::Relaxed) == nth
+        {
+            packet.payload.iter_mut().take(1).for_each(|byte| *byte ^= 1);
+            cut.store(true, Ordering::Relaxed);
+        }
+        vec![packet]
+    };
+    let candidate = Candidate { reopen: Some(Box::new(|| Ok(board(false)))), ..breakable(alter, is_cut) };
+    let options = RunOptions { reconnect: Some(LIMIT), ..RunOptions::default() };
+    let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
+    (report, asked.load(Ordering::Relaxed))
+}
+
+/// The last answers are those to the rules that try what ends a session.
+#[test]
+fn a_wrong_sum_of_a_table_is_not_forgotten_when_the_link_breaks_after_it() {
+    let (sound, asked) = wrong_sum_before_an_outage(usize::MAX);
+    assert_eq!(sound.verdict(), Verdict::Pass, "{}", sound.headline());
+    for nth in asked - 12..asked {
+        let (report, _) = wrong_sum_before_an_outage(nth);
+        assert_eq!(
+            (report.verdict(), report.cause),
+            (Verdict::Error, Cause::Station),
+            "{}",
+            report.headline()
+        );
+        assert!(matches!(report.finding, Finding::RightInAnotherSession { .. }), "{}", report.headline());
+    }
+}

@@ -41,18 +41,26 @@ impl Rules<'_, '_> {
         self.rows_again()
     }
 
-    /// Tries `scenario` again if the board fails in it and no longer has tables, like a board that has lost its power:
-    /// that does not happen every time.
+    /// Tries `scenario` again if the board fails in it and says that it has lost its power: that does not happen every time.
     fn powered(&mut self, scenario: fn(&mut Self) -> Result<(), End>) -> Result<(), End> {
         for _ in 1..TIMES {
             let tried = scenario(self);
             let has_failed = tried.as_ref().is_err_and(End::is_failed);
-            if !has_failed || self.run.board.status(false).is_ok_and(|status| status.generation != 0) {
+            if !has_failed || !self.has_lost_power() {
                 return tried;
             }
             self.run.findings.look.beyond_links = false;
         }
         scenario(self)
+    }
+
+    /// Whether the board answers that it has neither session nor tables any more. One that does not answer may have both: its
+    /// link may be broken, which must not hide what was found before.
+    fn has_lost_power(&mut self) -> bool {
+        match self.run.board.status(false) {
+            Ok(status) => status.generation == 0,
+            Err(error) => matches!(error, BoardError::SessionLost),
+        }
     }
 
     /// Tries `scenario` again if the board fails in it: what a link caused does not happen every time.
