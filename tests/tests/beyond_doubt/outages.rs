@@ -11,7 +11,7 @@ use halfrow::result::{CheckName, Finding, Outcome, Report, SoakLength};
 use halfrow::run::{AtSpeed, Plan, RunOptions, Vary, verify};
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
-use halfrow_protocol::message::{Capabilities, Records, RowOut, Welcome};
+use halfrow_protocol::message::{Capabilities, Records, RowOut, RowPlace, Welcome};
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::patience::LIMIT;
@@ -347,41 +347,53 @@ fn what_went_over_a_link_that_broke_for_good_counts_once() {
     assert_eq!(sent(None), sent(Some(Duration::ZERO)));
 }
 
-/// The report on a board whose answer number `nth` to TABLE_CRC is wrong, over a link that breaks right after it. A sound board comes
-/// back. With how often the board was asked.
-fn wrong_sum_before_an_outage(nth: usize) -> (Report, usize) {
+/// The report on a board whose packet number `nth` of this kind is as `spoil` makes it, over a link that breaks right after it. A
+/// sound board comes back. With how many such packets there were.
+fn wrong_before_an_outage(kind: Kind, spoil: fn(&Passing) -> Passing, nth: usize) -> (Report, usize) {
     let is_cut = Arc::new(AtomicBool::new(false));
-    let asked = Arc::new(AtomicUsize::new(0));
-    let (cut, counted) = (Arc::clone(&is_cut), Arc::clone(&asked));
-    let alter = move |toward, mut packet: Passing| {
-        if toward == Toward::Host
-            && packet.is(Kind::TableCrc)
-            && counted.fetch_add(1, Ordering::Relaxed) == nth
-        {
-            packet.payload.iter_mut().take(1).for_each(|byte| *byte ^= 1);
+    let seen = Arc::new(AtomicUsize::new(0));
+    let (cut, counted) = (Arc::clone(&is_cut), Arc::clone(&seen));
+    let alter = move |toward, packet: Passing| {
+        let is_meant = toward == Toward::Host && packet.is(kind);
+        if is_meant && counted.fetch_add(1, Ordering::Relaxed) == nth {
             cut.store(true, Ordering::Relaxed);
+            return vec![spoil(&packet)];
         }
         vec![packet]
     };
     let candidate = Candidate { reopen: Some(Box::new(|| Ok(board(false)))), ..breakable(alter, is_cut) };
     let options = RunOptions { reconnect: Some(LIMIT), ..RunOptions::default() };
     let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
-    (report, asked.load(Ordering::Relaxed))
+    (report, seen.load(Ordering::Relaxed))
 }
 
-/// The last answers are those to the rules that try what ends a session.
-#[test]
-fn a_wrong_sum_of_a_table_is_not_forgotten_when_the_link_breaks_after_it() {
-    let (sound, asked) = wrong_sum_before_an_outage(usize::MAX);
+/// The last packets are those in which the rules are tried that say what ends a session.
+fn is_not_forgotten(kind: Kind, spoil: fn(&Passing) -> Passing) {
+    let (sound, packets) = wrong_before_an_outage(kind, spoil, usize::MAX);
     assert_eq!(sound.verdict(), Verdict::Pass, "{}", sound.headline());
-    for nth in asked - 12..asked {
-        let (report, _) = wrong_sum_before_an_outage(nth);
-        assert_eq!(
-            (report.verdict(), report.cause),
-            (Verdict::Error, Cause::Station),
-            "{}",
-            report.headline()
-        );
+    for nth in packets - 12..packets {
+        let (report, _) = wrong_before_an_outage(kind, spoil, nth);
+        let ended = (report.verdict(), report.cause);
+        assert_eq!(ended, (Verdict::Error, Cause::Station), "{nth}: {}", report.headline());
         assert!(matches!(report.finding, Finding::RightInAnotherSession { .. }), "{}", report.headline());
     }
+}
+
+#[test]
+fn a_wrong_sum_of_a_table_is_not_forgotten_when_the_link_breaks_after_it() {
+    is_not_forgotten(Kind::TableCrc, |packet| {
+        let mut packet = packet.clone();
+        packet.payload.iter_mut().take(1).for_each(|byte| *byte ^= 1);
+        packet
+    });
+}
+
+#[test]
+fn a_row_that_was_never_sent_is_not_forgotten_when_the_link_breaks_after_it() {
+    is_not_forgotten(Kind::RowOut, |packet| {
+        changed(packet, |row| {
+            let row_sequence = row.place.row_sequence + 1000;
+            RowOut { place: RowPlace { row_sequence, ..row.place }, ..row }
+        })
+    });
 }

@@ -68,17 +68,21 @@ impl Run<'_> {
                 self.findings.note(CheckName::Rules, Outcome::Skipped, Finding::RulesLeftOut {});
                 return Ok(());
             };
-            match (rules.all(), last) {
-                (Err(end), Some(last)) if end.is_outage() => self.return_to(last, last.frames.len(), end)?,
-                (Err(end), _) if end.is_failed() => return Err(end),
-                (Err(end), _) => return Err(self.misconduct(CheckName::Rules).unwrap_or(end)),
-                (Ok(requests), _) => {
-                    if let Some(misconduct) = self.misconduct(CheckName::Rules) {
-                        return Err(misconduct);
+            let end = match rules.all() {
+                Err(end) if end.is_failed() => return Err(end),
+                // What no link can cause counts although the link broke after it.
+                tried => match (self.misconduct(CheckName::Rules), tried) {
+                    (Some(misconduct), _) => return Err(misconduct),
+                    (None, Ok(requests)) => {
+                        self.findings.passed(CheckName::Rules, Finding::RulesKept { requests });
+                        return Ok(());
                     }
-                    self.findings.passed(CheckName::Rules, Finding::RulesKept { requests });
-                    return Ok(());
-                }
+                    (None, Err(end)) => end,
+                },
+            };
+            match last {
+                Some(last) if end.is_outage() => self.return_to(last, last.frames.len(), end)?,
+                _ => return Err(end),
             }
         }
     }
