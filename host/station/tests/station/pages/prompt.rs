@@ -27,8 +27,9 @@ fn a_terminal_shows_what_is_typed_again_whatever_ends_the_program_at_the_prompt(
         let shows = || tcgetattr(host.as_raw_fd()).unwrap().local_flags.contains(LocalFlags::ECHO);
         assert!(shows());
         // The program has the terminal, whose keys then signal it.
-        let mut child = Command::new("setsid")
-            .arg("--ctty")
+        let mut child = Command::new("env")
+            // Whoever runs the tests in the background may ignore them.
+            .args(["--default-signal=INT,TERM", "setsid", "--ctty"])
             .arg(program())
             .args(["user", "add", "Weber", "--settings"])
             .arg(station.path("station.toml"))
