@@ -8,6 +8,7 @@ mod answered_twice;
 mod anywhere;
 mod asked_again;
 mod at_speed;
+mod before_outages;
 mod capabilities;
 mod careless;
 mod conduct;

@@ -11,7 +11,7 @@ use halfrow::result::{CheckName, Finding, Outcome, Report, SoakLength};
 use halfrow::run::{AtSpeed, Plan, RunOptions, Vary, verify};
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
-use halfrow_protocol::message::{Capabilities, Records, RowOut, RowPlace, Welcome};
+use halfrow_protocol::message::{Capabilities, Records, RowOut, Welcome};
 use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::patience::LIMIT;
@@ -40,7 +40,7 @@ fn spoilt(packet: &Passing) -> Passing {
 }
 
 /// A row that comes back as `change` makes it.
-fn changed<'a>(packet: &'a Passing, change: impl FnOnce(RowOut<'a>) -> RowOut<'a>) -> Passing {
+pub(crate) fn changed<'a>(packet: &'a Passing, change: impl FnOnce(RowOut<'a>) -> RowOut<'a>) -> Passing {
     match packet.reply() {
         Some(Reply::RowOut(row)) => packet.saying(&Reply::RowOut(change(row))),
         _ => packet.clone(),
@@ -48,13 +48,13 @@ fn changed<'a>(packet: &'a Passing, change: impl FnOnce(RowOut<'a>) -> RowOut<'a
 }
 
 /// A link to a board that is just switched on; if `wrong`, its rows are spoilt.
-fn board(wrong: bool) -> Box<dyn Link> {
+pub(crate) fn board(wrong: bool) -> Box<dyn Link> {
     let alter = move |_, packet: Passing| vec![if wrong { spoilt(&packet) } else { packet }];
     Altered::new(&Options::default(), alter).candidate().link
 }
 
 /// A board with packets that `alter` rewrites, over a link that can be cut.
-fn breakable(
+pub(crate) fn breakable(
     alter: impl FnMut(Toward, Passing) -> Vec<Passing> + Send + 'static,
     is_cut: Arc<AtomicBool>,
 ) -> Candidate {
@@ -345,55 +345,4 @@ fn what_went_over_a_link_that_broke_for_good_counts_once() {
         (report.link.packets_out, report.link.bytes_in)
     };
     assert_eq!(sent(None), sent(Some(Duration::ZERO)));
-}
-
-/// The report on a board whose packet number `nth` of this kind is as `spoil` makes it, over a link that breaks right after it. A
-/// sound board comes back. With how many such packets there were.
-fn wrong_before_an_outage(kind: Kind, spoil: fn(&Passing) -> Passing, nth: usize) -> (Report, usize) {
-    let is_cut = Arc::new(AtomicBool::new(false));
-    let seen = Arc::new(AtomicUsize::new(0));
-    let (cut, counted) = (Arc::clone(&is_cut), Arc::clone(&seen));
-    let alter = move |toward, packet: Passing| {
-        let is_meant = toward == Toward::Host && packet.is(kind);
-        if is_meant && counted.fetch_add(1, Ordering::Relaxed) == nth {
-            cut.store(true, Ordering::Relaxed);
-            return vec![spoil(&packet)];
-        }
-        vec![packet]
-    };
-    let candidate = Candidate { reopen: Some(Box::new(|| Ok(board(false)))), ..breakable(alter, is_cut) };
-    let options = RunOptions { reconnect: Some(LIMIT), ..RunOptions::default() };
-    let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
-    (report, seen.load(Ordering::Relaxed))
-}
-
-/// The last packets are those in which the rules are tried that say what ends a session.
-fn is_not_forgotten(kind: Kind, spoil: fn(&Passing) -> Passing) {
-    let (sound, packets) = wrong_before_an_outage(kind, spoil, usize::MAX);
-    assert_eq!(sound.verdict(), Verdict::Pass, "{}", sound.headline());
-    for nth in packets - 12..packets {
-        let (report, _) = wrong_before_an_outage(kind, spoil, nth);
-        let ended = (report.verdict(), report.cause);
-        assert_eq!(ended, (Verdict::Error, Cause::Station), "{nth}: {}", report.headline());
-        assert!(matches!(report.finding, Finding::RightInAnotherSession { .. }), "{}", report.headline());
-    }
-}
-
-#[test]
-fn a_wrong_sum_of_a_table_is_not_forgotten_when_the_link_breaks_after_it() {
-    is_not_forgotten(Kind::TableCrc, |packet| {
-        let mut packet = packet.clone();
-        packet.payload.iter_mut().take(1).for_each(|byte| *byte ^= 1);
-        packet
-    });
-}
-
-#[test]
-fn a_row_that_was_never_sent_is_not_forgotten_when_the_link_breaks_after_it() {
-    is_not_forgotten(Kind::RowOut, |packet| {
-        changed(packet, |row| {
-            let row_sequence = row.place.row_sequence + 1000;
-            RowOut { place: RowPlace { row_sequence, ..row.place }, ..row }
-        })
-    });
 }

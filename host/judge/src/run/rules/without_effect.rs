@@ -102,8 +102,13 @@ impl Rules<'_, '_> {
             // Read first: a board that carries the packet out may answer as in its own session, which is then not taken
             // for an answer.
             let read = self.read();
-            self.judge_kept(Rule::Session, read)?;
+            let kept = self.judge_kept(Rule::Session, read);
+            if kept.as_ref().is_err_and(|end| !end.is_outage()) {
+                return kept;
+            }
+            // A link that broke meanwhile must not hide what was answered before.
             self.judge(Rule::Session, other.kind(), said, &Said::Refused(refusal))?;
+            kept?;
         }
         Ok(())
     }

@@ -1,0 +1,87 @@
+//! Links that break right after something wrong in the rules: what was found before is not forgotten when the board comes back.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use halfrow::link::Candidate;
+use halfrow::progress::Silent;
+use halfrow::result::{Finding, Report};
+use halfrow::run::{RunOptions, verify};
+use halfrow::verdict::{Cause, Verdict};
+use halfrow_protocol::message::{Refusal, RefusalCode, RowOut, RowPlace};
+use halfrow_protocol::{Kind, Reply};
+use halfrow_tests::altered::{Passing, Toward};
+use halfrow_tests::patience::LIMIT;
+use halfrow_tests::system::System;
+
+use crate::outages::{board, breakable, changed};
+
+/// The report on a board of whose replies that are `meant` number `nth` is as `spoil` makes it, over a link that breaks right after
+/// it. A sound board comes back. With how many of them there were.
+fn wrong_before_an_outage(
+    meant: fn(&Reply<'_>) -> bool,
+    spoil: fn(&Passing) -> Passing,
+    nth: usize,
+) -> (Report, usize) {
+    let is_cut = Arc::new(AtomicBool::new(false));
+    let seen = Arc::new(AtomicUsize::new(0));
+    let (cut, counted) = (Arc::clone(&is_cut), Arc::clone(&seen));
+    let alter = move |toward, packet: Passing| {
+        let is_meant = toward == Toward::Host && packet.reply().is_some_and(|reply| meant(&reply));
+        if is_meant && counted.fetch_add(1, Ordering::Relaxed) == nth {
+            cut.store(true, Ordering::Relaxed);
+            return vec![spoil(&packet)];
+        }
+        vec![packet]
+    };
+    let candidate = Candidate { reopen: Some(Box::new(|| Ok(board(false)))), ..breakable(alter, is_cut) };
+    let options = RunOptions { reconnect: Some(LIMIT), ..RunOptions::default() };
+    let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
+    (report, seen.load(Ordering::Relaxed))
+}
+
+/// The last replies are those to the rules that say what ends a session.
+fn is_not_forgotten(meant: fn(&Reply<'_>) -> bool, spoil: fn(&Passing) -> Passing) {
+    let (sound, replies) = wrong_before_an_outage(meant, spoil, usize::MAX);
+    assert_eq!(sound.verdict(), Verdict::Pass, "{}", sound.headline());
+    for nth in (0..replies).rev().take(12) {
+        let (report, _) = wrong_before_an_outage(meant, spoil, nth);
+        let ended = (report.verdict(), report.cause);
+        assert_eq!(ended, (Verdict::Error, Cause::Station), "{nth}: {}", report.headline());
+        assert!(matches!(report.finding, Finding::RightInAnotherSession { .. }), "{}", report.headline());
+    }
+}
+
+fn with_another_bit(packet: &Passing) -> Passing {
+    let mut packet = packet.clone();
+    packet.payload.iter_mut().take(1).for_each(|byte| *byte ^= 1);
+    packet
+}
+
+/// What a packet of another session did is read before its refusal is judged.
+#[test]
+fn a_wrong_refusal_is_not_forgotten_when_the_link_breaks_after_it() {
+    let is_of_session = |reply: &Reply<'_>| match reply {
+        Reply::Refusal(Refusal { code, kind, .. }) => {
+            *code == RefusalCode::Session && *kind == Kind::TableWrite.code()
+        }
+        _ => false,
+    };
+    is_not_forgotten(is_of_session, with_another_bit);
+}
+
+#[test]
+fn a_wrong_sum_of_a_table_is_not_forgotten_when_the_link_breaks_after_it() {
+    is_not_forgotten(|reply| matches!(reply, Reply::TableCrc(_)), with_another_bit);
+}
+
+#[test]
+fn a_row_that_was_never_sent_is_not_forgotten_when_the_link_breaks_after_it() {
+    let is_row = |reply: &Reply<'_>| matches!(reply, Reply::RowOut(_));
+    is_not_forgotten(is_row, |packet| {
+        changed(packet, |row| {
+            let row_sequence = row.place.row_sequence + 1000;
+            RowOut { place: RowPlace { row_sequence, ..row.place }, ..row }
+        })
+    });
+}
