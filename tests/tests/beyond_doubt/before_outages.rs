@@ -1,4 +1,4 @@
-//! Links that break right after something wrong in the rules: what was found before is not forgotten when the board comes back.
+//! Links that break right after something wrong outside of the frames that are judged: what was found before is not forgotten when the board comes back.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -75,13 +75,22 @@ fn a_wrong_sum_of_a_table_is_not_forgotten_when_the_link_breaks_after_it() {
     is_not_forgotten(|reply| matches!(reply, Reply::TableCrc(_)), with_another_bit);
 }
 
+/// As a board that was never given it would send.
+fn never_given(packet: &Passing) -> Passing {
+    changed(packet, |row| {
+        let row_sequence = row.place.row_sequence + 1000;
+        RowOut { place: RowPlace { row_sequence, ..row.place }, ..row }
+    })
+}
+
 #[test]
-fn a_row_that_was_never_sent_is_not_forgotten_when_the_link_breaks_after_it() {
-    let is_row = |reply: &Reply<'_>| matches!(reply, Reply::RowOut(_));
-    is_not_forgotten(is_row, |packet| {
-        changed(packet, |row| {
-            let row_sequence = row.place.row_sequence + 1000;
-            RowOut { place: RowPlace { row_sequence, ..row.place }, ..row }
-        })
-    });
+fn a_row_that_was_never_given_is_not_forgotten_when_the_link_breaks_after_it() {
+    is_not_forgotten(|reply| matches!(reply, Reply::RowOut(_)), never_given);
+}
+
+/// A frame of this number makes the tables of a burst active; its samples are not judged.
+#[test]
+fn nor_is_one_in_front_of_a_burst() {
+    let is_of_swap = |reply: &Reply<'_>| matches!(reply, Reply::RowOut(row) if row.place.frame == u16::MAX);
+    is_not_forgotten(is_of_swap, never_given);
 }
