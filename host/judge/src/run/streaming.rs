@@ -45,9 +45,7 @@ impl Run<'_> {
             self.return_to(segment, judge.frames_done(), end)?;
             judge.begin_again();
         }
-        if let Some(misconduct) = self.misconduct(CheckName::Frames) {
-            return Err(misconduct);
-        }
+        self.unless_misconduct(CheckName::Frames, Ok(()))?;
         self.findings.look.rows_counted += judge.rows;
         self.findings.look.repeats_counted = self.findings.look.repeats_counted.saturating_add(judge.repeats);
         Ok(())
@@ -97,8 +95,14 @@ impl Run<'_> {
         }
     }
 
+    /// What `tried` came to, unless the board did with rows what no link can cause: that counts although the link broke after
+    /// it.
+    pub(super) fn unless_misconduct<T>(&self, check: CheckName, tried: Result<T, End>) -> Result<T, End> {
+        self.misconduct(check).map_or(tried, Err)
+    }
+
     /// What the board did with rows that no link can cause, if anything.
-    pub(super) fn misconduct(&self, check: CheckName) -> Option<End> {
+    fn misconduct(&self, check: CheckName) -> Option<End> {
         let misconduct = self.board.misconduct()?;
         let finding = match misconduct {
             Misconduct::CopyDiffers { place } => {

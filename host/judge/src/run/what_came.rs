@@ -18,9 +18,7 @@ impl Run<'_> {
         let status = self.board.status(false).during(CheckName::Counters)?;
         self.findings.note_status(&status);
         self.findings.lap(CheckName::Counters);
-        if let Some(misconduct) = self.misconduct(CheckName::Frames) {
-            return Err(misconduct);
-        }
+        self.unless_misconduct(CheckName::Frames, Ok(()))?;
         let frames = self.frames(after.as_ref().err());
         self.findings.lap(CheckName::Frames);
         // Counters are only right if all rows came back right: a run that ends early leaves rows inside.

@@ -163,10 +163,8 @@ impl Run<'_> {
             .map_err(|error| End::error(CheckName::AtSpeed, Cause::Station, Problem::of(&error)))?;
         self.board.commit(tables, kernel, u16::MAX, *number).during(CheckName::AtSpeed)?;
         let frame = NumberedFrame { number: u16::MAX, frame: frame.into() };
-        let streamed = self.board.stream(&mut Unjudged(iter::once(frame)));
-        // What no link can cause counts although the link broke after it.
-        self.misconduct(CheckName::AtSpeed).map_or(Ok(()), Err)?;
-        streamed.during(CheckName::AtSpeed)
+        let streamed = self.board.stream(&mut Unjudged(iter::once(frame))).during(CheckName::AtSpeed);
+        self.unless_misconduct(CheckName::AtSpeed, streamed)
     }
 
     /// What a trapped row shows of a frame that `generation` made of `content`; none if the row is as it should be.

@@ -68,21 +68,17 @@ impl Run<'_> {
                 self.findings.note(CheckName::Rules, Outcome::Skipped, Finding::RulesLeftOut {});
                 return Ok(());
             };
-            let end = match rules.all() {
+            let tried = match rules.all() {
                 Err(end) if end.is_failed() => return Err(end),
-                // What no link can cause counts although the link broke after it.
-                tried => match (self.misconduct(CheckName::Rules), tried) {
-                    (Some(misconduct), _) => return Err(misconduct),
-                    (None, Ok(requests)) => {
-                        self.findings.passed(CheckName::Rules, Finding::RulesKept { requests });
-                        return Ok(());
-                    }
-                    (None, Err(end)) => end,
-                },
+                tried => self.unless_misconduct(CheckName::Rules, tried),
             };
-            match last {
-                Some(last) if end.is_outage() => self.return_to(last, last.frames.len(), end)?,
-                _ => return Err(end),
+            match (tried, last) {
+                (Ok(requests), _) => {
+                    self.findings.passed(CheckName::Rules, Finding::RulesKept { requests });
+                    return Ok(());
+                }
+                (Err(end), Some(last)) if end.is_outage() => self.return_to(last, last.frames.len(), end)?,
+                (Err(end), _) => return Err(end),
             }
         }
     }

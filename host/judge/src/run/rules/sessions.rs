@@ -245,7 +245,7 @@ impl Rules<'_, '_> {
 
     /// Ends with what the board did in the session that no link can cause.
     pub(super) fn ends_right(&mut self) -> Result<(), End> {
-        self.run.misconduct(CheckName::Rules).map_or(Ok(()), Err)
+        self.run.unless_misconduct(CheckName::Rules, Ok(()))
     }
 
     /// After HELLO no row, burst, commit or count may be left of the session before. Tables and configuration must be as they
