@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use halfrow::link::Candidate;
+use halfrow::link::{Candidate, Link, Reopener};
 use halfrow::progress::Silent;
 use halfrow::result::{Finding, Report};
 use halfrow::run::{RunOptions, verify};
@@ -14,15 +14,16 @@ use halfrow_tests::altered::{Passing, Toward};
 use halfrow_tests::patience::LIMIT;
 use halfrow_tests::system::System;
 
-use crate::outages::{board, breakable, changed};
+use crate::outages::{board as sound, breakable, changed};
 
-/// The report on a board of whose replies that are `meant` number `nth` is as `spoil` makes it, over a link that breaks right after
-/// it. A sound board comes back. With how many of them there were.
-fn wrong_before_an_outage(
-    meant: fn(&Reply<'_>) -> bool,
-    spoil: fn(&Passing) -> Passing,
-    nth: usize,
-) -> (Report, usize) {
+/// Which replies are meant.
+type Meant = fn(&Reply<'_>) -> bool;
+/// What becomes of a packet.
+type Spoil = fn(&Passing) -> Passing;
+
+/// A board of whose replies that are `meant` number `nth` is as `spoil` makes it, over a link that breaks right after it; it does
+/// not come back. With the count of such replies so far.
+fn breaking(meant: Meant, spoil: Spoil, nth: usize) -> (Candidate, Arc<AtomicUsize>) {
     let is_cut = Arc::new(AtomicBool::new(false));
     let seen = Arc::new(AtomicUsize::new(0));
     let (cut, counted) = (Arc::clone(&is_cut), Arc::clone(&seen));
@@ -34,14 +35,26 @@ fn wrong_before_an_outage(
         }
         vec![packet]
     };
-    let candidate = Candidate { reopen: Some(Box::new(|| Ok(board(false)))), ..breakable(alter, is_cut) };
+    (breakable(alter, is_cut), seen)
+}
+
+/// The report on `board`, which comes back as one of `others`, and as a sound one after those.
+fn report(board: Candidate, mut others: Vec<Box<dyn Link>>) -> Report {
+    let reopen: Reopener = Box::new(move || Ok(others.pop().unwrap_or_else(|| sound(false))));
     let options = RunOptions { reconnect: Some(LIMIT), ..RunOptions::default() };
-    let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
+    let candidate = Candidate { reopen: Some(reopen), ..board };
+    verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report
+}
+
+/// The report on such a board, in whose place a sound one comes back. With how many of the replies there were.
+fn wrong_before_an_outage(meant: Meant, spoil: Spoil, nth: usize) -> (Report, usize) {
+    let (board, seen) = breaking(meant, spoil, nth);
+    let report = report(board, Vec::new());
     (report, seen.load(Ordering::Relaxed))
 }
 
 /// The last replies are those to the rules that say what ends a session.
-fn is_not_forgotten(meant: fn(&Reply<'_>) -> bool, spoil: fn(&Passing) -> Passing) {
+fn is_not_forgotten(meant: Meant, spoil: Spoil) {
     let (sound, replies) = wrong_before_an_outage(meant, spoil, usize::MAX);
     assert_eq!(sound.verdict(), Verdict::Pass, "{}", sound.headline());
     for nth in (0..replies).rev().take(12) {
@@ -93,4 +106,20 @@ fn a_row_that_was_never_given_is_not_forgotten_when_the_link_breaks_after_it() {
 fn nor_is_one_in_front_of_a_burst() {
     let is_of_swap = |reply: &Reply<'_>| matches!(reply, Reply::RowOut(row) if row.place.frame == u16::MAX);
     is_not_forgotten(is_of_swap, never_given);
+}
+
+/// A board that comes back at the end of a run is given a frame that brings it to where the run was.
+#[test]
+fn nor_is_one_while_the_board_is_brought_back() {
+    let is_sum: Meant = |reply| matches!(reply, Reply::TableCrc(_));
+    let is_row: Meant = |reply| matches!(reply, Reply::RowOut(_));
+    let (_, sums) = wrong_before_an_outage(is_sum, Passing::clone, usize::MAX);
+    let spoilers: [(Spoil, Verdict); 2] = [(Passing::clone, Verdict::Pass), (never_given, Verdict::Error)];
+    for (spoil, expected) in spoilers {
+        let (away_at_rules, _) = breaking(is_sum, Passing::clone, sums - 1);
+        let (away_again, rows) = breaking(is_row, spoil, 0);
+        let report = report(away_at_rules, vec![away_again.link]);
+        assert!(rows.load(Ordering::Relaxed) > 0, "no frame brought it back");
+        assert_eq!(report.verdict(), expected, "{}", report.headline());
+    }
 }
