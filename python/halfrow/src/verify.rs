@@ -1,15 +1,19 @@
 //! Judging a board.
 
+use std::error::Error;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use halfrow::board::Stop;
 use halfrow::call::Files;
-use halfrow::link::{self, Candidate, Class, Lost, OpenError, Recorder, RecordingFile};
-use halfrow::run::{self, RecordedRun};
+use halfrow::link::{self, Candidate, Class, Lost, OpenError, Recorder, Recording, RecordingFile};
+use halfrow::result::Problem;
+use halfrow::run::{self, Misfit, RecordedRun};
 use halfrow::target::{Target, TargetError};
+use halfrow::verdict::Cause;
 use halfrow::{Finished, Plan, ReportFolder, RunOptions, StoppedBy};
+use pyo3::exceptions::PyBaseException;
 use pyo3::prelude::*;
 
 use crate::arguments;
@@ -18,13 +22,14 @@ use crate::plan::{Options, Planned};
 use crate::run::Run;
 use crate::watched::watched;
 
-/// Judges the board at the target `board`; halfrow/_verify.py documents the options.
+/// Judges the board at the target `board`; halfrow/_verify.py documents the options. The second value is the exception that says
+/// why the run never began, if it did not.
 #[pyfunction]
 pub(crate) fn verify(
     py: Python<'_>,
     #[pyo3(from_py_with = arguments::board)] board: String,
     options: &Bound<'_, PyAny>,
-) -> PyResult<Run> {
+) -> PyResult<(Run, Option<Py<PyBaseException>>)> {
     let mut asked: Options<'_> = options.extract().map_err(|error| errors::not_taken(py, &error))?;
     let target: Target = board.parse().map_err(errors::input::<TargetError>)?;
     let recording = py.detach(|| link::recording(&target)).map_err(not_opened)?;
@@ -45,13 +50,11 @@ pub(crate) fn verify(
     let report = report.transpose().map_err(errors::input)?;
     let record = asked.record.as_deref().map(|path| RecordingFile::prepare(path, asked.overwrite));
     let record = record.transpose().map_err(errors::input)?;
-    let candidate = match recording {
-        None => py.detach(|| link::open(&target)),
-        Some(recording) => link::replay(&target, recording),
-    };
-    let job = Job { plan, options, candidate: candidate.map_err(not_opened)?, record, report };
+    let job = Job { plan, options, target, recording, record, report };
     let done = watched(py, asked.progress.as_ref(), &is_stopped, move |progress| job.run(progress))?;
-    Ok(Run { finished: done.map_err(|NotRun { whose, error }| errors::raised(whose, error.as_ref()))? })
+    let Done { finished, not_begun } = done.map_err(|error| errors::raised(Whose::Call, error.as_ref()))?;
+    let raised = not_begun.map(|error| errors::raised(Whose::World, error.as_ref()).into_value(py));
+    Ok((Run { finished }, raised))
 }
 
 fn not_opened(error: OpenError) -> PyErr {
@@ -62,36 +65,74 @@ fn not_opened(error: OpenError) -> PyErr {
 struct Job {
     plan: Plan,
     options: RunOptions,
-    candidate: Candidate,
+    target: Target,
+    recording: Option<Recording>,
     record: Option<RecordingFile>,
     report: Option<ReportFolder>,
 }
 
-/// Why there is no run to report on.
-struct NotRun {
-    whose: Whose,
-    error: Box<dyn std::error::Error + Send + Sync>,
+/// What a job came to.
+struct Done {
+    finished: Finished,
+    /// Why the run never began, if it did not. The report says the same.
+    not_begun: Option<Reason>,
+}
+
+type Reason = Box<dyn Error + Send + Sync>;
+
+/// Why a run never began.
+struct NotBegun {
+    /// The class of the reason; none if the call is to blame.
+    cause: Option<Cause>,
+    reason: Reason,
+}
+
+impl From<OpenError> for NotBegun {
+    fn from(error: OpenError) -> Self {
+        let class = error.class();
+        Self { cause: (class != Class::Call).then(|| class.into()), reason: error.into() }
+    }
+}
+
+impl From<Misfit> for NotBegun {
+    fn from(misfit: Misfit) -> Self {
+        Self { cause: misfit.is_other_datapath().then_some(Cause::Refused), reason: misfit.into() }
+    }
 }
 
 impl Job {
-    fn run(self, progress: &dyn halfrow::Progress) -> Result<Finished, NotRun> {
-        let mut candidate = self.candidate;
+    /// Judges the board and writes the report, also that of a run that never began. A wrong call is no run and has none.
+    fn run(mut self, progress: &dyn halfrow::Progress) -> Result<Done, Reason> {
+        let (mut finished, not_begun) = match self.judge(progress) {
+            Ok(finished) => (finished, None),
+            Err(NotBegun { cause: None, reason }) => return Err(reason),
+            Err(NotBegun { cause: Some(cause), reason }) => {
+                let problem = Problem::of(reason.as_ref());
+                (run::not_begun(&self.plan, &self.target, cause, problem, &self.options), Some(reason))
+            }
+        };
+        // A lost recording or report does not raise: the report says what is missing, and a PASS without its evidence is no PASS.
+        if let Some(folder) = self.report {
+            _ = finished.commit(folder);
+        }
+        Ok(Done { finished, not_begun })
+    }
+
+    fn judge(&mut self, progress: &dyn halfrow::Progress) -> Result<Finished, NotBegun> {
+        let mut candidate = match self.recording.take() {
+            None => link::open(&self.target)?,
+            Some(recording) => link::replay(&self.target, recording)?,
+        };
         let mut lost = Lost::default();
-        if let Some(file) = self.record {
+        if let Some(file) = self.record.take() {
             let link = Recorder::begin(candidate.link, file, &RecordedRun::of(&self.plan, &self.options))
-                .map_err(|error| NotRun { whose: Whose::World, error: error.into() })?;
+                .map_err(|error| NotBegun { cause: Some(Cause::Station), reason: error.into() })?;
             lost = link.lost();
             candidate = Candidate { link: Box::new(link), ..candidate };
         }
-        let mut finished = run::verify(&self.plan, candidate, &self.options, progress).map_err(|error| {
-            NotRun { whose: Whose::of_call(!error.is_other_datapath()), error: error.into() }
-        })?;
-        // A lost recording or report does not raise: the report says what is missing, and a PASS without its evidence is no PASS.
+        let mut finished = run::verify(&self.plan, candidate, &self.options, progress)?;
         if let Some(error) = lost.get() {
             finished.lose_recording(error);
-        }
-        if let Some(folder) = self.report {
-            _ = finished.commit(folder);
         }
         Ok(finished)
     }

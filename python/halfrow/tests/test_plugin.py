@@ -46,9 +46,10 @@ def test_a_report_that_cannot_be_kept_hides_no_failure(pytester):
 
 def test_a_board_that_cannot_be_opened_fails_the_test_with_its_remedy(pytester):
     pytester.makepyfile(TEST)
-    result = pytester.runpytest_subprocess("--halfrow-board", "serial:/dev/none")
+    result = pytester.runpytest_subprocess("--halfrow-board", "serial:/dev/none", "--halfrow-report", "kept")
     result.assert_outcomes(failed=1)
-    result.stdout.fnmatch_lines(["*HalfrowError: */dev/none*"])
+    result.stdout.fnmatch_lines(["*HalfrowError: */dev/none*", "*halfrow: ERROR of serial:/dev/none*", "report: kept/*"])
+    assert [headline for headline in kept(pytester).values() if "/dev/none" in headline]
 
 
 FAILING = ("--halfrow-board", "mock,fault=stuck-data,bit=7", "--halfrow-report", "kept")

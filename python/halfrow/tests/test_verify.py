@@ -176,6 +176,21 @@ def test_a_report_is_written_and_not_overwritten_unasked(tmp_path, small):
         again.save(tmp_path / "c")
 
 
+def test_a_board_that_cannot_be_opened_has_a_report(tmp_path, program, small):
+    with pytest.raises(halfrow.HalfrowError) as raised:
+        halfrow.verify("serial:/dev/none", tables=small, report=tmp_path / "a")
+    program("verify", "--board", "serial:/dev/none", "--report", tmp_path / "b")
+    written, of_program = (json.loads((tmp_path / name / "report.json").read_text()) for name in "ab")
+    report = pickle.loads(pickle.dumps(raised.value)).report
+    assert report.document == written and report.board.identity is None
+    same = ("verdict", "finding", "headline")
+    assert [written[name] for name in same] == [of_program[name] for name in same]
+    assert written["verdict"] == "ERROR"
+    with pytest.raises(halfrow.InputError) as wrong:
+        halfrow.verify("mock", tables=small, repeat=0)
+    assert wrong.value.report is None
+
+
 def test_a_report_is_data_and_a_copy_is_as_good_as_it_is(tmp_path, small):
     report = halfrow.verify("mock,fault=stuck-data,bit=7", tables=small)
     data = dataclasses.asdict(report)

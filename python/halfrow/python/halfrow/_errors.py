@@ -3,7 +3,10 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from typing import Any, Dict, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Dict, Optional, Tuple
+
+if TYPE_CHECKING:
+    from ._report import Report
 
 
 @dataclass(frozen=True)
@@ -33,6 +36,8 @@ class HalfrowError(Exception):
     """What to do about it, if that is known."""
     causes: Tuple[Problem, ...]
     """What led to it, the most direct cause first."""
+    report: Optional[Report]
+    """The report of a run that never began, for example because its board could not be opened; of anything else None."""
 
     def __init__(
         self,
@@ -44,7 +49,7 @@ class HalfrowError(Exception):
     ) -> None:
         super().__init__(code, parameters, message, remedy, causes)
         self.code, self.parameters, self.message = code, parameters, message
-        self.remedy, self.causes = remedy, causes
+        self.remedy, self.causes, self.report = remedy, causes, None
 
     def __str__(self) -> str:
         return ": ".join([self.message, *(cause.message for cause in self.causes)])

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _report
+from ._errors import HalfrowError
 from ._halfrow import Kernel, Tables
 from ._halfrow import verify as _run
 
@@ -67,7 +68,8 @@ def verify(
 
     Python's lock is released. Ctrl-C, or any signal handler that raises, ends the run, gives the board back, and then raises
     here. A second one raises at once, while the run gives the board back in the background.
-    Raises InputError if the call is wrong or does not fit the board, and HalfrowError if no board could be opened.
+    Raises InputError if the call is wrong or does not fit the board, and HalfrowError if no board could be opened: that error has a
+    report, too, which is also written into the folder `report`.
     """
     if isinstance(frames, (str, os.PathLike)) or isinstance(frames, np.ndarray) and frames.ndim == 2:
         frames = (frames,)
@@ -94,7 +96,13 @@ def verify(
     }
     defaults = (verify.__kwdefaults__ or {}).items()
     options["given"] = [name for name, default in defaults if _says_else(options[name], default)]
-    return _report.of(_run(board, options))
+    run, not_begun = _run(board, options)
+    found = _report.of(run)
+    if not_begun is None:
+        return found
+    if isinstance(not_begun, HalfrowError):
+        not_begun.report = found
+    raise not_begun
 
 
 def _says_else(value: object, default: object) -> bool:

@@ -38,7 +38,12 @@ class JudgedBoard:
 
     def verify(self, **options: Any) -> Report:
         """Judges the board; the options are those of halfrow.verify."""
-        report = verify(self.target, **options)
+        try:
+            report = verify(self.target, **options)
+        except HalfrowError as error:
+            if error.report is not None:
+                self.reports.append(error.report)
+            raise
         self.reports.append(report)
         return report
 
