@@ -6,6 +6,7 @@
 // Arguments that start with + are for the model.
 #include "board_link.hpp"
 #include "grid.hpp"
+#include "words.hpp"
 #include <algorithm>
 #include <random>
 
@@ -16,6 +17,7 @@
 #define LEAST_BLANKING 0
 #endif
 constexpr int LATENCY = TAPS == 7 ? 12 : 11, RING = 2048;
+constexpr unsigned HEAD = 10, RECORD = 18;   // bytes of a reply to RECORDS in front of its records, and of each
 
 // What rows are made with: a factor for each, or a grid.
 struct Tables {
@@ -252,11 +254,28 @@ struct Host {
         signatures++;
     }
 
+    // Waits for records from number `from` on. The reply has at least one.
+    Bytes records(uint32_t name, unsigned from, unsigned frames) {
+        const uint64_t until = link.lines.clocks + PATIENCE;
+        while (link.lines.clocks < until) {
+            Bytes asked;
+            put(asked, from, 4);
+            const Bytes reply = ask(0x31, asked);
+            const unsigned count = reply.at(9);
+            if (get(reply, 0, 4) != name || get(reply, 4, 4) != from || count > frames - from || reply.size() != HEAD + RECORD * count)
+                fail("records of another burst, or more than there are");
+            if (count)
+                return reply;
+        }
+        fail("no record within 20 million clocks");
+    }
+
     // Fresh content has another frame each time; trapped content repeats one frame.
     void burst(const Tables &tables, uint32_t seed, uint16_t number, bool fresh) {
-        constexpr unsigned FRAMES = 3, RECORD = 18, HEAD = 10;
+        constexpr unsigned FRAMES = 3;
+        const uint32_t name = 2 * generation + fresh;
         Bytes start;
-        put(start, 2 * generation + fresh, 4); // its name
+        put(start, name, 4);
         put(start, FRAMES, 4);
         put(start, seed, 4);
         put(start, number, 2);
@@ -264,13 +283,9 @@ struct Host {
         put(start, fresh ? 0 : 3, 1);
         ask(0x30, start);
         for (unsigned got = 0; got < FRAMES;) {
-            Bytes from;
-            put(from, got, 4);
-            Bytes reply = ask(0x31, from);
-            for (unsigned k = 0, count = reply.at(9); k < count; k++, got++) {
-                auto record = reply.begin() + HEAD + RECORD * k;
+            const Bytes reply = records(name, got, FRAMES);
+            for (auto record = reply.begin() + HEAD; record < reply.end(); record += RECORD, got++)
                 check_record({record, record + RECORD}, tables, tables.signature_of(seed, number + (fresh ? got : 0)));
-            }
         }
     }
 
@@ -335,16 +350,18 @@ struct Host {
 
 int main(int argc, char **argv) {
     Verilated::commandArgs(argc, argv);
-    if (argc < 3) {
-        std::printf("board_bench FRAMES SEED\n");
-        return 2;
-    }
+    Words words(argc, argv, "FRAMES SEED");
+    const int frames = words.number("FRAMES", 1), seed = words.number("SEED", 0);
+    if (words.are_left())
+        words.refuse("there is no word " + words.next("a word"));
     Host host;
-    host.random.seed(std::atoi(argv[2]));
+    host.random.seed(seed);
     host.link.start();
     host.hello();
-    for (int k = 0; k < std::atoi(argv[1]); k++)
+    for (int k = 0; k < frames; k++)
         host.play();
+    if (!host.outputs || (host.frame_blanking >= 0 && !host.signatures) || (host.has_trap && !host.trapped))
+        fail("nothing was judged of what the board can do");
     if (host.takes_grids && !host.grids)
         fail("no frame had a grid");
     std::printf("%d taps: %lu samples, %lu signatures and %lu trapped rows equal, %lu frames with grids, %lu clocks\n", TAPS, host.outputs,

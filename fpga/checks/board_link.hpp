@@ -8,6 +8,7 @@
 #include <deque>
 
 constexpr int CLOCKS_A_BIT = 32;
+constexpr uint64_t PATIENCE = 20000000;      // clocks to wait for the board
 
 using Bytes = std::vector<uint8_t>;
 
@@ -220,7 +221,7 @@ struct Link {
     }
 
     Bytes next_packet() {
-        for (uint64_t until = lines.clocks + 20000000; lines.packets.empty(); edge())
+        for (uint64_t until = lines.clocks + PATIENCE; lines.packets.empty(); edge())
             if (lines.clocks == until)
                 fail("no answer within 20 million clocks");
         Bytes packet = lines.packets.front();

@@ -157,28 +157,35 @@ static void golden_frame(Bench &bench, Interpolant interpolant) {
         bench.fail("the golden frame");
 }
 
-int main(int argc, char **argv) {
-    Verilated::commandArgs(argc, argv);
-    Bench bench;
+static std::vector<Part> parts_of(Words words) {
     const int widest = std::min(200, RING);
-    for (int k = 1; k < argc; k++) {
-        const char *what = argv[k];
-        int count = k + 1 < argc ? std::atoi(argv[k + 1]) : 0;
-        if (std::strcmp(what, "golden") == 0) {
-            golden(bench);
-        } else if (what[0] == '+') {
-            continue;
-        } else if (std::strcmp(what, "frame") == 0 && k + 1 < argc) {
-            golden_frame(bench, argv[++k][0] == 'k' ? Interpolant::keys : Interpolant::hermite);
-        } else if (k + 2 < argc && count > 0) {
-            bench.random.seed(std::atoi(argv[k + 2]));
-            k += 2;
-            std::strcmp(what, "hostile") == 0 ? hostile_cases(bench, count, widest) : random_cases(bench, count, widest);
+    std::vector<Part> parts;
+    while (words.are_left()) {
+        const std::string part = words.next("a part");
+        if (part == "golden") {
+            parts.push_back(golden);
+        } else if (part == "frame") {
+            const std::string kernel = words.next("KERNEL");
+            if (kernel != "hermite" && kernel != "keys")
+                words.refuse("there is no golden frame of " + kernel);
+            const Interpolant interpolant = kernel == "keys" ? Interpolant::keys : Interpolant::hermite;
+            parts.push_back([interpolant](Bench &bench) { golden_frame(bench, interpolant); });
+        } else if (part == "random" || part == "hostile") {
+            const int count = words.number("N", 1), seed = words.number("SEED", 0);
+            const auto cases = part == "random" ? random_cases : hostile_cases;
+            parts.push_back([=](Bench &bench) { bench.random.seed(seed), cases(bench, count, widest); });
         } else {
-            std::printf("core_bench: what is %s?\n", what);
-            return 2;
+            words.refuse("there is no part " + part);
         }
     }
+    return parts;
+}
+
+int main(int argc, char **argv) {
+    Verilated::commandArgs(argc, argv);
+    const std::vector<Part> parts = parts_of({argc, argv, "golden, random N SEED, hostile N SEED, frame hermite, frame keys"});
+    Bench bench;
+    play_all(bench, parts);
     std::printf("%d taps, %d banks: %lu outputs equal\n", TAPS, TABLE_BANKS, bench.outputs);
     return 0;
 }

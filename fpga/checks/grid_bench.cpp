@@ -238,24 +238,31 @@ static void whole_frame(Bench &bench, const char *path) {
     expect_no_flag(bench);
 }
 
+static std::vector<Part> parts_of(Words words) {
+    std::vector<Part> parts;
+    while (words.are_left()) {
+        const std::string part = words.next("a part");
+        if (part == "frame") {
+            const std::string path = words.next("FILE");
+            parts.push_back([path](Bench &bench) { whole_frame(bench, path.c_str()); });
+        } else if (part == "random" || part == "hostile") {
+            const int count = words.number("N", 1), seed = words.number("SEED", 0);
+            const bool hostile = part == "hostile";
+            parts.push_back([=](Bench &bench) { bench.random.seed(seed), cases(bench, count, hostile); });
+        } else {
+            words.refuse("there is no part " + part);
+        }
+    }
+    return parts;
+}
+
 int main(int argc, char **argv) {
     Verilated::commandArgs(argc, argv);
+    const std::vector<Part> parts = parts_of({argc, argv, "random N SEED, hostile N SEED, frame FILE"});
     Bench bench;
     bench.patience = 100;
     golden(bench);
-    int k = 1;
-    while (k + 1 < argc && argv[k][0] != '+') {
-        if (std::strcmp(argv[k], "frame") == 0) {
-            whole_frame(bench, argv[k + 1]);
-            k += 2;
-            continue;
-        }
-        if (k + 2 >= argc)
-            bench.fail("a word of the call");
-        bench.random.seed(std::atoi(argv[k + 2]));
-        cases(bench, std::atoi(argv[k + 1]), std::strcmp(argv[k], "hostile") == 0);
-        k += 3;
-    }
+    play_all(bench, parts);
     std::printf("%d taps, %d banks, both datapaths: %lu outputs equal\n", TAPS, TABLE_BANKS, bench.outputs);
     return 0;
 }
