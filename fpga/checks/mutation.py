@@ -3,7 +3,7 @@
     fpga/checks/mutation.py WORK COUNT [MODULE...]
 mutation.ini says where the faults are and what tries them. yosys puts all faults of a module into one netlist, in which a number turns one
 on, so a check is compiled once per module. Results are kept in WORK; an interrupted run resumes while sources, COUNT and SEED are the same.
-Survivors are listed with their place, whether or not they make a difference.
+Survivors are listed with their place, whether or not they make a difference. The file `table` in WORK is written by a run of all modules alone.
 """
 import collections
 import concurrent.futures
@@ -86,11 +86,14 @@ def main():
     work, count, chosen = pathlib.Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3:]
     sections = configparser.ConfigParser()
     sections.read(HERE / "mutation.ini")
+    if unknown := set(chosen) - set(sections.sections()):
+        sys.exit(f"mutation: there is no {', '.join(sorted(unknown))} in mutation.ini, but {', '.join(sections.sections())}")
     work.mkdir(parents=True, exist_ok=True)
     mark = work / "key"
     if not mark.exists() or mark.read_text() != key(count):
         for name in sections.sections():
             shutil.rmtree(work / name, ignore_errors=True)
+        (work / "table").unlink(missing_ok=True)
         mark.write_text(key(count))
     found, survivors = [], []
     order = list(dict.fromkeys(name for section in sections.values() for name in section.get("checks", "").split()))
@@ -104,7 +107,8 @@ def main():
         print(f"{module}: {sum(1 for one in found if one[0] == module and one[2] != SURVIVES)} of "
               f"{sum(1 for one in found if one[0] == module)} found", flush=True)
     lines = [*survivors, *table(found, order)]
-    (work / "table").write_text("\n".join(lines) + "\n")
+    if not chosen:                           # a table of some modules would stand where one of all is looked for
+        (work / "table").write_text("\n".join(lines) + "\n")
     print("\n".join(lines))
     seen = sum(1 for one in found if one[2] != SURVIVES)
     if 100 * seen < FLOOR * len(found):
