@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::net::TcpListener;
 use std::os::unix::fs::{FileTypeExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::thread;
@@ -72,6 +72,47 @@ pub(crate) fn held_up(path: &Path) -> File {
     let fifo = path.to_owned();
     thread::spawn(move || sender.send(File::options().write(true).open(fifo)));
     opened.recv_timeout(HANG).unwrap().unwrap()
+}
+
+/// A port that was free may be taken by the time that a server asks for it, but not every time.
+pub(crate) const PORTS_TRIED: usize = 5;
+
+pub(crate) fn free_port() -> u16 {
+    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
+}
+
+/// A server that `begin` starts at a port of 127.0.0.1, as soon as it listens, and the port. One that ends did not get its port.
+pub(crate) fn listening(name: &str, mut begin: impl FnMut(u16) -> Child) -> (Child, u16) {
+    for _ in 0..PORTS_TRIED {
+        let port = free_port();
+        let mut server = begin(port);
+        let mut ended = None;
+        until(&format!("{name} to listen at port {port}"), || {
+            ended = server.try_wait().unwrap();
+            ended.is_some() || is_listening(&server, port)
+        });
+        if ended.is_none() {
+            return (server, port);
+        }
+    }
+    panic!("{name} is not installed, or does not start");
+}
+
+/// Whether this process itself listens at this port of 127.0.0.1: another one may have taken it, and be the one that answers.
+fn is_listening(process: &Child, port: u16) -> bool {
+    let place = format!("0100007F:{port:04X}");
+    let table = fs::read_to_string("/proc/net/tcp").unwrap();
+    let sockets: Vec<_> = table.lines().filter_map(|line| listened(line, &place)).collect();
+    let Ok(open) = fs::read_dir(format!("/proc/{}/fd", process.id())) else { return false };
+    open.flatten().filter_map(|file| fs::read_link(file.path()).ok()).any(|file| sockets.contains(&file))
+}
+
+/// The socket of a line of /proc/net/tcp that listens at `place`, as proc(5) names it among a process's files.
+fn listened(line: &str, place: &str) -> Option<PathBuf> {
+    const LISTEN: &str = "0A";
+    let fields: Vec<_> = line.split_whitespace().collect();
+    let [_, local, _, state, _, _, _, _, _, inode, ..] = fields.as_slice() else { return None };
+    (*local == place && *state == LISTEN).then(|| format!("socket:[{inode}]").into())
 }
 
 /// A board that accepts the connection and stays silent.

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::net::TcpListener;
 use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -12,7 +11,7 @@ use tempfile::TempDir;
 
 use super::figures::{in_state, once, scan};
 use super::rules::example;
-use crate::common::{HANG, plant_settings, until};
+use crate::common::{HANG, listening, plant_settings, until};
 use crate::pages::http::{Request, escaped};
 use crate::pages::station::{SERIALS, Serving, Station};
 use crate::plant::pages::served;
@@ -43,22 +42,18 @@ impl Prometheus {
         }
         fs::write(folder.path().join("prometheus.yml"), text).unwrap();
         fs::copy(example("alerts.yml"), folder.path().join("alerts.yml")).unwrap();
-        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-        let process = Command::new("setpriv")
-            .args([
-                "--pdeathsig",
-                "KILL",
-                "prometheus",
-                "--config.file=prometheus.yml",
-                "--storage.tsdb.path=data",
-            ])
-            .args([format!("--web.listen-address=127.0.0.1:{port}"), "--log.level=error".to_owned()])
-            .current_dir(folder.path())
-            .stdout(Stdio::null())
-            .spawn()
-            .unwrap_or_else(|error| panic!("prometheus: {error}; apt-get install prometheus"));
+        let begin = |port| {
+            Command::new("setpriv")
+                .args(["--pdeathsig", "KILL", "prometheus"])
+                .args(["--config.file=prometheus.yml", "--storage.tsdb.path=data"])
+                .args([format!("--web.listen-address=127.0.0.1:{port}"), "--log.level=error".to_owned()])
+                .current_dir(folder.path())
+                .stdout(Stdio::null())
+                .spawn()
+                .unwrap_or_else(|error| panic!("prometheus: {error}; apt-get install prometheus"))
+        };
+        let (process, port) = listening("prometheus", begin);
         let prometheus = Self { _folder: folder, port, process };
-        until("Prometheus to listen", || std::net::TcpStream::connect(("127.0.0.1", port)).is_ok());
         until("Prometheus to be ready", || prometheus.get("/-/ready").0 == 200);
         prometheus
     }

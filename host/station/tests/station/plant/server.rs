@@ -1,7 +1,6 @@
 //! A PostgreSQL server in its own folder, which ends with its test.
 
 use std::fs::{self, File};
-use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::OnceLock;
@@ -12,11 +11,10 @@ use halfrow_station::store::{Plant, PlantAddress};
 use postgres::{Client, NoTls};
 use tempfile::TempDir;
 
+use crate::common::{PORTS_TRIED, free_port};
+
 /// How long a server may take to start.
 const STARTED: Duration = Duration::from_secs(60);
-
-/// A port that was free may be taken by the time the server asks for it, but not every time.
-const PORTS_TRIED: usize = 5;
 
 /// A PostgreSQL server.
 pub(crate) struct Server {
@@ -201,10 +199,6 @@ impl Server {
     pub(crate) fn rows(&self, text: &str) -> Vec<Vec<String>> {
         rows(&mut self.client("plant"), text)
     }
-}
-
-fn free_port() -> u16 {
-    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }
 
 impl Drop for Server {

@@ -1,7 +1,7 @@
 //! Every way in which a run can end.
 
 use std::io::Read as _;
-use std::net::TcpListener;
+use std::net::{TcpListener, TcpStream};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
@@ -64,8 +64,10 @@ fn a_broken_board_fails_with_a_suspect_and_evidence() {
 fn a_board_that_is_not_there_is_an_error_of_the_link() {
     let plan = PLAN.replace("timeout = 60", "timeout = 60\nretries = 1");
     let station = Station::with(&plan);
-    let closed = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
-    let did = station.run("CAT00001", &format!("tcp:{closed}"));
+    // The port of a connection's other end: nobody listens there, and nobody else can take it meanwhile.
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let taken = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+    let did = station.run("CAT00001", &format!("tcp:{}", taken.local_addr().unwrap()));
     assert_eq!(did.code, Some(3), "{did:?}");
     assert!(did.said.starts_with("ERROR CAT00001: "), "{did:?}");
     assert_eq!(station.query("SELECT outcome FROM step ORDER BY seq"), ["error", "skipped"]);

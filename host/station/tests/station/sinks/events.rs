@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
-use std::net::{TcpListener, TcpStream};
+use std::net::TcpListener;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -13,7 +13,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use super::send;
-use crate::common::until;
+use crate::common::listening;
 use crate::history::made::{End, Made, Run};
 use crate::plant::link::certificates;
 
@@ -35,24 +35,22 @@ impl Broker {
     /// A running broker, with the certificate in `certified` if there is one.
     fn start(certified: Option<&Path>) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
         let path = |name: &str| folder.path().join(name).display().to_string();
         let made =
             Command::new("mosquitto_passwd").args(["-b", "-c", &path("users"), "station", PASSWORD]).output();
         assert!(made.unwrap().status.success());
-        let user = "user root\n";
-        let mut text = format!(
-            "listener {port} 127.0.0.1\nallow_anonymous false\npassword_file {}\n{user}",
-            path("users")
-        );
+        let mut text = format!("allow_anonymous false\npassword_file {}\nuser root\n", path("users"));
         let mut trusted = Vec::new();
         if let Some(place) = certified {
             let at = |name: &str| place.join(name).display().to_string();
             text += &format!("certfile {}\nkeyfile {}\n", at("server.crt"), at("server.key"));
             trusted = vec!["--cafile".to_owned(), at("ca.pem")];
         }
-        fs::write(path("broker.conf"), text).unwrap();
-        let broker = listening(&path("broker.conf"), port);
+        let (broker, port) = listening("mosquitto", |port| {
+            fs::write(path("broker.conf"), format!("listener {port} 127.0.0.1\n{text}")).unwrap();
+            let mut broker = Command::new("sh");
+            broker.args(["-c", MOSQUITTO, &path("broker.conf")]).stderr(Stdio::null()).spawn().unwrap()
+        });
         let mut listener = Command::new("stdbuf");
         listener.args(["-oL", "mosquitto_sub", "-W", LONGEST]);
         listener.args([
@@ -93,18 +91,6 @@ impl Broker {
         let login = "user = \"station\"\npassword_file = \"broker.password\"";
         format!("[[sink]]\nname = \"wall\"\nmqtt = \"{url}\"\n{login}\n{more}\n")
     }
-}
-
-/// A broker of this configuration, which listens at this port.
-fn listening(configuration: &str, port: u16) -> Child {
-    let mut broker = Command::new("sh");
-    let mut broker = broker.args(["-c", MOSQUITTO, configuration]).stderr(Stdio::null()).spawn().unwrap();
-    until("a broker that listens", || {
-        let ended = broker.try_wait().unwrap();
-        assert!(ended.is_none(), "mosquitto is not installed, or does not get port {port}: {ended:?}");
-        TcpStream::connect(("127.0.0.1", port)).is_ok()
-    });
-    broker
 }
 
 impl Drop for Broker {

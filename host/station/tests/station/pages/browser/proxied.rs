@@ -1,7 +1,6 @@
 //! The page through a proxy that speaks TLS: nginx, configured as in docs/station-setup.md.
 
 use std::fs;
-use std::net::{TcpListener, TcpStream};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
@@ -11,7 +10,7 @@ use tempfile::TempDir;
 
 use super::chromium::Chromium;
 use super::live::{NOT_LIVE, WATCH};
-use crate::common::{folder, until};
+use crate::common::{folder, listening};
 use crate::pages::station::{PUBLIC, Serving, Station};
 
 /// The most milliseconds until the page is live again, apart from delays of a busy machine.
@@ -38,38 +37,38 @@ struct Proxy {
 impl Proxy {
     fn before(station: u16) -> Self {
         let folder = folder();
-        let of = |name: &str| folder.path().join(name).display().to_string();
         certificate(folder.path());
-        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-        let mut server = example();
-        for (theirs, ours) in [
-            ("listen 443 ssl", format!("listen 127.0.0.1:{port} ssl")),
-            ("/etc/ssl/station12.pem", of("station12.pem")),
-            ("/etc/ssl/private/station12.key", of("station12.key")),
-            ("127.0.0.1:8612", format!("127.0.0.1:{station}")),
-        ] {
-            assert!(server.contains(theirs), "{theirs} in {server}");
-            server = server.replace(theirs, &ours);
-        }
-        // Without root, nginx cannot use its own folders.
-        let places: String = ["client_body", "proxy", "fastcgi", "uwsgi", "scgi"]
-            .map(|place| format!("{place}_temp_path {};\n", of(place)))
-            .concat();
-        let whole = format!(
-            "daemon off;\nmaster_process off;\npid {};\nevents {{}}\nhttp {{\naccess_log off;\n{places}{server}}}\n",
-            of("nginx.pid")
-        );
-        fs::write(folder.path().join("nginx.conf"), whole).unwrap();
-        let mut nginx = Command::new("sh");
-        let nginx = nginx.args(["-c", NGINX]).arg(folder.path()).stderr(Stdio::null()).spawn().unwrap();
-        let mut proxy = Self { nginx, port, _folder: folder };
-        until("nginx to listen", || {
-            let ended = proxy.nginx.try_wait().unwrap();
-            assert!(ended.is_none(), "nginx has ended: {ended:?}");
-            TcpStream::connect(("127.0.0.1", port)).is_ok()
-        });
-        proxy
+        let begin = |port| {
+            fs::write(folder.path().join("nginx.conf"), configuration(folder.path(), port, station)).unwrap();
+            let mut nginx = Command::new("sh");
+            nginx.args(["-c", NGINX]).arg(folder.path()).stderr(Stdio::null()).spawn().unwrap()
+        };
+        let (nginx, port) = listening("nginx", begin);
+        Self { nginx, port, _folder: folder }
     }
+}
+
+/// The page's configuration, in `folder`, of a proxy at `port`.
+fn configuration(folder: &Path, port: u16, station: u16) -> String {
+    let of = |name: &str| folder.join(name).display().to_string();
+    let mut server = example();
+    for (theirs, ours) in [
+        ("listen 443 ssl", format!("listen 127.0.0.1:{port} ssl")),
+        ("/etc/ssl/station12.pem", of("station12.pem")),
+        ("/etc/ssl/private/station12.key", of("station12.key")),
+        ("127.0.0.1:8612", format!("127.0.0.1:{station}")),
+    ] {
+        assert!(server.contains(theirs), "{theirs} in {server}");
+        server = server.replace(theirs, &ours);
+    }
+    // Without root, nginx cannot use its own folders.
+    let places: String = ["client_body", "proxy", "fastcgi", "uwsgi", "scgi"]
+        .map(|place| format!("{place}_temp_path {};\n", of(place)))
+        .concat();
+    format!(
+        "daemon off;\nmaster_process off;\npid {};\nevents {{}}\nhttp {{\naccess_log off;\n{places}{server}}}\n",
+        of("nginx.pid")
+    )
 }
 
 impl Drop for Proxy {
