@@ -111,13 +111,13 @@ pub(super) async fn route(State(guarded): State<Guarded>, request: Request, next
 }
 
 /// A refusal on the way to a route.
-type Refused = Box<Response>;
+type RefusedRequest = Box<Response>;
 
-fn refused(visit: &Visit, status: StatusCode, said: &'static str) -> Refused {
+fn refused(visit: &Visit, status: StatusCode, said: &'static str) -> RefusedRequest {
     Box::new(Trouble::new(visit, status, said).into_response())
 }
 
-fn troubled(trouble: Trouble) -> Refused {
+fn troubled(trouble: Trouble) -> RefusedRequest {
     Box::new(trouble.into_response())
 }
 
@@ -133,7 +133,7 @@ async fn machine(
     token: &str,
     (stranger, peer): (Visit, IpAddr),
     is_act: bool,
-) -> Result<Visit, Refused> {
+) -> Result<Visit, RefusedRequest> {
     let told = |visit: Visit, act, from: String| async move {
         let told = app.audit(&visit, act, &from, "").await.map(|()| visit);
         told.map_err(troubled)
@@ -165,7 +165,7 @@ async fn machine(
 }
 
 /// Checks a request for a page: whoever may not see it is sent to log in.
-fn look(visit: &Visit, who: Who, request: Request) -> Result<Request, Refused> {
+fn look(visit: &Visit, who: Who, request: Request) -> Result<Request, RefusedRequest> {
     if visit.may(who) {
         return Ok(request);
     }
@@ -180,7 +180,7 @@ fn look(visit: &Visit, who: Who, request: Request) -> Result<Request, Refused> {
 }
 
 /// Checks an act: it comes from a page of the station, made for this browser, by somebody who may do it.
-async fn act(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Request, Refused> {
+async fn act(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Request, RefusedRequest> {
     let headers = request.headers();
     let is_own = host(headers).zip(only(headers, &header::ORIGIN));
     if !is_own.is_some_and(|(host, origin)| app.access().address().is_origin(origin, host)) {

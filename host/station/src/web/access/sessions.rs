@@ -20,7 +20,7 @@ const SAVED_MS: i64 = 60_000;
 /// Somebody who is logged in, as the file has them. No cookie can be derived from it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Line {
+struct SavedSession {
     /// The mark of the browser's cookie.
     mark: String,
     name: String,
@@ -33,9 +33,9 @@ struct Line {
 
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Lines {
+struct SavedSessions {
     #[serde(default)]
-    session: Vec<Line>,
+    session: Vec<SavedSession>,
 }
 
 /// Everybody who is logged in, by the marks of their browsers' cookies. A station that starts again still knows them, so
@@ -53,18 +53,19 @@ impl Sessions {
     /// # Errors
     /// [`SecretError`] when others may read it, or it cannot be read.
     pub(super) fn load(path: &Path) -> Result<Self, SecretError> {
-        let lines: Lines = match secret::read_or_none(path) {
+        let lines: SavedSessions = match secret::read_or_none(path) {
             Ok(lines) => lines,
             Err(SecretError::Wrong { path, what }) => {
                 tracing::warn!("{}: {what}; everybody logs in anew", path.display());
-                Lines::default()
+                SavedSessions::default()
             }
             Err(error) => return Err(error),
         };
-        let known = lines.session.into_iter().map(|Line { mark, name, is_engineer, proof, used_ms }| {
-            let who = if is_engineer { Who::Engineer } else { Who::Operator };
-            (mark, (Identified { user: User { name, who }, proof }, used_ms))
-        });
+        let known =
+            lines.session.into_iter().map(|SavedSession { mark, name, is_engineer, proof, used_ms }| {
+                let who = if is_engineer { Who::Engineer } else { Who::Operator };
+                (mark, (Identified { user: User { name, who }, proof }, used_ms))
+            });
         Ok(Self { known: known.collect(), file: Some(path.to_owned()), saved_ms: 0 })
     }
 
@@ -115,14 +116,15 @@ impl Sessions {
     fn save(&mut self, now_ms: i64) {
         let Some(file) = &self.file else { return };
         self.saved_ms = now_ms;
-        let line = |(mark, (Identified { user, proof }, used_ms)): (&String, &(Identified, i64))| Line {
-            mark: mark.clone(),
-            name: user.name.clone(),
-            is_engineer: user.who == Who::Engineer,
-            proof: proof.clone(),
-            used_ms: *used_ms,
-        };
-        let lines = Lines { session: self.known.iter().map(line).collect() };
+        let line =
+            |(mark, (Identified { user, proof }, used_ms)): (&String, &(Identified, i64))| SavedSession {
+                mark: mark.clone(),
+                name: user.name.clone(),
+                is_engineer: user.who == Who::Engineer,
+                proof: proof.clone(),
+                used_ms: *used_ms,
+            };
+        let lines = SavedSessions { session: self.known.iter().map(line).collect() };
         if let Err(error) = secret::write(file, &lines, false) {
             tracing::warn!("{:#}", anyhow::Error::from(error));
         }

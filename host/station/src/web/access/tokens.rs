@@ -21,7 +21,7 @@ pub enum Scope {
 /// A token, as the file has it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Line {
+struct SavedToken {
     name: String,
     scope: Scope,
     /// The token's mark under the station's key.
@@ -33,7 +33,7 @@ struct Line {
 #[serde(deny_unknown_fields)]
 pub struct Tokens {
     #[serde(default)]
-    token: Vec<Line>,
+    token: Vec<SavedToken>,
 }
 
 /// A token that cannot be added or removed.
@@ -77,7 +77,7 @@ impl Tokens {
             return Err(TokenError::Name(name.to_owned()));
         }
         let token = key::hex(&key::drawn().map_err(SecretError::NoRandomness)?);
-        self.token.push(Line { name: name.to_owned(), scope, mark: key.mark(TOKEN, &token) });
+        self.token.push(SavedToken { name: name.to_owned(), scope, mark: key.mark(TOKEN, &token) });
         Ok(token)
     }
 

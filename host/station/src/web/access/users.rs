@@ -31,7 +31,7 @@ pub enum Role {
 /// Somebody, as the file has them.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Line {
+struct SavedUser {
     name: String,
     role: Role,
     /// The mark of the badge under the station's key.
@@ -41,7 +41,7 @@ struct Line {
     password: Option<String>,
 }
 
-impl Line {
+impl SavedUser {
     /// The mark of the badge, and for an engineer the password, that make them `who`: somebody of the same name with others has
     /// another mark.
     fn proof(&self, key: &Key, who: Who) -> String {
@@ -63,7 +63,7 @@ pub(crate) struct Identified {
 #[serde(deny_unknown_fields)]
 pub struct Users {
     #[serde(default)]
-    user: Vec<Line>,
+    user: Vec<SavedUser>,
 }
 
 /// Somebody who cannot be added or removed.
@@ -143,7 +143,7 @@ impl Users {
             Role::Engineer if password.chars().count() < FEWEST => return Err(UserError::Short),
             Role::Engineer => Some(hashed(password)?),
         };
-        self.user.push(Line { name: name.to_owned(), role, badge: key.mark(BADGE, badge), password });
+        self.user.push(SavedUser { name: name.to_owned(), role, badge: key.mark(BADGE, badge), password });
         Ok(())
     }
 
@@ -162,13 +162,13 @@ impl Users {
         self.user.iter().map(|user| (user.name.as_str(), user.role))
     }
 
-    fn of_badge(&self, key: &Key, badge: &str) -> Option<&Line> {
+    fn of_badge(&self, key: &Key, badge: &str) -> Option<&SavedUser> {
         self.user.iter().find(|user| key.is_mark(BADGE, badge, &user.badge))
     }
 
     /// Who has this badge. With the badge alone everybody is an operator; an engineer also gives the password.
     pub(crate) fn identify(&self, key: &Key, badge: &str, password: &str) -> Option<Identified> {
-        let identified = |line: &Line, who| Identified {
+        let identified = |line: &SavedUser, who| Identified {
             user: User { name: line.name.clone(), who },
             proof: line.proof(key, who),
         };
@@ -185,7 +185,7 @@ impl Users {
 
     /// Whether this person still has the same role, by the same badge and password.
     pub(crate) fn has(&self, key: &Key, Identified { user, proof }: &Identified) -> bool {
-        let is = |known: &Line| {
+        let is = |known: &SavedUser| {
             known.name == user.name
                 && (user.who < Who::Engineer || known.role == Role::Engineer)
                 && known.proof(key, user.who) == *proof

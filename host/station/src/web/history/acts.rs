@@ -23,13 +23,13 @@ const DEVICE: &str = "[0-9a-f]{16}";
 
 /// Why an act was refused, for the page on which it was asked for.
 #[derive(Debug)]
-pub(super) struct Refused {
+pub(super) struct RefusedAct {
     pub(super) status: StatusCode,
     code: String,
     told: Told,
 }
 
-impl Refused {
+impl RefusedAct {
     fn new(visit: &Visit, status: StatusCode, said: &Said) -> Self {
         Self { status, code: said.code.clone(), told: visit.words.tell(said) }
     }
@@ -61,7 +61,7 @@ pub(super) async fn waive(
         Err(NoWaiver::NoFail { .. } | NoWaiver::Waived { .. }) => StatusCode::CONFLICT,
         Err(NoWaiver::NoRandomness(_) | NoWaiver::Store(_)) => StatusCode::SERVICE_UNAVAILABLE,
     };
-    let refused = waived.err().map(|error| Refused::new(&visit, status, &Said::of(&error)));
+    let refused = waived.err().map(|error| RefusedAct::new(&visit, status, &Said::of(&error)));
     run::shown(app, visit, id, refused).await
 }
 
@@ -103,7 +103,7 @@ pub(super) async fn rebind(
         Err(RebindError::Several { .. } | RebindError::UnderTest { .. }) => StatusCode::CONFLICT,
         Err(RebindError::Store(_)) => StatusCode::SERVICE_UNAVAILABLE,
     };
-    let refused = bound.err().map(|error| Refused::new(&visit, status, &Said::of(&error)));
+    let refused = bound.err().map(|error| RefusedAct::new(&visit, status, &Said::of(&error)));
     unit::shown(app, visit, Asked::of_serial(&serial), refused).await
 }
 

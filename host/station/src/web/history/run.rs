@@ -9,7 +9,7 @@ use halfrow::Verdict;
 use maud::{Markup, html};
 use serde_json::Value;
 
-use super::acts::Refused;
+use super::acts::RefusedAct;
 use super::asked::unit_address;
 use super::{acts, pictures, show};
 use crate::export;
@@ -43,7 +43,7 @@ pub(super) async fn shown(
     app: App,
     visit: Visit,
     id: String,
-    refused: Option<Refused>,
+    refused: Option<RefusedAct>,
 ) -> Result<Response, Trouble> {
     let look = move |now: &Snapshot| {
         let Some(mut run) = history::run_of(now, &id)? else { return Ok(None) };

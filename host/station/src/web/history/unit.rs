@@ -6,7 +6,7 @@ use axum::response::Response;
 use halfrow::words::plain;
 use maud::{Markup, html};
 
-use super::acts::Refused;
+use super::acts::RefusedAct;
 use super::asked::Asked;
 use super::{acts, mismatch, show};
 use crate::history::unit::{self, Binding, Unit, UnitRun};
@@ -31,7 +31,7 @@ pub(super) async fn shown(
     app: App,
     visit: Visit,
     asked: Asked,
-    refused: Option<Refused>,
+    refused: Option<RefusedAct>,
 ) -> Result<Response, Trouble> {
     let serial = asked.serial.clone();
     let units = app.look(&visit, move |now| unit::units(now, &serial)).await?;
