@@ -4,7 +4,7 @@ use std::mem;
 
 use super::rows::{FRAME, GENERATION};
 use super::without_effect::others;
-use super::{Refused, Rules, miscounted, of_board, of_rows};
+use super::{Refusals, Rules, miscounted, of_board, of_rows};
 use crate::board::{Given, Said, Status};
 use crate::result::{Counter, Finding, Rule};
 use crate::run::counters::damaged;
@@ -101,7 +101,7 @@ impl Rules<'_, '_> {
     fn cleared(&mut self) -> Result<(), End> {
         let said = self.run.board.clear_by(CLEAR).map_err(of_board)?;
         if let Said::Replied(_) = said {
-            (self.refused, self.before) = (Refused::default(), Status::default());
+            (self.refusals, self.before) = (Refusals::default(), Status::default());
         }
         let status = self.run.board.status(false).map_err(of_board)?;
         self.not_counted(&status)

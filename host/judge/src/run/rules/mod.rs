@@ -13,7 +13,7 @@ mod depths;
 mod grids;
 mod power_up;
 mod price;
-mod refused;
+mod refusals;
 mod requests;
 mod rows;
 mod sessions;
@@ -41,7 +41,7 @@ use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Outcome, Rule};
 use crate::verdict::Cause;
 use compared::{Compared, WrongRow};
 pub(super) use price::price;
-use refused::Refused;
+use refusals::Refusals;
 use small::Small;
 pub(super) use waiting::MOST_FILLED;
 
@@ -92,7 +92,7 @@ struct Rules<'a, 'run> {
     /// How many requests were answered as they must be.
     right: usize,
     /// The refusals among these, in the open session.
-    refused: Refused,
+    refusals: Refusals,
     /// The board's counters before these.
     before: Status,
     /// The columns of a frame in the board's present configuration.
@@ -112,7 +112,7 @@ impl<'a, 'run> Rules<'a, 'run> {
             capabilities,
             small,
             right: 0,
-            refused: Refused::default(),
+            refusals: Refusals::default(),
             before: Status::default(),
             width: 0,
             height: 0,
@@ -157,7 +157,7 @@ impl<'a, 'run> Rules<'a, 'run> {
         let found = match said {
             Ok(said) if is_as(&said, right) => {
                 self.right += 1;
-                self.refused.note(right);
+                self.refusals.note(right);
                 return Ok(());
             }
             Ok(said) => answer(&said),

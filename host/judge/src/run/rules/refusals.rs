@@ -10,14 +10,14 @@ use crate::run::findings::End;
 
 /// How many refusals came.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Refused {
+pub(super) struct Refusals {
     /// Of packets of the open session.
     own: u32,
     /// Of packets of other sessions.
     foreign: u32,
 }
 
-impl Refused {
+impl Refusals {
     /// Counts `said` if it is a refusal.
     pub(super) fn note(&mut self, said: &Said) {
         match said {
@@ -33,7 +33,7 @@ impl Rules<'_, '_> {
     /// sent for a request.
     pub(super) fn refusals_counted(&mut self) -> Result<(), End> {
         let after = self.run.board.status(false).map_err(of_board)?;
-        let (Refused { own, foreign }, before) = (self.refused, self.before);
+        let (Refusals { own, foreign }, before) = (self.refusals, self.before);
         at_least([
             (Counter::Refusals, after.refusals, before.refusals.saturating_add(own)),
             (Counter::ForeignPackets, after.foreign_packets, before.foreign_packets.saturating_add(foreign)),

@@ -116,8 +116,8 @@ impl Rules<'_, '_> {
         }
         self.right_frames(&[FRAME])?;
         // Only row 0 follows the last row of a frame.
-        let behind = RowPlace { row_sequence: self.run.board.acknowledged(), ..self.place(1) };
-        self.row_refused(Rule::RowPlace, behind, RefusalCode::Row)
+        let following = RowPlace { row_sequence: self.run.board.acknowledged(), ..self.place(1) };
+        self.row_refused(Rule::RowPlace, following, RefusalCode::Row)
     }
 
     /// After a RESET no row is inside, so the window must be as far ahead as there are input banks.

@@ -11,7 +11,7 @@ use super::bursts::Awaited;
 use super::counts::equal;
 use super::rows::{FRAME, GENERATION};
 use super::trap::NOTHING_KEPT;
-use super::{FIRST_FACTOR, Refused, Rules, broken, of_board};
+use super::{FIRST_FACTOR, Refusals, Rules, broken, of_board};
 use crate::board::{BoardError, Given, Said, Status};
 use crate::result::{Answer, CheckName, Counter, Doubt, Rule};
 use crate::run::Generation;
@@ -34,9 +34,9 @@ impl Rules<'_, '_> {
         self.powered(Self::held)?;
         self.powered(|rules| rules.always(Self::greeted_again))?;
         self.numbers_of_sessions()?;
-        self.powered(Self::behind_rows)?;
+        self.powered(Self::session_after_rows)?;
         if self.run.known_bursts().is_ok() {
-            self.powered(Self::behind_a_burst)?;
+            self.powered(Self::session_after_a_burst)?;
         }
         self.rows_again()
     }
@@ -137,7 +137,7 @@ impl Rules<'_, '_> {
     }
 
     /// A session that ends with rows inside and a commit pending.
-    fn behind_rows(&mut self) -> Result<(), End> {
+    fn session_after_rows(&mut self) -> Result<(), End> {
         self.drop_rows()?;
         self.rows_again()?;
         let two_banks = self.capabilities.table_banks > 1;
@@ -166,7 +166,7 @@ impl Rules<'_, '_> {
     }
 
     /// A session that ends while a burst is under way, with records and a row that was trapped.
-    fn behind_a_burst(&mut self) -> Result<(), End> {
+    fn session_after_a_burst(&mut self) -> Result<(), End> {
         self.drop_rows()?;
         self.rows_again()?;
         let Some(burst) = self.small_burst(Burst::ENDLESS) else { return Ok(()) };
@@ -239,7 +239,7 @@ impl Rules<'_, '_> {
         *earlier = earlier.take().or(doubt);
         let nonce = self.run.next_nonce();
         self.run.board.open_free_session(nonce)?;
-        (self.refused, self.before) = (Refused::default(), Status::default());
+        (self.refusals, self.before) = (Refusals::default(), Status::default());
         Ok(())
     }
 

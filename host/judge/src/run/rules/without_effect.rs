@@ -28,11 +28,11 @@ impl Rules<'_, '_> {
     /// in another version, or with another length than they name.
     pub(super) fn damage(&mut self) -> Result<(), End> {
         self.thrice(Self::damage_counted)?;
-        let mut said = self.behind_damage()?.0;
+        let mut said = self.after_damage()?.0;
         for _ in 1..TIMES {
             // A link that happens to flip the same bit back makes one of them whole, but not every time.
             if is_other(&said) || self.run.board.answer_to_damaged().is_some() {
-                said = self.behind_damage()?.0;
+                said = self.after_damage()?.0;
             }
         }
         self.judge_kept(Rule::Damage, said)?;
@@ -64,7 +64,7 @@ impl Rules<'_, '_> {
     }
 
     /// What is read in the row factor's place after damaged packets, and how many of each kind these were.
-    fn behind_damage(&mut self) -> Result<(Result<Said, BoardError>, [u32; 2]), End> {
+    fn after_damage(&mut self) -> Result<(Result<Said, BoardError>, [u32; 2]), End> {
         self.replied(Rule::Damage, &write(&KEPT), Vec::new())?;
         let damaged = self.run.board.give_damaged(&write(&OTHER));
         Ok((self.read(), damaged))
@@ -74,7 +74,7 @@ impl Rules<'_, '_> {
     /// those that do not unstuff, or all of both.
     fn damage_counted(&mut self) -> Result<(), End> {
         let before = self.run.board.status(false).map_err(of_board)?;
-        let (_, [crc, framing]) = self.behind_damage()?;
+        let (_, [crc, framing]) = self.after_damage()?;
         let after = self.run.board.status(false).map_err(of_board)?;
         if !self.run.board.had_each_packet_once(&after) {
             return Ok(());
