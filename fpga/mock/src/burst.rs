@@ -190,7 +190,8 @@ impl Bursts {
     /// Plays a row of the frame under way, after its blanking.
     fn play(&mut self, row: u16, player: &mut Player, tables: &mut Tables) {
         let settings = player.settings().clone();
-        let Settings { width, height, centre2, depth, blanking, .. } = settings;
+        let Settings { width, height, depth, blanking, .. } = settings;
+        let centre2 = player.centre2();
         if row > 0 {
             self.blank(player, blanking.into());
         }

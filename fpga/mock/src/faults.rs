@@ -121,6 +121,23 @@ pub const FAULTS: &[Fault<BoardFault>] = &[
     fault("wrong-latency-claim", "the claimed latency is one pixel clock too long", &[], |_| {
         Ok(BoardFault::WrongLatencyClaim)
     }),
+    fault("centre-ignored", "the optical centre is the middle of the row, whatever is set", &[], |_| {
+        Ok(BoardFault::CentreIgnored)
+    }),
+    fault(
+        "stuck-centre",
+        "a bit of the optical centre's setting is stuck",
+        &[
+            Parameter::new("bit", Range::Whole(0, 12), Some("3"), "the bit of twice the column"),
+            Parameter::new("value", LEVELS, Some("0"), "the level that it is stuck at"),
+        ],
+        |values| {
+            Ok(BoardFault::StuckCentre {
+                bit: values.whole("bit")?,
+                value: values.choice("value", &[false, true])?,
+            })
+        },
+    ),
     fault("lost-row", "a row goes in and never comes out", &[ROW], |values| {
         Ok(BoardFault::LostRow { row: values.whole("row")? })
     }),

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::banks::{OutBanks, RowName};
-use crate::core::{Core, Entering, Leaving, RowBinding};
+use crate::core::{Core, Entering, Leaving, RowBinding, StuckBits};
 use crate::faults::{BoardFault, Defects};
 use crate::gaps::Gaps;
 use crate::options::{OptionError, Options};
@@ -56,6 +56,27 @@ pub(crate) struct PlayerDefects {
     pub(crate) lost_row: Option<u16>,
     /// A bit that flips between the in-bank and the core.
     pub(crate) spoilt: Option<SpoiltSample>,
+    /// The way of the optical centre's setting into the core.
+    pub(crate) centre: CentreDefect,
+}
+
+/// What the core gets of the optical centre that is set.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) enum CentreDefect {
+    /// All of it.
+    #[default]
+    None,
+    /// Nothing: it has the middle of the row in its place.
+    Ignored,
+    /// All but the bits that are stuck.
+    Stuck(StuckBits),
+}
+
+impl CentreDefect {
+    /// One bit of it is stuck.
+    pub(crate) fn stuck(bit: u8, value: bool) -> Self {
+        Self::Stuck(StuckBits::one(bit, value))
+    }
 }
 
 /// A sample of every frame that has one bit flipped between the in-bank and the core.
@@ -94,6 +115,7 @@ pub struct Player {
     /// Pixel clocks without a sample that bring the rest of a frame's last row out.
     flush: u32,
     spoilt: Option<SpoiltSample>,
+    centre: CentreDefect,
     /// Where corrected rows wait to be fetched.
     pub banks: OutBanks,
 }
@@ -113,6 +135,7 @@ impl Player {
             pixel_clock: 0,
             flush: 0,
             spoilt: defects.spoilt,
+            centre: defects.centre,
             banks: OutBanks::new(options.row_banks_out, defects.lost_row),
         })
     }
@@ -121,6 +144,16 @@ impl Player {
     #[must_use]
     pub fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    /// C as the core gets it: twice the column of the optical centre.
+    pub(crate) fn centre2(&self) -> u16 {
+        let Settings { width, centre2, .. } = self.settings;
+        match self.centre {
+            CentreDefect::None => centre2,
+            CentreDefect::Ignored => width - 1,
+            CentreDefect::Stuck(bits) => bits.apply(centre2),
+        }
     }
 
     /// Changes the settings.
@@ -199,7 +232,8 @@ impl Player {
         let bound = tables.bind(row.row, &self.settings);
         let &RowIn { sequence, frame, row: number, .. } = row;
         let name = RowName { sequence, frame, row: number, generation: bound.generation };
-        let &Settings { width, centre2, depth, .. } = &self.settings;
+        let &Settings { width, depth, .. } = &self.settings;
+        let centre2 = self.centre2();
         let binding = RowBinding { width, centre2, depth, values: bound.values, kernel: bound.kernel };
         let mut begins = Some(&binding);
         let mut pauses = 0_u16;

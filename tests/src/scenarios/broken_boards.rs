@@ -29,6 +29,17 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
     fails("a tap that copies another", ",fault=dead-tap,tap=1,reads=5", "tap R1, reading R5"),
     fails("an outer tap that hermite does not use", ",fault=dead-tap,tap=0", "tap G0, stuck at 0"),
     fails("the other outer tap", ",fault=dead-tap,tap=6,reads=5", "tap G6, reading R5"),
+    fails("a centre that is not taken", ",fault=centre-ignored", "the setting of the optical centre"),
+    fails(
+        "a bit of the centre",
+        ",fault=stuck-centre",
+        "the setting of the optical centre, bit 3, stuck at 0",
+    ),
+    fails_at_full_size(
+        "a bit of the centre that one frame alone has at the other level",
+        ",fault=stuck-centre,bit=10,value=1",
+        "the setting of the optical centre, bit 10, stuck at 1",
+    ),
     fails_at_full_size("a pipeline that is too long", ",fault=late", "took 973 pixel clocks"),
     fails_at_full_size("a false claim of latency", ",fault=wrong-latency-claim", "the board claims 973"),
     fails("a lost row", ",fault=lost-row", "row 3 of frame 0 went into the board and never came out"),

@@ -30,6 +30,16 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
     fails("no rounding behind a grid", ",fault=no-rounding", "the output's rounding"),
     fails("a dead tap behind a grid", ",fault=dead-tap", "tap G4, stuck at 0"),
     fails("a tap that copies another behind a grid", ",fault=dead-tap,tap=1,reads=5", "tap R1, reading R5"),
+    fails(
+        "a centre that is not taken behind a grid",
+        ",fault=centre-ignored",
+        "the setting of the optical centre",
+    ),
+    fails(
+        "a bit of the centre behind a grid",
+        ",fault=stuck-centre",
+        "the setting of the optical centre, bit 3, stuck at 0",
+    ),
     fails("a pipeline that is too long behind a grid", ",fault=late", "took 109 pixel clocks"),
     fails("a false claim of latency behind a grid", ",fault=wrong-latency-claim", "the board claims 109"),
     fails(

@@ -1,13 +1,9 @@
 //! A PASS names what it did not test, line by line: a fault there goes unseen, and a fault anywhere else does not.
 
-use halfrow::link::Candidate;
 use halfrow::result::NotExercised;
 use halfrow::run::{Plan, Vary};
 use halfrow::verdict::Verdict;
-use halfrow_mock::Options;
 use halfrow_model::{BitDepth, Geometry};
-use halfrow_protocol::Kind;
-use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{System, judge_by_plan, open, streamed};
 
 /// A system that uses few of the board's lines: eight address its columns, and seven are enough to tell the samples in the line
@@ -93,26 +89,30 @@ fn what_hides_behind_a_depth_is_named_and_found_where_the_depth_varies() {
     assert!(!sound.not_exercised.contains(&bits));
 }
 
-/// A board whose optical centre is in the middle, whatever it is told.
-fn ignoring_the_centre() -> Candidate {
-    let alter = |toward, mut packet: Passing| {
-        if toward == Toward::Board && packet.is(Kind::Configure) {
-            // WIRE.md, CONFIGURE: width, height, centre2.
-            packet.payload[4..6].copy_from_slice(&159_u16.to_le_bytes());
-        }
-        vec![packet]
+/// C is 159, 1001 1111, in all frames but one, where it is 96, 0110 0000. 318, the most that it can be, has nine bits.
+#[test]
+fn a_stuck_bit_of_the_centre_goes_unseen_exactly_where_the_pass_names_it() {
+    let plan = streamed(SYSTEM.plan()).varying(Vary { centre: true, depth: false });
+    let sound = judge_by_plan(&plan, open("mock"));
+    let named = NotExercised::CentreBits { bits: (8..12).collect() };
+    assert!(sound.not_exercised.contains(&named), "{:?}", sound.not_exercised);
+    let verdict = |bit: u32, value: u32| {
+        judge_by_plan(&plan, open(&format!("mock,fault=stuck-centre,bit={bit},value={value}"))).verdict()
     };
-    Altered::new(&Options::default(), alter).candidate()
+    for bit in 0..8 {
+        assert_eq!([verdict(bit, 0), verdict(bit, 1)], [Verdict::Fail; 2], "bit {bit}");
+    }
+    assert!((8..12).all(|bit| verdict(bit, 0) == Verdict::Pass));
 }
 
 #[test]
 fn a_board_that_ignores_the_centre_is_found_where_the_centre_varies() {
-    let plan = streamed(SYSTEM.plan());
-    let unseen = judge_by_plan(&plan, ignoring_the_centre());
+    let (plan, ignoring) = (streamed(SYSTEM.plan()), "mock,fault=centre-ignored");
+    let unseen = judge_by_plan(&plan, open(ignoring));
     assert_eq!(unseen.verdict(), Verdict::Pass);
     assert!(unseen.not_exercised.contains(&NotExercised::OneCentre { centre2: 159 }));
     let varying = plan.varying(Vary { centre: true, depth: false });
-    let seen = judge_by_plan(&varying, ignoring_the_centre());
+    let seen = judge_by_plan(&varying, open(ignoring));
     assert_eq!(seen.verdict(), Verdict::Fail, "{}", seen.headline());
     let differing: Vec<_> = seen
         .frames

@@ -4,7 +4,7 @@ use super::{BoardFault, BoardFault as Fault};
 use crate::board::WrongClaims;
 use crate::burst::{BurstDefects, SlowPath, WarmBit};
 use crate::core::{CoreDefects, DeadTap, StuckBits};
-use crate::player::{PlayerDefects, SpoiltSample};
+use crate::player::{CentreDefect, PlayerDefects, SpoiltSample};
 use crate::tables::{Drift, FlippedBit, Stale, TableDefects};
 
 /// What is wrong with each part of a board.
@@ -41,6 +41,8 @@ impl Defects {
             Fault::NoRounding => core.rounding = 0,
             Fault::DeadTap { tap, reads } => core.dead_tap = Some(DeadTap { tap, reads }),
             Fault::Late => core.extra_delay = 1,
+            Fault::CentreIgnored => player.centre = CentreDefect::Ignored,
+            Fault::StuckCentre { bit, value } => player.centre = CentreDefect::stuck(bit, value),
             Fault::LostRow { row } => player.lost_row = Some(row),
             Fault::StaleTable { hidden } => {
                 tables.stale = Some(if hidden { Stale::Hidden } else { Stale::Admitted });

@@ -58,6 +58,15 @@ pub enum BoardFault {
     Late,
     /// The board claims a latency one pixel clock longer than it has.
     WrongLatencyClaim,
+    /// The optical centre is the middle of the row, whatever is set.
+    CentreIgnored,
+    /// A bit of the register that holds the optical centre is stuck.
+    StuckCentre {
+        /// The bit of C, 0 to 12.
+        bit: u8,
+        /// The level that it is stuck at.
+        value: bool,
+    },
     /// A row goes in and never comes out, however often it is sent.
     LostRow {
         /// The row of every frame that is lost.

@@ -109,6 +109,28 @@ fn a_lost_row_never_comes_out_and_keeps_no_bank() {
     }
 }
 
+/// What a board with a fault makes of the golden row with this centre set, by the golden factor.
+fn about(centre2: u16, fault: Option<BoardFault>) -> Vec<u16> {
+    let (mut player, mut tables) = small_board(fault, &[GOLDEN_FACTOR], &hermite());
+    player.configure(Settings { centre2, ..small_settings(1, 0, 0) }).unwrap();
+    play_frame(&mut player, &mut tables, 0).remove(0).samples
+}
+
+/// The golden row is that of C = 63.
+#[test]
+fn an_ignored_centre_is_the_middle_of_the_row() {
+    assert_ne!(about(20, None), HERMITE);
+    assert_eq!(about(20, Some(fault("centre-ignored", &[]))), HERMITE);
+}
+
+/// 63 is 11 1111, and 55 is 11 0111.
+#[test]
+fn a_stuck_bit_of_the_centre_moves_it() {
+    assert_ne!(about(55, None), HERMITE);
+    assert_eq!(about(55, Some(fault("stuck-centre", &[("bit", "3"), ("value", "1")]))), HERMITE);
+    assert_eq!(about(63, Some(fault("stuck-centre", &[("bit", "3"), ("value", "0")]))), about(55, None));
+}
+
 /// The numbers are those of xorshift32 with the seed 1, counted in Python.
 #[test]
 fn pauses_follow_the_seed_and_start_anew_with_every_frame() {

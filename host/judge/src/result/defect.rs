@@ -131,6 +131,13 @@ pub enum Defect {
         /// What stands in its place.
         instead: Instead,
     },
+    /// One bit of the register that holds the optical centre.
+    CentreBitStuck {
+        /// The bit of twice the column.
+        bit: u32,
+        /// Its level.
+        value: u8,
+    },
     /// The bits of a sample are not what was set.
     DepthIgnored {
         /// What stands in their place.

@@ -297,6 +297,7 @@ fn of_logic() -> Vec<Defect> {
         Defect::RoundingMissing {},
         Defect::ClampMissing { end: ClampEnd::High },
         Defect::CentreIgnored { instead: Instead::Usual },
+        Defect::CentreBitStuck { bit: 3, value: 0 },
         Defect::DepthIgnored { instead: Instead::FrameBefore },
         Defect::RowsExchanged { source: RowSource::Output { frames: 0, rows: -1 }, mostly: false },
         Defect::RowShifted { columns: 1 },

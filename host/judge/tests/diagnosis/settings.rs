@@ -58,6 +58,21 @@ fn a_centre_that_is_taken_a_frame_late_is_named() {
     }
 }
 
+/// C is 191, 1011 1111, in the decoy and 150, 1001 0110, in the others.
+#[test]
+fn a_stuck_bit_of_the_centre_is_named() {
+    for bench in benches() {
+        for (bit, value) in [(1, 0), (3, 0), (4, 0), (3, 1), (6, 1)] {
+            let stuck = diagnose(&bench, |_, own| {
+                let centre2 = own.centre2() & !(1 << bit) | value << bit;
+                Geometry::new(own.width(), own.height(), own.depth(), centre2).unwrap()
+            });
+            let place = format!("the setting of the optical centre, bit {bit}, stuck at {value}");
+            assert_eq!(stuck.place(), place);
+        }
+    }
+}
+
 #[test]
 fn a_depth_that_is_not_taken_is_named() {
     for bench in benches() {

@@ -2,19 +2,36 @@
 
 use halfrow_model::{BitDepth, Geometry};
 
+use super::StuckLine;
 use crate::diagnosis::datapath::{RowTables, Stretch};
 use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
 use crate::diagnosis::witnesses::{Witness, Witnesses};
 use crate::diagnosis::{Case, Uploaded};
 use crate::result::{Defect, Instead};
 
-/// The optical centre and the depth, each with the values that the board may use instead.
+/// Bits of C.
+const CENTRE_BITS: u32 = 13;
+
+/// The optical centre and the depth, each with the values that the board may use instead, and the centre with a bit stuck.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let case = witnesses.case;
     [Instead::Usual, Instead::FirstFrame, Instead::FrameBefore]
         .into_iter()
         .flat_map(|instead| [centre(case, instead), depth(case, instead)])
+        .chain(StuckLine::all(CENTRE_BITS).map(|line| centre_bit(case, line)))
         .collect()
+}
+
+/// A stuck bit may lead beyond the row, where nothing is foretold.
+fn centre_bit(case: Case<'_>, line: StuckLine) -> Hypothesis<'_> {
+    Hypothesis::new(Defect::CentreBitStuck { bit: line.bit, value: line.value() }, move |witness| {
+        let own = witness.geometry();
+        let centre2 = line.carry(own.centre2());
+        if centre2 == own.centre2() {
+            return None;
+        }
+        Some(made_by(&case, witness, own.depth(), centre2).unwrap_or_else(Prediction::unknown))
+    })
 }
 
 fn centre(case: Case<'_>, instead: Instead) -> Hypothesis<'_> {

@@ -39,6 +39,18 @@ pub(super) fn line_memory_address(bit: u32, counting: Counting) -> Words {
     }
 }
 
+pub(super) fn centre_bit(bit: u32, value: u8) -> Words {
+    Words {
+        part: "setting",
+        place: format!("the setting of the optical centre, bit {bit}, {}", stuck(value)),
+        defect: format!("bit {bit} of twice the centre's column at {value}"),
+        designer: format!(
+            "Check bit {bit} of the register that holds the centre, and its way to a row's start."
+        ),
+        technician: MEMORY,
+    }
+}
+
 pub(super) fn row_table_data(bit: u32, value: u8) -> Words {
     Words {
         part: "row table data",

@@ -120,6 +120,7 @@ fn elsewhere(defect: &Defect) -> Words {
         Defect::RoundingMissing {} => logic::rounding(),
         Defect::ClampMissing { end } => logic::clamp(*end),
         Defect::CentreIgnored { instead } => logic::centre_ignored(*instead),
+        Defect::CentreBitStuck { bit, value } => lines::centre_bit(*bit, *value),
         Defect::DepthIgnored { instead } => logic::depth_ignored(*instead),
         Defect::ColumnPairsExchanged {} => logic::pairs_exchanged(),
         Defect::RowsChangedOnEntry { rows, first, frame, flipped } => {
