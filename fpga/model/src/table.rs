@@ -4,7 +4,9 @@ use std::ops::RangeInclusive;
 
 use crate::grid::{ENTRY_BITS, Grid, GridFault};
 use crate::projection::shrink_factor;
-use crate::{Equidistant, Geometry, GridShape, RowFactor, RowFactorError, RowValues};
+use crate::{
+    BitDepth, Equidistant, Geometry, GeometryError, GridShape, RowFactor, RowFactorError, RowValues,
+};
 
 /// One row factor per row, or a grid, with the geometry that they were made for (DATAPATH.md, "Table" and "Grid").
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -188,17 +190,13 @@ impl TableSet {
         Self { geometry, entries: Entries::Grid(grid) }
     }
 
-    /// The same entries for frames of the same size but another depth or centre.
+    /// The same entries for frames of the same size with samples of `depth` and the optical centre at column `centre2` / 2.
     ///
     /// # Errors
-    /// [`TableError`] when a table for `geometry` has another number of entries. For row factors only the height decides.
-    pub fn with_geometry(&self, geometry: Geometry) -> Result<Self, TableError> {
-        match &self.entries {
-            Entries::Rows(row_factors) => Self::new(geometry, row_factors.clone()),
-            Entries::Grid(grid) => {
-                Self::from_grid(geometry, grid.shape(), &self.entries().collect::<Vec<_>>())
-            }
-        }
+    /// [`GeometryError::Centre`] when `centre2` is above 2W − 2.
+    pub fn with_settings(&self, depth: BitDepth, centre2: u32) -> Result<Self, GeometryError> {
+        let geometry = Geometry::new(self.geometry.width(), self.geometry.height(), depth, centre2)?;
+        Ok(Self { geometry, entries: self.entries.clone() })
     }
 
     /// The tables of the upper `rows` rows alone; none when the frame has fewer rows, or `rows` is 0.

@@ -7,7 +7,7 @@ use halfrow::result::{CheckName, Finding, FlippedBit, Report};
 use halfrow::run::{Plan, Vary};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
-use halfrow_model::{BitDepth, Geometry, row_signature};
+use halfrow_model::{BitDepth, row_signature};
 use halfrow_protocol::message::{RowOut, RowPlace};
 use halfrow_protocol::{Kind, Reply, samples};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge, judge_each};
@@ -338,9 +338,8 @@ fn what_is_wrong_is_no_fail_while_the_board_does_not_tell_what_came_to_it() {
 #[test]
 fn samples_that_the_depth_cannot_hold_are_kept_and_explained() {
     let plan = Plan { fail_fast: false, ..System { height: 16, ..System::TINY }.plan() };
-    let own = plan.tables.geometry();
-    let geometry = Geometry::new(own.width(), own.height(), BitDepth::Eight, own.centre2()).unwrap();
-    let tables = plan.tables.with_geometry(geometry).unwrap();
+    let centre2 = plan.tables.geometry().centre2();
+    let tables = plan.tables.with_settings(BitDepth::Eight, centre2).unwrap();
     let alter = move |_, packet: Passing| match place(&packet) {
         Some(place) => {
             let number = packet.header.sequence;

@@ -3,7 +3,7 @@
 use halfrow::result::NotExercised;
 use halfrow::run::{Plan, Vary};
 use halfrow::verdict::Verdict;
-use halfrow_model::{BitDepth, Geometry};
+use halfrow_model::BitDepth;
 use halfrow_tests::system::{System, judge_by_plan, open, streamed};
 
 /// A system that uses few of the board's lines: eight address its columns, and seven are enough to tell the samples in the line
@@ -13,9 +13,8 @@ const SYSTEM: System = System { width: 160, height: 16, radius: 17.0, board: "mo
 /// The plan of `SYSTEM` with frames of 8 bits.
 fn eight_bits() -> Plan {
     let plan = SYSTEM.plan();
-    let own = plan.tables.geometry();
-    let geometry = Geometry::new(own.width(), own.height(), BitDepth::Eight, own.centre2()).unwrap();
-    Plan { tables: plan.tables.with_geometry(geometry).unwrap(), ..plan }
+    let centre2 = plan.tables.geometry().centre2();
+    Plan { tables: plan.tables.with_settings(BitDepth::Eight, centre2).unwrap(), ..plan }
 }
 
 #[test]

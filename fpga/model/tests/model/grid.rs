@@ -3,8 +3,8 @@
 use std::error::Error as _;
 
 use halfrow_model::{
-    BitDepth, Equidistant, Frame, Geometry, GridShape, Interpolant, Kernel, Phase, RowFactor, Source,
-    TableError, TableSet, correct, correct_row, correct_row_of_values, source,
+    BitDepth, Equidistant, Frame, Geometry, GeometryError, GridShape, Interpolant, Kernel, Phase, RowFactor,
+    Source, TableError, TableSet, correct, correct_row, correct_row_of_values, source,
 };
 use proptest::prelude::*;
 
@@ -168,23 +168,25 @@ fn a_grid_is_sent_column_by_column_little_endian() {
 }
 
 #[test]
-fn entries_go_with_another_geometry_of_the_same_size() {
+fn entries_go_with_another_depth_and_centre() {
     let geometry = |width, centre2| Geometry::new(width, 9, BitDepth::Ten, centre2).unwrap();
     let lens = Equidistant::from_radius(500.0).unwrap();
     let rows = TableSet::from_lens(geometry(96, 95), &lens, None).unwrap();
     let entries = vec![ONE - 4096; shape(2, 5).entries(&geometry(96, 95))];
     let grid = TableSet::from_grid(geometry(96, 95), shape(2, 5), &entries).unwrap();
     for tables in [rows, grid] {
-        let moved = tables.with_geometry(geometry(96, 30)).unwrap();
-        assert!(moved.entries().eq(tables.entries()) && moved.geometry().centre2() == 30);
+        let moved = tables.with_settings(BitDepth::Eight, 30).unwrap();
+        assert_eq!(*moved.geometry(), Geometry::new(96, 9, BitDepth::Eight, 30).unwrap());
+        assert!(moved.entries().eq(tables.entries()));
         assert_eq!(moved.shape(), tables.shape());
         for row in 0..10 {
             assert_eq!(tables.values_about(&geometry(96, 30), row), moved.values(row));
         }
         assert_ne!(moved.values(0), tables.values(0));
         assert_eq!(tables.values_about(&geometry(128, 30), 0), None);
+        let beyond = GeometryError::Centre { column: 95.5, last: 95 };
+        assert_eq!(tables.with_settings(BitDepth::Eight, 191), Err(beyond));
     }
-    assert!(identity(geometry(96, 95), shape(2, 5)).with_geometry(geometry(128, 30)).is_err());
 }
 
 #[test]

@@ -52,10 +52,7 @@ impl Build {
 /// The entries of `tables` under the settings that `vary` names, one changed at a time, each legal for `build`.
 pub(super) fn varied(tables: &TableSet, vary: Vary, build: &Build) -> Vec<TableSet> {
     let own = tables.geometry();
-    let of = |depth, centre2| {
-        let geometry = Geometry::new(own.width(), own.height(), depth, centre2).ok()?;
-        tables.with_geometry(geometry).ok()
-    };
+    let of = |depth, centre2| tables.with_settings(depth, centre2).ok();
     let centre = vary.centre.then(|| {
         other_centres(own).find_map(|centre2| {
             of(own.depth(), centre2).filter(|tables| tables.check_ring(build.ring).is_ok())

@@ -9,7 +9,7 @@ use crate::bench::{Bench, Generation, Seen, off_centre, off_centre_grid};
 fn benches() -> [Bench; 2] {
     [off_centre(), off_centre_grid()].map(|mut bench| {
         let tables = &mut bench.generations[0].tables;
-        *tables = tables.with_geometry(Geometry::centred(192, 24, BitDepth::Eight).unwrap()).unwrap();
+        *tables = tables.with_settings(BitDepth::Eight, 191).unwrap();
         bench
     })
 }
@@ -20,7 +20,7 @@ fn diagnose(bench: &Bench, made: impl Fn(usize, &Geometry) -> Geometry) -> Suspe
     for (index, (generation, input, expected)) in bench.sound_frames().into_iter().enumerate() {
         let Generation { tables, kernel, .. } = &bench.generations[usize::from(generation) - 1];
         let geometry = made(index, tables.geometry());
-        let tables = tables.with_geometry(geometry).unwrap();
+        let tables = tables.with_settings(geometry.depth(), geometry.centre2()).unwrap();
         let samples = input.samples().to_vec();
         let put_in = Frame::new(input.width(), geometry.depth(), input.phase(), samples).unwrap();
         seen.take(generation, input, expected, correct(&tables, kernel, &put_in).unwrap());

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use halfrow_model::{BitDepth, Frame, Geometry, row_signature};
+use halfrow_model::{BitDepth, Frame, row_signature};
 
 use super::small::Small;
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
@@ -80,9 +80,8 @@ impl Compared {
         made: &Generation,
         depth: BitDepth,
     ) -> Option<(Self, u32)> {
-        let own = made.tables.geometry();
-        let twelve = Geometry::new(own.width(), own.height(), BitDepth::Twelve, own.centre2()).ok()?;
-        let tables = made.tables.with_geometry(twelve).ok()?;
+        let centre2 = made.tables.geometry().centre2();
+        let tables = made.tables.with_settings(BitDepth::Twelve, centre2).ok()?;
         let numbered = small.frame(number, &tables);
         let over = numbered.frame.samples().iter().filter(|&&sample| sample > depth.max()).count();
         // The depth only sets where outputs are clamped. It changes nothing before that.
