@@ -45,7 +45,13 @@ impl Exit {
             Self::Pass => Some(Verdict::Pass),
             Self::Fail => Some(Verdict::Fail),
             Self::Usage => None,
-            _ => Some(Verdict::Error),
+            Self::Error
+            | Self::Busy
+            | Self::NothingJudged
+            | Self::Refused
+            | Self::HungUp
+            | Self::Interrupted
+            | Self::Terminated => Some(Verdict::Error),
         }
     }
 

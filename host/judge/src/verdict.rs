@@ -91,7 +91,9 @@ impl Cause {
         match self {
             Self::Equal => Verdict::Pass,
             Self::Different => Verdict::Fail,
-            _ => Verdict::Error,
+            Self::Station | Self::Busy | Self::Refused | Self::NothingJudged | Self::Stopped(_) => {
+                Verdict::Error
+            }
         }
     }
 

@@ -122,17 +122,29 @@ fn refused(packet: &Packet<'_>) -> Option<u8> {
     }
 }
 
+/// Whether a late copy of a packet of `kind` may leave a sound board in another state. One that is missing here would be held
+/// against the board.
 fn may_change(kind: Kind) -> bool {
-    matches!(
-        kind,
+    match kind {
         Kind::Reset
-            | Kind::TableWrite
-            | Kind::Commit
-            | Kind::Configure
-            | Kind::RowIn
-            | Kind::Burst
-            | Kind::Expect
-    )
+        | Kind::TableWrite
+        | Kind::Commit
+        | Kind::Configure
+        | Kind::RowIn
+        | Kind::Burst
+        | Kind::Expect => true,
+        Kind::Hello
+        | Kind::Capabilities
+        | Kind::Status
+        | Kind::Echo
+        | Kind::TableRead
+        | Kind::TableCrc
+        | Kind::RowOut
+        | Kind::RowAck
+        | Kind::Records
+        | Kind::Trap
+        | Kind::Refusal => false,
+    }
 }
 
 #[cfg(test)]

@@ -200,7 +200,7 @@ impl Conversation {
         let queued = self.encoder.encode(&header, write_payload, &mut self.outgoing);
         debug_assert!(queued.is_ok(), "a request is built to fit a packet");
         self.tally.packets_out += 1;
-        self.counted.is_blind |= matches!(kind, Kind::RowIn | Kind::RowAck);
+        self.counted.is_blind |= !is_missed(kind);
     }
 
     fn header(&self, kind: Kind, sequence: u16) -> Header {
@@ -292,5 +292,28 @@ impl Conversation {
             if is_second { &mut self.session.doubled_changes } else { &mut self.session.repeated_changes };
         *changes += u64::from(changed);
         needless.into_iter().for_each(|took| self.note_late(took));
+    }
+}
+
+/// Whether the host notices when a packet of `kind` is lost, because an answer of its own does not come.
+fn is_missed(kind: Kind) -> bool {
+    match kind {
+        Kind::RowIn | Kind::RowAck => false,
+        Kind::Hello
+        | Kind::Capabilities
+        | Kind::Status
+        | Kind::Reset
+        | Kind::Echo
+        | Kind::TableWrite
+        | Kind::TableRead
+        | Kind::TableCrc
+        | Kind::Commit
+        | Kind::Configure
+        | Kind::RowOut
+        | Kind::Burst
+        | Kind::Records
+        | Kind::Expect
+        | Kind::Trap
+        | Kind::Refusal => true,
     }
 }

@@ -286,7 +286,7 @@ pub(crate) fn frame_outcome(report: &Report, frame: &FrameReport) -> Outcome {
     match (report.verdict(), frame.comparison.differences) {
         (_, 0) if judged => Outcome::Passed,
         (Verdict::Error, _) | (_, 0) => Outcome::Error,
-        _ => Outcome::Failed,
+        (Verdict::Pass | Verdict::Fail, _) => Outcome::Failed,
     }
 }
 

@@ -143,7 +143,11 @@ impl Repetition {
     pub(crate) fn streamed(self) -> Streamed {
         match self {
             Self::Trapped { streamed, .. } => streamed,
-            _ => Streamed::NotTried,
+            Self::NotNeeded {}
+            | Self::NoTrap {}
+            | Self::AllRight { .. }
+            | Self::NothingTrapped { .. }
+            | Self::Impossible {} => Streamed::NotTried,
         }
     }
 }
