@@ -43,11 +43,25 @@ impl End {
         Self::Failed { check, finding, suspects: Vec::new() }
     }
 
-    /// The check that ended the run, with its outcome and finding.
-    pub(super) fn check(&self) -> (CheckName, Outcome, &Finding) {
+    /// The check that ended the run.
+    pub(super) fn name(&self) -> CheckName {
         match self {
-            Self::Failed { check, finding, .. } => (*check, Outcome::Failed, finding),
-            Self::Error { check, finding, .. } => (*check, Outcome::Error, finding),
+            Self::Failed { check, .. } | Self::Error { check, .. } => *check,
+        }
+    }
+
+    /// That check's outcome.
+    pub(super) fn outcome(&self) -> Outcome {
+        match self {
+            Self::Failed { .. } => Outcome::Failed,
+            Self::Error { .. } => Outcome::Error,
+        }
+    }
+
+    /// What it found.
+    pub(super) fn finding(&self) -> &Finding {
+        match self {
+            Self::Failed { finding, .. } | Self::Error { finding, .. } => finding,
         }
     }
 
@@ -200,8 +214,7 @@ impl Findings {
 
     /// Notes the check that ended the run.
     pub(super) fn note_end(&mut self, end: &End) {
-        let (name, outcome, finding) = end.check();
-        self.note(name, outcome, finding.clone());
+        self.note(end.name(), end.outcome(), end.finding().clone());
     }
 
     /// Notes what is wrong in addition to what ends the run.

@@ -24,7 +24,7 @@ impl Run<'_> {
         let mut found = found;
         for look in 1..=LOOKS {
             let Some(doubt) = self.doubt_of(&found) else { return Err(found) };
-            tracing::warn!("{}; looking again, since {}", found.check().2.sentence(), doubt.sentence());
+            tracing::warn!("{}; looking again, since {}", found.finding().sentence(), doubt.sentence());
             self.progress.step(Step::LookAgain);
             match self.look(look) {
                 Ok(()) => return Err(right_in_another_session(&found, doubt)),
@@ -38,7 +38,7 @@ impl Run<'_> {
             None => Err(found),
             Some(doubt) => {
                 let finding = Finding::WrongOverDoubtfulLink { found: Box::new(unasked(&found)), doubt };
-                Err(End::error(found.check().0, Cause::Station, finding))
+                Err(End::error(found.name(), Cause::Station, finding))
             }
         }
     }
@@ -55,7 +55,7 @@ impl Run<'_> {
 
     /// Why the link may have caused `end`. That nothing is known about the link is no reason to doubt an error.
     pub(super) fn doubt_of(&mut self, end: &End) -> Option<Doubt> {
-        let doubt = self.doubt(end.check().0)?;
+        let doubt = self.doubt(end.name())?;
         (end.is_failed() || doubt != Doubt::PacketsUncounted {}).then_some(doubt)
     }
 
@@ -135,7 +135,7 @@ impl Doubt {
 
 /// What `end` found. From a problem the advice is removed, because it holds only for a board that no link disturbs.
 pub(super) fn unasked(end: &End) -> Finding {
-    match end.check().2.clone() {
+    match end.finding().clone() {
         Finding::Problem(problem) => problem.unasked().into(),
         found => found,
     }
@@ -143,7 +143,7 @@ pub(super) fn unasked(end: &End) -> Finding {
 
 fn right_in_another_session(found: &End, doubt: Doubt) -> End {
     let finding = Finding::RightInAnotherSession { found: Box::new(unasked(found)), doubt };
-    End::error(found.check().0, Cause::Station, finding)
+    End::error(found.name(), Cause::Station, finding)
 }
 
 /// Turns `end`, which broke off a second look, into a finding that also says what the look was to clear up.

@@ -81,7 +81,7 @@ impl Run<'_> {
             None => self.make_again(plan, tables, first),
         };
         let again = again.unwrap_or_else(|end| {
-            tracing::warn!("the frame was not made again: {}", end.check().2.sentence());
+            tracing::warn!("the frame was not made again: {}", end.finding().sentence());
             Repetition::Impossible {}.into()
         });
         let Again { repetition, mut suspects } = again;

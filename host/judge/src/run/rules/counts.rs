@@ -74,9 +74,8 @@ impl Rules<'_, '_> {
     pub(super) fn always(&mut self, scenario: fn(&mut Self) -> Result<(), End>) -> Result<(), End> {
         let tried = self.thrice(scenario);
         let is_of_requests = |end: &End| {
-            let finding = end.check().2;
             matches!(
-                finding,
+                end.finding(),
                 Finding::CounterWrong { .. } | Finding::RuleBroken { rule: Rule::NewSession, .. }
             )
         };

@@ -94,7 +94,7 @@ impl Account {
             End::Failed { suspects, .. } => (suspects.clone(), &mut self.first),
             End::Error { .. } => (Vec::new(), &mut self.first_doubtful),
         };
-        let finding = end.check().2.clone();
+        let finding = end.finding().clone();
         let before = self.report.frames - u64::from(played.watched.frames);
         match first {
             None => *first = Some(counted_after(before, end)),
