@@ -133,7 +133,7 @@ impl Run<'_> {
     /// Waits for a board that went away with `end`. Returns any other end as it is, and what the board did with rows that no
     /// link can cause, which would be forgotten with its session.
     pub(super) fn come_back(&mut self, end: End) -> Result<(), End> {
-        self.unless_misconduct(end.check().0, Ok(()))?;
+        self.unless_misconduct(end.name(), Ok(()))?;
         let again = self.findings.link.reconnections.len() < MOST;
         let Some(patience) = self.way_back.patience().filter(|_| end.is_outage() && again) else {
             return Err(end);
