@@ -72,7 +72,7 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
     fails(
         "a damaged packet that frees every bank behind a grid",
         ",fault=damaged-ack",
-        "as the first row that is not acknowledged",
+        "(a damaged packet has no effect)",
     ),
     fails("a row behind a grid that denies that it came before", ",fault=stuck-repeats", "says 0 both times"),
     fails(
@@ -83,7 +83,7 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
     fails(
         "counters of the session before, behind a grid",
         ",fault=counters-kept",
-        "rows in; the right number is 0",
+        "rows in; the right number is 0 (a greeting opens the next session",
     ),
     fails(
         "ROW_OUT packets that are counted anew behind a grid",

@@ -249,6 +249,9 @@ pub enum Finding {
         counted: u32,
         /// What it should; of packets at least, of rows numbered at most.
         right: u32,
+        /// The rule that the run tried when the board counted so; none if it tried no single one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        rule: Option<Rule>,
     },
     /// The board counts pauses for a row that are not the gaps of its seed.
     GapsMiscounted {

@@ -31,7 +31,7 @@ impl Run<'_> {
         ];
         let wrong = pairs.into_iter().find(|(_, counted, right, compared)| *compared && counted != right);
         if let Some((counter, counted, right, _)) = wrong {
-            return Err(miscounted(Finding::CounterWrong { counter, counted, right }));
+            return Err(miscounted(Finding::CounterWrong { counter, counted, right, rule: None }));
         }
         packets_counted(status, self.board.answered_since_clear())?;
         rows_numbered(status, self.board.packets_numbered())?;
@@ -79,7 +79,7 @@ fn packets_counted(status: &Status, answered: u64) -> Result<(), End> {
         return Ok(());
     }
     let (counter, counted) = (Counter::Packets, status.packets);
-    Err(miscounted(Finding::CounterWrong { counter, counted, right }))
+    Err(miscounted(Finding::CounterWrong { counter, counted, right, rule: None }))
 }
 
 /// Checks the numbers of ROW_OUT packets, of which the host saw `counted`. They begin at 0, and each packet is a row that
@@ -90,7 +90,7 @@ pub(super) fn rows_numbered(status: &Status, counted: u32) -> Result<(), End> {
     if counted <= right {
         return Ok(());
     }
-    Err(miscounted(Finding::CounterWrong { counter: Counter::RowsNumbered, counted, right }))
+    Err(miscounted(Finding::CounterWrong { counter: Counter::RowsNumbered, counted, right, rule: None }))
 }
 
 /// How many packets the board counts as damaged.

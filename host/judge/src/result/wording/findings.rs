@@ -103,13 +103,11 @@ fn of_board(finding: &Finding) -> String {
             let differ = samples_differ((*differences, *samples), (*differing_frames, *frames));
             format!("{differ}; {}", suspicion(suspect.as_deref(), *others))
         }
-        Finding::CounterWrong { counter, counted, right } => {
+        Finding::CounterWrong { counter, counted, right, rule } => {
             let (counted, right) = (grouped(*counted), grouped(*right));
-            format!(
-                "the board counts {counted} {}; the right number is {}{right}",
-                counter.words(),
-                counter.bound()
-            )
+            let (words, bound) = (counter.words(), counter.bound());
+            let tried = rule.map(|rule| format!(" ({})", rules::meaning(rule))).unwrap_or_default();
+            format!("the board counts {counted} {words}; the right number is {bound}{right}{tried}")
         }
         Finding::GapsMiscounted { row, frame, counted, expected } => format!(
             "the board counts {counted} board clocks of gaps in row {row} of frame {frame}, but the gaps of its \
@@ -324,6 +322,7 @@ pub fn remedy(finding: &Finding) -> Option<String> {
             "The board uses stale tables: check when its bank switch takes effect."
         }
         Finding::LatencyWrong(late) => asked_of_latency(late.are_one_row()),
+        Finding::CounterWrong { rule: Some(_), .. } => rules::REMEDY,
         Finding::CounterWrong { .. } | Finding::GapsMiscounted { .. } | Finding::LatencyMiscounted { .. } => {
             "Check the board's counters and its row player; the samples themselves were right."
         }
@@ -359,7 +358,8 @@ fn asked_of_conduct(finding: &Finding) -> Option<String> {
             "Check where the board counts how often it sent a row, the `repeats` of ROW_OUT."
         }
         Finding::RowOutOfOrder { .. } => {
-            "Check in which order the board plays its input banks and sends its output banks."
+            "Check in which order the board plays its input banks and sends its output banks, and whether RESET \
+             lets its packet numbers begin anew."
         }
         other => return asked_of_caller(other),
     };

@@ -68,7 +68,8 @@ fn reason(code: u8) -> String {
     RefusalCode::from_code(code).map_or_else(|| format!("code {code}"), |reason| reason.name().to_owned())
 }
 
-fn meaning(rule: Rule) -> &'static str {
+/// The rule as a clause.
+pub(super) fn meaning(rule: Rule) -> &'static str {
     match rule {
         Rule::Payload => "a request is cut short or has a field without meaning",
         Rule::Kind => "the kind is no request",

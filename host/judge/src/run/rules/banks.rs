@@ -199,7 +199,7 @@ impl Rules<'_, '_> {
         if counted(&after).saturating_sub(counted(&before)) < sent.iter().sum() {
             return Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(0), attempts: 1 }));
         }
-        Err(miscounted(Counter::NextRowOut, after.next_row_out, kept.first))
+        Err(miscounted(Some(Rule::Damage), Counter::NextRowOut, after.next_row_out, kept.first))
     }
 
     /// Row `row` must come again as it came before, with this `repeats`.
@@ -247,7 +247,7 @@ impl Rules<'_, '_> {
             }
         }
         if had_it {
-            return Err(miscounted(Counter::NextRowOut, kept.first, kept.first + 1));
+            return Err(miscounted(Some(Rule::Banks), Counter::NextRowOut, kept.first, kept.first + 1));
         }
         Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(0), attempts: TRIES }))
     }
@@ -269,18 +269,24 @@ impl Rules<'_, '_> {
         let status = self.run.board.status(false).map_err(of_board)?;
         let FilledBanks { before, first, asked, unneeded, .. } = kept;
         let rows = self.run.board.acknowledged() - first;
-        equal([
-            (Counter::RowsIn, status.rows_in, before.rows_in.saturating_add(rows)),
-            (Counter::RowsOut, status.rows_out, before.rows_out.saturating_add(rows)),
-        ])?;
+        equal(
+            Some(Rule::Banks),
+            [
+                (Counter::RowsIn, status.rows_in, before.rows_in.saturating_add(rows)),
+                (Counter::RowsOut, status.rows_out, before.rows_out.saturating_add(rows)),
+            ],
+        )?;
         if !is_calm {
             return Ok(());
         }
-        equal([
-            (Counter::RowsRepeated, status.rows_repeated, before.rows_repeated.saturating_add(*asked)),
-            (Counter::RowsUnneeded, status.rows_unneeded, before.rows_unneeded.saturating_add(*unneeded)),
-            (Counter::Refusals, status.refusals, before.refusals),
-        ])
+        equal(
+            Some(Rule::Banks),
+            [
+                (Counter::RowsRepeated, status.rows_repeated, before.rows_repeated.saturating_add(*asked)),
+                (Counter::RowsUnneeded, status.rows_unneeded, before.rows_unneeded.saturating_add(*unneeded)),
+                (Counter::Refusals, status.refusals, before.refusals),
+            ],
+        )
     }
 }
 
@@ -290,6 +296,6 @@ fn is_one_acknowledged(kept: &FilledBanks, status: &Status) -> Result<bool, End>
     match status.next_row_out.wrapping_sub(kept.first) {
         0 => Ok(false),
         1 => Ok(true),
-        _ => Err(miscounted(Counter::NextRowOut, status.next_row_out, kept.first + 1)),
+        _ => Err(miscounted(Some(Rule::Banks), Counter::NextRowOut, status.next_row_out, kept.first + 1)),
     }
 }

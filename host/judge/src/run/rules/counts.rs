@@ -27,8 +27,8 @@ impl Rules<'_, '_> {
 
     /// Neither STATUS without *clear* nor RESET may clear a counter.
     pub(super) fn counts_stay(&mut self) -> Result<(), End> {
-        self.always(|rules| rules.counts_on(|_| Ok(())))?;
-        self.always(|rules| rules.counts_on(Self::drop_rows))
+        self.always(|rules| rules.counts_on(None, |_| Ok(())))?;
+        self.always(|rules| rules.counts_on(None, Self::drop_rows))
     }
 
     /// Rows must be counted that are asked for again or not needed, and other sessions may acknowledge none.
@@ -48,23 +48,26 @@ impl Rules<'_, '_> {
             self.run.board.acknowledge_in_session(session, second.row_sequence + 1);
         }
         let status = self.run.board.status(false).map_err(of_board)?;
-        equal([
-            (Counter::NextRowIn, status.next_row_in, second.row_sequence + 1),
-            (Counter::NextRowOut, status.next_row_out, first.row_sequence),
-        ])?;
+        equal(
+            Some(Rule::Session),
+            [
+                (Counter::NextRowIn, status.next_row_in, second.row_sequence + 1),
+                (Counter::NextRowOut, status.next_row_out, first.row_sequence),
+            ],
+        )?;
         let came =
             self.run.board.again(rows[0], Some(rows[1]), 1).map_err(|error| of_rows(Rule::Again, error))?;
         self.run.board.acknowledge(first.row_sequence + mem::take(&mut self.given).rows);
         let status = self.run.board.status(false).map_err(of_board)?;
         let repeated = before.rows_repeated.saturating_add(came.repeats.into());
-        at_least([(Counter::RowsRepeated, status.rows_repeated, repeated)])?;
+        at_least(Some(Rule::Again), [(Counter::RowsRepeated, status.rows_repeated, repeated)])?;
         for _ in 0..UNNEEDED {
             self.run.board.give(&first, frame.row(0));
         }
         let unneeded = status.rows_unneeded.saturating_add(UNNEEDED);
         let status = self.run.board.status(false).map_err(of_board)?;
         if self.run.board.had_each_packet_once(&status) {
-            at_least([(Counter::RowsUnneeded, status.rows_unneeded, unneeded)])?;
+            at_least(Some(Rule::Again), [(Counter::RowsUnneeded, status.rows_unneeded, unneeded)])?;
         }
         self.configure(self.small.rows())
     }
@@ -84,16 +87,23 @@ impl Rules<'_, '_> {
     }
 
     /// The counters of rows may not go down through `act`.
-    pub(super) fn counts_on(&mut self, act: impl FnOnce(&mut Self) -> Result<(), End>) -> Result<(), End> {
+    pub(super) fn counts_on(
+        &mut self,
+        rule: Option<Rule>,
+        act: impl FnOnce(&mut Self) -> Result<(), End>,
+    ) -> Result<(), End> {
         self.right_frames(&[FRAME])?;
         let before = self.run.board.status(false).map_err(of_board)?;
         act(self)?;
         let after = self.run.board.status(false).map_err(of_board)?;
-        at_least([
-            (Counter::RowsIn, after.rows_in, before.rows_in),
-            (Counter::RowsOut, after.rows_out, before.rows_out),
-            (Counter::SamplesOver, after.samples_over, before.samples_over),
-        ])
+        at_least(
+            rule,
+            [
+                (Counter::RowsIn, after.rows_in, before.rows_in),
+                (Counter::RowsOut, after.rows_out, before.rows_out),
+                (Counter::SamplesOver, after.samples_over, before.samples_over),
+            ],
+        )
     }
 
     /// STATUS with any number but 0 must clear all counters.
@@ -103,18 +113,21 @@ impl Rules<'_, '_> {
             (self.refusals, self.before) = (Refusals::default(), Status::default());
         }
         let status = self.run.board.status(false).map_err(of_board)?;
-        self.not_counted(&status)
+        self.not_counted(None, &status)
     }
 
     /// `status`, which came after something that clears all counters, must have all of them 0.
-    pub(super) fn not_counted(&mut self, status: &Status) -> Result<(), End> {
-        let of_new_rows = equal([
-            (Counter::RowsIn, status.rows_in, 0),
-            (Counter::RowsOut, status.rows_out, 0),
-            (Counter::SamplesOver, status.samples_over, 0),
-            (Counter::LeastLatency, status.least_latency, 0),
-            (Counter::MostLatency, status.most_latency, 0),
-        ]);
+    pub(super) fn not_counted(&mut self, rule: Option<Rule>, status: &Status) -> Result<(), End> {
+        let of_new_rows = equal(
+            rule,
+            [
+                (Counter::RowsIn, status.rows_in, 0),
+                (Counter::RowsOut, status.rows_out, 0),
+                (Counter::SamplesOver, status.samples_over, 0),
+                (Counter::LeastLatency, status.least_latency, 0),
+                (Counter::MostLatency, status.most_latency, 0),
+            ],
+        );
         // There was no new row, and no link can make one.
         self.run.findings.look.beyond_links |= of_new_rows.is_err();
         of_new_rows?;
@@ -124,31 +137,39 @@ impl Rules<'_, '_> {
         if !is_calm {
             return Ok(());
         }
-        equal([
-            (Counter::RowsRepeated, status.rows_repeated, 0),
-            (Counter::RowsUnneeded, status.rows_unneeded, 0),
-            (Counter::Refusals, status.refusals, 0),
-            (Counter::ForeignPackets, status.foreign_packets, 0),
-        ])
+        equal(
+            rule,
+            [
+                (Counter::RowsRepeated, status.rows_repeated, 0),
+                (Counter::RowsUnneeded, status.rows_unneeded, 0),
+                (Counter::Refusals, status.refusals, 0),
+                (Counter::ForeignPackets, status.foreign_packets, 0),
+            ],
+        )
     }
 }
 
-/// Each counter, given with what the board counts and with what is right, must be right. Ends with the first that is not.
-pub(super) fn equal<const N: usize>(counts: [(Counter, u32, u32); N]) -> Result<(), End> {
-    all_right(counts, |counted, right| counted == right)
+/// Each counter, given with what the board counts and with what is right, must be right after `rule` was tried. Ends with the
+/// first that is not.
+pub(super) fn equal<const N: usize>(rule: Option<Rule>, counts: [(Counter, u32, u32); N]) -> Result<(), End> {
+    all_right(rule, counts, |counted, right| counted == right)
 }
 
 /// The same for counters of which the board may count more.
-pub(super) fn at_least<const N: usize>(counts: [(Counter, u32, u32); N]) -> Result<(), End> {
-    all_right(counts, |counted, right| counted >= right)
+pub(super) fn at_least<const N: usize>(
+    rule: Option<Rule>,
+    counts: [(Counter, u32, u32); N],
+) -> Result<(), End> {
+    all_right(rule, counts, |counted, right| counted >= right)
 }
 
 fn all_right<const N: usize>(
+    rule: Option<Rule>,
     counts: [(Counter, u32, u32); N],
     is_right: fn(u32, u32) -> bool,
 ) -> Result<(), End> {
     match counts.into_iter().find(|&(_, counted, right)| !is_right(counted, right)) {
         None => Ok(()),
-        Some((counter, counted, right)) => Err(miscounted(counter, counted, right)),
+        Some((counter, counted, right)) => Err(miscounted(rule, counter, counted, right)),
     }
 }

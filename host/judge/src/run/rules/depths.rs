@@ -40,6 +40,6 @@ impl Rules<'_, '_> {
         if counted == over || !self.run.board.had_each_packet_once(&status) {
             return Ok(());
         }
-        Err(miscounted(Counter::SamplesOver, counted, over))
+        Err(miscounted(Some(Rule::Samples), Counter::SamplesOver, counted, over))
     }
 }

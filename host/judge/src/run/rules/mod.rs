@@ -290,8 +290,8 @@ fn of_rows(rule: Rule, error: BoardError) -> End {
     }
 }
 
-fn miscounted(counter: Counter, counted: u32, right: u32) -> End {
-    End::failed(CheckName::Rules, Finding::CounterWrong { counter, counted, right })
+fn miscounted(rule: Option<Rule>, counter: Counter, counted: u32, right: u32) -> End {
+    End::failed(CheckName::Rules, Finding::CounterWrong { counter, counted, right, rule })
 }
 
 fn broken(rule: Rule, kind: Kind, right: Answer, found: Answer) -> End {

@@ -34,9 +34,16 @@ impl Rules<'_, '_> {
     pub(super) fn refusals_counted(&mut self) -> Result<(), End> {
         let after = self.run.board.status(false).map_err(of_board)?;
         let (Refusals { own, foreign }, before) = (self.refusals, self.before);
-        at_least([
-            (Counter::Refusals, after.refusals, before.refusals.saturating_add(own)),
-            (Counter::ForeignPackets, after.foreign_packets, before.foreign_packets.saturating_add(foreign)),
-        ])
+        at_least(
+            None,
+            [
+                (Counter::Refusals, after.refusals, before.refusals.saturating_add(own)),
+                (
+                    Counter::ForeignPackets,
+                    after.foreign_packets,
+                    before.foreign_packets.saturating_add(foreign),
+                ),
+            ],
+        )
     }
 }

@@ -158,7 +158,8 @@ impl Rules<'_, '_> {
         if !has_come {
             return Err(of_rows(Rule::Inside, BoardError::RowMissing { place, attempts: TRIES }));
         }
-        let finding = Finding::CounterWrong { counter: Counter::CoreBusy, counted: 0, right: 1 };
+        let rule = Some(Rule::Inside);
+        let finding = Finding::CounterWrong { counter: Counter::CoreBusy, counted: 0, right: 1, rule };
         Err(End::error(CheckName::Rules, Cause::Station, finding))
     }
 
@@ -311,10 +312,13 @@ impl Rules<'_, '_> {
     fn counted(&mut self) -> Result<(), End> {
         let status = self.run.board.status(false).map_err(of_board)?;
         let right = self.run.board.acknowledged();
-        equal([
-            (Counter::NextRowIn, status.next_row_in, right),
-            (Counter::NextRowOut, status.next_row_out, right),
-        ])
+        equal(
+            Some(Rule::RowNumber),
+            [
+                (Counter::NextRowIn, status.next_row_in, right),
+                (Counter::NextRowOut, status.next_row_out, right),
+            ],
+        )
     }
 }
 

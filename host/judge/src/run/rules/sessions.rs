@@ -107,7 +107,7 @@ impl Rules<'_, '_> {
     /// The HELLO that opened the session, repeated, must open no other one.
     fn greeted_again(&mut self) -> Result<(), End> {
         self.rows_again()?;
-        self.counts_on(|rules| {
+        self.counts_on(Some(Rule::NewSession), |rules| {
             let own = rules.run.board.session();
             let again = rules.run.board.greet_again().map_err(of_board)?.session;
             if again != own {
@@ -252,13 +252,16 @@ impl Rules<'_, '_> {
     /// were at the status `before`.
     fn begun_anew(&mut self, rule: Rule, before: &Status) -> Result<(), End> {
         let status = self.run.board.status(false).map_err(of_board)?;
-        self.not_counted(&status)?;
-        equal([
-            (Counter::NextRowIn, status.next_row_in, 0),
-            (Counter::NextRowOut, status.next_row_out, 0),
-            (Counter::CoreBusy, status.core_busy, 0),
-            (Counter::Generation, status.generation, before.generation),
-        ])?;
+        self.not_counted(Some(rule), &status)?;
+        equal(
+            Some(rule),
+            [
+                (Counter::NextRowIn, status.next_row_in, 0),
+                (Counter::NextRowOut, status.next_row_out, 0),
+                (Counter::CoreBusy, status.core_busy, 0),
+                (Counter::Generation, status.generation, before.generation),
+            ],
+        )?;
         // Without a configuration it is not ready, which comes first.
         let other =
             Commit { steps_crc: !0, kernel_crc: 0, first_frame: 0, generation: !GENERATION, shape: None };

@@ -86,9 +86,11 @@ impl Rules<'_, '_> {
         let is_of_both = counted[0] > crc && counted[0] >= most_of(framing);
         match counted {
             [0, 0] => Ok(()),
-            [0, _] => Err(miscounted(Counter::CrcErrors, 0, crc)),
-            [_, 0] => Err(miscounted(Counter::FramingErrors, 0, framing)),
-            [counted, _] if is_of_both => Err(miscounted(Counter::CrcErrors, counted, crc)),
+            [0, _] => Err(miscounted(Some(Rule::Damage), Counter::CrcErrors, 0, crc)),
+            [_, 0] => Err(miscounted(Some(Rule::Damage), Counter::FramingErrors, 0, framing)),
+            [counted, _] if is_of_both => {
+                Err(miscounted(Some(Rule::Damage), Counter::CrcErrors, counted, crc))
+            }
             _ => Ok(()),
         }
     }
