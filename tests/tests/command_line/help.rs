@@ -111,6 +111,7 @@ fn a_call_without_a_command_shows_help_and_is_a_usage_error() {
     let ended = halfrow([]);
     assert_eq!(ended.code, Some(2));
     assert!(ended.stderr.contains("Usage: halfrow"), "{}", ended.stderr);
+    assert!(ended.stderr.contains("To begin:\n  halfrow verify "), "{}", ended.stderr);
 }
 
 #[test]

@@ -9,11 +9,18 @@ use halfrow_program::line;
 
 use crate::arguments::given::Given;
 
+/// What the program's own help ends in.
+const BEGIN: &str = "\
+To begin:
+  halfrow verify           Judge the mock board
+  halfrow boards --ask     Find your board, then judge it: halfrow verify --board TARGET
+  halfrow explain CODE     See what a word of a result means, and what to do";
+
 /// Judges a board that straightens fisheye Bayer video, bit for bit.
 ///
 /// Without a board, `halfrow verify` judges the built-in mock board.
 #[derive(Debug, Parser)]
-#[command(name = "halfrow", version = halfrow::VERSION, propagate_version = true, max_term_width = 100)]
+#[command(name = "halfrow", version = halfrow::VERSION, propagate_version = true, max_term_width = 100, after_help = BEGIN)]
 pub(super) struct Line<Commands: Subcommand> {
     #[command(flatten)]
     pub(super) given: Given,
