@@ -29,9 +29,9 @@ pub enum Doubt {
 }
 
 impl Doubt {
-    /// The doubt as a clause after "because".
+    /// The doubt as a clause after "because" or "since".
     #[must_use]
-    pub fn sentence(self) -> String {
+    pub fn clause(self) -> String {
         wording::because(self)
     }
 }
