@@ -62,6 +62,7 @@ pub use link::{LinkReport, Reconnection};
 pub use not_exercised::NotExercised;
 pub use problem::{Parameters, Problem};
 pub use rule::{Answer, NumberedRow, RepeatedRow, Rule};
+pub(crate) use sha256::little_endian;
 pub use sha256::sha256;
 pub use soak::{SoakChart, SoakDifference, SoakInterval, SoakLength, SoakReport};
 pub use suspect::{Account, Suspect};

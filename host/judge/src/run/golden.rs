@@ -4,9 +4,9 @@ use halfrow_model::{
     BitDepth, CorrectError, Equidistant, Frame, Geometry, Interpolant, Kernel, Phase, TableSet,
 };
 
-use super::prepared::little_endian;
 use crate::compare::{Comparison, Difference};
 use crate::reference::correct;
+use crate::result::little_endian;
 
 /// A corrected row computed by another program: W = 64, H = 1, B = 12, C = 63.
 struct GoldenRow {

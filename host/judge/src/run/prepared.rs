@@ -10,7 +10,7 @@ use super::plan::{Generation, Plan, ScheduledFrame, Segment};
 use super::threads::{self, NoThread};
 use crate::board::NumberedFrame;
 use crate::reference::correct;
-use crate::result::sha256;
+use crate::result::{little_endian, sha256};
 
 /// A frame that is ready to be sent, with the frame that must come back.
 pub(super) struct Prepared {
@@ -91,9 +91,4 @@ impl Prepared {
     pub(super) fn numbered(&self) -> NumberedFrame {
         NumberedFrame { number: self.number, frame: Arc::clone(&self.input) }
     }
-}
-
-/// The samples as bytes, little endian.
-pub(super) fn little_endian(samples: &[u16]) -> Vec<u8> {
-    samples.iter().map(|sample| sample.to_le_bytes()).collect::<Vec<_>>().into_flattened()
 }

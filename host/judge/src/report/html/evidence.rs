@@ -10,7 +10,7 @@ use super::charts;
 use super::facts::{mark, pair};
 use crate::report::pictures::{self, Picture, Window};
 use crate::report::wording;
-use crate::result::{Evidence, FrameReport, Report, sha256};
+use crate::result::{Evidence, FrameReport, Report, little_endian, sha256};
 use crate::verdict::Verdict;
 use crate::words::{count, grouped, percent};
 
@@ -161,11 +161,6 @@ fn summary(frame: &FrameReport, kept: &Evidence) -> Markup {
             (pair("SHA-256 of those that came out", sha256(kept.found.rows().map(little_endian))))
         }
     }
-}
-
-/// The samples as bytes, like in the hash of what went in.
-fn little_endian(samples: &[u16]) -> Vec<u8> {
-    samples.iter().map(|sample| sample.to_le_bytes()).collect::<Vec<_>>().into_flattened()
 }
 
 fn preview(picture: Option<&Picture>, caption: &str) -> Markup {
