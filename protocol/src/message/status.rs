@@ -66,3 +66,11 @@ status! {
     /// The largest first or last latency of any row, in pixel clocks.
     most_latency,
 }
+
+impl Status {
+    /// Packets that came damaged, in whichever way.
+    #[must_use]
+    pub const fn damaged(&self) -> u32 {
+        self.crc_errors.saturating_add(self.framing_errors)
+    }
+}

@@ -63,7 +63,7 @@ fn the_board_counts_what_reached_it_damaged() {
     answer(&mut wire, &conversation());
     let status = status(&mut wire);
     // A new session clears the counters, so HELLO itself is not counted: nine requests and STATUS are.
-    assert_eq!((status.packets, status.crc_errors + status.framing_errors), (10, 1));
+    assert_eq!((status.packets, status.damaged()), (10, 1));
 }
 
 #[test]

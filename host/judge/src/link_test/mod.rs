@@ -89,8 +89,7 @@ impl Test<'_> {
 
     /// Packets that reached the board damaged in this session.
     fn damaged_out(&mut self) -> Result<u64, BoardError> {
-        let status = self.board.status(false)?;
-        Ok(u64::from(status.crc_errors) + u64::from(status.framing_errors))
+        Ok(self.board.status(false)?.damaged().into())
     }
 
     fn round_trips(&mut self) -> Result<RoundTrips, BoardError> {

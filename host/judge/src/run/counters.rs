@@ -39,13 +39,13 @@ impl Run<'_> {
         if let Some(finding) = &seen.wrong_pauses {
             return Err(miscounted(finding.clone()));
         }
-        let damaged_unseen = if self.board.tally().retries == 0 { damaged(status) } else { 0 };
+        let damaged_unseen = if self.board.tally().retries == 0 { status.damaged() } else { 0 };
         Ok(Finding::CountersRight { rows, damaged_unseen })
     }
 
     /// Whether nothing was lost or late, as seen by the host and by the board.
     fn is_calm(&self, status: &Status) -> bool {
-        self.saw_no_trouble() && damaged(status) == 0 && self.board.had_each_packet_once(status)
+        self.saw_no_trouble() && status.damaged() == 0 && self.board.had_each_packet_once(status)
     }
 
     fn saw_no_trouble(&self) -> bool {
@@ -91,11 +91,6 @@ pub(super) fn rows_numbered(status: &Status, counted: u32) -> Result<(), End> {
         return Ok(());
     }
     Err(miscounted(Finding::CounterWrong { counter: Counter::RowsNumbered, counted, right, rule: None }))
-}
-
-/// How many packets the board counts as damaged.
-pub(super) fn damaged(status: &Status) -> u32 {
-    status.crc_errors.saturating_add(status.framing_errors)
 }
 
 fn latencies_counted(status: &Status, seen: &Seen) -> Result<(), End> {

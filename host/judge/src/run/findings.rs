@@ -255,6 +255,6 @@ impl Findings {
     }
 
     pub(super) fn note_status(&mut self, status: &Status) {
-        self.link.damaged_out = u64::from(status.crc_errors) + u64::from(status.framing_errors);
+        self.link.damaged_out = status.damaged().into();
     }
 }

@@ -76,7 +76,7 @@ impl Run<'_> {
         let whole = echoed
             && is_calm(before, self.board.tally())
             && self.board.had_each_packet_once(&status)
-            && [status.crc_errors, status.framing_errors, status.foreign_packets] == [0; 3];
+            && [status.damaged(), status.foreign_packets] == [0; 2];
         let row_number = row.place.row;
         let swallowed = whole && was_taken(&status, first_row, &row) && is_withheld(&status, &row);
         Ok(if swallowed { Replay::Swallowed { row: row_number } } else { Replay::Troubled })

@@ -195,8 +195,7 @@ impl Rules<'_, '_> {
             self.right += 1;
             return Ok(());
         }
-        let counted = |status: &Status| status.crc_errors.saturating_add(status.framing_errors);
-        if counted(&after).saturating_sub(counted(&before)) < sent.iter().sum() {
+        if after.damaged().saturating_sub(before.damaged()) < sent.iter().sum() {
             return Err(of_rows(Rule::Banks, BoardError::RowMissing { place: kept.place(0), attempts: 1 }));
         }
         Err(miscounted(Some(Rule::Damage), Counter::NextRowOut, after.next_row_out, kept.first))

@@ -7,7 +7,6 @@ use super::without_effect::others;
 use super::{Refusals, Rules, miscounted, of_board, of_rows};
 use crate::board::{Given, Said, Status};
 use crate::result::{Counter, Finding, Rule};
-use crate::run::counters::damaged;
 use crate::run::findings::End;
 
 /// Rows of a frame whose first row is asked for again: the second one pushes it out.
@@ -133,7 +132,7 @@ impl Rules<'_, '_> {
         of_new_rows?;
         let board = &self.run.board;
         let is_calm =
-            damaged(status) == 0 && board.had_each_packet_once(status) && board.sent_nothing_again();
+            status.damaged() == 0 && board.had_each_packet_once(status) && board.sent_nothing_again();
         if !is_calm {
             return Ok(());
         }
