@@ -32,29 +32,29 @@ fn altered_once(
     })
 }
 
-#[test]
-fn a_frame_that_was_wrong_at_speed_fails_though_no_record_comes_after_it() {
-    // One record: 18 bytes, which begin with its signature, after the packet's own fields, the last of which is the count of
-    // records.
-    let first_alone = |payload: &mut Vec<u8>| {
+/// The report on a board whose first record is altered in this byte, and no other record comes.
+fn altered_record(byte: usize) -> Report {
+    // A record has 18 bytes. The packet's own fields before it have ten, the last of which is the count of records.
+    let first_alone = move |payload: &mut Vec<u8>| {
         payload.truncate(28);
         payload[9] = 1;
-        payload[10] ^= 1;
+        payload[10 + byte] ^= 1;
     };
-    let report = altered_once(Kind::Records, 0, first_alone, Kind::Records);
+    altered_once(Kind::Records, 0, first_alone, Kind::Records)
+}
+
+/// A record begins with its signature.
+#[test]
+fn a_frame_that_was_wrong_at_speed_fails_though_no_record_comes_after_it() {
+    let report = altered_record(0);
     assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
     assert!(report.headline().contains("differs at speed"), "{}", report.headline());
 }
 
-/// The same record, right in its signature, with another count of samples behind that.
+/// Behind its signature stands the count of samples.
 #[test]
 fn a_count_that_was_wrong_at_speed_fails_though_no_record_comes_behind_it() {
-    let first_alone = |payload: &mut Vec<u8>| {
-        payload.truncate(28);
-        payload[9] = 1;
-        payload[14] ^= 1;
-    };
-    let report = altered_once(Kind::Records, 0, first_alone, Kind::Records);
+    let report = altered_record(4);
     let is_told =
         matches!(report.finding, Finding::MiscountedAtSpeed { count: BurstCount::Samples, frame: 0, .. });
     assert!(report.verdict() == Verdict::Fail && is_told, "{}", report.headline());
