@@ -53,22 +53,19 @@ pub enum CorrectError {
 /// May panic when the row has no such column.
 #[must_use]
 pub fn source(geometry: &Geometry, row_factor: RowFactor, column: usize) -> Source {
-    source_by_entry(geometry, row_factor.get(), column)
+    source_by_entry(geometry.centre2(), row_factor.get(), column)
 }
 
-/// The arithmetic of [`source`] for any word in place of Q: what a board makes of an entry that it misreads. Above 2^24 the
-/// source may lie outside the row.
-///
-/// # Panics
-/// May panic when the row has no column `column`.
+/// The arithmetic of [`source`] for any words in place of C and Q: what a board makes of a centre and an entry that it misreads.
+/// With C above 2W − 2 or Q above 2^24 the source may lie outside the row.
 #[must_use]
-pub fn source_by_entry(geometry: &Geometry, entry: u32, column: usize) -> Source {
-    locate(rounded(row_start(geometry, entry) + 2 * column as i64 * i64::from(entry)), column)
+pub fn source_by_entry(centre2: u32, entry: u32, column: usize) -> Source {
+    locate(rounded(row_start(centre2, entry) + 2 * column as i64 * i64::from(entry)), column)
 }
 
 /// S[0] = C · (2^24 − Q), in units of 2^-25 pixel.
-fn row_start(geometry: &Geometry, entry: u32) -> i64 {
-    i64::from(geometry.centre2()) * (i64::from(RowFactor::ONE.get()) - i64::from(entry))
+fn row_start(centre2: u32, entry: u32) -> i64 {
+    i64::from(centre2) * (i64::from(RowFactor::ONE.get()) - i64::from(entry))
 }
 
 /// q: S in units of 2^-25 pixel, rounded to 2^-13.
@@ -119,7 +116,7 @@ pub fn correct_row(
     row: &[u16],
     output: &mut [u16],
 ) {
-    let mut coordinate = row_start(geometry, row_factor.get());
+    let mut coordinate = row_start(geometry.centre2(), row_factor.get());
     let source = |column| {
         let source = locate(rounded(coordinate), column);
         coordinate += 2 * i64::from(row_factor.get());
@@ -173,7 +170,7 @@ pub fn correct(tables: &TableSet, kernel: &Kernel, frame: &Frame) -> Result<Fram
         match tables.stored() {
             Entries::Rows(row_factors) => correct_row(geometry, row_factors[index], kernel, row, output),
             Entries::Grid(grid) => {
-                grid.values(geometry, index, &mut values);
+                grid.values(geometry.centre2(), index, &mut values);
                 correct_row_of_values(geometry, &values, kernel, row, output);
             }
         }

@@ -23,7 +23,7 @@ impl TableSet {
             Entries::Grid(grid) => {
                 let mut values = RowValues::default();
                 (0..self.geometry().height()).try_for_each(|row| {
-                    grid.values(self.geometry(), row, &mut values);
+                    grid.values(self.geometry().centre2(), row, &mut values);
                     self.check_row(row, self.ends_of_values(row, &values)?, ring)
                 })
             }

@@ -261,19 +261,18 @@ impl TableSet {
     /// The values of row `row`, if the frame has this row.
     #[must_use]
     pub fn values(&self, row: usize) -> Option<RowValues> {
-        self.values_about(&self.geometry, row)
+        self.values_about(self.geometry.centre2(), row)
     }
 
-    /// The same about the optical centre of `geometry`, another one for frames as wide; none if they are not.
+    /// The same about the column `centre2` / 2, of whatever optical centre a board has. It may lie beyond the row.
     #[must_use]
-    pub fn values_about(&self, geometry: &Geometry, row: usize) -> Option<RowValues> {
-        if geometry.width() != self.geometry.width() {
-            return None;
-        }
+    pub fn values_about(&self, centre2: u32, row: usize) -> Option<RowValues> {
         let mut values = RowValues::default();
         match &self.entries {
-            Entries::Rows(row_factors) => values.take_factor(geometry, *row_factors.get(row)?),
-            Entries::Grid(grid) if row < self.geometry.height() => grid.values(geometry, row, &mut values),
+            Entries::Rows(row_factors) => {
+                values.take_factor(&self.geometry, centre2, *row_factors.get(row)?);
+            }
+            Entries::Grid(grid) if row < self.geometry.height() => grid.values(centre2, row, &mut values),
             Entries::Grid(_) => return None,
         }
         Some(values)

@@ -40,6 +40,11 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",fault=stuck-centre,bit=10,value=1",
         "the setting of the optical centre, bit 10, stuck at 1",
     ),
+    fails(
+        "a bit of the centre that leads beyond the row",
+        ",fault=stuck-centre,bit=12,value=1",
+        "the setting of the optical centre, bit 12, stuck at 1",
+    ),
     fails_at_full_size("a pipeline that is too long", ",fault=late", "took 973 pixel clocks"),
     fails_at_full_size("a false claim of latency", ",fault=wrong-latency-claim", "the board claims 973"),
     fails("a lost row", ",fault=lost-row", "row 3 of frame 0 went into the board and never came out"),

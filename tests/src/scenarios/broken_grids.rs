@@ -40,6 +40,11 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
         ",fault=stuck-centre",
         "the setting of the optical centre, bit 3, stuck at 0",
     ),
+    fails(
+        "a bit of the centre that leads beyond the row behind a grid",
+        ",fault=stuck-centre,bit=12,value=1",
+        "the setting of the optical centre, bit 12, stuck at 1",
+    ),
     fails("a pipeline that is too long behind a grid", ",fault=late", "took 109 pixel clocks"),
     fails("a false claim of latency behind a grid", ",fault=wrong-latency-claim", "the board claims 109"),
     fails(

@@ -78,12 +78,12 @@ impl Engine {
         output: &mut [u16],
     ) {
         if let Self::Reference(kernel) = self {
-            grid.values(geometry, index, values);
+            grid.values(geometry.centre2(), index, values);
             correct_row_of_values(geometry, values, kernel, row, output);
             return;
         }
         let nodes = values.nodes_mut();
-        grid.nodes(geometry, index, nodes);
+        grid.nodes(geometry.centre2(), index, nodes);
         self.correct_along(Curve::new(nodes), ends, geometry, [row], [output]);
     }
 

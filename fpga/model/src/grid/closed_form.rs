@@ -105,7 +105,7 @@ fn correct_offsets(geometry: &Geometry, grid: &mut Grid, node: usize, wanted: &[
     let mut values = RowValues::default();
     for _ in 0..CORRECTIONS {
         let misses = wanted.iter().enumerate().map(|(row, wanted)| {
-            grid.values(geometry, row, &mut values);
+            grid.values(geometry.centre2(), row, &mut values);
             8192.0 * (values.coordinate(column) as f64 / f64::from(1 << 28) - wanted)
         });
         let corrections = spline.fitted(misses);
@@ -120,7 +120,7 @@ fn correct_offsets(geometry: &Geometry, grid: &mut Grid, node: usize, wanted: &[
 fn raise_offsets(geometry: &Geometry, grid: &mut Grid) {
     let mut values = RowValues::default();
     for row in 0..geometry.height() {
-        grid.values(geometry, row, &mut values);
+        grid.values(geometry.centre2(), row, &mut values);
         let raise = -rounded(values.coordinate(0));
         if raise > 0 {
             let (first, _) = super::spline(grid.shape, row);

@@ -97,14 +97,14 @@ impl Grid {
         Self { entries: self.entries.iter().map(halved).collect(), ..*self }
     }
 
-    /// Replaces `values` by those of row `row`, which the frame must have.
-    pub(crate) fn values(&self, geometry: &Geometry, row: usize, values: &mut RowValues) {
-        self.nodes(geometry, row, values.nodes_mut());
+    /// Replaces `values` by those of row `row`, which the frame must have, about the column `centre2` / 2.
+    pub(crate) fn values(&self, centre2: u32, row: usize, values: &mut RowValues) {
+        self.nodes(centre2, row, values.nodes_mut());
         values.lay_out();
     }
 
     /// What those values are made of.
-    pub(crate) fn nodes(&self, geometry: &Geometry, row: usize, values: &mut RowNodes) {
+    pub(crate) fn nodes(&self, centre2: u32, row: usize, values: &mut RowNodes) {
         let (first, weights) = spline(self.shape, row);
         let [above, own, below] = weights.map(u64::from);
         let value = |[first, second, third]: [u32; 3]| {
@@ -122,7 +122,7 @@ impl Grid {
         {
             *factor = 8 * (value([upper, middle, lower]) >> 3).min(one >> 3);
         }
-        values.take(geometry, self.shape.k(), offset);
+        values.take(centre2, self.shape.k(), offset);
     }
 }
 

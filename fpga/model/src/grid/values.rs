@@ -37,10 +37,10 @@ impl RowNodes {
         &mut self.factors
     }
 
-    /// Takes the offset `offset`. The factors must already be those of nodes 2^`k` columns apart.
-    pub(crate) fn take(&mut self, geometry: &Geometry, k: u32, offset: i32) {
+    /// Takes the offset `offset` about the column `centre2` / 2. The factors must already be those of nodes 2^`k` columns apart.
+    pub(crate) fn take(&mut self, centre2: u32, k: u32, offset: i32) {
         let short = RowFactor::ONE.get() - self.factors.first().copied().unwrap_or(0);
-        let start = 8 * i64::from(geometry.centre2()) * i64::from(short) + (i64::from(offset) << BELOW);
+        let start = 8 * i64::from(centre2) * i64::from(short) + (i64::from(offset) << BELOW);
         (self.k, self.offset, self.start) = (k, offset, start);
     }
 }
@@ -85,12 +85,12 @@ impl RowValues {
         }));
     }
 
-    /// Takes the single factor of a row.
-    pub(crate) fn take_factor(&mut self, geometry: &Geometry, row_factor: RowFactor) {
+    /// Takes the single factor of a row about the column `centre2` / 2.
+    pub(crate) fn take_factor(&mut self, geometry: &Geometry, centre2: u32, row_factor: RowFactor) {
         let shape = GridShape::FINEST;
         let nodes = shape.segments(geometry) + 1;
         self.nodes.factors_mut(nodes).fill(row_factor.get());
-        self.nodes.take(geometry, shape.k(), 0);
+        self.nodes.take(centre2, shape.k(), 0);
         self.lay_out();
     }
 

@@ -2,7 +2,7 @@
 
 use halfrow_model::{
     BitDepth, Colour, CorrectError, Frame, Geometry, Interpolant, Kernel, NODES, Phase, Source, TableSet,
-    correct, correct_row, source,
+    correct, correct_row, source, source_by_entry,
 };
 use proptest::prelude::*;
 
@@ -41,6 +41,15 @@ fn a_source_is_found_as_by_hand() {
 fn a_source_left_of_an_odd_columns_first_colour_has_its_base_outside() {
     let expected = Source { base: -1, column: 0, node: 48, fraction: 0 };
     assert_eq!(source(&geometry(0), row_factor(ONE / 2), 1), expected);
+}
+
+/// C = 254, Q = 2^23: the source of column 6 is 127 + (6 − 127)/2 = 66.5, in a row of 64 columns.
+#[test]
+fn about_a_centre_beyond_the_row_a_source_is_found_as_by_hand() {
+    let expected = Source { base: 66, column: 66, node: 16, fraction: 0 };
+    assert_eq!(source_by_entry(254, ONE / 2, 6), expected);
+    let tables = TableSet::from_units(geometry(63), &[ONE / 2]).unwrap();
+    assert_eq!(tables.values_about(254, 0).unwrap().source(6), expected);
 }
 
 #[test]

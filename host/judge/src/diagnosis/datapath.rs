@@ -35,15 +35,18 @@ pub(super) enum Stretch {
 }
 
 impl Stretch {
-    /// The stretch of a row by the tables in a frame of `geometry`, if they have the row and are as wide. The values of a grid
-    /// depend on the optical centre that the board has, whichever frames the grid was made for.
+    /// The stretch of a row by the tables in a frame of `geometry`, if they have the row and are as wide.
     pub(super) fn of(tables: &TableSet, geometry: &Geometry, row: usize) -> Option<Self> {
-        if tables.geometry().width() != geometry.width() {
-            return None;
-        }
+        let is_as_wide = tables.geometry().width() == geometry.width();
+        is_as_wide.then(|| Self::about(tables, geometry.centre2(), row)).flatten()
+    }
+
+    /// The stretch of a row by the tables, if they have it. The values of a grid depend on the optical centre that the board
+    /// has, whichever frames the grid was made for.
+    pub(super) fn about(tables: &TableSet, centre2: u32, row: usize) -> Option<Self> {
         match tables.shape() {
             None => tables.row_factor(row).map(|factor| Self::Factor(factor.get())),
-            Some(_) => tables.values_about(geometry, row).map(|values| Self::Grid(Rc::new(values))),
+            Some(_) => tables.values_about(centre2, row).map(|values| Self::Grid(Rc::new(values))),
         }
     }
 }
@@ -53,6 +56,8 @@ impl Stretch {
 pub(super) struct RowTables<'a> {
     /// Size, depth and centre.
     pub(super) geometry: &'a Geometry,
+    /// C as the board has it, which may lie beyond the row.
+    pub(super) centre2: u32,
     /// How far the row is stretched.
     pub(super) stretch: Stretch,
     /// The kernel.
@@ -104,7 +109,8 @@ impl RowTables<'_> {
         let mut output = vec![0; self.geometry.width()];
         match &self.stretch {
             Stretch::Factor(entry) => {
-                let Ok(row_factor) = RowFactor::new(*entry) else { return self.read(input) };
+                let legal = RowFactor::new(*entry).ok().filter(|_| self.centre2 == self.geometry.centre2());
+                let Some(row_factor) = legal else { return self.read(input) };
                 correct_row(self.geometry, row_factor, self.kernel, input, &mut output);
             }
             Stretch::Grid(_) if !self.lies_in_row() => return self.read(input),
@@ -171,7 +177,7 @@ impl RowTables<'_> {
     /// Where the output at a column comes from.
     pub(super) fn source(&self, column: usize) -> Source {
         match &self.stretch {
-            Stretch::Factor(entry) => source_by_entry(self.geometry, *entry, column),
+            Stretch::Factor(entry) => source_by_entry(self.centre2, *entry, column),
             Stretch::Grid(values) => values.source(column),
         }
     }

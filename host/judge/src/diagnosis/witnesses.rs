@@ -57,7 +57,7 @@ impl<'a> Witness<'a> {
         let Uploaded { tables, kernel, .. } = self.uploaded;
         let geometry = tables.geometry();
         let stretch = Stretch::of(tables, geometry, self.row).unwrap_or(Stretch::Factor(0));
-        RowTables { geometry, stretch, kernel }
+        RowTables { geometry, centre2: geometry.centre2(), stretch, kernel }
     }
 
     /// Its position in the run.

@@ -116,7 +116,7 @@ fn matching_factors(seen: &[&Witness<'_>], budget: &mut usize) -> Option<Vec<Ran
 /// The largest factor up to `limit` that takes `column` from the same source as `factor` does. The source moves in one direction
 /// as the factor grows.
 fn last_alike(row: &Witness<'_>, factor: u32, column: usize, limit: u32) -> u32 {
-    let source = |factor| source_by_entry(row.geometry(), factor, column);
+    let source = |factor| source_by_entry(row.geometry().centre2(), factor, column);
     let here = source(factor);
     first_where(factor.into()..i64::from(limit) + 1, |other| source(other as u32) != here) as u32 - 1
 }

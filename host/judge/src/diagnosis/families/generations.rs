@@ -69,7 +69,7 @@ fn tables<'b>(
         Some(generation) => case.uploaded_as(generation)?.kernel,
         None => blank,
     };
-    Some(RowTables { geometry: row.geometry(), stretch, kernel })
+    Some(RowTables { stretch, kernel, ..row.tables() })
 }
 
 fn defect(witnesses: &Witnesses<'_>, frames: BTreeMap<usize, Vec<MadeWith>>) -> Defect {

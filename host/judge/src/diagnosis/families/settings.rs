@@ -22,15 +22,10 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
         .collect()
 }
 
-/// A stuck bit may lead beyond the row, where nothing is foretold.
 fn centre_bit(case: Case<'_>, line: StuckLine) -> Hypothesis<'_> {
     Hypothesis::new(Defect::CentreBitStuck { bit: line.bit, value: line.value() }, move |witness| {
         let own = witness.geometry();
-        let centre2 = line.carry(own.centre2());
-        if centre2 == own.centre2() {
-            return None;
-        }
-        Some(made_by(&case, witness, own.depth(), centre2).unwrap_or_else(Prediction::unknown))
+        made_by(&case, witness, own.depth(), line.carry(own.centre2()))
     })
 }
 
@@ -66,12 +61,12 @@ fn made_for<'a>(case: &Case<'a>, index: usize) -> Option<&'a Geometry> {
 /// The row with these settings; none if they are its own.
 fn made_by(case: &Case<'_>, witness: &Witness<'_>, depth: BitDepth, centre2: u32) -> Option<Prediction> {
     let own = witness.geometry();
-    let geometry = Geometry::new(own.width(), own.height(), depth, centre2).ok()?;
-    if geometry == *own {
+    if (depth, centre2) == (own.depth(), own.centre2()) {
         return None;
     }
+    let geometry = Geometry::new(own.width(), own.height(), depth, own.centre2()).ok()?;
     let Uploaded { tables, kernel, .. } = witness.uploaded;
-    let stretch = Stretch::of(tables, &geometry, witness.row)?;
-    let tables = RowTables { geometry: &geometry, stretch, kernel };
+    let stretch = Stretch::about(tables, centre2, witness.row)?;
+    let tables = RowTables { geometry: &geometry, centre2, stretch, kernel };
     Some(Prediction::partly(tables.corrected(witness.samples()), tables.foretold(case.ring)))
 }
