@@ -198,7 +198,12 @@ fn samples_beyond_their_depth_are_counted() {
     assert!(
         matches!(
             report.finding,
-            Finding::CounterWrong { counter: Counter::SamplesOver, counted: 0, right: 1.. }
+            Finding::CounterWrong {
+                counter: Counter::SamplesOver,
+                counted: 0,
+                right: 1..,
+                rule: Some(Rule::Samples)
+            }
         ),
         "{}",
         report.headline()
