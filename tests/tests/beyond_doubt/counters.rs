@@ -9,7 +9,7 @@ use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_protocol::message::Status;
 use halfrow_protocol::{Kind, Reply};
-use halfrow_tests::altered::{Altered, judge_each};
+use halfrow_tests::altered::{Altered, Toward, judge, judge_each};
 use halfrow_tests::system::System;
 
 use crate::conduct::{fails, passes};
@@ -92,6 +92,29 @@ fn counters_that_are_not_compared_are_told_of_a_board_that_passes() {
     assert!(!is_told(|_| {}));
     assert!(is_told(|status| status.packets += 1000));
     assert!(is_told(|status| (status.crc_errors, status.rows_repeated) = (1, status.rows_repeated + 3)));
+}
+
+/// An acknowledgement is lost and a row reaches the board twice, so that it counts as many packets as were sent. A row that comes
+/// back twice says that the link does such things.
+#[test]
+fn a_link_that_is_seen_to_double_may_have_doubled_a_row_that_the_board_counts() {
+    let [mut acknowledged, mut given, mut came] = [0; 3];
+    let report = judge(&System::TINY, move |toward, packet| {
+        let is_second = |count: &mut u32, of, kind| {
+            let is_such = toward == of && packet.is(kind);
+            *count += u32::from(is_such);
+            is_such && *count == 2
+        };
+        if is_second(&mut acknowledged, Toward::Board, Kind::RowAck) {
+            return Vec::new();
+        }
+        let is_doubled = is_second(&mut given, Toward::Board, Kind::RowIn);
+        if is_doubled || is_second(&mut came, Toward::Host, Kind::RowOut) {
+            return vec![packet.clone(), packet];
+        }
+        vec![packet]
+    });
+    passes(&report);
 }
 
 /// Each row that a board took, each that it did not need and each refusal came in a packet of its own, over whatever link.

@@ -337,6 +337,32 @@ fn a_time_limit_counts_on_behind_an_outage() {
 }
 
 #[test]
+fn a_time_limit_counts_on_behind_two_outages() {
+    let plan = streamed(System::TINY.plan());
+    let judged = |timeout, candidate| {
+        let options = RunOptions { timeout, reconnect: Some(LIMIT), ..RunOptions::default() };
+        verify(&plan, candidate, &options, &Silent).unwrap().report
+    };
+    let sound = Duration::from_secs_f64(judged(None, open(SLOW)).link.seconds);
+    let twice = || {
+        let mut times = 0;
+        let reopen = move || {
+            times += 1;
+            Ok(if times == 1 { unplugged_after(sound / 3) } else { open(SLOW) }.link)
+        };
+        Candidate { reopen: Some(Box::new(reopen)), ..unplugged_after(sound / 3) }
+    };
+    let back = judged(None, twice());
+    assert_eq!((back.verdict(), back.link.reconnections.len()), (Verdict::Pass, 2), "{}", back.headline());
+    assert!(back.link.seconds > sound.mul_f64(1.6).as_secs_f64(), "{:?}", back.link);
+    // The last link alone and either of those before take less.
+    let late = judged(Some(sound.mul_f64(1.5)), twice());
+    assert_eq!((late.verdict(), late.cause), (Verdict::Error, Cause::Station), "{}", late.headline());
+    assert!(late.headline().contains("within its time limit"), "{}", late.headline());
+    assert_eq!(late.link.reconnections.len(), 2);
+}
+
+#[test]
 fn what_went_over_a_link_that_broke_for_good_counts_once() {
     let sent = |reconnect| {
         let away = || Err(std::io::Error::other("away").into());

@@ -4,7 +4,7 @@ use halfrow::result::{Answer, CheckName, Counter, Finding, Report, Rule};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_protocol::message::{Refusal, RefusalCode, Reset, ResetLevel, Status};
-use halfrow_protocol::{Kind, Packet, Reply, Request};
+use halfrow_protocol::{Header, Kind, Packet, Reply, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{failed_check, judge_by_plan, open};
 
@@ -185,6 +185,41 @@ fn another_host_may_take_a_board_whose_session_is_closed() {
             _ => {}
         }
         vec![packet]
+    };
+    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
+}
+
+/// The bytes of a request's payload.
+fn payload(request: &Request<'_>) -> Vec<u8> {
+    let mut payload = Vec::new();
+    request.write(&mut payload);
+    payload
+}
+
+/// It has neither session nor tables any more, and is the other host's at once.
+#[test]
+fn a_board_that_loses_its_power_while_another_host_asks_for_it_is_asked_again() {
+    const NOBODYS: u16 = 0x4242;
+    let (mut own, mut session, mut is_lost) = (None, 0, false);
+    let altered = move |toward, packet: Passing| {
+        if toward == Toward::Host {
+            return Vec::from_iter((packet.header.sequence != NOBODYS).then_some(packet));
+        }
+        let Some((_, host)) = greeting(&packet) else {
+            session = packet.header.session;
+            return vec![packet];
+        };
+        if *own.get_or_insert(host) == host || std::mem::replace(&mut is_lost, true) {
+            return vec![packet];
+        }
+        let resets = [ResetLevel::Tables, ResetLevel::Session].map(|level| {
+            let reset = Request::Reset(Reset { level, next_row: 0 });
+            let header =
+                Header { kind: reset.kind().code(), sequence: NOBODYS, session, ..Header::default() };
+            Passing { header, payload: payload(&reset) }
+        });
+        resets.into_iter().chain([packet]).collect()
     };
     let report = judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate());
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
