@@ -3,7 +3,7 @@
 use halfrow::result::Suspect;
 use halfrow_model::Interpolant;
 
-use crate::bench::{Bench, assert_named, fault, is_told, narrow, wide};
+use crate::bench::{Bench, Seen, WHITE, assert_named, fault, is_told, narrow, wide};
 
 #[test]
 fn a_bit_of_a_rows_factor_is_named() {
@@ -101,5 +101,31 @@ fn low_bits_of_a_rows_factor_are_among_the_suspects_or_invisible() {
             let unsure = !others.is_empty() && first.evidence().contains("not certain");
             assert!(is_told(first, &place) && others.is_empty() || unsure, "bit {bit}: {suspects:#?}");
         }
+    }
+}
+
+/// The frames of a sound board up to `first`, and of one with this fault from there on, all of them kept.
+fn setting_in(bench: &Bench, text: &str, first: usize) -> Seen {
+    let faulty = bench.play(Some(fault(text)));
+    let mut seen = bench.play(None);
+    seen.frames.truncate(first);
+    seen.frames.extend(faulty.frames.into_iter().skip(first));
+    seen.evidence = faulty.evidence.into_iter().filter(|evidence| evidence.index >= first).collect();
+    seen.keep_all(bench.sound_frames());
+    seen
+}
+
+/// One sample of white frames and later ones differs. A data bit of the table that is stuck gives it too, but would have changed
+/// rows of the frames before.
+#[test]
+fn what_would_have_changed_earlier_rows_is_no_suspect_beside_what_explains_all() {
+    let bench = Bench::new(64, 16, 40.0, 2048, Interpolant::Hermite);
+    for (row, bit) in [(4, 1), (4, 2), (6, 2), (14, 3)] {
+        let seen = setting_in(&bench, &format!("row-factor,row={row},bit={bit},hidden=true"), WHITE);
+        let suspects = bench.judge(&seen);
+        assert_eq!(suspects.len(), 1, "{suspects:#?}");
+        assert!(is_told(&suspects[0], &format!("row {row}'s factor, bit {bit}")), "{suspects:#?}");
+        assert!(!suspects[0].evidence().contains("not certain"), "{suspects:#?}");
+        assert!(!suspects[0].evidence().contains("began during the run"), "{suspects:#?}");
     }
 }
