@@ -2,13 +2,16 @@
 
 use std::time::Duration;
 
+use halfrow::link::Candidate;
 use halfrow::result::Report;
+use halfrow::run::Plan;
 use halfrow::verdict::Verdict;
 use halfrow_protocol::Kind;
 use halfrow_tests::altered::{Toward, judge};
 use halfrow_tests::proxy::{Proxy, Suffers};
 use halfrow_tests::served::Served;
-use halfrow_tests::system::System;
+use halfrow_tests::system::{System, judge_by_plan, open, streamed};
+use halfrow_tests::through::Through;
 
 /// A system on which such a link once led to a false FAIL.
 const SEEN: System = System { width: 128, height: 72, radius: 73.78, board: "mock", ring: 2048 };
@@ -81,4 +84,33 @@ fn a_link_that_holds_each_count_back_comes_to_an_end() {
         }
     });
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
+}
+
+/// The report by `plan` over a link that takes nothing for 3 s of its own clock, once `before` bytes have gone to the board.
+fn taking_nothing_after(before: usize, plan: &Plan) -> Report {
+    let candidate = open("mock");
+    let (mut sent, mut until) = (0, None);
+    let link = Through::boxed(candidate.link, move |link, out, back, wait| {
+        if sent >= before && link.now() < *until.get_or_insert(link.now() + STALL) {
+            link.exchange(&[], back, wait)?;
+            return Ok(0);
+        }
+        let taken = link.exchange(out, back, wait)?;
+        sent += taken;
+        Ok(taken)
+    });
+    judge_by_plan(plan, Candidate { link, ..candidate })
+}
+
+/// In the echoes, in the tables and in the rules; and among rows of which more than the host keeps ready wait.
+#[test]
+fn what_a_link_has_not_taken_yet_is_not_sent_again() {
+    let wide = streamed(System { width: 1920, height: 16, radius: 1106.7, ..SEEN }.plan());
+    let tiny = System::TINY.plan();
+    for (before, plan) in [(1000, &tiny), (10_000, &tiny), (200_000, &tiny), (100_000, &wide)] {
+        let report = taking_nothing_after(before, plan);
+        passes(&report, &format!("{before} bytes"));
+        assert!(report.link.seconds > STALL.as_secs_f64(), "{before} bytes: {:?}", report.link);
+        assert_eq!((report.link.retries, report.link.strays), (0, 0), "{before} bytes: {:?}", report.link);
+    }
 }

@@ -40,12 +40,14 @@ impl Conversation {
         self.session.asked.note_request(asking, sequence, begun);
         let mut attempt = 0;
         while attempt < attempts {
-            if attempt > 0 {
+            // While something waits to be taken by the link, the board cannot have the request.
+            let is_sent = attempt == 0 || self.queued() == 0;
+            if is_sent && attempt > 0 {
                 tracing::info!("{kind} was not answered; asking again");
                 self.session.repeated_changes += u64::from(self.session.asked.note_repeat());
                 self.count_retry()?;
             }
-            if attempt == 0 || self.queued() == 0 {
+            if is_sent {
                 self.queue_packet(kind, sequence, |payload| asking.write(payload));
             }
             // The reply may be as long as the longest packet, or follow one of an earlier session.

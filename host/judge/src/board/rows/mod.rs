@@ -275,11 +275,11 @@ impl<'a> Stream<'a> {
         if self.attempts == self.most {
             return Err(BoardError::RowMissing { place, attempts: self.attempts });
         }
-        tracing::info!("row {} of frame {} is missing; sending it again", place.row, place.frame);
-        self.conversation.count_retry()?;
         self.attempts += 1;
         self.progress_at = self.conversation.waited;
         if self.conversation.queued() < QUEUE {
+            tracing::info!("row {} of frame {} is missing; sending it again", place.row, place.frame);
+            self.conversation.count_retry()?;
             self.send(missing);
             // A row leaves the core while its successor enters, so the successor may be the one that was lost.
             if missing + 1 < self.sent {
