@@ -43,7 +43,7 @@ async fn metrics(State(app): State<App>, visit: Visit, headers: HeaderMap) -> Re
 const BUILD: Metric = Metric {
     name: "halfrow_build",
     kind: Kind::Info,
-    help: "The program's version, with the commit that it was built of.",
+    help: "The program's version, with the commit that it was built from.",
 };
 
 /// Writes runs by verdict, units, and units that passed at first, as these three metrics; `labels` are those of a cell.

@@ -14,48 +14,45 @@ const PLANT: Metric = Metric { name: "halfrow_plant", kind: Kind::Info, help: "T
 const UP: Metric = Metric {
     name: "halfrow_plant_up",
     kind: Kind::Gauge,
-    help: "1 when the plant's database was there and is of this program's version, 0 when all else is missing here.",
+    help: "1 if the plant's database is reachable and has this program's version, 0 if all other figures are missing here.",
 };
 const VERSION: Metric = Metric {
     name: "halfrow_plant_schema_version",
     kind: Kind::Gauge,
     help: "The version of the plant's tables.",
 };
-const RUNS: Metric = Metric {
-    name: "halfrow_plant_runs",
-    kind: Kind::Counter,
-    help: "Runs that are over, all that the plant holds.",
-};
+const RUNS: Metric =
+    Metric { name: "halfrow_plant_runs", kind: Kind::Counter, help: "Finished runs at the plant." };
 const UNITS: Metric = Metric {
     name: "halfrow_plant_units_judged",
     kind: Kind::Gauge,
-    help: "Units that were judged first at the station, all that the plant holds.",
+    help: "Units at the plant that were first judged at the station.",
 };
 const FIRST: Metric = Metric {
     name: "halfrow_plant_units_first_passed",
     kind: Kind::Gauge,
-    help: "Those of them whose first judgement is PASS.",
+    help: "Judged units whose first judgement is PASS.",
 };
 const SEEN: Metric = Metric {
     name: "halfrow_plant_station_seen_timestamp_seconds",
     kind: Kind::Gauge,
-    help: "When the station was last heard of, by the plant's clock; it says something each half minute.",
+    help: "When the station was last heard from, by the plant's clock; it reports every half minute.",
 };
 const UNSENT: Metric = Metric {
     name: "halfrow_plant_station_unsent_entries",
     kind: Kind::Gauge,
-    help: "What the plant does not have of the station yet, as the station said last.",
+    help: "Entries that the plant does not have from the station yet, as the station last reported.",
 };
 const DEAD: Metric = Metric {
     name: "halfrow_plant_station_dead_letters",
     kind: Kind::Gauge,
-    help: "What of it waits for a person.",
+    help: "Entries among these that wait for a person.",
 };
 
 const MISMATCHES: Metric = Metric {
     name: "halfrow_plant_device_mismatches",
     kind: Kind::Gauge,
-    help: "Devices and units that a station takes for one and the plant does not, since another one bound them first.",
+    help: "Devices and units that are bound to each other at a station but not at the plant.",
 };
 
 /// What the plant holds.

@@ -19,66 +19,66 @@ const STATION: Metric = Metric { name: "halfrow_station", kind: Kind::Info, help
 const WELL: Metric = Metric {
     name: "halfrow_engine_well",
     kind: Kind::Gauge,
-    help: "1 while the engine works, 0 when its thread was not seen to for five seconds.",
+    help: "1 while the engine works, 0 once its thread has not responded for five seconds.",
 };
 const READABLE: Metric = Metric {
     name: "halfrow_store_readable",
     kind: Kind::Gauge,
-    help: "1 when the station's store could be read, 0 when what is counted there is missing here.",
+    help: "1 if the station's store could be read, 0 if its figures are missing here.",
 };
 const STATE: Metric = Metric {
     name: "halfrow_lane_state",
     kind: Kind::Gauge,
-    help: "1 for the state that the lane has, 0 for all others.",
+    help: "1 for the lane's present state, 0 for all others.",
 };
 const UNSAVED: Metric = Metric {
     name: "halfrow_unsaved_results",
     kind: Kind::Gauge,
-    help: "Results that could not be saved yet; their lanes take no board.",
+    help: "Results that could not be saved yet; their lanes accept no board.",
 };
 const AWAITS: Metric = Metric {
     name: "halfrow_lane_awaits_plant",
     kind: Kind::Gauge,
-    help: "1 while the lane is UNSAVED though its result is saved: the plant, which must have it, does not yet.",
+    help: "1 while the lane is UNSAVED although its result is saved, because it must reach the plant and has not yet.",
 };
 const KILLS: Metric = Metric {
     name: "halfrow_lane_kills",
     kind: Kind::Counter,
-    help: "Runs whose process had to be killed, since it was silent or took too long; since the start.",
+    help: "Runs since the start whose process had to be killed because it was silent or took too long.",
 };
-const RUNS: Metric = Metric {
-    name: "halfrow_runs",
-    kind: Kind::Counter,
-    help: "Runs that are over, all that the store holds.",
-};
-const UNITS: Metric = Metric {
-    name: "halfrow_units_judged",
-    kind: Kind::Gauge,
-    help: "Units that were judged, all that the store holds.",
-};
+const RUNS: Metric =
+    Metric { name: "halfrow_runs", kind: Kind::Counter, help: "Finished runs in the store." };
+const UNITS: Metric =
+    Metric { name: "halfrow_units_judged", kind: Kind::Gauge, help: "Judged units in the store." };
 const FIRST: Metric = Metric {
     name: "halfrow_units_first_passed",
     kind: Kind::Gauge,
-    help: "Those of them whose first judgement is PASS.",
+    help: "Judged units whose first judgement is PASS.",
 };
 const SECONDS: Metric = Metric {
     name: "halfrow_run_seconds",
     kind: Kind::Histogram,
-    help: "How long runs took; since the start.",
+    help: "How long runs took, since the start.",
 };
 const COMMIT: Metric = Metric {
     name: "halfrow_commit_seconds",
     kind: Kind::Histogram,
-    help: "How long it took from the end of a run until its result was saved and read back; since the start.",
+    help: "Time from the end of a run until its result was saved and read back, since the start.",
 };
-const ENTRIES: Metric =
-    Metric { name: "halfrow_outbox_entries", kind: Kind::Gauge, help: "What the sink does not have yet." };
-const DEAD: Metric =
-    Metric { name: "halfrow_outbox_dead_letters", kind: Kind::Gauge, help: "What of it waits for a person." };
+const ENTRIES: Metric = Metric {
+    name: "halfrow_outbox_entries",
+    kind: Kind::Gauge,
+    help: "Entries that the sink does not have yet.",
+};
+const DEAD: Metric = Metric {
+    name: "halfrow_outbox_dead_letters",
+    kind: Kind::Gauge,
+    help: "Entries among these that wait for a person.",
+};
 const OLDEST: Metric = Metric {
     name: "halfrow_outbox_oldest_seconds",
     kind: Kind::Gauge,
-    help: "How long ago the oldest of it came about; 0 when there is nothing.",
+    help: "Age of the oldest entry that the sink does not have yet; 0 if there is none.",
 };
 
 /// What the store holds.
