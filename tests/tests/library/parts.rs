@@ -241,9 +241,13 @@ fn a_board_that_says_that_it_is_none_is_no_hardware() {
         let options = RunOptions { require_hardware, ..RunOptions::default() };
         verify(&plan(Some(Selection::least())), candidate, &options, &Silent).unwrap().report
     };
-    assert_eq!(judged(BoardNature::Hardware, true).verdict(), Verdict::Pass);
+    let hardware = judged(BoardNature::Hardware, true);
+    assert_eq!(hardware.verdict(), Verdict::Pass);
+    assert!(hardware.not_exercised.contains(&NotExercised::CameraPins {}));
     for (nature, board) in [(BoardNature::Mock, BoardKind::Mock), (BoardNature::Simulation, BoardKind::Sim)] {
-        assert_eq!(judged(nature, false).verdict(), Verdict::Pass);
+        let report = judged(nature, false);
+        assert_eq!(report.verdict(), Verdict::Pass);
+        assert!(!report.not_exercised.contains(&NotExercised::CameraPins {}));
         let report = judged(nature, true);
         assert_eq!((report.verdict(), report.cause), (Verdict::Error, Cause::NothingJudged));
         assert_eq!(report.finding, Finding::HardwareRequired { board });

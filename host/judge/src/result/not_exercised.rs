@@ -89,6 +89,9 @@ pub enum NotExercised {
     CountersOfPoorLinks {},
     /// Whether one board did all of it: the one that came back has no serial number, as the one that went away has none.
     SameBoard {},
+    /// The joints of a physical board's camera connector, and of the pins to the image processor: frames of a run enter and leave
+    /// inside the FPGA.
+    CameraPins {},
     /// Depths of the board that no frame had.
     Depths {
         /// Bits of a sample, each.

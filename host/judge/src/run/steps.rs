@@ -4,6 +4,8 @@ use std::mem;
 use std::sync::mpsc::Receiver;
 use std::thread;
 
+use halfrow_protocol::message::BoardNature;
+
 use super::exercised::not_exercised;
 use super::findings::{During, End, Findings, Look};
 use super::golden::{self, CannotJudge};
@@ -134,11 +136,13 @@ impl Run<'_> {
         let untried = !self.findings.has_passed(CheckName::Rules);
         let records = self.known_bursts().map_or(0, |bursts| u32::from(bursts.records));
         let are_left = !untried && records > MOST_FILLED;
+        let is_physical = self.board.capabilities.nature == BoardNature::Hardware;
         let left = [
             untried.then_some(NotExercised::Rules {}),
             are_left.then_some(NotExercised::FurtherRecords { filled: MOST_FILLED }),
             no_grid.then_some(NotExercised::Grids {}),
             look.is_unknown.then_some(NotExercised::SameBoard {}),
+            is_physical.then_some(NotExercised::CameraPins {}),
             look.leaves_counters_out.then_some(NotExercised::CountersOfPoorLinks {}),
         ];
         let left = left.into_iter().flatten();

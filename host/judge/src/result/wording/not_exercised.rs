@@ -5,6 +5,9 @@ use super::places::{named, numbered};
 use crate::result::NotExercised;
 use crate::words::hertz;
 
+const CAMERA_PINS: &str = "the camera's connector and the pins to the image processor, because frames enter and leave \
+                           inside the FPGA";
+
 /// The part in words, to complete the sentence "not exercised: …".
 #[must_use]
 pub fn not_exercised(part: &NotExercised) -> String {
@@ -45,6 +48,7 @@ pub fn not_exercised(part: &NotExercised) -> String {
         NotExercised::SameBoard {} => {
             "whether the board that came back is the one that went away, because it has no serial number".to_owned()
         }
+        NotExercised::CameraPins {} => CAMERA_PINS.to_owned(),
         NotExercised::Depths { bits } => depths(bits),
     }
 }
