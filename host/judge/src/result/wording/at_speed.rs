@@ -150,6 +150,10 @@ pub(super) fn remedy(finding: &Finding) -> Option<String> {
         Finding::EntryMiscounted { .. } => {
             "Check the board's CRC unit, and the banks that rows wait in where they hold samples that no output reads."
         }
+        Finding::MiscountedAtSpeed { count: BurstCount::LeastLatency | BurstCount::MostLatency, .. } => {
+            "Check how the board counts latency, and whether the output paused for a clock that it does not count as a \
+             pause: its samples are right."
+        }
         Finding::MiscountedAtSpeed { .. } => {
             "Check what the board counts of the frames that it makes: their samples were right."
         }

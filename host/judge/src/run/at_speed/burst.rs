@@ -100,11 +100,6 @@ impl BurstPlan {
         self.mode == BurstMode::Alternating && n % 2 == 1
     }
 
-    /// Whether its rows have the width of `geometry`.
-    pub(super) fn has_width_of(&self, geometry: &Geometry) -> bool {
-        self.samples as usize == geometry.width() * usize::from(self.rows)
-    }
-
     /// Pixel clocks of `frames` frames, including the blanking before another one.
     pub(super) fn clocks_of(&self, frames: u32) -> u64 {
         self.clocks * u64::from(frames)

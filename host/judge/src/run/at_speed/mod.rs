@@ -27,9 +27,7 @@ use super::steps::Run;
 use crate::board::{Bank, Bursts, RowTiming};
 use crate::progress::Step;
 use crate::reference::correct;
-use crate::result::{
-    BurstCount, CheckName, ClockSeen, Corner, EqualAtSpeed, Finding, NoBurst, NotExercised, Outcome, Streamed,
-};
+use crate::result::{CheckName, ClockSeen, Corner, EqualAtSpeed, Finding, NoBurst, NotExercised, Outcome};
 use burst::BurstPlan;
 pub(super) use burst::{USUAL_CLOCK, content};
 pub(super) use price::{clock_hz, most_frames, price_of_corners, price_of_frames};
@@ -140,21 +138,9 @@ impl Run<'_> {
             return Err(self.wrong_at_speed(plan, tables, &watched));
         }
         if let Some(finding) = watched.miscounted {
-            return Err(self.miscounted(finding, plan));
+            return Err(End::failed(CheckName::AtSpeed, finding));
         }
         ended.map(|()| watched)
-    }
-
-    /// The end of a run with a wrong count in the burst `plan`. A wrong latency may occur only at full speed, and
-    /// certainly does if rows of this width were streamed right. Any other wrong count is the counter's own fault.
-    fn miscounted(&self, finding: Finding, plan: &BurstPlan) -> End {
-        use BurstCount::{LeastLatency, MostLatency};
-        let is_late = matches!(finding, Finding::MiscountedAtSpeed { count: LeastLatency | MostLatency, .. });
-        let is_streamed = plan.has_width_of(self.plan.tables.geometry());
-        let streamed = if is_streamed { Streamed::Right } else { Streamed::NotTried };
-        let suspects =
-            if is_late { repeated::at_speed(streamed, None).into_iter().collect() } else { Vec::new() };
-        End::Failed { check: CheckName::AtSpeed, finding, suspects }
     }
 
     /// Judges frames in each corner of the board's settings, and returns the number of corners.

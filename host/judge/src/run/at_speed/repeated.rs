@@ -254,7 +254,7 @@ pub(super) type TrappedRow<'a> = (usize, &'a [u16], &'a [u16]);
 
 /// The suspect that something is wrong at the full pixel clock, with the row that was kept, if any. It depends on what
 /// came back when the same frame was `streamed`: none if that was wrong too.
-pub(super) fn at_speed(streamed: Streamed, kept: Option<TrappedRow<'_>>) -> Option<Suspect> {
+fn at_speed(streamed: Streamed, kept: Option<TrappedRow<'_>>) -> Option<Suspect> {
     let (row, (samples, bits)) = (kept.map(|(row, ..)| row), kept.map(changed).unwrap_or_default());
     let defect = match streamed {
         Streamed::NotTried => Defect::SeenAtSpeed { row, samples, bits },

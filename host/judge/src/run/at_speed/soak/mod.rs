@@ -224,7 +224,7 @@ impl Run<'_> {
         let at = at.unwrap_or_else(|| self.clock());
         let end = match &watched.miscounted {
             _ if !account.wants_more() => return,
-            Some(finding) if watched.wrong == 0 => self.miscounted(finding.clone(), &played.plan),
+            Some(finding) if watched.wrong == 0 => End::failed(CheckName::AtSpeed, finding.clone()),
             _ => self.wrong_at_speed(plan, tables, watched),
         };
         account.keep(played, at, end);
