@@ -30,6 +30,7 @@ mod rules;
 mod second_look;
 mod seen_once;
 mod session_rules;
+mod skipped;
 mod slow_clocks;
 mod soak;
 mod stale_packets;

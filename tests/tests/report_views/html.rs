@@ -1,8 +1,8 @@
 use halfrow::compare::Comparison;
 use halfrow::report;
 use halfrow::result::{
-    Account, BoardKind, BoardReport, CoverageReport, Defect, Evidence, LinkReport, Problem, Reconnection,
-    Report, Suspect,
+    Account, BoardKind, BoardReport, CoverageReport, Defect, Evidence, Finding, LinkReport, Problem,
+    Reconnection, Report, Suspect,
 };
 
 use crate::made;
@@ -56,6 +56,35 @@ fn a_link_s_retries_are_told_with_the_most_that_are_allowed() {
 fn a_pass_lists_what_was_not_exercised() {
     assert!(page(&made::pass(), &[]).contains("<li>samples of 8 or 10 bits</li>"));
     assert!(!page(&made::fail().0, &[]).contains("Not exercised"));
+}
+
+/// What a PASS does not cover belongs to the verdict, and the frame to look at is one that differs.
+#[test]
+fn what_was_not_exercised_and_what_differs_come_first() {
+    let pass = page(&made::pass(), &[]);
+    let place = |page: &str, words: &str| page.find(words).unwrap_or_else(|| panic!("{words}"));
+    assert!(place(&pass, "<h2>Not exercised</h2>") < place(&pass, "<h2>Checks</h2>"));
+    let (mut report, mut evidence) = made::fail();
+    evidence.insert(0, Evidence { index: 0, found: evidence[0].expected.clone(), ..evidence[0].clone() });
+    report.frames[0].number = 1;
+    report.frames[1].number = 2;
+    let page = page(&report, &evidence);
+    assert!(place(&page, "</span> Frame 2: ") < place(&page, "</span> Frame 1: "));
+}
+
+/// A row that the board swallowed is one row, and the others were given up when it was.
+#[test]
+fn a_frame_whose_row_was_swallowed_is_wrong_and_the_rows_behind_it_are_not_called_lost() {
+    let (mut report, mut evidence) = made::fail();
+    report.frames[1].comparison = Comparison { samples: 64 * 7, ..Comparison::new(64, 40) };
+    report.frames[1].rows = 7;
+    evidence[0].found = evidence[0].expected.clone();
+    let number = report.frames[1].number;
+    report.finding = Finding::RowSwallowed { row: 3, frame: number, again: 3 };
+    assert_eq!(report::wording::differences(&report, &report.frames[1]), "not whole");
+    let page = page(&report, &evidence);
+    assert!(page.contains(&format!("FAIL</span> Frame {number}: ")) && !page.contains(">ERROR<"), "{page}");
+    assert!(page.contains("33 rows had not come back when the run ended, and are black"), "{page}");
 }
 
 #[test]

@@ -32,12 +32,12 @@ pub fn render(report: &Report, evidence: &[Evidence]) -> Result<String, Encoding
         (banner(report))
         main {
             (next(report))
+            (facts::not_exercised(report))
             section { h2 { "Checks" } (checks(&report.checks)) }
             (facts::frames(report))
             @if let Some(soak) = &report.soak { (soak::section(soak)) }
             (pictures)
             (facts::figures(report))
-            (facts::not_exercised(report))
             @if let Some(within) = &report.within { (within::section(within)) }
             (facts::link(&report.link))
             (facts::board(report))

@@ -285,16 +285,22 @@ pub(crate) fn frame_outcome(report: &Report, frame: &FrameReport) -> Outcome {
     let judged = frame.rows >= frame.comparison.by_row.len() && frame.comparison.samples > 0;
     match (report.verdict(), frame.comparison.differences) {
         (_, 0) if judged => Outcome::Passed,
+        (Verdict::Fail, 0) if is_swallowed(&report.finding, frame) => Outcome::Failed,
         (Verdict::Error, _) | (_, 0) => Outcome::Error,
         (Verdict::Pass | Verdict::Fail, _) => Outcome::Failed,
     }
+}
+
+/// Whether the board took a row of this frame that never came out.
+fn is_swallowed(finding: &Finding, frame: &FrameReport) -> bool {
+    matches!(finding, Finding::RowSwallowed { frame: of, .. } if *of == frame.number)
 }
 
 /// How many samples of a frame differ. `0` is only said of a frame that came back whole.
 #[must_use]
 pub fn differences(report: &Report, frame: &FrameReport) -> String {
     match (frame.comparison.differences, frame_outcome(report, frame)) {
-        (0, Outcome::Error) => "not whole".to_owned(),
+        (0, Outcome::Error | Outcome::Failed) => "not whole".to_owned(),
         (some, _) => grouped(some),
     }
 }

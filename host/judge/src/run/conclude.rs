@@ -47,7 +47,7 @@ pub(super) fn conclude(
     begun: Begun,
 ) -> Finished {
     let ending = ending(&mut findings, end);
-    skip_the_rest(&mut findings.checks);
+    skip_the_rest(&mut findings.checks, plan);
     let street = street(plan, &findings.look.seen);
     let is_pass = ending.cause == Cause::Equal;
     let coverage = if is_pass { coverage(plan, &findings) } else { None };
@@ -152,10 +152,13 @@ fn pass(findings: &Findings) -> Finding {
     }
 }
 
-fn skip_the_rest(checks: &mut Vec<Check>) {
+fn skip_the_rest(checks: &mut Vec<Check>, plan: &Plan) {
     for name in CheckName::ALL {
         if !checks.iter().any(|check| check.name == name) {
-            let finding = Finding::NotReached {};
+            let finding = match name {
+                CheckName::Rules if !plan.tries_rules() => Finding::RulesLeftOut {},
+                _ => Finding::NotReached {},
+            };
             checks.push(Check { name, outcome: Outcome::Skipped, finding, seconds: 0.0 });
         }
     }

@@ -203,6 +203,11 @@ impl Plan {
         source.unwrap_or_else(|| part.to_string())
     }
 
+    /// Whether the rules are tried; a soak never does.
+    pub(super) fn tries_rules(&self) -> bool {
+        self.at_speed.soak().is_none() && self.amount(Part::Rules) > 0
+    }
+
     /// How much of `part` is to be judged; all of it when the plan has no selection.
     pub(super) fn amount(&self, part: Part) -> usize {
         self.parts.as_ref().map_or(usize::MAX, |selection| selection.amount(part))

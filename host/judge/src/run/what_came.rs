@@ -7,7 +7,7 @@ use super::seen::Seen;
 use super::steps::Run;
 use crate::board::Bank;
 use crate::diagnosis::{self, Case, Uploaded};
-use crate::result::{Account, CheckName, Defect, Finding, Suspect};
+use crate::result::{Account, CheckName, Defect, Finding, Outcome, Suspect};
 
 impl Run<'_> {
     /// Judges what was seen, the tables and the counters. The first fault ends the run; further faults are only listed
@@ -34,6 +34,9 @@ impl Run<'_> {
         ];
         for (check, result) in results {
             match result {
+                Some(Ok(unused @ Finding::TablesUnused {})) => {
+                    self.findings.note(check, Outcome::Skipped, unused);
+                }
                 Some(Ok(finding)) => self.findings.passed(check, finding),
                 Some(Err(end)) => ends.push(end),
                 None => {}

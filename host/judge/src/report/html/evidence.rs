@@ -31,8 +31,8 @@ const ZOOM: usize = 8;
 /// The samples that were kept of a frame, and the report on it.
 type Kept<'a> = (&'a Evidence, &'a FrameReport);
 
-/// A section for each frame of `evidence`, in order, as far as there is room. Frames that differ come first when room is
-/// short, and the first ones of these have maps and crops.
+/// A section for each frame of `evidence`, as far as there is room. Frames that differ come first, and the first ones of these
+/// have maps and crops.
 ///
 /// # Errors
 /// The PNG encoder's.
@@ -69,6 +69,7 @@ fn shown(mut known: Vec<Kept<'_>>) -> (Vec<Kept<'_>>, usize) {
         *room -= usize::from(has_room);
         has_room
     });
+    known.sort_by_key(|kept| !differs(kept));
     let left_out = all - known.len();
     (known, left_out)
 }
@@ -135,7 +136,8 @@ fn came_out(frame: &FrameReport) -> String {
     match frame.comparison.by_row.len().saturating_sub(frame.rows) {
         0 => "As the board corrected it".to_owned(),
         missing => {
-            format!("As the board corrected it; {} never came back and are black", count(missing, "row"))
+            let rows = count(missing, "row");
+            format!("As the board corrected it; {rows} had not come back when the run ended, and are black")
         }
     }
 }

@@ -31,7 +31,7 @@ use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Bank, Refusal, RefusalCode, Request, Span, Table};
 
 use super::findings::End;
-use super::parts::{Part, of_height};
+use super::parts::of_height;
 use super::plan::Segment;
 use super::steps::Run;
 use crate::board::{BoardError, Capabilities, Given, RowTiming, Said, Status};
@@ -51,14 +51,9 @@ const TOLD: usize = 32;
 const FIRST_FACTOR: Span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
 
 impl Run<'_> {
-    /// Whether this run tries the rules; a soak never does.
-    pub(super) fn tries_rules(&self) -> bool {
-        self.plan.at_speed.soak().is_none() && self.plan.amount(Part::Rules) > 0
-    }
-
     /// Tries the rules. If the board goes away meanwhile, it is brought back to where it was after `last`.
     pub(super) fn rules(&mut self, last: Option<&Segment>) -> Result<(), End> {
-        if !self.tries_rules() {
+        if !self.plan.tries_rules() {
             self.findings.note(CheckName::Rules, Outcome::Skipped, Finding::RulesLeftOut {});
             return Ok(());
         }
