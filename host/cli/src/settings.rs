@@ -42,8 +42,8 @@ pub struct Settings {
     pub report: Option<PathBuf>,
     /// Whether existing files may be replaced.
     pub overwrite: Option<bool>,
-    /// The longest that a run may take, in seconds: 0 or more, and finite.
-    #[serde(deserialize_with = "seconds")]
+    /// The longest that a run may take, in seconds: more than 0, and finite.
+    #[serde(deserialize_with = "time_limit")]
     pub timeout: Option<f64>,
     /// The share of packets that may be sent again before a link is too poor to judge over, 0 to 100 percent.
     #[serde(deserialize_with = "percent")]
@@ -208,6 +208,14 @@ fn seconds<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D:
         Err(_) => {
             Err(D::Error::custom(format!("{} is no time in seconds, which is 0 or more", Short(seconds))))
         }
+    }
+}
+
+fn time_limit<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    let seconds = f64::deserialize(deserializer)?;
+    match Duration::try_from_secs_f64(seconds) {
+        Ok(limit) if !limit.is_zero() => Ok(Some(seconds)),
+        _ => Err(D::Error::custom(format!("{} is no time in seconds, which is more than 0", Short(seconds)))),
     }
 }
 

@@ -59,6 +59,11 @@ pub(crate) fn seconds(what: &'static str, seconds: Option<f64>) -> PyResult<Opti
     call::seconds(what, seconds).map_err(errors::input)
 }
 
+/// The most time in seconds; `what` is its name in the call.
+pub(crate) fn time_limit(what: &'static str, seconds: Option<f64>) -> PyResult<Option<Duration>> {
+    call::time_limit(what, seconds).map_err(errors::input)
+}
+
 /// The time to judge within.
 pub(crate) fn within(seconds: Option<f64>) -> PyResult<Option<Duration>> {
     let time = |seconds| {

@@ -66,7 +66,7 @@ struct Judged {
 impl Options<'_> {
     /// The run in `recording`, if there is one, else the run that the options describe. `stop` ends it early.
     pub(crate) fn planned(&mut self, recording: Option<&Recording>, stop: Stop) -> PyResult<Planned> {
-        let timeout = choices::seconds("timeout", self.timeout)?;
+        let timeout = choices::time_limit("timeout", self.timeout)?;
         let stop = stop.wall_limit(timeout);
         let Some(recording) = recording else {
             let Judged { plan, files, kernel } = self.plan()?;

@@ -96,7 +96,7 @@ def test_codes_of_runs_are_those_of_the_program(tmp_path, program, monkeypatch):
         (verify(["--reconnect=5", "--record", "y"], reconnect=5, record="y"), "option-without-effect"),
         (verify(["--at-speed=-1"], at_speed=-1), "option-is-no-time"),
         (verify(["--reconnect=-1"], reconnect=-1), "option-is-no-time"),
-        (verify(["--timeout=-1"], timeout=-1), "option-is-no-time"),
+        *((verify([f"--timeout={wrong}"], timeout=float(wrong)), "option-is-no-time") for wrong in (0, -1, "nan", "1e300")),
         *((verify([f"--within={wrong}"], within=float(wrong)), "usage-value-wrong") for wrong in (0, -1, "nan", "1e7")),
         (verify(["--repeat=0"], repeat=0), "usage-value-wrong"),
         (verify(["--retry-limit=101"], retry_limit=101), "usage-value-wrong"),

@@ -241,7 +241,16 @@ fn a_stricter_limit_on_retries_makes_a_link_too_poor() {
 fn limits_that_make_no_sense_are_refused() {
     let folder = Folder::new();
     refused(&folder, &["verify", "--repeat", "0"], "0 is not in 1..=1000");
-    refused(&folder, &["verify", "--timeout=-1"], "--timeout takes a number of seconds");
+    for command in [&["verify"][..], &["soak", "--frames", "3"], &["link"]] {
+        for time in ["-1", "0", "1e-12", "nan", "inf", "1e300"] {
+            let timeout = format!("--timeout={time}");
+            refused(
+                &folder,
+                &[command, &[&timeout]].concat(),
+                "--timeout takes a number of seconds; give more than 0",
+            );
+        }
+    }
     refused(&folder, &["verify", "--timeout=soon"], "invalid value 'soon'");
     refused(&folder, &["verify", "--retry-limit=-1"], "percent");
     refused(&folder, &["verify", "--retry-limit=nan"], "percent");
@@ -253,12 +262,12 @@ fn limits_that_make_no_sense_are_refused() {
 fn the_time_limit_is_also_this_computer_s() {
     let folder = Folder::new();
     assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec"])).code, Some(0));
-    let mock = folder.halfrow(small("verify", &["--timeout", "0"]));
-    let replay = folder.halfrow(["verify", "--board", "replay:run.rec", "--timeout", "0"]);
+    let mock = folder.halfrow(small("verify", &["--timeout", "1e-5"]));
+    let replay = folder.halfrow(["verify", "--board", "replay:run.rec", "--timeout", "1e-5"]);
     for ended in [mock, replay] {
         assert_eq!(ended.code, Some(3), "{}", ended.stdout);
         assert!(
-            ended.stdout.contains("the run did not end within its time limit (--timeout) of 0.0 ms"),
+            ended.stdout.contains("the run did not end within its time limit (--timeout) of 10.0 µs"),
             "{}",
             ended.stdout
         );

@@ -10,7 +10,7 @@ use clap::{Arg, Args};
 use halfrow_mock::Streamed;
 use halfrow_program::number::{any, number};
 
-use super::judging::seconds;
+use super::judging::time_limit;
 use crate::call_error::CallError;
 use crate::commands::Failure;
 use crate::exit::Exit;
@@ -188,7 +188,7 @@ impl BoardArguments {
     }
 
     pub(crate) fn timeout(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
-        seconds("--timeout", self.timeout.or(settings.timeout))
+        time_limit("--timeout", self.timeout.or(settings.timeout))
     }
 
     pub(crate) fn retry_limit(&self, settings: &Settings) -> RetryLimit {

@@ -217,6 +217,11 @@ pub(crate) fn seconds(option: &'static str, seconds: Option<f64>) -> Result<Opti
     call::seconds(option, seconds).map_err(|error| Failure::call(error).in_value_of(option))
 }
 
+/// The most time that `option` gives, in seconds.
+pub(crate) fn time_limit(option: &'static str, seconds: Option<f64>) -> Result<Option<Duration>, Failure> {
+    call::time_limit(option, seconds).map_err(|error| Failure::call(error).in_value_of(option))
+}
+
 /// Writes the report into its folder, if there is one, and prints it.
 pub(crate) fn write_and_tell(
     mut finished: Finished,

@@ -12,6 +12,6 @@ pub use files::{Files, FilesError};
 pub use input::Input;
 pub use options::{
     BESIDE_RECORDING, FRAMES, NoTime, REPEATS, VoidOption, Voided, WHILE_RECORDED, WITHIN, WITHIN_TAKES,
-    seconds, within,
+    seconds, time_limit, within,
 };
 pub use size::{FrameOfOtherSize, check_size};

@@ -32,10 +32,12 @@ pub struct VoidOption {
 
 /// A number of seconds that is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("{option} takes a number of seconds; give 0 or more")]
+#[error("{option} takes a number of seconds; give {}", if *.is_limit { "more than 0" } else { "0 or more" })]
 pub struct NoTime {
     /// The option, as the caller names it.
     pub option: &'static str,
+    /// Whether it limits the time of something that takes some.
+    pub is_limit: bool,
 }
 
 /// Options that have no effect because something else decides in their place.
@@ -106,7 +108,17 @@ impl Voided {
 /// # Errors
 /// [`NoTime`] when it is below 0, not finite, or beyond all measure.
 pub fn seconds(option: &'static str, seconds: Option<f64>) -> Result<Option<Duration>, NoTime> {
-    seconds.map(Duration::try_from_secs_f64).transpose().map_err(|_| NoTime { option })
+    let no_time = |_| NoTime { option, is_limit: false };
+    seconds.map(Duration::try_from_secs_f64).transpose().map_err(no_time)
+}
+
+/// The most time that an `option` gives, in seconds.
+///
+/// # Errors
+/// [`NoTime`] when it is no time that anything could end within: not above 0, not finite, or beyond all measure.
+pub fn time_limit(option: &'static str, seconds: Option<f64>) -> Result<Option<Duration>, NoTime> {
+    let limit = |seconds| Duration::try_from_secs_f64(seconds).ok().filter(|limit| !limit.is_zero());
+    seconds.map(|seconds| limit(seconds).ok_or(NoTime { option, is_limit: true })).transpose()
 }
 
 /// `seconds` as a time to judge within; none if it is not what [`WITHIN_TAKES`] asks for.
