@@ -60,13 +60,40 @@ fn a_real_link_is_measured_and_its_board_left_free() {
     }
 }
 
+/// By the limit that a run has: 16 packets, and 5 % of those that were sent.
+#[test]
+fn a_link_is_told_to_be_good_enough_for_a_run_or_too_poor() {
+    let measured = |target: &str| halfrow(["link", "--seconds", "0.5", "--board", target]);
+    for (board, code, verdict) in [
+        ("mock,speed=1200000", 0, "good enough for verify: 0.0 % sent again (0 of "),
+        ("mock,fault=flip,rate=1e-4,speed=300000", 3, "too poor for verify: "),
+    ] {
+        let ended = measured(board);
+        assert_eq!(ended.code, Some(code), "{}{}", ended.stdout, ended.stderr);
+        let last = ended.stdout.lines().last().unwrap();
+        assert!(last.contains(verdict) && last.ends_with("the limit is 5 % and 16"), "{}", ended.stdout);
+    }
+    // A run over either link says the same.
+    let judged = |target: &str| {
+        halfrow([
+            "verify", "--json", "-q", "--width", "640", "--height", "360", "--radius", "368", "--board",
+            target,
+        ])
+    };
+    assert_eq!(judged("mock,speed=1200000").code, Some(0));
+    ends(&judged("mock,fault=flip,rate=1e-4,speed=300000"), 3, "the link is too poor");
+}
+
 #[test]
 fn a_poor_link_is_measured_to_its_end() {
     let poor = "mock,speed=1200000,fault=flip,rate=1e-4";
     ends(&halfrow(["link", "--json", "--retry-limit", "1", "--board", poor]), 3, "the link is too poor");
     let ended = measure(poor);
-    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    let errors = &ended.json()["link"]["errors"];
+    assert_eq!(ended.code, Some(3), "{}", ended.stderr);
+    let said = ended.json();
+    assert_eq!((&said["exit_code"], &said["link"]["too_poor"]), (&3.into(), &true.into()), "{said}");
+    let errors = &said["link"]["errors"];
+    assert!(errors["retries"].as_u64() > said["link"]["retry_limit"].as_u64(), "{said}");
     assert!(
         errors["damaged_out"].as_u64() > Some(20) && errors["damaged_in"].as_u64() > Some(20),
         "{errors}"

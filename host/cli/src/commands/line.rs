@@ -126,7 +126,8 @@ commands! {
     /// Test the link to a board: error rate, round trips, throughput each way and together
     ///
     /// Random bytes go to the board and come back; nothing that the board computes is judged. The board's tables are lost. Exit
-    /// codes: 0 the link was measured, 1 the board itself spoils what it returns, 3 the link broke or is too poor, 4 busy.
+    /// codes: 0 the link is good enough for `verify`, 1 the board itself spoils what it returns, 3 the link broke or is too poor, 4
+    /// busy.
     Link(super::link::Arguments), "link";
     /// Load a bitstream into a board
     ///

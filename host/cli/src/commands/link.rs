@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use clap::Args;
 use halfrow_program::number::seconds;
+use serde::Serialize;
 use serde_json::json;
 
 use super::{Context, Failure, print_or_tell};
@@ -11,9 +12,10 @@ use crate::arguments::board::BoardArguments;
 use crate::document::result_text;
 use crate::exit::Exit;
 use halfrow::board::Board;
-use halfrow::link_test::{self, Figures, LinkTestError, Rate, RoundTrips, Throughput};
+use halfrow::board::deadlines::RetryLimit;
+use halfrow::link_test::{self, Errors, Figures, LinkTestError, Rate, RoundTrips, Throughput};
 use halfrow::result::BoardReport;
-use halfrow::words::count;
+use halfrow::words::{count, grouped};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -39,11 +41,48 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         LinkTestError::Board(error) => error.into(),
         error @ LinkTestError::NoFrame(_) => Failure::error(error),
     })?;
-    let exit = if figures.errors.wrong > 0 { Exit::Fail } else { Exit::Pass };
+    let limit = arguments.board.retry_limit(&context.settings);
+    let (most, too_poor) = judged_over(&figures.errors, limit);
+    let exit = match (figures.errors.wrong, too_poor) {
+        (1.., _) => Exit::Fail,
+        (0, true) => Exit::Error,
+        (0, false) => Exit::Pass,
+    };
     if context.json {
-        return print_or_tell(exit, &result_text("link", exit, Some(&board), json!({ "link": figures }))?);
+        let link = Told { figures: &figures, retry_limit: most, too_poor };
+        return print_or_tell(exit, &result_text("link", exit, Some(&board), json!({ "link": link }))?);
     }
-    print_or_tell(exit, &format!("{:<12} {} ({})\n{}", "board", board.target, board.kind, text(&figures)))
+    let (figures, last) = (text(&figures), enough(&figures.errors, limit));
+    print_or_tell(exit, &format!("{:<12} {} ({})\n{figures}\n{last}", "board", board.target, board.kind))
+}
+
+/// The figures, and whether a board can be judged over such a link.
+#[derive(Serialize)]
+struct Told<'a> {
+    #[serde(flatten)]
+    figures: &'a Figures,
+    /// The most packets that a run of this length may send again.
+    retry_limit: u64,
+    too_poor: bool,
+}
+
+/// The most packets that a run may send again over such a link, and whether this one had to send more.
+fn judged_over(errors: &Errors, limit: RetryLimit) -> (u64, bool) {
+    let most = limit.of(errors.packets_out);
+    (most, errors.retries > most)
+}
+
+/// `too poor for verify: 9.6 % sent again (120 of 1,250), the limit is 5 % and 16`
+fn enough(errors: &Errors, limit: RetryLimit) -> String {
+    let (_, too_poor) = judged_over(errors, limit);
+    let verdict = if too_poor { "too poor for verify" } else { "good enough for verify" };
+    let share = 100.0 * errors.retries as f64 / errors.packets_out.max(1) as f64;
+    let (again, all) = (grouped(errors.retries), grouped(errors.packets_out));
+    let (percent, fixed) = (100.0 * limit.share, limit.fixed);
+    format!(
+        "{:<12} {verdict}: {share:.1} % sent again ({again} of {all}), the limit is {percent} % and {fixed}",
+        "judging"
+    )
 }
 
 fn text(figures: &Figures) -> String {

@@ -32,6 +32,8 @@ pub struct Errors {
     pub packets: u64,
     /// Bytes, both ways.
     pub bytes: u64,
+    /// Packets that were sent, those among them that were sent again.
+    pub packets_out: u64,
     /// Packets that reached the board damaged.
     pub damaged_out: u64,
     /// Packets that reached the host damaged.
@@ -54,6 +56,7 @@ impl Errors {
         let (damaged, all) = ((damaged_out + damaged_in) as f64, packets.max(1) as f64);
         Self {
             packets,
+            packets_out: after.packets_out - before.packets_out,
             bytes: after.bytes_out + after.bytes_in - before.bytes_out - before.bytes_in,
             damaged_out,
             damaged_in,
