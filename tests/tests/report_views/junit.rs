@@ -154,3 +154,29 @@ fn every_case_has_its_time_and_all_of_them_fit_into_the_run() {
     assert!(times.iter().sum::<f64>() <= suite.time.unwrap().as_secs_f64());
     assert!(suite.timestamp.is_some());
 }
+
+/// What `ci/junit.py` makes of a report, which GitHub shows.
+fn shown(report: &Report) -> String {
+    let folder = halfrow_tests::program::Folder::new();
+    folder.write("report.xml", report::junit(report).unwrap());
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../ci/junit.py");
+    let ended = Command::new("python3").arg(script).arg(folder.path().join("report.xml")).output().unwrap();
+    assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+    String::from_utf8(ended.stdout).unwrap()
+}
+
+#[test]
+fn the_table_for_a_ci_stands_below_the_verdict_its_limits_and_what_to_do() {
+    let pass = shown(&made::pass());
+    let (head, table) = pass.split_once("| check |").unwrap_or_else(|| panic!("{pass}"));
+    assert!(head.contains("PASS (mock board: no hardware was tested)"), "{pass}");
+    assert!(head.contains("not exercised: samples of 8 or 10 bits"), "{pass}");
+    assert!(table.contains("| frames | passed |"), "{pass}");
+    let fail = shown(&made::fail().0);
+    let (head, _) = fail.split_once("| check |").unwrap_or_else(|| panic!("{fail}"));
+    assert!(head.starts_with("**FAIL: 5 of 2,076,160 samples differ"), "{fail}");
+    assert!(
+        head.contains("- At the bench: Reload the bitstream") && head.contains("- Next: Check entry 3"),
+        "{fail}"
+    );
+}
