@@ -122,6 +122,7 @@ pub fn facts(report: &Report) -> String {
     });
     facts.extend(report.latency.map(|latency| format!("latency {}", measured(&latency))));
     facts.extend(at_speed(report));
+    facts.extend(report.within.as_ref().map(within::left_out));
     facts.push(format!("{:.1} s", report.run.seconds));
     facts.join(", ")
 }

@@ -116,7 +116,10 @@ fn words() -> impl Iterator<Item = Explanation> {
 /// What to do after a verdict, whatever led to it.
 const fn act(verdict: Verdict) -> &'static str {
     match verdict {
-        Verdict::Pass => "Nothing. The line `limits` names what no frame put to the test.",
+        Verdict::Pass => {
+            "Nothing. The line `limits` names what no frame put to the test. Of a run within a time (--within) the verdict's \
+             line says how many parts were left out, and the lines `within` which."
+        }
         Verdict::Fail => {
             "Do what stands after \"At the bench\", then run again. If the board fails again, set it aside with its report."
         }

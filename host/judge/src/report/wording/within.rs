@@ -1,7 +1,13 @@
 //! Words for a run that had to keep within a time.
 
 use crate::result::{WithinPart, WithinReport};
-use crate::words::{bytes, grouped, plain, span};
+use crate::words::{bytes, count, grouped, plain, span};
+
+/// `within 5.0 s: 16 parts left out`
+pub(super) fn left_out(within: &WithinReport) -> String {
+    let left_out = within.parts.iter().filter(|part| part.taken == 0).count();
+    format!("within {}: {} left out", span(within.seconds), count(left_out, "part"))
+}
 
 /// What was taken of a run that had to keep within a time, what was left out, and what it finds, in one sentence each without
 /// a full stop.
