@@ -48,6 +48,24 @@ fn too_few_seconds_end_with_2_and_the_least_that_this_link_needs() {
     assert!(error["parameters"]["least"].as_f64().unwrap() > 3.0, "{error}");
 }
 
+/// Both verdicts are a PASS, and one of them is of a part of the run.
+#[test]
+fn a_pass_within_a_time_says_how_many_parts_were_left_out() {
+    let folder = Folder::new();
+    let call = ["verify", "-q", "--within", "5", "--board", "mock,speed=300000"];
+    let ended = folder.halfrow(call);
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    let last = ended.stdout.lines().last().unwrap();
+    assert!(last.starts_with("PASS") && last.contains(", within 5.0 s: 16 parts left out, "), "{last}");
+}
+
+#[test]
+fn a_clock_that_is_looked_at_again_is_no_warning() {
+    let folder = Folder::new();
+    let ended = folder.halfrow(small("verify", &["-q", "--board", "mock,fault=wrong-clock-claim"]));
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(1), ""), "{}", ended.stdout);
+}
+
 /// A row of 64 samples takes this board a minute by the clock that it names, but no time on its wire.
 #[test]
 fn a_clock_that_the_board_names_is_not_told_as_the_link_s_or_the_call_s() {

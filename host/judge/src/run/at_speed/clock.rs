@@ -139,7 +139,7 @@ impl Run<'_> {
         if source != PLL || first.allows(clock_hz) {
             return Ok(first);
         }
-        tracing::warn!(
+        tracing::info!(
             "the board names a pixel clock of {clock_hz} Hz, and {}; looking again",
             seen_of_clock(first)
         );

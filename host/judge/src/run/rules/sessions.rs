@@ -71,7 +71,7 @@ impl Rules<'_, '_> {
             if !found.is_failed() {
                 return tried;
             }
-            tracing::warn!("{}; trying it again", found.finding().sentence());
+            tracing::info!("{}; trying it again", found.finding().sentence());
             match scenario(self) {
                 // A FAIL says more than an answer that no sound board gives.
                 Err(again) if again.is_answer() => return tried,
