@@ -101,7 +101,12 @@ fn a_server_that_speaks_in_words_is_quoted() {
             let mut host = listener.accept().unwrap().0;
             host.write_all(&words).unwrap();
         });
-        ends(&verify(&target, &[]), code, sentence);
+        let ended = verify(&target, &[]);
+        ends(&ended, code, sentence);
+        // It is no link that broke, and nobody is sent to look for a cable.
+        let of_words = if code == 4 { "link-in-use" } else { "link-without-board" };
+        assert_eq!(ended.json()["finding"]["code"], of_words, "{}", ended.stdout);
+        assert!(!ended.headline().contains("the link broke"), "{}", ended.headline());
         server.join().unwrap();
     }
 }

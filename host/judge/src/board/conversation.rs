@@ -252,7 +252,7 @@ impl Conversation {
     ) -> Result<(), BoardError> {
         self.stop.check(self.now(), self.since(self.heard_at))?;
         let moved = self.move_bytes(wait);
-        moved.map_err(|source| BoardError::Link { doing: doing(), source: Box::new(source) })?;
+        moved.map_err(|source| BoardError::of_link(doing(), source))?;
         let now = self.link.now();
         let mut strays = Vec::new();
         let mut bytes = self.incoming.as_slice();

@@ -25,6 +25,9 @@ pub enum BoardError {
         #[source]
         source: Box<LinkError>,
     },
+    /// A server has turned the host away in words, so that no link came about.
+    #[error(transparent)]
+    TurnedAway(Box<LinkError>),
     /// Nobody answered.
     #[error(
         "no answer to {kind} in {attempts} tries ({:.1} s){}",
@@ -307,6 +310,15 @@ fn slow_or_silent(silent: Duration) -> String {
 }
 
 impl BoardError {
+    /// What became of the link while `doing` was under way.
+    pub(super) fn of_link(doing: String, source: LinkError) -> Self {
+        let source = Box::new(source);
+        match *source {
+            LinkError::InUse { .. } | LinkError::NoBoardThere { .. } => Self::TurnedAway(source),
+            _ => Self::Link { doing, source },
+        }
+    }
+
     /// Whether the board is gone, as when it was unplugged or lost power, and may come back.
     #[must_use]
     pub(crate) fn is_outage(&self) -> bool {
@@ -337,7 +349,7 @@ impl BoardError {
     #[must_use]
     pub(crate) fn shows_device(&self) -> bool {
         match self {
-            Self::Link { source, .. } => matches!(**source, LinkError::InUse { .. }),
+            Self::TurnedAway(by) => matches!(**by, LinkError::InUse { .. }),
             Self::Held { .. }
             | Self::NotABoard
             | Self::Version { .. }
@@ -354,7 +366,7 @@ impl BoardError {
     pub fn cause(&self) -> Cause {
         match self {
             Self::Held { .. } => Cause::Busy,
-            Self::Link { source, .. } if matches!(**source, LinkError::InUse { .. }) => Cause::Busy,
+            Self::TurnedAway(by) if matches!(**by, LinkError::InUse { .. }) => Cause::Busy,
             Self::NotABoard | Self::Version { .. } | Self::Impossible { .. } | Self::Malformed { .. } => {
                 Cause::Refused
             }

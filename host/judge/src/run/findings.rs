@@ -27,8 +27,8 @@ pub(super) enum End {
 impl End {
     /// The run could not go on because the board could not be driven.
     pub(super) fn board(check: CheckName, error: &BoardError) -> Self {
-        let unreachable =
-            matches!(error, BoardError::Link { .. } | BoardError::NoAnswer { .. } | BoardError::SessionLost);
+        use BoardError::{Link, NoAnswer, SessionLost, TurnedAway};
+        let unreachable = matches!(error, Link { .. } | TurnedAway(_) | NoAnswer { .. } | SessionLost);
         let (cause, finding) = (error.cause(), Problem::of(error).into());
         let (outage, answer) = (error.is_outage(), error.is_answer());
         Self::Error { check, cause, finding, unreachable, outage, answer }

@@ -37,6 +37,7 @@ codes! {
         WrongPlace [place] => "row-place-unknown",
         Timeout [limit, silent] => "run-too-long",
         Stopped (by) => "stopped-by-signal",
+        = TurnedAway,
     }
     LinkError {
         Closed [link, at] => "link-closed",
