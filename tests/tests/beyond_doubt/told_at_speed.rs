@@ -1,5 +1,6 @@
 //! What is told of frames that a board makes on its own: no more than was seen of them.
 
+use halfrow::report;
 use halfrow::result::{
     BurstCount, CheckName, Finding, NotExercised, Outcome, Repetition, Report, SoakLength,
 };
@@ -53,6 +54,30 @@ fn a_clock_too_many_casts_no_suspicion_on_samples_that_are_right() {
         let remedy = report.remedy().unwrap_or_default();
         assert!(remedy.contains("its samples are right") && remedy.contains("the output paused"), "{remedy}");
     }
+}
+
+/// The mock flips this bit of the row's first output.
+#[test]
+fn the_row_that_was_kept_is_told_with_its_samples() {
+    let report = System::TINY.judge(",fault=warm-bit,after=1,row=7,bit=11");
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
+    let told: serde_json::Value = serde_json::from_str(&report::json(&report).unwrap()).unwrap();
+    let kept = &told["finding"]["parameters"]["repetition"]["kept"];
+    assert_eq!(
+        (&kept["differences"], kept["first"].as_array().map(Vec::len)),
+        (&1.into(), Some(1)),
+        "{kept}"
+    );
+    let sample = &kept["first"][0];
+    assert_eq!((&sample["row"], &sample["column"]), (&7.into(), &0.into()), "{kept}");
+    let [expected, found] = ["expected", "found"].map(|name| sample[name].as_u64().unwrap());
+    assert_eq!(expected ^ found, 1 << 11, "{kept}");
+    let page = report::html(&report, &[]).unwrap();
+    let (_, section) = page.split_once("<h2>Row kept at speed</h2>").unwrap_or_else(|| panic!("{page}"));
+    let row = format!(
+        "<td class=\"number\">0</td><td class=\"number\">{expected}</td><td class=\"number\">{found}</td>"
+    );
+    assert!(section.starts_with("<p>Row 7 of frame ") && section.contains(&row), "{section}");
 }
 
 /// It takes another seed than it is given, and says another signature of the row that it keeps than that has.

@@ -52,7 +52,7 @@ pub(crate) fn soaked() -> Report {
         wrong: 1,
         frames: 2777,
         first: 17,
-        repetition: Repetition::Trapped { frames: 18, row: 3, streamed: Streamed::NotTried },
+        repetition: Repetition::Trapped { frames: 18, row: 3, streamed: Streamed::NotTried, kept: None },
         suspect: Some(Box::new(defect.clone())),
         others: 0,
     };

@@ -1,5 +1,6 @@
 //! The report as one self-contained page: pictures and style are inside, there is no script, and nothing is loaded.
 
+mod at_speed;
 mod charts;
 mod evidence;
 mod facts;
@@ -34,6 +35,7 @@ pub fn render(report: &Report, evidence: &[Evidence]) -> Result<String, Encoding
             (next(report))
             (facts::not_exercised(report))
             section { h2 { "Checks" } (checks(&report.checks)) }
+            (at_speed::section(&report.finding))
             (facts::frames(report))
             @if let Some(soak) = &report.soak { (soak::section(soak)) }
             (pictures)

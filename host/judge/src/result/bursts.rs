@@ -3,6 +3,8 @@
 use halfrow_model::TableSet;
 use serde::{Deserialize, Serialize};
 
+use crate::compare::Difference;
+
 /// Why there was no burst.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "of", rename_all = "kebab-case")]
@@ -107,7 +109,7 @@ fn is_near(bound: Option<u32>, named: u32) -> bool {
 }
 
 /// What was shown by making a frame again that had been wrong at speed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "of", rename_all = "kebab-case")]
 pub enum Repetition {
     /// Its signature was enough.
@@ -128,6 +130,9 @@ pub enum Repetition {
         /// What came back when the frame was streamed up to that row.
         #[serde(default)]
         streamed: Streamed,
+        /// What differs in that row; none where a report is of a version that did not tell.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        kept: Option<Box<KeptRow>>,
     },
     /// It was wrong again, and no differing row was kept.
     NothingTrapped {
@@ -140,14 +145,42 @@ pub enum Repetition {
 
 impl Repetition {
     /// What is known of the frame when it does not run at the full pixel clock.
-    pub(crate) fn streamed(self) -> Streamed {
+    pub(crate) fn streamed(&self) -> Streamed {
         match self {
-            Self::Trapped { streamed, .. } => streamed,
+            Self::Trapped { streamed, .. } => *streamed,
             Self::NotNeeded {}
             | Self::NoTrap {}
             | Self::AllRight { .. }
             | Self::NothingTrapped { .. }
             | Self::Impossible {} => Streamed::NotTried,
+        }
+    }
+}
+
+/// A row that the board kept of a frame that was wrong at speed.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct KeptRow {
+    /// The generation of the tables that made it.
+    pub generation: u8,
+    /// How many of its samples differ.
+    pub differences: usize,
+    /// The first of these, from left to right, at most [`Self::MOST`].
+    pub first: Vec<Difference>,
+}
+
+impl KeptRow {
+    /// The most samples that are told.
+    pub const MOST: usize = 10;
+
+    /// What differs in `row` of a frame made by `generation`, in which `expected` came out as `found`.
+    pub(crate) fn new(generation: u8, row: usize, expected: &[u16], found: &[u16]) -> Self {
+        let pairs = expected.iter().zip(found).enumerate();
+        let differing = pairs.filter(|(_, (expected, found))| expected != found);
+        let told = |(column, (&expected, &found))| Difference { row, column, expected, found };
+        Self {
+            generation,
+            differences: differing.clone().count(),
+            first: differing.map(told).take(Self::MOST).collect(),
         }
     }
 }

@@ -2,10 +2,11 @@
 
 use super::{
     Account, Answer, BoardKind, BrokenOff, BurstCount, ClampEnd, ClockSeen, Corner, Counter, Counting,
-    Defect, Doubt, EqualAtSpeed, Extent, Finding, FlippedBit, Instead, LateRows, MadeWith, Memory, NoBurst,
-    NotExercised, NumberedRow, Problem, Reading, RepeatedRow, Repetition, RowSource, Rule, StaleFrames,
-    Streamed, Suspect,
+    Defect, Doubt, EqualAtSpeed, Extent, Finding, FlippedBit, Instead, KeptRow, LateRows, MadeWith, Memory,
+    NoBurst, NotExercised, NumberedRow, Problem, Reading, RepeatedRow, Repetition, RowSource, Rule,
+    StaleFrames, Streamed, Suspect,
 };
+use crate::compare::Difference;
 use crate::verdict::Verdict;
 
 /// An example of every finding that is no error.
@@ -132,6 +133,12 @@ const FLIPPED: FlippedBit = FlippedBit { column: 5, bit: 11 };
 /// Bounds around a quarter of 96 MHz.
 const SLOW_CLOCK: ClockSeen = ClockSeen { least_hz: Some(22_100_000), most_hz: Some(24_600_000) };
 
+/// A row of which one sample differs in bit 11.
+fn kept_row() -> KeptRow {
+    let first = vec![Difference { row: 3, column: 1207, expected: 412, found: 2460 }];
+    KeptRow { generation: 2, differences: 1, first }
+}
+
 /// Findings on what entered the core, and on frames that the board made itself.
 fn on_entry_and_at_speed() -> [Finding; 6] {
     [
@@ -142,7 +149,12 @@ fn on_entry_and_at_speed() -> [Finding; 6] {
             wrong: 2,
             frames: 138,
             first: 17,
-            repetition: Repetition::Trapped { frames: 19, row: 3, streamed: Streamed::Right },
+            repetition: Repetition::Trapped {
+                frames: 19,
+                row: 3,
+                streamed: Streamed::Right,
+                kept: Some(Box::new(kept_row())),
+            },
             suspect: Some(Box::new(Defect::OnlyAtSpeed { row: Some(3), samples: 1, bits: vec![11] })),
             others: 0,
         },

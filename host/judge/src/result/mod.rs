@@ -43,7 +43,7 @@ use crate::verdict::{Cause, Verdict};
 use not_exercised::InWords;
 
 pub use crate::target::BoardKind;
-pub use bursts::{BurstCount, ClockSeen, Corner, EqualAtSpeed, NoBurst, Repetition, Streamed};
+pub use bursts::{BurstCount, ClockSeen, Corner, EqualAtSpeed, KeptRow, NoBurst, Repetition, Streamed};
 pub use check::{Check, CheckName, Outcome};
 pub use counter::Counter;
 pub use coverage::CoverageReport;

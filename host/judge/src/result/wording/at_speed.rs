@@ -101,7 +101,7 @@ pub(super) fn sentence(finding: &Finding) -> Option<String> {
         Finding::NothingAtSpeed { reason } => format!("nothing was tested at speed: {}", because(*reason)),
         Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others } => {
             let suspect = suspect.as_deref().map(|suspect| suspicion(Some(suspect), *others));
-            differs((*wrong, *frames), *first, *repetition, suspect)
+            differs((*wrong, *frames), *first, repetition, suspect)
         }
         Finding::MiscountedAtSpeed { count: BurstCount::Records, counted, right, .. } => {
             format!("the board gives {counted} records for {} at speed", count(*right, "frame"))
@@ -127,7 +127,7 @@ pub(super) fn sentence(finding: &Finding) -> Option<String> {
 fn differs(
     (wrong, frames): (u32, u32),
     first: u32,
-    repetition: Repetition,
+    repetition: &Repetition,
     suspicion: Option<String>,
 ) -> String {
     let suspicion = suspicion.map_or_else(String::new, |suspicion| format!("; {suspicion}"));
@@ -223,14 +223,14 @@ fn because(reason: NoBurst) -> String {
     }
 }
 
-fn shown(repetition: Repetition) -> String {
+fn shown(repetition: &Repetition) -> String {
     match repetition {
         Repetition::NotNeeded {} => String::new(),
         Repetition::NoTrap {} => ", of which the board kept no row".to_owned(),
         Repetition::AllRight { frames } => {
-            format!("; made again by itself, it was right {}", count(frames, "time"))
+            format!("; made again by itself, it was right {}", count(*frames, "time"))
         }
-        Repetition::Trapped { frames, row, streamed } => {
+        Repetition::Trapped { frames, row, streamed, .. } => {
             let streamed = match streamed {
                 Streamed::NotTried => "",
                 Streamed::Right => "; streamed, it is right",

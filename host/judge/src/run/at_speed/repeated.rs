@@ -17,8 +17,8 @@ use crate::diagnosis::{self, Case, Uploaded};
 use crate::frames::{Builtin, Scene};
 use crate::reference::correct;
 use crate::result::{
-    Account, CheckName, Defect, Evidence, Finding, FrameReport, FrameTiming, Problem, Repetition, Streamed,
-    Suspect,
+    Account, CheckName, Defect, Evidence, Finding, FrameReport, FrameTiming, KeptRow, Problem, Repetition,
+    Streamed, Suspect,
 };
 use crate::run::findings::{During, End};
 use crate::run::kept::as_found;
@@ -137,6 +137,7 @@ impl Run<'_> {
         let Some((row, seen)) = told else {
             return Ok(Repetition::NothingTrapped { frames }.into());
         };
+        let kept = kept_row(&seen);
         // A soak goes on, and spends no time on rows that a link must carry.
         let is_soak = self.plan.at_speed.soak().is_some();
         let right = seen.evidence.expected.samples();
@@ -151,7 +152,7 @@ impl Run<'_> {
             Some(seen) => self.diagnose_seen(&seen, "at speed", content.frame),
             None => self.suspects_of(&seen, content, streamed),
         };
-        Ok(Again { repetition: Repetition::Trapped { frames, row, streamed }, suspects })
+        Ok(Again { repetition: Repetition::Trapped { frames, row, streamed, kept }, suspects })
     }
 
     /// Makes the tables of the other bank active, which takes a frame.
@@ -239,6 +240,13 @@ impl Run<'_> {
         }
         suspects
     }
+}
+
+/// What differs in the last row of `seen`, which is the one that the trap kept.
+fn kept_row(seen: &Seen) -> Option<Box<KeptRow>> {
+    let Evidence { expected, found, .. } = &seen.evidence;
+    let row = expected.height().checked_sub(1)?;
+    Some(Box::new(KeptRow::new(seen.made_by.number, row, expected.row(row), found.row(row))))
 }
 
 /// The first `rows` rows of the frame that `generation` makes of `content`, as if found right.
