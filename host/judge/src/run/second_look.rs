@@ -24,7 +24,7 @@ impl Run<'_> {
         let mut found = found;
         for look in 1..=LOOKS {
             let Some(doubt) = self.doubt_of(&found) else { return Err(found) };
-            tracing::info!("{}; looking again, since {}", found.finding().sentence(), doubt.sentence());
+            tracing::info!("{}; looking again, since {}", found.finding().sentence(), doubt.clause());
             self.progress.step(Step::LookAgain);
             match self.look(look) {
                 Ok(()) => return Err(right_in_another_session(&found, doubt)),

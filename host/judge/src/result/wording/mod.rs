@@ -182,7 +182,7 @@ mod tests {
     #[test]
     fn a_suspect_that_is_one_of_several_is_not_told_as_the_fact() {
         let suspect = Some(Box::new(Defect::OutputDataStuck { bit: 9, value: 1 }));
-        let (wrong, differing_frames, first, repetition) = (1, 1, 0, Repetition::NotNeeded {});
+        let (wrong, differing_frames, first) = (1, 1, 0);
         let differ = |others| {
             let [streamed, at_speed] = [suspect.clone(), suspect.clone()];
             let (differences, samples, frames) = (7, 99, 2);
@@ -194,7 +194,7 @@ mod tests {
                 suspect: streamed,
                 others,
             };
-            let (frames, suspect) = (2, at_speed);
+            let (suspect, repetition) = (at_speed, Repetition::NotNeeded {});
             let at_speed = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others };
             [streamed, at_speed].map(|finding| sentence(&finding))
         };

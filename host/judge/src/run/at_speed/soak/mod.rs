@@ -157,7 +157,7 @@ impl Run<'_> {
                 }
                 return played.ended;
             };
-            tracing::info!("{}; made again, since {}", found.finding().sentence(), doubt.sentence());
+            tracing::info!("{}; made again, since {}", found.finding().sentence(), doubt.clause());
             *doubtful = Some((unasked(&found), doubt));
             self.open_another_session()?;
         }
