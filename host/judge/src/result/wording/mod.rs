@@ -194,7 +194,7 @@ mod tests {
                 suspect: streamed,
                 others,
             };
-            let (suspect, repetition) = (at_speed, Repetition::NotNeeded {});
+            let (frames, suspect, repetition) = (2, at_speed, Repetition::NotNeeded {});
             let at_speed = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others };
             [streamed, at_speed].map(|finding| sentence(&finding))
         };
