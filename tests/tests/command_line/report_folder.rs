@@ -1,6 +1,9 @@
 //! `--report`: all three files or none, and files of others are never touched.
 
-use halfrow_tests::program::Folder;
+use std::fs;
+
+use halfrow_tests::not_tested::not_tested;
+use halfrow_tests::program::{Folder, finish};
 
 use crate::{refused, refused_with, small};
 
@@ -96,7 +99,7 @@ fn an_earlier_report_is_kept_unless_it_may_be_replaced() {
 #[test]
 fn what_is_no_report_is_never_replaced() {
     let folder = Folder::new();
-    std::fs::create_dir(folder.path().join("photos")).unwrap();
+    fs::create_dir(folder.path().join("photos")).unwrap();
     folder.write("photos/holiday.jpg", "precious");
     folder.write("file", "precious");
     let into = |place| small("verify", &["--overwrite", "--report", place]);
@@ -116,6 +119,48 @@ fn a_place_that_cannot_be_written_is_refused_before_the_board_is_opened() {
     for place in ["missing/out", "file/out"] {
         refused(&folder, &small("verify", &["--report", place, "--board", board]), "folder");
     }
+}
+
+/// Nothing can be renamed to a mount point, such as a container's volume.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_mount_point_is_refused_before_the_board_is_opened_and_a_folder_inside_it_is_taken() {
+    let mounted = |then: &str, more: &[&str]| {
+        let folder = Folder::new();
+        fs::create_dir(folder.path().join("out")).unwrap();
+        let inside = format!("mount -t tmpfs none out && {then} \"$@\" && ls out/in");
+        let line = format!("exec unshare --map-root-user --mount sh -c '{inside}' sh \"$@\"");
+        finish(&mut folder.by_shell(&line, small("verify", more)))
+    };
+    let may = finish(&mut Folder::new().by_shell("unshare --map-root-user --mount true", []));
+    if may.code != Some(0) {
+        not_tested("a report in a mount point", "this user may mount nothing");
+        return;
+    }
+    // A run on this board would end with another code.
+    let board = "mock,fault=disconnect,byte=0";
+    let refused = mounted("", &["--report", "out", "--board", board]);
+    assert_eq!((refused.code, refused.stdout.as_str()), (Some(2), ""), "{}", refused.stderr);
+    assert!(refused.stderr.contains("name a new folder inside it, such as out/report"), "{}", refused.stderr);
+    let earlier = "\"$1\" verify --width 64 --height 4 --report out/in && mv out/in/* out && rmdir out/in &&";
+    let replaced = mounted(earlier, &["--report", "out", "--overwrite", "--board", board]);
+    assert_eq!(replaced.code, Some(2), "{}", replaced.stderr);
+    let taken = mounted("", &["--report", "out/in"]);
+    assert_eq!(taken.code, Some(0), "{}", taken.stderr);
+    assert!(FILES.iter().all(|name| taken.stdout.contains(name)), "{}", taken.stdout);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_write_protected_folder_is_left_alone() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let folder = Folder::new();
+    let out = folder.path().join("out");
+    fs::create_dir(&out).unwrap();
+    fs::set_permissions(&out, fs::Permissions::from_mode(0o500)).unwrap();
+    refused(&folder, &small("verify", &["--report", "out"]), "out is write-protected and is left alone");
+    refused(&folder, &small("verify", &["--report", "out", "--overwrite"]), "out is write-protected");
+    assert_eq!(fs::metadata(&out).unwrap().permissions().mode() & 0o777, 0o500);
 }
 
 #[cfg(target_os = "linux")]

@@ -57,6 +57,33 @@ impl AsideFolder {
         self.dir.path()
     }
 
+    /// Finds out, without changing anything, whether the system lets what is in the place be renamed. It does not let a mount
+    /// point, for one.
+    ///
+    /// # Errors
+    /// The system's reason.
+    pub fn try_place(&self) -> io::Result<()> {
+        use io::ErrorKind::{CrossesDevices, PermissionDenied, ReadOnlyFilesystem, ResourceBusy};
+        if !fs::symlink_metadata(&self.target).is_ok_and(|there| there.is_dir()) {
+            return Ok(());
+        }
+        // A folder is never renamed to one that has something in it. What may not be renamed at all is refused before that.
+        let something = tempfile::NamedTempFile::new_in(self.path())?;
+        let tried = fs::rename(&self.target, self.path());
+        something.close()?;
+        match tried {
+            Err(error)
+                if matches!(
+                    error.kind(),
+                    CrossesDevices | PermissionDenied | ReadOnlyFilesystem | ResourceBusy
+                ) =>
+            {
+                Err(error)
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Renames it into its place, which must be free.
     ///
     /// # Errors

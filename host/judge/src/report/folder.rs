@@ -3,6 +3,7 @@
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufReader, Write as _};
+use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -51,6 +52,23 @@ pub enum ReportError {
         path: PathBuf,
         /// How it can be told.
         why: String,
+    },
+    /// The folder that is there belongs to nobody who may write into it.
+    #[error("{} is write-protected and is left alone; let its owner write into it, or name another folder", path.display())]
+    Protected {
+        /// The path.
+        path: PathBuf,
+    },
+    /// The system will not let the folder that is there be replaced.
+    #[error(
+        "{0} can be replaced by no other folder, as where something is mounted; name a new folder inside it, such as \
+         {0}/report", path.display()
+    )]
+    Immovable {
+        /// The path.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
     },
     /// The folder cannot be made where it should be.
     #[error("cannot make the folder {}; check that the folder above it exists and is writable", path.display())]
@@ -105,8 +123,8 @@ impl ReportFolder {
     ///
     /// # Errors
     /// [`ReportError`] when the folder above does not exist or is not writable, when something at `path` is neither an earlier
-    /// report nor an empty folder or, without `overwrite`, is not an empty folder, or when another run is about to put a report
-    /// there.
+    /// report nor an empty folder or, without `overwrite`, is not an empty folder, when it is write-protected or cannot be
+    /// renamed, or when another run is about to put a report there.
     pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, ReportError> {
         let path = &named(path);
         check(path, overwrite)?;
@@ -115,6 +133,7 @@ impl ReportFolder {
         check(path, overwrite)?;
         let failed = |source| ReportError::Prepare { path: path.to_owned(), source };
         let aside = AsideFolder::new(path).map_err(failed)?;
+        aside.try_place().map_err(|source| ReportError::Immovable { path: path.to_owned(), source })?;
         Ok(Self { path: path.to_owned(), overwrite, aside, _claim: claim })
     }
 
@@ -177,6 +196,9 @@ pub fn check(path: &Path, overwrite: bool) -> Result<(), ReportError> {
         Ok(there) if there.is_symlink() => {
             let to = fs::read_link(path).unwrap_or_default();
             Err(ReportError::Link { path: path.to_owned(), to })
+        }
+        Ok(there) if there.is_dir() && there.permissions().mode() & 0o200 == 0 => {
+            Err(ReportError::Protected { path: path.to_owned() })
         }
         Ok(_) => match foreign(path) {
             Some(why) => Err(ReportError::NotAReport { path: path.to_owned(), why }),

@@ -74,6 +74,8 @@ codes! {
         Link [path, to] => "report-folder-is-link",
         Claimed [path] => "report-being-written",
         NotAReport [path, why] => "folder-is-no-report",
+        Protected [path] => "report-folder-protected",
+        Immovable [path] => "report-folder-not-replaceable",
         Prepare [path] => "report-folder-not-made",
         Write [path, name] => "report-not-written",
         Place [path] => "report-not-put-in-place",
