@@ -1,12 +1,14 @@
 //! Evidence stored under its own hash: a file that exists is complete, and its name is the hash of its content.
 
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Read as _};
+use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use halfrow::files::written_aside::{self, Aside, WriteAsideError};
 use halfrow::result::sha256;
+use nix::fcntl::OFlag;
 
 /// Evidence that cannot be written or read.
 #[derive(Debug, thiserror::Error)]
@@ -161,10 +163,21 @@ impl Blobs {
     /// [`BlobError`] when the file cannot be read or holds other bytes.
     pub fn get(&self, hash: &str) -> Result<Vec<u8>, BlobError> {
         let path = self.path(hash);
-        let bytes = fs::read(&path).map_err(|source| BlobError::Read { path: path.clone(), source })?;
+        let bytes = read(&path).map_err(|source| BlobError::Read { path: path.clone(), source })?;
         let found = sha256([&bytes]);
         if found == hash { Ok(bytes) } else { Err(BlobError::Damaged { path, found }) }
     }
+}
+
+/// What is in a regular file. Opening a pipe in its place does not wait for somebody to write to it.
+pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
+    let mut file = File::options().read(true).custom_flags(OFlag::O_NONBLOCK.bits()).open(path)?;
+    if !file.metadata()?.is_file() {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "it is no regular file"));
+    }
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// A file among the evidence.

@@ -1,13 +1,13 @@
 //! Records that no row names.
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::io;
 
 use halfrow::Verdict;
 use serde::Deserialize;
 use serde_json::Value;
 
+use super::blobs::read;
 use super::{BlobError, Blobs, Piece};
 
 /// A record, of this or another version, that no row names. If its run has a row, the program ended before the record was entered
@@ -40,7 +40,7 @@ impl Blobs {
 
     fn as_record(&self, hash: &str) -> Result<Option<UnnamedRecord>, BlobError> {
         let path = self.path(hash);
-        let bytes = match fs::read(&path) {
+        let bytes = match read(&path) {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
             read => read.map_err(|source| BlobError::Read { path, source })?,
         };

@@ -6,7 +6,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use super::bench::{PLAN, Station, program};
+use super::bench::{Did, PLAN, Station, program};
 
 /// A station with a PASS, a FAIL and an ERROR.
 fn station() -> Station {
@@ -52,6 +52,25 @@ fn a_flipped_bit_in_any_piece_of_evidence_is_found() {
         fs::write(&path, right).unwrap();
     }
     assert_eq!(station.check().code, Some(0));
+}
+
+/// Nobody may ever write to a pipe.
+#[test]
+fn a_pipe_in_the_place_of_evidence_is_found_and_nobody_waits_for_it() {
+    let station = station();
+    let hash = station.query("SELECT record_sha256 FROM run ORDER BY id").remove(0);
+    let path = station.store().blobs().path(&hash);
+    fs::remove_file(&path).unwrap();
+    assert!(Command::new("mkfifo").arg(&path).status().unwrap().success());
+    let (data, to) = (station.data(), station.path("out"));
+    for (command, more) in [("check", None), ("backup", Some(&to)), ("export", Some(&to))] {
+        let mut call = Command::new("timeout");
+        call.arg("120").arg(program()).args([command, "--data"]).arg(&data);
+        call.args(more.filter(|_| command == "export").map(|_| "--to")).args(more);
+        let did: Did = call.output().unwrap().into();
+        assert_eq!(did.code, Some(3), "{command}: {did:?}");
+        assert!([did.said, did.complained].concat().contains("cannot be read"), "{command}");
+    }
 }
 
 /// Changes that the schema allows.
