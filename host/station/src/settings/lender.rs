@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use halfrow::link::{self, kinds};
-use halfrow::target::{BoardKind, Target};
+use halfrow::target::Target;
 
 use super::read::{not_empty, program, seconds};
 use super::stable;
@@ -40,18 +40,15 @@ impl Lender {
         if board.kind == KIND {
             return self.place(board, text);
         }
-        let Some(kind) = kinds::of(&board) else {
+        if kinds::of(&board).is_none() {
             let what = format!("`{}` is no kind of board", board.kind);
             let remedy = format!("write one as `halfrow boards` lists them, or {KIND}:PLACE");
             return Err(Fault::wrong(at, what, remedy));
-        };
+        }
         if let Some((what, remedy)) = stable::refused(&board) {
             return Err(Fault::wrong(at, what, remedy));
         }
-        // The mock is there before any lane is, and opening it changes nothing.
-        if kind.board == BoardKind::Mock {
-            link::open(&board).map_err(|error| Fault::input(at, "the board", error))?;
-        }
+        link::check(&board).map_err(|error| Fault::input(at, "the board", error))?;
         Ok(LaneBoard::Own(board))
     }
 

@@ -210,7 +210,7 @@ const WRONG: &[(&str, &str, &str)] = &[
         "mock,fault=zz",
         "station.toml:24: the board cannot be used: the target `mock,fault=zz` is not one that",
     ),
-    ("\"mock,serial=1\"", "\"usb:1-2.3,speed=high\"", "station.toml:24: lane 1 has the board"),
+    ("\"mock,serial=1\"", "\"usb:1-2.3,channel=a\"", "station.toml:24: lane 1 has the board"),
     ("[\"b.toml\"]", "[]", "station.toml:25: lane left has no plan; name the file of one"),
     (
         "[\"b.toml\"]",
@@ -250,6 +250,8 @@ const WRONG: &[(&str, &str, &str)] = &[
         "station.toml:30: others can reach these pages, and nobody logs in",
     ),
     ("deadline = 2.5", "deadline = -1.0", "station.toml:31: -1 s is no such time"),
+    ("usb:1-2.3", "tcp:127.0.0.1:99999", "station.toml:19: the board cannot be used: "),
+    ("mock,serial=1", "mock,serial=1,fault=nope", "station.toml:24: the board cannot be used: "),
 ];
 
 #[test]
