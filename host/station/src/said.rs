@@ -29,7 +29,7 @@ pub struct Said {
 pub(crate) const DIFFERED: &str = "differed";
 
 /// What to do, in full sentences and by code, about what the station says in a sentence that does not end in it.
-pub(crate) const REMEDIES: [(&str, &str); 8] = [
+pub(crate) const REMEDIES: [(&str, &str); 10] = [
     ("plan-takes-hardware", "Check the lane's target."),
     ("build-not-of-plan", "Load a released build, or take the plan for this one."),
     ("device-asked-for", "Load a build that reads the FPGA's own number."),
@@ -38,6 +38,14 @@ pub(crate) const REMEDIES: [(&str, &str); 8] = [
     ("board-of-other-product", MIXED_UP),
     ("board-of-other-serial", MIXED_UP),
     ("serial-of-other-device", MIXED_UP),
+    (
+        "measurement-beyond-limit",
+        "Have an engineer look at this lane, or at the limit in the plan, and test the board again.",
+    ),
+    (
+        "measurement-missing",
+        "Have an engineer look at the limit in the plan: this board or lane has no such value.",
+    ),
 ];
 const MIXED_UP: &str =
     "Scan the label of the board that is in the lane; after a repair, an engineer binds it again.";

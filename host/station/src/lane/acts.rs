@@ -91,7 +91,9 @@ impl Try {
             RunCause::Refused => (StepOutcome::Error, Exit::Refused),
             _ => (StepOutcome::Error, Exit::Error),
         };
-        (self.cause, self.finding) = (*cause, said.clone());
+        // What a step says to do about its own finding is no advice about another.
+        let remedy = said.remedy().filter(|_| *cause != RunCause::Board).map(str::to_owned);
+        (self.cause, self.finding, self.remedy) = (*cause, said.clone(), remedy);
         self
     }
 }

@@ -12,6 +12,9 @@ use crate::said::{Said, Saying};
 /// The codes of a run that ended because somebody wanted it to.
 const STOPPED: [&str; 2] = ["stopped-by-signal", "run-stopped-before"];
 
+/// The codes of limits that were missed, or of which nothing was measured.
+const LIMITS: [&str; 2] = ["measurement-beyond-limit", "measurement-missing"];
+
 /// The remedy for an ERROR about which nothing else is known.
 pub(crate) const TEST_AGAIN: &str = "Test the board again.";
 
@@ -62,6 +65,13 @@ impl Conclusion {
             remedy: None,
             finding: steps.last().and_then(|step| step.finding.clone()),
         })
+    }
+
+    /// Whether the findings of the steps are not believed, because a limit says that the station is wrong.
+    #[must_use]
+    pub fn disbelieves_steps(&self) -> bool {
+        let is_limit = |said: &Said| LIMITS.contains(&said.code.as_str());
+        self.verdict == Verdict::Error && self.finding.as_ref().is_some_and(is_limit)
     }
 
     /// Adds [`IDENTITY_NOT_CHECKED`] to a PASS if it could not be checked whether the board has the scanned serial number.
@@ -125,7 +135,10 @@ impl Conclusion {
                 let (verdict, exit_code) = (Verdict::Fail, Exit::Fail.code());
                 Self { verdict, cause, exit_code, headline, remedy: None, finding: Some(finding) }
             }
-            cause => Self::error(cause, finding),
+            cause => {
+                let remedy = finding.remedy().map(str::to_owned);
+                Self { remedy, ..Self::error(cause, finding) }
+            }
         })
     }
 }

@@ -270,6 +270,7 @@ fn record(
     let measurements = judged(Maker::Run, &[("run.seconds", Some(seconds))], &selected.limits);
     let conclusion = Conclusion::of(selected.steps.len() as u32, &steps, &measurements, of_lane(end))
         .note_unchecked_identity(device);
+    let suspects = if conclusion.disbelieves_steps() { Vec::new() } else { last_suspects(&steps) };
     let reached = steps.last().map_or(0, |step| step.seq);
     let rest = selected.steps.iter().zip(1..).filter(|(_, seq)| *seq > reached);
     steps.extend(rest.map(|(step, seq)| StepRecord::skipped(seq, step, ended_ms)));
@@ -287,7 +288,7 @@ fn record(
         marginal: steps.iter().any(|step| step.attempt > 1),
         board,
         device,
-        suspects: last_suspects(&steps),
+        suspects,
         steps,
         measurements,
         attachments: Vec::new(),
