@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use clap::Args;
 use halfrow::Verdict;
-use halfrow::link::{OpenError, kinds};
+use halfrow::link;
 use halfrow::report::wording::says;
 use halfrow::target::Target;
 use halfrow::verdict::StoppedBy;
@@ -22,7 +22,7 @@ use crate::labgrid::LaneBoard;
 use crate::lane::supervisor::OWN_PROGRAM;
 use crate::lane::{MEMORIES_MIB, MEMORY_MIB, Message};
 use crate::plan::{Bad, Plan, mock};
-use crate::record::{Record, StepOutcome};
+use crate::record::{Record, StepOutcome, in_one_line};
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::settings::{LANE_NAME, is_lane_name};
 use crate::store::{AgainError, Folder, InLane, SharedStore};
@@ -130,7 +130,7 @@ impl Arguments {
         match (&self.serial, &self.board) {
             (Some(serial), Some(board)) => {
                 plan.select(serial).map_err(Failure::call)?;
-                kinds::of(board).ok_or_else(|| Failure::call(OpenError::UnknownKind(board.kind.clone())))?;
+                link::check(board).map_err(Failure::call)?;
                 Ok((serial.clone(), board.clone()))
             }
             _ if is_checked_by_mock => {
@@ -232,6 +232,7 @@ fn text(saved: &Saved, plan: &Plan) -> String {
     if let Some(identity) = identity {
         lines.push(format!("board     {}", identity.detail));
     }
+    lines.extend(record.not_exercised().iter().map(|of_step| format!("untested  {}", in_one_line(of_step))));
     if record.marginal {
         lines.push("marginal  a step needed more than one try".to_owned());
     }

@@ -6,8 +6,14 @@ use halfrow::words::plain;
 use super::Failure;
 use super::looking::{Results, either, time};
 use crate::exit::Exit;
+use crate::export;
 use crate::history::mismatch::{Bound, Mismatch};
 use crate::history::unit::{Unit, UnitRun, units};
+use crate::record::in_one_line;
+use crate::store::Snapshot;
+
+/// The verdict of runs whose record says what they did not test.
+const PASS: &str = "PASS";
 
 /// Show all that is known of the units of a serial number
 #[derive(Debug, Args)]
@@ -22,23 +28,25 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let units = units(&arguments.results.snapshot()?, &arguments.serial)?;
+    let snapshot = arguments.results.snapshot()?;
+    let units = units(&snapshot, &arguments.serial)?;
     if units.is_empty() {
         let serial = &arguments.serial;
         let what = format!("no unit {serial} was tested here; `halfrow-station history` lists the runs");
         return Err(Failure::call(anyhow::Error::msg(what)));
     }
     either(&units, arguments.json, |units| {
-        let lines: Vec<_> = units.iter().flat_map(unit_lines).map(|line| plain(&line).into_owned()).collect();
+        let lines = units.iter().flat_map(|unit| unit_lines(unit, &snapshot));
+        let lines: Vec<_> = lines.map(|line| plain(&line).into_owned()).collect();
         lines.join("\n")
     })
 }
 
-fn unit_lines(unit: &Unit) -> Vec<String> {
+fn unit_lines(unit: &Unit, of: &Snapshot) -> Vec<String> {
     let Unit { product, serial, runs, .. } = unit;
     let mut lines = vec![format!("{serial}, {product}, first seen {}", time(unit.first_seen_ms))];
     lines.extend(unit.mismatches.iter().map(mismatch));
-    lines.extend(runs.iter().flat_map(run_lines));
+    lines.extend(runs.iter().flat_map(|run| run_lines(run, &not_exercised(run, of))));
     lines
 }
 
@@ -56,7 +64,16 @@ fn mismatch(one: &Mismatch) -> String {
     )
 }
 
-fn run_lines(run: &UnitRun) -> Vec<String> {
+/// What a PASS did not test, a line for each step; nothing where its record is not here.
+fn not_exercised(run: &UnitRun, of: &Snapshot) -> Vec<String> {
+    let line = &run.line;
+    let hash = line.record_sha256.as_ref().filter(|_| line.verdict.as_deref() == Some(PASS));
+    let record = hash.and_then(|hash| export::record(of, hash).ok());
+    let parts = record.as_ref().map(|(record, _)| record.not_exercised()).unwrap_or_default();
+    parts.iter().map(in_one_line).collect()
+}
+
+fn run_lines(run: &UnitRun, not_exercised: &[String]) -> Vec<String> {
     let line = &run.line;
     let verdict = line.verdict.as_deref().unwrap_or("open");
     let headline = line.headline.as_deref().unwrap_or("it is under way");
@@ -73,9 +90,10 @@ fn run_lines(run: &UnitRun) -> Vec<String> {
         let again = if step.attempt > 1 { format!(", try {}", step.attempt) } else { String::new() };
         format!("  step      {}{again} {}: {}", step.name, step.outcome, step.detail)
     }));
+    lines.extend(not_exercised.iter().map(|parts| format!("  untested  {parts}")));
     lines.extend(run.suspects.iter().map(|suspect| {
-        let share = 100.0 * suspect.explained;
-        format!("  suspect   {}, {}: explains {share:.0} %", suspect.part, suspect.place)
+        let share = suspect.share().map(|share| format!(": explains {share:.0} %")).unwrap_or_default();
+        format!("  suspect   {}, {}{share}", suspect.part, suspect.place)
     }));
     lines.extend(line.record_sha256.iter().map(|hash| format!("  record    {hash}")));
     lines.extend(evidence);

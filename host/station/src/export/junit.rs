@@ -8,7 +8,7 @@ use halfrow::words::plain;
 use jiff::Timestamp;
 use quick_junit::{NonSuccessKind, Property, SerializeError, TestCase, TestCaseStatus as Status, TestSuite};
 
-use crate::record::{Measured, MeasuredOutcome, Record, RunCause, StepOutcome, StepRecord};
+use crate::record::{Measured, MeasuredOutcome, Record, RunCause, StepOutcome, StepRecord, in_one_line};
 
 pub(super) fn render(record: &Record) -> Result<String, SerializeError> {
     let mut suite = TestSuite::new(plain(&format!("{} {}", record.plan.name, record.plan.version)));
@@ -46,6 +46,7 @@ fn properties(record: &Record) -> Vec<(&'static str, String)> {
         ("board.target", run.target.clone()),
         ("halfrow.version", record.program.clone()),
     ];
+    list.extend(record.not_exercised().iter().map(|of_step| ("not_exercised", in_one_line(of_step))));
     if let Some(board) = &record.board {
         list.push(("board.kind", board.kind.clone()));
         list.push(("board.build", board.build.clone()));

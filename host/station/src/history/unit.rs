@@ -101,6 +101,14 @@ pub struct Suspect {
     pub explained: f64,
 }
 
+impl Suspect {
+    /// The share of what is wrong that it explains, in per cent; none if nothing was counted.
+    #[must_use]
+    pub fn share(&self) -> Option<f64> {
+        (self.explained > 0.0).then_some(100.0 * self.explained)
+    }
+}
+
 /// The units of this serial number: one for each product that has it.
 ///
 /// # Errors

@@ -2,6 +2,7 @@
 
 mod blobs;
 mod conclude;
+mod not_exercised;
 mod step;
 mod unnamed;
 
@@ -15,6 +16,7 @@ pub use blobs::{BlobError, Blobs};
 pub(crate) use blobs::{Piece, is_hash, synced};
 pub use conclude::Conclusion;
 pub(crate) use conclude::TEST_AGAIN;
+pub(crate) use not_exercised::in_one_line;
 pub use step::{
     BoardSeen, DeviceSeen, Measured, MeasuredOutcome, RunCause, StepOutcome, StepRecord, SuspectRecord,
     judged,

@@ -81,6 +81,7 @@ fn content(visit: &Visit, Found { run, record, kept }: &Found) -> Markup {
             (pictures::of_run(visit, line, read.map(AsRef::as_ref), kept))
             (facts(visit, run, read.map(AsRef::as_ref)))
             @if let Some(record) = read {
+                (not_exercised(visit, record))
                 (steps(visit, record))
                 (checks(visit, record))
                 (measurements(visit, record))
@@ -118,13 +119,17 @@ fn concluded(visit: &Visit, headline: Option<&str>, record: Option<&Record>) -> 
 
 /// A suspected part in one sentence; `defect` is its code, where the record has it.
 pub(super) fn suspect(visit: &Visit, suspect: &history::Suspect, defect: Option<&Said>) -> Markup {
-    let share = format!("{:.0}", 100.0 * suspect.explained);
+    let share = suspect.share().map(|share| format!("{share:.0}"));
+    let fill = |more: &[(&str, &str)]| match &share {
+        Some(share) => visit.words.fill("run.suspected", &[more, &[("share", share)]].concat()),
+        None => visit.words.fill("run.suspected_alone", more),
+    };
     let own = defect.map(|defect| visit.words.tell(defect)).filter(|told| told.foreign.is_none());
     if let Some(told) = own.filter(|_| visit.words.code != "en") {
-        let words = visit.words.fill("run.suspected", &[("what", &told.text), ("share", &share)]);
+        let words = fill(&[("what", &told.text)]);
         return html! { p.suspect { (show::said(&words)) } };
     }
-    let words = visit.words.fill("run.suspected", &[("share", &share)]);
+    let words = fill(&[]);
     let (before, after) = words.split_once("{what}").unwrap_or_default();
     let what = format!("{}, {}", suspect.part, suspect.place);
     html! { p.suspect { (before) (show::english(visit, &what)) (after) } }
@@ -209,6 +214,16 @@ fn facts(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
             @if let Some(hash) = &line.record_sha256 {
                 (show::pair(visit.say("run.record"), html! { code { (hash) } }))
             }
+        }
+    }
+}
+
+/// What a PASS says nothing about.
+fn not_exercised(visit: &Visit, record: &Record) -> Markup {
+    html! {
+        @for (step, parts) in record.not_exercised() {
+            h2 { (show::said(&visit.words.fill("run.not_exercised", &[("step", step)]))) }
+            ul.untested { @for part in &parts { li { (show::told(&visit.words.tell(part))) } } }
         }
     }
 }

@@ -74,7 +74,7 @@ fn said() -> Keys {
     let of_system = codes::IO_CODES.map(|code| (code, BTreeSet::from(["os_error".to_owned()])));
     let others = OTHERS.map(|code| (code, BTreeSet::new()));
     let known = typed.chain(of_system).chain(others).map(|(code, names)| (code.to_owned(), names));
-    known.chain(findings()).chain(defects()).collect()
+    known.chain(findings()).chain(defects()).chain(not_exercised()).collect()
 }
 
 /// The keys of remedies: for findings that ask for something, for defects, and for what the station itself asks for.
@@ -93,6 +93,14 @@ fn remedies() -> Keys {
 fn findings() -> impl Iterator<Item = (String, BTreeSet<String>)> {
     examples::findings().into_iter().map(|finding| {
         let Problem { code, parameters, .. } = finding.as_problem();
+        (code, parameters.into_iter().map(|(name, _)| name).collect())
+    })
+}
+
+/// What a PASS did not exercise.
+fn not_exercised() -> impl Iterator<Item = (String, BTreeSet<String>)> {
+    examples::not_exercised().into_iter().map(|part| {
+        let (code, parameters) = part.tagged();
         (code, parameters.into_iter().map(|(name, _)| name).collect())
     })
 }

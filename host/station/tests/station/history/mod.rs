@@ -17,6 +17,7 @@ pub(crate) mod released;
 pub(crate) mod served;
 mod units;
 mod unnamed;
+mod untested;
 mod waivers;
 mod wilson;
 mod yields;

@@ -115,7 +115,32 @@ fn a_limit_that_is_missed_blames_whom_the_plan_says() {
         // If the board is wrong as well, the same limit says whether it was judged correctly.
         let wrong = station.run("CAT00002", "mock,fault=stuck-data");
         assert_eq!(wrong.code, Some(if blames == "station" { 3 } else { 1 }), "{blames}: {wrong:?}");
+        if blames == "station" {
+            are_not_believed(&station, &wrong);
+        }
     }
+}
+
+/// What the steps of this run found is recorded, and nothing of it is told as a result.
+fn are_not_believed(station: &Station, did: &Did) {
+    assert!(did.said.contains("Have an engineer look at this lane, or at the limit in the plan"), "{did:?}");
+    assert!(!did.said.contains("set the board aside"), "{did:?}");
+    let (_, record, _) = station.saved(did);
+    assert_eq!((record.suspects.len(), record.steps[1].suspects.is_empty()), (0, false));
+    assert_eq!(record.conclusion.remedy, record.steps[1].remedy);
+    assert_eq!(station.query("SELECT count(*) FROM suspect"), ["0"]);
+    assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+}
+
+/// A limit on the whole run is judged after the steps.
+#[test]
+fn steps_are_not_believed_either_where_the_run_was_too_long_for_the_station() {
+    let limit = "[limits]\n\"run.seconds\" = { most = 1e-6, blames = \"station\" }\n";
+    let station = Station::with(&format!("{PLAN}{limit}"));
+    let did = station.run("CAT00001", "mock,fault=stuck-data");
+    assert_eq!(did.code, Some(3), "{did:?}");
+    assert!(!did.said.contains("set the board aside"), "{did:?}");
+    assert!(station.saved(&did).1.suspects.is_empty());
 }
 
 #[test]
@@ -158,6 +183,15 @@ fn a_call_that_is_wrong_begins_no_run() {
     let did = station.run("CAT1", "mock");
     assert_eq!(did.code, Some(2), "{did:?}");
     assert!(did.complained.contains("`CAT1` is no serial number of this product"), "{did:?}");
+    for wrong in [
+        "tcp:127.0.0.1:99999",
+        "tcp:127.0.0.1:3001,baud=0",
+        "mock,fault=nope",
+        "mock,serial=1234567890123456789",
+    ] {
+        let did = station.run("CAT00001", wrong);
+        assert_eq!((did.code, did.said.as_str()), (Some(2), ""), "{wrong}: {did:?}");
+    }
     station.plan(&PLAN.replace("schema = 1", "schema = 9"));
     assert_eq!(station.run("CAT00001", "mock").code, Some(2));
     assert!(!station.data().exists());
