@@ -246,6 +246,7 @@ codes::codes! {
         Foreign [path] => "kept-plans-foreign",
         Job [job] => "job-without-run",
         Audit [id] => "audit-contradicts",
+        Waiver [run] => "waiver-contradicts",
         Plan [run] => "run-plan-wrong",
         Differs [table, key, column, stored, rebuilt] => "table-row-differs",
         Missing [table, key] => "table-row-missing",
@@ -272,6 +273,7 @@ codes::codes! {
     CopyError {
         Exists [path] => "copy-would-overwrite",
         UnderWay [path] => "copy-of-runs-under-way",
+        Inside [path] => "copy-in-itself",
         Io [path] => "copy-not-written",
         Faulty [path, faults, first] => "copy-faulty",
         = Plans,

@@ -84,6 +84,14 @@ pub enum Fault {
         /// Why.
         source: Box<StoreError>,
     },
+    /// A waiver is not what the audit says about it, or only one of the two is there.
+    #[error(
+        "the waiver of run {run} is not as the audit has it; look in both, and who may write to the database"
+    )]
+    Waiver {
+        /// The run.
+        run: String,
+    },
     /// The plan in a record is not what its hash says.
     #[error("the plan in the record of run {run} has another hash than it says; look at the record")]
     Plan {

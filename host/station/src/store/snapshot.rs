@@ -173,6 +173,14 @@ impl Snapshot {
         self.read("to tell who bound what", bindings::rebindings)
     }
 
+    /// The runs of which waiver and audit tell different things.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read.
+    pub fn contradicted_waivers(&self) -> Result<Vec<String>, StoreError> {
+        self.rows("to tell its waivers", statements::WAIVERS_UNLIKE_AUDIT, values![], |row| row.get(0))
+    }
+
     /// All rows of the table `name`, by its `key`.
     #[must_use]
     pub fn table(&self, name: &'static str, key: &'static str) -> Rows<'_> {

@@ -84,6 +84,7 @@ statements! {
     pub(super) UNIT_OF_DEVICE = "unit-of-device.sql";
     pub(super) DEVICE_OF_UNIT = "device-of-unit.sql";
     pub(super) AUDIT_OF_ACT = "audit-of-act.sql";
+    pub(super) WAIVERS_UNLIKE_AUDIT = "waivers-unlike-audit.sql";
     pub(super) LAST_JUDGEMENT = "last-judgement.sql";
     pub(super) PASSED = "passed.sql";
     pub(super) OPEN_RUN_OF_UNIT = "open-run-of-unit.sql";

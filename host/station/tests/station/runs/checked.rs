@@ -98,6 +98,37 @@ fn a_changed_row_is_found_in_every_table() {
     }
 }
 
+/// No record has a waiver; the audit has.
+#[test]
+fn a_waiver_that_was_changed_moved_or_removed_is_found() {
+    let station = station();
+    let [passed, failed, _] = &station.query("SELECT id FROM run ORDER BY id")[..] else { panic!() };
+    let data = station.data();
+    let mut waive = Command::new(program());
+    waive.args(["waive", failed, "--reason", "used as it is", "--operator", "engel", "--data"]).arg(&data);
+    assert!(waive.output().unwrap().status.success());
+    assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+    let database = rusqlite::Connection::open(station.store().database()).unwrap();
+    let copy = station.path("station.db");
+    database.execute("VACUUM INTO ?1", [copy.to_str()]).unwrap();
+    drop(database);
+    for change in [
+        format!("UPDATE waiver SET run_id = '{passed}'"),
+        "UPDATE waiver SET reason = 'sound'".to_owned(),
+        "UPDATE waiver SET at_ms = at_ms - 1".to_owned(),
+        "DELETE FROM waiver".to_owned(),
+        "DELETE FROM audit WHERE act = 'waive'".to_owned(),
+    ] {
+        fs::copy(&copy, station.store().database()).unwrap();
+        let database = rusqlite::Connection::open(station.store().database()).unwrap();
+        assert!(database.execute(&change, []).unwrap() > 0, "{change}");
+        drop(database);
+        let did = station.check();
+        assert_eq!(did.code, Some(3), "{change}: {did:?}");
+        assert!(did.said.contains(&format!("the waiver of run {failed} is not as the audit")), "{did:?}");
+    }
+}
+
 /// The index, and the record's own hash, agree with the record.
 #[test]
 fn a_record_with_another_plan_than_its_hash_is_of_is_found() {
