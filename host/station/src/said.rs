@@ -241,9 +241,9 @@ pub enum Saying {
     LaneEndless,
     #[error("a file that the plan names was changed while the run began; test the board again")]
     PlanChanged,
-    #[error("the station ended in the middle of the run, after {tries} tries of steps")]
+    #[error("the station ended in the middle of the run (tries of steps on record: {tries})")]
     StationEnded { tries: usize },
-    #[error("the result could not be saved when the run was over, after {tries} tries of steps")]
+    #[error("the result could not be saved when the run was over (tries of steps on record: {tries})")]
     SavedTooLate { tries: usize },
     #[error("the result is saved here, but not at the plant yet; the lane waits for the plant")]
     NotAtPlant,
