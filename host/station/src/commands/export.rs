@@ -41,7 +41,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let snapshot = arguments.results.snapshot()?;
     match (&arguments.run, &arguments.to) {
         (Some(run), to) => one(&snapshot, run, arguments.format, to.as_deref()),
-        (None, Some(to)) => all(&snapshot, &arguments.filtered.filter(), arguments.format, to),
+        (None, Some(to)) => all(&snapshot, &arguments.filtered.filter()?, arguments.format, to),
         (None, None) => Err(Failure::call(anyhow::Error::msg("name a run, or a place with --to"))),
     }
 }

@@ -29,7 +29,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let filter = arguments.filtered.filter();
+    let filter = arguments.filtered.filter()?;
     let page = page(&arguments.results.snapshot()?, &filter, arguments.after.as_ref(), arguments.limit)?;
     either(&page, arguments.json, text)
 }

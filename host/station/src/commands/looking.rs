@@ -56,6 +56,11 @@ impl Results {
     }
 }
 
+/// A range in which there is no moment.
+#[derive(Debug, thiserror::Error)]
+#[error("--until is not after --from, so no run can be meant; give the earlier one with --from")]
+pub(super) struct NoRange;
+
 /// Which runs are meant, by when they began.
 #[derive(Clone, Copy, Debug, Args)]
 struct Range {
@@ -69,9 +74,10 @@ struct Range {
 
 impl Range {
     /// The range as a period.
-    fn period(self) -> Period {
+    fn period(self) -> Result<Period, Failure> {
         let all = Period::default();
-        Period { from_ms: self.from.unwrap_or(all.from_ms), until_ms: self.until.unwrap_or(all.until_ms) }
+        let (from_ms, until_ms) = (self.from.unwrap_or(all.from_ms), self.until.unwrap_or(all.until_ms));
+        if from_ms < until_ms { Ok(Period { from_ms, until_ms }) } else { Err(Failure::call(NoRange)) }
     }
 }
 
@@ -93,9 +99,10 @@ pub(super) struct Counted {
 
 impl Counted {
     /// In the form that the counting functions take.
-    pub(super) fn wanted(&self) -> Wanted {
+    pub(super) fn wanted(&self) -> Result<Wanted, Failure> {
         let Self { plan, station, lane, range } = self;
-        Wanted { plan: plan.clone(), station: station.clone(), lane: lane.clone(), period: range.period() }
+        let period = range.period()?;
+        Ok(Wanted { plan: plan.clone(), station: station.clone(), lane: lane.clone(), period })
     }
 }
 
@@ -137,17 +144,17 @@ impl Filtered {
     pub(super) const GROUPS: [&str; 2] = ["Said", "Range"];
 
     /// As a filter.
-    pub(super) fn filter(&self) -> Filter {
+    pub(super) fn filter(&self) -> Result<Filter, Failure> {
         let Said { serial, verdict, plan, station, lane, operator } = &self.said;
-        Filter {
+        Ok(Filter {
             serial: serial.clone(),
             verdict: verdict.map(Into::into),
             plan: plan.clone(),
             station: station.clone(),
             lane: lane.clone(),
             operator: operator.clone(),
-            period: self.range.period(),
-        }
+            period: self.range.period()?,
+        })
     }
 }
 

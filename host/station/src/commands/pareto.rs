@@ -37,7 +37,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Each::Part => Of::Part,
         Each::Check => Of::Check,
     };
-    let pareto = pareto(&arguments.results.snapshot()?, &arguments.counted.wanted(), by)?;
+    let pareto = pareto(&arguments.results.snapshot()?, &arguments.counted.wanted()?, by)?;
     either(&pareto, arguments.json, text)
 }
 

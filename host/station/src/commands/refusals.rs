@@ -7,6 +7,7 @@ use super::evidence::{EvidenceLost, EvidenceRemoved, NoSuchRun};
 use super::export::{NoFolder, Taken};
 use super::job::{NoJob, NoWord};
 use super::lanes::EngineEnded;
+use super::looking::NoRange;
 use super::outbox::{NoSink, NotDead, SinkInUse, SinkUnknown};
 use super::plant::{NoPlant, NoStation};
 use super::publish::PublishError;
@@ -26,6 +27,8 @@ codes::codes! {
     EngineEnded => "engine-ended"
     ;
     NoMock => "plan-without-mock"
+    ;
+    NoRange => "range-without-moment"
     ;
     NoPlant => "settings-without-plant"
     ;

@@ -61,7 +61,7 @@ impl From<Each> for By {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let snapshot = arguments.results.snapshot()?;
-    let yields = yields(&snapshot, &arguments.counted.wanted(), arguments.by.into())?;
+    let yields = yields(&snapshot, &arguments.counted.wanted()?, arguments.by.into())?;
     either(&yields, arguments.json, text)
 }
 

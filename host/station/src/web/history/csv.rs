@@ -3,7 +3,7 @@
 use std::io;
 
 use axum::body::Body;
-use axum::extract::{Query, State};
+use axum::extract::State;
 use axum::http::header::{CACHE_CONTROL, CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::response::{IntoResponse as _, Response};
 use futures_util::stream;
@@ -34,11 +34,7 @@ enum Next {
 }
 
 /// All runs of the filter, piece by piece. A download that cannot go on breaks off, so that no part is taken for the whole.
-pub(super) async fn all(
-    State(app): State<App>,
-    visit: Visit,
-    Query(asked): Query<Asked>,
-) -> Result<Response, Trouble> {
+pub(super) async fn all(State(app): State<App>, visit: Visit, asked: Asked) -> Result<Response, Trouble> {
     let filter = asked.filter().map_err(|wrong| wrong.told(&visit))?;
     let (first, after) = piece(&app, &visit, &filter, None).await?;
     let download = Download { app, visit, filter, next: Some(Next::Piece(first, after)) };

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use axum::extract::{Query, State};
+use axum::extract::State;
 use axum::response::Response;
 use maud::{Markup, html};
 
@@ -19,11 +19,7 @@ use crate::web::visit::Visit;
 /// How many runs a page has.
 const RUNS: u32 = 50;
 
-pub(super) async fn page(
-    State(app): State<App>,
-    visit: Visit,
-    Query(asked): Query<Asked>,
-) -> Result<Response, Trouble> {
+pub(super) async fn page(State(app): State<App>, visit: Visit, asked: Asked) -> Result<Response, Trouble> {
     let asking = asked.filter().and_then(|filter| Ok((filter, asked.after()?)));
     let (filter, after) = asking.map_err(|wrong| wrong.told(&visit))?;
     let look = move |now: &Snapshot| {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use axum::extract::{Query, State};
+use axum::extract::State;
 use axum::response::Response;
 use maud::{Markup, html};
 
@@ -16,11 +16,7 @@ use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
-pub(super) async fn page(
-    State(app): State<App>,
-    visit: Visit,
-    Query(asked): Query<Asked>,
-) -> Result<Response, Trouble> {
+pub(super) async fn page(State(app): State<App>, visit: Visit, asked: Asked) -> Result<Response, Trouble> {
     let choices = [("part", Of::Part), ("check", Of::Check)];
     let asking = asked.wanted().and_then(|wanted| Ok((wanted, asked.by(&choices)?)));
     let (wanted, by) = asking.map_err(|wrong| wrong.told(&visit))?;

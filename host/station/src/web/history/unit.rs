@@ -1,6 +1,6 @@
 //! All that is known of a serial number.
 
-use axum::extract::{Query, State};
+use axum::extract::State;
 use axum::http::StatusCode;
 use axum::response::Response;
 use halfrow::words::plain;
@@ -18,11 +18,7 @@ use crate::web::visit::Visit;
 /// The most runs that are shown; a unit that checks shifts has thousands.
 const MOST_RUNS: usize = 200;
 
-pub(super) async fn page(
-    State(app): State<App>,
-    visit: Visit,
-    Query(asked): Query<Asked>,
-) -> Result<Response, Trouble> {
+pub(super) async fn page(State(app): State<App>, visit: Visit, asked: Asked) -> Result<Response, Trouble> {
     shown(app, visit, asked, None).await
 }
 
@@ -33,6 +29,9 @@ pub(super) async fn shown(
     asked: Asked,
     refused: Option<RefusedAct>,
 ) -> Result<Response, Trouble> {
+    if asked.serial.is_empty() {
+        return Err(Trouble::missing(&visit));
+    }
     let serial = asked.serial.clone();
     let units = app.look(&visit, move |now| unit::units(now, &serial)).await?;
     if units.is_empty() {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use axum::extract::{Query, State};
+use axum::extract::State;
 use axum::response::Response;
 use maud::{Markup, html};
 
@@ -28,11 +28,7 @@ const MOST_LINES: usize = 120;
 /// With fewer units a share says little.
 pub(super) const FEW: u64 = 30;
 
-pub(super) async fn page(
-    State(app): State<App>,
-    visit: Visit,
-    Query(asked): Query<Asked>,
-) -> Result<Response, Trouble> {
+pub(super) async fn page(State(app): State<App>, visit: Visit, asked: Asked) -> Result<Response, Trouble> {
     let choices = [
         ("plan", By::Plan),
         ("day", By::Day),

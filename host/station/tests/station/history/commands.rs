@@ -105,6 +105,9 @@ fn history_takes_each_filter() {
     assert_eq!(runs(&["--plan", "final", "--operator", "weber", "--from", "2026-11-02"]), ["S3"]);
     assert_eq!(runs(&["--until", "2026-11-01T02:00:00+01:00"]), ["S1"]);
     assert_eq!(runs(&["--until", "2026-11-01"]), ["S2", "S1", "S1"], "the day is among what is meant");
+    let (code, _, complained) = did(&made, &["history", "--from", "2026-11-03", "--until", "2026-11-01"]);
+    assert_eq!(code, 2);
+    assert!(complained.contains("--until is not after --from"), "{complained}");
     let (code, _, complained) = did(&made, &["history", "--from", "yesterday"]);
     assert_eq!(code, 2);
     assert!(complained.contains("give a date as 2026-11-22"), "{complained}");
