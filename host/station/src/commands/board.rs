@@ -7,7 +7,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand};
-use halfrow::link::kinds;
+use halfrow::link::{self, kinds};
 use halfrow::target::Target;
 use rand::{RngExt as _, rng};
 use serde_json::json;
@@ -140,6 +140,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             if kinds::of(&share.board).is_none() {
                 return Err(Failure::call(NoBoardKind { kind: share.board.kind.clone() }));
             }
+            link::check(&share.board).map_err(Failure::call)?;
             shared(&mut Plant::connect(&address)?, share)
         }
         What::List { json } => {

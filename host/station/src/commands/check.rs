@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use halfrow::words::count;
 use serde_json::json;
 
 use super::{Failure, document};
@@ -52,7 +53,8 @@ fn text(checked: &Checked) -> String {
     let mut lines: Vec<_> = checked.faults.iter().map(|fault| format!("fault: {fault}")).collect();
     lines.extend(checked.superseded.iter().map(|note| format!("note: {note}")));
     if checked.open > 0 {
-        lines.push(format!("{} runs are open; the next start of the station closes them", checked.open));
+        let (runs, are) = (count(checked.open, "run"), if checked.open == 1 { "is" } else { "are" });
+        lines.push(format!("{runs} {are} open; the next start of the station closes what is open"));
     }
     if checked.pruned > 0 {
         lines.push(format!("{} pieces of evidence were removed since they were old", checked.pruned));

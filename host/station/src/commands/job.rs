@@ -172,7 +172,7 @@ fn changed(is_changed: bool, id: &str, done: &'static str) -> Result<Exit, Failu
 
 fn text(jobs: &[Job]) -> String {
     if jobs.is_empty() {
-        return "there is no such job".to_owned();
+        return "no jobs".to_owned();
     }
     let row = |job: &Job| {
         let about = if job.serial.is_empty() { format!("any {}", job.kind) } else { job.serial.clone() };

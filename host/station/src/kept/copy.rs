@@ -7,6 +7,8 @@ use std::io;
 use std::os::unix::fs::{DirBuilderExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
+use halfrow::files::written_aside::Place;
+
 use crate::check::{Fault, check, foreign};
 use crate::published::{BundleError, KeptPlans};
 use crate::record::{Blobs, Piece, synced};
@@ -27,7 +29,7 @@ pub struct Copied {
 #[derive(Debug, thiserror::Error)]
 pub enum CopyError {
     /// The folder for the copy has something in it already.
-    #[error("{} is there already and not empty; name another folder", path.display())]
+    #[error("{} is there already, and is no empty folder; name another one", path.display())]
     Exists {
         /// The folder.
         path: PathBuf,
@@ -36,6 +38,12 @@ pub enum CopyError {
     #[error("{} is there; remove it, if nobody is making a copy just now", path.display())]
     UnderWay {
         /// What is there.
+        path: PathBuf,
+    },
+    /// The new folder would be inside what is copied.
+    #[error("{} would be inside the copy that is restored; name a folder outside it", path.display())]
+    Inside {
+        /// The folder.
         path: PathBuf,
     },
     /// The copy cannot be written.
@@ -47,7 +55,7 @@ pub enum CopyError {
         source: io::Error,
     },
     /// What shall be copied is not as it was written.
-    #[error("{faults} faults are in {}, the first: {first}; `halfrow-station check` tells all", path.display())]
+    #[error("faults in {}: {faults}, the first: {first}; `halfrow-station check` tells all", path.display())]
     Faulty {
         /// The folder.
         path: PathBuf,
@@ -80,6 +88,9 @@ pub fn backup(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
 /// # Errors
 /// [`CopyError`]
 pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
+    if Place::of(from.path()).holds(to) {
+        return Err(CopyError::Inside { path: to.to_owned() });
+    }
     match sound(from, from) {
         // The rest is checked once it is up to date.
         Err(CopyError::Store(StoreError::Older { .. })) => refuse(from, &foreign(from)?)?,

@@ -263,14 +263,16 @@ impl Judging {
     }
 }
 
+/// What a seed may be.
+const SEED: &str = "write \"run\", or a whole number from 0 on";
+
 fn seed(text: Option<&Spanned<SeedText>>) -> Result<Seed, Fault> {
     match text.map(|text| (text.get_ref(), text.span().start)) {
         None => Ok(Seed::Run),
         Some((SeedText::Number(seed), _)) => Ok(Seed::Fixed(*seed)),
         Some((SeedText::Word(word), _)) if word == "run" => Ok(Seed::Run),
-        Some((SeedText::Word(word), at)) => {
-            Err(Fault::wrong(at, format!("`{word}` is no seed"), "write \"run\", or a whole number"))
-        }
+        Some((SeedText::Word(word), at)) => Err(Fault::wrong(at, format!("`{word}` is no seed"), SEED)),
+        Some((SeedText::Other(_), at)) => Err(Fault::wrong(at, "this is no seed", SEED)),
     }
 }
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use halfrow::model::Phase;
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer, de};
 use toml::Spanned;
 
@@ -115,11 +116,12 @@ pub(super) enum StepKindText {
 }
 
 /// `"run"`, or a number.
-#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(untagged)]
 pub(super) enum SeedText {
     Number(u64),
     Word(String),
+    Other(IgnoredAny),
 }
 
 /// `[limits]`, by the measurement's name.

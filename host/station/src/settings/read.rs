@@ -263,7 +263,12 @@ fn lane(text: &LaneText, lender: &Lender, plans: &mut Plans<'_>) -> Result<LaneS
     }
     let mut of_lane = Vec::new();
     for file in text.plans.get_ref() {
-        of_lane.push(plans.take(file)?);
+        let plan = plans.take(file)?;
+        if of_lane.contains(&plan) {
+            let what = format!("lane {name} has the plan {} twice", file.get_ref());
+            return Err(Fault::wrong(file.span().start, what, "leave one of them out"));
+        }
+        of_lane.push(plan);
     }
     Ok(LaneSettings { name: name.clone(), board, plans: of_lane, starts: starts(text)? })
 }

@@ -164,7 +164,7 @@ fn the_hash_changes_with_the_text_and_with_every_file_that_it_names() {
 }
 
 /// What is replaced in the plan, by what, and how the message begins then.
-const BAD: [(&str, &str, &str); 37] = [
+const BAD: [(&str, &str, &str); 38] = [
     ("schema = 1", "schema = 2", "plan.toml:1: this program reads plans of schema 1, not 2; take the"),
     ("schema = 1", "schema = 1\nschma = 1", "plan.toml:2: unknown field `schma`"),
     ("version = \"7\"", "version = \"7\"\nversion = \"8\"", "plan.toml:5: duplicate key"),
@@ -220,6 +220,11 @@ const BAD: [(&str, &str, &str); 37] = [
     ),
     ("at_speed = 1.5", "at_speed = -1.0", "plan.toml:29: -1 seconds are none that a step can take; write"),
     ("seed = \"run\"", "seed = \"rum\"", "plan.toml:30: `rum` is no seed; write \"run\""),
+    (
+        "seed = \"run\"",
+        "seed = -1",
+        "plan.toml:30: this is no seed; write \"run\", or a whole number from 0 on",
+    ),
     ("name = \"diagnostic tables\"\n", "", "plan.toml:33: two steps are called verify; give each a `name`"),
     (
         "\"latency.clocks\" = { most = 1004",
@@ -335,10 +340,8 @@ fn the_schema_says_of_plans_what_the_program_does() {
     let schema: Value = serde_json::from_str(JSON_SCHEMA).unwrap();
     let validator = jsonschema::validator_for(&schema).unwrap();
     let whole = as_json(WHOLE).unwrap();
-    assert_eq!(
-        validator.iter_errors(&whole).map(|error| error.to_string()).collect::<Vec<_>>(),
-        Vec::<String>::new()
-    );
+    let wrong: Vec<_> = validator.iter_errors(&whole).map(|error| error.to_string()).collect();
+    assert_eq!(wrong, Vec::<String>::new());
     let by_shape = [
         "unknown field",
         "unknown variant",
@@ -356,7 +359,7 @@ fn the_schema_says_of_plans_what_the_program_does() {
     ];
     let by_shape = |said: &&(&str, &str, &str)| by_shape.iter().any(|part| said.2.contains(part));
     let bad: Vec<_> = BAD.iter().filter(by_shape).collect();
-    assert_eq!(bad.len(), 15);
+    assert_eq!(bad.len(), 16);
     for (good, bad, said) in bad {
         let plan = as_json(&WHOLE.replacen(good, bad, 1)).unwrap();
         assert!(!validator.is_valid(&plan), "{bad}: {said}");

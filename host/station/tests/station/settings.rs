@@ -250,6 +250,11 @@ const WRONG: &[(&str, &str, &str)] = &[
         "station.toml:30: others can reach these pages, and nobody logs in",
     ),
     ("deadline = 2.5", "deadline = -1.0", "station.toml:31: -1 s is no such time"),
+    (
+        "\"a.toml\", \"b.toml\"",
+        "\"a.toml\", \"b.toml\", \"./a.toml\"",
+        "station.toml:20: lane 1 has the plan ./a.toml twice; leave one of them out",
+    ),
     ("usb:1-2.3", "tcp:127.0.0.1:99999", "station.toml:19: the board cannot be used: "),
     ("mock,serial=1", "mock,serial=1,fault=nope", "station.toml:24: the board cannot be used: "),
 ];

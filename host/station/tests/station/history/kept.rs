@@ -159,6 +159,19 @@ fn a_copy_and_what_is_restored_of_it_are_for_nobody_else() {
 }
 
 #[test]
+fn nothing_is_restored_into_the_copy_itself() {
+    let (made, place) = (made(), tempfile::tempdir().unwrap());
+    let copy = place.path().join("copy");
+    backup(&made.folder(), &copy).unwrap();
+    let before = fs::read_dir(&copy).unwrap().count();
+    for inside in ["in", "blobs/in", "."] {
+        let refused = restore(&Folder::new(&copy), &copy.join(inside)).unwrap_err();
+        assert!(refused.to_string().contains("inside the copy that is restored"), "{refused}");
+    }
+    assert_eq!(fs::read_dir(&copy).unwrap().count(), before);
+}
+
+#[test]
 fn nothing_is_overwritten_and_damage_is_not_copied() {
     let made = made();
     let place = tempfile::tempdir().unwrap();

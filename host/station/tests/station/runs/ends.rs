@@ -285,7 +285,7 @@ fn a_run_that_is_found_open_is_an_error() {
     assert_eq!(station.query("SELECT state FROM run"), ["open"]);
     let checked = station.check();
     assert_eq!(checked.code, Some(0), "{checked:?}");
-    assert!(checked.said.contains("1 runs are open"), "{checked:?}");
+    assert!(checked.said.contains("1 run is open"), "{checked:?}");
     let did = station.run("CAT00002", "mock");
     assert_eq!(did.code, Some(0), "{did:?}");
     assert!(did.complained.contains("of CAT00001 was found open, and is ERROR"), "{did:?}");
