@@ -278,10 +278,16 @@ fn boards_are_shared_changed_and_listed_by_commands_that_the_audit_keeps() {
     let share =
         |board: &str| engineer.did(&["board", "share", "shelf-1", "--kind", "mock", "--board", board]);
     assert_eq!(share("mock").said, "shelf-1 is shared\n");
-    assert_eq!(share("nonsense:1").code, Some(2));
+    for wrong in ["nonsense:1", "tcp:127.0.0.1:99999"] {
+        assert_eq!(share(wrong).code, Some(2), "{wrong}");
+    }
     assert!(engineer.did(&["board", "list"]).said.contains("free"));
     let changes =
         [("out", "shelf-1 is out\n"), ("in", "shelf-1 is in\n"), ("unshare", "shelf-1 is unshared\n")];
+    for blank in ["", " "] {
+        let did = engineer.did(&["board", "out", "shelf-1", "--reason", blank]);
+        assert_eq!((did.code, did.complained.contains("say why in a few words")), (Some(2), true), "{did:?}");
+    }
     for (change, said) in changes {
         assert_eq!(engineer.did(&["board", change, "shelf-1", "--reason", "why not"]).said, said);
     }
