@@ -106,6 +106,10 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "export the file again: its polynomials are of two calibrations or in another order",
     ),
     ("ocam-sign-wrong", "change the signs of all coefficients if z counts forwards in your program"),
+    (
+        "option-is-no-time",
+        "give a number of seconds: more than 0 for a limit of time, 0 or more for any other",
+    ),
     ("option-without-effect", "leave the option out, or the one that decides in its place"),
     ("paper-board-failed", "do what its cause says about the board, then run again"),
     ("pgm-header-wrong", "write the header as `P5 WIDTH HEIGHT MAXVAL`, or export the file again"),

@@ -194,7 +194,8 @@ mod tests {
                 suspect: streamed,
                 others,
             };
-            let (frames, suspect, repetition) = (2, at_speed, Repetition::NotNeeded {});
+            let (frames, suspect) = (2, at_speed);
+            let repetition = Repetition::NotNeeded {};
             let at_speed = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others };
             [streamed, at_speed].map(|finding| sentence(&finding))
         };
