@@ -241,13 +241,13 @@ impl<T> Fault<T> {
 /// A fault that cannot be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FaultError {
-    /// None has this name.
+    /// No fault has this name.
     #[error("no such fault is called {name}; choose a name from the list of faults")]
     Unknown {
         /// The name that was given.
         name: String,
     },
-    /// A parameter of the fault is wrong.
+    /// A parameter of the fault is unknown, or its value is wrong.
     #[error("a parameter of fault={fault} cannot be used; correct it or leave it out")]
     Parameter {
         /// The fault's name.

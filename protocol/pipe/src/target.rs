@@ -14,13 +14,13 @@ const FAULT: &str = "fault";
 /// Options that make no pipe, or no board at its end.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TargetError {
-    /// An option of the board's build is wrong.
+    /// An option of the mock board's build has a wrong value, or does not go with another one.
     #[error("the board cannot be built like this; correct its options or leave them out")]
     Board(#[source] ValueError),
-    /// An option of the pipe is wrong.
+    /// An option of the simulated link has a wrong value, or does not go with another one.
     #[error("the wire cannot be like this; correct its options or leave them out")]
     Pipe(#[source] ValueError),
-    /// A fault cannot be made.
+    /// The mock board or its link cannot have the fault as it was asked for.
     #[error("the {}'s fault cannot be made; see the list of faults", place.name())]
     Fault {
         /// What it would spoil.
@@ -29,7 +29,7 @@ pub enum TargetError {
         #[source]
         source: FaultError,
     },
-    /// No fault of this board or of the pipe to it has this name.
+    /// Neither the mock board nor its link has a fault of this name.
     #[error("no fault of this board is called `{name}`; choose {}from {known}", meant(.name, .known))]
     UnknownFault {
         /// The name that was given.
@@ -37,7 +37,7 @@ pub enum TargetError {
         /// The names that exist.
         known: String,
     },
-    /// Two faults of the same kind.
+    /// Two faults were asked for that cannot be had together, such as two of the board.
     #[error(
         "fault={first} and fault={second} cannot be had together; keep one, or combine one of the wire with one of the board"
     )]
@@ -47,7 +47,7 @@ pub enum TargetError {
         /// The one given after it.
         second: String,
     },
-    /// A key that nothing takes.
+    /// The mock board has no option of this name.
     #[error("`{key}` is no option of this board; choose {}from {known}", meant(.key, .known))]
     UnknownKey {
         /// The key that was given.
@@ -55,7 +55,7 @@ pub enum TargetError {
         /// The options that exist, and the faults that were asked for with their parameters.
         known: String,
     },
-    /// A key that both faults take.
+    /// Both of the faults that were asked for have a parameter of this name.
     #[error(
         "{key} means something to fault={pipe} and to fault={board}; leave it out, or leave out one of the faults"
     )]
@@ -67,7 +67,7 @@ pub enum TargetError {
         /// The fault of the board.
         board: String,
     },
-    /// A key that was given before.
+    /// An option of the mock board was given twice.
     #[error("{key} is given twice; keep one")]
     Duplicate {
         /// The key.

@@ -5,7 +5,7 @@ use std::num::ParseIntError;
 /// A value that was given as text and cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ValueError {
-    /// The text is no whole number.
+    /// The option's value is not a whole number.
     #[error("{key}={value} is not a whole number; give one from {least} to {most}")]
     NotANumber {
         /// The value's name.
@@ -20,7 +20,7 @@ pub enum ValueError {
         #[source]
         source: ParseIntError,
     },
-    /// The number lies outside its range.
+    /// The option's value is a number outside the option's range.
     #[error("{key}={value} is out of range; give a number from {least} to {most}")]
     OutOfRange {
         /// The value's name.
@@ -32,7 +32,7 @@ pub enum ValueError {
         /// The largest legal number.
         most: i64,
     },
-    /// The word is none of those that are known.
+    /// The option's value is not one of the words that it takes.
     #[error("{key}={value} is not known; give one of {known}")]
     NotAWord {
         /// The value's name.
@@ -42,7 +42,7 @@ pub enum ValueError {
         /// The known words.
         known: String,
     },
-    /// The text is no number, or one outside its range.
+    /// The option's value is not a number, or is outside the option's range.
     #[error("{key}={value} is not a number from {least} to {most}; give one in this range")]
     Decimal {
         /// The value's name.
@@ -54,7 +54,7 @@ pub enum ValueError {
         /// The largest legal number.
         most: f64,
     },
-    /// A fault was told twice where to strike.
+    /// Two parameters both say where the fault strikes.
     #[error("{first} and {second} both say where the fault strikes; keep one of them")]
     TwoPlaces {
         /// One key.
@@ -62,7 +62,7 @@ pub enum ValueError {
         /// Another one.
         second: &'static str,
     },
-    /// A value that has no default was not given.
+    /// The option needs a value, and none was given.
     #[error("{key} has no value; give one as {key}=VALUE")]
     Missing {
         /// The value's name.

@@ -18,19 +18,19 @@ const JSON: &str = "report.json";
 /// A report that could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    /// The path ends in no name.
+    /// The report's path does not end in the name of a folder.
     #[error("`{}` names no folder of its own; give the report a new one, as in `reports/today`", path.display())]
     Name {
         /// The path.
         path: PathBuf,
     },
-    /// Something is there and may not be replaced.
+    /// The report's folder exists already, and may not be replaced unless that is allowed.
     #[error("{} exists; allow it to be overwritten, or name another folder", path.display())]
     Exists {
         /// The path.
         path: PathBuf,
     },
-    /// What is there is a symbolic link.
+    /// In the report's place is a symbolic link, and links are not written through.
     #[error("{} is a link to {}, and links are not written through; name the folder itself", path.display(), to.display())]
     Link {
         /// The link.
@@ -38,13 +38,13 @@ pub enum ReportError {
         /// Where it leads.
         to: PathBuf,
     },
-    /// Another run is writing it.
+    /// Another run is writing a report of this name.
     #[error("another run is writing {}; wait until it is done, or name another folder", path.display())]
     Claimed {
         /// The path.
         path: PathBuf,
     },
-    /// Something is there that halfrow did not write.
+    /// In the report's place is something that halfrow did not write, and that is left alone.
     #[error("{} is no earlier report and is left alone: {why}; name another folder", path.display())]
     NotAReport {
         /// The path.
@@ -52,7 +52,7 @@ pub enum ReportError {
         /// How it can be told.
         why: String,
     },
-    /// The folder cannot be made where it should be.
+    /// The report's folder cannot be made there.
     #[error("cannot make the folder {}; check that the folder above it exists and is writable", path.display())]
     Prepare {
         /// The path.
@@ -60,7 +60,7 @@ pub enum ReportError {
         /// The system's reason.
         source: io::Error,
     },
-    /// A file of the report was not taken.
+    /// The system refused to write a file of the report.
     #[error("cannot write {name} of the report {}; check that its folder exists, is writable and has space", path.display())]
     Write {
         /// The report's path.
@@ -70,7 +70,7 @@ pub enum ReportError {
         /// The system's reason.
         source: io::Error,
     },
-    /// The finished folder was not taken in its place.
+    /// The report was written, but could not be put in its place.
     #[error("cannot put the report in its place, {}; check that nothing else uses that folder", path.display())]
     Place {
         /// The path.
@@ -78,13 +78,13 @@ pub enum ReportError {
         /// The system's reason.
         source: io::Error,
     },
-    /// The JSON encoder gave up.
+    /// The report could not be encoded as JSON, which is a fault of this program.
     #[error("the report cannot be encoded as JSON; this is a fault of halfrow, so report it")]
     Json(#[from] serde_json::Error),
-    /// The XML writer gave up.
+    /// The report could not be encoded as JUnit XML, which is a fault of this program.
     #[error("the report cannot be encoded as JUnit XML; this is a fault of halfrow, so report it")]
     Junit(#[from] quick_junit::SerializeError),
-    /// The PNG encoder gave up.
+    /// The report's pictures could not be encoded, which is a fault of this program.
     #[error("the report's pictures cannot be encoded; this is a fault of halfrow, so report it")]
     Pictures(#[from] png::EncodingError),
 }

@@ -102,7 +102,7 @@ impl State {
     }
 }
 
-/// A job that is not as the command wants it.
+/// There is no such job, or its state does not allow this.
 #[derive(Debug, thiserror::Error)]
 #[error("there is no job {id} that could be {done}; `halfrow-station job list` shows the state of each")]
 pub(super) struct NoJob {
@@ -110,7 +110,7 @@ pub(super) struct NoJob {
     done: &'static str,
 }
 
-/// Something that no station can have.
+/// The word cannot be one that a station has.
 #[derive(Debug, thiserror::Error)]
 #[error("`{word}` is no word that a station could have; write one without blanks")]
 pub(super) struct NoWord {

@@ -133,12 +133,12 @@ pub(super) fn plant(settings: &Settings) -> Result<&PlantSettings, Failure> {
     settings.plant.as_ref().ok_or_else(|| Failure::call(NoPlant))
 }
 
-/// Settings that name no plant.
+/// The settings do not name a plant.
 #[derive(Debug, thiserror::Error)]
 #[error("the settings name no plant; write url = \"postgres://halfrow@db.example/plant\" into [plant]")]
 pub(super) struct NoPlant;
 
-/// A station that the plant never heard of.
+/// The plant does not know a station of this name.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "the plant has not heard of a station {station}; `halfrow-station plant serve` shows those that it has"
