@@ -20,7 +20,7 @@ pub(crate) enum CallError {
     #[error("there is no code `{code}`; {remedy}")]
     CodeUnknown { code: String, remedy: String },
     /// The command `correct` was given neither a board nor the model.
-    #[error("nothing is named to correct with; give --model or --board TARGET")]
+    #[error("neither a board nor the model is named to correct with; give --model or --board TARGET")]
     NobodyCorrects,
     /// A recording was named where a board is needed that can answer to new frames.
     #[error(
@@ -36,7 +36,7 @@ pub(crate) enum CallError {
     RowsOfFrame { option: &'static str },
     /// An option says something else than the table file.
     #[error(
-        "{option} is not that of --tables {}, which is for {width} x {height}, {bits} bits, centre at column {centre}; \
+        "{option} contradicts --tables {}, which is for {width} x {height}, {bits} bits, centre at column {centre}; \
          leave {option} out, or make other tables", path.display()
     )]
     OtherThanTables { option: String, path: PathBuf, width: usize, height: usize, bits: u32, centre: f64 },
@@ -103,7 +103,7 @@ pub(crate) enum CallError {
     )]
     PhotographsMissing { needing: String, others: String },
     /// The input could not be read as a whole.
-    #[error("{} cannot be read; name a file that can be", path.display())]
+    #[error("cannot read {}; check that it exists and that you may read it", path.display())]
     Unreadable { path: PathBuf, source: io::Error },
     /// The station's program is not beside this one.
     #[error(

@@ -29,7 +29,7 @@ pub enum ReadError {
         path: PathBuf,
     },
     /// The file holds no frame that can be used; the cause that follows says why and what to do.
-    #[error("{} holds no frame that can be used", path.display())]
+    #[error("{} cannot be used as a frame", path.display())]
     Decode {
         /// The file.
         path: PathBuf,
@@ -78,7 +78,7 @@ pub enum DecodeError {
         height: u64,
     },
     /// The picture in colour is not of the size that is wanted.
-    #[error("it is a picture of {width} x {height}, and {columns} x {rows} is wanted; crop and scale it")]
+    #[error("it is {width} x {height}, but a frame of {columns} x {rows} is needed; crop and scale it")]
     OtherSize {
         /// Its columns.
         width: usize,
@@ -282,7 +282,7 @@ pub struct PackingError {
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The file's name does not end in the extension of a known format.
-    #[error("{} names no format; end it in .pgm, .png, .tif, .tiff, .dng or .raw", path.display())]
+    #[error("the name {} does not tell the format; end it in .pgm, .png, .tif, .tiff, .dng or .raw", path.display())]
     Extension {
         /// The file.
         path: PathBuf,

@@ -11,7 +11,7 @@ use crate::{Class, RecordingError, SerialError, Target, TcpError, UsbError};
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
     /// The target begins with a kind of board that this program does not know.
-    #[error("`{0}` is no kind of board that this program knows; {remedy}", remedy = instead_of(.0))]
+    #[error("`{0}` is not a known kind of board{like}; {remedy}", like = like(.0), remedy = instead_of(.0))]
     UnknownKind(String),
     /// The target has an address, but boards of this kind have none.
     #[error(
@@ -32,7 +32,7 @@ pub enum OpenError {
         form: String,
     },
     /// The target has an option that boards of this kind do not have, or not with this value.
-    #[error("`{option}` is no option of `{kind}`; it takes {known}")]
+    #[error("`{option}` is not an option of `{kind}`; it takes {known}")]
     Option {
         /// The kind.
         kind: String,
@@ -50,7 +50,7 @@ pub enum OpenError {
         option: String,
     },
     /// The board does not take the options in the target.
-    #[error("the target `{target}` is not one that {board} takes")]
+    #[error("the target `{target}` does not suit {board}")]
     Options {
         /// Which board.
         board: &'static str,
@@ -151,6 +151,11 @@ fn instead_of(kind: &str) -> String {
     if kind.starts_with("tty") {
         return format!("for a serial port write serial:/dev/{kind}");
     }
+    format!("choose from {}", kinds::forms().join(", "))
+}
+
+/// The known kind that an unknown one is like, as [`meant`] tells it.
+fn like(kind: &str) -> String {
     let names: Vec<_> = KINDS.iter().map(|kind| kind.name).collect();
-    format!("choose {}from {}", meant(kind, &names.join(", ")), kinds::forms().join(", "))
+    meant(kind, &names.join(", "))
 }

@@ -248,7 +248,7 @@ pub enum FaultError {
         name: String,
     },
     /// A parameter of the fault is unknown, or its value is wrong.
-    #[error("a parameter of fault={fault} cannot be used; correct it or leave it out")]
+    #[error("fault={fault} has a wrong parameter")]
     Parameter {
         /// The fault's name.
         fault: String,

@@ -15,13 +15,13 @@ const FAULT: &str = "fault";
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TargetError {
     /// An option of the mock board's build has a wrong value, or does not go with another one.
-    #[error("the board cannot be built like this; correct its options or leave them out")]
+    #[error("an option of the board is wrong")]
     Board(#[source] ValueError),
     /// An option of the simulated link has a wrong value, or does not go with another one.
-    #[error("the wire cannot be like this; correct its options or leave them out")]
+    #[error("an option of the simulated link is wrong")]
     Pipe(#[source] ValueError),
     /// The mock board or its link cannot have the fault as it was asked for.
-    #[error("the {}'s fault cannot be made; see the list of faults", place.name())]
+    #[error("the {}'s fault cannot be made", place.name())]
     Fault {
         /// What it would spoil.
         place: Place,
@@ -30,7 +30,7 @@ pub enum TargetError {
         source: FaultError,
     },
     /// Neither the mock board nor its link has a fault of this name.
-    #[error("no fault of this board is called `{name}`; choose {}from {known}", meant(.name, .known))]
+    #[error("no fault of this board is called `{name}`{}; choose from {known}", meant(.name, .known))]
     UnknownFault {
         /// The name that was given.
         name: String,
@@ -48,7 +48,7 @@ pub enum TargetError {
         second: String,
     },
     /// The mock board has no option of this name.
-    #[error("`{key}` is no option of this board; choose {}from {known}", meant(.key, .known))]
+    #[error("`{key}` is not an option of this board{}; choose from {known}", meant(.key, .known))]
     UnknownKey {
         /// The key that was given.
         key: String,

@@ -1,7 +1,5 @@
 //! Values given as text, as in `latency=12`, and their legal ranges.
 
-use std::num::ParseIntError;
-
 /// A value that was given as text and cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ValueError {
@@ -16,9 +14,6 @@ pub enum ValueError {
         least: i64,
         /// The largest legal number.
         most: i64,
-        /// What is wrong with the text.
-        #[source]
-        source: ParseIntError,
     },
     /// The option's value is a number outside the option's range.
     #[error("{key}={value} is out of range; give a number from {least} to {most}")]
@@ -110,9 +105,9 @@ impl Limits {
     /// [`ValueError::NotANumber`] or [`ValueError::OutOfRange`] when it does not.
     pub fn parse<T: TryFrom<i64>>(&self, text: &str) -> Result<T, ValueError> {
         let Self { key, least, most } = *self;
-        let value = text.parse::<i64>().map_err(|source| {
+        let value = text.parse::<i64>().map_err(|_| {
             let value = text.to_owned();
-            ValueError::NotANumber { key, value, least, most, source }
+            ValueError::NotANumber { key, value, least, most }
         })?;
         self.check(value)?;
         T::try_from(value).map_err(|_| ValueError::OutOfRange { key, value, least, most })

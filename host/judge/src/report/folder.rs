@@ -45,7 +45,7 @@ pub enum ReportError {
         path: PathBuf,
     },
     /// In the report's place is something that halfrow did not write, and that is left alone.
-    #[error("{} is no earlier report and is left alone: {why}; name another folder", path.display())]
+    #[error("{} is not an earlier report, and is left alone: {why}; give the report another name", path.display())]
     NotAReport {
         /// The path.
         path: PathBuf,
@@ -196,7 +196,7 @@ fn is_empty(path: &Path) -> bool {
 /// removes everything in it, so it may hold nothing else.
 fn foreign(path: &Path) -> Option<String> {
     if !fs::symlink_metadata(path).is_ok_and(|found| found.is_dir()) {
-        return Some("it is no folder".to_owned());
+        return Some("it is not a folder".to_owned());
     }
     let entries = match fs::read_dir(path).and_then(Iterator::collect::<io::Result<Vec<_>>>) {
         Ok(entries) => entries,
@@ -208,7 +208,7 @@ fn foreign(path: &Path) -> Option<String> {
     }
     let is_file = |entry: &&fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_file());
     if let Some(other) = entries.iter().find(|entry| !is_file(entry)) {
-        return Some(format!("its `{}` is no file", other.file_name().display()));
+        return Some(format!("its `{}` is not a file", other.file_name().display()));
     }
     (!entries.is_empty() && !is_report(&path.join(JSON))).then(|| format!("it holds no {JSON} of halfrow's"))
 }

@@ -25,7 +25,7 @@ const HOST: f64 = 0.1;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum WithinError {
     /// The time to judge within is over before a single row can be judged.
-    #[error("{seconds} s are too few for any verdict over this link; give at least {least} s")]
+    #[error("{seconds} s is too short for any verdict over this link; give at least {least} s")]
     TooFew {
         /// The time.
         seconds: f64,
@@ -35,7 +35,7 @@ pub enum WithinError {
     /// At the pixel clock that the board names, which nothing has checked, the time is over before a row can be judged; over
     /// this link alone it would be enough.
     #[error(
-        "{seconds} s are too few at the pixel clock of {} that the board names, but would be enough over this link; \
+        "{seconds} s is too short at the pixel clock of {} that the board names, but would be enough over this link; \
          look at that clock in a run without a time to judge within, or give at least {least} s", hertz(*clock_hz)
     )]
     TooFewOfClock {

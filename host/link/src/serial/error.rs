@@ -54,8 +54,8 @@ pub enum SerialError {
     },
     /// The serial port's driver set another baud rate than was asked for.
     #[error(
-        "{path} cannot make {baud} baud, and its driver took {taken} instead; give a rate that both port and board \
-         have, with baud=RATE"
+        "{path} does not support {baud} baud (its driver set {taken}); add baud=RATE with a rate that port and board \
+         support"
     )]
     OtherRate {
         /// The port.

@@ -11,7 +11,7 @@ use crate::serial::{Holder, by};
 pub enum UsbError {
     /// No USB is available on this computer.
     #[error(
-        "this machine has no USB that a program can use; run on one that has, or see `halfrow boards` for other links"
+        "no USB is available on this computer; use a computer that has it, or see `halfrow boards` for other links"
     )]
     NoUsb,
     /// No board with an FTDI chip is plugged in.

@@ -118,7 +118,7 @@ pub(super) struct SharedAlready {
 
 /// The text does not name a place where a board can be, such as a serial port or an address.
 #[derive(Debug, thiserror::Error)]
-#[error("`{kind}` is no kind of board; write one as `halfrow boards` lists them")]
+#[error("`{kind}` is not a kind of board; write one as `halfrow boards` lists them")]
 pub(super) struct NoBoardKind {
     pub(super) kind: String,
 }

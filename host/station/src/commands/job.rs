@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
+use halfrow_program::number::counted;
 
 use super::beginning::SettingsFile;
 use super::looking::{either, table, time};
@@ -68,7 +69,7 @@ struct Add {
     #[arg(long, default_value_t = 0)]
     priority: i64,
     /// How many
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, default_value_t = 1, value_parser = counted::<u32>(1, Some(10_000)))]
     count: u32,
     /// Who wants it
     #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand};
+use halfrow_program::number::counted;
 
 use super::beginning::{SettingsFile, Signal};
 use super::kept::days_ago_ms;
@@ -54,7 +55,7 @@ enum What {
     /// Remove the steps and measurements of old runs, which their records have; runs, records and what is counted are kept for ever
     Prune {
         /// Of runs that began longer ago
-        #[arg(long, value_name = "DAYS", value_parser = clap::value_parser!(u32).range(1..))]
+        #[arg(long, value_name = "DAYS", value_parser = counted::<u32>(1, None))]
         older_than: u32,
         #[command(flatten)]
         why: Why,
