@@ -9,7 +9,7 @@ pub const FLAGS: [(&str, &str); 24] = [
     ("a recording to make", "--record"),
     ("a time to judge within", "--within"),
     ("make tables of the frame's size", "--width, --height"),
-    ("use frames and tables of", "--width, --height"),
+    ("use smaller frames and tables", "--width, --height"),
     ("record a run with `halfrow verify`", "--record"),
     ("take the board over", "--take-over"),
     ("raise the retry limit", "--retry-limit"),

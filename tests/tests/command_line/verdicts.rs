@@ -346,7 +346,7 @@ fn a_mock_that_is_too_small_is_told_how_it_is_made_larger() {
     );
     assert_eq!(halfrow(call("mock,max-width=2592")).code, Some(0));
     let high = ["verify", "-q", "--board", "mock,max-height=8", "--width", "64", "--height", "9"];
-    refused(&Folder::new(), &high, "takes these: mock,max-width=64,max-height=9");
+    refused(&Folder::new(), &high, "room for these: mock,max-width=64,max-height=9");
 }
 
 /// By its own clock, a wire without a speed takes no time at all.

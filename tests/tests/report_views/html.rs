@@ -81,7 +81,7 @@ fn a_frame_whose_row_was_swallowed_is_wrong_and_the_rows_behind_it_are_not_calle
     evidence[0].found = evidence[0].expected.clone();
     let number = report.frames[1].number;
     report.finding = Finding::RowSwallowed { row: 3, frame: number, again: 3 };
-    assert_eq!(report::wording::differences(&report, &report.frames[1]), "not whole");
+    assert_eq!(report::wording::differences(&report, &report.frames[1]), "incomplete");
     let page = page(&report, &evidence);
     assert!(page.contains(&format!("FAIL</span> Frame {number}: ")) && !page.contains(">ERROR<"), "{page}");
     assert!(page.contains("33 rows had not come back when the run ended, and are black"), "{page}");

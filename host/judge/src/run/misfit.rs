@@ -113,7 +113,7 @@ pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -
     let (width, height) = (geometry.width(), geometry.height());
     let (most_width, most_height) = (capabilities.max_width.into(), capabilities.max_height.into());
     if width > most_width || height > most_height {
-        let mut remedy = format!("use frames and tables of at most {most_width} x {most_height}");
+        let mut remedy = "use smaller frames and tables".to_owned();
         if capabilities.nature == BoardNature::Mock {
             remedy = format!("{remedy}, or the built-in mock with room for these: mock,max-width={width}");
             if height > most_height {
