@@ -13,7 +13,7 @@ pub enum ConnectError {
     #[error(transparent)]
     Target(#[from] TargetError),
     /// Options of the board do not fit each other.
-    #[error("the board cannot be built like this; correct its options or leave them out")]
+    #[error("the board cannot be built")]
     Build(#[from] OptionError),
 }
 

@@ -48,13 +48,13 @@ pub enum OptionError {
     /// One option by itself is wrong.
     #[error(transparent)]
     Value(#[from] ValueError),
-    /// The ring's addresses would not wrap correctly.
+    /// The mock board's ring must be a power of two long: otherwise its addresses would not wrap correctly.
     #[error("ring={ring} is not a power of two; give one from 64 to 16384")]
     RingNotPowerOfTwo {
         /// Samples in the ring.
         ring: u16,
     },
-    /// The ring does not hold a row.
+    /// The mock board's ring is too short for a row of its greatest width.
     #[error(
         "ring={ring} is shorter than a row of max-width={max_width}; make the ring larger or the width less"
     )]
@@ -64,16 +64,16 @@ pub enum OptionError {
         /// Columns of the widest row.
         max_width: u16,
     },
-    /// Rows have an even width, since colours come in pairs.
+    /// The mock board's greatest width is odd: rows have an even width, since colours come in pairs.
     #[error("max-width={max_width} is odd; give an even one")]
     OddWidth {
         /// Columns of the widest row.
         max_width: u16,
     },
-    /// No depth is left.
+    /// The list of the mock board's sample depths is empty.
     #[error("depths is empty; give at least one of 8, 10 and 12")]
     NoDepth,
-    /// A fault of an address line that the ring does not have.
+    /// The fault is of an address line that this mock board's ring does not have.
     #[error("the ring has no address line bit={bit}; give one from 0 to {last}, or a longer ring")]
     NoAddressLine {
         /// The line that the fault would break.
@@ -81,16 +81,16 @@ pub enum OptionError {
         /// The highest line of the ring.
         last: u32,
     },
-    /// A fault of a tap that a build of five taps does not have.
+    /// The fault is of a tap that a build of five taps does not have.
     #[error("a build of five taps has no tap={tap}; give one from 1 to 5, or leave taps=five out")]
     NoTap {
         /// The tap that the fault would break.
         tap: u8,
     },
-    /// A fault in the choice between two banks of tables, on a build with one bank.
+    /// The fault confuses the two banks of tables, but this mock board has only one.
     #[error("the fault takes the wrong one of two banks of tables; give table-banks=2, or another fault")]
     NoOtherBank,
-    /// A fault in frames that the board makes itself, on a build that makes none.
+    /// The fault is in frames that the board makes itself, but this mock board makes none.
     #[error(
         "the fault strikes in frames that the board makes itself; leave bursts=no out, or give another fault"
     )]

@@ -63,7 +63,7 @@ impl fmt::Display for Phase {
     }
 }
 
-/// A Bayer phase that is none of the four.
+/// The word is none of the four Bayer phases.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no Bayer phase; use grbg, rggb, bggr or gbrg")]
 pub struct UnknownPhase(String);

@@ -16,7 +16,7 @@ pub struct Camera {
     half_field: f64,
 }
 
-/// Why a lens cannot be used with a frame.
+/// The lens cannot be used with frames of this size.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CameraError {
     /// The figures describe no lens, or one that does not fit this frame.

@@ -17,7 +17,7 @@ pub struct Source {
     pub fraction: i32,
 }
 
-/// A frame of another size or depth than the table set is for.
+/// The frame has another size or depth than the tables are for.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CorrectError {
     /// The frame's size is not the table set's.

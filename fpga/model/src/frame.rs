@@ -57,7 +57,7 @@ pub struct Frame {
     samples: Vec<u16>,
 }
 
-/// Samples that do not make a frame.
+/// The samples do not make a frame: their number, the size or the depth is wrong.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
     /// A frame without samples.

@@ -21,7 +21,7 @@ pub struct Geometry {
     centre2: u32,
 }
 
-/// A geometry that the datapath does not have.
+/// The datapath has no frames of this size or depth, or with this optical centre.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GeometryError {
     /// A width that is odd or outside [`MIN_WIDTH`] to [`MAX_WIDTH`].

@@ -35,7 +35,7 @@ pub enum Taps {
     Seven,
 }
 
-/// Weights that are no kernel.
+/// The weights do not make a kernel.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum KernelError {
     /// Not [`NODES`] nodes.

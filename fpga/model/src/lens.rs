@@ -54,7 +54,7 @@ impl fmt::Display for Short {
     }
 }
 
-/// Figures that describe no lens.
+/// The figures do not describe a lens.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LensError {
     /// An image radius outside [`MIN_RADIUS`] to [`MAX_RADIUS`].

@@ -12,7 +12,7 @@ use std::ops::RangeInclusive;
 #[repr(transparent)]
 pub struct RowFactor(u32);
 
-/// A word that is no row factor.
+/// The word is out of the range of a row factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{units} is no row factor, which is 1 to {max}; give 2^24 / k, rounded, with a stretch factor k of at least 1",

@@ -69,7 +69,7 @@ pub enum Failure {
     },
 }
 
-/// A waveform that cannot be written.
+/// The waveform of the simulated board cannot be written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TraceError {
     /// A file of that name exists.

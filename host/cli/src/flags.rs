@@ -2,13 +2,14 @@
 
 /// Phrases in the libraries' sentences, each with its flag or the command to run. No phrase is part of another. A phrase is an
 /// instruction that reads well alone, with any figure after it, or a noun that keeps its meaning wherever it stands.
-pub const FLAGS: [(&str, &str); 23] = [
+pub const FLAGS: [(&str, &str); 24] = [
     ("allow it to be overwritten", "--overwrite"),
     ("another place for the recording", "--record"),
     ("another place for the report", "--report"),
     ("a recording to make", "--record"),
     ("a time to judge within", "--within"),
     ("make tables of the frame's size", "--width, --height"),
+    ("use smaller frames and tables", "--width, --height"),
     ("record a run with `halfrow verify`", "--record"),
     ("take the board over", "--take-over"),
     ("raise the retry limit", "--retry-limit"),

@@ -30,25 +30,25 @@ static LOST: AtomicBool = AtomicBool::new(false);
 /// No board was got.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum PoolError {
-    /// The target says no kind.
+    /// The target `pool` does not say which kind of board is wanted.
     #[error("`pool` needs a kind; write pool:KIND, as `halfrow-station board list` names the kinds")]
     NoKind,
-    /// What leases boards is not there.
+    /// The program that leases boards of a pool could not be started.
     #[error(
         "boards of a pool are leased by the program {STATION}, which cannot be started; it belongs beside this one: \
          cargo build --release --package {STATION}"
     )]
     NoStation(#[source] io::Error),
-    /// It ended without a board, and has said why.
-    #[error("no board of the kind {kind} could be leased; see what {STATION} says above")]
+    /// No board of this kind is available; the station's program has said why.
+    #[error("no board of the kind {kind} is available; see what {STATION} says above")]
     None {
         /// The kind.
         kind: String,
     },
-    /// What it says does not arrive whole, or is no text.
+    /// The output of the station's program could not be read.
     #[error("the output of {STATION} cannot be read; install the one that belongs to this version")]
     Unread(#[source] io::Error),
-    /// It says what is no message.
+    /// The station's program printed a line that this program does not understand.
     #[error("{STATION} says `{line}`, which is no message; install the one that belongs to this version")]
     Message {
         /// What it says.
@@ -56,7 +56,7 @@ pub(crate) enum PoolError {
         /// Why that is none.
         source: serde_json::Error,
     },
-    /// The place of the board is none.
+    /// The board's place in the pool is not a target that this program can open.
     #[error(
         "the board {board} is shared at `{target}`, which is no board; share it again with `halfrow-station board share`"
     )]

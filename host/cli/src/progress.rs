@@ -251,7 +251,7 @@ impl Lines {
 fn line(rows: u64, expected: u64, time: Duration) -> String {
     let rate = rows as f64 / time.as_secs_f64();
     let left = seconds_left(rows, expected, time).map(|seconds| format!(", {seconds:.0} s left"));
-    format!("{rows} of {expected} rows, {rate:.0} rows/s{}", left.unwrap_or_default())
+    format!("streaming frames: {rows} of {expected} rows, {rate:.0} rows/s{}", left.unwrap_or_default())
 }
 
 #[cfg(test)]
@@ -270,10 +270,10 @@ mod tests {
     #[test]
     fn the_time_that_is_left_is_told_when_enough_is_done_to_tell_it() {
         let after = |rows, seconds| line(rows, 13_368, Duration::from_secs(seconds));
-        assert_eq!(after(512, 9), "512 of 13368 rows, 57 rows/s");
-        assert_eq!(after(6684, 2), "6684 of 13368 rows, 3342 rows/s");
-        assert_eq!(after(6684, 10), "6684 of 13368 rows, 668 rows/s, 10 s left");
-        assert_eq!(line(5, 0, Duration::from_secs(9)), "5 of 0 rows, 1 rows/s, 0 s left");
+        assert_eq!(after(512, 9), "streaming frames: 512 of 13368 rows, 57 rows/s");
+        assert_eq!(after(6684, 2), "streaming frames: 6684 of 13368 rows, 3342 rows/s");
+        assert_eq!(after(6684, 10), "streaming frames: 6684 of 13368 rows, 668 rows/s, 10 s left");
+        assert_eq!(line(5, 0, Duration::from_secs(9)), "streaming frames: 5 of 0 rows, 1 rows/s, 0 s left");
     }
 
     #[test]

@@ -63,7 +63,7 @@ pub struct Settings {
 /// A settings file that cannot be used. All of these are usage errors.
 #[derive(Debug, thiserror::Error)]
 pub enum SettingsError {
-    /// The system did not hand the file over, or it is no text.
+    /// The settings file could not be read, or is not text.
     #[error(
         "cannot read the settings file {}; check that it exists and that you may read it, name another with \
          --settings, or do without one by HALFROW_SETTINGS=/dev/null",
@@ -75,7 +75,7 @@ pub enum SettingsError {
         /// The system's reason.
         source: io::Error,
     },
-    /// A key that settings do not have.
+    /// The settings file has a key that does not exist.
     #[error("{}, line {line}: there is no setting {key:?}; use one of {known}", path.display(), known = known_keys().join(", "))]
     UnknownKey {
         /// The file.
@@ -85,7 +85,7 @@ pub enum SettingsError {
         /// The key.
         key: String,
     },
-    /// Text that is no TOML, or a value that the key does not take.
+    /// The settings file is not TOML, or has a value that its key does not take.
     #[error("{}, line {line}: {reason}; correct or remove that line", path.display())]
     Value {
         /// The file.

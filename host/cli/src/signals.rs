@@ -25,7 +25,7 @@ static FIRST: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
 /// Whether the command checks [`FIRST`].
 static IS_HEEDED: AtomicBool = AtomicBool::new(false);
 
-/// Signals that cannot be waited for.
+/// The program cannot wait for the system's signals.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "the program cannot wait for signals; end other programs, or allow this user more processes and open files (`ulimit -u`, `ulimit -n`)"

@@ -52,7 +52,7 @@ pub fn render(report: &Report) -> String {
 fn head(report: &Report) -> String {
     let mut text = format!("{BOLD}halfrow {}{BOLD:#} ({})\n", report.run.version, report.run.commit);
     let board = match &report.board.identity {
-        None => "it never said what it is".to_owned(),
+        None => wording::UNIDENTIFIED.to_owned(),
         Some(it) => format!(
             "{}, serial {}, build {}, datapath {}, wire {}",
             words::board_name(&it.name),
@@ -62,7 +62,7 @@ fn head(report: &Report) -> String {
             it.protocol
         ),
     };
-    let board = format!("{} at {}: {board}", wording::kind(report.board.kind), report.board.target);
+    let board = format!("{} at {}: {board}", wording::kind_of(&report.board), report.board.target);
     push(&mut text, "board", Style::new(), &board);
     let tables = &report.tables;
     let size = format!("{}, {} x {}, {} bits", tables.source, tables.width, tables.height, tables.bits);
@@ -89,7 +89,7 @@ fn checks(report: &Report) -> String {
 fn frames(report: &Report) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING);
-    table.set_header(["frame", "name", "rows", "differences", "row, column", "largest"]);
+    table.set_header(["frame", "name", "rows", "differences", "first at\nrow, column", "largest\nerror"]);
     let (listed, left_out) = wording::worth_listing(report, MOST_FRAMES);
     for frame in listed {
         let comparison = &frame.comparison;
@@ -199,7 +199,7 @@ fn verdict(report: &Report) -> String {
 
 fn push_suspect(text: &mut String, suspect: &Suspect) {
     let share = wording::share(suspect).map_or_else(String::new, |share| format!(" ({share})"));
-    let who = format!("{}, {}{share}", suspect.part(), suspect.place());
+    let who = format!("{}{share}", suspect.place());
     push(text, "suspect", BOLD, &who);
     push(text, "", BOLD, &suspect.evidence());
     push(text, "", BOLD, &format!("At the bench: {}", suspect.technician()));

@@ -69,11 +69,13 @@ fn a_fail_names_the_suspect_and_the_next_step_before_the_verdict() {
     let text = plain(&made::fail().0);
     let expected = format!(
         "
-suspect  row factor, row 3's factor, bit 4 (explains 100 % of the differences)
-         reading 16000016 for 16000000 gives all 5 differing samples examined,
-         to the bit, and changes no other
+suspect  row 3's factor, bit 4 (explains 100 % of the differences)
+         with the value read as 16000016 instead of 16000000, the model
+         reproduces all 5 differing samples examined exactly, and changes no
+         others
          At the bench: Reload the bitstream and run again. If the fault comes
-         back, set the board aside: a memory or a line of its FPGA is broken.
+         back, set the board aside: a memory block or an internal connection of
+         the FPGA is faulty, which cannot be resoldered.
          Next: Check entry 3 of the row table as the datapath reads it, and the
          memory that holds it.
 explain  halfrow explain samples-differ row-factor-bit-wrong
@@ -100,7 +102,7 @@ fn an_error_says_what_to_do() {
 #[test]
 fn every_check_has_a_line_with_its_mark_and_the_headline_is_said_once() {
     let text = plain(&made::fail().0);
-    let lines = "ok       judge     this computer finds all 4,147,328 golden samples (scalar)\n\
+    let lines = "ok       judge     this computer reproduces all 4,147,328 reference samples\n                   (scalar)\n\
                  FAIL     frames    see below\n\
                  skipped  counters  not reached\n";
     assert!(text.contains(lines), "{text}");
@@ -126,7 +128,7 @@ fn a_frame_that_did_not_come_back_whole_is_not_said_to_be_equal() {
     let text = plain(&report);
     let words: Vec<_> =
         text.lines().find(|line| line.contains("builtin:grey")).unwrap().split_whitespace().collect();
-    assert_eq!(words, ["3", "builtin:grey", "17", "not", "whole"]);
+    assert_eq!(words, ["3", "builtin:grey", "17", "incomplete"]);
 }
 
 #[test]

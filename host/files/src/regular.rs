@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// An input that is a pipe or a device: nobody could look again at the bytes that were used.
+/// The input is a pipe or a device, whose bytes could not be looked at again later.
 #[derive(Debug, thiserror::Error)]
 #[error("{} is a pipe or a device, and its bytes could not be looked at again; write it to a file, and name that", path.display())]
 pub struct NotRegular {

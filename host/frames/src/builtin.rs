@@ -132,7 +132,7 @@ impl fmt::Display for Builtin {
     }
 }
 
-/// A name that no built-in frame has.
+/// No built-in frame has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{name}` is no built-in frame; use one of {}", Builtin::ALL.map(Builtin::name).join(", "))]
 pub struct UnknownBuiltin {

@@ -14,7 +14,7 @@ use halfrow_files::written_aside::WriteAsideError;
 /// A file that could not be read as a frame.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// The system did not hand the file over.
+    /// The system refused to open or read the frame's file.
     #[error("cannot read {}; check that it exists and that you may read it", path.display())]
     Io {
         /// The file.
@@ -22,14 +22,14 @@ pub enum ReadError {
         /// The system's reason.
         source: io::Error,
     },
-    /// More bytes than any frame has.
+    /// The file is longer than any frame.
     #[error("{} is longer than {MAX_FILE_BYTES} bytes; give a file that holds one frame", path.display())]
     TooLong {
         /// The file.
         path: PathBuf,
     },
-    /// The bytes are no frame; the source says why and what to do.
-    #[error("{} holds no frame that can be used", path.display())]
+    /// The file holds no frame that can be used; the cause that follows says why and what to do.
+    #[error("{} cannot be used as a frame", path.display())]
     Decode {
         /// The file.
         path: PathBuf,
@@ -41,16 +41,16 @@ pub enum ReadError {
 /// Bytes that are no frame.
 #[derive(Debug, thiserror::Error)]
 pub enum DecodeError {
-    /// There are no bytes.
+    /// The file is empty.
     #[error("it is empty; copy or export it again")]
     Empty,
-    /// No format known here begins like this.
+    /// The file does not begin like any format that this program knows.
     #[error(
         "it begins like no format known here (PGM P5, PNG, TIFF, DNG, JPEG, WebP, BMP); convert it, or name the layout of \
          samples without a header"
     )]
     UnknownFormat,
-    /// A kind of file that is understood but not taken.
+    /// The file is of a kind that this program recognises but cannot use.
     #[error("{what} cannot be used; {remedy}")]
     Unsupported {
         /// The kind of file.
@@ -58,7 +58,7 @@ pub enum DecodeError {
         /// What to do about it.
         remedy: &'static str,
     },
-    /// A side of the picture is beyond any sensor.
+    /// The picture is wider or taller than any sensor.
     #[error("it is {width} x {height}, above {MAX_SIDE} x {MAX_SIDE}; crop it or check its header")]
     TooLarge {
         /// Columns.
@@ -66,7 +66,7 @@ pub enum DecodeError {
         /// Rows.
         height: u64,
     },
-    /// A photograph is beyond what is decoded.
+    /// The photograph has more pixels than this program decodes.
     #[error(
         "it is {width} x {height}, above {most} megapixels; scale it down first",
         most = MAX_PIXELS / 1_000_000
@@ -77,8 +77,8 @@ pub enum DecodeError {
         /// Rows.
         height: u64,
     },
-    /// A picture in colour has another size than the one asked for.
-    #[error("it is a picture of {width} x {height}, and {columns} x {rows} is wanted; crop and scale it")]
+    /// The picture in colour is not of the size that is wanted.
+    #[error("it is {width} x {height}, but a frame of {columns} x {rows} is needed; crop and scale it")]
     OtherSize {
         /// Its columns.
         width: usize,
@@ -89,7 +89,7 @@ pub enum DecodeError {
         /// Rows asked for.
         rows: usize,
     },
-    /// A picture is to be scaled to a size beyond any sensor.
+    /// The picture is to be scaled to a size larger than any sensor.
     #[error(
         "it is to be scaled to {columns} x {rows}, above {MAX_SIDE} x {MAX_SIDE}; ask for a smaller size"
     )]
@@ -99,7 +99,7 @@ pub enum DecodeError {
         /// Rows asked for.
         rows: usize,
     },
-    /// Fewer bytes than the size calls for.
+    /// The file has fewer bytes than its size calls for.
     #[error(
         "it has {found} bytes of samples where its size calls for {expected}; \
          check width, height and layout, or copy the file again"
@@ -110,7 +110,7 @@ pub enum DecodeError {
         /// Bytes there.
         found: usize,
     },
-    /// Bytes after the last sample.
+    /// The file has more bytes after its last sample.
     #[error(
         "it has {extra} more bytes after its last sample; check width, height and layout, or split a file of \
          several frames"
@@ -119,7 +119,7 @@ pub enum DecodeError {
         /// Bytes too many.
         extra: usize,
     },
-    /// The PGM header lacks a number.
+    /// The PGM's header lacks a number.
     #[error("the PGM header has no {wanted} at byte {offset}; it must read `P5 WIDTH HEIGHT MAXVAL`")]
     PgmHeader {
         /// What should be there.
@@ -127,7 +127,7 @@ pub enum DecodeError {
         /// Where, in bytes from the start of the file.
         offset: usize,
     },
-    /// The PGM header has a number beyond any frame's.
+    /// The PGM's header has a number larger than any frame's.
     #[error(
         "the PGM header's {wanted} at byte {offset} has {digits} digits, more than any frame's; check the header, or \
          write the file again"
@@ -140,10 +140,10 @@ pub enum DecodeError {
         /// Its digits.
         digits: usize,
     },
-    /// The PGM header gives a maximum that the format does not have.
+    /// The PGM's header gives a maximum that the format does not allow.
     #[error("the PGM maxval is {0}; it must be 1 to 65535, so write the file again")]
     PgmMaxval(u32),
-    /// A sample beyond what the PGM header promised.
+    /// A sample is larger than the maximum in the PGM's header.
     #[error(
         "the sample at row {row}, column {column} is {value}, above the PGM's own maxval {maxval}; \
          write the file again with the right maxval"
@@ -158,7 +158,7 @@ pub enum DecodeError {
         /// The header's maximum.
         maxval: u16,
     },
-    /// The decoder of a photograph gave up.
+    /// The photograph cannot be decoded: its file is damaged.
     #[error("the {format} is damaged: {reason}; copy or export it again")]
     Photograph {
         /// JPEG, WebP or BMP.
@@ -166,19 +166,19 @@ pub enum DecodeError {
         /// What the decoder found.
         reason: String,
     },
-    /// The PNG decoder gave up.
+    /// The PNG cannot be decoded: its file is damaged.
     #[error("the PNG is damaged: {}; copy or export it again", png_damage(.0))]
     Png(png::DecodingError),
-    /// The TIFF directory is cut off or malformed.
+    /// The TIFF's directory is cut off or malformed.
     #[error("the TIFF's directory is damaged at byte {offset}; copy or export the file again")]
     TiffDirectory {
         /// Where, in bytes from the start of the file.
         offset: usize,
     },
-    /// The TIFF decoder gave up.
+    /// The TIFF cannot be decoded: its file is damaged.
     #[error("the TIFF is damaged: {}; copy or export it again", tiff_damage(.0))]
     Tiff(tiff::TiffError),
-    /// The file tells another arrangement of the colours than was asked for.
+    /// The file says that its colours are arranged otherwise than was asked for.
     #[error("it says that its colours lie as {found}, not as {asked}; name the phase {found}")]
     OtherPhase {
         /// The file's.
@@ -186,7 +186,7 @@ pub enum DecodeError {
         /// The one asked for.
         asked: Phase,
     },
-    /// The file tells another depth than was asked for.
+    /// The file says that its samples have another depth than was asked for.
     #[error(
         "it says that its samples have {found} bits, not {}; {}scale it to {} bits",
         asked.bits(),
@@ -264,7 +264,7 @@ fn tiff_damage(error: &tiff::TiffError) -> String {
     }
 }
 
-/// A row that a packed layout cannot hold.
+/// The row's width does not fit the raw layout, which packs several samples together.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{layout} packs {group} samples together, and {width} columns are no whole number of groups; use u16le"
@@ -281,19 +281,19 @@ pub struct PackingError {
 /// A frame that could not be written to a file.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
-    /// The name does not tell the format.
-    #[error("{} names no format; end it in .pgm, .png, .tif, .tiff, .dng or .raw", path.display())]
+    /// The file's name does not end in the extension of a known format.
+    #[error("the name {} does not tell the format; end it in .pgm, .png, .tif, .tiff, .dng or .raw", path.display())]
     Extension {
         /// The file.
         path: PathBuf,
     },
-    /// The name is no PNG's.
+    /// The picture's name does not end in the extension of a PNG.
     #[error("{} must be a PNG; end its name in .{}", path.display(), Format::Png.extension())]
     NotPng {
         /// The file.
         path: PathBuf,
     },
-    /// The frame does not fit the format, or the encoder gave up.
+    /// The frame does not fit the format, or could not be encoded in it.
     #[error("cannot write {} in its format", path.display())]
     Encode {
         /// The file.
@@ -309,13 +309,13 @@ pub enum WriteError {
 /// A frame that could not be turned into bytes.
 #[derive(Debug, thiserror::Error)]
 pub enum EncodeError {
-    /// The output took no more bytes.
+    /// The output took no more bytes while the frame was being written.
     #[error("the output takes no more bytes; check the space that is left")]
     Io(#[from] io::Error),
-    /// The PNG encoder gave up.
+    /// The frame could not be encoded as a PNG.
     #[error("the PNG encoder refused the frame; write a PGM instead")]
     Png(#[from] png::EncodingError),
-    /// The TIFF encoder gave up.
+    /// The frame could not be encoded as a TIFF.
     #[error("the TIFF encoder refused the frame; write a PGM instead")]
     Tiff(#[from] tiff::TiffError),
     /// The samples are no frame.

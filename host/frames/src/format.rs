@@ -24,7 +24,7 @@ pub enum Format {
     Raw,
 }
 
-/// A name of no format.
+/// The word is not the name of a format for frames.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no format for frames; use pgm, png, tif, dng or raw")]
 pub struct UnknownFormat(String);

@@ -109,7 +109,7 @@ impl fmt::Display for RawLayout {
     }
 }
 
-/// A name that is no layout's.
+/// The word is not the name of a layout of raw samples.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no layout of raw samples; use u8, u16le, mipi10 or mipi12")]
 pub struct UnknownLayout(String);

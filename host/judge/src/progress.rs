@@ -84,7 +84,7 @@ pub enum Step {
 impl fmt::Display for Step {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::JudgeTheJudge => "judging the judge",
+            Self::JudgeTheJudge => "checking this computer",
             Self::OpenTheBoard => "opening the board",
             Self::TestTheLink => "testing the link",
             Self::AtSpeed => "frames at the full pixel clock",

@@ -10,11 +10,11 @@ use crate::link::Class;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum Verdict {
-    /// Everything was judged and all was equal.
+    /// Everything was judged, and all of it was right.
     Pass,
-    /// The link was clean and the board's result differs.
+    /// The board was judged, and it is wrong: the link, the station and the call were in order.
     Fail,
-    /// It could not be judged: the link, the station or the way it was called.
+    /// The board could not be judged, because of the link, the station or the call.
     Error,
 }
 

@@ -10,10 +10,10 @@ use crate::{Class, RecordingError, SerialError, Target, TcpError, UsbError};
 /// A target that leads nowhere.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
-    /// The kind is not known.
-    #[error("`{0}` is no kind of board that this program knows; {remedy}", remedy = instead_of(.0))]
+    /// The target begins with a kind of board that this program does not know.
+    #[error("`{0}` is not a known kind of board{like}; {remedy}", like = like(.0), remedy = instead_of(.0))]
     UnknownKind(String),
-    /// A kind that has no address.
+    /// The target has an address, but boards of this kind have none.
     #[error(
         "`{kind}` takes no address, but got `{address}`; write `{kind}` alone, with options after a comma"
     )]
@@ -23,7 +23,7 @@ pub enum OpenError {
         /// The address.
         address: String,
     },
-    /// A kind that needs an address.
+    /// The target lacks the address that boards of this kind need.
     #[error("`{kind}` needs an address; write {form}")]
     AddressMissing {
         /// The kind.
@@ -31,8 +31,8 @@ pub enum OpenError {
         /// How such a target is written.
         form: String,
     },
-    /// An option that the kind does not have, or not with this value.
-    #[error("`{option}` is no option of `{kind}`; it takes {known}")]
+    /// The target has an option that boards of this kind do not have, or not with this value.
+    #[error("`{option}` is not an option of `{kind}`; it takes {known}")]
     Option {
         /// The kind.
         kind: String,
@@ -41,7 +41,7 @@ pub enum OpenError {
         /// The options that there are.
         known: &'static str,
     },
-    /// A kind that has no options.
+    /// The target has an option, but boards of this kind take none.
     #[error("`{kind}` takes no option, but got `{option}`; leave it out")]
     NoOption {
         /// The kind.
@@ -49,8 +49,8 @@ pub enum OpenError {
         /// The option.
         option: String,
     },
-    /// The board does not take these options.
-    #[error("the target `{target}` is not one that {board} takes")]
+    /// The board does not take the options in the target.
+    #[error("the target `{target}` does not suit {board}")]
     Options {
         /// Which board.
         board: &'static str,
@@ -60,7 +60,7 @@ pub enum OpenError {
         #[source]
         source: Box<dyn Error + Send + Sync>,
     },
-    /// An option whose value is none.
+    /// The option for the target's clock has a value other than `virtual` and `real`.
     #[error("`{key}={value}` is not an option of this board; write {key}=virtual or {key}=real")]
     Pace {
         /// The key.
@@ -68,10 +68,10 @@ pub enum OpenError {
         /// Its value.
         value: String,
     },
-    /// A simulation behind another front end than there is.
+    /// The simulated board has no front end of this name.
     #[error("`sim:{0}` is no simulated board; write sim, sim:uart or sim:fifo")]
     UnknownFront(String),
-    /// This program was built without the simulation.
+    /// This program was built without the simulated board.
     #[error(
         "this program was built without the simulated board, which needs Verilator; for `{0}`, install it with \
          `apt-get install verilator g++`, and build with Cargo's feature `sim`"
@@ -81,7 +81,7 @@ pub enum OpenError {
     #[cfg(feature = "sim")]
     #[error(transparent)]
     Trace(#[from] halfrow_sim::TraceError),
-    /// The system does not let the board's device or connection be used, or not with the properties that a link needs.
+    /// The system does not let the board's device or connection be used, or not in the way that a link needs.
     #[error("the system does not let `{target}` be used; check that it is there and that you may use it")]
     System {
         /// The target.
@@ -151,6 +151,11 @@ fn instead_of(kind: &str) -> String {
     if kind.starts_with("tty") {
         return format!("for a serial port write serial:/dev/{kind}");
     }
+    format!("choose from {}", kinds::forms().join(", "))
+}
+
+/// The known kind that an unknown one is like, as [`meant`] tells it.
+fn like(kind: &str) -> String {
     let names: Vec<_> = KINDS.iter().map(|kind| kind.name).collect();
-    format!("choose {}from {}", meant(kind, &names.join(", ")), kinds::forms().join(", "))
+    meant(kind, &names.join(", "))
 }

@@ -106,7 +106,7 @@ pub trait Link: Send {
 /// A pipe that broke.
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
-    /// The other end is gone.
+    /// The other end closed the link.
     #[error("{link} was closed at {:.3} s; check the cable and the board's power, then run again", at.as_secs_f64())]
     Closed {
         /// The link's name.
@@ -114,7 +114,7 @@ pub enum LinkError {
         /// When, on the link's clock.
         at: Duration,
     },
-    /// A board in this process has failed.
+    /// A board that runs inside this program has failed.
     #[error("{board} stopped at {:.3} s; run again, and report it if it stops once more", at.as_secs_f64())]
     Stopped {
         /// Which board.
@@ -125,7 +125,7 @@ pub enum LinkError {
         #[source]
         source: Box<dyn std::error::Error + Send + Sync>,
     },
-    /// A device that is gone.
+    /// The board's device is gone: it was unplugged or lost power.
     #[error(
         "{link} went away at {:.3} s: the board was unplugged or lost power; plug it in, then run again",
         at.as_secs_f64()
@@ -136,7 +136,7 @@ pub enum LinkError {
         /// When, on the link's clock.
         at: Duration,
     },
-    /// A server says that somebody else has the board.
+    /// The server at the far end says that another host is using the board.
     #[error("{link} was turned away with `{text}`: another host is connected; wait until it is done")]
     InUse {
         /// The link's name.
@@ -144,7 +144,7 @@ pub enum LinkError {
         /// What the server said.
         text: String,
     },
-    /// A server has no board to connect to, and says so in words.
+    /// The server at the far end has no board to connect to, and says so in words.
     #[error(
         "{link} answered with the words `{text}` and no board: plug the board in at the far end, and check the device \
          that its ser2net names"
@@ -155,7 +155,7 @@ pub enum LinkError {
         /// What the server said.
         text: String,
     },
-    /// The system refuses to go on.
+    /// The system reported a failure of the link.
     #[error("{link} failed at {:.3} s; check the cable, then run again", at.as_secs_f64())]
     Failed {
         /// The link's name.
@@ -166,7 +166,7 @@ pub enum LinkError {
         #[source]
         source: std::io::Error,
     },
-    /// What the host sends is not what it sent when the recording was made.
+    /// This run sends other bytes than the run that made the recording.
     #[error(
         "from byte {byte} on, this run sends something else than the recorded one; replay it with the program, \
          tables and frames of the run that made it"
@@ -175,7 +175,7 @@ pub enum LinkError {
         /// The first byte that differs, counted from the beginning.
         byte: u64,
     },
-    /// There is no more in a recording, and the run would go on.
+    /// The recording ends, but the run would go on.
     #[error(
         "{link} ends at {:.3} s, where the run that made it was interrupted or had no more to do; record a whole run with \
          this program", at.as_secs_f64()

@@ -32,7 +32,7 @@ pub enum RecordingError {
     /// It is a pipe, which may never begin, or a device, which may never end.
     #[error(transparent)]
     NotRegular(#[from] NotRegular),
-    /// It cannot be read.
+    /// The recording's file cannot be read.
     #[error("the recording {path} cannot be read; check the path in replay:FILE")]
     Read {
         /// The file.
@@ -41,10 +41,10 @@ pub enum RecordingError {
         #[source]
         source: io::Error,
     },
-    /// It is something else.
+    /// The file is not a recording, or is one of another version.
     #[error("{0} is no recording of this version; record a run with `halfrow verify`")]
     Foreign(PathBuf),
-    /// Its head does not parse.
+    /// The beginning of the recording cannot be understood.
     #[error("the head of the recording {path} is damaged; make the recording again")]
     Head {
         /// The file.

@@ -59,10 +59,10 @@ impl fmt::Display for BoardKind {
 /// Text that names no target.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TargetError {
-    /// No kind.
+    /// The target is empty, and so names no board.
     #[error("an empty target names no board; write `mock`, or see `halfrow boards`")]
     Empty,
-    /// An option without a value.
+    /// An option in the target is not written as KEY=VALUE.
     #[error("`{option}` in the target `{target}` is no option; write KEY=VALUE")]
     Option {
         /// The piece between the commas.

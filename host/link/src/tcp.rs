@@ -21,10 +21,10 @@ const LONGEST_TEXT: usize = 200;
 /// A connection that did not come about.
 #[derive(Debug, thiserror::Error)]
 pub enum TcpError {
-    /// The address names no host and port.
+    /// The address is not a host and a port.
     #[error("`{0}` is no host and port; write tcp:HOST:PORT, and tcp:[ADDRESS]:PORT for an IPv6 address")]
     Address(String),
-    /// Nobody knows the host.
+    /// The name of the host cannot be resolved to an address.
     #[error("the host of `{address}` is not known; check its name, or give its IP address")]
     UnknownHost {
         /// Host and port.
@@ -33,13 +33,13 @@ pub enum TcpError {
         #[source]
         source: io::Error,
     },
-    /// The host is there, and nobody listens.
+    /// The host is there, but nothing listens on this port.
     #[error(
         "`{0}` refuses connections: the host is there, and nothing listens on that port; start ser2net or `halfrow \
          serve` there, and check the port"
     )]
     Refused(String),
-    /// Nothing comes back.
+    /// The host does not answer.
     #[error(
         "`{address}` does not answer within {} s: the host is off, or a firewall drops what is sent to that port",
         seconds.as_secs()
@@ -50,7 +50,7 @@ pub enum TcpError {
         /// How long each of its addresses was tried.
         seconds: Duration,
     },
-    /// There is no way there.
+    /// This computer has no route to the host.
     #[error("there is no route to `{address}`; check this computer's network")]
     Unreachable {
         /// Host and port.

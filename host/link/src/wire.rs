@@ -61,10 +61,10 @@ where
     }
 
     fn name(&self) -> String {
-        let (board, clock) = (self.board, if self.due.is_some() { "paced" } else { "virtual clock" });
+        let (board, clock) = (self.board, if self.due.is_some() { "real time" } else { "simulated time" });
         match self.pipe.bytes_per_second() {
-            Some(rate) => format!("{board}'s wire ({rate:.0} bytes/s, {clock})"),
-            None => format!("{board}'s wire (unlimited, {clock})"),
+            Some(rate) => format!("{board}'s simulated link ({rate:.0} bytes/s, {clock})"),
+            None => format!("{board}'s simulated link (no speed limit, {clock})"),
         }
     }
 }

@@ -17,13 +17,13 @@ codes::codes! {
     InternalError => "program-failed"
 }
 
-/// A call that contradicts itself or its input, in a sentence that says how.
+/// The call contradicts itself or its input; the message says how.
 const REFUSED: &str = "call-refused";
-/// A command that could not be carried out, in a sentence that says why.
+/// The command could not be carried out; the message says why.
 const FAILED: &str = "command-failed";
 /// The codes of errors without a type of their own.
 pub const UNTYPED: [&str; 3] = [REFUSED, FAILED, codes::FOREIGN];
-/// A command line that cannot be read.
+/// The command line cannot be used: an argument is unknown, missing, wrong, or in conflict with another.
 pub const USAGE: [&str; 6] = [
     "usage-argument-unknown",
     "usage-value-wrong",

@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use anstream::AutoStream;
 use halfrow::words::plain;
 
-/// A result that stdout did not take.
+/// The result could not be written to stdout.
 #[derive(Debug, thiserror::Error)]
 #[error("the result cannot be written to stdout; free some space where it goes, or send it elsewhere")]
 pub struct Unprinted(#[source] io::Error);

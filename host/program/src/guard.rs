@@ -10,7 +10,7 @@ use crate::console;
 use crate::exit::Exit;
 use crate::signals;
 
-/// A panic.
+/// The program itself failed (a panic).
 #[derive(Debug, thiserror::Error)]
 #[error(
     "the program itself has failed: {0}; run it again, and report this line with the call that led to it"

@@ -23,6 +23,22 @@ pub fn any<T: FromStr + Clone + Send + Sync + 'static>(
     NonEmptyStringValueParser::new().try_map(move |text| text.parse().map_err(|_| format!("give {wanted}")))
 }
 
+/// A whole number from `least`, and to `most` if there is such a limit.
+#[must_use]
+pub fn counted<T: TryFrom<u64> + Clone + Send + Sync + 'static>(
+    least: u64,
+    most: Option<u64>,
+) -> impl TypedValueParser<Value = T> {
+    NonEmptyStringValueParser::new().try_map(move |text| {
+        let number = text.parse().ok().filter(|number| (least..=most.unwrap_or(u64::MAX)).contains(number));
+        let wanted = match most {
+            Some(most) => format!("give a whole number, {least} to {most}"),
+            None => format!("give a whole number, {least} or more"),
+        };
+        number.and_then(|number| T::try_from(number).ok()).ok_or(wanted)
+    })
+}
+
 /// A whole number, such as a seed.
 #[must_use]
 pub fn whole_number() -> impl TypedValueParser<Value = u64> {

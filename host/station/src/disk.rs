@@ -27,7 +27,7 @@ const OVERLAY: i64 = 0x794C_7630;
 /// A folder that cannot be a station's.
 #[derive(Debug, thiserror::Error)]
 pub enum DiskError {
-    /// It is on no disk of this computer.
+    /// The station's folder is not on a disk of this computer.
     #[error(
         "the folder {} is on {what}; put the station's folder on a disk of this computer, or take this one with --any-disk",
         folder.display()
@@ -38,7 +38,7 @@ pub enum DiskError {
         /// The file system.
         what: &'static str,
     },
-    /// The system does not tell.
+    /// The system does not say what kind of disk the station's folder is on.
     #[error("the system does not say what the folder {} is on; check its name, and who may read it", folder.display())]
     Untold {
         /// The folder.

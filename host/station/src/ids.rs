@@ -4,7 +4,7 @@ use rand::TryRng as _;
 use rand::rngs::SysRng;
 use uuid::{Builder, Uuid};
 
-/// A system without randomness.
+/// The system gave no random bytes for a new number.
 #[derive(Debug, thiserror::Error)]
 #[error("the system has no randomness for an id; restart it")]
 pub struct NoRandomness(#[source] rand::rngs::SysError);

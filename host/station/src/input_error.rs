@@ -17,7 +17,7 @@ pub enum InputError {
         /// The system's reason.
         source: io::Error,
     },
-    /// It is there, and is not what it should be: not UTF-8, or too long.
+    /// The file is not text in UTF-8, or is too long.
     #[error("{} is no file of settings, of a plan or of words; save it as text in UTF-8", path.display())]
     NotText {
         /// The file.
@@ -25,7 +25,7 @@ pub enum InputError {
         /// Why it is not text.
         source: io::Error,
     },
-    /// It says what it cannot say; the message names the line, and ends in what to do.
+    /// The file has a line that is wrong; the message names the line and ends in what to do.
     #[error("{}:{line}: {what}; {remedy}", path.display())]
     Wrong {
         /// The file.
@@ -37,7 +37,7 @@ pub enum InputError {
         /// What to do.
         remedy: String,
     },
-    /// It names what cannot be used; the source says why, and what to do.
+    /// The file names something that cannot be used; the cause that follows says why and what to do.
     #[error("{}:{line}: {what} cannot be used", path.display())]
     Input {
         /// The file.

@@ -15,7 +15,7 @@ use tempfile::Builder;
 /// A file of secrets that cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum SecretError {
-    /// It cannot be read or written.
+    /// A file with a secret of the station's cannot be read or written.
     #[error("{} cannot be read or written; check its name, and who may read it", path.display())]
     File {
         /// The file.
@@ -23,13 +23,13 @@ pub enum SecretError {
         /// The system's reason.
         source: io::Error,
     },
-    /// Others may read what the station writes itself.
+    /// Other users may read a file of secrets that the station itself wrote.
     #[error("others may read {0}, which has secrets; run: chmod 600 {0}", path.display())]
     Open {
         /// The file.
         path: PathBuf,
     },
-    /// Others may read what it is given.
+    /// Other users may read a file of secrets that the station was given.
     #[error(
         "others may read {0}, which has a secret; run as the station's user: chmod 600 {0}, or as root, with the station's \
          group: chown root:GROUP {0} && chmod 640 {0}", path.display()
@@ -38,13 +38,13 @@ pub enum SecretError {
         /// The file.
         path: PathBuf,
     },
-    /// There is no secret in it.
+    /// The file that should hold a secret is empty.
     #[error("{} is empty; write the token or the password into it", path.display())]
     Empty {
         /// The file.
         path: PathBuf,
     },
-    /// It is not what it should be.
+    /// A file of secrets does not hold what it should.
     #[error("{}: {what}; restore it from a copy", path.display())]
     Wrong {
         /// The file.
@@ -52,7 +52,7 @@ pub enum SecretError {
         /// What is wrong.
         what: String,
     },
-    /// The system has no randomness.
+    /// The system gave no random bytes for a key.
     #[error("the system has no randomness for a key; restart it")]
     NoRandomness(#[source] rand::rngs::SysError),
 }

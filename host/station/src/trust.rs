@@ -16,7 +16,7 @@ pub use certificate::CertificateError;
 /// Why nobody can be trusted.
 #[derive(Debug, thiserror::Error)]
 pub enum TrustError {
-    /// Certificates cannot be read.
+    /// The file of trusted certificates cannot be read.
     #[error("the certificates in {} cannot be read; give a file of those that sign the other side's, in PEM", path.display())]
     Certificates {
         /// The file.
@@ -24,12 +24,12 @@ pub enum TrustError {
         /// Why.
         source: pem::Error,
     },
-    /// There is no certificate to know the other side by.
+    /// There is no trusted certificate to check the other side by.
     #[error(
         "there is no certificate to know the other side by; give a file of those that sign its own as `ca`"
     )]
     NoCertificates,
-    /// TLS cannot be used.
+    /// TLS cannot be used in this program.
     #[error("TLS cannot be used; report this with the version")]
     Tls(#[source] rustls::Error),
 }

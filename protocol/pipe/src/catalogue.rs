@@ -241,14 +241,14 @@ impl<T> Fault<T> {
 /// A fault that cannot be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FaultError {
-    /// None has this name.
+    /// No fault has this name.
     #[error("no such fault is called {name}; choose a name from the list of faults")]
     Unknown {
         /// The name that was given.
         name: String,
     },
-    /// A parameter of the fault is wrong.
-    #[error("a parameter of fault={fault} cannot be used; correct it or leave it out")]
+    /// A parameter of the fault is unknown, or its value is wrong.
+    #[error("fault={fault} has a wrong parameter")]
     Parameter {
         /// The fault's name.
         fault: String,

@@ -14,14 +14,14 @@ const FAULT: &str = "fault";
 /// Options that make no pipe, or no board at its end.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TargetError {
-    /// An option of the board's build is wrong.
-    #[error("the board cannot be built like this; correct its options or leave them out")]
+    /// An option of the mock board's build has a wrong value, or does not go with another one.
+    #[error("an option of the board is wrong")]
     Board(#[source] ValueError),
-    /// An option of the pipe is wrong.
-    #[error("the wire cannot be like this; correct its options or leave them out")]
+    /// An option of the simulated link has a wrong value, or does not go with another one.
+    #[error("an option of the simulated link is wrong")]
     Pipe(#[source] ValueError),
-    /// A fault cannot be made.
-    #[error("the {}'s fault cannot be made; see the list of faults", place.name())]
+    /// The mock board or its link cannot have the fault as it was asked for.
+    #[error("the {}'s fault cannot be made", place.name())]
     Fault {
         /// What it would spoil.
         place: Place,
@@ -29,15 +29,15 @@ pub enum TargetError {
         #[source]
         source: FaultError,
     },
-    /// No fault of this board or of the pipe to it has this name.
-    #[error("no fault of this board is called `{name}`; choose {}from {known}", meant(.name, .known))]
+    /// Neither the mock board nor its link has a fault of this name.
+    #[error("no fault of this board is called `{name}`{}; choose from {known}", meant(.name, .known))]
     UnknownFault {
         /// The name that was given.
         name: String,
         /// The names that exist.
         known: String,
     },
-    /// Two faults of the same kind.
+    /// Two faults were asked for that cannot be had together, such as two of the board.
     #[error(
         "fault={first} and fault={second} cannot be had together; keep one, or combine one of the wire with one of the board"
     )]
@@ -47,15 +47,15 @@ pub enum TargetError {
         /// The one given after it.
         second: String,
     },
-    /// A key that nothing takes.
-    #[error("`{key}` is no option of this board; choose {}from {known}", meant(.key, .known))]
+    /// The mock board has no option of this name.
+    #[error("`{key}` is not an option of this board{}; choose from {known}", meant(.key, .known))]
     UnknownKey {
         /// The key that was given.
         key: String,
         /// The options that exist, and the faults that were asked for with their parameters.
         known: String,
     },
-    /// A key that both faults take.
+    /// Both of the faults that were asked for have a parameter of this name.
     #[error(
         "{key} means something to fault={pipe} and to fault={board}; leave it out, or leave out one of the faults"
     )]
@@ -67,7 +67,7 @@ pub enum TargetError {
         /// The fault of the board.
         board: String,
     },
-    /// A key that was given before.
+    /// An option of the mock board was given twice.
     #[error("{key} is given twice; keep one")]
     Duplicate {
         /// The key.

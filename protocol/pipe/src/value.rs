@@ -1,11 +1,9 @@
 //! Values given as text, as in `latency=12`, and their legal ranges.
 
-use std::num::ParseIntError;
-
 /// A value that was given as text and cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ValueError {
-    /// The text is no whole number.
+    /// The option's value is not a whole number.
     #[error("{key}={value} is not a whole number; give one from {least} to {most}")]
     NotANumber {
         /// The value's name.
@@ -16,11 +14,8 @@ pub enum ValueError {
         least: i64,
         /// The largest legal number.
         most: i64,
-        /// What is wrong with the text.
-        #[source]
-        source: ParseIntError,
     },
-    /// The number lies outside its range.
+    /// The option's value is a number outside the option's range.
     #[error("{key}={value} is out of range; give a number from {least} to {most}")]
     OutOfRange {
         /// The value's name.
@@ -32,7 +27,7 @@ pub enum ValueError {
         /// The largest legal number.
         most: i64,
     },
-    /// The word is none of those that are known.
+    /// The option's value is not one of the words that it takes.
     #[error("{key}={value} is not known; give one of {known}")]
     NotAWord {
         /// The value's name.
@@ -42,7 +37,7 @@ pub enum ValueError {
         /// The known words.
         known: String,
     },
-    /// The text is no number, or one outside its range.
+    /// The option's value is not a number, or is outside the option's range.
     #[error("{key}={value} is not a number from {least} to {most}; give one in this range")]
     Decimal {
         /// The value's name.
@@ -54,7 +49,7 @@ pub enum ValueError {
         /// The largest legal number.
         most: f64,
     },
-    /// A fault was told twice where to strike.
+    /// Two parameters both say where the fault strikes.
     #[error("{first} and {second} both say where the fault strikes; keep one of them")]
     TwoPlaces {
         /// One key.
@@ -62,7 +57,7 @@ pub enum ValueError {
         /// Another one.
         second: &'static str,
     },
-    /// A value that has no default was not given.
+    /// The option needs a value, and none was given.
     #[error("{key} has no value; give one as {key}=VALUE")]
     Missing {
         /// The value's name.
@@ -110,9 +105,9 @@ impl Limits {
     /// [`ValueError::NotANumber`] or [`ValueError::OutOfRange`] when it does not.
     pub fn parse<T: TryFrom<i64>>(&self, text: &str) -> Result<T, ValueError> {
         let Self { key, least, most } = *self;
-        let value = text.parse::<i64>().map_err(|source| {
+        let value = text.parse::<i64>().map_err(|_| {
             let value = text.to_owned();
-            ValueError::NotANumber { key, value, least, most, source }
+            ValueError::NotANumber { key, value, least, most }
         })?;
         self.check(value)?;
         T::try_from(value).map_err(|_| ValueError::OutOfRange { key, value, least, most })

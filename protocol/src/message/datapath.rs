@@ -54,7 +54,7 @@ impl fmt::Display for Datapath {
     }
 }
 
-/// The id of a datapath that is not known.
+/// This program does not know the datapath of this number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "datapath {id} is not known here; load a bitstream of a known one, or install a halfrow that knows {id}"

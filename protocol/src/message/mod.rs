@@ -28,7 +28,7 @@ pub use tables::{
 use crate::bytes::Fields;
 use crate::{Kind, Packet};
 
-/// A payload that does not say what its kind says.
+/// The payload of a packet does not have the form that its kind calls for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Malformed {
     /// The packet's kind is not known, or not one that this side receives.

@@ -79,11 +79,11 @@ def test_a_good_board_passes_and_its_report_has_what_halfrow_says(environment):
 def test_a_bad_board_fails_with_its_suspect(environment):
     driver = environment("cam-bad").get_driver("HalfrowDriver")
     assert driver.board.endswith(",baud=12000000")
-    with pytest.raises(BoardFailed, match="data bit 5, stuck at 1") as raised:
+    with pytest.raises(BoardFailed, match="data bit 5 stuck at 1") as raised:
         driver.verify()
     report = raised.value.report
     assert (report.verdict, report.exit_code, report.code) == ("FAIL", 1, "samples-differ")
-    assert report.suspects[0] == "line memory, data bit 5, stuck at 1"
+    assert report.suspects[0] == "line memory, data bit 5 stuck at 1"
 
 
 def test_a_port_of_this_computer_is_opened_as_it_is(tmp_path):

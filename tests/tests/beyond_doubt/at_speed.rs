@@ -77,7 +77,7 @@ fn a_wrong_signature_fails_and_what_does_not_come_again_is_said() {
     else {
         panic!("{}", report.headline())
     };
-    assert!(report.headline().contains("made again by itself, it was right"), "{}", report.headline());
+    assert!(report.headline().contains("repeated by itself, it was right"), "{}", report.headline());
     assert_eq!(report.suspects[0].defect, Defect::SeenAtSpeed { row: None, samples: 0, bits: Vec::new() });
 }
 
@@ -89,12 +89,12 @@ const SPEED_FAULTS: [SpeedFault; 5] = [
     (
         "slow-path,one-in=300",
         "fails at the full pixel clock, seen in bit 5 of the corrected samples",
-        "made again",
+        "repeated, it was wrong again",
     ),
     ("warm-bit", "fails at the full pixel clock, seen in bit 5 of the corrected samples", "first in row 3"),
     ("warm-bit,after=1,row=7,bit=11", "seen in bit 11 of the corrected samples", "first in row 7"),
     ("late-swap", "the change of table banks between two frames", "2 of 3 frames differ at speed"),
-    ("hidden-pause", "", "45 pixel clocks of most latency"),
+    ("hidden-pause", "", "a maximum latency of 45 pixel clocks"),
 ];
 
 #[test]
@@ -239,7 +239,7 @@ fn what_is_wrong_at_any_clock_is_not_called_a_matter_of_speed() {
     let report = TINY.judge(",fault=row-factor,row=40,bit=20,hidden=true");
     assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{}", report.headline());
     assert!(
-        report.headline().contains("first in row 40; streamed, it is wrong, too"),
+        report.headline().contains("first in row 40; sent row by row, the same frame is wrong as well"),
         "{}",
         report.headline()
     );

@@ -82,7 +82,7 @@ fn what_hides_behind_a_depth_is_named_and_found_where_the_depth_varies() {
     assert!(unseen.not_exercised.contains(&NotExercised::Depths { bits: vec![10, 12] }));
     let seen = judge_by_plan(&fixed.clone().varying(vary), open(stuck));
     assert_eq!((seen.verdict(), &seen.not_exercised[..]), (Verdict::Fail, &[][..]), "{}", seen.headline());
-    assert_eq!(seen.suspects[0].place(), "line memory, data bit 9, stuck at 0");
+    assert_eq!(seen.suspects[0].place(), "line memory, data bit 9 stuck at 0");
     let sound = judge_by_plan(&fixed.varying(vary), open("mock"));
     assert_eq!(sound.verdict(), Verdict::Pass, "{}", sound.headline());
     assert!(!sound.not_exercised.contains(&bits));

@@ -35,9 +35,9 @@ fn a_file_that_breaks_off_is_refused() {
     cut("frame.pgm", "head.pgm", 4096 + 8);
     bad_frame(&folder, "head.pgm", &[], "the PGM header has no");
     cut("frame.png", "short.png", 100);
-    bad_frame(&folder, "short.png", &[], "short.png holds no frame");
+    bad_frame(&folder, "short.png", &[], "short.png cannot be used as a frame");
     cut("frame.tif", "short.tif", 100);
-    bad_frame(&folder, "short.tif", &[], "short.tif holds no frame");
+    bad_frame(&folder, "short.tif", &[], "short.tif cannot be used as a frame");
     cut("frame.raw", "short.raw", 2);
     bad_frame(
         &folder,
@@ -95,7 +95,7 @@ fn what_is_no_frame_at_all_is_refused() {
     folder.write("plain.pgm", "P2\n2 2\n255\n0 0 0 0\n");
     bad_frame(&folder, "plain.pgm", &[], "plain text (P2)");
     folder.write("zero.pgm", "P5\n0 16\n4095\n");
-    bad_frame(&folder, "zero.pgm", &[], "zero.pgm holds no frame");
+    bad_frame(&folder, "zero.pgm", &[], "zero.pgm cannot be used as a frame");
     folder.write("huge.pgm", "P5\n99999999 16\n4095\n");
     bad_frame(&folder, "huge.pgm", &[], "it is 99999999 x 16");
     folder.write("deep.pgm", "P5\n128 16\n65536\n");

@@ -16,9 +16,9 @@ fn no_such_board(target: &str, sentence: &str) {
 fn a_list_for_a_board_that_cannot_be_named_is_refused() {
     let folder = Folder::new();
     for (target, sentence) in [
-        ("serial:/dev/x,baud=abc", "`baud=abc` is no option of `serial`"),
+        ("serial:/dev/x,baud=abc", "`baud=abc` is not an option of `serial`"),
         ("serial", "write serial:PATH"),
-        ("usb,foo=1", "`foo=1` is no option of `usb`"),
+        ("usb,foo=1", "`foo=1` is not an option of `usb`"),
         ("usb:", "write usb or usb:SERIAL"),
         ("usb:,mode=fifo", "write usb or usb:SERIAL"),
         ("tcp:nope", "`nope` is no host and port"),
@@ -30,14 +30,14 @@ fn a_list_for_a_board_that_cannot_be_named_is_refused() {
 
 #[test]
 fn an_unknown_kind_is_refused() {
-    no_such_board("moon", "`moon` is no kind of board that this program knows");
+    no_such_board("moon", "`moon` is not a known kind of board");
     no_such_board(
         "/dev/ttyUSB0",
-        "`/dev/ttyUSB0` is no kind of board that this program knows; for a serial port write serial:/dev/ttyUSB0",
+        "`/dev/ttyUSB0` is not a known kind of board; for a serial port write serial:/dev/ttyUSB0",
     );
     no_such_board("ttyUSB0", "for a serial port write serial:/dev/ttyUSB0");
-    no_such_board("mokc", "choose mock, if that was meant, or from mock, sim");
-    no_such_board("Mock", "choose mock, if that was meant, or from mock, sim");
+    no_such_board("mokc", "(did you mean mock?); choose from mock, sim");
+    no_such_board("Mock", "(did you mean mock?); choose from mock, sim");
     no_such_board("", "names no board");
     no_such_board("mock:7", "`mock` takes no address");
     no_such_board("mock,latency", "write KEY=VALUE");
@@ -46,8 +46,8 @@ fn an_unknown_kind_is_refused() {
 
 #[test]
 fn an_unknown_option_of_the_mock_is_refused_with_those_that_there_are() {
-    no_such_board("mock,colour=red", "`colour` is no option of this board; choose from latency, ring");
-    no_such_board("mock,latenc=12", "choose latency, if that was meant, or from latency, ring");
+    no_such_board("mock,colour=red", "`colour` is not an option of this board; choose from latency, ring");
+    no_such_board("mock,latenc=12", "(did you mean latency?); choose from latency, ring");
     no_such_board("mock,bit=3", "a fault's parameters need fault=NAME");
     no_such_board("mock,latency=12,latency=13", "latency is given twice");
     no_such_board("mock,pace=fast", "pace=virtual or pace=real");
@@ -69,15 +69,12 @@ fn a_build_that_cannot_exist_is_refused() {
 #[test]
 fn a_fault_that_does_not_exist_is_refused() {
     no_such_board("mock,fault=moon", "no fault of this board is called `moon`; choose from flip, drop");
-    no_such_board(
-        "mock, fault=stuk-data",
-        "called `stuk-data`; choose stuck-data, if that was meant, or from flip",
-    );
+    no_such_board("mock, fault=stuk-data", "called `stuk-data` (did you mean stuck-data?); choose from flip");
     no_such_board(
         "mock,fault=late,fault=no-rounding",
         "fault=late and fault=no-rounding cannot be had together",
     );
-    no_such_board("mock,fault=late,bit=1", "`bit` is no option");
+    no_such_board("mock,fault=late,bit=1", "`bit` is not an option");
     no_such_board("mock,fault=stuck-data,bit=12", "bit=12 is out of range; give a number from 0 to 11");
     no_such_board(
         "mock,fault=kernel-word,weight=g2",
@@ -85,5 +82,5 @@ fn a_fault_that_does_not_exist_is_refused() {
     );
     no_such_board("mock,fault=flip,rate=2", "rate=2 is not a number from 0 to 1");
     no_such_board("mock,fault=flip,rate=1e-3,byte=1", "both say where the fault strikes");
-    no_such_board("mock,fault=reorder,byte=3", "`byte` is no option");
+    no_such_board("mock,fault=reorder,byte=3", "`byte` is not an option");
 }

@@ -127,14 +127,14 @@ fn a_table_file_takes_no_option_that_makes_tables() {
         ["--rows", "fitted"],
         ["--lens", "equidistant:100"],
     ] {
-        let sentence = format!("{} is for making tables, and the file of --tables holds some", option[0]);
+        let sentence = format!("{} cannot be used together with --tables", option[0]);
         for call in beside_tables(&option) {
             refused(&folder, &call, &sentence);
         }
     }
     for option in [["--width", "1280"], ["--height", "80"], ["--bits", "8"], ["--centre-x", "5"]] {
         let sentence =
-            format!("{} is not that of --tables made.json, which is for 128 x 16, 12 bits", option[0]);
+            format!("{} contradicts --tables made.json, which is for 128 x 16, 12 bits", option[0]);
         for call in beside_tables(&option) {
             refused(&folder, &call, &sentence);
         }

@@ -185,7 +185,7 @@ fn outputs_that_have_no_place_are_refused() {
         &small("correct", &[black, black, "--model", "-o", "out"]),
         "two inputs would both be written",
     );
-    refused(&folder, &small("correct", &[black, "--model", "-o", "out.jpg"]), "names no format");
+    refused(&folder, &small("correct", &[black, "--model", "-o", "out.jpg"]), "does not tell the format");
     refused(&folder, &small("correct", &[black, "-o", "out.pgm"]), "--model");
 }
 

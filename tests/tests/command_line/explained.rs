@@ -48,7 +48,7 @@ fn an_explanation_is_that_of_the_run_that_had_the_code() {
     assert_eq!(told[1]["of"], "defect");
     let bench = told[1]["do"][0].as_str().unwrap().strip_prefix("At the bench: ").unwrap();
     assert_eq!(bench, run["suspects"][0]["technician"].as_str().unwrap());
-    assert!(told[2]["fault"].as_str().unwrap().starts_with("never the board's"), "{}", told[2]);
+    assert!(told[2]["fault"].as_str().unwrap().starts_with("not the board's"), "{}", told[2]);
     assert_eq!(told[3]["verdict"], "PASS");
 }
 
@@ -126,7 +126,7 @@ fn a_pass_names_the_codes_of_what_it_leaves_open() {
 fn what_an_example_s_suspect_asks_for_is_said_to_be_the_example_s() {
     for it in explained(&["samples-differ", "table-reads-wrong", "differs-at-speed"]) {
         let act = it["do"][0].as_str().unwrap();
-        assert!(act.starts_with("As its suspect's own code says. In this example: Check "), "{act}");
+        assert!(act.starts_with("See the code of its suspect. In this example: Check "), "{act}");
     }
 }
 
@@ -153,7 +153,16 @@ fn an_unknown_code_is_answered_with_those_that_are_like_it() {
     }
     let ended = halfrow(["explain", "zzz"]);
     assert!(ended.code == Some(2) && ended.stderr.contains("`halfrow codes` lists all"), "{}", ended.stderr);
+    assert!(ended.stderr.contains("docs/glossary.md"), "{}", ended.stderr);
     assert_eq!(halfrow(["explain"]).code, Some(2));
+}
+
+#[test]
+fn an_unknown_code_takes_nothing_from_those_that_are_known() {
+    let ended = halfrow(["explain", "judge", "strawberry"]);
+    assert_eq!(ended.code, Some(2));
+    assert!(ended.stdout.starts_with("judge (check)\n"), "{}", ended.stdout);
+    assert!(ended.stderr.contains("there is no code `strawberry`"), "{}", ended.stderr);
 }
 
 /// Fish's completions have no values for positional arguments.

@@ -38,13 +38,16 @@ fn the_page_of_boards_has_every_option_of_the_mock() {
 fn a_board_says_what_it_makes_at_full_speed() {
     let said = |board| halfrow(["info", "--board", board]).stdout;
     let whole = said("mock,records=8,least-frame-blanking=5");
-    assert!(whole.contains("\nframes at speed    content 1, 8 records, a trap\n"), "{whole}");
-    assert!(whole.contains("\nrows that enter    signed\n"), "{whole}");
+    assert!(
+        whole.contains("\nframes at speed     yes (content 1): 8 records, keeps the first wrong row\n"),
+        "{whole}"
+    );
+    assert!(whole.contains("\ninput rows          CRC reported\n"), "{whole}");
     let old = said("mock,bursts=no,entered=no");
-    assert!(old.contains("\nframes at speed    none\n"), "{old}");
-    assert!(old.contains("\nrows that enter    not signed\n"), "{old}");
+    assert!(old.contains("\nframes at speed     none\n"), "{old}");
+    assert!(old.contains("\ninput rows          CRC not reported\n"), "{old}");
     let rows_alone = said("mock,datapath2=no");
-    assert!(rows_alone.contains("\ndatapath           1\ngrids              none\n"), "{rows_alone}");
+    assert!(rows_alone.contains("\ndatapath            1\ngrids               none\n"), "{rows_alone}");
     let told = halfrow(["info", "--json", "--board", "mock,records=8,least-frame-blanking=5"]).json();
     let bursts = json!({ "content": 1, "records": 8, "least_frame_blanking": 5, "trap": true });
     assert_eq!(told["board"]["identity"]["bursts"], bursts);

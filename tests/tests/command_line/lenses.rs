@@ -192,7 +192,7 @@ fn a_call_that_names_two_lenses_or_none_that_fits_is_refused() {
         "--pixel-pitch does nothing with a lens file unless --lens-pitch",
     );
     let both = |option: [&str; 2]| {
-        let sentence = format!("{} is for making tables, and the file of --tables holds some", option[0]);
+        let sentence = format!("{} cannot be used together with --tables", option[0]);
         for call in [&["verify"][..], &["correct", "builtin:noise", "--model", "-o", "x.pgm"]] {
             let call: Vec<_> = call.iter().copied().chain(option).chain(["--tables", "made.json"]).collect();
             refused(&folder, &call, &sentence);

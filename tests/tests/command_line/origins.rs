@@ -79,8 +79,8 @@ fn a_wrong_value_of_the_environment_is_told_as_the_variable_s() {
         ("HALFROW_AT_SPEED", "-1", "--at-speed takes a number of seconds"),
         ("HALFROW_RECONNECT", "-1", "--reconnect takes a number of seconds"),
         ("HALFROW_SEED", "-1", "give a whole number"),
-        ("HALFROW_BOARD", "moon", "`moon` is no kind of board"),
-        ("HALFROW_BOARD", "mock,foo=1", "`foo` is no option of this board"),
+        ("HALFROW_BOARD", "moon", "`moon` is not a known kind of board"),
+        ("HALFROW_BOARD", "mock,foo=1", "`foo` is not an option of this board"),
         ("HALFROW_BOARD", "mock,fault=stuck-data,bit=99", "bit"),
         ("HALFROW_BOARD", "replay:gone", "the recording gone cannot be read"),
         ("HALFROW_KERNEL", "nope", "there is no file nope"),
@@ -106,8 +106,8 @@ fn a_wrong_value_of_the_environment_is_told_as_the_variable_s() {
 fn a_wrong_value_of_the_settings_file_is_told_with_the_file_and_the_key() {
     let folder = Folder::new();
     for (key, value, reason) in [
-        ("board", "'moon'", "`moon` is no kind of board"),
-        ("board", "'mock,foo=1'", "`foo` is no option of this board"),
+        ("board", "'moon'", "`moon` is not a known kind of board"),
+        ("board", "'mock,foo=1'", "`foo` is not an option of this board"),
         ("kernel", "'nope'", "there is no file nope"),
         ("frame", "['nope.pgm']", "cannot read nope.pgm"),
         ("frame", "['builtin:moon']", "`moon` is no built-in frame"),

@@ -143,7 +143,7 @@ fn a_report_s_place_is_no_link_and_no_file() {
     refused(&folder, &call, "out is a link to elsewhere");
     fs::remove_file(folder.path().join("out")).unwrap();
     let _socket = UnixListener::bind(folder.path().join("out")).unwrap();
-    refused(&folder, &call, "it is no folder");
+    refused(&folder, &call, "it is not a folder");
 }
 
 /// A folder with readable files: frames, tables, a kernel, a lens, settings, and a recording.

@@ -37,10 +37,10 @@ const FITTED: &str = "fitted turned6.jpg: 48 x 72, cropped to 48 x 6 about its c
 #[test]
 fn another_size_is_refused_with_both_sizes_and_the_flag() {
     let folder = folder();
-    let sentence = "it is a picture of 48 x 72, and 128 x 16 is wanted; crop and scale it (--fit)";
+    let sentence = "it is 48 x 72, but a frame of 128 x 16 is needed; crop and scale it (--fit)";
     refused(&folder, &small("verify", &["--frame", "turned6.jpg"]), sentence);
     refused(&folder, &small("correct", &["turned6.jpg", "--model", "-o", "out.png"]), sentence);
-    let sentence = "it is a picture of 160 x 100, and 128 x 16 is wanted; crop and scale it (--fit)";
+    let sentence = "it is 160 x 100, but a frame of 128 x 16 is needed; crop and scale it (--fit)";
     refused(&folder, &small("verify", &["--frame", "small.png"]), sentence);
     refused(&folder, &small("verify", &["--fit", "--frame", "cmyk.jpg"]), "a CMYK JPEG cannot be used");
 }

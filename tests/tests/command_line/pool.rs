@@ -80,7 +80,7 @@ fn a_run_that_is_killed_gives_its_board_back_and_one_whose_board_is_lost_ends() 
 fn without_a_board_nothing_is_judged_and_it_is_said_why() {
     let nothing = "#!/bin/sh\necho 'error: the plant is away' >&2\nexit 3\n";
     let cases = [
-        (nothing, "pool:ulx3s", 3, "no board of the kind ulx3s could be leased"),
+        (nothing, "pool:ulx3s", 3, "no board of the kind ulx3s is available"),
         ("#!/bin/sh\necho hello\n", "pool:ulx3s", 3, "says `hello`, which is no message"),
         (nothing, "pool:", 2, "write pool:KIND"),
         (nothing, "pool", 2, "write pool:KIND"),

@@ -30,7 +30,7 @@ fn a_failure_is_reported_with_its_suspect() {
     let ended = folder.halfrow(small("verify", &["--report", "out", "--board", "mock,fault=dead-tap"]));
     assert_eq!(ended.code, Some(1));
     for name in FILES {
-        assert!(folder.text(&format!("out/{name}")).contains("tap G4, stuck at 0"), "{name}");
+        assert!(folder.text(&format!("out/{name}")).contains("tap G4 stuck at 0"), "{name}");
     }
     assert!(folder.text("out/report.xml").contains("<failure"));
 }
@@ -104,7 +104,7 @@ fn what_is_no_report_is_never_replaced() {
     folder.write("file", "precious");
     let into = |place| small("verify", &["--overwrite", "--report", place]);
     refused(&folder, &into("photos"), "it also holds `holiday.jpg`");
-    refused(&folder, &into("file"), "is no earlier report");
+    refused(&folder, &into("file"), "is not an earlier report");
     refused(&folder, &into("."), "names no folder of its own");
     assert_eq!(folder.text("photos/holiday.jpg"), "precious");
     assert_eq!(folder.names("photos"), ["holiday.jpg"]);

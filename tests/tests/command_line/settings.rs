@@ -217,7 +217,7 @@ fn a_settings_file_that_is_wrong_is_never_passed_over() {
     folder.write(FILE, "seed = \n");
     refused(&folder, &call, "settings.toml, line 1: ");
     folder.write(FILE, "board = 'moon'\n");
-    refused(&folder, &call, "`moon` is no kind of board");
+    refused(&folder, &call, "`moon` is not a known kind of board");
     folder.write(FILE, "frame = ['builtin:moon']\n");
     refused(&folder, &call, "`moon` is no built-in frame");
 }

@@ -9,7 +9,7 @@ fn what_a_simulated_board_cannot_be_is_refused() {
     let folder = Folder::new();
     let refuse = |target, sentence| refused(&folder, &["verify", "--board", target], sentence);
     refuse("sim:moon", "uart");
-    refuse("sim,latency=12", "`latency` is no option of this board");
+    refuse("sim,latency=12", "`latency` is not an option of this board");
     refuse("sim,fault=late", "late");
     refuse("sim,speed=0", "speed=0 is out of range");
     refuse("sim,trace=no/such/folder.vcd", "the waveform no/such/folder.vcd cannot be written");

@@ -49,7 +49,7 @@ fn the_text_ends_with_the_verdict_and_says_that_no_hardware_was_tested() {
 fn the_text_of_a_failure_names_the_suspect_and_what_to_do() {
     let ended = halfrow(small("verify", &["--board", "mock,fault=stuck-data"]));
     assert_eq!(ended.code, Some(1));
-    assert!(ended.stdout.contains("line memory, data bit 5, stuck at 1"), "{}", ended.stdout);
+    assert!(ended.stdout.contains("line memory, data bit 5 stuck at 1"), "{}", ended.stdout);
     assert!(ended.stdout.contains("Next: Check data line 5"), "{}", ended.stdout);
     let last = ended.stdout.lines().last().unwrap();
     assert!(last.starts_with("FAIL: "), "{last}");
@@ -240,7 +240,7 @@ fn a_stricter_limit_on_retries_makes_a_link_too_poor() {
 #[test]
 fn limits_that_make_no_sense_are_refused() {
     let folder = Folder::new();
-    refused(&folder, &["verify", "--repeat", "0"], "0 is not in 1..=1000");
+    refused(&folder, &["verify", "--repeat", "0"], "give a whole number, 1 to 1000");
     for command in [&["verify"][..], &["soak", "--frames", "3"], &["link"]] {
         for time in ["-1", "0", "1e-12", "nan", "inf", "1e300"] {
             let timeout = format!("--timeout={time}");
@@ -342,11 +342,11 @@ fn a_mock_that_is_too_small_is_told_how_it_is_made_larger() {
     refused(
         &Folder::new(),
         &call("mock").collect::<Vec<_>>(),
-        "or the built-in mock that takes these: mock,max-width=2592",
+        "or the built-in mock with room for these: mock,max-width=2592",
     );
     assert_eq!(halfrow(call("mock,max-width=2592")).code, Some(0));
     let high = ["verify", "-q", "--board", "mock,max-height=8", "--width", "64", "--height", "9"];
-    refused(&Folder::new(), &high, "takes these: mock,max-width=64,max-height=9");
+    refused(&Folder::new(), &high, "room for these: mock,max-width=64,max-height=9");
 }
 
 /// By its own clock, a wire without a speed takes no time at all.
@@ -357,7 +357,7 @@ fn a_virtual_clock_measures_nothing_of_a_link() {
     let lines: Vec<_> = still.lines().collect();
     for (line, name) in lines[3..].iter().zip(["round trip", "to board", "to host", "together"]) {
         let words = line.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert_eq!(words, format!("{name} virtual clock: not measured"), "{still}");
+        assert_eq!(words, format!("{name} not measured on a simulated link"), "{still}");
     }
     assert!(lines[2].contains("(0 out, 0 in): none, below"), "{still}");
     let moving = link("mock,speed=1000000").stdout;

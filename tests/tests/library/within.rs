@@ -128,6 +128,6 @@ fn no_share_of_faults_is_told_of_a_board_that_they_were_not_measured_in() {
     let plan = Plan { within: Some(Duration::from_secs(1)), vary, ..plan };
     let report = judged("mock", &plan).unwrap();
     let told = halfrow::report::wording::within(within(&report)).pop().unwrap();
-    assert!(told.starts_with("coverage of this plan was not measured"), "{told}");
+    assert!(told.starts_with("how many faults this selection finds was not measured"), "{told}");
     assert!(told.ends_with("64 x 16"), "{told}");
 }

@@ -45,7 +45,7 @@ fn a_port_that_is_not_there_is_an_error_of_the_station() {
     ends(&verify("serial:/dev/null", &[]), 2, "/dev/null is no serial port");
     ends(&verify("serial:/etc/passwd", &[]), 2, "/etc/passwd is no serial port");
     ends(&verify("serial", &[]), 2, "write serial:PATH");
-    ends(&verify("serial:/dev/ttyUSB99,baud=much", &[]), 2, "`baud=much` is no option of `serial`");
+    ends(&verify("serial:/dev/ttyUSB99,baud=much", &[]), 2, "`baud=much` is not an option of `serial`");
 }
 
 #[test]

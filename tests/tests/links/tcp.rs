@@ -58,7 +58,7 @@ fn ports_that_lead_nowhere_are_told_apart() {
     );
     ends(&verify("tcp:localhost", &[]), 2, "`localhost` is no host and port");
     ends(&verify("tcp", &[]), 2, "write tcp:HOST:PORT");
-    ends(&verify("tcp:localhost:1,rate=5", &[]), 2, "`rate=5` is no option of `tcp`");
+    ends(&verify("tcp:localhost:1,rate=5", &[]), 2, "`rate=5` is not an option of `tcp`");
 }
 
 #[test]

@@ -86,7 +86,7 @@ fn what_came_before_is_not_taken_for_a_whole_run() {
         );
         let torn = report.frames.iter().filter(|frame| frame.rows < System::TINY.height).count();
         let text = halfrow_cli::text::render(&report);
-        assert_eq!(text.matches("not whole").count(), torn, "{text}");
+        assert_eq!(text.matches("incomplete").count(), torn, "{text}");
         assert!(text.contains("ERROR") && !text.contains("PASS"), "{text}");
         partial += torn;
     }

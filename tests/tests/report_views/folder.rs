@@ -89,7 +89,7 @@ fn a_folder_by_a_name_of_a_report_and_a_report_of_another_program_are_left_alone
     fs::create_dir(path.join("report.html")).unwrap();
     fs::write(path.join("report.html/chapter1.tex"), "all of it").unwrap();
     let refused = ReportFolder::prepare(&path, true).unwrap_err().to_string();
-    assert!(refused.contains("its `report.html` is no file"), "{refused}");
+    assert!(refused.contains("its `report.html` is not a file"), "{refused}");
     assert!(path.join("report.html/chapter1.tex").exists());
     fs::remove_dir_all(path.join("report.html")).unwrap();
     for other in [

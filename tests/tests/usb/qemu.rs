@@ -17,7 +17,7 @@ fn boards_behind_qemu_s_chip_are_told_apart() {
     let _broken = QemuBoard::new(",fault=stuck-data");
     let ended = verify(QEMU_CHIP);
     assert_eq!(ended.code, Some(1), "{ended:?}");
-    assert!(ended.headline().contains("data bit 5, stuck at 1"), "{ended:?}");
+    assert!(ended.headline().contains("data bit 5 stuck at 1"), "{ended:?}");
 }
 
 #[test]

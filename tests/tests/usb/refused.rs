@@ -37,7 +37,7 @@ fn what_the_chip_cannot_do_is_a_wrong_call() {
     for (target, words) in [
         ("usb,channel=d", "has no channel D"),
         ("usb,baud=7000000", "the nearest rates that it makes: 6000000 and 12000000"),
-        ("usb,speed=5", "`speed=5` is no option of `usb`"),
+        ("usb,speed=5", "`speed=5` is not an option of `usb`"),
     ] {
         let ended = verify(target);
         assert_eq!(ended.code, Some(2), "{target}: {ended:?}");

@@ -3,7 +3,7 @@
 use super::MOST_GRID_ENTRY;
 use crate::core::UNSTRETCHED;
 
-/// A write or a commit that the tables refuse.
+/// The tables refused a write or a commit.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TableError {
     /// The entry is not in the table.

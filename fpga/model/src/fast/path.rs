@@ -63,7 +63,7 @@ impl fmt::Display for ModelPath {
     }
 }
 
-/// A name of no path.
+/// The model has no path of this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no path of the model; use reference, scalar, avx2 or avx512")]
 pub struct UnknownPath(String);
@@ -79,7 +79,7 @@ impl FromStr for ModelPath {
     }
 }
 
-/// A path that this processor does not support.
+/// This processor does not support the path of the model that was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("this processor cannot take the path {0} of the model; use {best}, the fastest that it has", best = ModelPath::best())]
 pub struct UnavailablePath(pub ModelPath);

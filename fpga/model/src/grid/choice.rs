@@ -14,7 +14,7 @@ const ROWS: usize = 128;
 /// Shapes to which a grid is fitted: those whose closed form has the least largest error.
 const TRIED: usize = 2;
 
-/// Too few entries for any grid.
+/// The board has too few entries for any grid that suits these frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "no grid for frames of {width} x {height} has {entries} entries or fewer; take a board of at least {least}, which \

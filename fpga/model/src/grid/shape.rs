@@ -13,7 +13,7 @@ pub struct GridShape {
     k: u32,
 }
 
-/// Numbers that are the shape of no grid.
+/// No grid has a shape of these numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "no grid has v = {v} and k = {k}; give v from {} to {}, and k from {} to {}",

@@ -30,10 +30,10 @@ use halfrow::verdict::StoppedBy;
 pub(crate) struct BoardArguments {
     #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD", help = help(Replays::No, MOCK), value_parser = target())]
     board: Option<Target>,
-    /// The longest that the run may take, in seconds: of this computer's clock or the link's, whichever is over first
+    /// Stop after this many seconds by this computer's clock or the link's, whichever comes first
     #[arg(long, value_name = "SECONDS", env = "HALFROW_TIMEOUT", value_parser = any::<f64>("a number of seconds"))]
     timeout: Option<f64>,
-    /// How many packets may be sent again: 16, and this percentage of all sent. A link that needs more is too poor to judge over
+    /// Packets that may be sent again: 16, plus this percentage of all that are sent
     /// [default: 5; `link` has none]
     #[arg(long, value_name = "PERCENT", env = "HALFROW_RETRY_LIMIT", value_parser = number("percent", 0.0..=100.0))]
     retry_limit: Option<f64>,

@@ -90,7 +90,9 @@ impl Decider {
         match self {
             Self::Recording => call::BESIDE_RECORDING.reason,
             Self::Record => call::WHILE_RECORDED.reason,
-            Self::Tables => "is for making tables, and the file of --tables holds some; give one of them",
+            Self::Tables => {
+                "cannot be used together with --tables, whose file holds the tables; give one of them"
+            }
             Self::Within => call::WITHIN.reason,
             Self::Model => "does nothing beside --model, which corrects without a board; give one of them",
             Self::NoFrameFile => "is for frames that are files, and none is; leave it out, or name a file",

@@ -113,7 +113,7 @@ fn bitstream_text(board: &BitstreamBoard) -> String {
     let BitstreamBoard { name, device, links, build, bitstream, target, .. } = board;
     let links = links.join(", ");
     format!(
-        "\n{name}\n    a board with a bitstream of this project: {device}, behind {links}\n    build: {build}\n    \
+        "\n{name}\n    a board with a bitstream of this project: {device}, connects by {links}\n    build: {build}\n    \
          load:  halfrow load {bitstream}\n    judge: halfrow verify --board {target}"
     )
 }

@@ -226,7 +226,7 @@ pub(super) fn all() -> Vec<Value> {
 }
 
 /// What the remedy of a wrong latency depends on.
-const BY_ROWS: &str = "By which rows are late. In this example: ";
+const BY_ROWS: &str = "This depends on which rows are late. In this example: ";
 
 /// What to do about an example of a finding. If that depends on its suspect, the text says so, since another suspect needs
 /// something else.
@@ -234,7 +234,7 @@ pub(super) fn act(example: &Finding) -> Option<String> {
     let remedy = example.remedy()?;
     Some(match example {
         _ if is_by_suspect(example) => {
-            format!("As its suspect's own code says. In this example: {remedy}")
+            format!("See the code of its suspect. In this example: {remedy}")
         }
         Finding::LatencyWrong(_) => format!("{BY_ROWS}{remedy}"),
         _ => remedy,

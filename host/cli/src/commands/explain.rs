@@ -19,6 +19,8 @@ mod lines;
 
 /// How similar a code must be to an unknown one, 0 to 1, to be suggested.
 const LIKENESS: f64 = 0.8;
+/// The page that explains words of results that are not codes.
+const GLOSSARY: &str = "docs/glossary.md";
 /// The most codes that are suggested.
 const MOST_LIKE: usize = 5;
 
@@ -59,14 +61,21 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let of = |code: &String| {
         [code.clone(), code.to_uppercase(), code.to_lowercase()].iter().find_map(|it| known.get(it))
     };
-    let found = arguments.codes.iter().map(|code| of(code).cloned().ok_or_else(|| unknown(code, &known)));
-    let found = found.collect::<Result<Vec<_>, _>>().map_err(Failure::call)?.concat();
-    if context.json {
+    let (mut found, mut without) = (Vec::new(), None);
+    for code in &arguments.codes {
+        match of(code) {
+            Some(it) => found.extend(it.iter().cloned()),
+            None => without = without.or_else(|| Some(unknown(code, &known))),
+        }
+    }
+    // A document is whole or none; on a terminal, one unknown code takes nothing from the others.
+    let is_shown = without.is_none() || !context.json && !found.is_empty();
+    if is_shown && context.json {
         print_result("explain", Exit::Pass, None, json!({ "codes": found }))?;
-    } else {
+    } else if is_shown {
         print(found.iter().map(text).collect::<Vec<_>>().join("\n").trim_end())?;
     }
-    Ok(Exit::Pass)
+    without.map_or(Ok(Exit::Pass), |error| Err(Failure::call(error)))
 }
 
 /// The error for an unknown code, which suggests the most similar codes.
@@ -81,8 +90,8 @@ fn unknown(code: &str, known: &BTreeMap<String, Vec<Explanation>>) -> CallError 
     like.sort_by(|one, other| other.0.total_cmp(&one.0));
     let near: Vec<_> = like.into_iter().take(MOST_LIKE).map(|(_, known)| known).collect();
     let remedy = match near.is_empty() {
-        true => "`halfrow codes` lists all".to_owned(),
-        false => format!("try {}, or see all by `halfrow codes`", near.join(", ")),
+        true => format!("`halfrow codes` lists all codes, and {GLOSSARY} explains other words"),
+        false => format!("try {}, or see {GLOSSARY} for words that are not codes", near.join(", ")),
     };
     CallError::CodeUnknown { code: code.to_owned(), remedy }
 }

@@ -36,13 +36,13 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 }
 
 fn text(board: &BoardReport, status: &Status) -> String {
-    let mut lines = vec![format!("{:<18} {} ({})", "board", board.target, board.kind)];
+    let mut lines = vec![format!("{:<19} {} ({})", "board", board.target, board.kind)];
     if let Some(identity) = &board.identity {
         lines.extend(
-            identity.lines().into_iter().map(|(name, value)| format!("{name:<18} {}", plain(&value))),
+            identity.lines().into_iter().map(|(name, value)| format!("{name:<19} {}", plain(&value))),
         );
     }
     lines.push(String::new());
-    lines.extend(status.counters().into_iter().map(|(name, count)| format!("{name:<18} {count}")));
+    lines.extend(status.counters().into_iter().map(|(name, count)| format!("{name:<19} {count}")));
     lines.join("\n")
 }

@@ -15,6 +15,7 @@ use crate::files::prepare_files;
 use halfrow::call::Files;
 use halfrow::frames::{self, HeatMap};
 use halfrow::optics::{Optics, OpticsError, TablesBy};
+use halfrow::words::grouped;
 use halfrow_lab::{Amounts, Residuals};
 
 #[derive(Debug, Args)]
@@ -117,11 +118,14 @@ impl<'a> Figures<'a> {
                 geometry.centre2()
             ),
             format!(
-                "f = {:.3} pixels, r rises up to {:.1} degrees, image circle {:.1} degrees across, {} rows outside of it",
+                "f = {:.3} pixels, lens model valid to {:.1} degrees; image circle {:.1} degrees; {} outside it",
                 lens.focal_length(),
                 lens.widest().to_degrees(),
                 camera.field_of_view().to_degrees(),
-                camera.rows_outside_circle()
+                match camera.rows_outside_circle() {
+                    1 => "1 row lies".to_owned(),
+                    rows => format!("{} rows lie", grouped(rows)),
+                }
             ),
         ];
         lines.extend(self.errors());
@@ -134,7 +138,7 @@ impl<'a> Figures<'a> {
     fn errors(&self) -> Vec<String> {
         let Some(first) = self.all.first() else { return Vec::new() };
         let amounts = |Amounts { mean, max }: Amounts| format!("{mean:9.4} {max:9.4}");
-        let head = format!("error left at {} samples, in pixels", first.residuals.samples);
+        let head = format!("error left at {} samples, in pixels", grouped(first.residuals.samples));
         let mut lines = vec![format!("{head:<50} mean       max   inner max  above 0.05    rim max")];
         for left in &self.all {
             let name = left.by.how(left.shape);
@@ -149,10 +153,12 @@ impl<'a> Figures<'a> {
             amounts(first.residuals.vertical)
         ));
         lines.push(
-            "inner: up to 85 degrees off the axis and 0.9 of the height of the circle of 180 degrees, and the share of it that is \
-             off by more than 0.05; rim: the rest, the poles among it."
+            "inner: up to 85 degrees off the axis, and up to 0.9 of the height of the circle of 180 degrees; \
+             rim: everything else, with the poles."
                 .to_owned(),
         );
+        lines
+            .push("above 0.05: the share of the inner part that is off by more than 0.05 pixels.".to_owned());
         lines.push("Rows are kept (Eq. 7): level lines bend as before.".to_owned());
         let beyond = 100.0 * self.optics.camera.share_beyond();
         if beyond > 0.0 {

@@ -109,7 +109,7 @@ fn text(figures: &Figures) -> String {
 }
 
 /// What replaces a figure that cannot be measured on a wire without a speed.
-const NOT_MEASURED: &str = "virtual clock: not measured";
+const NOT_MEASURED: &str = "not measured on a simulated link";
 
 fn times(trips: &RoundTrips) -> String {
     if trips.most_us <= 0.0 {

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use clap::Args;
-use halfrow_program::number::number;
+use halfrow_program::number::{counted, number};
 
 use super::{Context, Failure};
 use crate::arguments::board::refuse_recording;
@@ -36,7 +36,7 @@ struct Length {
     #[arg(long, value_name = "HOURS", value_parser = number("hours", 0.0001..=8760.0))]
     hours: Option<f64>,
     /// How many frames
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", value_parser = counted::<u64>(1, None))]
     frames: Option<u64>,
 }
 

@@ -6,8 +6,8 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::RangedI64ValueParser;
-use halfrow_program::number::any;
+use clap::builder::TypedValueParser;
+use halfrow_program::number::{any, counted};
 
 use super::{Context, Failure};
 use crate::arguments::board::{self, MOCK, Replays};
@@ -43,13 +43,13 @@ pub(super) struct Arguments {
     /// Judge within this many seconds, by the parts of the run that find the most faults per second
     #[arg(long, value_name = "SECONDS", value_parser = within, conflicts_with_all = ["record", "list"])]
     within: Option<f64>,
-    /// Stop at the first frame that differs
+    /// Stop at the first wrong frame
     #[arg(long)]
     fail_fast: bool,
     /// Only list what would be streamed, and what each part would cost on the link
     #[arg(long)]
     list: bool,
-    /// Keep every byte of the run with its time, for replay:FILE
+    /// Record the run to FILE, to be judged again with --board replay:FILE
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     #[command(flatten)]
@@ -63,9 +63,9 @@ fn within(text: &str) -> Result<f64, String> {
     seconds.ok_or_else(|| call::WITHIN_TAKES.to_owned())
 }
 
-fn repeats() -> RangedI64ValueParser<u32> {
+fn repeats() -> impl TypedValueParser<Value = u32> {
     let (least, most) = call::REPEATS.into_inner();
-    clap::value_parser!(u32).range(i64::from(least)..=i64::from(most))
+    counted(u64::from(least), Some(u64::from(most)))
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {

@@ -37,7 +37,7 @@ const BUSY: Duration = Duration::from_secs(1);
 /// A board that cannot be served any more.
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
-    /// The door cannot be made.
+    /// The place where the board is to be served cannot be opened.
     #[error("{what} cannot be made; choose another one")]
     Door {
         /// Which door.
@@ -46,13 +46,13 @@ pub enum ServeError {
         #[source]
         source: std::io::Error,
     },
-    /// The address is none.
+    /// The address to serve the board at is not a port, or an address and a port.
     #[error("`{0}` is no TCP port to listen on; give a PORT of this computer, 0 to 65535, or ADDRESS:PORT")]
     Address(String),
-    /// Its name is taken.
+    /// The link to the served board cannot be made, because something of that name exists.
     #[error("{0} is there already; remove it, or choose another name with --link")]
     Exists(std::path::PathBuf),
-    /// The board is gone.
+    /// The board that was being served is gone.
     #[error("the board that was served is gone; check its cable and power, then serve it again")]
     Board(#[source] LinkError),
 }

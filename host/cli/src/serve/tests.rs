@@ -91,7 +91,7 @@ fn second_host_is_told(ago: Duration) -> Option<RefusalCode> {
 #[test]
 fn a_board_whose_link_is_paced_is_paced_once() {
     let hosted = Hosted::open(&"mock,pace=real,speed=1000".parse().unwrap()).unwrap();
-    assert_eq!(hosted.link.name(), "the mock board's wire (1000 bytes/s, virtual clock)");
+    assert_eq!(hosted.link.name(), "the mock board's simulated link (1000 bytes/s, simulated time)");
 }
 
 #[test]

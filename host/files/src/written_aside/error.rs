@@ -6,19 +6,19 @@ use std::path::PathBuf;
 /// A file that could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteAsideError {
-    /// The file is there and may not be replaced.
+    /// The file exists already, and may not be replaced unless that is allowed.
     #[error("{} exists; allow it to be overwritten, or name another file", path.display())]
     Exists {
         /// The file.
         path: PathBuf,
     },
-    /// What is there is a folder, a device or the like, which a file must not replace.
+    /// In the file's place is a folder, a device or the like, which is never replaced.
     #[error("{} is no regular file; name a file, not a folder or a device", path.display())]
     NotAFile {
         /// What is there.
         path: PathBuf,
     },
-    /// What is there is a symbolic link.
+    /// In the file's place is a symbolic link, and links are not written through.
     #[error("{} is a link to {}, and links are not written through; name the file itself", path.display(), to.display())]
     Link {
         /// The link.
@@ -26,13 +26,13 @@ pub enum WriteAsideError {
         /// Where it leads.
         to: PathBuf,
     },
-    /// Another run is making a file or folder of this name.
+    /// Another run is writing a file or folder of this name.
     #[error("another run is writing {}; wait until it is done, or choose another name", path.display())]
     Claimed {
         /// The name.
         path: PathBuf,
     },
-    /// The system did not take the file.
+    /// The system refused to write the file.
     #[error("cannot write {}; check that its folder exists, is writable and has space", path.display())]
     Io {
         /// The file.
@@ -42,7 +42,7 @@ pub enum WriteAsideError {
     },
 }
 
-/// A stream whose file could not be put in its place.
+/// The file was written, but could not be put in its place.
 #[derive(Debug, thiserror::Error)]
 #[error("{source}{}", match kept {
     Some(kept) => format!(" (what there is of it is kept in {})", kept.display()),

@@ -54,7 +54,12 @@ fn an_existing_file_is_replaced_only_when_told_to() {
 fn a_name_without_a_known_format_is_refused() {
     for name in ["a", "a.jpg", ".pgm"] {
         let error = write(name.as_ref(), &frame(), true).unwrap_err().to_string();
-        assert_eq!(error, format!("{name} names no format; end it in .pgm, .png, .tif, .tiff, .dng or .raw"));
+        assert_eq!(
+            error,
+            format!(
+                "the name {name} does not tell the format; end it in .pgm, .png, .tif, .tiff, .dng or .raw"
+            )
+        );
     }
 }
 

@@ -16,7 +16,7 @@ use crate::words::{count, span};
 /// Why a board could not be driven.
 #[derive(Debug, thiserror::Error)]
 pub enum BoardError {
-    /// The link broke.
+    /// The link to the board broke during the run.
     #[error("the link broke while {doing}")]
     Link {
         /// What was under way.
@@ -28,7 +28,7 @@ pub enum BoardError {
     /// A server has turned the host away in words, so that no link came about.
     #[error(transparent)]
     TurnedAway(Box<LinkError>),
-    /// Nobody answered.
+    /// The board did not answer a request, although it was sent several times.
     #[error(
         "no answer to {kind} in {attempts} tries ({:.1} s){}",
         waited.as_secs_f64(),
@@ -44,12 +44,12 @@ pub enum BoardError {
         /// What had come by then.
         heard: Heard,
     },
-    /// Somebody answered, but not as a halfrow board.
+    /// A device answered, but not as a halfrow board does.
     #[error(
         "the device that answers is not a halfrow board; check the target and what is loaded into the FPGA"
     )]
     NotABoard,
-    /// What was sent came back as it was.
+    /// The bytes that were sent came back unchanged, and no board answered.
     #[error(
         "the line returns what is sent to it, instead of a board's answer; look for a loopback plug, for TX and RX \
          that touch, and for a port that echoes"
@@ -68,7 +68,7 @@ pub enum BoardError {
         /// What may be, as the end of a sentence.
         legal: String,
     },
-    /// What was sent came back, and more than that.
+    /// The bytes that were sent came back with others added, as a console echoes them.
     #[error(
         "the bytes that are sent come back, with {} more: the device at this port has a console, like a modem or a \
          Linux system, and is not a halfrow board; choose another port",
@@ -78,7 +78,7 @@ pub enum BoardError {
         /// What came beyond what was sent.
         bytes: u64,
     },
-    /// No common version of the wire.
+    /// The board and this program have no version of the wire in common.
     #[error(
         "the board speaks version {board} of the wire and this program version {ours}; load a matching bitstream or \
          install a matching halfrow"
@@ -89,7 +89,7 @@ pub enum BoardError {
         /// This program's.
         ours: u8,
     },
-    /// Another host holds the board.
+    /// Another host is using the board.
     #[error(
         "another host holds the board; wait until it is done (silent for 10 s, of which {seconds:.1} s are left), \
          or take the board over"
@@ -98,7 +98,7 @@ pub enum BoardError {
         /// What is left of the ten seconds.
         seconds: f64,
     },
-    /// The session is gone.
+    /// The board no longer knows the host's session.
     #[error(
         "the board no longer knows this session: it was reset or lost power, or another host took it over; run again"
     )]
@@ -115,7 +115,7 @@ pub enum BoardError {
         /// Its reason.
         refusal: Refusal,
     },
-    /// The board's answer does not parse, although its CRC is right.
+    /// The board's answer cannot be understood, although its CRC is right.
     #[error("the board's answer to {kind} makes no sense; load a bitstream that this halfrow is made for")]
     Malformed {
         /// The request.
@@ -124,13 +124,13 @@ pub enum BoardError {
         #[source]
         source: Malformed,
     },
-    /// The answer has another kind than the request.
+    /// The board answered with a message of another kind than the request calls for.
     #[error("the board answered {kind} with something else; load a bitstream that this halfrow is made for")]
     Unexpected {
         /// The request.
         kind: Kind,
     },
-    /// The board runs another burst than the one that was begun last, over a link that brought requests twice.
+    /// The board is making another burst than the one asked for last, over a link on which requests arrived twice.
     #[error(
         "the board runs another burst than the one asked for last, and {} reached it twice: a late copy may have restarted an \
          earlier burst; check the cable, its connectors and the link, then run again",
@@ -140,7 +140,7 @@ pub enum BoardError {
         /// Requests that came twice.
         again: u64,
     },
-    /// Too many retries.
+    /// More packets had to be sent again than the retry limit allows.
     #[error(
         "the link is too poor to judge a board over: {retries} of {packets} packets had to be sent again, and {limit} \
          are allowed; check cable, connectors and rate, or raise the retry limit, and if `halfrow link` finds the link good, \
@@ -154,7 +154,7 @@ pub enum BoardError {
         /// The limit at that many packets.
         limit: u64,
     },
-    /// A row did not come back.
+    /// A row did not come back from the board.
     #[error(
         "row {row} of frame {frame} did not come back in {attempts} tries; run `halfrow verify` to find out whether \
          the board or the link loses it", row = .place.row, frame = .place.frame
@@ -165,7 +165,7 @@ pub enum BoardError {
         /// Tries.
         attempts: u32,
     },
-    /// A row came back under another name.
+    /// A row came back with the place of a row that was never sent.
     #[error(
         "the board returned row {row} of frame {frame} with a place that was never sent; load a bitstream that this \
          halfrow is made for", row = .place.row, frame = .place.frame
@@ -174,7 +174,7 @@ pub enum BoardError {
         /// The place that the board named.
         place: RowPlace,
     },
-    /// The run's own time limit.
+    /// The run did not end within its time limit.
     #[error("the run did not end within its time limit of {}{}", span(limit.as_secs_f64()), slow_or_silent(*silent))]
     Timeout {
         /// The limit.
@@ -182,7 +182,7 @@ pub enum BoardError {
         /// How long no packet had come by then.
         silent: Duration,
     },
-    /// Somebody ended the run.
+    /// Somebody stopped the run, and the board was not judged.
     #[error("{0}, and the board is not judged; run again")]
     Stopped(StoppedBy),
 }

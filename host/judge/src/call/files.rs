@@ -14,7 +14,7 @@ use halfrow_files::written_aside::{self, Place, WriteAsideError, folder_of};
 /// A file or folder that a call must not write, or cannot.
 #[derive(Debug, Error)]
 pub enum FilesError {
-    /// An input that would be overwritten.
+    /// The call would write over a file that it reads.
     #[error(
         "{} is read by this call, and {option} would write there; an input is never overwritten, so name another place \
          with {option}", path.display()
@@ -25,7 +25,7 @@ pub enum FilesError {
         /// The option that names the output.
         option: &'static str,
     },
-    /// Two outputs in one place.
+    /// The call would write two outputs to the same file.
     #[error("{first} and {second} would both be written to {}; give them different names", path.display())]
     OutputsShare {
         /// The option that names the one.
@@ -35,7 +35,7 @@ pub enum FilesError {
         /// The place.
         path: PathBuf,
     },
-    /// A file of a folder that may not be replaced.
+    /// A file in the output folder exists already, and may not be replaced unless that is allowed.
     #[error("{} exists; allow it to be overwritten, or name another folder with {option}", path.display())]
     Exists {
         /// The file.
@@ -43,7 +43,7 @@ pub enum FilesError {
         /// The option that names the folder.
         option: &'static str,
     },
-    /// What stands in the place of a file of a folder.
+    /// In the place of a file in the output folder is a folder, a device or a link, which is never replaced.
     #[error("{} is no regular file, and so is not replaced; name another folder with {option}", path.display())]
     NotAFile {
         /// What is there.
@@ -51,7 +51,7 @@ pub enum FilesError {
         /// The option that names the folder.
         option: &'static str,
     },
-    /// A folder that takes no files.
+    /// The output folder exists, but no file can be written into it.
     #[error("cannot write into the folder {}; name another with {option}", path.display())]
     FolderClosed {
         /// The folder.
@@ -61,7 +61,7 @@ pub enum FilesError {
         /// The system's reason.
         source: io::Error,
     },
-    /// A file's folder that is missing or takes no files.
+    /// The folder that a file is to be written into is missing, or no file can be written into it.
     #[error(
         "nothing can be written into the folder {}; check that it exists and is writable, or name another place with \
          {option}", path.display()

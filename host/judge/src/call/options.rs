@@ -20,7 +20,7 @@ macro_rules! longest {
 }
 longest!(1_000_000);
 
-/// An option beside another thing that decides in its place.
+/// The option would have no effect beside another one that is given.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{option} {reason}")]
 pub struct VoidOption {
@@ -30,7 +30,7 @@ pub struct VoidOption {
     pub reason: &'static str,
 }
 
-/// A number of seconds that is none.
+/// The option's value is not a number of seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("{option} takes a number of seconds; give {}", if *.is_limit { "more than 0" } else { "0 or more" })]
 pub struct NoTime {

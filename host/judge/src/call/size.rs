@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use crate::frames::{PictureSize, ReadOptions};
 
-/// A frame of another size than the tables.
+/// The frame has another size than the tables are for.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{} is {width} x {height}, and the tables are for {columns} x {rows}; {remedy}", path.display())]
 pub struct FrameOfOtherSize {

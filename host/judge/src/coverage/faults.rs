@@ -22,7 +22,7 @@ static ALL: LazyLock<Result<Faults, FaultsError>> = LazyLock::new(|| Faults::mea
 /// A table of faults that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FaultsError {
-    /// It is not written as it must be.
+    /// The table of faults does not have the form that it must have.
     #[error(
         "the table of faults cannot be read, since {what}; make it again with `scripts/hardware coverage`"
     )]
@@ -30,7 +30,7 @@ pub enum FaultsError {
         /// What is wrong with it.
         what: String,
     },
-    /// A fault in it cannot be.
+    /// The table of faults has an entry that cannot be true.
     #[error(
         "fault {fault} of the table of faults {what}; make the table again with `scripts/hardware coverage`"
     )]

@@ -23,12 +23,12 @@ pub enum NamedKernel {
     Sharp7,
 }
 
-/// A name of no kernel.
+/// No kernel has this name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no named kernel; use {known}", known = names(" or "))]
 pub struct UnknownKernel(String);
 
-/// A named kernel that this program was built with and cannot make.
+/// A kernel that is built into this program is damaged.
 #[derive(Debug, thiserror::Error)]
 #[error("the kernel {name} is damaged in this program; build it again from a sound copy, or report it")]
 pub struct DamagedKernel {

@@ -8,7 +8,7 @@ use halfrow_model::{CameraError, GeometryError, LensError, MAX_RADIUS, MIN_RADIU
 /// A file that holds no lens that can be used. The source says where and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum LensFileError {
-    /// The system did not hand the file over, or it is no text.
+    /// The lens file could not be read, or is not text.
     #[error(
         "cannot read the lens file {}; check that it is there, that it is text and that you may read it, \
          or name the lens as equidistant:RADIUS",
@@ -20,7 +20,7 @@ pub enum LensFileError {
         /// The system's reason.
         source: io::Error,
     },
-    /// The file's content is wrong.
+    /// The content of the lens file is wrong; the cause that follows says where.
     #[error("the lens file {} cannot be used", path.display())]
     Content {
         /// The file.
@@ -33,13 +33,13 @@ pub enum LensFileError {
 /// Text that describes no lens that can be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LensContentError {
-    /// There is nothing in it.
+    /// The lens file is empty.
     #[error("it is empty; calibrate the lens, or copy the file again")]
     Empty,
-    /// OpenCV's third format.
+    /// The lens file is XML, the one format of OpenCV's that this program does not read.
     #[error("it is XML; write it with cv::FileStorage as .yml or .json")]
     Xml,
-    /// It is neither YAML nor JSON.
+    /// The lens file is neither YAML nor JSON.
     #[error("line {line}, column {column}: {reason}; mend it there, or copy the file again")]
     Syntax {
         /// The line, from 1.
@@ -49,13 +49,13 @@ pub enum LensContentError {
         /// What the reader found.
         reason: String,
     },
-    /// It is YAML or JSON, but not one group of keys.
+    /// The lens file is YAML or JSON, but not one group of keys and values.
     #[error(
         "it holds no keys; give OpenCV's FileStorage, ROS's camera_info, Kalibr's camchain or OCamCalib's \
          calib_results.txt"
     )]
     NoKeys,
-    /// A key that is not there.
+    /// The lens file lacks a key.
     #[error("it has no {what}: none of the keys {keys}; add one")]
     Missing {
         /// What is missing.
@@ -63,7 +63,7 @@ pub enum LensContentError {
         /// The keys that it goes by.
         keys: String,
     },
-    /// Two keys that differ by case or punctuation alone.
+    /// The lens file has two keys that differ only by case or punctuation.
     #[error("`{second}` says again what `{first}` says; leave one of them out")]
     Twice {
         /// The key that is there first.
@@ -71,7 +71,7 @@ pub enum LensContentError {
         /// The other one.
         second: String,
     },
-    /// A value of the wrong kind.
+    /// A value in the lens file is of the wrong kind.
     #[error("`{key}` is {found}, not {wanted}; correct it, or calibrate again")]
     Kind {
         /// The key.
@@ -81,10 +81,10 @@ pub enum LensContentError {
         /// The kind that it should be.
         wanted: &'static str,
     },
-    /// Two cameras or more.
+    /// The lens file describes several cameras.
     #[error("it holds several cameras, {0}; copy the keys of one into a file of its own")]
     Cameras(String),
-    /// A camera model that is not OpenCV's fisheye.
+    /// The lens file's camera model is not OpenCV's fisheye model.
     #[error(
         "its model is {name}, and a fisheye lens needs `equidistant`, OpenCV's fisheye model; calibrate with \
          cv::fisheye::calibrate, with Kalibr's pinhole-equi or with OCamCalib"
@@ -93,7 +93,7 @@ pub enum LensContentError {
         /// The model's name.
         name: String,
     },
-    /// Not four coefficients.
+    /// The lens file does not have four distortion coefficients.
     #[error(
         "it has {found} distortion coefficients{name}, and OpenCV's fisheye model has four, k1 to k4; calibrate with \
          cv::fisheye::calibrate"
@@ -104,12 +104,12 @@ pub enum LensContentError {
         /// The model that has this many, in parentheses.
         name: &'static str,
     },
-    /// A matrix that is none of a camera.
+    /// The matrix in the lens file is not a camera matrix.
     #[error(
         "its camera matrix is not [fx, skew, cx; 0, fy, cy; 0, 0, 1]; take the matrix that the calibration returned"
     )]
     Matrix,
-    /// A lens that images nothing beside the axis, or nothing above it.
+    /// A focal length of the lens is zero, so that it images nothing off its axis.
     #[error("its focal lengths fx and fy are {} and {} pixels, and neither can be 0; calibrate the lens again", Short(*.fx), Short(*.fy))]
     FocalLength {
         /// Pixels for a unit to the right.
@@ -117,7 +117,7 @@ pub enum LensContentError {
         /// Pixels for a unit down.
         fy: f64,
     },
-    /// An image radius that no lens has.
+    /// The radius of the lens's image is outside the range of real lenses.
     #[error(
         "the radius of its image is {} pixels, outside {min} to {max:e}; check the focal length and the coefficients, or \
          calibrate the lens again",
@@ -126,10 +126,10 @@ pub enum LensContentError {
         max = MAX_RADIUS
     )]
     Radius(f64),
-    /// A size that is none of a picture.
+    /// The image size in the lens file is not the size of a picture.
     #[error("its image size is not two whole numbers from 1 to {max}; give columns and rows", max = super::MAX_SIDE)]
     Size,
-    /// An axis outside the pictures.
+    /// The axis of the lens is outside its pictures.
     #[error(
         "the axis is at column {column}, row {row}, outside its pictures of {columns} x {rows}; check the order, which \
          is row before column in OCamCalib's file and column before row elsewhere"
@@ -147,7 +147,7 @@ pub enum LensContentError {
     /// Frames of another shape than the calibration's.
     #[error(transparent)]
     Shape(#[from] WrongShape),
-    /// Lines of OCamCalib's file that are not there, or too many.
+    /// OCamCalib's file has too few or too many lines of numbers.
     #[error(
         "it has {found} lines of numbers instead of 5 (direct polynomial, inverse polynomial, centre, affine parameters, \
          image size); export it again"
@@ -156,7 +156,7 @@ pub enum LensContentError {
         /// Lines of numbers there.
         found: usize,
     },
-    /// A line of OCamCalib's file with other numbers.
+    /// A line of OCamCalib's file has the wrong number of numbers.
     #[error("line {line}: {found} numbers instead of {wanted} for {what}; export the file again")]
     Numbers {
         /// The line, from 1.
@@ -168,7 +168,7 @@ pub enum LensContentError {
         /// What the line holds.
         what: &'static str,
     },
-    /// A polynomial of OCamCalib's file that does not begin with a count.
+    /// A polynomial in OCamCalib's file does not begin with the number of its coefficients.
     #[error(
         "line {line}: {what} begins with {}, in place of the number of coefficients that follow, from 1 to {most}; \
          export the file again",
@@ -183,7 +183,7 @@ pub enum LensContentError {
         /// What the line holds.
         what: &'static str,
     },
-    /// A word of OCamCalib's file that is no finite number.
+    /// A word in OCamCalib's file is not a finite number.
     #[error("line {line}: {found:?} is no finite number; export the file again")]
     Number {
         /// The line, from 1.
@@ -191,13 +191,13 @@ pub enum LensContentError {
         /// The word, shortened.
         found: String,
     },
-    /// A polynomial that begins with the wrong sign.
+    /// The direct polynomial in OCamCalib's file begins with the wrong sign.
     #[error(
         "the direct polynomial begins with {0}, and OCamCalib's begin below zero; if z counts forwards in your \
          program, change the signs of all of its coefficients"
     )]
     Sign(f64),
-    /// Two polynomials that disagree.
+    /// The direct and the inverse polynomial in OCamCalib's file do not belong together.
     #[error(
         "the inverse polynomial is {distance:.1} pixels off the direct one at {degrees} degrees; they are of two \
          calibrations or in another order, so export the file again"
@@ -217,7 +217,7 @@ pub enum LensContentError {
     /// Its pictures have a size that no board takes.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
-    /// It would take a row from beyond the frame.
+    /// With this lens, a row would have to come from outside the frame.
     #[error("row {row} would not lie in the frame; calibrate the lens again")]
     RowOutside {
         /// The first such row.
@@ -250,7 +250,7 @@ impl From<CameraError> for LensContentError {
     }
 }
 
-/// Frames of another shape than the pictures that the lens was calibrated with.
+/// The lens was calibrated with pictures of another shape than the frames.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "it was calibrated with pictures of {columns} x {rows}, and frames of {width} x {height} have another shape; calibrate \

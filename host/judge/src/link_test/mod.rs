@@ -25,7 +25,7 @@ pub enum LinkTestError {
     /// The board could not be driven.
     #[error(transparent)]
     Board(#[from] BoardError),
-    /// What the board says that it can do leaves no frame to stream.
+    /// The board's capabilities leave no frame that could be streamed to it.
     #[error("the board takes no frame that could be streamed; check its capabilities with `halfrow info`")]
     NoFrame(#[source] Box<dyn std::error::Error + Send + Sync>),
 }

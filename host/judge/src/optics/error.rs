@@ -11,7 +11,7 @@ use crate::tables::TableFileError;
 /// A lens, tables or a kernel that cannot be had.
 #[derive(Debug, thiserror::Error)]
 pub enum OpticsError {
-    /// There is neither a kernel of this name nor a file.
+    /// There is neither a kernel nor a file of this name.
     #[error("there is no file {name}, and {unknown}, or a kernel file")]
     Kernel {
         /// The name.
@@ -28,7 +28,7 @@ pub enum OpticsError {
     /// A lens file cannot be used.
     #[error(transparent)]
     LensFile(#[from] LensFileError),
-    /// The lens file was made with frames of another shape.
+    /// The lens file was made with pictures of another shape than the frames.
     #[error("the lens file {} does not fit", path.display())]
     Shape {
         /// The file.
@@ -37,7 +37,7 @@ pub enum OpticsError {
         #[source]
         source: LensContentError,
     },
-    /// Frames of the lens file's size, or behind its lens, cannot be.
+    /// No frame can have the lens file's size, or be behind its lens.
     #[error("the lens file {} cannot be used for these frames", path.display())]
     Unfit {
         /// The file.
@@ -61,7 +61,7 @@ pub enum OpticsError {
     /// No grid has so few entries.
     #[error(transparent)]
     Room(#[from] GridRoomError),
-    /// The image circle misses the frame's rows.
+    /// The image circle of the lens lies outside the frame's rows.
     #[error(
         "{}, so nothing would be corrected; check the lens, its centre and the size of the frames",
         circle(*.outside, *.rows, *.radius, *.centre)

@@ -19,19 +19,19 @@ const JSON: &str = "report.json";
 /// A report that could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    /// The path ends in no name.
+    /// The report's path does not end in the name of a folder.
     #[error("`{}` names no folder of its own; give the report a new one, as in `reports/today`", path.display())]
     Name {
         /// The path.
         path: PathBuf,
     },
-    /// Something is there and may not be replaced.
+    /// The report's folder exists already, and may not be replaced unless that is allowed.
     #[error("{} exists; allow it to be overwritten, or name another folder", path.display())]
     Exists {
         /// The path.
         path: PathBuf,
     },
-    /// What is there is a symbolic link.
+    /// In the report's place is a symbolic link, and links are not written through.
     #[error("{} is a link to {}, and links are not written through; name the folder itself", path.display(), to.display())]
     Link {
         /// The link.
@@ -39,29 +39,29 @@ pub enum ReportError {
         /// Where it leads.
         to: PathBuf,
     },
-    /// Another run is writing it.
+    /// Another run is writing a report of this name.
     #[error("another run is writing {}; wait until it is done, or name another folder", path.display())]
     Claimed {
         /// The path.
         path: PathBuf,
     },
-    /// Something is there that halfrow did not write.
-    #[error("{} is no earlier report and is left alone: {why}; name another folder", path.display())]
+    /// In the report's place is something that halfrow did not write, and that is left alone.
+    #[error("{} is not an earlier report, and is left alone: {why}; give the report another name", path.display())]
     NotAReport {
         /// The path.
         path: PathBuf,
         /// How it can be told.
         why: String,
     },
-    /// The folder that is there belongs to nobody who may write into it.
+    /// The report's folder exists and is write-protected.
     #[error("{} is write-protected and is left alone; let its owner write into it, or name another folder", path.display())]
     Protected {
         /// The path.
         path: PathBuf,
     },
-    /// The system will not let the folder that is there be replaced.
+    /// The report's folder exists and cannot be replaced, for example because something is mounted there.
     #[error(
-        "{0} can be replaced by no other folder, as where something is mounted; name a new folder inside it, such as \
+        "{0} cannot be replaced, for example because something is mounted there; name a new folder inside it, such as \
          {0}/report", path.display()
     )]
     Immovable {
@@ -70,7 +70,7 @@ pub enum ReportError {
         /// The system's reason.
         source: io::Error,
     },
-    /// The folder cannot be made where it should be.
+    /// The report's folder cannot be made there.
     #[error("cannot make the folder {}; check that the folder above it exists and is writable", path.display())]
     Prepare {
         /// The path.
@@ -78,7 +78,7 @@ pub enum ReportError {
         /// The system's reason.
         source: io::Error,
     },
-    /// A file of the report was not taken.
+    /// The system refused to write a file of the report.
     #[error("cannot write {name} of the report {}; check that its folder exists, is writable and has space", path.display())]
     Write {
         /// The report's path.
@@ -88,7 +88,7 @@ pub enum ReportError {
         /// The system's reason.
         source: io::Error,
     },
-    /// The finished folder was not taken in its place.
+    /// The report was written, but could not be put in its place.
     #[error("cannot put the report in its place, {}; check that nothing else uses that folder", path.display())]
     Place {
         /// The path.
@@ -96,13 +96,13 @@ pub enum ReportError {
         /// The system's reason.
         source: io::Error,
     },
-    /// The JSON encoder gave up.
+    /// The report could not be encoded as JSON, which is a fault of this program.
     #[error("the report cannot be encoded as JSON; this is a fault of halfrow, so report it")]
     Json(#[from] serde_json::Error),
-    /// The XML writer gave up.
+    /// The report could not be encoded as JUnit XML, which is a fault of this program.
     #[error("the report cannot be encoded as JUnit XML; this is a fault of halfrow, so report it")]
     Junit(#[from] quick_junit::SerializeError),
-    /// The PNG encoder gave up.
+    /// The report's pictures could not be encoded, which is a fault of this program.
     #[error("the report's pictures cannot be encoded; this is a fault of halfrow, so report it")]
     Pictures(#[from] png::EncodingError),
 }
@@ -218,7 +218,7 @@ fn is_empty(path: &Path) -> bool {
 /// removes everything in it, so it may hold nothing else.
 fn foreign(path: &Path) -> Option<String> {
     if !fs::symlink_metadata(path).is_ok_and(|found| found.is_dir()) {
-        return Some("it is no folder".to_owned());
+        return Some("it is not a folder".to_owned());
     }
     let entries = match fs::read_dir(path).and_then(Iterator::collect::<io::Result<Vec<_>>>) {
         Ok(entries) => entries,
@@ -230,7 +230,7 @@ fn foreign(path: &Path) -> Option<String> {
     }
     let is_file = |entry: &&fs::DirEntry| entry.file_type().is_ok_and(|kind| kind.is_file());
     if let Some(other) = entries.iter().find(|entry| !is_file(entry)) {
-        return Some(format!("its `{}` is no file", other.file_name().display()));
+        return Some(format!("its `{}` is not a file", other.file_name().display()));
     }
     (!entries.is_empty() && !is_report(&path.join(JSON))).then(|| format!("it holds no {JSON} of halfrow's"))
 }

@@ -96,7 +96,7 @@ fn unit(report: &Report) -> Markup {
     html! {
         @match &report.board.identity {
             Some(it) => { (board_name(&it.name)) ", serial " strong { (plain(&it.serial)) } ", at " (target) },
-            None => { "a board that never said what it is, at " (target) },
+            None => { "a board that did not identify itself, at " (target) },
         }
     }
 }
@@ -119,7 +119,7 @@ fn next(report: &Report) -> Markup {
                 p.remedy { @if bench.is_some() { strong { "Next: " } } (plain(asked(&remedy, has_maps))) }
             }
             (suspects(&report.suspects, has_maps))
-            p.explain { "More of it: " code { "halfrow explain " (codes.join(" ")) } }
+            p.explain { "More: " code { "halfrow explain " (codes.join(" ")) } }
         }
     }
 }
@@ -148,7 +148,7 @@ fn suspect(suspect: &Suspect, has_maps: bool) -> Markup {
     html! {
         li {
             h3 {
-                (plain(suspect.part())) ", " (plain(&suspect.place()))
+                (plain(&suspect.place()))
                 @if let Some(share) = wording::share(suspect) { span.share { " " (share) } }
             }
             p { (plain(&suspect.evidence())) }

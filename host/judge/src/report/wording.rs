@@ -14,7 +14,7 @@ use crate::result::{
     StreetReport, Suspect,
 };
 use crate::run::DECOY;
-use crate::verdict::Verdict;
+use crate::verdict::{Cause, Verdict};
 use crate::words::{board_name, bytes, count, differ, grouped, percent, plain, span};
 
 pub use coverage::coverage;
@@ -44,6 +44,32 @@ pub const fn kind(kind: BoardKind) -> &'static str {
     }
 }
 
+/// What is said of a board that never told what it is.
+pub const UNIDENTIFIED: &str = "it did not identify itself";
+
+/// The words for what was judged, or for something that never told what it is, which need not be a board.
+#[must_use]
+pub const fn kind_of(board: &BoardReport) -> &'static str {
+    match (board.kind, &board.identity) {
+        (BoardKind::Hardware, None) => "unknown board",
+        (other, _) => kind(other),
+    }
+}
+
+/// The words for why a run ended as it did.
+#[must_use]
+pub const fn cause(cause: Cause) -> &'static str {
+    match cause {
+        Cause::Equal => "all equal",
+        Cause::Different => "the board is wrong",
+        Cause::Station => "the link, this computer or its settings",
+        Cause::Busy => "another host is using the board",
+        Cause::Refused => "the board's identity, datapath or protocol version was refused",
+        Cause::NothingJudged => "nothing was judged",
+        Cause::Stopped(_) => "the run was stopped",
+    }
+}
+
 /// What kind of board a result is for; unless it is hardware, it says that no hardware was tested.
 #[must_use]
 pub fn remark(board: &BoardReport) -> String {
@@ -51,7 +77,7 @@ pub fn remark(board: &BoardReport) -> String {
         (BoardKind::Hardware, Some(identity)) => {
             format!("hardware {}, serial {}", board_name(&identity.name), plain(&identity.serial))
         }
-        (BoardKind::Hardware, None) => "hardware".to_owned(),
+        (BoardKind::Hardware, None) => kind_of(board).to_owned(),
         (other, _) => format!("{}: no hardware was tested", kind(other)),
     }
 }
@@ -147,6 +173,7 @@ pub fn latency(latency: &LatencyReport) -> String {
     let rows = count(latency.rows, "row");
     let allowed = format!("at most {} allowed", latency.limit);
     match latency.wrong_rows {
+        0 if latency.rows == 1 => format!("{} in the one row ({allowed})", measured(latency)),
         0 => format!("{} in all {rows} ({allowed})", measured(latency)),
         wrong => format!("{}; wrong in {} of {rows} ({allowed})", measured(latency), grouped(wrong)),
     }
@@ -197,7 +224,7 @@ pub fn link(link: &LinkReport) -> String {
     match (link.damaged_in.saturating_add(link.damaged_out), link.retries) {
         (0, 0) => parts.push("none damaged".to_owned()),
         (damaged, retries) => parts.push(format!(
-            "{} damaged, {} sent again (too poor beyond {})",
+            "{} damaged, {} sent again (limit {})",
             grouped(damaged),
             grouped(retries),
             grouped(link.retry_limit)
@@ -207,7 +234,7 @@ pub fn link(link: &LinkReport) -> String {
         parts.push(format!("{} answered late", count(link.late, "request")));
     }
     if link.strays > 0 {
-        parts.push(format!("{} that nobody waited for", count(link.strays, "packet")));
+        parts.push(format!("{} (duplicates or late answers)", count(link.strays, "unexpected packet")));
     }
     if link.line_errors.sum() > 0 {
         parts.push(format!("errors on the line: {}", link.line_errors));
@@ -301,7 +328,7 @@ fn is_swallowed(finding: &Finding, frame: &FrameReport) -> bool {
 #[must_use]
 pub fn differences(report: &Report, frame: &FrameReport) -> String {
     match (frame.comparison.differences, frame_outcome(report, frame)) {
-        (0, Outcome::Error | Outcome::Failed) => "not whole".to_owned(),
+        (0, Outcome::Error | Outcome::Failed) => "incomplete".to_owned(),
         (some, _) => grouped(some),
     }
 }

@@ -11,27 +11,27 @@ use super::Finding;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CheckName {
-    /// This computer and this build against golden values.
+    /// Checks that this computer and this program calculate correctly, before any board is judged.
     Judge,
-    /// What the board says it is.
+    /// Reads from the board what it is, and checks that it can be judged.
     Identity,
-    /// Bytes there and back.
+    /// Sends bytes to the board and checks that they come back unchanged.
     Link,
-    /// Geometry and tables on their way to the board.
+    /// Sends the size of the frames and the tables to the board.
     Upload,
-    /// The tables through the datapath's own ports.
+    /// Reads the tables back through the datapath's own ports and compares them.
     ReadBack,
-    /// Every sample of every frame.
+    /// Compares every sample of every frame with the reference.
     Frames,
-    /// The latency of every row.
+    /// Checks the latency of every row.
     Latency,
-    /// The tables once more when all frames are through.
+    /// Checks the tables once more after the last frame.
     TablesAfter,
-    /// The board's own counters.
+    /// Compares the board's own counters with what was sent and received.
     Counters,
-    /// Frames that the board makes on its own, at the full pixel clock.
+    /// Compares frames that the board makes on its own at the full pixel clock.
     AtSpeed,
-    /// What the board must refuse, keep and end.
+    /// Tests the rules of the wire protocol: what the board must refuse, keep and end.
     Rules,
 }
 

@@ -13,7 +13,7 @@ pub use parameters::{
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "code", content = "parameters", rename_all = "kebab-case")]
 pub enum Defect {
-    /// One bit of one row's factor.
+    /// One bit of one row's factor is wrong.
     RowFactorBitWrong {
         /// The row.
         row: usize,
@@ -24,7 +24,7 @@ pub enum Defect {
         /// Whether a factor above 1 is read, which no simulation follows to the row's end.
         above_one: bool,
     },
-    /// One row's factor.
+    /// One row's factor is wrong.
     RowFactorWrong {
         /// The row.
         row: usize,
@@ -39,7 +39,7 @@ pub enum Defect {
         /// Whether the other tables are read right.
         only: bool,
     },
-    /// One bit of one entry of a grid.
+    /// One bit of one entry of a grid is wrong.
     GridEntryBitWrong {
         /// The grid's column: 0 for offsets, 1 + s for node s.
         column: usize,
@@ -52,7 +52,7 @@ pub enum Defect {
         /// Whether the grid that is read leads out of the row or the ring, where only part of a row can be foretold.
         illegal: bool,
     },
-    /// One bit of one word of the kernel.
+    /// One bit of one word of the kernel is wrong.
     KernelWordBitWrong {
         /// The node, 0 to 64.
         node: usize,
@@ -63,7 +63,7 @@ pub enum Defect {
         /// What is read.
         reading: Reading,
     },
-    /// One word of the kernel.
+    /// One word of the kernel is wrong.
     KernelWordWrong {
         /// The node, 0 to 64.
         node: usize,
@@ -80,33 +80,33 @@ pub enum Defect {
         /// Whether the other tables are read right.
         only: bool,
     },
-    /// A data line of the line memory.
+    /// A data line of the line memory is stuck at 0 or at 1.
     LineMemoryDataStuck {
         /// The line.
         bit: u32,
         /// Its level.
         value: u8,
     },
-    /// A data line after the datapath.
+    /// A data line after the datapath is stuck at 0 or at 1.
     OutputDataStuck {
         /// The line.
         bit: u32,
         /// Its level.
         value: u8,
     },
-    /// An address line of the line memory, at either level.
+    /// An address line of the line memory is stuck at 0 or at 1.
     LineMemoryAddressStuck {
         /// The line.
         bit: u32,
         /// How addresses must be counted for it.
         counting: Counting,
     },
-    /// The window reads the columns beside those that it should.
+    /// The window reads the columns beside those that it should read.
     TapOffset {
         /// How far to the right.
         columns: i64,
     },
-    /// A tap that does not carry its own sample.
+    /// One tap does not carry its own sample.
     TapDead {
         /// Which.
         tap: String,
@@ -119,57 +119,57 @@ pub enum Defect {
     OutputRoundingMissing {},
     /// The weights between two nodes are not rounded.
     WeightRoundingMissing {},
-    /// Neither is rounded.
+    /// Neither the weights between two nodes nor the weighted sum are rounded.
     RoundingMissing {},
-    /// Outputs wrap instead of being clamped.
+    /// Results out of range wrap around instead of being clamped.
     ClampMissing {
         /// Where.
         end: ClampEnd,
     },
-    /// The optical centre is not what was set.
+    /// The board uses another optical centre than the one that was set.
     CentreIgnored {
         /// What stands in its place.
         instead: Instead,
     },
-    /// One bit of the register that holds the optical centre.
+    /// One bit of the register that holds the optical centre is stuck.
     CentreBitStuck {
         /// The bit of twice the column.
         bit: u32,
         /// Its level.
         value: u8,
     },
-    /// The bits of a sample are not what was set.
+    /// The board uses another sample depth than the one that was set.
     DepthIgnored {
         /// What stands in their place.
         instead: Instead,
     },
-    /// A data line of the row table, as the datapath reads it.
+    /// A data line of the row table is stuck when the datapath reads it.
     RowTableDataStuck {
         /// The line.
         bit: u32,
         /// Its level.
         value: u8,
     },
-    /// An address line of the row table.
+    /// An address line of the row table is stuck.
     RowTableAddressStuck {
         /// The line.
         bit: u32,
         /// Its level.
         value: u8,
     },
-    /// The row table is read at the entry next to the row's own.
+    /// The datapath reads the entry of the row table that is next to the row's own.
     RowTableAddressOff {
         /// How many entries ahead.
         entries: isize,
     },
-    /// An address line of the kernel's memory.
+    /// An address line of the kernel's memory is stuck.
     KernelAddressStuck {
         /// The line.
         bit: u32,
         /// Its level.
         value: u8,
     },
-    /// A data line of the memory of one weight.
+    /// A data line of the memory that holds one weight of the kernel is stuck.
     KernelDataStuck {
         /// The tap that it weighs.
         weight: String,
@@ -185,28 +185,28 @@ pub enum Defect {
         /// The frames.
         frames: Vec<StaleFrames>,
     },
-    /// Rows hold the samples of others.
+    /// Some rows hold the samples of other rows.
     RowsExchanged {
         /// Which others.
         source: RowSource,
         /// Whether some hold still others.
         mostly: bool,
     },
-    /// Every row is moved along itself.
+    /// Every row is shifted to the left or right.
     RowShifted {
         /// How far to the right.
         columns: isize,
     },
     /// The two outputs of every pair of columns are exchanged.
     ColumnPairsExchanged {},
-    /// Whole rows stay black.
+    /// The samples of whole rows were lost inside the board, so that these rows are black.
     RowsLost {
         /// How many.
         rows: usize,
         /// The first.
         first: usize,
     },
-    /// Rows are changed before they enter the core.
+    /// Samples are changed on their way from the packet into the core.
     RowsChangedOnEntry {
         /// How many.
         rows: usize,
@@ -222,7 +222,8 @@ pub enum Defect {
         /// So many rows.
         rows: usize,
     },
-    /// What is right row by row, the same frame with the same tables, is wrong at the full pixel clock.
+    /// Frames are right when they are sent row by row, and the same frames with the same tables are wrong at the full pixel
+    /// clock.
     OnlyAtSpeed {
         /// A row in which it was seen.
         row: Option<usize>,
@@ -231,7 +232,7 @@ pub enum Defect {
         /// Bits of them that do.
         bits: Vec<u32>,
     },
-    /// Frames at the full pixel clock are wrong, and the same was not streamed row by row, so that it may be wrong at any clock.
+    /// Frames at the full pixel clock are wrong, and no such frame was sent row by row, so the fault may show at any clock.
     SeenAtSpeed {
         /// A row in which it was seen.
         row: Option<usize>,
@@ -240,7 +241,7 @@ pub enum Defect {
         /// Bits of them that do.
         bits: Vec<u32>,
     },
-    /// No known defect explains most of the differences; this says where they lie.
+    /// No known defect explains most of the differences; the suspect says where they lie.
     NoneKnown {
         /// Their rows.
         rows: Option<Extent>,
@@ -304,7 +305,7 @@ pub enum Defect {
         /// Entries that are wrong in all.
         wrong: usize,
     },
-    /// A data line of a table, as it reads back.
+    /// A data line of a table is stuck, as seen when the table is read back.
     TableDataStuck {
         /// The table.
         table: Memory,
@@ -315,7 +316,7 @@ pub enum Defect {
         /// Its level.
         value: u8,
     },
-    /// An address line of a table, as it reads back.
+    /// An address line of a table is stuck, as seen when the table is read back.
     TableAddressStuck {
         /// The table.
         table: Memory,
@@ -324,7 +325,7 @@ pub enum Defect {
         /// Its level.
         value: u8,
     },
-    /// An address line of a table, at 0 for writing and right for reading.
+    /// An address line of a table is stuck at 0 for writing, but right for reading.
     TableWriteAddressStuck {
         /// The table.
         table: Memory,
@@ -338,7 +339,7 @@ pub enum Defect {
         /// How many entries ahead.
         entries: isize,
     },
-    /// A table reads back as nothing but one level.
+    /// A table reads back as all zeros or all ones.
     TableLevelStuck {
         /// The table.
         table: Memory,

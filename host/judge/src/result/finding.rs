@@ -11,14 +11,14 @@ use super::{
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "code", content = "parameters", rename_all = "kebab-case")]
 pub enum Finding {
-    /// This computer finds the golden samples.
+    /// This computer reproduces the reference samples that this program was built with.
     GoldenSamplesFound {
         /// How many.
         samples: usize,
         /// The path of the model that found them.
         path: String,
     },
-    /// The board is one that can be judged.
+    /// The board told what it is, and it can be judged.
     BoardIdentified {
         /// Its name.
         name: String,
@@ -27,14 +27,14 @@ pub enum Finding {
         /// The one of its datapaths by which it is judged.
         datapath: u16,
     },
-    /// What was echoed came back as it went.
+    /// All bytes that were sent as echoes came back unchanged.
     EchoesReturned {
         /// Bytes in all.
         bytes: usize,
         /// In so many echoes.
         echoes: usize,
     },
-    /// Tables were uploaded.
+    /// The tables were sent to the board, which took them.
     TablesUploaded {
         /// Row factors, or entries of a grid. Earlier reports say `rows`.
         #[serde(alias = "rows")]
@@ -44,37 +44,38 @@ pub enum Finding {
         /// As this generation.
         generation: u8,
     },
-    /// The datapath's ports read what was uploaded.
+    /// Every read port of the tables returns what was uploaded.
     TablesReadBack {
         /// How many ports.
         ports: usize,
     },
-    /// All samples are the reference's.
+    /// All samples that the board returned are equal to the reference.
     FramesEqual {
         /// Frames.
         frames: usize,
         /// Samples.
         samples: usize,
     },
-    /// Every row takes the claimed latency.
+    /// Every row takes exactly the latency that the board claims.
     LatencyRight {
         /// It, in pixel clocks.
         clocks: u32,
     },
-    /// The tables are still what was uploaded.
+    /// After the last frame, the tables are still what was uploaded.
     TablesUnchanged {},
-    /// No frame came to use the judged tables.
+    /// The run ended before a frame used the tables to be judged.
     TablesUnused {},
-    /// The board counts what went through it.
+    /// The board's counters agree with what was sent and received.
     CountersRight {
         /// Rows each way.
         rows: usize,
         /// Damaged packets that the board counts although nothing had to be sent again.
         damaged_unseen: u32,
     },
-    /// Frames that the board made on its own are the reference's, at the full pixel clock.
+    /// All frames that the board made on its own at the full pixel clock are equal to the reference.
     EqualAtSpeed(EqualAtSpeed),
-    /// They are the reference's, but the enable was off in some.
+    /// All frames that the board made on its own are equal to the reference, but some had pauses, so they were not at the
+    /// full pixel clock.
     PausedAtSpeed {
         /// Frames.
         frames: u32,
@@ -88,19 +89,19 @@ pub enum Finding {
         /// What was seen of it.
         seen: ClockSeen,
     },
-    /// The board made no frames on its own.
+    /// The board made no frames on its own, so nothing was tested at the full pixel clock.
     NothingAtSpeed {
         /// Why.
         reason: NoBurst,
     },
-    /// The board refuses, keeps and ends what it must.
+    /// The board follows the rules of the wire protocol: it refuses, keeps and ends what it must.
     RulesKept {
         /// Requests that it answered as it must.
         requests: usize,
     },
-    /// Whether it does was left out of the run.
+    /// The run left out the test of the protocol rules.
     RulesLeftOut {},
-    /// The run ended before.
+    /// The run ended before this check.
     NotReached {},
     /// Everything was judged, and all of it is right.
     AllRight {
@@ -115,7 +116,7 @@ pub enum Finding {
         /// How often the board went away and came back.
         reconnections: usize,
     },
-    /// The board says of itself what no board can be.
+    /// The board claims a capability that no board can have.
     CapabilityImpossible {
         /// The capability, by its name in `protocol/WIRE.md`.
         capability: String,
@@ -124,7 +125,7 @@ pub enum Finding {
         /// What is legal, as the end of a sentence.
         legal: String,
     },
-    /// Echoed bytes came back as others, under a CRC of the board's.
+    /// The board returned other bytes than it was sent, with a CRC that it had computed over them itself.
     EchoWrong {},
     /// A table does not read back as it was uploaded.
     TableReadsWrong {
@@ -133,7 +134,7 @@ pub enum Finding {
         /// How well that explains what was read.
         account: Account,
     },
-    /// A table's CRC is wrong although all entries are right.
+    /// The board gives a wrong CRC of a table, although all entries read back right.
     TableCrcWrong {},
     /// The board finds another CRC when it commits tables that read back right.
     CommitCrcWrong {},
@@ -153,7 +154,7 @@ pub enum Finding {
         /// The one that was committed.
         committed: u8,
     },
-    /// Samples are not the reference's.
+    /// Samples that the board returned differ from the reference.
     SamplesDiffer {
         /// How many.
         differences: usize,
@@ -169,7 +170,7 @@ pub enum Finding {
         #[serde(default)]
         others: usize,
     },
-    /// By the board's own CRC, rows were changed before they entered the core.
+    /// The board's own CRC shows that rows were changed before they entered the core.
     RowsEnteredChanged {
         /// How many.
         rows: usize,
@@ -180,7 +181,7 @@ pub enum Finding {
         /// The one bit that is flipped in the first of them, if the CRC tells one.
         flipped: Option<FlippedBit>,
     },
-    /// The board's CRC of the samples that entered is wrong, also for rows in which every output is right.
+    /// The board's CRC of the samples that entered the core is wrong, even for rows that came out right.
     EntryMiscounted {
         /// How many.
         rows: usize,
@@ -189,7 +190,7 @@ pub enum Finding {
         /// Its frame.
         frame: u16,
     },
-    /// Frames that the board made on its own have other signatures than the reference's.
+    /// Frames that the board made on its own at the full pixel clock differ from the reference.
     DiffersAtSpeed {
         /// How many.
         wrong: u32,
@@ -205,7 +206,7 @@ pub enum Finding {
         #[serde(default)]
         others: usize,
     },
-    /// A frame that the board made on its own has the right signature, and something else that it counts is wrong.
+    /// A frame that the board made on its own has the right samples, but the board counted something wrongly.
     MiscountedAtSpeed {
         /// The frame, counted from the first of the burst.
         frame: u32,
@@ -216,14 +217,14 @@ pub enum Finding {
         /// What it should.
         right: u32,
     },
-    /// What was found of frames that the board made on its own with settings that no plan has.
+    /// A frame that the board made on its own was wrong with settings that no streamed frame has.
     InCorner {
         /// The settings.
         corner: Corner,
         /// What was found.
         found: Box<Finding>,
     },
-    /// No frame followed in a burst.
+    /// The board stopped sending frames in the middle of a burst.
     BurstStalled {
         /// The frame that was waited for, counted from the first of the burst.
         frame: u32,
@@ -232,7 +233,7 @@ pub enum Finding {
         /// How long it was waited for, in seconds.
         seconds: f64,
     },
-    /// A burst ended before its last frame.
+    /// The board ended a burst before its last frame.
     BurstEndedEarly {
         /// Frames that came.
         came: u32,
@@ -241,7 +242,7 @@ pub enum Finding {
     },
     /// Rows take another latency than the board claims.
     LatencyWrong(LateRows),
-    /// A counter of the board's is not what it should be.
+    /// One of the board's counters is wrong.
     CounterWrong {
         /// Which.
         counter: Counter,
@@ -253,7 +254,7 @@ pub enum Finding {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         rule: Option<Rule>,
     },
-    /// The board counts pauses for a row that are not the gaps of its seed.
+    /// For one row, the board counts another length of pauses than it was told to make.
     GapsMiscounted {
         /// The row, the first of them.
         row: usize,
@@ -264,7 +265,7 @@ pub enum Finding {
         /// And by the seed.
         expected: u16,
     },
-    /// The board's extremes of latency are not those of its rows.
+    /// The least and greatest latency that the board counts are not those of its rows.
     LatencyMiscounted {
         /// The least that a row names.
         least: u32,
@@ -275,14 +276,14 @@ pub enum Finding {
         /// The most by them.
         counted_most: u32,
     },
-    /// A row came back under a place that was never sent.
+    /// A row came back with the place of a row that was never sent.
     RowMisplaced {
         /// The row that it names.
         row: u16,
         /// The frame.
         frame: u16,
     },
-    /// A row went into the board and never came out, twice.
+    /// Twice, a row went into the board and never came out.
     RowSwallowed {
         /// The row.
         row: u16,
@@ -291,14 +292,14 @@ pub enum Finding {
         /// The row that was lost when the frame was played again.
         again: u16,
     },
-    /// A row came twice, and not the same both times.
+    /// The board sent a row twice, with different samples.
     RowCopyDiffers {
         /// The row.
         row: u16,
         /// Its frame.
         frame: u16,
     },
-    /// A row came that the board was never given.
+    /// The board returned a row that it was never given.
     RowNeverSent {
         /// The row.
         row: u16,
@@ -307,7 +308,7 @@ pub enum Finding {
         /// The row's number in the session.
         sequence: u32,
     },
-    /// A request was not answered as the wire's rules have it.
+    /// The board answered a request otherwise than the rules of the wire protocol demand.
     RuleBroken {
         /// The rule.
         rule: Rule,
@@ -320,46 +321,46 @@ pub enum Finding {
     },
     /// Two different `ROW_OUT` packets have the same number.
     RowNumberedTwice(NumberedRow),
-    /// A row was sent twice, and names the same number of repeats both times.
+    /// The board sent a row again without counting up the number of repeats in it.
     RowRepeatsStand(RepeatedRow),
-    /// A row left the board after a later one.
+    /// A row left the board after a row that should follow it.
     RowOutOfOrder {
         /// The row that came too late.
         row: u16,
         /// Its frame.
         frame: u16,
     },
-    /// A row did not come back, and the frame did when it was played again.
+    /// A row did not come back, but the whole frame did when it was sent again.
     RowLostOnce {
         /// The row.
         row: u16,
         /// Its frame.
         frame: u16,
     },
-    /// A row did not come back, and neither did other packets.
+    /// A row did not come back, and other packets were lost or late as well.
     RowLostAmongOthers {
         /// The row.
         row: u16,
         /// Its frame.
         frame: u16,
     },
-    /// What was wrong may come from the link, and was right in another session.
+    /// Something was wrong, but was right in another session, so the link may have caused it.
     RightInAnotherSession {
         /// What was wrong.
         found: Box<Finding>,
         /// Why it may come from the link.
         doubt: Doubt,
     },
-    /// What is wrong may come from the link, in every session.
+    /// Something was wrong in every session, but the link may have caused it.
     WrongOverDoubtfulLink {
         /// What is wrong.
         found: Box<Finding>,
         /// Why it may come from the link.
         doubt: Doubt,
     },
-    /// What was wrong may come from the link, and the look in another session broke off.
+    /// Something was wrong that the link may have caused, and the second look in another session broke off.
     SecondLookBrokenOff(Box<BrokenOff>),
-    /// No frame came back.
+    /// No frame came back, so nothing was judged.
     NothingJudged {},
     /// The board computes another datapath than this program judges.
     DatapathUnknown {
@@ -368,21 +369,21 @@ pub enum Finding {
         /// The one that is judged.
         known: u16,
     },
-    /// Hardware is required, and this is none.
+    /// The plan or call requires hardware, and this is a simulated board or a recording.
     HardwareRequired {
         /// What it is.
         board: BoardKind,
     },
     /// The board that came back is not the one that went away.
     BoardExchanged {},
-    /// The board went away and did not come back.
+    /// The board went away during the run and did not come back.
     BoardStayedAway {
         /// How it went.
         reason: Box<Problem>,
         /// How long it was waited for, in seconds.
         seconds: f64,
     },
-    /// An error of the station, the link or the call.
+    /// The link, the station or the call failed, and the board was not judged.
     #[serde(untagged)]
     Problem(Box<Problem>),
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::board::{Bursts, Capabilities, Welcome, grids};
-use crate::words::count;
+use crate::words::{board_name, count};
 
 /// What a board says about itself.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -83,8 +83,8 @@ impl BurstsReport {
 
     /// A line for people.
     fn text(&self) -> String {
-        let trap = if self.trap { "a trap" } else { "no trap" };
-        format!("content {}, {}, {trap}", self.content, count(self.records, "record"))
+        let trap = if self.trap { "keeps the first wrong row" } else { "keeps no row" };
+        format!("yes (content {}): {}, {trap}", self.content, count(self.records, "record"))
     }
 }
 
@@ -146,7 +146,7 @@ impl Identity {
             hertz => format!("{:.3} MHz", f64::from(hertz) / 1e6),
         };
         vec![
-            ("name", self.name.clone()),
+            ("name", board_name(&self.name).into_owned()),
             ("serial", self.serial.clone()),
             ("build", self.build.clone()),
             ("wire version", self.protocol.to_string()),
@@ -155,14 +155,14 @@ impl Identity {
             ("frame at most", format!("{} x {}", self.max_width, self.max_height)),
             ("depths", format!("{} bits", depths.join(", "))),
             ("taps", self.taps.to_string()),
-            ("L", count(self.latency, "pixel clock")),
-            ("M", format!("{} samples", self.ring)),
+            ("pipeline delay (L)", count(self.latency, "pixel clock")),
+            ("line memory (M)", format!("{} samples", self.ring)),
             ("least blanking", count(self.least_blanking, "pixel clock")),
             ("table banks", self.table_banks.to_string()),
             ("row banks", format!("{} in, {} out", self.row_banks_in, self.row_banks_out)),
             ("pixel clock", clock),
             ("frames at speed", self.bursts.map_or_else(|| "none".to_owned(), |bursts| bursts.text())),
-            ("rows that enter", if self.entered { "signed" } else { "not signed" }.to_owned()),
+            ("input rows", if self.entered { "CRC reported" } else { "CRC not reported" }.to_owned()),
         ]
     }
 }

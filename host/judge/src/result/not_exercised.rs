@@ -8,91 +8,93 @@ use super::{ClockSeen, Parameters, wording};
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "code", content = "parameters", rename_all = "kebab-case")]
 pub enum NotExercised {
-    /// Bits of samples that were never both 0 and 1 on their way into the board.
+    /// Some bits of the samples that went into the board were never both 0 and 1.
     InputBits {
         /// The bits, from 0.
         bits: Vec<usize>,
     },
-    /// Bits of corrected samples that were never both 0 and 1.
+    /// Some bits of the corrected samples were never both 0 and 1.
     OutputBits {
         /// The bits, from 0.
         bits: Vec<usize>,
     },
-    /// Address lines of the columns of a row that are 0 at every column.
+    /// Some address lines of a row's columns were 0 at every column.
     ColumnAddress {
         /// The lines, from 0.
         lines: Vec<usize>,
     },
-    /// Address lines of the ring of one row: no sample is still needed when the one that differs from it in this line
-    /// alone has been stored.
+    /// Some address lines of the ring of one row were not put to the test: no sample was still needed when the one whose
+    /// address differs from it in this line alone had been stored.
     LineMemoryAddress {
         /// The lines, from 0.
         lines: Vec<usize>,
     },
-    /// Address lines of the row table that no two rows of different factors tell apart.
+    /// Some address lines of the row table were not put to the test: no two rows of different factors differ in this line
+    /// alone.
     RowTableAddress {
         /// The lines, from 0.
         lines: Vec<usize>,
     },
-    /// Bits of row factors that are the same in every row.
+    /// Some bits of the row factors were the same in every row.
     RowFactorBits {
         /// The bits, from 0.
         bits: Vec<usize>,
     },
-    /// Nodes of the kernel that no output is made with.
+    /// Some nodes of the kernel were used for no output.
     KernelNodes {
         /// The nodes, 0 to 64.
         nodes: Vec<usize>,
     },
-    /// Taps of the board that have no weight in any output.
+    /// Some taps of the board had no weight in any output.
     Taps {
         /// Their names, `G0` to `G6`.
         taps: Vec<String>,
     },
-    /// The optical centre was at one column alone.
+    /// The optical centre was at the same column in all frames.
     OneCentre {
         /// C, twice that column.
         centre2: u32,
     },
-    /// Bits of C, twice the column of the optical centre, that were the same in every frame.
+    /// Some bits of C, twice the column of the optical centre, were the same in every frame.
     CentreBits {
         /// The bits, from 0.
         bits: Vec<usize>,
     },
-    /// Frames that follow each other at the full pixel clock.
+    /// No frames followed each other at the full pixel clock.
     FullSpeed {},
-    /// A change of tables between two frames at the full pixel clock.
+    /// The tables never changed between two frames at the full pixel clock.
     TableChangeAtSpeed {},
-    /// The pixel clock that the board names: another was seen, which is given from outside, or was not seen again.
+    /// The pixel clock that the board names was not confirmed: another one was seen, which is given from outside, or the
+    /// clock was not seen again.
     NamedClock {
         /// The one that it names, in hertz.
         clock_hz: u32,
         /// What was seen of it.
         seen: ClockSeen,
     },
-    /// The pixel clock that the board names, which only frames at speed tell, and none were made.
+    /// The pixel clock that the board names was not checked: only frames at speed show it, and none were made.
     UnseenClock {
         /// The one that it names, in hertz.
         clock_hz: u32,
     },
-    /// What the board must refuse, keep and end.
+    /// What the board must refuse, keep and end by the rules of the wire protocol was not tested.
     Rules {},
-    /// Rows that a grid corrects, on a board that takes grids.
+    /// No row was corrected by a grid, on a board that takes grids.
     Grids {},
-    /// Records of bursts beyond those that a burst fills, of a board that keeps more.
+    /// Only as many records of a burst were used as one burst fills; the board keeps more.
     FurtherRecords {
         /// As many are filled.
         filled: u32,
     },
-    /// Counters that are compared over a sound link alone, of a board that counts damaged packets, or others than were sent, where
-    /// the host saw nothing go wrong.
+    /// Counters that are compared only over a sound link were not compared: the board counts damaged packets, or another
+    /// number of packets than were sent, although the host saw nothing go wrong.
     CountersOfPoorLinks {},
-    /// Whether one board did all of it: the one that came back has no serial number, as the one that went away has none.
+    /// Whether the board that came back is the one that went away is not known, because it has no serial number.
     SameBoard {},
-    /// The joints of a physical board's camera connector, and of the pins to the image processor: frames of a run enter and leave
-    /// inside the FPGA.
+    /// The joints of a physical board's camera connector, and of its pins to the image processor, are not tested by any run:
+    /// its frames enter and leave inside the FPGA.
     CameraPins {},
-    /// Depths of the board that no frame had.
+    /// The board takes sample depths that no frame had.
     Depths {
         /// Bits of a sample, each.
         bits: Vec<u32>,

@@ -7,9 +7,9 @@ use crate::report::{ReportError, ReportFolder};
 use crate::result::{Evidence, Problem, Report};
 use crate::verdict::{Cause, Verdict};
 
-/// The code of a recording that was asked for and is not there.
+/// The recording that was asked for could not be written, or not as a whole.
 pub const RECORDING_LOST: &str = "recording-lost";
-/// The code of a report that was asked for and is not there.
+/// The report that was asked for could not be written.
 pub const REPORT_LOST: &str = "report-lost";
 
 /// A run that is over.

@@ -45,7 +45,7 @@ const RADIUS: f64 = 1106.697;
 const FRAME_CRCS: [(Interpolant, u32); 2] =
     [(Interpolant::Hermite, 0x3ecf_6d03), (Interpolant::Keys, 0xd55e_261f)];
 
-/// This computer cannot judge.
+/// This computer does not calculate correctly, and so cannot judge a board.
 #[derive(Debug, thiserror::Error)]
 #[error("this computer cannot judge; rebuild halfrow, and if that does not help, test the computer's memory")]
 pub(crate) struct CannotJudge(#[from] pub GoldenError);
@@ -53,7 +53,7 @@ pub(crate) struct CannotJudge(#[from] pub GoldenError);
 /// A golden value that was missed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum GoldenError {
-    /// What they are compared with cannot be made.
+    /// The frame or row that is compared with the reference values could not be made.
     #[error("the golden {what} cannot be made")]
     Unmade {
         /// What.
@@ -62,7 +62,7 @@ pub(crate) enum GoldenError {
     /// The reference refuses the golden frame.
     #[error(transparent)]
     Correct(#[from] CorrectError),
-    /// A whole frame comes out otherwise.
+    /// This computer computes a whole frame otherwise than it should.
     #[error(
         "the golden frame's CRC-32 with {interpolant} is {expected:08x}, and this computer finds {found:08x}"
     )]
@@ -74,7 +74,7 @@ pub(crate) enum GoldenError {
         /// This computer's.
         found: u32,
     },
-    /// A row comes out otherwise.
+    /// This computer computes a row otherwise than it should.
     #[error(
         "the golden {} row has {expected} at column {column}, and this computer finds {found}", interpolant.name()
     )]
@@ -88,7 +88,7 @@ pub(crate) enum GoldenError {
         /// This computer's.
         found: u16,
     },
-    /// A wrong sample is taken for right.
+    /// This program takes a wrong sample for a right one.
     #[error("a single wrong bit in the golden {} row went unseen", interpolant.name())]
     Unseen {
         /// The kernel.

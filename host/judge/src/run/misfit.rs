@@ -11,10 +11,10 @@ use crate::board::{Capabilities, grids};
 /// that there is nothing to judge.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Misfit {
-    /// The board's datapath is none that tables can be made for.
+    /// The board has a datapath that this program cannot make tables for.
     #[error("no tables can be made for this board's datapath")]
     Datapath(#[from] UnknownDatapath),
-    /// The frames are too large.
+    /// The frames are larger than the board takes.
     #[error(
         "frames of {width} x {height} do not fit the board, which takes {most_width} x {most_height} at most; {remedy}"
     )]
@@ -30,13 +30,13 @@ pub enum Misfit {
         /// What to do.
         remedy: String,
     },
-    /// The board has no samples of this depth.
+    /// The board does not take samples of the tables' depth.
     #[error("the board has no {bits}-bit samples; use tables of another depth")]
     Depth {
         /// Bits a sample.
         bits: u32,
     },
-    /// The tables are a grid, and the board takes one factor a row.
+    /// The tables are a grid, but the board takes only one factor per row.
     #[error(
         "the tables are a grid of datapath 2, and the board has datapath 1 alone; leave out the exact projection, or use a \
          bitstream with datapath 2"
@@ -52,7 +52,7 @@ pub enum Misfit {
         /// T.
         most: usize,
     },
-    /// The board has no nodes so far apart.
+    /// The grid's nodes are at another distance than the board takes.
     #[error(
         "the grid has nodes every {pitch} columns, and the board takes others; make the tables for this board"
     )]
@@ -66,7 +66,7 @@ pub enum Misfit {
     /// A row reads ahead of what the board's line memory holds.
     #[error(transparent)]
     Ring(#[from] TableError),
-    /// A frame of the caller's has another size or depth than the tables.
+    /// A frame that was given has another size or depth than the tables are for.
     #[error("the frame {name} does not fit the tables")]
     Frame {
         /// Its name in reports.
@@ -115,7 +115,7 @@ pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -
     if width > most_width || height > most_height {
         let mut remedy = "use smaller frames and tables".to_owned();
         if capabilities.nature == BoardNature::Mock {
-            remedy = format!("{remedy}, or the built-in mock that takes these: mock,max-width={width}");
+            remedy = format!("{remedy}, or the built-in mock with room for these: mock,max-width={width}");
             if height > most_height {
                 remedy = format!("{remedy},max-height={height}");
             }

@@ -37,7 +37,7 @@ impl Generation {
 /// noise of its own.
 pub const MOST_FRAMES: usize = (1 << 16) - 7;
 
-/// A plan of more frames than can be numbered.
+/// The plan has more frames than one run can number.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{frames} frames are more than the {MOST_FRAMES} that a run can number; name fewer, or repeat them less often"

@@ -26,10 +26,10 @@ pub(super) struct Prepared {
 /// A frame that could not be made ready.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum PrepareError {
-    /// A frame cannot be rendered for the plan's size and depth.
+    /// The frame cannot be made in the size and depth of the plan.
     #[error("the frame {name} cannot be made; leave it out")]
     Render { name: String, source: FrameError },
-    /// The reference cannot correct a frame by the plan's tables.
+    /// The reference cannot correct the frame with the plan's tables.
     #[error("the reference cannot correct the frame {name}; use a frame of the tables' size and depth")]
     Correct { name: String, source: CorrectError },
 }

@@ -56,15 +56,16 @@ pub enum RestoreError {
     /// Its head cannot be read.
     #[error(transparent)]
     Recording(#[from] RecordingError),
-    /// The tables in it are none.
+    /// The tables in the recording cannot be used.
     #[error("the tables in the recording cannot be used; make the recording again")]
     Tables(#[source] ContentError),
-    /// Its head names a frame, a Bayer phase or a lens that there is not.
+    /// The recording begins with the description of a run that cannot be, as with a frame or lens that this program does not
+    /// know.
     #[error(
         "the recording's head describes a run that cannot be; make the recording again with this halfrow"
     )]
     Value(#[source] Box<dyn std::error::Error + Send + Sync>),
-    /// What was sent is no frame.
+    /// What the recorded run sent as a frame does not have the size and depth of its tables.
     #[error(
         "the recorded run sent {name}, which is not a frame of its tables' size and depth; make the recording again"
     )]

@@ -7,7 +7,7 @@ use super::findings::End;
 use crate::result::{CheckName, Problem};
 use crate::verdict::Cause;
 
-/// The system gives this program no thread on which it can work out what must come back.
+/// The system gives this program no thread in which to compute what must come back.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "this computer has no thread left to compute what must come back; end other programs, or allow this user more \

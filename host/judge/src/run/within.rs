@@ -24,18 +24,18 @@ const HOST: f64 = 0.1;
 /// A time in which a run cannot do what it is to.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum WithinError {
-    /// It is over before a row is judged.
-    #[error("{seconds} s are too few for any verdict over this link; give at least {least} s")]
+    /// The time to judge within is over before a single row can be judged.
+    #[error("{seconds} s is too short for any verdict over this link; give at least {least} s")]
     TooFew {
         /// The time.
         seconds: f64,
         /// The least that would do, rounded up.
         least: f64,
     },
-    /// At the pixel clock that the board names, which nothing has checked, the time is over before a row is judged; over
+    /// At the pixel clock that the board names, which nothing has checked, the time is over before a row can be judged; over
     /// this link alone it would be enough.
     #[error(
-        "{seconds} s are too few at the pixel clock of {} that the board names, but would be enough over this link; \
+        "{seconds} s is too short at the pixel clock of {} that the board names, but would be enough over this link; \
          look at that clock in a run without a time to judge within, or give at least {least} s", hertz(*clock_hz)
     )]
     TooFewOfClock {
@@ -46,7 +46,7 @@ pub enum WithinError {
         /// The clock, in hertz.
         clock_hz: u32,
     },
-    /// The frames at speed that were asked for do not fit.
+    /// The frames at speed that were asked for do not fit into the time to judge within.
     #[error(
         "the frames at speed that are asked for do not fit into {seconds} s; give at least {least} s, or ask for fewer"
     )]

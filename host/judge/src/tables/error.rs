@@ -12,7 +12,7 @@ use super::Place;
 /// A file that holds no tables that can be used. The source says where and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum TableFileError {
-    /// The system did not hand the file over, or it is no text, or longer than any table file.
+    /// The table file could not be read, is not text, or is longer than any table file.
     #[error("cannot read {}; check that it is the file you mean and that you may read it", path.display())]
     Io {
         /// The file.
@@ -20,13 +20,13 @@ pub enum TableFileError {
         /// The system's reason.
         source: io::Error,
     },
-    /// What cannot be read as a table file or a kernel file is called as memory images are, or is one.
+    /// The file is a memory image for Verilog, or named like one, and not a table file or a kernel file.
     #[error("{} is a name of memory images, which are for Verilog; for tables give the table file (.json), for a kernel its file or name", path.display())]
     MemoryImages {
         /// The file.
         path: PathBuf,
     },
-    /// The tables are for another datapath, which this program cannot judge.
+    /// The table file is for a datapath that this program cannot judge.
     #[error("{} is refused", path.display())]
     Datapath {
         /// The file.
@@ -34,7 +34,7 @@ pub enum TableFileError {
         /// Which datapath.
         source: WrongDatapath,
     },
-    /// The file's content is wrong.
+    /// The content of the table file is wrong; the cause that follows says where.
     #[error("{} cannot be used", path.display())]
     Content {
         /// The file.
@@ -42,7 +42,7 @@ pub enum TableFileError {
         /// Where and why.
         source: ContentError,
     },
-    /// The memory image is wrong.
+    /// The content of the memory image is wrong; the cause that follows says where.
     #[error("{} cannot be used", path.display())]
     Mem {
         /// The file.
@@ -70,7 +70,7 @@ impl TableFileError {
     }
 }
 
-/// Tables for a datapath that is not known.
+/// The tables are for a datapath that this program does not know.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the tables are for datapath {found}, and this program knows {known} alone; \
@@ -97,7 +97,7 @@ fn known() -> String {
 /// Text that is no table file or no kernel file.
 #[derive(Debug, thiserror::Error)]
 pub enum ContentError {
-    /// The text ends too early.
+    /// The JSON text ends too early.
     #[error("it breaks off at line {line}, column {column}; copy or make the file again")]
     Truncated {
         /// The line, from 1.
@@ -105,7 +105,7 @@ pub enum ContentError {
         /// The column in bytes, from 1.
         column: usize,
     },
-    /// The text is no JSON object.
+    /// The text is not a JSON object.
     #[error("it is not the JSON object it should be at line {line}, column {column}; mend it there")]
     Json {
         /// The line, from 1.
@@ -118,7 +118,7 @@ pub enum ContentError {
     /// The tables are for another datapath.
     #[error(transparent)]
     Datapath(#[from] WrongDatapath),
-    /// A key that the file does not have.
+    /// The file has a key that does not belong there.
     #[error(
         "it has the key {key:?}, and the keys are {known}; correct or remove it, or put notes into `about`"
     )]
@@ -128,16 +128,16 @@ pub enum ContentError {
         /// The keys that there are.
         known: String,
     },
-    /// A key that is there twice.
+    /// The file has the same key twice.
     #[error("it has the key {key:?} twice; remove one")]
     RepeatedKey {
         /// The key.
         key: String,
     },
-    /// A key that is not there.
+    /// The file lacks a key.
     #[error("it lacks {0}; {remedy}", remedy = .0.remedy())]
     MissingKey(Place),
-    /// A value of the wrong kind.
+    /// A value in the file is of the wrong kind.
     #[error("{place} is {found}, not {wanted}; {remedy}", remedy = place.remedy())]
     Kind {
         /// Where.
@@ -147,7 +147,7 @@ pub enum ContentError {
         /// The kind that it should be.
         wanted: &'static str,
     },
-    /// A number that is too small or too large.
+    /// A number in the file is too small or too large.
     #[error("{place} is {found}, outside {allowed}; {remedy}", remedy = place.remedy())]
     Range {
         /// Where.
@@ -157,7 +157,7 @@ pub enum ContentError {
         /// The least and the largest that it can be.
         allowed: String,
     },
-    /// A list with too few or too many entries.
+    /// A list in the file has too few or too many entries.
     #[error("{place} has {found} entries instead of {wanted}; {remedy}", remedy = place.remedy())]
     Length {
         /// Where.
@@ -167,7 +167,7 @@ pub enum ContentError {
         /// Entries that should be there.
         wanted: usize,
     },
-    /// A depth that the datapath does not have.
+    /// The table file gives a sample depth that the datapath does not have.
     #[error("{place} is {found}; {remedy}", place = Place::Bits, remedy = Place::Bits.remedy())]
     Bits {
         /// The bits given.
@@ -193,16 +193,16 @@ pub enum MemError {
     /// The image is for another datapath.
     #[error(transparent)]
     Datapath(#[from] WrongDatapath),
-    /// The header comment lacks a number.
+    /// The comment at the head of the memory image lacks a number.
     #[error("its comments give no whole number as `{key}=`; write the file again with `halfrow tables`", key = .0.key())]
     Header(Place),
-    /// A depth that the datapath does not have.
+    /// The memory image gives a sample depth that the datapath does not have.
     #[error("its comments give bits={found}; {remedy}", remedy = Place::Bits.remedy())]
     Bits {
         /// The bits given.
         found: u32,
     },
-    /// A line that is neither comment nor word.
+    /// A line of the memory image is neither a comment nor a word.
     #[error(
         "line {line} is {found:?}, not {digits} hexadecimal digits; write the file again with `halfrow tables`"
     )]

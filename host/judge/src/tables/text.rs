@@ -28,7 +28,10 @@ pub fn read(path: &Path, most: u64) -> io::Result<String> {
     String::from_utf8(bytes).map_err(|error| {
         let place = error.utf8_error().valid_up_to();
         let line = 1 + error.as_bytes().iter().take(place).filter(|&&byte| byte == b'\n').count();
-        let reason = format!("it is no text from byte {place} on, in line {line}");
+        let reason = match place {
+            0 => "it is not a text file".to_owned(),
+            _ => format!("it is not text from byte {place} on, in line {line}"),
+        };
         io::Error::new(io::ErrorKind::InvalidData, reason)
     })
 }

@@ -49,7 +49,7 @@ fn generation(frame: usize) -> usize {
 #[test]
 fn a_stuck_line_behind_the_datapath_is_named() {
     let suspects = diagnose(&narrow(), |_, _, expected| expected.samples().iter().map(|s| s | 64).collect());
-    assert_eq!(certain(&suspects), ("output bit", "corrected samples, bit 6, stuck at 1".to_owned()));
+    assert_eq!(certain(&suspects), ("output bit", "corrected samples, bit 6 stuck at 1".to_owned()));
 }
 
 /// A line that flips now and then, which no simulation gives, shows by all differences being in one bit.
@@ -164,7 +164,7 @@ fn a_stuck_address_line_of_the_row_table_is_named() {
     let bench = wide();
     let suspects =
         diagnose(&bench, |frame, input, _| remade(&bench, input, |row| row & !4, generation(frame)));
-    assert_eq!(certain(&suspects), ("row table address", "row table, address bit 2, stuck at 0".to_owned()));
+    assert_eq!(certain(&suspects), ("row table address", "row table, address bit 2 stuck at 0".to_owned()));
 }
 
 #[test]
@@ -238,7 +238,11 @@ fn a_weight_of_any_value_is_found() {
         correct(tables, &Kernel::from_nodes(nodes).unwrap(), input).unwrap().samples().to_vec()
     });
     assert_eq!(certain(&suspects), ("kernel word", "kernel node 16, weight g4".to_owned()));
-    assert!(suspects[0].evidence().starts_with("reading -1234 for 2560"), "{}", suspects[0].evidence());
+    assert!(
+        suspects[0].evidence().starts_with("with the value read as -1234 instead of 2560"),
+        "{}",
+        suspects[0].evidence()
+    );
 }
 
 #[test]
@@ -308,7 +312,7 @@ fn defects_that_cannot_be_told_apart_are_all_named() {
     seen.evidence.retain(|evidence| evidence.index == WHITE);
     let suspects = bench.judge(&seen);
     let places: Vec<_> = suspects.iter().map(Suspect::place).collect();
-    assert_eq!(places, ["line memory, data bit 5, stuck at 0", "corrected samples, bit 5, stuck at 0"]);
+    assert_eq!(places, ["line memory, data bit 5 stuck at 0", "corrected samples, bit 5 stuck at 0"]);
     assert!(suspects.iter().all(|suspect| suspect.explained == 1.0));
     assert!(
         suspects
@@ -352,7 +356,7 @@ fn a_part_that_explains_less_than_half_is_not_named_first() {
     assert_eq!((suspects[0].part(), suspects[0].explained), ("unknown", 0.0), "{suspects:#?}");
     let [_, stuck, ..] = &suspects[..] else { panic!("{suspects:#?}") };
     assert!((0.2..0.5).contains(&stuck.explained), "{stuck:#?}");
-    assert_eq!(stuck.place(), "corrected samples, bit 6, stuck at 1");
+    assert_eq!(stuck.place(), "corrected samples, bit 6 stuck at 1");
     // Where nothing explains everything, nothing else explains it as well.
     assert!(suspects.iter().all(|suspect| suspect.others() == 0), "{suspects:#?}");
 }

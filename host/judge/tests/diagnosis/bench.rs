@@ -313,6 +313,7 @@ pub(crate) fn is_told(suspect: &Suspect, place: &str) -> bool {
     let several = told.split_once(", one of bits ").zip(place.split_once(", bit "));
     several.map_or(told == place, |((word, bits), (own, bit))| {
         let bit: u32 = bit.parse().unwrap();
+        let bits = bits.replace(" and ", ", ");
         let mut runs = bits.split(", ").map(|run| run.split_once(" to ").unwrap_or((run, run)));
         word == own
             && runs.any(|(first, last)| (first.parse().unwrap()..=last.parse().unwrap()).contains(&bit))

@@ -83,16 +83,16 @@ fn a_grids_entry_that_drifts_during_the_run_is_named_with_its_onset() {
 #[test]
 fn lines_taps_and_weights_are_named_behind_a_grid() {
     for (text, place) in [
-        ("stuck-data,bit=5,value=1", "line memory, data bit 5, stuck at 1"),
-        ("stuck-data,bit=11,value=0", "line memory, data bit 11, stuck at 0"),
+        ("stuck-data,bit=5,value=1", "line memory, data bit 5 stuck at 1"),
+        ("stuck-data,bit=11,value=0", "line memory, data bit 11 stuck at 0"),
         ("stuck-address,bit=3", "line memory, address bit 3"),
         ("stuck-address,bit=6", "line memory, address bit 6"),
         ("kernel-word,node=16,weight=g4,bit=12,hidden=true", "kernel node 16, weight g4, bit 12"),
         ("tap-offset,columns=1", "the window's read address, one column to the right"),
         ("tap-offset,columns=-3", "the window's read address, 3 columns to the left"),
         ("no-rounding", "the output's rounding"),
-        ("dead-tap,tap=4", "tap G4, stuck at 0"),
-        ("dead-tap,tap=1,reads=5", "tap R1, reading R5"),
+        ("dead-tap,tap=4", "tap G4 stuck at 0"),
+        ("dead-tap,tap=1,reads=5", "tap R1 reading R5"),
     ] {
         assert_named(&grid(), text, place);
     }
@@ -154,9 +154,9 @@ fn lines_of_a_grids_memory_are_named() {
         suspects[0].place()
     };
     let data = certain(|entries, index| entries[index] & !(1 << 13));
-    assert_eq!(data, "row table, data bit 13, stuck at 0");
+    assert_eq!(data, "row table, data bit 13 stuck at 0");
     let address = certain(|entries, index| entries[index & !1]);
-    assert_eq!(address, "row table, address bit 0, stuck at 0");
+    assert_eq!(address, "row table, address bit 0 stuck at 0");
     let ahead = certain(|entries, index| entries.get(index + 1).copied().unwrap_or(1 << 24));
     assert_eq!(ahead, "the row table's address, one entry ahead");
 }
@@ -167,7 +167,7 @@ fn stale_grids_are_named_frame_by_frame() {
         let suspects = grid().diagnose(fault(name));
         let [only] = &suspects[..] else { panic!("{suspects:#?}") };
         assert_eq!((only.part(), only.explained), ("stale tables", 1.0));
-        for clause in ["frame 0 as it went in", "with the tables of generation 1 instead of 2"] {
+        for clause in ["frame 0 made as it went in", "with the tables of generation 1 instead of 2"] {
             assert!(only.evidence().contains(clause), "{}", only.evidence());
         }
     }
@@ -189,7 +189,7 @@ fn stale_grids_are_named_in_a_frame_with_another_centre() {
     let suspects = bench.judge(&seen);
     let [only] = &suspects[..] else { panic!("{suspects:#?}") };
     assert_eq!((only.part(), only.explained), ("stale tables", 1.0));
-    let clause = "making frame 2 with the factors of generation 1 instead of 2";
+    let clause = "frame 2 made with the factors of generation 1 instead of 2";
     assert!(only.evidence().contains(clause), "{}", only.evidence());
 }
 

@@ -8,7 +8,7 @@ use crate::scenes::Random;
 #[test]
 fn every_data_line_is_named_with_its_level() {
     for (bit, value) in (0..12).flat_map(|bit| [(bit, 0), (bit, 1)]) {
-        let place = format!("line memory, data bit {bit}, stuck at {value}");
+        let place = format!("line memory, data bit {bit} stuck at {value}");
         assert_named(&narrow(), &format!("stuck-data,bit={bit},value={value}"), &place);
     }
 }

@@ -38,7 +38,7 @@ fn a_centre_that_is_not_taken_is_named() {
         let middle = diagnose(&bench, |_, own| Geometry::centred(192, 24, own.depth()).unwrap());
         assert_eq!(middle.place(), "the setting of the optical centre");
         assert!(
-            middle.evidence().starts_with("taking the middle of the row instead"),
+            middle.evidence().starts_with("with the middle of the row taken instead"),
             "{}",
             middle.evidence()
         );
@@ -54,7 +54,7 @@ fn a_centre_that_is_taken_a_frame_late_is_named() {
             _ => *own,
         });
         assert_eq!(late.place(), "the setting of the optical centre");
-        assert!(late.evidence().starts_with("keeping that of the frame before"), "{}", late.evidence());
+        assert!(late.evidence().starts_with("with that of the frame before kept"), "{}", late.evidence());
     }
 }
 
@@ -67,7 +67,7 @@ fn a_stuck_bit_of_the_centre_is_named() {
                 let centre2 = own.centre2() & !(1 << bit) | value << bit;
                 Geometry::new(own.width(), own.height(), own.depth(), centre2).unwrap()
             });
-            let place = format!("the setting of the optical centre, bit {bit}, stuck at {value}");
+            let place = format!("the setting of the optical centre, bit {bit} stuck at {value}");
             assert_eq!(stuck.place(), place);
         }
     }
@@ -80,6 +80,6 @@ fn a_depth_that_is_not_taken_is_named() {
             Geometry::new(own.width(), own.height(), BitDepth::Twelve, own.centre2()).unwrap()
         });
         assert_eq!(deep.place(), "the setting of the depth");
-        assert!(deep.evidence().starts_with("taking 12 bits instead"), "{}", deep.evidence());
+        assert!(deep.evidence().starts_with("with 12 bits taken instead"), "{}", deep.evidence());
     }
 }

@@ -15,7 +15,7 @@ fn random_fault(random: &mut Random, height: u64) -> (String, String) {
         0 => {
             let bit = random.below(12);
             let text = format!("stuck-data,bit={bit},value={level}");
-            (text, format!("line memory, data bit {bit}, stuck at {level}"))
+            (text, format!("line memory, data bit {bit} stuck at {level}"))
         }
         1 => {
             let bit = random.below(7);
@@ -36,9 +36,9 @@ fn random_fault(random: &mut Random, height: u64) -> (String, String) {
             let names = ["G0", "R1", "G2", "R3", "G4", "R5", "G6"];
             let [tap_name, other_name] = [tap, other].map(|tap| names[tap as usize]);
             if tap == other {
-                return (format!("dead-tap,tap={tap}"), format!("tap {tap_name}, stuck at 0"));
+                return (format!("dead-tap,tap={tap}"), format!("tap {tap_name} stuck at 0"));
             }
-            (format!("dead-tap,tap={tap},reads={other}"), format!("tap {tap_name}, reading {other_name}"))
+            (format!("dead-tap,tap={tap},reads={other}"), format!("tap {tap_name} reading {other_name}"))
         }
     }
 }

@@ -9,9 +9,9 @@ fn stale_tables_are_named_frame_by_frame() {
         let [only] = &suspects[..] else { panic!("{suspects:#?}") };
         assert_eq!((only.part(), only.explained), ("stale tables", 1.0));
         for clause in [
-            "frame 0 as it went in",
-            "frame 1 with the tables of generation 2 instead of 1",
-            "frame 2, 4 to 8 with the tables of generation 1 instead of 2",
+            "frame 0 made as it went in",
+            "frame 1 made with the tables of generation 2 instead of 1",
+            "frame 2, 4 to 8 made with the tables of generation 1 instead of 2",
         ] {
             assert!(only.evidence().contains(clause), "{}", only.evidence());
         }

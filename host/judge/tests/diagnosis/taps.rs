@@ -32,7 +32,7 @@ fn a_sum_that_is_not_rounded_is_named() {
 #[test]
 fn every_dead_tap_of_hermite_is_named() {
     for tap in [1, 2, 3, 4, 5] {
-        assert_named(&narrow(), &format!("dead-tap,tap={tap}"), &format!("tap {}, stuck at 0", TAPS[tap]));
+        assert_named(&narrow(), &format!("dead-tap,tap={tap}"), &format!("tap {} stuck at 0", TAPS[tap]));
     }
 }
 
@@ -40,14 +40,14 @@ fn every_dead_tap_of_hermite_is_named() {
 fn every_dead_tap_of_keys_is_named() {
     let bench = Bench::new(128, 16, 20.0, 128, Interpolant::Keys);
     for tap in [0, 2, 4, 6] {
-        assert_named(&bench, &format!("dead-tap,tap={tap}"), &format!("tap {}, stuck at 0", TAPS[tap]));
+        assert_named(&bench, &format!("dead-tap,tap={tap}"), &format!("tap {} stuck at 0", TAPS[tap]));
     }
 }
 
 #[test]
 fn a_tap_that_carries_its_neighbour_is_named_with_it() {
     for (tap, other) in [(1, 0), (1, 2), (2, 1), (2, 3), (3, 2), (3, 4), (4, 3), (4, 5), (5, 4), (5, 6)] {
-        let place = format!("tap {}, reading {}", TAPS[tap], TAPS[other]);
+        let place = format!("tap {} reading {}", TAPS[tap], TAPS[other]);
         assert_named(&narrow(), &format!("dead-tap,tap={tap},reads={other}"), &place);
     }
 }

@@ -59,7 +59,7 @@ fn bits_of_one_word_that_come_to_the_same_are_one_suspect() {
         let Some(first) = suspects.first().filter(one_word) else { continue };
         assert!(is_told(first, &format!("row {row}'s factor, bit {bit}")), "bit {bit}: {suspects:#?}");
         let evidence = first.evidence();
-        assert!(evidence.starts_with("any one of these bits inverted"), "{evidence}");
+        assert!(evidence.starts_with("with any one of these bits inverted"), "{evidence}");
         assert_eq!(evidence.contains("not certain"), suspects.len() > 1, "{suspects:#?}");
         several += 1;
     }

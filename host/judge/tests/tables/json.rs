@@ -129,7 +129,7 @@ fn a_file_that_is_no_text_is_refused_with_the_place() {
     let path = folder.path().join("t.json");
     fs::write(&path, b"{\"about\": \xff}").unwrap();
     let Err(TableFileError::Io { source, .. }) = TableFile::read(&path) else { panic!("it was read") };
-    assert_eq!(source.to_string(), "it is no text from byte 10 on, in line 1");
+    assert_eq!(source.to_string(), "it is not text from byte 10 on, in line 1");
 }
 
 #[test]

@@ -13,13 +13,13 @@ use halfrow::run::Misfit;
 /// An item that could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum PaperError {
-    /// The board let it down.
+    /// The board failed during an experiment of the paper.
     #[error("the board could not be tried")]
     Board(#[from] BoardError),
     /// The board cannot take the item's frames or kernels; the sentence says why and what to do.
     #[error(transparent)]
     Misfit(#[from] Misfit),
-    /// An item that is tried on a board was given none.
+    /// An experiment of the paper needs a board and was given none.
     #[error("no board was opened for this item; this is a fault of halfrow, so report it")]
     NoBoard,
     /// The synthesis report cannot be read.
@@ -33,28 +33,28 @@ pub enum PaperError {
         /// Why.
         source: io::Error,
     },
-    /// A frame could not be made.
+    /// A frame for an experiment of the paper could not be made.
     #[error("a frame of the experiment cannot be made; this is a fault of halfrow, so report it")]
     Frame(#[from] FrameError),
-    /// A frame could not be corrected.
+    /// A frame for an experiment of the paper could not be corrected.
     #[error("a frame of the experiment cannot be corrected; this is a fault of halfrow, so report it")]
     Correct(#[from] CorrectError),
-    /// The paper's size is none.
+    /// The size of the paper's frames was refused.
     #[error("the paper's frame is refused; this is a fault of halfrow, so report it")]
     Geometry(#[from] GeometryError),
-    /// The paper's lens is none.
+    /// The paper's lens was refused.
     #[error("the paper's lens is refused; this is a fault of halfrow, so report it")]
     Lens(#[from] LensError),
-    /// A lens that is compared does not stand before its frame.
+    /// A lens of the paper's comparison does not fit its frame.
     #[error("a lens of the comparison is refused; this is a fault of halfrow, so report it")]
     Camera(#[from] CameraError),
-    /// A grid of the comparison has no room.
+    /// A grid of the paper's comparison has no room.
     #[error("a grid of the comparison is refused; this is a fault of halfrow, so report it")]
     Room(#[from] GridRoomError),
-    /// A projection could not be made from lines.
+    /// No projection could be made from the lines that were marked.
     #[error("no projection keeps these lines; check that none of them is given twice, in two ways")]
     Lines,
-    /// The paper's row factors are none.
+    /// The paper's row factors were refused.
     #[error("the paper's row factors are refused; this is a fault of halfrow, so report it")]
     Tables(#[from] TableError),
 }

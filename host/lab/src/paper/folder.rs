@@ -20,7 +20,7 @@ const NUMBERS: &str = "paper.json";
 /// Exhibits that could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum FolderError {
-    /// The folder cannot be made.
+    /// The folder for the paper's figures cannot be made.
     #[error("the folder {} cannot be made; choose another with --output", path.display())]
     Make {
         /// The folder.
@@ -31,7 +31,7 @@ pub enum FolderError {
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteAsideError),
-    /// A picture cannot be encoded.
+    /// A picture for the paper cannot be encoded.
     #[error("a picture cannot be encoded; this is a fault of halfrow, so report it")]
     Picture(#[from] png::EncodingError),
 }

@@ -48,7 +48,7 @@ pub enum MarkedError {
         /// Why.
         source: io::Error,
     },
-    /// The file of lines is none.
+    /// The file of lines does not have the form that it must have.
     #[error(
         "{} is no file of lines; write {{\"circle\": {{\"centre\": [x, y], \"radius\": r}}, \"lines\": [{{\"from\": [x, y], \
          \"to\": [x, y], \"is\": \"upright\"}}]}}",
@@ -60,7 +60,7 @@ pub enum MarkedError {
         /// What is wrong, and where.
         source: Box<dyn Error + Send + Sync>,
     },
-    /// A circle without a size.
+    /// The circle in the file of lines has no usable radius.
     #[error("the circle in {} has the radius {radius}; give the pixels from its middle to where the lens images 90°", path.display())]
     Radius {
         /// The file.
@@ -68,7 +68,7 @@ pub enum MarkedError {
         /// The radius.
         radius: f64,
     },
-    /// A line that the lens does not show.
+    /// A marked line is too short, or lies where the projection shows nothing.
     #[error(
         "entry {number} of `lines` in {} is too short, or lies beyond what a projection shows; mark it inside of the image circle",
         path.display()

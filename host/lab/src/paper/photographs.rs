@@ -15,7 +15,7 @@ pub(super) const HEIGHT: usize = 512;
 /// A folder that does not hold the photographs.
 #[derive(Debug, thiserror::Error)]
 pub enum PhotographError {
-    /// One is not there, or is no picture.
+    /// One of the paper's photographs is missing, or is not a picture.
     #[error(
         "the photograph {number} of {PHOTOGRAPHS} cannot be used; give --images a folder with kodim01.png to \
          kodim{PHOTOGRAPHS}.png, the lossless pictures of Kodak's PhotoCD (https://r0k.us/graphics/kodak)"
@@ -26,7 +26,7 @@ pub enum PhotographError {
         /// Why.
         source: ReadError,
     },
-    /// One has another size.
+    /// One of the paper's photographs has another size than the paper's.
     #[error(
         "{} is {width} x {height}, and the paper's photographs are {WIDTH} x {HEIGHT}, lying or standing; give the \
          pictures as they were released",

@@ -38,25 +38,25 @@ pub struct Trained {
 /// What keeps a kernel from being fitted or measured.
 #[derive(Debug, thiserror::Error)]
 pub enum TrainingError {
-    /// A photograph has a size that no frame has.
+    /// The photograph has a size that no frame can have.
     #[error("a photograph cannot be a frame; scale it to 64 to 2592 columns and at most 2048 rows")]
     Geometry(#[from] GeometryError),
-    /// The equations have no solution.
+    /// The photographs have too little detail to determine a kernel.
     #[error("the photographs determine no kernel; give some with detail in them")]
     Singular,
-    /// A weight is larger than 16 bits hold.
+    /// A weight of the fitted kernel does not fit into 16 bits.
     #[error("the fitted kernel cannot be stored; give more photographs")]
     Kernel(#[from] KernelError),
-    /// A photograph of so few rows that the experiment has no lens for it.
+    /// The photograph has too few rows for the experiment's lens.
     #[error("the photograph is too low for a lens; give one of more rows")]
     Lens(#[from] LensError),
-    /// Row factors could not be made.
+    /// The row factors of the experiment could not be made.
     #[error("the tables of the experiment cannot be made; this is a fault of halfrow, so report it")]
     Table(#[from] TableError),
-    /// A frame could not be made.
+    /// A frame of the experiment could not be made.
     #[error("a frame of the experiment cannot be made; this is a fault of halfrow, so report it")]
     Frame(#[from] FrameError),
-    /// A frame could not be corrected.
+    /// A frame of the experiment could not be corrected.
     #[error("a frame of the experiment cannot be corrected; this is a fault of halfrow, so report it")]
     Correct(#[from] CorrectError),
 }

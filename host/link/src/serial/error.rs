@@ -10,7 +10,7 @@ use crate::ftdi::list;
 /// A serial port that cannot be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum SerialError {
-    /// There is no such file.
+    /// There is no serial port of this name.
     #[error(
         "there is no serial port {}; {}check that the board is plugged in and powered, and see `halfrow boards` for \
          those that are there",
@@ -18,10 +18,10 @@ pub enum SerialError {
         below_dev(.0)
     )]
     Missing(PathBuf),
-    /// The file is something else.
+    /// The file of this name is not a serial port.
     #[error("{0} is no serial port; see `halfrow boards` for those that are there")]
     NotAPort(PathBuf),
-    /// Its owner and mode keep this user out.
+    /// This user may not open the serial port.
     #[error("you may not open {path}; {remedy}")]
     NotAllowed {
         /// The port.
@@ -29,7 +29,7 @@ pub enum SerialError {
         /// How to get access.
         remedy: String,
     },
-    /// Somebody has it open.
+    /// Another program is using the serial port.
     #[error("{path} is in use by {}", by(.holders))]
     InUse {
         /// The port.
@@ -37,7 +37,7 @@ pub enum SerialError {
         /// By whom, as far as it can be told.
         holders: Vec<Holder>,
     },
-    /// The chip divides its clock to other rates only.
+    /// The chip behind the serial port cannot make this baud rate.
     #[error(
         "{chip}, which is behind {path}, cannot make {baud} baud; the nearest that it makes: {}",
         list(.nearest)
@@ -52,10 +52,10 @@ pub enum SerialError {
         /// What it can do.
         nearest: Vec<u32>,
     },
-    /// The driver took another rate.
+    /// The serial port's driver set another baud rate than was asked for.
     #[error(
-        "{path} cannot make {baud} baud, and its driver took {taken} instead; give a rate that both port and board \
-         have, with baud=RATE"
+        "{path} does not support {baud} baud (its driver set {taken}); add baud=RATE with a rate that port and board \
+         support"
     )]
     OtherRate {
         /// The port.
@@ -65,7 +65,7 @@ pub enum SerialError {
         /// What it took.
         taken: u32,
     },
-    /// Anything else.
+    /// The serial port cannot be opened, for a reason that the system's own message tells.
     #[error("{path} cannot be opened; unplug the board, plug it in and run again")]
     Other {
         /// The port.

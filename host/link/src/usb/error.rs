@@ -9,21 +9,21 @@ use crate::serial::{Holder, by};
 /// Why a board cannot be opened over USB.
 #[derive(Debug, thiserror::Error)]
 pub enum UsbError {
-    /// No USB at all.
+    /// No USB is available on this computer.
     #[error(
-        "this machine has no USB that a program can use; run on one that has, or see `halfrow boards` for other links"
+        "no USB is available on this computer; use a computer that has it, or see `halfrow boards` for other links"
     )]
     NoUsb,
-    /// Nothing is there.
+    /// No board with an FTDI chip is plugged in.
     #[error(
         "no board with an FTDI chip is plugged in; check cable and power, and, in a virtual machine or container, \
          that it is given the device"
     )]
     NoneFound,
-    /// None of the chips that boards have.
+    /// USB devices are plugged in, but none of them has a chip that this program drives over USB.
     #[error("no FT2232H or FT232H is plugged in; if the board is behind another chip, choose that: {}", targets(.0))]
     OthersOnly(Vec<UsbBoard>),
-    /// Nothing with that name is there.
+    /// No FTDI chip of this name is plugged in.
     #[error("no FTDI chip is called `{wanted}`; {}", there_are(.found))]
     NotFound {
         /// What the target says.
@@ -31,10 +31,10 @@ pub enum UsbError {
         /// What is there.
         found: Vec<UsbBoard>,
     },
-    /// Several could be meant.
+    /// Several boards are plugged in, and the target does not say which one.
     #[error("several boards could be meant; choose one: {}", targets(.0))]
     Several(Vec<UsbBoard>),
-    /// The channel is not one of the chip's.
+    /// The chip does not have this channel.
     #[error(
         "the {chip} {name} has no channel {channel}; leave `channel=` out, or choose one of its {channels}"
     )]
@@ -48,7 +48,7 @@ pub enum UsbError {
         /// How many it has.
         channels: u8,
     },
-    /// Not permitted.
+    /// This user may not open the USB device.
     #[error(
         "this user may not open the USB device {name}; install scripts/70-halfrow.rules as docs/boards.md says, and plug the \
          board in again, or run as a user who may"
@@ -57,7 +57,7 @@ pub enum UsbError {
         /// The chip's name.
         name: String,
     },
-    /// Somebody else uses it.
+    /// Another program is using the USB device.
     #[error("{} is in use by {}", .what, by(.holders))]
     Busy {
         /// The channel, or its serial port.
@@ -65,7 +65,7 @@ pub enum UsbError {
         /// By whom, as far as this user may know.
         holders: Vec<Holder>,
     },
-    /// The channel is wired for something else.
+    /// The chip's channel is set up for another mode than the target asks for.
     #[error(
         "channel {channel} of {name} is {found}, and the target asks for mode={wanted}. {}", advice(.wanted)
     )]
@@ -79,7 +79,7 @@ pub enum UsbError {
         /// `fifo` or `uart`.
         wanted: &'static str,
     },
-    /// The channel is of no use to this program, or it cannot be told.
+    /// The chip's channel is set up for a mode that this program cannot use, or its mode cannot be told.
     #[error(
         "channel {channel} of {name} is {found}; choose another channel, or say mode=fifo or mode=uart if you know it"
     )]
@@ -91,10 +91,10 @@ pub enum UsbError {
         /// What is known.
         found: String,
     },
-    /// A FIFO has no rate.
+    /// The target gives a baud rate, but a FIFO has none.
     #[error("a FIFO has no baud rate; leave out `baud=`, or say mode=uart")]
     BaudOfFifo,
-    /// The chip divides its clock to other rates only.
+    /// The USB chip cannot make this baud rate.
     #[error("an {chip} cannot make {baud} baud; the nearest rates that it makes: {}", list(.nearest))]
     Rate {
         /// The chip.
@@ -114,7 +114,7 @@ pub enum UsbError {
         /// The system's reason.
         source: std::io::Error,
     },
-    /// A transfer failed.
+    /// A transfer over USB failed.
     #[error("{name} failed while {doing}; unplug the board, plug it in, and run again")]
     Transfer {
         /// The chip's name.

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use rusb::{Context, DeviceHandle};
 
-/// A transfer that came to nothing.
+/// A transfer over USB failed, and the cause is the USB driver's own error.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum UsbFailure {
     /// The device is gone.

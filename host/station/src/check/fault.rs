@@ -8,13 +8,13 @@ use crate::store::StoreError;
 /// Something that is not as it was written.
 #[derive(Debug, thiserror::Error)]
 pub enum Fault {
-    /// SQLite finds its own file damaged.
+    /// SQLite finds the station's database file damaged.
     #[error("the database is damaged ({said}); restore it from a copy")]
     Database {
         /// What it says.
         said: String,
     },
-    /// A record or an attachment is not there, or other than its hash.
+    /// A record or an attachment of a run is missing, or does not match its hash.
     #[error("evidence of run {run}: {source}")]
     Evidence {
         /// The run.
@@ -22,7 +22,7 @@ pub enum Fault {
         /// What is wrong.
         source: BlobError,
     },
-    /// A record is whole and cannot be read.
+    /// A run's record matches its hash, but cannot be understood.
     #[error("the record of run {run}: {source}")]
     Record {
         /// The run.
@@ -30,7 +30,7 @@ pub enum Fault {
         /// Why.
         source: RecordError,
     },
-    /// A record does not fit the records before it.
+    /// A run's record does not fit the records before it.
     #[error(
         "the record of run {run} does not fit those before it, as happens when one of them cannot be read; mend \
          that one first, and check again"
@@ -52,7 +52,7 @@ pub enum Fault {
         /// The hash of its record.
         sha256: String,
     },
-    /// A record is among the evidence, and its run has no row.
+    /// A run's record is among the evidence, but the database has no row for the run.
     #[error(
         "the record {sha256} is of run {run}, which has no row: station.db has lost the run, or is from before it; stop the station, move \
          station.db, station.db-wal and station.db-shm out of the folder, and put a later copy of station.db there, or move the record \
@@ -64,13 +64,14 @@ pub enum Fault {
         /// The hash of its record.
         sha256: String,
     },
-    /// Something that may lead out of the folder is among the plans of the plant.
+    /// Among the plans that are kept of the plant is something that is neither a file nor a folder, and may lead out of the
+    /// folder.
     #[error("{} is neither a file nor a folder, and no program puts such a thing there; remove it, and look who may write there", path.display())]
     Foreign {
         /// What it is.
         path: PathBuf,
     },
-    /// A job is done, and the run that it is done by is not there.
+    /// A job is marked as done, but the run that did it is missing.
     #[error("the job {job} is done, and its run is not there; look at it by `halfrow-station job list`")]
     Job {
         /// The job.
@@ -84,7 +85,7 @@ pub enum Fault {
         /// Why.
         source: Box<StoreError>,
     },
-    /// A waiver is not what the audit says about it, or only one of the two is there.
+    /// A waiver and its line in the audit contradict each other, or one of the two is missing.
     #[error(
         "the waiver of run {run} is not as the audit has it; look in both, and who may write to the database"
     )]
@@ -92,13 +93,13 @@ pub enum Fault {
         /// The run.
         run: String,
     },
-    /// The plan in a record is not what its hash says.
+    /// The plan in a run's record does not match its hash.
     #[error("the plan in the record of run {run} has another hash than it says; look at the record")]
     Plan {
         /// The run.
         run: String,
     },
-    /// A row is not what the records say.
+    /// A row of a database table differs from what the records say.
     #[error("table {table}, row {key}: {column} is `{stored}`, and the records say `{rebuilt}`")]
     Differs {
         /// The table.
@@ -112,7 +113,7 @@ pub enum Fault {
         /// What should be.
         rebuilt: String,
     },
-    /// A row is not there.
+    /// A row that the records call for is missing from a database table.
     #[error("table {table} has no row {key}, and the records have")]
     Missing {
         /// The table.
@@ -120,7 +121,7 @@ pub enum Fault {
         /// The row's key.
         key: String,
     },
-    /// A row is there without a record.
+    /// A database table has a row that no record calls for.
     #[error("table {table} has a row {key}, and no record has")]
     Surplus {
         /// The table.

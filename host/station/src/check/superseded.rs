@@ -7,8 +7,8 @@ use halfrow::Verdict;
 use crate::record::{Blobs, UnnamedRecord};
 use crate::store::{Snapshot, StoreError};
 
-/// A record whose verdict is not the one that the database has of its run. It is not a fault: either the power failed before the
-/// run was committed, or the database is a copy that was made before it was. On the disk both look the same.
+/// A record's verdict is not the one that the database has for its run. This is not a fault: either the power failed before
+/// the run was committed, or the database is a copy that was made before it was. On the disk both look the same.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "run {run} is {row} here, and its record {sha256} says {verdict}: the power failed before that was shown, or \

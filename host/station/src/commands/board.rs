@@ -96,7 +96,7 @@ struct Change {
     why: Why,
 }
 
-/// A board that the plant does not have, or that somebody has.
+/// The plant does not have the board, or somebody is using it.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "there is no board {name} that could be {done}; `halfrow-station board list` tells which there are, and who has them"
@@ -106,7 +106,7 @@ pub(super) struct NoBoard {
     done: &'static str,
 }
 
-/// A unit that is shared under another name.
+/// The unit is already shared under another name.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "{serial} is shared as the board {board} already, and would be given to two; unshare that one first by `halfrow-station board unshare {board}`"
@@ -116,14 +116,14 @@ pub(super) struct SharedAlready {
     pub(super) board: String,
 }
 
-/// A text that names no place of a board, such as a serial port or an address.
+/// The text does not name a place where a board can be, such as a serial port or an address.
 #[derive(Debug, thiserror::Error)]
-#[error("`{kind}` is no kind of board; write one as `halfrow boards` lists them")]
+#[error("`{kind}` is not a kind of board; write one as `halfrow boards` lists them")]
 pub(super) struct NoBoardKind {
     pub(super) kind: String,
 }
 
-/// A kind that no board is of.
+/// No shared board is of this kind.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "no board of the kind {kind} is shared with this station; `halfrow-station board list` tells which are"

@@ -31,14 +31,14 @@ pub(super) struct Arguments {
     to: PathBuf,
 }
 
-/// A run of which nothing is known here.
+/// The station does not know a run of this number.
 #[derive(Debug, thiserror::Error)]
 #[error("there is no run {run} here; `halfrow-station history` lists the runs")]
 pub(super) struct NoSuchRun {
     pub(super) run: String,
 }
 
-/// Evidence that a run has had; the rest is copied.
+/// Some evidence of the run is missing or damaged; the rest was copied.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "{names} of the run {run}: gone or damaged; `halfrow-station check` says which, and a copy of the station's folder may have it"
@@ -48,7 +48,7 @@ pub(super) struct EvidenceLost {
     pub(super) run: String,
 }
 
-/// Evidence that a run had, and that was removed because it was older than the settings keep evidence.
+/// Some evidence of the run was removed, because it was older than the settings keep evidence.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "{names} of the run {run}: removed since older evidence is not kept here; a copy of the station's folder from before may have it"

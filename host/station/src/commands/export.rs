@@ -111,7 +111,7 @@ impl From<ExportError> for Failure {
     }
 }
 
-/// A folder that cannot be made.
+/// The output folder cannot be made.
 #[derive(Debug, thiserror::Error)]
 #[error("{} cannot be a folder for the files; name another place", path.display())]
 pub(super) struct NoFolder {
@@ -119,7 +119,7 @@ pub(super) struct NoFolder {
     pub(super) source: io::Error,
 }
 
-/// A file where another was to be written.
+/// The output file exists already, and is not overwritten.
 #[derive(Debug, thiserror::Error)]
 #[error("{} exists, and nothing is overwritten; name another place", path.display())]
 pub(super) struct Taken {

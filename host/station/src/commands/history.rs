@@ -1,6 +1,7 @@
 //! `halfrow-station history`
 
 use clap::Args;
+use halfrow_program::number::counted;
 
 use super::Failure;
 use super::looking::{Filtered, Results, either, table, time};
@@ -18,7 +19,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     filtered: Filtered,
     /// How many at most
-    #[arg(long, value_name = "RUNS", default_value = "50", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST)))]
+    #[arg(long, value_name = "RUNS", default_value = "50", value_parser = counted::<u32>(1, Some(u64::from(MOST))))]
     limit: u32,
     /// Continue after this place, with which the page before ended
     #[arg(long, value_name = "PLACE")]

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
+use halfrow_program::number::counted;
 
 use super::beginning::SettingsFile;
 use super::looking::{either, table, time};
@@ -68,7 +69,7 @@ struct Add {
     #[arg(long, default_value_t = 0)]
     priority: i64,
     /// How many
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, default_value_t = 1, value_parser = counted::<u32>(1, Some(10_000)))]
     count: u32,
     /// Who wants it
     #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
@@ -102,7 +103,7 @@ impl State {
     }
 }
 
-/// A job that is not as the command wants it.
+/// There is no such job, or its state does not allow this.
 #[derive(Debug, thiserror::Error)]
 #[error("there is no job {id} that could be {done}; `halfrow-station job list` shows the state of each")]
 pub(super) struct NoJob {
@@ -110,7 +111,7 @@ pub(super) struct NoJob {
     done: &'static str,
 }
 
-/// Something that no station can have.
+/// The word cannot be one that a station has.
 #[derive(Debug, thiserror::Error)]
 #[error("`{word}` is no word that a station could have; write one without blanks")]
 pub(super) struct NoWord {

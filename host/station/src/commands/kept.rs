@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use halfrow_program::number::counted;
 use serde_json::json;
 
 use super::looking::Data;
@@ -81,7 +82,7 @@ pub(super) struct Prune {
     #[command(flatten)]
     data: Data,
     /// Remove the evidence of runs that ended longer ago, too
-    #[arg(long, value_name = "DAYS", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "DAYS", value_parser = counted::<u32>(1, None))]
     older_than: Option<u32>,
     /// Who removes it
     #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]

@@ -65,7 +65,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(by.map_or(Exit::Pass, |by| halfrow::Cause::Stopped(by).into()))
 }
 
-/// The station's engine is gone.
+/// The station's engine has stopped.
 #[derive(Debug, thiserror::Error)]
 #[error("the station has stopped working, by a fault of its own that the log describes; start it again")]
 pub(super) struct EngineEnded;

@@ -167,26 +167,26 @@ fn table_of(unsent: &[Unsent]) -> String {
     table(&["sink", "unsent", "dead", "since", "said last"], &[1, 2], unsent.iter().map(row))
 }
 
-/// Settings that name nobody to send to.
+/// The settings name nothing that results are sent to.
 #[derive(Debug, thiserror::Error)]
 #[error("the settings name nobody to send to; write [plant] or a [[sink]]")]
 pub(super) struct NoSink;
 
-/// Nothing of this id or sink waits for a person.
+/// No entry of this number or sink waits for a person.
 #[derive(Debug, thiserror::Error)]
 #[error("nothing of {what} waits for a person; `halfrow-station outbox list` tells what does")]
 pub(super) struct NotDead {
     pub(super) what: String,
 }
 
-/// A sink that is still sent to.
+/// The settings still name this sink, so results are still sent to it.
 #[derive(Debug, thiserror::Error)]
 #[error("the settings name the sink {sink}, so all would be sent to it again; take it out of them first")]
 pub(super) struct SinkInUse {
     pub(super) sink: String,
 }
 
-/// A sink that is sent nothing.
+/// The settings do not name this sink.
 #[derive(Debug, thiserror::Error)]
 #[error("the settings name no sink {sink}; name `plant`, or a [[sink]] of the settings")]
 pub(super) struct SinkUnknown {

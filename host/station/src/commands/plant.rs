@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand};
+use halfrow_program::number::counted;
 
 use super::beginning::{SettingsFile, Signal};
 use super::kept::days_ago_ms;
@@ -54,7 +55,7 @@ enum What {
     /// Remove the steps and measurements of old runs, which their records have; runs, records and what is counted are kept for ever
     Prune {
         /// Of runs that began longer ago
-        #[arg(long, value_name = "DAYS", value_parser = clap::value_parser!(u32).range(1..))]
+        #[arg(long, value_name = "DAYS", value_parser = counted::<u32>(1, None))]
         older_than: u32,
         #[command(flatten)]
         why: Why,
@@ -133,12 +134,12 @@ pub(super) fn plant(settings: &Settings) -> Result<&PlantSettings, Failure> {
     settings.plant.as_ref().ok_or_else(|| Failure::call(NoPlant))
 }
 
-/// Settings that name no plant.
+/// The settings do not name a plant.
 #[derive(Debug, thiserror::Error)]
 #[error("the settings name no plant; write url = \"postgres://halfrow@db.example/plant\" into [plant]")]
 pub(super) struct NoPlant;
 
-/// A station that the plant never heard of.
+/// The plant does not know a station of this name.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "the plant has not heard of a station {station}; `halfrow-station plant serve` shows those that it has"

@@ -79,33 +79,34 @@ pub(super) struct List {
 /// A plan that is not published.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum PublishError {
-    /// Another plan has this version.
+    /// The plant has another plan with this name and version.
     #[error(
         "the plant has another plan {plan} {version}, which runs were judged by; give this one a version of its own"
     )]
     OtherContent { plan: String, version: String },
-    /// Somebody else published at the same time.
+    /// Somebody else published the plan at the same time.
     #[error(
         "somebody else published the plan {plan} just now; look at `halfrow-station plan published`, and publish yours again"
     )]
     TooLate { plan: String },
-    /// It was never published.
+    /// This version of the plan was never published.
     #[error(
         "the plant never had a plan {plan} {version}; `halfrow-station plan published` lists those that hold"
     )]
     NoVersion { plan: String, version: String },
-    /// Whoever signed what the plant has is not known here.
+    /// The plan at the plant is signed by a key that is not trusted here.
     #[error(
         "the plant's plan {plan} is signed neither by this key nor by one of `trusts` in [plant]; write the key \
          there if you know whose it is, and ask whoever keeps the plant if not"
     )]
     Untrusted { plan: String },
-    /// A plan whose product has a slash cannot be published: settings name a plan by its product and its name with a slash between.
+    /// The plan cannot be published because its product has a slash: settings name a plan by its product and its name with a
+    /// slash between.
     #[error(
         "the product `{product}` has a slash, which would end it in settings; give the plan a product without a slash"
     )]
     Slash { product: String },
-    /// Its last statement has the last number that there is.
+    /// The plan was published so often that no number is left for it.
     #[error("the plan {plan} has had the last number that there is; publish it under another name")]
     NoNumber { plan: String },
 }

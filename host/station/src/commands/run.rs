@@ -141,7 +141,7 @@ impl Arguments {
     }
 }
 
-/// A plan whose shifts no mock checks.
+/// The plan uses no mock board to check a shift.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "no mock board checks the shifts of this plan; write bad = \"{}\" into its [shift], or give --serial and --board",

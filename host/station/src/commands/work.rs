@@ -41,7 +41,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// Settings that say nothing of jobs.
+/// The settings do not say which jobs the station takes.
 #[derive(Debug, thiserror::Error)]
 #[error("the settings do not say which jobs are taken; write plans = [\"plan.toml\"] into [work]")]
 pub(super) struct NoWork;

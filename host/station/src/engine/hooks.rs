@@ -19,7 +19,7 @@ const LISTENED: Duration = Duration::from_secs(5);
 /// A hook that did not do what it should have done.
 #[derive(Debug, thiserror::Error)]
 pub enum HookError {
-    /// It did not start.
+    /// The hook could not be started.
     #[error("the hook {program} cannot be started; check that it is there and may be executed")]
     Start {
         /// The program.
@@ -27,7 +27,7 @@ pub enum HookError {
         /// The system's reason.
         source: io::Error,
     },
-    /// It failed.
+    /// The hook ended with a failure.
     #[error("the hook {program} failed ({status}){}; look at what it drives", of(said))]
     Failed {
         /// The program.
@@ -37,7 +37,7 @@ pub enum HookError {
         /// What it wrote to stderr, as one line.
         said: String,
     },
-    /// It took too long.
+    /// The hook took too long and was killed.
     #[error("the hook {program} was killed after {} s; look at what it drives", deadline.as_secs_f64())]
     Late {
         /// The program.

@@ -66,13 +66,13 @@ pub enum ExportError {
     /// The store.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// It is not one that XML can be made of.
+    /// The run cannot be written as XML.
     #[error("the run cannot be written as XML; report this with its record")]
     Xml(#[from] SerializeError),
-    /// It is not one that JSON can be made of.
+    /// The run cannot be written as JSON.
     #[error("the run cannot be written as JSON; report this with its record")]
     Json(#[from] serde_json::Error),
-    /// The place where it goes takes no more.
+    /// The export could not be written where it goes.
     #[error("the table cannot be written; check that there is space where it goes")]
     Write(#[source] io::Error),
 }

@@ -59,13 +59,13 @@ pub enum ScanError {
     /// It is none of the station's barcodes.
     #[error(transparent)]
     Barcode(#[from] UnknownBarcode),
-    /// The scanner did not add what it always adds.
+    /// The scan lacks what the scanner adds to every label.
     #[error("the scan came without what the scanner adds to every label; scan the label again")]
     Incomplete,
-    /// It was made so long ago that the lane may have another board by now.
+    /// The scan is so old that another board may be in the lane by now.
     #[error("this came too late, and another board may be there by now; do it again")]
     Late,
-    /// There is no such lane.
+    /// The station has no lane of this name.
     #[error("there is no lane {lane}; the lanes are {known}")]
     NoLane {
         /// What was scanned.
@@ -73,7 +73,7 @@ pub enum ScanError {
         /// What there is.
         known: String,
     },
-    /// The station has several lanes, and no lane was named for this scan.
+    /// The station has several lanes, and no lane was named before this scan.
     #[error("there are {lanes} lanes; scan the barcode of one first, HR:LANE:NAME")]
     WhichLane {
         /// How many.
@@ -82,7 +82,7 @@ pub enum ScanError {
     /// It is no serial number.
     #[error(transparent)]
     Serial(#[from] SerialError),
-    /// Two plans would take it.
+    /// The serial number belongs to two plans of different products.
     #[error(
         "`{serial}` is a serial number of {first} and of {second}; have an engineer make their patterns differ"
     )]
@@ -94,7 +94,7 @@ pub enum ScanError {
         /// Another.
         second: String,
     },
-    /// The board is somewhere else.
+    /// The serial number is already in another lane.
     #[error("{serial} is in lane {lane} already; scan the label of the board that you hold")]
     Elsewhere {
         /// The serial number.

@@ -54,7 +54,7 @@ impl Act {
     }
 }
 
-/// A barcode that begins as the station's own do, and is none.
+/// The barcode begins like the station's own, but is none of them.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{text}` is no barcode of the station; scan HR:LANE:NAME, HR:START, HR:ABORT, HR:OUT, HR:IN or HR:MOCK"

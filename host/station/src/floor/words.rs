@@ -193,7 +193,7 @@ pub enum Effect {
 /// Something that a lane cannot do now.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
-    /// It is out of service.
+    /// The lane is out of service.
     #[error("lane {lane} is out of service: {why}; put it back with HR:IN, or take another lane")]
     Out {
         /// The lane.
@@ -201,7 +201,7 @@ pub enum Refusal {
         /// Why.
         why: Said,
     },
-    /// It was not checked in this shift.
+    /// The lane is out of service because it was not checked in this shift.
     #[error("lane {lane} is out of service: {why}")]
     Owes {
         /// The lane.
@@ -209,13 +209,13 @@ pub enum Refusal {
         /// What is to be done.
         why: Said,
     },
-    /// It owes its shift no mock board.
+    /// The lane does not need a check by a mock board now.
     #[error("lane {lane} needs no check by a mock board now; scan the label of the board in it")]
     NoMock {
         /// The lane.
         lane: String,
     },
-    /// A run is under way.
+    /// A run is under way in the lane.
     #[error("lane {lane} is testing {serial}; wait until it is done, or abort it")]
     Busy {
         /// The lane.
@@ -223,7 +223,7 @@ pub enum Refusal {
         /// What it tests.
         serial: String,
     },
-    /// Its last result is not saved.
+    /// The result of the lane's last run is not saved.
     #[error(
         "lane {lane} holds {serial}, whose result is not saved; keep this board apart, and call an engineer"
     )]
@@ -233,31 +233,31 @@ pub enum Refusal {
         /// What it tested.
         serial: String,
     },
-    /// There is no board.
+    /// There is no board in the lane.
     #[error("there is no board in lane {lane}; plug it in, and scan it again")]
     NoBoard {
         /// The lane.
         lane: String,
     },
-    /// There is no serial number.
+    /// The lane has no serial number to start a run with.
     #[error("lane {lane} has no serial number; scan the board's label")]
     NoSerial {
         /// The lane.
         lane: String,
     },
-    /// It has no button.
+    /// The lane is not started by a button.
     #[error("lane {lane} is not started by a button; see `start` in the station's settings")]
     NoButton {
         /// The lane.
         lane: String,
     },
-    /// Nothing is under way.
+    /// No run is under way in the lane.
     #[error("nothing is under way in lane {lane}")]
     NothingToAbort {
         /// The lane.
         lane: String,
     },
-    /// It is in service.
+    /// The lane is already in service.
     #[error("lane {lane} is in service already")]
     InService {
         /// The lane.

@@ -28,25 +28,25 @@ pub struct Copied {
 /// A folder that is not copied. Nothing that looks like a copy is left then.
 #[derive(Debug, thiserror::Error)]
 pub enum CopyError {
-    /// The folder for the copy has something in it already.
+    /// The folder for the copy is not empty.
     #[error("{} is there already, and is no empty folder; name another one", path.display())]
     Exists {
         /// The folder.
         path: PathBuf,
     },
-    /// Another copy is being made there, or was when its program was killed.
+    /// Another copy is being made in the folder, or its program was killed.
     #[error("{} is there; remove it, if nobody is making a copy just now", path.display())]
     UnderWay {
         /// What is there.
         path: PathBuf,
     },
-    /// The new folder would be inside what is copied.
+    /// The new folder would be inside the copy that is restored.
     #[error("{} would be inside the copy that is restored; name a folder outside it", path.display())]
     Inside {
         /// The folder.
         path: PathBuf,
     },
-    /// The copy cannot be written.
+    /// The copy could not be written.
     #[error("{} cannot be written; check that its folder is writable and has space", path.display())]
     Io {
         /// The folder.
@@ -54,7 +54,7 @@ pub enum CopyError {
         /// The system's reason.
         source: io::Error,
     },
-    /// What shall be copied is not as it was written.
+    /// What is to be copied is damaged: it is not as it was written.
     #[error("faults in {}: {faults}, the first: {first}; `halfrow-station check` tells all", path.display())]
     Faulty {
         /// The folder.

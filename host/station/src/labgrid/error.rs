@@ -7,7 +7,7 @@ use serde::Deserialize;
 /// Why the lane does not get a board from labgrid.
 #[derive(Debug, thiserror::Error)]
 pub enum LabgridError {
-    /// The program that reaches labgrid did not start.
+    /// The program that reaches labgrid could not be started.
     #[error(
         "{program}, which reaches labgrid, cannot be started; install the Python package halfrow-labgrid, and name its program in \
          [labgrid]"
@@ -18,7 +18,7 @@ pub enum LabgridError {
         /// The system's reason.
         source: io::Error,
     },
-    /// It ended without an answer.
+    /// The program that reaches labgrid ended without an answer.
     #[error("{program}, which reaches labgrid, ended without an answer: {said}; start it by hand to see why")]
     Failed {
         /// The program.
@@ -26,7 +26,7 @@ pub enum LabgridError {
         /// The last line that it wrote to stderr.
         said: String,
     },
-    /// It gave no answer in time.
+    /// labgrid gave no answer in time.
     #[error(
         "labgrid gave no answer about the place {place} within {seconds} s; look at its coordinator and the place's exporter"
     )]
@@ -36,7 +36,7 @@ pub enum LabgridError {
         /// How long the answer was waited for.
         seconds: f64,
     },
-    /// Nobody answers where the coordinator should be.
+    /// labgrid's coordinator does not answer.
     #[error(
         "labgrid's coordinator {coordinator} does not answer; start it, or write `coordinator` in [labgrid] or the variable LG_COORDINATOR"
     )]
@@ -52,7 +52,7 @@ pub enum LabgridError {
         /// Those that it knows.
         known: String,
     },
-    /// Another user has it.
+    /// Another user has acquired labgrid's place.
     #[error("{holder} has labgrid's place {place}; wait until it is released, or ask them for it")]
     Held {
         /// The place.
@@ -60,7 +60,7 @@ pub enum LabgridError {
         /// Computer and user, as labgrid shows them.
         holder: String,
     },
-    /// The coordinator does not give it.
+    /// labgrid's coordinator refused to let the place be acquired.
     #[error("labgrid does not give the place {place}: {said}; see `labgrid-client -p {place} show`")]
     NotAcquired {
         /// The place.
@@ -68,13 +68,13 @@ pub enum LabgridError {
         /// What the coordinator said.
         said: String,
     },
-    /// The coordinator did not take it back.
+    /// labgrid's coordinator refused to release the place.
     #[error("labgrid does not take the place {place} back; see `labgrid-client -p {place} show`")]
     NotReleased {
         /// The place.
         place: String,
     },
-    /// There is no serial port in it.
+    /// labgrid's place has no serial port.
     #[error(
         "labgrid's place {place} has no NetworkSerialPort; give it one by `labgrid-client -p {place} add-match`"
     )]
@@ -82,7 +82,7 @@ pub enum LabgridError {
         /// The place.
         place: String,
     },
-    /// There are several, and none is called halfrow.
+    /// labgrid's place has several serial ports, and none of them is called halfrow.
     #[error(
         "labgrid's place {place} has several ports ({ports}); call the board's one halfrow, by `labgrid-client -p {place} add-named-match`"
     )]
@@ -92,7 +92,7 @@ pub enum LabgridError {
         /// Their names.
         ports: String,
     },
-    /// Its exporter does not have the port.
+    /// The exporter of labgrid's place does not have the serial port.
     #[error(
         "the port of labgrid's place {place} is not there; look at its exporter, and whether the board is plugged in"
     )]
@@ -100,7 +100,7 @@ pub enum LabgridError {
         /// The place.
         place: String,
     },
-    /// The place's serial port is exported by a protocol that adds bytes of its own to the board's.
+    /// The serial port of labgrid's place is exported by a protocol that adds bytes of its own to the board's.
     #[error(
         "the port of labgrid's place {place} is exported by {protocol}, and halfrow needs raw bytes; have ser2net serve it by plain TCP, and \
          export that as a NetworkSerialPort with protocol: raw"

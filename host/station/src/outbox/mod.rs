@@ -217,7 +217,7 @@ impl Outbox {
 /// An outbox that cannot start.
 #[derive(Debug, thiserror::Error)]
 pub enum OutboxError {
-    /// The system has no thread for it.
+    /// The system gives the program no thread for sending results.
     #[error("the system has no thread for what is to be sent; end other programs")]
     Thread(#[from] io::Error),
     /// The store does not take what is to be sent.

@@ -21,10 +21,10 @@ pub struct Serial {
 /// A serial number that a plan does not take.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SerialError {
-    /// Nothing at all.
+    /// There is no serial number in the scan.
     #[error("there is no serial number; scan the board's label")]
     Empty,
-    /// It is longer than any serial number may be, as when two labels were read together.
+    /// The serial number is longer than any may be, as when two labels were read together.
     #[error(
         "a serial number of {characters} characters is longer than {MOST_CHARACTERS}; scan one label at a time"
     )]
@@ -32,7 +32,7 @@ pub enum SerialError {
         /// How many it has.
         characters: usize,
     },
-    /// It has a character that no label has.
+    /// The serial number has a character that no label has.
     #[error(
         "character {place} of the serial number is {character:?}, not printable ASCII; scan the label again"
     )]
@@ -42,13 +42,13 @@ pub enum SerialError {
         /// Its place, from 1.
         place: usize,
     },
-    /// It is one of the station's own barcodes.
+    /// The text is one of the station's own barcodes, not a serial number.
     #[error("`{serial}` is a barcode of the station, not of a board; scan the board's label")]
     Reserved {
         /// What was scanned.
         serial: String,
     },
-    /// It is another product's, or misread.
+    /// The serial number is another product's, or was misread.
     #[error(
         "`{serial}` is no serial number of this product; scan the board's label again, \
          or take the plan of its product"
@@ -59,7 +59,7 @@ pub enum SerialError {
         /// The pattern that it does not match.
         pattern: String,
     },
-    /// It is misread.
+    /// The serial number was misread: its check digit is wrong.
     #[error("the check digit of `{serial}` is wrong ({check}); scan the board's label again")]
     CheckDigit {
         /// What was scanned.

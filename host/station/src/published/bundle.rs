@@ -22,30 +22,30 @@ pub(super) const PLAN: &str = "plan.toml";
 /// A plan that cannot be published or unpacked.
 #[derive(Debug, thiserror::Error)]
 pub enum BundleError {
-    /// A file lies outside of the plan's folder.
+    /// The plan names a file outside its own folder.
     #[error("the plan names {name}, which lies outside of its folder; put it beside the plan")]
     Outside {
         /// The name.
         name: String,
     },
-    /// A file would stand where the plan does.
+    /// The plan names a file that would take the place of the plan itself.
     #[error(
         "the plan names a file {PLAN}, which it is called itself where it is unpacked; give that file another name"
     )]
     Plan,
-    /// A file's name has control characters, with which nobody could tell where the name ends.
+    /// The plan names a file with control characters in its name, so that nobody could tell where the name ends.
     #[error("the plan names {name:?}, which has control characters; give that file another name")]
     Control {
         /// The name.
         name: String,
     },
-    /// The files are too large.
+    /// The files that the plan names are too large together.
     #[error("the plan's files have {bytes} bytes, and {MOST} may be; give fewer or smaller frames")]
     TooLarge {
         /// All of them.
         bytes: u64,
     },
-    /// A file changed since the plan was read, or cannot be read any more.
+    /// A file that the plan names was changed or removed since the plan was read.
     #[error("the file {} is not as it was when the plan was read; publish it again", path.display())]
     Changed {
         /// The file.
@@ -53,13 +53,13 @@ pub enum BundleError {
         /// The system's reason, if it has one.
         source: Option<io::Error>,
     },
-    /// A text is no bundle.
+    /// The plan at the plant is not in the form that a published plan has.
     #[error("the plant's plan {sha256} is not a plan; publish it again, and ask whoever keeps the plant")]
     Malformed {
         /// The hash.
         sha256: String,
     },
-    /// A bundle is not what its hash says.
+    /// The plan at the plant does not match its hash.
     #[error(
         "the plant's plan {sha256} has the hash {found}; publish it again, and ask whoever keeps the plant"
     )]
@@ -69,7 +69,7 @@ pub enum BundleError {
         /// The one that it has.
         found: String,
     },
-    /// It cannot be written down.
+    /// The plan cannot be written to the folder where it is to be kept.
     #[error("the plan cannot be kept in {}; check that the folder is writable and has space", path.display())]
     Folder {
         /// The folder.
@@ -77,7 +77,7 @@ pub enum BundleError {
         /// The system's reason.
         source: io::Error,
     },
-    /// What was kept cannot be read to be copied.
+    /// The plans that are kept of the plant cannot be read to be copied.
     #[error("{}, in which the plans of the plant are kept, cannot be read; check who may read it", path.display())]
     Uncopied {
         /// The file or the folder.
@@ -85,7 +85,7 @@ pub enum BundleError {
         /// The system's reason.
         source: io::Error,
     },
-    /// A file of a plan that was fetched cannot be written.
+    /// A file of a plan that was fetched from the plant cannot be written.
     #[error(transparent)]
     Unwritten(#[from] WriteAsideError),
 }

@@ -16,13 +16,13 @@ pub enum FetchError {
     /// The plant.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// Nobody has published it.
+    /// The plant has no plan of this name.
     #[error("the plant has no plan {plan}; `halfrow-station plan published` lists those that it has")]
     None {
         /// Its product and name.
         plan: String,
     },
-    /// Nobody who is trusted has signed it.
+    /// The plan at the plant is not signed by anybody who is trusted here.
     #[error(
         "the plan {plan} of the plant is not signed by a key of `trusts` in [plant], or says something else than it was asked; nothing was \
          changed: ask whoever publishes plans"
@@ -31,7 +31,7 @@ pub enum FetchError {
         /// Its product and name.
         plan: String,
     },
-    /// It is older than the one that is kept.
+    /// The plan at the plant is older than the one that is kept here.
     #[error(
         "the plant has the plan {plan} as its number {number}, and here is number {kept} already; nothing was changed: ask whoever keeps \
          the plant, and publish the older one again if it is to hold"
@@ -47,7 +47,7 @@ pub enum FetchError {
     /// What is published is not there whole, or cannot be kept.
     #[error(transparent)]
     Bundle(#[from] BundleError),
-    /// It is no plan of this program's.
+    /// This program cannot carry out the plan at the plant.
     #[error("the plan {plan} of the plant cannot be carried out by this program; nothing was changed")]
     Plan {
         /// Its product and name.

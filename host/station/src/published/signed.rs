@@ -23,7 +23,7 @@ const BYTES: usize = 32;
 /// A key that cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum SigningError {
-    /// The file cannot be made.
+    /// The file for the key cannot be made.
     #[error("the key {} cannot be made; name a file that is not there yet", path.display())]
     File {
         /// The file.
@@ -34,16 +34,16 @@ pub enum SigningError {
     /// The file cannot be read.
     #[error(transparent)]
     Secret(#[from] SecretError),
-    /// It is no key.
+    /// The file does not hold a key.
     #[error("{} is no key; make one by: halfrow-station plan key FILE", path.display())]
     NoKey {
         /// The file.
         path: PathBuf,
     },
-    /// The system has no randomness.
+    /// The system gave no random bytes for a key.
     #[error("the system has no randomness for a key; restart it")]
     NoRandomness,
-    /// A text is no public key.
+    /// The text is not a public key.
     #[error("`{text}` is no public key; copy what `halfrow-station plan key` printed")]
     NoPublicKey {
         /// The text.

@@ -13,7 +13,7 @@ use nix::fcntl::OFlag;
 /// Evidence that cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum BlobError {
-    /// The folder cannot be made or brought to the disk.
+    /// The folder for evidence cannot be made or written to the disk.
     #[error("the folder {} cannot be used; check that it is writable and has space", path.display())]
     Folder {
         /// The folder.
@@ -21,10 +21,10 @@ pub enum BlobError {
         /// The system's reason.
         source: io::Error,
     },
-    /// The file cannot be written.
+    /// A file of evidence could not be written.
     #[error(transparent)]
     Write(#[from] WriteAsideError),
-    /// The file cannot be read.
+    /// A file of evidence could not be read.
     #[error("{} cannot be read; put the file of that name from a copy of the station's folder there", path.display())]
     Read {
         /// The file.
@@ -32,7 +32,7 @@ pub enum BlobError {
         /// The system's reason.
         source: io::Error,
     },
-    /// The file is not what its name says.
+    /// A file of evidence does not match the hash that is its name.
     #[error(
         "{} holds other bytes than its name says, whose hash is {found}; put the file of that name from a copy of the station's \
          folder there",

@@ -136,7 +136,7 @@ pub struct Attachment {
 /// A record that must not be stored.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
-    /// A number is none.
+    /// A measurement came to something that is not a number.
     #[error(
         "the measurement {name} came to {value}, which is no number; report this with the plan and the board"
     )]
@@ -146,7 +146,7 @@ pub enum RecordError {
         /// Its value.
         value: f64,
     },
-    /// A PASS does not tell of every step that the plan has.
+    /// The record says PASS, but lacks the outcome of a step of the plan.
     #[error(
         "the record says PASS and has no outcome of step {seq} of {steps}; run the board again, and report this"
     )]
@@ -156,7 +156,7 @@ pub enum RecordError {
         /// How many steps the plan has.
         steps: u32,
     },
-    /// The record is of a schema that this program does not read.
+    /// The record has a schema that this program does not read.
     #[error(
         "the record is of schema {schema}, and this program reads schema {SCHEMA}; use the halfrow-station that made it"
     )]
@@ -164,7 +164,7 @@ pub enum RecordError {
         /// Its schema.
         schema: u32,
     },
-    /// It cannot be written as JSON, or read.
+    /// The record could not be written as JSON, or not read.
     #[error(
         "the record is not what schema {SCHEMA} is to this program; use the halfrow-station that made it, and if this is the one, report \
          this with the record"

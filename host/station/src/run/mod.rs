@@ -108,13 +108,13 @@ pub enum RunError {
     /// The serial number is none of the product's. Nothing was begun.
     #[error(transparent)]
     Serial(#[from] SerialError),
-    /// It could not be entered. The board was not touched.
+    /// The run could not be entered into the database, and the board was not touched.
     #[error("the run was not begun, and the board not touched")]
     NotBegun(#[source] Box<StoreError>),
     /// The same.
     #[error(transparent)]
     NoRandomness(#[from] NoRandomness),
-    /// It is over and its result not saved: there is none.
+    /// The run is over, but its result could not be saved, so there is none.
     #[error(
         "the result of run {run} could not be saved, so there is none; test the board again when this is put right"
     )]

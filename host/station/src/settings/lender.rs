@@ -41,7 +41,7 @@ impl Lender {
             return self.place(board, text);
         }
         if kinds::of(&board).is_none() {
-            let what = format!("`{}` is no kind of board", board.kind);
+            let what = format!("`{}` is not a kind of board", board.kind);
             let remedy = format!("write one as `halfrow boards` lists them, or {KIND}:PLACE");
             return Err(Fault::wrong(at, what, remedy));
         }

@@ -155,13 +155,13 @@ pub struct Change<'a> {
 /// A binding that cannot be changed.
 #[derive(Debug, thiserror::Error)]
 pub enum RebindError {
-    /// Nothing of this serial number was ever tested.
+    /// No unit of this serial number was ever tested here.
     #[error("no unit `{serial}` was ever tested here; check the serial number and the product")]
     Unknown {
         /// The serial number.
         serial: String,
     },
-    /// Several products have it.
+    /// Units of several products have this serial number.
     #[error("`{serial}` is a serial number of {first} and of {second}; say which with --product")]
     Several {
         /// The serial number.
@@ -171,7 +171,7 @@ pub enum RebindError {
         /// Another.
         second: String,
     },
-    /// Nobody says why.
+    /// No reason was given for binding the unit to another device.
     #[error("another binding needs a reason; say why: the reason is kept")]
     NoReason,
     /// The reason is longer than pages and events have room for.
@@ -184,7 +184,7 @@ pub enum RebindError {
         /// The most.
         most: usize,
     },
-    /// This is no device.
+    /// The text is not the number of a device.
     #[error(
         "`{device}` is no device; give 16 hexadecimal digits in lower case, not all 0, as a run prints them after \
          `device`"
@@ -193,7 +193,7 @@ pub enum RebindError {
         /// What was given.
         device: String,
     },
-    /// It is in a lane just now.
+    /// The unit, or its device, is being tested in a lane.
     #[error("the unit `{serial}`, or its device, is being tested; wait until the run is over")]
     UnderTest {
         /// The serial number.

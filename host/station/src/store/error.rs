@@ -11,13 +11,13 @@ use crate::trust::CertificateError;
 /// Something that the store cannot do.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
-    /// Another program has the folder.
+    /// Another program is using the station's folder.
     #[error("another halfrow-station works in {}; wait until it is done, name another folder, or use the page of the one that serves it", folder.display())]
     InUse {
         /// The folder.
         folder: PathBuf,
     },
-    /// The folder cannot be used.
+    /// The station's folder cannot be used.
     #[error("the station's folder {} cannot be used; check that it is writable and has space", folder.display())]
     Folder {
         /// The folder.
@@ -25,13 +25,13 @@ pub enum StoreError {
         /// The system's reason.
         source: io::Error,
     },
-    /// No station has written anything there.
+    /// No station has ever written to the folder.
     #[error("{} has no station's results; name the folder that a station writes to", folder.display())]
     NoResults {
         /// The folder.
         folder: PathBuf,
     },
-    /// There is evidence, and no database, or one with nothing in it.
+    /// The folder has evidence of earlier runs, but no database, or an empty one.
     #[error(
         "{} has evidence of earlier runs and no station.db that tells of them; bring back station.db and station.db-wal, restore the folder from a copy, or name \
          another folder",
@@ -41,7 +41,7 @@ pub enum StoreError {
         /// The folder.
         folder: PathBuf,
     },
-    /// A copy is being put there, or was when its program was killed.
+    /// A copy is being restored into the folder, or its program was killed.
     #[error(
         "a restore in {} has not ended; wait for it, or, if none is at work, remove .partial there and what was \
          already moved out of it into the folder, and restore again",
@@ -51,7 +51,7 @@ pub enum StoreError {
         /// The folder.
         folder: PathBuf,
     },
-    /// The database refuses.
+    /// The station's database refused an operation.
     #[error("the database {} refuses {doing}; check that its folder is writable and has space", path.display())]
     Database {
         /// The file.
@@ -61,7 +61,7 @@ pub enum StoreError {
         /// Why.
         source: DatabaseError,
     },
-    /// The file is no database, or one that is damaged, be it by the log beside it.
+    /// The database file is damaged or not a database, or the log beside it belongs to another one.
     #[error(
         "the database {} is damaged, or no database at all, or the station.db-wal beside it is the log of another \
          one; move them aside, look at the disk, and restore the folder from a copy",
@@ -73,7 +73,7 @@ pub enum StoreError {
         /// What SQLite found.
         source: DatabaseError,
     },
-    /// Another file has the name of the database that was opened, or none has.
+    /// The database file was replaced or removed while the program was using it.
     #[error(
         "the database {} was replaced or removed while this program was using it, and nothing more is kept, since \
          it would be lost; end the program, run `halfrow-station check` to see what the new database lacks, and \
@@ -84,7 +84,7 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
-    /// Another file than the one that the program holds is called `station.lock`, or none is.
+    /// The file `station.lock` was replaced or removed while the program was using it.
     #[error(
         "{} was replaced or removed while this program was using its folder, and nothing more is kept, since \
          another program could start there as well; end this one, make sure that no other uses the folder, and \
@@ -95,7 +95,7 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
-    /// The log is of another database than the one beside it.
+    /// The log beside the database belongs to another database.
     #[error(
         "the database {} was put there while station.db-wal beside it is the log of another database, which would spoil this one; if both files \
          were put there together, or an earlier program has worked there since, move station.lock out of the folder, or else bring back \
@@ -107,7 +107,7 @@ pub enum StoreError {
         /// The file.
         path: PathBuf,
     },
-    /// The disk has no room to bring it up to date.
+    /// The disk has no room to bring the database up to date.
     #[error(
         "the database {} cannot be brought up to date: its disk lacks {megabytes} MB for a copy of it as it is; \
          make room there, or go on with the earlier program",
@@ -119,7 +119,7 @@ pub enum StoreError {
         /// How many are missing.
         megabytes: u64,
     },
-    /// The plant's database refuses.
+    /// The plant's database refused an operation.
     #[error(
         "the plant {plant} refuses {doing}; check that it is there and lets this station in, and ask whoever keeps \
          it"
@@ -135,7 +135,7 @@ pub enum StoreError {
     /// It is not known to be the plant.
     #[error(transparent)]
     Certificate(#[from] CertificateError),
-    /// The plant does not have a record, or another text under its hash.
+    /// The plant lacks a record, or has another text under the record's hash.
     #[error(
         "the plant {plant} does not have the record {sha256}, or not as it was sent; the station that sent it has it"
     )]
@@ -145,7 +145,7 @@ pub enum StoreError {
         /// The hash of the record.
         sha256: String,
     },
-    /// The file system cannot keep what SQLite needs.
+    /// The file system cannot keep the log that SQLite needs.
     #[error(
         "the database {} cannot have a write-ahead log where it is ({mode}); put the folder on a local disk",
         path.display()
@@ -156,7 +156,7 @@ pub enum StoreError {
         /// The journal that it has instead.
         mode: String,
     },
-    /// It is of a newer program.
+    /// The database was made by a newer version of the program.
     #[error(
         "the database {} has version {found} and this program knows {known}; use the halfrow-station that made it",
         path.display()
@@ -169,7 +169,7 @@ pub enum StoreError {
         /// The newest that is known.
         known: i64,
     },
-    /// It is of an older program, and whoever only looks changes nothing.
+    /// The database was made by an older version of the program, and a command that only looks does not change it.
     #[error(
         "the database {} has version {found} and this program reads {known}; start the station on it once, which \
          brings it up to date and keeps a copy, or a plant's by `halfrow-station plant prepare`",
@@ -183,7 +183,7 @@ pub enum StoreError {
         /// The one that is read.
         known: i64,
     },
-    /// It was made by another text of the same version.
+    /// The database has a version of this program's, but was made by another schema of that version.
     #[error("version {version} of the database {} is not this program's; restore it from a copy", path.display())]
     OtherSchema {
         /// The file.
@@ -217,13 +217,13 @@ pub enum StoreError {
         /// Its lane.
         lane: String,
     },
-    /// The run is not open any more, or somebody else's.
+    /// The run is no longer open, or belongs to another program.
     #[error("the run {run} is no longer this program's to finish; its lane was taken over")]
     NotOpen {
         /// The run.
         run: String,
     },
-    /// What was read back is not what was written.
+    /// The run read back otherwise than it was written.
     #[error("the run {run} reads back otherwise than it was written; check the disk")]
     ReadsOtherwise {
         /// The run.

@@ -10,7 +10,7 @@ use crate::plan::{Again, Plan};
 /// Why a unit is not tested again.
 #[derive(Debug, thiserror::Error)]
 pub enum AgainError {
-    /// The plan wants it so.
+    /// The unit has passed already, and the plan does not let it be tested again.
     #[error("{serial} passed already under this plan, at {when}; put it with the boards that passed")]
     Refused {
         /// The serial number.
@@ -18,7 +18,7 @@ pub enum AgainError {
         /// When it passed, in this computer's local time with the offset from UTC.
         when: String,
     },
-    /// Nobody has said yet that it is meant.
+    /// The unit has passed already, and nobody has yet confirmed that it is to be tested again.
     #[error("{serial} passed already under this plan, at {when}; {how} to test it again")]
     Asked {
         /// The serial number.

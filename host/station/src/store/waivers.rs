@@ -32,13 +32,13 @@ pub struct Waiver {
 /// A waiver that is not given.
 #[derive(Debug, thiserror::Error)]
 pub enum NoWaiver {
-    /// There is no run of this id that is over.
+    /// No finished run has this number.
     #[error("no run {run} is over; `halfrow-station history` lists the runs")]
     NoRun {
         /// What was asked for.
         run: String,
     },
-    /// The run is no FAIL.
+    /// The run's verdict is not FAIL, so there is nothing to waive.
     #[error("the run {run} is {verdict}, and a waiver is for a FAIL; test the unit again instead")]
     NoFail {
         /// The run.
@@ -46,7 +46,7 @@ pub enum NoWaiver {
         /// Its verdict.
         verdict: String,
     },
-    /// It has a waiver.
+    /// The run already has a waiver.
     #[error("the run {run} has a waiver already, by {}: {}; one is enough", plain(&waiver.operator), plain(&waiver.reason))]
     Waived {
         /// The run.
@@ -54,10 +54,10 @@ pub enum NoWaiver {
         /// The waiver that it has.
         waiver: Box<Waiver>,
     },
-    /// It says no reason, or no name.
+    /// The waiver lacks a reason or a name.
     #[error("a waiver needs a name and a reason; say both")]
     Empty,
-    /// Its reason is longer than pages and events have room for.
+    /// The waiver's reason is longer than pages and events have room for.
     #[error("the reason has {characters} characters, and a waiver's has {most} at most; say it in fewer")]
     TooLong {
         /// Its length.

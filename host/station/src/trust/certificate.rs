@@ -11,7 +11,7 @@ use crate::clock;
 /// The other side's certificate is not good. Moments are in the station's local time.
 #[derive(Debug, thiserror::Error)]
 pub enum CertificateError {
-    /// The other side's certificate was valid until a moment that has passed, by this computer's clock.
+    /// By this computer's clock, the other side's certificate has expired.
     #[error(
         "the certificate of {host} was valid until {until}, and this computer's clock says {now}; renew it there, or set the clock if it \
          is wrong"
@@ -24,7 +24,7 @@ pub enum CertificateError {
         /// This moment.
         now: String,
     },
-    /// The other side's certificate is valid from a later moment on, by this computer's clock.
+    /// By this computer's clock, the other side's certificate is not valid yet.
     #[error(
         "the certificate of {host} is valid from {from} on, and this computer's clock says {now}; set the clock, or wait until then if it \
          is right"
@@ -37,7 +37,7 @@ pub enum CertificateError {
         /// This moment.
         now: String,
     },
-    /// The other side's certificate is of other names than the address has.
+    /// The other side's certificate is for other names than the one in the address.
     #[error(
         "the certificate of {host} is of another name ({names}); give the address by a name that it has, or have it made for this one"
     )]
@@ -47,7 +47,8 @@ pub enum CertificateError {
         /// The names that it has.
         names: String,
     },
-    /// The other side's certificate is signed by none of those in `ca`, or of the system's own where the settings name no file.
+    /// The other side's certificate is signed by none of those in `ca`, or of the system's own where the settings name no
+    /// file.
     #[error(
         "the certificate of {host} is signed by nobody who is trusted; give a file of those that sign it as `ca`"
     )]
@@ -55,7 +56,7 @@ pub enum CertificateError {
         /// The other side.
         host: String,
     },
-    /// The other side's certificate is not good for a reason that its cause tells.
+    /// The other side's certificate was refused for a reason that the cause tells.
     #[error("the certificate of {host} is not good for this; have another one made there")]
     Unfit {
         /// The other side.

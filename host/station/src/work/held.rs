@@ -49,7 +49,7 @@ impl Held {
 /// Why something is not held any more.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Lost {
-    /// Somebody took it: the lease had run out, a person took the board out, or the job was cancelled.
+    /// The station has lost the board: its lease ran out, a person took the board out, or the job was cancelled.
     #[error(
         "the board {board} is not ours any more: it was taken out, its job was cancelled, or nothing was heard of \
          this station for too long"
@@ -58,7 +58,7 @@ pub enum Lost {
         /// The board.
         board: String,
     },
-    /// The plant was not reached for so long that somebody else may have it.
+    /// The plant could not be reached for so long that somebody else may have the board.
     #[error(
         "the plant was not reached for {seconds} s, and somebody else may have the board {board} by now ({said})"
     )]

@@ -45,7 +45,7 @@ pub enum WorkError {
     /// The run has no verdict.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// The station has not the plan that it said it has.
+    /// The station lacks the plan of a job, although it said that it has it.
     #[error("this station does not have the plan {sha256} of the job {job}; report this with the version")]
     NoPlan {
         /// The job.
@@ -53,7 +53,7 @@ pub enum WorkError {
         /// The plan's hash.
         sha256: String,
     },
-    /// The board's place is none.
+    /// The board's place at the plant is not a target that this program can open.
     #[error("the plant says that the board {board} is at {target}, which is no board; share it anew")]
     Target {
         /// The board.
@@ -63,7 +63,7 @@ pub enum WorkError {
         /// Why that is none.
         source: TargetError,
     },
-    /// The plant is there, and does not take what the job came to.
+    /// The plant was reached, but refused the run of a job.
     #[error(
         "the plant does not take the run {run}, which is kept here: {said}; `halfrow-station outbox list` shows its \
          state"

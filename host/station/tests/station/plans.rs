@@ -321,7 +321,7 @@ fn a_plan_that_is_no_text_is_told_as_that() {
     assert!(refused.to_string().ends_with("save it as text in UTF-8"), "{refused}");
     assert_eq!(
         std::error::Error::source(&refused).unwrap().to_string(),
-        "it is no text from byte 28 on, in line 3"
+        "it is not text from byte 28 on, in line 3"
     );
     let refused = Plan::load(Path::new("/dev/zero")).unwrap_err();
     assert_eq!(std::error::Error::source(&refused).unwrap().to_string(), "it is longer than 1048576 bytes");

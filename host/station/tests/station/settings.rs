@@ -203,12 +203,16 @@ const WRONG: &[(&str, &str, &str)] = &[
     ("[[on-error]]", "[labgrid]\nplace = \"a\"\n[[on-error]]", "station.toml:30: unknown field `place`"),
     ("usb:1-2.3", "usb", "station.toml:19: `usb` is whichever board is plugged in; write usb:"),
     ("usb:1-2.3", "serial:/dev/ttyUSB0", "station.toml:19: `serial:/dev/ttyUSB0` is another board when"),
-    ("usb:1-2.3", "usv:1-2.3", "station.toml:19: `usv` is no kind of board; write one as `halfrow boards`"),
+    (
+        "usb:1-2.3",
+        "usv:1-2.3",
+        "station.toml:19: `usv` is not a kind of board; write one as `halfrow boards`",
+    ),
     ("usb:1-2.3", "", "station.toml:19: the board cannot be used: an empty target names no board"),
     (
         "mock,serial=1",
         "mock,fault=zz",
-        "station.toml:24: the board cannot be used: the target `mock,fault=zz` is not one that",
+        "station.toml:24: the board cannot be used: the target `mock,fault=zz` does not suit",
     ),
     ("\"mock,serial=1\"", "\"usb:1-2.3,channel=a\"", "station.toml:24: lane 1 has the board"),
     ("[\"b.toml\"]", "[]", "station.toml:25: lane left has no plan; name the file of one"),

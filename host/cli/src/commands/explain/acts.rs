@@ -5,6 +5,9 @@
 const MEND_TABLES: &str = "mend first what `check` says of records, and if this is still reported, put back a copy \
                            of the database: station.db, or the plant's";
 
+/// What to do where the cause says it.
+const CAUSE: &str = "do what its cause says, which has a code of its own";
+
 /// Each code with its act, in the order of the codes.
 pub(super) const ACTS: &[(&str, &str)] = &[
     ("audit-contradicts", MEND_TABLES),
@@ -12,7 +15,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "board-of-other-datapath",
         "load a bitstream of a datapath that this halfrow knows, or install a halfrow that knows the board's",
     ),
-    ("board-option-unknown", "choose from KNOWN"),
+    ("board-option-wrong", CAUSE),
     (
         "builtin-frame-unknown",
         "use one of the names in the message, which are those of the files that `halfrow frames` writes",
@@ -25,7 +28,8 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     ),
     ("command-failed", "do what the end of its sentence says, then run again"),
     ("evidence-not-written", "make room on the station's disk, then test the board again"),
-    ("fault-unknown", "choose from KNOWN"),
+    ("fault-not-made", CAUSE),
+    ("fault-parameter-wrong", CAUSE),
     (
         "fault-without-effect",
         "give the run what its sentence says is missing, or choose another fault of `halfrow faults`",
@@ -40,7 +44,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "frame-does-not-fit-tables",
         "use a frame of the tables' size and depth, or make tables for the frame's",
     ),
-    ("frame-file-not-understood", "do what its cause says, which has a code of its own"),
+    ("frame-file-not-understood", CAUSE),
     ("frame-format-not-supported", "convert the file to PGM, PNG, TIFF or DNG as the message says"),
     ("frame-impossible", "correct the size that its sentence names, or crop or pad the frame"),
     ("frame-not-encoded", "do what its cause says, or write another format"),
@@ -123,7 +127,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "put photographs as .png files into one of the folders, or name another with --images",
     ),
     ("picture-is-no-png", "end its name in .png"),
-    ("plan-not-kept", "do what its cause says, which has a code of its own"),
+    ("plan-not-kept", CAUSE),
     ("plan-without-mock", "write `bad` into the plan's [shift], or give --serial and --board"),
     (
         "pool-without-board",
@@ -140,9 +144,9 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "run again; if it refuses each time, correct what the board says of itself (`halfrow info`), or load another bitstream",
     ),
     ("row-factors-impossible", "give one row factor for each row, within the range that its cause names"),
-    ("run-evidence-wrong", "do what its cause says, which has a code of its own"),
-    ("run-not-begun", "do what its cause says, which has a code of its own"),
-    ("run-record-wrong", "do what its cause says, which has a code of its own"),
+    ("run-evidence-wrong", CAUSE),
+    ("run-not-begun", CAUSE),
+    ("run-record-wrong", CAUSE),
     (
         "run-too-long",
         "give it more with --timeout, or use a faster link; if nothing came at the end, check the board's power and the cable",
@@ -168,12 +172,12 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "simulation-not-built",
         "install Verilator (`apt-get install verilator g++`), and build with Cargo's feature `sim`",
     ),
-    ("sink-file-not-written", "do what its cause says, which has a code of its own"),
+    ("sink-file-not-written", CAUSE),
     (
         "sink-folder-read-only",
         "mount it writable, or let the service write to it by `systemctl edit halfrow-station`",
     ),
-    ("station-input-names-unusable", "do what its cause says, which has a code of its own"),
+    ("station-input-names-unusable", CAUSE),
     ("station-input-wrong", "do what the end of its sentence says"),
     ("table-depth-unknown", "make the tables again with `halfrow tables` and --bits 8, 10 or 12"),
     (
@@ -203,7 +207,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "write one of the kinds that `halfrow help verify` names for --board; a serial port is serial:/dev/ttyUSB0",
     ),
     ("target-option-unknown", "choose from KNOWN"),
-    ("target-options-wrong", "do what its cause says, which has a code of its own"),
+    ("target-options-wrong", CAUSE),
     ("tcp-silent", "switch that host on, or have its firewall let this port through"),
     ("usage-argument-missing", "give what the message names; `halfrow help COMMAND` shows the form"),
     ("usage-argument-unknown", "correct or leave out the argument; `halfrow help COMMAND` lists all"),
@@ -231,6 +235,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     ),
     ("usb-several-boards", "choose one of the targets that the message names"),
     ("waveform-not-written", "check that the folder of the waveform exists, is writable and has space"),
+    ("wire-option-wrong", CAUSE),
 ];
 
 /// The act for the error `code`, whose message is `sentence`: from [`ACTS`], else the message's own if it is complete.

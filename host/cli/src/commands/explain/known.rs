@@ -54,7 +54,9 @@ pub(super) fn known() -> BTreeMap<String, Vec<Explanation>> {
         add(&finding.code(), &|it| {
             it.sentence = finding.sentence();
             let bench = codes::bench(&finding).map(|bench| format!("At the bench: {bench}"));
-            it.acts = bench.into_iter().chain(codes::act(&finding)).collect();
+            let next = codes::act(&finding);
+            let next = next.map(|act| if bench.is_some() { format!("Next: {act}") } else { act });
+            it.acts = bench.into_iter().chain(next).collect();
             (it.verdict, it.fault) = (verdict, fault(verdict));
         });
     }
@@ -96,8 +98,8 @@ fn words() -> impl Iterator<Item = Explanation> {
         code: check.to_string(),
         of: "check".to_owned(),
         meaning: meaning(check.name()).to_owned(),
-        fault: "as the finding beside it says, which has a code of its own",
-        acts: vec!["Ask `halfrow explain` for the code of that finding.".to_owned()],
+        fault: "depends on the result: the code of the finding beside it says whose it is",
+        acts: vec!["Run `halfrow explain` with the code of that finding.".to_owned()],
         place: "`name` of each of a result's `checks`",
         ..Explanation::default()
     });
@@ -123,7 +125,9 @@ const fn act(verdict: Verdict) -> &'static str {
         Verdict::Fail => {
             "Do what stands after \"At the bench\", then run again. If the board fails again, set it aside with its report."
         }
-        Verdict::Error => "Do what stands after `do`, then run again: nothing is known of the board yet.",
+        Verdict::Error => {
+            "Do what the last line of the result says, then run again: nothing is known of the board yet."
+        }
     }
 }
 
@@ -140,18 +144,17 @@ fn of_entry(entry: &Value) -> Explanation {
         ),
         Some("not-exercised") => (
             Some(Verdict::Pass),
-            "nobody's: the frames of the run leave it open; stream others, or all built-in ones",
+            "nobody's: the run did not test it; stream other frames, or all built-in ones",
             "`not_exercised` of a result",
         ),
         Some("station-error") => (
             None,
-            "never the board's result: the station's, its settings', its plant's or the call's",
+            "not the board's: the station's, its settings', its plant's or the command's",
             "what `halfrow-station` answers with `--json`, and what `check` finds",
         ),
         _ => (
             None,
-            "never the board's result: no verdict and exit code 2 where the call or a file is wrong, else ERROR (link, \
-             station, time)",
+            "not the board's: exit code 2 if the command or a file is wrong, otherwise ERROR (most often exit code 3)",
             "`error` of a result and its `causes`; `finding`, where it ends a run",
         ),
     };
@@ -171,8 +174,8 @@ fn fault(verdict: Option<Verdict>) -> &'static str {
     match verdict {
         Some(Verdict::Pass) => "nobody's: it is as it must be",
         Some(Verdict::Fail) => "the board's",
-        Some(Verdict::Error) => "the link's, the station's or the call's: the board was not judged by it",
-        None => "nobody's: it says what was not done",
+        Some(Verdict::Error) => "the link's, the station's or the command's: the board was not judged",
+        None => "nobody's: it only says what was not done",
     }
 }
 

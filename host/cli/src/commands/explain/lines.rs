@@ -12,7 +12,7 @@ struct Line {
 }
 
 /// Whose concern a line is that only informs.
-const NOBODYS: &str = "nobody's: it tells what was done";
+const NOBODYS: &str = "nobody's: it is information only";
 
 const LINES: &[Line] = &[
     Line {
@@ -46,7 +46,7 @@ const LINES: &[Line] = &[
     Line {
         word: "skipped",
         meaning: "The check beside it was not made, and nothing is known of what it looks at.",
-        fault: "as the check says that ended the run, or the option that left this one out",
+        fault: "depends on the check that ended the run; nobody's if an option left this one out",
         act: "Look at the check that is not `ok`, put that right, and run again.",
         place: "`outcome` of each of a result's `checks`, `skipped`",
     },
@@ -61,7 +61,7 @@ const LINES: &[Line] = &[
         word: "differs",
         meaning: "A frame of a soak that came out wrong, and when.",
         fault: "the board's",
-        act: "Do what stands after `do`: a fault that comes with time is most often one of heat, supply or timing.",
+        act: "Look at heat, supply and timing first: a fault that comes with time is most often one of these.",
         place: "`differences` of a result's `soak`",
     },
     Line {
@@ -84,7 +84,7 @@ const LINES: &[Line] = &[
         word: "link",
         meaning: "What went over the link, and how much of it came damaged or had to be sent again.",
         fault: "the link's: none of it leads to FAIL",
-        act: "Try the cable alone with `halfrow link`, if any was damaged.",
+        act: "If packets were damaged or sent again, test the cable alone with `halfrow link`.",
         place: "`link` of a result",
     },
     Line {
@@ -121,16 +121,16 @@ const LINES: &[Line] = &[
     },
     Line {
         word: "do",
-        meaning: "What to do first: \"At the bench\" is a technician's part, \"Next\" that of whoever designed the board.",
-        fault: "as the verdict says",
+        meaning: "What to do: \"At the bench\" is for the technician, \"Next\" for whoever designed the board.",
+        fault: "depends on the verdict",
         act: "Do it, then run again.",
         place: "`technician` and `remedy` of a result",
     },
     Line {
         word: "explain",
-        meaning: "The codes of this result, in a call that tells more of each.",
-        fault: "as each code says",
-        act: "Call it.",
+        meaning: "A command that tells more about each code of this result.",
+        fault: "depends on the code",
+        act: "Run that command.",
         place: "`finding`, `suspects` and `not_exercised` of a result",
     },
 ];

@@ -58,6 +58,7 @@ pub(super) fn list(plan: &Plan, target: &Target, as_json: bool) -> Result<Exit, 
     }
     let line = |Listed { number, name, tables, timing, variation }: &Listed| {
         let variation = variation.map_or_else(String::new, |variation| format!(", {variation}"));
+        let tables = if *tables == "judged" { "your" } else { tables };
         format!("{number:>4}  {name:<24} {tables:<6} tables, {timing}{variation}")
     };
     let mut lines: Vec<_> = listed.iter().map(line).collect();

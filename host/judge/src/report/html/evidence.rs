@@ -113,7 +113,7 @@ fn section(
             }
             (summary(frame, kept))
             div.previews {
-                (preview(input.as_ref(), "As it went in, developed for the screen"))
+                (preview(input.as_ref(), "Input (rendered for viewing)"))
                 (preview(found.as_ref(), &came_out(frame)))
             }
             (details)
@@ -134,10 +134,10 @@ fn as_bright(kept: &Evidence) -> Cow<'_, Frame> {
 
 fn came_out(frame: &FrameReport) -> String {
     match frame.comparison.by_row.len().saturating_sub(frame.rows) {
-        0 => "As the board corrected it".to_owned(),
+        0 => "Board output".to_owned(),
         missing => {
             let rows = count(missing, "row");
-            format!("As the board corrected it; {rows} had not come back when the run ended, and are black")
+            format!("Board output; {rows} had not come back when the run ended, and are black")
         }
     }
 }

@@ -94,10 +94,10 @@ pub(super) fn link(link: &LinkReport) -> Markup {
             (pair("Bytes", format!("{} out, {} in", grouped(link.bytes_out), grouped(link.bytes_in))))
             (pair("Packets", format!("{} out, {} in", grouped(link.packets_out), grouped(link.packets_in))))
             (pair("Damaged", format!("{} out, {} in", grouped(link.damaged_out), grouped(link.damaged_in))))
-            (pair("Sent again", format!("{}; too poor beyond {}", grouped(link.retries), grouped(link.retry_limit))))
+            (pair("Sent again", format!("{}; limit {}", grouped(link.retries), grouped(link.retry_limit))))
             @if link.late.saturating_add(link.strays) > 0 {
-                (pair("Late", format!("{} answered late, {} that nobody waited for",
-                    count(link.late, "request"), count(link.strays, "packet"))))
+                (pair("Late", format!("{} answered late, {} (duplicates or late answers)",
+                    count(link.late, "request"), count(link.strays, "unexpected packet"))))
             }
             @if link.line_errors.sum() > 0 { (pair("Line errors", link.line_errors.to_string())) }
             @if let Some(time) = link.round_trip_us { (pair("Round trip", format!("{} µs", grouped(time)))) }
@@ -116,11 +116,11 @@ pub(super) fn board(report: &Report) -> Markup {
         section {
             h2 { "Board" }
             dl {
-                (pair("Kind", board.kind.to_string()))
+                (pair("Kind", wording::kind_of(board)))
                 (pair("Target", &board.target))
                 @match &board.identity {
                     Some(identity) => @for (name, value) in identity.lines() { (pair(name, value)) },
-                    None => (pair("identity", "it never said what it is")),
+                    None => (pair("identity", wording::UNIDENTIFIED)),
                 }
             }
         }
@@ -135,7 +135,7 @@ fn tables(tables: &TablesReport) -> Markup {
             (pair("Geometry", format!("{} x {}, {} bits", tables.width, tables.height, tables.bits)))
             (pair("Optical centre", format!("column {:.1}", f64::from(tables.centre2) / 2.0)))
             @if let Some(outside) = tables.rows_outside_circle {
-                (pair("Outside the image circle", count(outside, "row")))
+                (pair("Rows outside the image circle", grouped(outside)))
             }
             (pair("CRC-32", format!("tables {}, kernel {}", tables.tables_crc32, tables.kernel_crc32)))
         }
@@ -152,7 +152,7 @@ pub(super) fn run(report: &Report) -> Markup {
             pre { (plain(&command.join(" "))) }
             dl {
                 (pair("Program", format!("halfrow {} ({})", run.version, run.commit)))
-                (pair("Cause", report.cause.to_string()))
+                (pair("Cause", wording::cause(report.cause)))
                 (pair("Seed", run.seed.to_string()))
                 (pair("Began", &run.started))
                 (pair("Ended", &run.ended))

@@ -53,7 +53,7 @@ fn chart(chart: &SoakChart) -> Markup {
                 }
             }
             div.axis { span { "0" } span { (span(whole)) } }
-            figcaption { (caption) "; red on pale, those that differ. A gap is time in which none was judged." }
+            figcaption { (caption) ". Red: wrong frames. Gaps: no frames judged." }
         }
     }
 }

@@ -37,7 +37,7 @@ fn chart(within: &WithinReport) -> Markup {
     }
     let limit = format!("M{:.1} 0h1v{HIGH}h-1z", across(within.seconds).min(WIDE - 1.0));
     let caption = format!(
-        "Single faults found in so many seconds over this link, of {} measured: at most {}",
+        "Faults found (of {}) against time on this link, up to {}",
         grouped(within.faults),
         grouped(last.found)
     );
@@ -51,7 +51,7 @@ fn chart(within: &WithinReport) -> Markup {
                 }
             }
             div.axis { span { "0" } span { (span(longest)) } }
-            figcaption { (caption) "; red, the time that there was." }
+            figcaption { (caption) "; the red line is the time that was given." }
         }
     }
 }

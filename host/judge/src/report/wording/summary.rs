@@ -20,9 +20,8 @@ pub fn summary(report: &Report) -> String {
 /// The suspects and what to do, one line each.
 pub(in crate::report) fn advice(report: &Report) -> Vec<String> {
     let said = |suspect: &Suspect| {
-        let (part, place) = (suspect.part(), suspect.place());
         [
-            format!("{part}, {place}: {}", suspect.evidence()),
+            format!("{}: {}", suspect.place(), suspect.evidence()),
             format!("At the bench: {}", suspect.technician()),
             format!("Next: {}", suspect.designer()),
         ]

@@ -13,10 +13,9 @@ pub(super) fn left_out(within: &WithinReport) -> String {
 /// a full stop.
 #[must_use]
 pub fn within(within: &WithinReport) -> Vec<String> {
-    let rate = within.bytes_per_second.map_or_else(
-        || "carries everything at once".to_owned(),
-        |rate| format!("carries {}/s", bytes(rate as u64)),
-    );
+    let rate = within
+        .bytes_per_second
+        .map_or_else(|| "has no speed limit".to_owned(), |rate| format!("carries {}/s", bytes(rate as u64)));
     let (expected, limit) = (span(within.expected_seconds), span(within.seconds));
     let some = |part: &WithinPart| match (part.taken, part.of) {
         (taken, of) if taken >= of => plain(&part.part).into_owned(),
@@ -32,7 +31,7 @@ pub fn within(within: &WithinReport) -> Vec<String> {
     } else {
         let [width, height] = within.measured_at;
         format!(
-            "coverage of this plan was not measured; it was chosen by what was measured at {width} x {height}"
+            "how many faults this selection finds was not measured; it is based on measurements at {width} x {height}"
         )
     };
     vec![

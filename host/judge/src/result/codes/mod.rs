@@ -12,7 +12,7 @@ use super::{Parameters, Problem};
 
 pub use parameter::Parameter;
 
-/// The code of a cause that no part of the program has a code for: another library's error.
+/// The error comes from another library, and has no code of its own.
 pub const FOREIGN: &str = "foreign-cause";
 
 /// The code of an error, with its figures and names.
@@ -61,7 +61,7 @@ pub fn lookup(error: &(dyn Error + 'static)) -> Option<Coded> {
     })
 }
 
-/// What the system refuses. The parameter `os_error` is the system's number, if there is one.
+/// The operating system refused an operation. The parameter `os_error` is the system's number, if there is one.
 pub const IO_CODES: [&str; 9] = [
     "io-not-found",
     "io-not-permitted",

@@ -52,7 +52,7 @@ pub(super) fn only_at_speed(row: Option<usize>, samples: usize, bits: &[u32]) ->
     Words {
         part: "timing",
         place: format!("a path that fails at the full pixel clock{bits}"),
-        defect: format!("frames that were streamed row by row are right, and frames without a pause are not{kept}"),
+        defect: format!("frames that were sent row by row are right, and the same frames without a pause are not{kept}"),
         designer: "Check the timing of the datapath at this clock, and its supply while every clock carries a sample."
             .to_owned(),
         technician: TIMING,
@@ -63,8 +63,8 @@ pub(super) fn seen_at_speed(row: Option<usize>, samples: usize, bits: &[u32]) ->
     let (bits, kept) = seen(row, samples, bits);
     Words {
         part: "timing or logic",
-        place: format!("a path that fails at the full pixel clock, and perhaps at any clock{bits}"),
-        defect: format!("seen at speed only in a frame that was not streamed{kept}"),
+        place: format!("a fault at full speed that may also occur row by row{bits}"),
+        defect: format!("the frame that was wrong at full speed was not sent row by row{kept}"),
         designer: "Stream a frame of this size with these tables: if it is right, check the timing of the datapath at this \
                    clock, and its supply; if it is not, look for what depends on size, centre, depth and tables."
             .to_owned(),
@@ -107,11 +107,8 @@ pub(super) fn sentence(finding: &Finding) -> Option<String> {
             format!("the board gives {counted} records for {} at speed", count(*right, "frame"))
         }
         Finding::MiscountedAtSpeed { frame, count, counted, right } => {
-            let (counted, right) = (grouped(*counted), grouped(*right));
-            format!(
-                "the board counts {counted} {} for frame {frame} at speed; the right number is {right}",
-                words(*count)
-            )
+            let (counted, right) = (words(*count, *counted), grouped(*right));
+            format!("the board counts {counted} for frame {frame} at speed; the right number is {right}")
         }
         Finding::BurstStalled { frame, frames, seconds } => format!(
             "frame {frame} of {frames} at speed did not come within {seconds:.1} s; check the board's clock, and \
@@ -228,31 +225,33 @@ fn shown(repetition: &Repetition) -> String {
         Repetition::NotNeeded {} => String::new(),
         Repetition::NoTrap {} => ", of which the board kept no row".to_owned(),
         Repetition::AllRight { frames } => {
-            format!("; made again by itself, it was right {}", count(*frames, "time"))
+            format!("; repeated by itself, it was right {}", count(*frames, "time"))
         }
         Repetition::Trapped { frames, row, streamed, .. } => {
             let streamed = match streamed {
                 Streamed::NotTried => "",
-                Streamed::Right => "; streamed, it is right",
-                Streamed::Wrong => "; streamed, it is wrong, too",
+                Streamed::Right => "; sent row by row, the same frame is right",
+                Streamed::Wrong => "; sent row by row, the same frame is wrong as well",
             };
-            format!("; made again, it differed at try {frames}, first in row {row}{streamed}")
+            format!("; repeated, it was wrong again at try {frames}, first in row {row}{streamed}")
         }
         Repetition::NothingTrapped { frames } => {
-            format!("; made again, it differed at try {frames}, but the board kept no row that differs")
+            format!("; repeated, it was wrong again at try {frames}, but the board kept no row that differs")
         }
-        Repetition::Impossible {} => "; it could not be made again".to_owned(),
+        Repetition::Impossible {} => "; it could not be repeated".to_owned(),
     }
 }
 
-fn words(count: BurstCount) -> &'static str {
+/// What was counted, with its number.
+fn words(count: BurstCount, counted: u32) -> String {
+    let counted = grouped(counted);
     match count {
-        BurstCount::Samples => "samples",
-        BurstCount::Rows => "rows",
-        BurstCount::LeastLatency => "pixel clocks of least latency",
-        BurstCount::MostLatency => "pixel clocks of most latency",
-        BurstCount::Generation => "as generation",
-        BurstCount::Records => "records",
+        BurstCount::Samples => format!("{counted} samples"),
+        BurstCount::Rows => format!("{counted} rows"),
+        BurstCount::LeastLatency => format!("a minimum latency of {counted} pixel clocks"),
+        BurstCount::MostLatency => format!("a maximum latency of {counted} pixel clocks"),
+        BurstCount::Generation => format!("generation {counted}"),
+        BurstCount::Records => format!("{counted} records"),
     }
 }
 

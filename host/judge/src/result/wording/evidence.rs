@@ -22,17 +22,26 @@ pub fn evidence(defect: &Defect, account: &Account) -> String {
         Account::Samples { differing, explained, contradicted, others, set_in } => {
             let onset =
                 if set_in { "; it began during the run, because earlier rows came back right" } else { "" };
-            format!("{defect} {}{onset}", samples(differing, explained, contradicted, others))
+            format!("with {defect}, {}{onset}", samples(differing, explained, contradicted, others))
         }
         Account::Words { wrong, explained, others } => {
-            let unsure =
-                if others > 0 { "; other lines would read the same, so this is not certain" } else { "" };
+            let unsure = if others > 0 {
+                "; other lines would have the same effect, so this is not certain"
+            } else {
+                ""
+            };
             let wrong = count(wrong, "wrong word");
-            format!("{defect} gives {} of the {wrong}, and changes no other{unsure}", grouped(explained))
+            format!(
+                "with {defect}, {} of the {wrong} are explained, and no others change{unsure}",
+                grouped(explained)
+            )
         }
         Account::Signatures { wrong, explained } => {
             let wrong = count(wrong, "wrong frame");
-            format!("{defect} gives the signatures of {} of the {wrong} examined", grouped(explained))
+            format!(
+                "with {defect}, the model reproduces the signatures of {} of the {wrong} examined",
+                grouped(explained)
+            )
         }
         Account::Nothing => defect,
     }
@@ -47,7 +56,7 @@ fn word(read: i64, uploaded: i64, wrong: usize) -> String {
     format!("{read} was read where {uploaded} was uploaded{first}")
 }
 
-/// What the defect gives, as the rest of a sentence. `others` is how many more defects explain everything.
+/// What the model computes with the defect, as the rest of a sentence. `others` is how many more defects explain everything.
 fn samples(differing: usize, explained: usize, contradicted: usize, others: usize) -> String {
     if explained < differing || contradicted > 0 {
         let rest = match contradicted {
@@ -56,13 +65,17 @@ fn samples(differing: usize, explained: usize, contradicted: usize, others: usiz
             more => format!(", but would change {} that are right", grouped(more)),
         };
         let differing = count(differing, "differing sample");
-        return format!("gives {} of the {differing} examined{rest}", grouped(explained));
+        return format!("the model reproduces {} of the {differing} examined{rest}", grouped(explained));
     }
     let all = match differing {
-        1 => "gives the one differing sample examined, and changes no other".to_owned(),
+        1 => {
+            "the model reproduces the one differing sample examined exactly, and changes no others".to_owned()
+        }
         more => {
             let all = grouped(more);
-            format!("gives all {all} differing samples examined, to the bit, and changes no other")
+            format!(
+                "the model reproduces all {all} differing samples examined exactly, and changes no others"
+            )
         }
     };
     match others {

@@ -1,7 +1,7 @@
 //! The sentence of a finding, and what to do about it.
 
-use super::{at_speed, designer, evidence, place, rules, suspicion};
-use crate::result::{Account, BoardKind, Defect, Doubt, Finding, LateRows, NumberedRow, RepeatedRow};
+use super::{at_speed, designer, evidence, latency, place, rules, suspicion};
+use crate::result::{Account, BoardKind, Defect, Doubt, Finding, NumberedRow, RepeatedRow};
 use crate::words::{board_name, count, differ, grouped};
 
 const CHECK_THE_LINK: &str = "Check the link, and run again.";
@@ -11,26 +11,28 @@ const CHECK_THE_LINK: &str = "Check the link, and run again.";
 pub fn sentence(finding: &Finding) -> String {
     match finding {
         Finding::GoldenSamplesFound { samples, path } => {
-            format!("this computer finds all {} golden samples ({path})", grouped(*samples))
+            format!("this computer reproduces all {} reference samples ({path})", grouped(*samples))
         }
         Finding::BoardIdentified { name, wire, datapath } => {
             format!("{}, wire {wire}, judged by datapath {datapath}", board_name(name))
         }
         Finding::EchoesReturned { bytes, echoes } => {
-            format!("{} in {} echoes came back as they went", count(*bytes, "byte"), grouped(*echoes))
+            format!(
+                "{}, {}, all came back unchanged",
+                if *echoes == 1 { "1 echo".to_owned() } else { format!("{} echoes", grouped(*echoes)) },
+                count(*bytes, "byte")
+            )
         }
         Finding::TablesUploaded { entries, nodes, generation } => {
             let nodes = count(*nodes, "kernel node");
             format!("{} table entries and {nodes}, as generation {generation}", grouped(*entries))
         }
-        Finding::TablesReadBack { ports } => {
-            format!("{} read what was uploaded", count(*ports, "datapath port"))
-        }
+        Finding::TablesReadBack { ports } => read_back(*ports),
         Finding::FramesEqual { frames, samples } => {
             format!("{}, {}, all equal", count(*frames, "frame"), count(*samples, "sample"))
         }
         Finding::LatencyRight { clocks } => {
-            format!("every row takes {clocks} pixel clocks, first and last sample")
+            format!("every row is delayed by {clocks} pixel clocks, its first and last sample alike")
         }
         Finding::TablesUnchanged {} => "the tables are still what was uploaded".to_owned(),
         Finding::TablesUnused {} => "no frame came to use them".to_owned(),
@@ -44,6 +46,14 @@ pub fn sentence(finding: &Finding) -> String {
             at_speed::sentence(other).or_else(|| rules::sentence(other)).unwrap_or_else(|| of_board(other))
         }
     }
+}
+
+fn read_back(ports: usize) -> String {
+    let ports = match ports {
+        1 => "the one read port".to_owned(),
+        some => format!("all {} read ports", grouped(some)),
+    };
+    format!("{ports} of the tables returned what was uploaded")
 }
 
 fn all_right(
@@ -106,7 +116,7 @@ fn of_board(finding: &Finding) -> String {
         Finding::CounterWrong { counter, counted, right, rule } => {
             let (counted, right) = (grouped(*counted), grouped(*right));
             let (words, bound) = (counter.words(), counter.bound());
-            let tried = rule.map(|rule| format!(" ({})", rules::meaning(rule))).unwrap_or_default();
+            let tried = rule.map(|rule| format!(" (rule: {})", rules::meaning(rule))).unwrap_or_default();
             format!("the board counts {counted} {words}; the right number is {bound}{right}{tried}")
         }
         Finding::GapsMiscounted { row, frame, counted, expected } => format!(
@@ -165,14 +175,14 @@ fn of_rows(finding: &Finding) -> String {
              output reads changed on their way in",
             count(*rows, "row")
         ),
-        Finding::LatencyWrong(late) => late_rows(late),
+        Finding::LatencyWrong(late) => latency::sentence(late),
         Finding::RowMisplaced { row, frame } => format!(
             "the board returned row {row} of frame {frame} with a place that was never sent; its bitstream and this \
              halfrow do not match"
         ),
         Finding::RowSwallowed { row, frame, again } => format!(
-            "row {row} of frame {frame} went into the board and never came out; when it was streamed again, nothing \
-             else was lost or late, but row {again} was lost, and the board counts it as taken"
+            "row {row} of frame {frame} went into the board and never came out; when it was streamed again, \
+             only row {again} was lost, although the board counts it as received"
         ),
         other => of_conduct(other),
     }
@@ -283,19 +293,6 @@ fn unjudged(finding: &Finding) -> String {
     }
 }
 
-fn late_rows(late: &LateRows) -> String {
-    let LateRows { rows, of_rows, row, frame, first, last, claimed, .. } = late;
-    let how_many = match late.are_some() {
-        true => format!("{} of {}", grouped(*rows), count(*of_rows, "row")),
-        false => count(*rows, "row"),
-    };
-    let which = if late.are_one_row() { format!(", all row {row}") } else { String::new() };
-    format!(
-        "{how_many} with another latency than the board claims{which}: row {row} of frame {frame} took {first} pixel clocks \
-         from first in to first out and {last} from last in to last out; the board claims {claimed}"
-    )
-}
-
 /// What to do about a finding, if anything.
 #[must_use]
 pub fn remedy(finding: &Finding) -> Option<String> {
@@ -321,7 +318,7 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         Finding::GenerationWrong { .. } => {
             "The board uses stale tables: check when its bank switch takes effect."
         }
-        Finding::LatencyWrong(late) => asked_of_latency(late.are_one_row()),
+        Finding::LatencyWrong(late) => latency::remedy(late.are_one_row()),
         Finding::CounterWrong { rule: Some(_), .. } => rules::REMEDY,
         Finding::CounterWrong { .. } | Finding::GapsMiscounted { .. } | Finding::LatencyMiscounted { .. } => {
             "Check the board's counters and its row player; the samples themselves were right."
@@ -336,14 +333,6 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         other => return at_speed::remedy(other).or_else(|| asked_of_conduct(other)),
     };
     Some(asked.to_owned())
-}
-
-fn asked_of_latency(is_of_one_row: bool) -> &'static str {
-    if is_of_one_row {
-        "Check the enable and the row player: the depth of the pipeline is right, as the other rows show."
-    } else {
-        "Check the depth of the pipeline behind the line memory, and the L that the capabilities advertise."
-    }
 }
 
 fn asked_of_conduct(finding: &Finding) -> Option<String> {

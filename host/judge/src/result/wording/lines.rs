@@ -6,8 +6,8 @@ use crate::result::Counting;
 pub(super) fn line_memory_data(bit: u32, value: u8) -> Words {
     Words {
         part: "data bit",
-        place: format!("line memory, data bit {bit}, {}", stuck(value)),
-        defect: format!("bit {bit} of every stored sample at {value}"),
+        place: format!("line memory, data bit {bit} {}", stuck(value)),
+        defect: format!("bit {bit} of every stored sample forced to {value}"),
         designer: format!("Check data line {bit} of the line memory, and the samples' way into it."),
         technician: MEMORY,
     }
@@ -16,8 +16,8 @@ pub(super) fn line_memory_data(bit: u32, value: u8) -> Words {
 pub(super) fn output_data(bit: u32, value: u8) -> Words {
     Words {
         part: "output bit",
-        place: format!("corrected samples, bit {bit}, {}", stuck(value)),
-        defect: format!("bit {bit} of every output at {value}"),
+        place: format!("corrected samples, bit {bit} {}", stuck(value)),
+        defect: format!("bit {bit} of every output forced to {value}"),
         designer: format!("Check data line {bit} from the datapath's output to the bank of corrected rows."),
         technician: MEMORY,
     }
@@ -26,14 +26,14 @@ pub(super) fn output_data(bit: u32, value: u8) -> Words {
 pub(super) fn line_memory_address(bit: u32, counting: Counting) -> Words {
     let counted = match counting {
         Counting::Run => "",
-        Counting::Frame => " if addresses are counted from each frame's start,",
-        Counting::Row => " if addresses are counted from each row's start,",
-        Counting::Before => " if the ring's count did not begin with this run,",
+        Counting::Frame => " and addresses counted from each frame's start",
+        Counting::Row => " and addresses counted from each row's start",
+        Counting::Before => " and the ring's count begun before this run",
     };
     Words {
         part: "address bit",
         place: format!("line memory, address bit {bit}"),
-        defect: format!("this line stuck, at either level,{counted}"),
+        defect: format!("this line stuck at 0 or at 1{counted}"),
         designer: format!("Check address line {bit} of the line memory, and the counters that drive it."),
         technician: MEMORY,
     }
@@ -42,8 +42,8 @@ pub(super) fn line_memory_address(bit: u32, counting: Counting) -> Words {
 pub(super) fn centre_bit(bit: u32, value: u8) -> Words {
     Words {
         part: "setting",
-        place: format!("the setting of the optical centre, bit {bit}, {}", stuck(value)),
-        defect: format!("bit {bit} of twice the centre's column at {value}"),
+        place: format!("the setting of the optical centre, bit {bit} {}", stuck(value)),
+        defect: format!("bit {bit} of twice the centre's column forced to {value}"),
         designer: format!(
             "Check bit {bit} of the register that holds the centre, and its way to a row's start."
         ),
@@ -54,8 +54,8 @@ pub(super) fn centre_bit(bit: u32, value: u8) -> Words {
 pub(super) fn row_table_data(bit: u32, value: u8) -> Words {
     Words {
         part: "row table data",
-        place: format!("row table, data bit {bit}, {}", stuck(value)),
-        defect: format!("bit {bit} of every entry at {value}"),
+        place: format!("row table, data bit {bit} {}", stuck(value)),
+        defect: format!("bit {bit} of every entry forced to {value}"),
         designer: format!("Check data line {bit} of the row table's memory."),
         technician: MEMORY,
     }
@@ -64,8 +64,8 @@ pub(super) fn row_table_data(bit: u32, value: u8) -> Words {
 pub(super) fn row_table_address(bit: u32, value: u8) -> Words {
     Words {
         part: "row table address",
-        place: format!("row table, address bit {bit}, {}", stuck(value)),
-        defect: format!("every entry with another bit {bit} in its number read as another"),
+        place: format!("row table, address bit {bit} {}", stuck(value)),
+        defect: format!("every entry read at its own number with bit {bit} forced to {value}"),
         designer: format!("Check address line {bit} of the row table's memory."),
         technician: MEMORY,
     }
@@ -85,8 +85,8 @@ pub(super) fn row_table_off(entries: isize) -> Words {
 pub(super) fn kernel_address(bit: u32, value: u8) -> Words {
     Words {
         part: "kernel address",
-        place: format!("kernel memory, address bit {bit}, {}", stuck(value)),
-        defect: format!("every node with another bit {bit} read as another node"),
+        place: format!("kernel memory, address bit {bit} {}", stuck(value)),
+        defect: format!("every node read at its own number with bit {bit} forced to {value}"),
         designer: format!("Check address line {bit} of the kernel's memory."),
         technician: MEMORY,
     }
@@ -95,8 +95,8 @@ pub(super) fn kernel_address(bit: u32, value: u8) -> Words {
 pub(super) fn kernel_data(weight: &str, bit: u32, value: u8) -> Words {
     Words {
         part: "kernel data",
-        place: format!("kernel memory, weight {weight}, data bit {bit}, {}", stuck(value)),
-        defect: format!("bit {bit} of {weight} at {value} in every node"),
+        place: format!("kernel memory, weight {weight}, data bit {bit} {}", stuck(value)),
+        defect: format!("bit {bit} of {weight} forced to {value} in every node"),
         designer: format!("Check data line {bit} of the memory that holds weight {weight}."),
         technician: MEMORY,
     }

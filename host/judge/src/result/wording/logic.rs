@@ -20,10 +20,11 @@ pub(super) fn tap_offset(columns: i64) -> Words {
 
 pub(super) fn tap_dead(tap: &str, reads: Option<&str>) -> Words {
     let reads = reads.map_or_else(|| "stuck at 0".to_owned(), |other| format!("reading {other}"));
+    let defect = format!("this tap {reads}");
     Words {
         part: "dead tap",
-        place: format!("tap {tap}, {reads}"),
-        defect: "this tap alone".to_owned(),
+        place: format!("tap {tap} {reads}"),
+        defect,
         designer: format!("Check the window's register of tap {tap}, and its way to the multipliers."),
         technician: LOGIC,
     }
@@ -33,7 +34,7 @@ pub(super) fn base_colour() -> Words {
     Words {
         part: "colour",
         place: "the base column's colour".to_owned(),
-        defect: "taking samples of the row's other colour".to_owned(),
+        defect: "samples of the row's other colour taken instead".to_owned(),
         designer: "Check the parity that chooses between the base columns n and n - 1.".to_owned(),
         technician: LOGIC,
     }
@@ -43,7 +44,7 @@ pub(super) fn output_rounding() -> Words {
     Words {
         part: "rounding",
         place: "the output's rounding".to_owned(),
-        defect: "dropping the fraction of the sum without adding a half, 2^13,".to_owned(),
+        defect: "the fraction of the sum dropped without adding a half (2^13)".to_owned(),
         designer: "Check the constant that is added to the weighted sum.".to_owned(),
         technician: LOGIC,
     }
@@ -53,7 +54,7 @@ pub(super) fn weight_rounding() -> Words {
     Words {
         part: "weight rounding",
         place: "the rounding of interpolated weights".to_owned(),
-        defect: "dropping their fraction without adding a half, 2^7,".to_owned(),
+        defect: "their fraction dropped without adding a half (2^7)".to_owned(),
         designer: "Check the constant that is added between two kernel nodes.".to_owned(),
         technician: LOGIC,
     }
@@ -63,7 +64,7 @@ pub(super) fn rounding() -> Words {
     Words {
         part: "rounding",
         place: "the rounding of outputs and of interpolated weights".to_owned(),
-        defect: "dropping the fractions of both without adding a half".to_owned(),
+        defect: "the fractions of both dropped without adding a half".to_owned(),
         designer: "Check the constants that are added to the weighted sum and between two kernel nodes."
             .to_owned(),
         technician: LOGIC,
@@ -79,7 +80,7 @@ pub(super) fn clamp(end: ClampEnd) -> Words {
     Words {
         part: "clamp",
         place: format!("the output's clamp, {beyond}"),
-        defect: "letting such sums wrap".to_owned(),
+        defect: "such sums left to wrap".to_owned(),
         designer: "Check the comparison that clamps the output to 0 and 2^B - 1.".to_owned(),
         technician: LOGIC,
     }
@@ -107,9 +108,9 @@ pub(super) fn depth_ignored(instead: Instead) -> Words {
 
 fn not_taken(instead: Instead, usual: &str) -> String {
     match instead {
-        Instead::Usual => format!("taking {usual} instead"),
-        Instead::FirstFrame => "keeping that of the run's first frame".to_owned(),
-        Instead::FrameBefore => "keeping that of the frame before".to_owned(),
+        Instead::Usual => format!("{usual} taken instead"),
+        Instead::FirstFrame => "that of the run's first frame kept".to_owned(),
+        Instead::FrameBefore => "that of the frame before kept".to_owned(),
     }
 }
 

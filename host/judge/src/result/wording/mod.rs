@@ -4,6 +4,7 @@ mod at_speed;
 mod bench;
 mod evidence;
 mod findings;
+mod latency;
 mod lines;
 mod logic;
 mod not_exercised;
@@ -27,7 +28,7 @@ pub(super) struct Words {
     part: &'static str,
     /// Where it is.
     place: String,
-    /// What is wrong there, as the subject of a sentence: "… gives these samples".
+    /// What is wrong there, to follow "with": "bit 3 of every output forced to 1".
     defect: String,
     /// Where the designer should look next.
     designer: String,
@@ -36,11 +37,11 @@ pub(super) struct Words {
 }
 
 /// For memory, which may have been upset once or may be broken.
-const MEMORY: &str = "Reload the bitstream and run again. If the fault comes back, set the board aside: a memory or a line of its FPGA \
-                      is broken.";
+const MEMORY: &str = "Reload the bitstream and run again. If the fault comes back, set the board aside: a memory block or an internal \
+                      connection of the FPGA is faulty, which cannot be resoldered.";
 /// For logic: if the design is wrong, every board with it is.
-const LOGIC: &str = "Make sure that the right bitstream is loaded, and run again. If the fault comes back, try another board: if that \
-                     one fails the same way, the design is wrong; otherwise set this board aside.";
+const LOGIC: &str = "Make sure that the right bitstream is loaded, and run again. If the fault comes back, try another board: if \
+                     that one fails the same way, the design or the bitstream is wrong; if it passes, set this board aside.";
 /// For timing, whose faults may come and go with supply and temperature.
 const TIMING: &str = "Switch the board off and on, reload the bitstream and run three times. If the fault comes back even once, set \
                       the board aside with its reports.";
@@ -200,7 +201,7 @@ mod tests {
             [streamed, at_speed].map(|finding| sentence(&finding))
         };
         for (others, end) in [
-            (0, "the suspect is corrected samples, bit 9, stuck at 1"),
+            (0, "the suspect is corrected samples, bit 9 stuck at 1"),
             (1, "stuck at 1, or another defect with the same effect"),
             (3, "stuck at 1, or one of 3 others with the same effect"),
         ] {

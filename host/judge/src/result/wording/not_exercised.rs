@@ -21,7 +21,7 @@ pub fn not_exercised(part: &NotExercised) -> String {
         NotExercised::KernelNodes { nodes } => format!("kernel {}", numbered("node", nodes)),
         NotExercised::Taps { taps } => named("tap", taps.len(), &taps.join(", ")),
         NotExercised::OneCentre { centre2 } => {
-            format!("any optical centre but column {:.1}", f64::from(*centre2) / 2.0)
+            format!("every optical centre other than column {:.1}", f64::from(*centre2) / 2.0)
         }
         NotExercised::CentreBits { bits } => {
             format!("{} of the optical centre's setting", numbered("bit", bits))
@@ -36,8 +36,8 @@ pub fn not_exercised(part: &NotExercised) -> String {
         NotExercised::UnseenClock { clock_hz } => {
             format!("{}, which only frames at speed show", clock(*clock_hz))
         }
-        NotExercised::Rules {} => "what the board must refuse, keep and end".to_owned(),
-        NotExercised::Grids {} => "grids, which are datapath 2".to_owned(),
+        NotExercised::Rules {} => "the protocol rules (what the board must refuse, keep and end)".to_owned(),
+        NotExercised::Grids {} => "correction grids (datapath 2)".to_owned(),
         NotExercised::FurtherRecords { filled } => {
             format!("records of bursts after the first {filled}")
         }
@@ -86,6 +86,6 @@ mod tests {
             not_exercised(&NotExercised::Depths { bits: vec![8, 10] }),
             not_exercised(&NotExercised::OneCentre { centre2: 1919 }),
         ];
-        assert_eq!(words, ["samples of 8 or 10 bits", "any optical centre but column 959.5"]);
+        assert_eq!(words, ["samples of 8 or 10 bits", "every optical centre other than column 959.5"]);
     }
 }

@@ -28,7 +28,7 @@ fn stale(rows: &[usize], frames: &[StaleFrames]) -> Words {
     }
     let clauses: Vec<_> = alike
         .iter()
-        .map(|(manner, numbers)| format!("making {rows}frame {} {manner}", list(numbers)))
+        .map(|(manner, numbers)| format!("{rows}frame {} made {manner}", list(numbers)))
         .collect();
     Words {
         part: "stale tables",
@@ -64,11 +64,15 @@ fn made_with_words(made: MadeWith, own: u8) -> String {
     }
 }
 
-/// Ascending numbers, as in "0 to 3, 7".
+/// Ascending numbers, as in "0 to 3, 7" and "6 and 7".
 pub(super) fn list(numbers: &[usize]) -> String {
+    if let [one, other] = numbers {
+        return format!("{one} and {other}");
+    }
     let runs = numbers.chunk_by(|a, b| a + 1 == *b);
     let words: Vec<_> = runs
         .map(|run| match run {
+            [one, other] => format!("{one}, {other}"),
             [first, .., last] => format!("{first} to {last}"),
             one => one.iter().map(usize::to_string).collect(),
         })
@@ -100,15 +104,15 @@ fn exchanged(source: RowSource, mostly: bool) -> Words {
         rows if rows < 0 => format!("the row {} above", -rows),
         rows => format!("the row {rows} below"),
     };
-    let (most, pause) = if mostly { ("rows holding other rows, mostly", ",") } else { ("rows holding", "") };
+    let most = if mostly { "rows holding other rows, mostly" } else { "rows holding" };
     let defect = match source {
-        RowSource::Output { frames: 0, rows } => format!("{most} {}{pause}", name(rows)),
+        RowSource::Output { frames: 0, rows } => format!("{most} {}", name(rows)),
         RowSource::Output { frames, rows } => {
             let when = if frames < 0 { "earlier" } else { "later" };
             let frames = count(frames.unsigned_abs(), "frame");
-            format!("{most} {} from {frames} {when}{pause}", name(rows))
+            format!("{most} {} from {frames} {when}", name(rows))
         }
-        RowSource::Input { rows } => format!("{most} {}, made with their own factor,", name(rows)),
+        RowSource::Input { rows } => format!("{most} {}, made with their own factor", name(rows)),
     };
     Words {
         part: "row bank",
@@ -140,7 +144,7 @@ fn lost(rows: usize, first: usize) -> Words {
             1 => format!("row {first} on its way out"),
             count => format!("{count} rows on their way out, the first row {first}"),
         },
-        defect: "losing whole rows, which stay black,".to_owned(),
+        defect: "whole rows lost, which stay black".to_owned(),
         designer: "Check that every row's samples reach their bank before it is fetched.".to_owned(),
         technician: TIMING,
     }

@@ -17,7 +17,13 @@ pub(super) fn sentence(finding: &Finding) -> Option<String> {
         }
         Finding::RulesLeftOut {} => "left out of this run".to_owned(),
         Finding::RuleBroken { rule, request, right, found } => {
-            format!("the board must {}, but it {} ({})", must(right, request), did(found), meaning(*rule))
+            let did = match (right, found) {
+                (Answer::Refused { .. }, Answer::Replied { payload }) if !payload.is_empty() => {
+                    format!("accepted it and answered with {payload}")
+                }
+                _ => did(found),
+            };
+            format!("the board must {}, but it {did} (rule: {})", must(right, request), meaning(*rule))
         }
         _ => return None,
     })
@@ -26,7 +32,7 @@ pub(super) fn sentence(finding: &Finding) -> Option<String> {
 fn must(right: &Answer, request: &str) -> String {
     match right {
         Answer::Refused { code, detail } => {
-            format!("refuse {request} as `{}`, detail {detail}", reason(*code))
+            format!("refuse {request} as {}", refusal(*code, *detail))
         }
         Answer::Replied { payload } if payload.is_empty() => format!("carry out {request}"),
         Answer::Replied { payload } => format!("answer {request} with {payload}"),
@@ -46,7 +52,7 @@ fn must(right: &Answer, request: &str) -> String {
 
 fn did(found: &Answer) -> String {
     match found {
-        Answer::Refused { code, detail } => format!("refused as `{}`, detail {detail}", reason(*code)),
+        Answer::Refused { code, detail } => format!("refused it as {}", refusal(*code, *detail)),
         Answer::Replied { payload } if payload.is_empty() => "carried it out".to_owned(),
         Answer::Replied { payload } => format!("answered with {payload}"),
         Answer::Credit { rows } => format!("gave credit for {rows}"),
@@ -63,6 +69,14 @@ fn did(found: &Answer) -> String {
     }
 }
 
+/// A refusal's name, and its detail if it has one.
+fn refusal(code: u8, detail: u16) -> String {
+    match detail {
+        0 => format!("`{}`", reason(code)),
+        _ => format!("`{}`, detail {detail}", reason(code)),
+    }
+}
+
 /// The refusal's name in WIRE.md, section 6.
 fn reason(code: u8) -> String {
     RefusalCode::from_code(code).map_or_else(|| format!("code {code}"), |reason| reason.name().to_owned())
@@ -71,43 +85,43 @@ fn reason(code: u8) -> String {
 /// The rule as a clause.
 pub(super) fn meaning(rule: Rule) -> &'static str {
     match rule {
-        Rule::Payload => "a request is cut short or has a field without meaning",
-        Rule::Kind => "the kind is no request",
-        Rule::Skipped => "what follows the fields, or means nothing in a row's place, is ignored",
-        Rule::Configuration => "a configuration is set as it is, or refused without effect",
-        Rule::Span => "a span that is in no table",
-        Rule::Entry => "a table's entry out of range",
-        Rule::Address => "entries keep to their places",
-        Rule::Damage => "a damaged packet has no effect",
-        Rule::Once => "each request has one answer, and most had two",
-        Rule::Session => "a packet of another session has no effect",
-        Rule::Held => "a board is held for 10 s after its holder's last packet",
-        Rule::NewSession => "a greeting opens the next session, which keeps nothing but tables and settings",
-        Rule::Closed => "RESET closes a session with level 1 alone, and drops tables with level 2 alone",
-        Rule::CommitCrc => "a commit with another CRC than the tables have",
-        Rule::Generation => "which generations a commit may name",
-        Rule::Shape => "a grid that the board cannot have is refused",
-        Rule::CommitFrame => "a commit takes effect with its frame",
-        Rule::Pending => "a commit is pending",
-        Rule::Forgotten => "RESET forgets a pending commit",
-        Rule::RowPlace => "a row out of place",
-        Rule::Window => "the window is as far ahead as row_banks_in says",
-        Rule::Credit => "a row beyond the window",
-        Rule::Inside => "rows are inside the core, or kept for the host",
-        Rule::Rows => "rows come back in place",
-        Rule::Samples => "samples beyond their depth go in as they are",
-        Rule::Again => "a row is sent again until it is acknowledged",
-        Rule::Banks => "row_banks_out rows are kept until they are acknowledged, and no more are made",
-        Rule::Wide => "rows of the greatest width",
-        Rule::RowNumber => "numbers of rows",
-        Rule::Burst => "what a burst can be",
-        Rule::UnderWay => "a burst is under way",
-        Rule::Records => "records are kept until the host has them",
-        Rule::Ended => "a burst ends where it is told to",
-        Rule::Cut => "RESET ends a burst",
-        Rule::Repeated => "a burst repeats its first frame",
-        Rule::Trap => "the first row with another signature than expected is kept",
-        Rule::NotReady => "a board without configuration or tables",
-        Rule::PowerUp => "RESET leaves tables as they are at power-up",
+        Rule::Payload => "a request cut short, or with a field without meaning, must be refused",
+        Rule::Kind => "a packet whose kind is not a request must be refused",
+        Rule::Skipped => "bytes after a request's fields, and unused bits of a row's place, must be ignored",
+        Rule::Configuration => "a configuration must be set as it is, or refused without effect",
+        Rule::Span => "a span outside a table must be refused",
+        Rule::Entry => "a table entry out of range must be refused, and nothing of its packet written",
+        Rule::Address => "an entry must be written where it belongs and read from there",
+        Rule::Damage => "a damaged packet must have no effect",
+        Rule::Once => "each request must have one answer, and most had two",
+        Rule::Session => "a packet of another session must have no effect",
+        Rule::Held => "a board must be held for 10 s after its holder's last packet",
+        Rule::NewSession => "a greeting must open the next session, which keeps only tables and settings",
+        Rule::Closed => "RESET must close a session at level 1 only, and drop tables at level 2 only",
+        Rule::CommitCrc => "a commit whose CRC does not match the tables must be refused",
+        Rule::Generation => "a commit of active or pending tables must be answered, generation 0 refused",
+        Rule::Shape => "a commit of a grid that the board cannot have must be refused",
+        Rule::CommitFrame => "a commit must take effect with its frame, not before",
+        Rule::Pending => "nothing may change the tables of a pending commit",
+        Rule::Forgotten => "RESET must forget a pending commit",
+        Rule::RowPlace => "a row out of place must be refused",
+        Rule::Window => "the window must be as many rows as row_banks_in says",
+        Rule::Credit => "a row beyond the window must be refused",
+        Rule::Inside => "what must not be done while rows are inside or kept must be refused",
+        Rule::Rows => "rows must come back in place, whatever was refused between them",
+        Rule::Samples => "samples beyond their depth must be counted, and go in as they are",
+        Rule::Again => "a row must be sent again when asked for, until it is acknowledged",
+        Rule::Banks => "the board must keep row_banks_out rows until they are acknowledged, and make no more",
+        Rule::Wide => "rows of the greatest width must come back right",
+        Rule::RowNumber => "rows must keep their numbers, however large these are",
+        Rule::Burst => "an impossible burst must be refused",
+        Rule::UnderWay => "what must not be done while a burst is under way must be refused",
+        Rule::Records => "records must be kept until the host has them, and sent again when asked for",
+        Rule::Ended => "a burst must end where it is told to",
+        Rule::Cut => "RESET must end a burst wherever it is",
+        Rule::Repeated => "every frame must repeat the first, in a burst that asks for it",
+        Rule::Trap => "the first row whose signature is not the expected one must be kept",
+        Rule::NotReady => "a board without configuration or tables must not be ready",
+        Rule::PowerUp => "RESET must leave the tables as they are at power-up",
     }
 }

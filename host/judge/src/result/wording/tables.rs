@@ -25,7 +25,7 @@ pub(super) fn as_seen(defect: &Defect) -> Option<Words> {
 }
 
 fn row_bit(row: usize, bit: u32, reading: &Reading, above_one: bool) -> Words {
-    let illegal = if above_one { ", above 1, so that only part of the row can be predicted," } else { "" };
+    let illegal = if above_one { " (above 1, so only part of the row can be predicted)" } else { "" };
     row_factor(
         row,
         format!("row {row}'s factor, {}", bits(bit, reading)),
@@ -52,7 +52,7 @@ fn row_factor(row: usize, place: String, defect: String) -> Words {
 
 fn grid_bit(entry: (usize, usize), bit: u32, reading: &Reading, illegal: bool) -> Words {
     let illegal =
-        if illegal { ", which leads out of the row, so that only part of it can be predicted," } else { "" };
+        if illegal { " (which leads out of the row, so only part of it can be predicted)" } else { "" };
     let (column, row) = entry;
     Words {
         part: "grid entry",
@@ -93,12 +93,12 @@ fn kernel_word(node: usize, weight: &str, bit: &str, defect: String) -> Words {
     }
 }
 
-/// "reading 5 for 7", with the generation when the other tables are right.
+/// "the value read as 5 instead of 7", with the generation when the other tables are right.
 fn read(reading: &Reading) -> String {
     let Reading { uploaded, read, generation, only, alike } = reading;
     let tables = in_tables(only.then_some(*generation));
     match alike.as_slice() {
-        [] => format!("reading {read} for {uploaded}{tables}"),
+        [] => format!("the value read as {read} instead of {uploaded}{tables}"),
         _ => format!("any one of these bits inverted{tables}"),
     }
 }
@@ -116,7 +116,7 @@ fn bits(bit: u32, reading: &Reading) -> String {
 
 fn read_value((least, most): (i64, i64), uploaded: i64, only: Option<u8>) -> String {
     let others = if least == most { String::new() } else { format!(" (or another up to {most})") };
-    format!("reading {least}{others} for {uploaded}{}", in_tables(only))
+    format!("the value read as {least}{others} instead of {uploaded}{}", in_tables(only))
 }
 
 /// The generation, if the other tables are right.
@@ -147,13 +147,13 @@ pub(super) fn read_back(defect: &Defect) -> Option<Words> {
         Defect::TableAddressStuck { table, bit, value } => {
             let stuck = match value {
                 0 => "this bit stuck at 0 for reading",
-                _ => "this bit stuck at 1, or at either level for writing too,",
+                _ => "this bit stuck at 1 for reading, or at 0 or 1 for writing as well",
             };
             (table, format!("{}, address bit {bit}", memory(*table)), stuck.to_owned())
         }
         Defect::TableWriteAddressStuck { table, bit } => {
             let place = format!("{}, write address bit {bit}", memory(*table));
-            (table, place, "this bit stuck at 0 for writing, and right for reading,".to_owned())
+            (table, place, "this bit stuck at 0 for writing but right for reading".to_owned())
         }
         Defect::TableAddressOff { table, entries } => {
             let side = if *entries < 0 { "before" } else { "after" };

@@ -23,7 +23,7 @@ pub enum SinkSettingsError {
     /// Its password or token.
     #[error(transparent)]
     Secret(#[from] SecretError),
-    /// Its token cannot stand in a request.
+    /// The sink's token has characters that cannot be sent in a request.
     #[error("{} holds no token; write it alone into one line, of letters, digits and signs of ASCII", path.display())]
     Token {
         /// The file.
@@ -37,13 +37,13 @@ pub enum SinkSettingsError {
 /// Why a sink has not taken something.
 #[derive(Debug, thiserror::Error)]
 pub enum SinkError {
-    /// Its folder is not there.
+    /// The sink's folder does not exist.
     #[error("the folder {} is not there; make it, or mount what it lies on", path.display())]
     NoFolder {
         /// The folder.
         path: PathBuf,
     },
-    /// Nothing may be written into its folder.
+    /// The station may not write into the sink's folder.
     #[error(
         "the folder {0} is read-only to the station; mount it writable, or let the service write to it: `systemctl edit \
          halfrow-station`, with ReadWritePaths={0} below [Service]", path.display()
@@ -54,7 +54,7 @@ pub enum SinkError {
         /// The file that was not written.
         source: WriteAsideError,
     },
-    /// It has a file of this name with other bytes.
+    /// The sink's folder has a file of this name with other bytes.
     #[error(
         "{} is there already with other bytes; nothing was changed: keep both, and find out which is right",
         path.display()
@@ -63,10 +63,10 @@ pub enum SinkError {
         /// The file.
         path: PathBuf,
     },
-    /// The file is not written.
+    /// The file could not be written to the sink's folder.
     #[error(transparent)]
     Unwritten(#[from] WriteAsideError),
-    /// The file that is there is not read.
+    /// A file in the sink's folder could not be read.
     #[error("{} cannot be read; check who may", path.display())]
     Unread {
         /// The file.
@@ -77,7 +77,7 @@ pub enum SinkError {
     /// The run cannot be made into what the sink wants.
     #[error(transparent)]
     Export(#[from] ExportError),
-    /// Nobody answers.
+    /// The sink's server cannot be reached.
     #[error("{host} is not reached; look at the network and the other side")]
     Unreached {
         /// The other side.
@@ -88,7 +88,7 @@ pub enum SinkError {
     /// The server's certificate does not show that it is the one that the settings name.
     #[error(transparent)]
     Certificate(#[from] CertificateError),
-    /// It answers that it cannot, for now.
+    /// The sink's server cannot take the entry for now.
     #[error("{host} answers {status}; it is asked again later")]
     Busy {
         /// The other side.
@@ -96,7 +96,7 @@ pub enum SinkError {
         /// Its answer's number.
         status: u16,
     },
-    /// The server lets the station do nothing at this address: its token is wrong, or the address is.
+    /// The sink's server refuses everything the station sends to this address: the token or the address is wrong.
     #[error("{host} answers {status} to everything; check the address and the token in the settings")]
     Closed {
         /// The other side.
@@ -104,7 +104,7 @@ pub enum SinkError {
         /// Its answer's number.
         status: u16,
     },
-    /// A broker lets nobody in under this name.
+    /// The broker refuses the station's user name or password.
     #[error("{host} does not let the station in ({said}); check user and password_file in the settings")]
     Unknown {
         /// The other side.
@@ -112,7 +112,7 @@ pub enum SinkError {
         /// What it says.
         said: String,
     },
-    /// The server refuses this one entry, and takes others.
+    /// The sink's server refuses this one entry, but takes others.
     #[error("{host} answers {status} to this ({answer}); correct there what it complains of, and release it")]
     Rejected {
         /// The other side.
@@ -122,7 +122,7 @@ pub enum SinkError {
         /// What it says.
         answer: String,
     },
-    /// It has not confirmed an event in time.
+    /// The broker did not confirm an event in time.
     #[error("{host} has not confirmed an event within {seconds} s; look at the broker")]
     Unconfirmed {
         /// The other side.

@@ -26,16 +26,16 @@ const QUIET: Duration = Duration::from_secs(10);
 /// An address of a plant that cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum PlantAddressError {
-    /// It is none.
+    /// The text is not the address of a plant.
     #[error("this is no address of a plant; write it as postgres://halfrow@db.example/plant")]
     Malformed(#[source] tokio_postgres::Error),
-    /// It says no host, no user or no database.
+    /// The plant's address lacks the host, the user or the database.
     #[error("the plant's address says no {what}; write it as postgres://halfrow@db.example/plant")]
     Without {
         /// What it does not say.
         what: &'static str,
     },
-    /// The password stands in it.
+    /// The plant's address contains a password, which anybody could see.
     #[error(
         "the plant's address has a password, which anybody may see who sees these settings; write it alone into a file, and its \
          name as password_file"

@@ -31,7 +31,7 @@ use crate::trust::CertificateError;
 /// A delivery that failed.
 #[derive(Debug, thiserror::Error)]
 pub enum PlantError {
-    /// The plant has this run with another record: somebody has made two runs of one id, or changed one.
+    /// The plant has another record of this run: two runs were made under one number, or one was changed.
     #[error(
         "the plant has the run {run} with the record {theirs}, and this station with {ours}; nothing was changed: keep both, and \
          find out which is right"
@@ -44,7 +44,7 @@ pub enum PlantError {
         /// The hash of the plant's.
         theirs: String,
     },
-    /// What it belongs to is not there yet.
+    /// The plant does not yet have the run that this entry belongs to.
     #[error(
         "the plant does not have the run {run} yet, which comes first, so this is tried again; if the plant was put back, have all sent \
          again by `halfrow-station outbox again plant`"
@@ -53,7 +53,7 @@ pub enum PlantError {
         /// The run, by its id, or of which unit.
         run: String,
     },
-    /// It was put back from a copy, or is another plant.
+    /// The plant lacks a run that it had before: it was restored from a copy, or is another plant.
     #[error(
         "the plant has lost the run {run}, so it was put back or is another one, and takes nothing more; have all sent again by \
          `halfrow-station outbox again plant`"
@@ -62,13 +62,13 @@ pub enum PlantError {
         /// The newest run that it certainly had.
         run: String,
     },
-    /// What was sent is not there when it is looked for.
+    /// The plant does not have what was just sent to it.
     #[error("the plant has not kept {subject}, which was sent; it is tried again")]
     NotKept {
         /// What was sent.
         subject: String,
     },
-    /// Another station has this name there.
+    /// Another station of the plant has this station's name.
     #[error(
         "another station of this plant is called {name}; nothing is sent until one of the two has another name in its settings, or \
          `halfrow-station plant forget {name}` says that this folder is the station's new one"
@@ -77,7 +77,7 @@ pub enum PlantError {
         /// The name.
         name: String,
     },
-    /// Its database holds texts in another order or with other letters than a station's.
+    /// The plant's database has another order of texts or another encoding than a station needs.
     #[error(
         "the database {plant} has the collation {collation} and the encoding {encoding}; make one by: createdb --template \
          template0 --encoding UTF8 --locale C NAME"

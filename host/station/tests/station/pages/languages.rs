@@ -110,7 +110,7 @@ fn under_the_fail_of_the_mock_board_nobody_is_told_to_put_the_own_board_aside() 
     });
     for (language, said, aside) in [
         ("en", "the mock board failed, as it must", "put the board aside"),
-        ("de", "Mock-Platine SCHLECHT, wie verlangt", "Platine aussondern"),
+        ("de", "Mock-Platine SCHLECHT, wie erwartet", "Platine aussondern"),
         ("zh", "模拟板不合格，符合要求", "将板卡隔离"),
     ] {
         let page = page(language);
