@@ -81,9 +81,10 @@ def read(exit_code: int, said: str) -> Report:
 
 
 def of(document: Dict[str, Any]) -> Report:
-    # Without a result there is an error instead, whose message serves as the headline.
+    # Without a result there is an error instead, whose message serves as the headline, with those of its causes.
     told = document["error"] or document.get("finding") or {}
-    headline = document.get("headline") or told.get("message") or ""
+    messages = [told.get("message") or "", *(cause["message"] for cause in told.get("causes") or ())]
+    headline = document.get("headline") or ": ".join(messages)
     remedy = document.get("remedy") or told.get("remedy") or ""
     # The message of an error ends in what to do.
     remedy = "" if document["error"] else remedy

@@ -138,6 +138,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "build `halfrow-station` too (`cargo build --release --package halfrow-station`), and keep it beside this program",
     ),
     ("recording-lost", "free some space or choose another place for the recording, then run again"),
+    ("report-folder-not-replaceable", "name a new folder inside it"),
     ("report-lost", "free some space or choose another place for the report, then run again"),
     (
         "request-refused",
