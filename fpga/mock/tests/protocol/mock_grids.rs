@@ -11,7 +11,8 @@ use halfrow_conformance::{Bench, Build, Heard, suite};
 use halfrow_mock::{Board, BoardFault, FAULTS, Options};
 use halfrow_pipe::Parameters;
 use halfrow_protocol::message::{
-    Bank, Burst, BurstMode, Commit, Hello, RefusalCode, Request, Reset, ResetLevel, Shape, Table,
+    Bank, Burst, BurstMode, Commit, Configuration, Hello, RefusalCode, Request, Reset, ResetLevel, Shape,
+    Table,
 };
 
 use crate::at_speed::Built;
@@ -57,10 +58,11 @@ fn a_mock_of_more_entries_takes_larger_grids() {
     }
 }
 
-/// A mock, with or without a fault, that waits for tables for frames of `height` rows of 64 samples.
+/// A mock, with or without a fault, that waits for tables for frames of `height` rows of 64 samples, whose optical centre is beside
+/// the middle.
 fn configured(fault: Option<BoardFault>, height: u16) -> Bench {
     let (mut bench, grids) = greeted(&Built(Options::default(), fault), &Build::default()).unwrap();
-    bench.done(&Request::Configure(narrow(&grids, height)));
+    bench.done(&Request::Configure(Configuration { centre2: 54, ..narrow(&grids, height) }));
     bench
 }
 
