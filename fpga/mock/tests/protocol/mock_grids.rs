@@ -62,7 +62,7 @@ fn a_mock_of_more_entries_takes_larger_grids() {
 /// the middle.
 fn configured(fault: Option<BoardFault>, height: u16) -> Bench {
     let (mut bench, grids) = greeted(&Built(Options::default(), fault), &Build::default()).unwrap();
-    bench.done(&Request::Configure(Configuration { centre2: 54, ..narrow(&grids, height) }));
+    bench.done(&Request::Configure(Configuration { centre2: 44, ..narrow(&grids, height) }));
     bench
 }
 
