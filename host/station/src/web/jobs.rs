@@ -1,10 +1,11 @@
 //! The plant's jobs, and the boards that are shared: who has them, and who waits.
 
-use axum::extract::{Query, State};
+use axum::extract::State;
 use axum::response::Response;
 use maud::{Markup, html};
 use serde::Deserialize;
 
+use super::fields::Fields;
 use super::history::show;
 use super::layout::{Here, Page};
 use super::routes::{Route, Who, look};
@@ -21,17 +22,20 @@ pub(super) fn routes() -> Vec<Route> {
 }
 
 /// Which jobs are asked for.
-#[derive(Deserialize)]
+#[derive(Default, Deserialize)]
+#[serde(default)]
 struct Asked {
     /// Only those in this state; all if it is no state.
-    #[serde(default)]
     state: String,
     /// Only those that were added before this one.
-    #[serde(default)]
     after: String,
 }
 
-async fn page(State(app): State<App>, visit: Visit, Query(asked): Query<Asked>) -> Result<Response, Trouble> {
+async fn page(
+    State(app): State<App>,
+    visit: Visit,
+    Fields(asked): Fields<Asked>,
+) -> Result<Response, Trouble> {
     let states: Vec<_> = match STATES.into_iter().find(|state| *state == asked.state) {
         Some(state) => vec![state],
         None => STATES.to_vec(),

@@ -10,6 +10,7 @@
 
 mod access;
 mod assets;
+mod fields;
 mod for_ever;
 mod history;
 mod jobs;

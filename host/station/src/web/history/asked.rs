@@ -1,11 +1,8 @@
 //! What a query asks for, and the query that asks for it.
 
-use std::convert::Infallible;
-
-use axum::extract::FromRequestParts;
-use axum::http::request::Parts;
 use form_urlencoded::Serializer;
 use halfrow::Verdict;
+use serde::Deserialize;
 
 use crate::history::runs::{Filter, Place};
 use crate::history::yields::Wanted;
@@ -13,9 +10,9 @@ use crate::history::{Period, moment};
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
-/// The fields of every form of the history. What is empty asks for nothing. Of a field that is there twice the last counts, and
-/// unknown fields are left out.
-#[derive(Clone, Debug, Default)]
+/// The fields of every form of the history. What is empty asks for nothing.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
 pub(super) struct Asked {
     pub(super) serial: String,
     pub(super) verdict: String,
@@ -44,36 +41,7 @@ impl Wrong {
     }
 }
 
-impl<S: Sync> FromRequestParts<S> for Asked {
-    type Rejection = Infallible;
-
-    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, Infallible> {
-        Ok(Self::of_query(parts.uri.query().unwrap_or_default()))
-    }
-}
-
 impl Asked {
-    fn of_query(query: &str) -> Self {
-        let mut asked = Self::default();
-        for (name, value) in form_urlencoded::parse(query.as_bytes()) {
-            let field = match name.as_ref() {
-                "serial" => &mut asked.serial,
-                "verdict" => &mut asked.verdict,
-                "plan" => &mut asked.plan,
-                "station" => &mut asked.station,
-                "lane" => &mut asked.lane,
-                "operator" => &mut asked.operator,
-                "from" => &mut asked.from,
-                "until" => &mut asked.until,
-                "by" => &mut asked.by,
-                "after" => &mut asked.after,
-                _ => continue,
-            };
-            *field = value.into_owned();
-        }
-        asked
-    }
-
     /// A query for this serial number.
     pub(super) fn of_serial(serial: &str) -> Self {
         Self { serial: serial.to_owned(), ..Self::default() }
@@ -191,15 +159,6 @@ mod tests {
         let asked = Asked { serial: "A&B=ü#".to_owned(), lane: "1".to_owned(), ..Asked::default() };
         assert_eq!(asked.address("/history", None), "/history?serial=A%26B%3D%C3%BC%23&lane=1");
         assert_eq!(Asked::default().address("/history", None), "/history");
-    }
-
-    #[test]
-    fn a_query_is_never_refused_as_a_whole() {
-        let asked = Asked::of_query("serial=a&serial=b+c&no=1&lane&plan=%ff");
-        assert_eq!(
-            (asked.serial.as_str(), asked.lane.as_str(), asked.plan.as_str()),
-            ("b c", "", "\u{fffd}")
-        );
     }
 
     #[test]

@@ -12,6 +12,7 @@ use super::asked::Asked;
 use crate::export::{self, ExportError, Table};
 use crate::history::runs::{self, Filter, Place};
 use crate::store::{Snapshot, StoreError};
+use crate::web::fields::Fields;
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
@@ -34,7 +35,11 @@ enum Next {
 }
 
 /// All runs of the filter, piece by piece. A download that cannot go on breaks off, so that no part is taken for the whole.
-pub(super) async fn all(State(app): State<App>, visit: Visit, asked: Asked) -> Result<Response, Trouble> {
+pub(super) async fn all(
+    State(app): State<App>,
+    visit: Visit,
+    Fields(asked): Fields<Asked>,
+) -> Result<Response, Trouble> {
     let filter = asked.filter().map_err(|wrong| wrong.told(&visit))?;
     let (first, after) = piece(&app, &visit, &filter, None).await?;
     let download = Download { app, visit, filter, next: Some(Next::Piece(first, after)) };

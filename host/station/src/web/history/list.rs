@@ -11,6 +11,7 @@ use super::show;
 use crate::history::runs::{self, RunLine};
 use crate::history::{self, PlanName};
 use crate::store::Snapshot;
+use crate::web::fields::Fields;
 use crate::web::layout::{Here, Page};
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
@@ -19,7 +20,11 @@ use crate::web::visit::Visit;
 /// How many runs a page has.
 const RUNS: u32 = 50;
 
-pub(super) async fn page(State(app): State<App>, visit: Visit, asked: Asked) -> Result<Response, Trouble> {
+pub(super) async fn page(
+    State(app): State<App>,
+    visit: Visit,
+    Fields(asked): Fields<Asked>,
+) -> Result<Response, Trouble> {
     let asking = asked.filter().and_then(|filter| Ok((filter, asked.after()?)));
     let (filter, after) = asking.map_err(|wrong| wrong.told(&visit))?;
     let look = move |now: &Snapshot| {

@@ -11,12 +11,17 @@ use super::{bars, list, show, yields};
 use crate::history::pareto::{self, Bar, Of, Pareto};
 use crate::history::{self, PlanName};
 use crate::store::Snapshot;
+use crate::web::fields::Fields;
 use crate::web::layout::{Here, Page};
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
-pub(super) async fn page(State(app): State<App>, visit: Visit, asked: Asked) -> Result<Response, Trouble> {
+pub(super) async fn page(
+    State(app): State<App>,
+    visit: Visit,
+    Fields(asked): Fields<Asked>,
+) -> Result<Response, Trouble> {
     let choices = [("part", Of::Part), ("check", Of::Check)];
     let asking = asked.wanted().and_then(|wanted| Ok((wanted, asked.by(&choices)?)));
     let (wanted, by) = asking.map_err(|wrong| wrong.told(&visit))?;

@@ -10,6 +10,7 @@ use super::acts::RefusedAct;
 use super::asked::Asked;
 use super::{acts, mismatch, show};
 use crate::history::unit::{self, Binding, Unit, UnitRun};
+use crate::web::fields::Fields;
 use crate::web::layout::{Here, Page};
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
@@ -18,7 +19,11 @@ use crate::web::visit::Visit;
 /// The most runs that are shown; a unit that checks shifts has thousands.
 const MOST_RUNS: usize = 200;
 
-pub(super) async fn page(State(app): State<App>, visit: Visit, asked: Asked) -> Result<Response, Trouble> {
+pub(super) async fn page(
+    State(app): State<App>,
+    visit: Visit,
+    Fields(asked): Fields<Asked>,
+) -> Result<Response, Trouble> {
     shown(app, visit, asked, None).await
 }
 

@@ -14,6 +14,7 @@ use crate::history::rate::Rate;
 use crate::history::yields::{self, By, Flip, Yield, Yields};
 use crate::history::{self, PlanName};
 use crate::store::Snapshot;
+use crate::web::fields::Fields;
 use crate::web::layout::{Here, Page};
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
@@ -28,7 +29,11 @@ const MOST_LINES: usize = 120;
 /// With fewer units a share says little.
 pub(super) const FEW: u64 = 30;
 
-pub(super) async fn page(State(app): State<App>, visit: Visit, asked: Asked) -> Result<Response, Trouble> {
+pub(super) async fn page(
+    State(app): State<App>,
+    visit: Visit,
+    Fields(asked): Fields<Asked>,
+) -> Result<Response, Trouble> {
     let choices = [
         ("plan", By::Plan),
         ("day", By::Day),
