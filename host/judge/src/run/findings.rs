@@ -212,7 +212,7 @@ impl Findings {
         self.checks.retain(|check| matches!(check.name, CheckName::Judge | CheckName::Identity));
     }
 
-    /// Notes the check that ended the run. Behind an upload that failed, what was read back was of earlier tables.
+    /// Notes the check that ended the run. After an upload that failed, what was read back was of earlier tables.
     pub(super) fn note_end(&mut self, end: &End) {
         if end.name() == CheckName::Upload {
             self.checks.retain(|check| check.name != CheckName::ReadBack);
