@@ -202,20 +202,22 @@ fn line(text: &str, span: &Range<usize>) -> usize {
 }
 
 fn seconds<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
-    let seconds = f64::deserialize(deserializer)?;
-    match Duration::try_from_secs_f64(seconds) {
-        Ok(_) => Ok(Some(seconds)),
-        Err(_) => {
-            Err(D::Error::custom(format!("{} is no time in seconds, which is 0 or more", Short(seconds))))
-        }
-    }
+    time(deserializer, |_| true, "0 or more")
 }
 
 fn time_limit<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    time(deserializer, |limit| !limit.is_zero(), "more than 0")
+}
+
+fn time<'de, D: Deserializer<'de>>(
+    deserializer: D,
+    is_legal: fn(&Duration) -> bool,
+    legal: &str,
+) -> Result<Option<f64>, D::Error> {
     let seconds = f64::deserialize(deserializer)?;
-    match Duration::try_from_secs_f64(seconds) {
-        Ok(limit) if !limit.is_zero() => Ok(Some(seconds)),
-        _ => Err(D::Error::custom(format!("{} is no time in seconds, which is more than 0", Short(seconds)))),
+    match Duration::try_from_secs_f64(seconds).ok().filter(is_legal) {
+        Some(_) => Ok(Some(seconds)),
+        None => Err(D::Error::custom(format!("{} is no time in seconds, which is {legal}", Short(seconds)))),
     }
 }
 

@@ -42,8 +42,7 @@ pub fn counted<T: TryFrom<u64> + Clone + Send + Sync + 'static>(
 /// A whole number, such as a seed.
 #[must_use]
 pub fn whole_number() -> impl TypedValueParser<Value = u64> {
-    NonEmptyStringValueParser::new()
-        .try_map(|text| text.parse().map_err(|_| format!("give a whole number, 0 to {}", u64::MAX)))
+    counted(0, Some(u64::MAX))
 }
 
 /// A number of seconds, in the range `within`.

@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         let link = Told { figures: &figures, retry_limit: most, too_poor };
         return print_or_tell(exit, &result_text("link", exit, Some(&board), json!({ "link": link }))?);
     }
-    let (figures, last) = (text(&figures), enough(&figures.errors, limit));
+    let (figures, last) = (text(&figures), enough(&figures.errors, limit, too_poor));
     print_or_tell(exit, &format!("{:<12} {} ({})\n{figures}\n{last}", "board", board.target, board.kind))
 }
 
@@ -73,8 +73,7 @@ fn judged_over(errors: &Errors, limit: RetryLimit) -> (u64, bool) {
 }
 
 /// `too poor for verify: 9.6 % sent again (120 of 1,250), the limit is 5 % and 16`
-fn enough(errors: &Errors, limit: RetryLimit) -> String {
-    let (_, too_poor) = judged_over(errors, limit);
+fn enough(errors: &Errors, limit: RetryLimit, too_poor: bool) -> String {
     let verdict = if too_poor { "too poor for verify" } else { "good enough for verify" };
     let share = 100.0 * errors.retries as f64 / errors.packets_out.max(1) as f64;
     let (again, all) = (grouped(errors.retries), grouped(errors.packets_out));

@@ -71,15 +71,9 @@ impl AsideFolder {
         let something = tempfile::NamedTempFile::new_in(self.path())?;
         let tried = fs::rename(&self.target, self.path());
         something.close()?;
+        let refusals = [CrossesDevices, PermissionDenied, ReadOnlyFilesystem, ResourceBusy];
         match tried {
-            Err(error)
-                if matches!(
-                    error.kind(),
-                    CrossesDevices | PermissionDenied | ReadOnlyFilesystem | ResourceBusy
-                ) =>
-            {
-                Err(error)
-            }
+            Err(error) if refusals.contains(&error.kind()) => Err(error),
             _ => Ok(()),
         }
     }

@@ -16,6 +16,9 @@ const USUAL_LINKS: [(&str, f64); 3] =
 /// The assumed round trip over a link that was not measured, in seconds.
 const ROUND_TRIP: f64 = 0.001;
 
+/// What the document calls the tables that the run is about.
+const JUDGED: &str = "judged";
+
 /// A frame that would be streamed.
 #[derive(Serialize)]
 struct Listed {
@@ -58,7 +61,7 @@ pub(super) fn list(plan: &Plan, target: &Target, as_json: bool) -> Result<Exit, 
     }
     let line = |Listed { number, name, tables, timing, variation }: &Listed| {
         let variation = variation.map_or_else(String::new, |variation| format!(", {variation}"));
-        let tables = if *tables == "judged" { "your" } else { tables };
+        let tables = if *tables == JUDGED { "your" } else { tables };
         format!("{number:>4}  {name:<24} {tables:<6} tables, {timing}{variation}")
     };
     let mut lines: Vec<_> = listed.iter().map(line).collect();
@@ -80,7 +83,7 @@ fn listing(plan: &Plan) -> Vec<Listed> {
         };
         let variation = plan.variation(&segment.geometry);
         listed.extend(segment.frames.iter().map(|frame| {
-            let tables = if frame.generation == run::DECOY { "decoy" } else { "judged" };
+            let tables = if frame.generation == run::DECOY { "decoy" } else { JUDGED };
             Listed { number: frame.number, name: frame.source.name(), tables, timing, variation }
         }));
     }
