@@ -2,17 +2,27 @@
 
 use std::borrow::Cow;
 
-/// `1 frame`, `16 frames`, `17,280 rows`.
+/// `1 frame`, `16 frames`, `17,280 rows`, `8 tries`.
 #[must_use]
 pub fn count(number: impl Copy + ToString, what: &str) -> String {
     let number = grouped(number);
-    let ending = if number == "1" { "" } else { "s" };
-    format!("{number} {what}{ending}")
+    match what.strip_suffix('y').filter(|stem| !stem.ends_with(['a', 'e', 'o'])) {
+        _ if number == "1" => format!("{number} {what}"),
+        Some(stem) => format!("{number} {stem}ies"),
+        None => format!("{number} {what}s"),
+    }
 }
 
-/// The verb that follows a count of things.
-pub(crate) fn differ(number: impl Copy + ToString) -> &'static str {
-    if number.to_string() == "1" { "differs" } else { "differ" }
+/// The verb that follows a count of things, from its `plural`: `differs` or `differ`, `is` or `are`.
+#[must_use]
+pub fn verb(number: impl Copy + ToString, plural: &str) -> Cow<'_, str> {
+    match plural {
+        _ if number.to_string() != "1" => plural.into(),
+        "are" => "is".into(),
+        "were" => "was".into(),
+        "have" => "has".into(),
+        regular => format!("{regular}s").into(),
+    }
 }
 
 /// A number with a comma before every third digit from the right.
@@ -114,6 +124,15 @@ mod tests {
     fn every_third_digit_is_set_off() {
         let numbers = [0, 12, 999, 1_000, 33_177_600].map(grouped);
         assert_eq!(numbers, ["0", "12", "999", "1,000", "33,177,600"]);
+    }
+
+    #[test]
+    fn one_thing_is_told_as_one() {
+        let told = |number, what| format!("{} {}", count(number, what), verb(number, "differ"));
+        assert_eq!([told(1, "frame"), told(0, "frame")], ["1 frame differs", "0 frames differ"]);
+        assert_eq!([told(1, "entry"), told(2_000, "entry")], ["1 entry differs", "2,000 entries differ"]);
+        assert_eq!(count(2, "day"), "2 days");
+        assert_eq!(["are", "were", "have"].map(|plural| verb(1, plural)), ["is", "was", "has"]);
     }
 
     #[test]

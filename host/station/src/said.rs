@@ -5,6 +5,7 @@ use std::fmt;
 
 use halfrow::result::codes::Parameter;
 use halfrow::result::{Finding, Parameters, Problem};
+use halfrow::words::{count, verb};
 use serde::{Deserialize, Serialize, Serializer};
 use serde_json::{Value, json};
 
@@ -192,7 +193,7 @@ pub enum Saying {
     StoppedBefore,
     #[error("the link was tested: {link}")]
     LinkTested { link: String },
-    #[error("{wrong} answers hold other bytes than were sent, with a right CRC")]
+    #[error("{} {} other bytes than were sent, with a right CRC", count(*.wrong, "answer"), verb(*.wrong, "hold"))]
     LinkAnswersWrong { wrong: u64 },
     #[error("the board was exchanged during the run: {first} became {now}")]
     BoardSwapped { first: String, now: String },
@@ -217,7 +218,7 @@ pub enum Saying {
     /// What the plan has a limit for was not measured.
     #[error("{sentence}")]
     NotMeasured { sentence: String, name: String, unit: String, low: Option<f64>, high: Option<f64> },
-    #[error("{passed} of {planned} steps passed, and nothing is known of the others")]
+    #[error("{passed} of {} passed, and nothing is known of the others", count(*.planned, "step"))]
     StepsUnknown { passed: usize, planned: u32 },
     #[error("not reached")]
     StepNotReached,
@@ -248,8 +249,8 @@ pub enum Saying {
     #[error("the result is saved here, but not at the plant yet; the lane waits for the plant")]
     NotAtPlant,
     #[error(
-        "{entries} results are not at the plant yet, and at most {most} may wait; look at the network and the \
-             plant"
+        "{} {} not at the plant yet, and at most {most} may wait; look at the network and the plant",
+        count(*.entries, "result"), verb(*.entries, "are")
     )]
     TooMuchUnsent { entries: u32, most: u32 },
     #[error("the disk is {percent} % full; make room on it, or have the plant take what is unsent")]

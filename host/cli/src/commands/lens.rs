@@ -15,7 +15,7 @@ use crate::files::prepare_files;
 use halfrow::call::Files;
 use halfrow::frames::{self, HeatMap};
 use halfrow::optics::{Optics, OpticsError, TablesBy};
-use halfrow::words::grouped;
+use halfrow::words::{count, grouped, verb};
 use halfrow_lab::{Amounts, Residuals};
 
 #[derive(Debug, Args)]
@@ -106,7 +106,7 @@ impl<'a> Figures<'a> {
 
     fn text(&self) -> String {
         let (camera, lens) = (&self.optics.camera, self.optics.camera.lens());
-        let geometry = camera.geometry();
+        let (geometry, outside) = (camera.geometry(), camera.rows_outside_circle());
         let mut lines = vec![
             self.optics.source(),
             format!(
@@ -118,14 +118,12 @@ impl<'a> Figures<'a> {
                 geometry.centre2()
             ),
             format!(
-                "f = {:.3} pixels, lens model valid to {:.1} degrees; image circle {:.1} degrees; {} outside it",
+                "f = {:.3} pixels, lens model valid to {:.1} degrees; image circle {:.1} degrees; {} {} outside it",
                 lens.focal_length(),
                 lens.widest().to_degrees(),
                 camera.field_of_view().to_degrees(),
-                match camera.rows_outside_circle() {
-                    1 => "1 row lies".to_owned(),
-                    rows => format!("{} rows lie", grouped(rows)),
-                }
+                count(outside, "row"),
+                verb(outside, "lie")
             ),
         ];
         lines.extend(self.errors());

@@ -15,7 +15,7 @@ use halfrow::board::Board;
 use halfrow::board::deadlines::RetryLimit;
 use halfrow::link_test::{self, Errors, Figures, LinkTestError, Rate, RoundTrips, Throughput};
 use halfrow::result::BoardReport;
-use halfrow::words::{count, grouped};
+use halfrow::words::{count, grouped, verb};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -100,8 +100,7 @@ fn text(figures: &Figures) -> String {
         [("to board", &figures.to_board), ("to host", &figures.to_host), ("together", &figures.together)];
     lines.extend(parts.map(|(name, both)| format!("{name:<12} {}", rates(both))));
     if errors.wrong > 0 {
-        let (answers, hold) =
-            (count(errors.wrong, "answer"), if errors.wrong == 1 { "holds" } else { "hold" });
+        let (answers, hold) = (count(errors.wrong, "answer"), verb(errors.wrong, "hold"));
         lines.push(format!("{:<12} {answers} {hold} other bytes than were sent, with a right CRC", "BOARD"));
     }
     lines.join("\n")

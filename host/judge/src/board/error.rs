@@ -30,7 +30,8 @@ pub enum BoardError {
     TurnedAway(Box<LinkError>),
     /// The board did not answer a request, although it was sent several times.
     #[error(
-        "no answer to {kind} in {attempts} tries ({:.1} s){}",
+        "no answer to {kind} in {} ({:.1} s){}",
+        count(*.attempts, "try"),
         waited.as_secs_f64(),
         suspect(*.heard)
     )]
@@ -156,8 +157,8 @@ pub enum BoardError {
     },
     /// A row did not come back from the board.
     #[error(
-        "row {row} of frame {frame} did not come back in {attempts} tries; run `halfrow verify` to find out whether \
-         the board or the link loses it", row = .place.row, frame = .place.frame
+        "row {row} of frame {frame} did not come back in {}; run `halfrow verify` to find out whether the board or the \
+         link loses it", count(*.attempts, "try"), row = .place.row, frame = .place.frame
     )]
     RowMissing {
         /// The row.

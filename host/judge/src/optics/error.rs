@@ -7,6 +7,7 @@ use halfrow_model::{CameraError, GeometryError, GridRoomError, LensError, TableE
 use crate::kernels::{DamagedKernel, UnknownKernel};
 use crate::lenses::{LensContentError, LensFileError};
 use crate::tables::TableFileError;
+use crate::words::{count, verb};
 
 /// A lens, tables or a kernel that cannot be had.
 #[derive(Debug, thiserror::Error)]
@@ -89,6 +90,8 @@ impl OpticsError {
 /// How many rows lie outside the image circle, and where the circle is.
 pub(super) fn circle(outside: usize, rows: usize, radius: f64, centre: f64) -> String {
     format!(
-        "{outside} of {rows} rows lie outside the image circle, whose radius is {radius:.3} pixels around row {centre:.1}"
+        "{outside} of {} {} outside the image circle, whose radius is {radius:.3} pixels around row {centre:.1}",
+        count(rows, "row"),
+        verb(outside, "lie")
     )
 }

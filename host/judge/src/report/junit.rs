@@ -13,7 +13,7 @@ use quick_junit::{
 use super::wording;
 use crate::result::{Check, FrameReport, Outcome, Report};
 use crate::verdict::Verdict;
-use crate::words::{count, differ, grouped, plain};
+use crate::words::{count, grouped, plain, verb};
 
 /// The report as an XML document.
 ///
@@ -94,8 +94,10 @@ fn check_case(check: &Check) -> TestCase {
 fn frame_case(report: &Report, frame: &FrameReport) -> TestCase {
     let comparison = &frame.comparison;
     let message = match comparison.differences {
-        0 => format!("{} of {} rows came back", frame.rows, comparison.by_row.len()),
-        some => format!("{} of {} {}", grouped(some), count(comparison.samples, "sample"), differ(some)),
+        0 => format!("{} of {} came back", frame.rows, count(comparison.by_row.len(), "row")),
+        some => {
+            format!("{} of {} {}", grouped(some), count(comparison.samples, "sample"), verb(some, "differ"))
+        }
     };
     let first = comparison.first.map_or_else(String::new, |first| {
         format!(

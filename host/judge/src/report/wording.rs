@@ -15,7 +15,7 @@ use crate::result::{
 };
 use crate::run::DECOY;
 use crate::verdict::{Cause, Verdict};
-use crate::words::{board_name, bytes, count, differ, grouped, percent, plain, span};
+use crate::words::{board_name, bytes, count, grouped, percent, plain, span, verb};
 
 pub use coverage::coverage;
 pub(super) use summary::advice;
@@ -288,7 +288,7 @@ pub fn soak(soak: &SoakReport) -> String {
     words.push_str(&judged);
     match soak.wrong {
         0 => words.push_str(", none of which differs"),
-        wrong => words.push_str(&format!(", {} of which {}", grouped(wrong), differ(wrong))),
+        wrong => words.push_str(&format!(", {} of which {}", grouped(wrong), verb(wrong, "differ"))),
     }
     if soak.paused > 0 {
         words.push_str(&format!("; {} with pauses", grouped(soak.paused)));

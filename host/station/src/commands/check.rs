@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use halfrow::words::count;
+use halfrow::words::{count, verb};
 use serde_json::json;
 
 use super::{Failure, document};
@@ -53,13 +53,15 @@ fn text(checked: &Checked) -> String {
     let mut lines: Vec<_> = checked.faults.iter().map(|fault| format!("fault: {fault}")).collect();
     lines.extend(checked.superseded.iter().map(|note| format!("note: {note}")));
     if checked.open > 0 {
-        let (runs, are) = (count(checked.open, "run"), if checked.open == 1 { "is" } else { "are" });
+        let (runs, are) = (count(checked.open, "run"), verb(checked.open, "are"));
         lines.push(format!("{runs} {are} open; the next start of the station closes what is open"));
     }
     if checked.pruned > 0 {
-        lines.push(format!("{} pieces of evidence were removed since they were old", checked.pruned));
+        let (pieces, were) = (count(checked.pruned, "piece"), verb(checked.pruned, "were"));
+        lines.push(format!("{pieces} of evidence {were} removed because of age"));
     }
-    let (runs, evidence, faults) = (checked.runs, checked.evidence, checked.faults.len());
-    lines.push(format!("{runs} runs and {evidence} pieces of evidence were read, {faults} faults found"));
+    let (runs, pieces) = (count(checked.runs, "run"), count(checked.evidence, "piece"));
+    let faults = count(checked.faults.len(), "fault");
+    lines.push(format!("{runs} and {pieces} of evidence were read, {faults} found"));
     lines.join("\n")
 }

@@ -5,6 +5,7 @@ use std::{fs, io};
 
 use clap::Args;
 use halfrow::files::written_aside::{Aside, WriteAsideError, write_aside};
+use halfrow::words::{self, verb};
 
 use super::looking::{Filtered, Results};
 use super::{Failure, print};
@@ -76,7 +77,8 @@ fn all(of: &Snapshot, filter: &Filter, format: Format, to: &Path) -> Result<Exit
             write_aside(&path, false, |file| file.write_all(&bytes)).map_err(unwritten)
         })?
     };
-    print(&format!("{count} runs are in {}", to.display()))
+    let (runs, are) = (words::count(count, "run"), verb(count, "are"));
+    print(&format!("{runs} {are} in {}", to.display()))
 }
 
 /// Calls `write` for each run that passes the filter, newest first, with its id and its record's hash; returns how

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use halfrow::words::{count, verb};
 use halfrow_program::number::counted;
 use serde_json::json;
 
@@ -34,14 +35,15 @@ pub(super) fn backup(arguments: &Backup) -> Result<Exit, Failure> {
     };
     let Copied { runs, evidence, .. } = copied;
     let to = arguments.to.display();
-    let are_in = format!("{runs} runs and {evidence} pieces of evidence are in {to}{}", with_unknown(copied));
+    let (runs, pieces) = (count(runs, "run"), count(evidence, "piece"));
+    let are_in = format!("{runs} and {pieces} of evidence are in {to}{}", with_unknown(copied));
     if faults.is_empty() {
         return print(&are_in);
     }
     let mut lines: Vec<_> = faults.iter().map(|fault| format!("fault: {fault}")).collect();
     lines.push(format!(
-        "{are_in}; `restore` refuses it for {} faults, and `halfrow-station check` says whether the station has them, too",
-        faults.len()
+        "{are_in}; `restore` refuses it for {}, and `halfrow-station check` says whether the station has them, too",
+        count(faults.len(), "fault")
     ));
     console::tell(&lines.join("\n"));
     Ok(Exit::Error)
@@ -61,9 +63,8 @@ pub(super) fn restore(arguments: &Restore) -> Result<Exit, Failure> {
     let copied = kept::restore(&Folder::new(&arguments.from), &arguments.data)?;
     let Copied { runs, evidence, unknown } = copied;
     let rest = with_unknown(copied);
-    print(&format!(
-        "{runs} runs and {evidence} pieces of evidence were read back, {unknown} faults found{rest}"
-    ))
+    let (runs, pieces, faults) = (count(runs, "run"), count(evidence, "piece"), count(unknown, "fault"));
+    print(&format!("{runs} and {pieces} of evidence were read back, {faults} found{rest}"))
 }
 
 /// What a copy has beyond what its rows name.
@@ -71,7 +72,8 @@ fn with_unknown(Copied { unknown, .. }: Copied) -> String {
     if unknown == 0 {
         return String::new();
     }
-    format!("; with them {unknown} records of runs that no row names, which `halfrow-station check` tells")
+    let records = count(unknown, "record");
+    format!("; with them {records} of runs that no row names, which `halfrow-station check` tells")
 }
 
 /// Remove evidence that no row names, and that of old runs; records and rows are kept for ever
@@ -108,11 +110,15 @@ pub(super) fn prune(arguments: &Prune) -> Result<Exit, Failure> {
         return print(&document::text("prune", Exit::Pass, None, rest)?);
     }
     let Pruned { pieces, bytes } = old;
-    let by_age = older_than.map(|_| format!("{pieces} pieces of evidence were removed, {bytes} bytes; "));
+    let evidence = format!("{} of evidence {} removed", count(pieces, "piece"), verb(pieces, "were"));
+    let by_age = older_than.map(|_| format!("{evidence}, {}; ", count(bytes, "byte")));
     let Unnamed { pieces, spools, bytes } = unnamed;
     print(&format!(
-        "{}{pieces} pieces and {spools} spools that no row names were removed, {bytes} bytes; every record is kept",
-        by_age.unwrap_or_default()
+        "{}{} and {} that no row names were removed, {}; every record is kept",
+        by_age.unwrap_or_default(),
+        count(pieces, "piece"),
+        count(spools, "spool"),
+        count(bytes, "byte")
     ))
 }
 

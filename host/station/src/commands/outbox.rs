@@ -1,6 +1,7 @@
 //! `halfrow-station outbox`
 
 use clap::{Args, Subcommand};
+use halfrow::words::verb;
 use serde::Serialize;
 
 use super::beginning::{Disk, SettingsFile, sinks};
@@ -102,7 +103,7 @@ fn release(folder: &Folder, id: Option<&str>, sink: Option<&str>, why: &Why) -> 
     if released == 0 {
         return Err(Failure::call(NotDead { what: what.to_owned() }));
     }
-    print(&format!("{released} of {what} are tried again"))
+    print(&format!("{released} of {what} {} tried again", verb(released, "are")))
 }
 
 fn again(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<Exit, Failure> {
@@ -111,7 +112,7 @@ fn again(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<
     }
     let mut store = Store::open_existing(folder)?;
     let again = store.send_again(sink, &why.operator, &why.reason)?;
-    print(&format!("{again} of {sink} are sent again"))
+    print(&format!("{again} of {sink} {} sent again", verb(again, "are")))
 }
 
 fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<Exit, Failure> {
@@ -120,7 +121,7 @@ fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result
     }
     let mut store = Store::open_existing(folder)?;
     let forgotten = store.forget_sink(sink, &why.operator, &why.reason)?;
-    print(&format!("{forgotten} of {sink} are forgotten"))
+    print(&format!("{forgotten} of {sink} {} forgotten", verb(forgotten, "are")))
 }
 
 /// Sends to every sink what it does not have yet, and prints what is left.

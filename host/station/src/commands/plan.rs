@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use halfrow::words::plain;
+use halfrow::words::{count, plain, span};
 
 use super::beginning::SettingsFile;
 use super::{Failure, print, publish};
@@ -75,12 +75,12 @@ fn head(plan: &Plan) -> String {
     ];
     lines.extend(plan.files.iter().map(|file| format!("file      {} {}", file.path, file.sha256)));
     if let Some(Shift { good, bad, lasts }) = &plan.production.shift {
-        let hours = lasts.as_secs_f64() / 3600.0;
+        let span = span(lasts.as_secs_f64());
         let bad = match bad {
             Bad::Unit(serial) => serial.as_str(),
             Bad::Mock => "the mock board with a drawn fault",
         };
-        lines.push(format!("shift     {good} passes and {bad} fails in each lane every {hours} hours"));
+        lines.push(format!("shift     {good} passes and {bad} fails in each lane every {span}"));
     }
     match plan.again {
         Again::Allow => {}
@@ -128,8 +128,10 @@ fn told(step: &Step) -> String {
             )
         }
     };
-    let tries =
-        if step.retries == 0 { String::new() } else { format!(", tried again {} times", step.retries) };
+    let tries = match step.retries {
+        0 => String::new(),
+        some => format!(", tried again {}", count(some, "time")),
+    };
     format!("{}: {what}{tries}, within {} s", step.name, step.timeout.as_secs_f64())
 }
 

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand};
+use halfrow::words::{count, verb};
 use halfrow_program::number::counted;
 
 use super::beginning::{SettingsFile, Signal};
@@ -96,7 +97,8 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             let mut told = progress("rows removed");
             let removed =
                 Plant::connect(&address()?.patient())?.prune(before_ms, operator, reason, &mut told)?;
-            print(&format!("{removed} rows were removed; every record is kept"))
+            let (rows, were) = (count(removed, "row"), verb(removed, "were"));
+            print(&format!("{rows} {were} removed; every record is kept"))
         }
         What::Serve => serve(settings.load_without_lanes()?),
     }

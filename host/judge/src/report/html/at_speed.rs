@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use crate::compare::{Difference, bits_in};
 use crate::result::{Finding, KeptRow, Repetition};
-use crate::words::{count, differ, grouped};
+use crate::words::{count, grouped, verb};
 
 /// The section of the row that was kept, if `finding` tells of one.
 pub(super) fn section(finding: &Finding) -> Markup {
@@ -26,7 +26,7 @@ fn of_row(frame: u32, row: usize, kept: &KeptRow) -> Markup {
             h2 { "Row kept at speed" }
             p {
                 "Row " (row) " of frame " (grouped(frame)) " at speed, made with the tables of generation " (generation) ": "
-                (count(*differences, "sample")) " " (differ(*differences))
+                (count(*differences, "sample")) " " (verb(*differences, "differ"))
                 @if first.len() < *differences { "; the first " (first.len()) ":" } @else { "." }
             }
             div.scroll { table.frames {

@@ -5,7 +5,7 @@ use super::{LOGIC, TIMING, Words, suspicion};
 use crate::result::{
     BurstCount, ClockSeen, Corner, EqualAtSpeed, Finding, FlippedBit, NoBurst, Repetition, Streamed,
 };
-use crate::words::{count, differ, grouped, hertz, span};
+use crate::words::{count, grouped, hertz, span, verb};
 
 pub(super) fn changed_on_entry(
     (rows, first, frame): (usize, usize, u16),
@@ -77,7 +77,11 @@ fn seen(row: Option<usize>, samples: usize, bits: &[u32]) -> (String, String) {
     let Some(row) = row else { return (String::new(), String::new()) };
     (
         format!(", seen in {} of the corrected samples", places::bits(bits)),
-        format!("; the board kept row {row}, in which {} {}", count(samples, "sample"), differ(samples)),
+        format!(
+            "; the board kept row {row}, in which {} {}",
+            count(samples, "sample"),
+            verb(samples, "differ")
+        ),
     )
 }
 
@@ -104,7 +108,8 @@ pub(super) fn sentence(finding: &Finding) -> Option<String> {
             differs((*wrong, *frames), *first, repetition, suspect)
         }
         Finding::MiscountedAtSpeed { count: BurstCount::Records, counted, right, .. } => {
-            format!("the board gives {counted} records for {} at speed", count(*right, "frame"))
+            let (records, frames) = (count(*counted, "record"), count(*right, "frame"));
+            format!("the board gives {records} for {frames} at speed")
         }
         Finding::MiscountedAtSpeed { frame, count, counted, right } => {
             let (counted, right) = (words(*count, *counted), grouped(*right));
@@ -132,7 +137,7 @@ fn differs(
         "{} of {} {} at speed, the first is frame {}{}{suspicion}",
         grouped(wrong),
         count(frames, "frame"),
-        differ(wrong),
+        verb(wrong, "differ"),
         grouped(first),
         shown(repetition)
     )
@@ -243,15 +248,14 @@ fn shown(repetition: &Repetition) -> String {
 }
 
 /// What was counted, with its number.
-fn words(count: BurstCount, counted: u32) -> String {
-    let counted = grouped(counted);
-    match count {
-        BurstCount::Samples => format!("{counted} samples"),
-        BurstCount::Rows => format!("{counted} rows"),
-        BurstCount::LeastLatency => format!("a minimum latency of {counted} pixel clocks"),
-        BurstCount::MostLatency => format!("a maximum latency of {counted} pixel clocks"),
-        BurstCount::Generation => format!("generation {counted}"),
-        BurstCount::Records => format!("{counted} records"),
+fn words(what: BurstCount, counted: u32) -> String {
+    match what {
+        BurstCount::Samples => count(counted, "sample"),
+        BurstCount::Rows => count(counted, "row"),
+        BurstCount::LeastLatency => format!("a minimum latency of {}", count(counted, "pixel clock")),
+        BurstCount::MostLatency => format!("a maximum latency of {}", count(counted, "pixel clock")),
+        BurstCount::Generation => format!("generation {}", grouped(counted)),
+        BurstCount::Records => count(counted, "record"),
     }
 }
 

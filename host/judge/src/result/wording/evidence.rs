@@ -2,14 +2,15 @@
 
 use super::words;
 use crate::result::{Account, Defect};
-use crate::words::{count, grouped};
+use crate::words::{count, grouped, verb};
 
 /// The evidence for a defect, in one sentence without a full stop.
 #[must_use]
 pub fn evidence(defect: &Defect, account: &Account) -> String {
     match defect {
         Defect::TableLengthWrong { uploaded, read, .. } => {
-            return format!("{} entries were uploaded and {} came back", grouped(*uploaded), grouped(*read));
+            let were = verb(*uploaded, "were");
+            return format!("{} {were} uploaded and {} came back", count(*uploaded, "entry"), grouped(*read));
         }
         Defect::TableWordWrong { uploaded, read, wrong, .. }
         | Defect::GridEntryReadsWrong { uploaded, read, wrong, .. } => {
@@ -32,8 +33,9 @@ pub fn evidence(defect: &Defect, account: &Account) -> String {
             };
             let wrong = count(wrong, "wrong word");
             format!(
-                "with {defect}, {} of the {wrong} are explained, and no others change{unsure}",
-                grouped(explained)
+                "with {defect}, {} of the {wrong} {} explained, and no others change{unsure}",
+                grouped(explained),
+                verb(explained, "are")
             )
         }
         Account::Signatures { wrong, explained } => {

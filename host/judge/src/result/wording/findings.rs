@@ -2,7 +2,7 @@
 
 use super::{at_speed, designer, evidence, latency, place, rules, suspicion};
 use crate::result::{Account, BoardKind, Defect, Doubt, Finding, NumberedRow, RepeatedRow};
-use crate::words::{board_name, count, differ, grouped};
+use crate::words::{board_name, count, grouped, verb};
 
 const CHECK_THE_LINK: &str = "Check the link, and run again.";
 
@@ -24,8 +24,8 @@ pub fn sentence(finding: &Finding) -> String {
             )
         }
         Finding::TablesUploaded { entries, nodes, generation } => {
-            let nodes = count(*nodes, "kernel node");
-            format!("{} table entries and {nodes}, as generation {generation}", grouped(*entries))
+            let (entries, nodes) = (count(*entries, "table entry"), count(*nodes, "kernel node"));
+            format!("{entries} and {nodes}, as generation {generation}")
         }
         Finding::TablesReadBack { ports } => read_back(*ports),
         Finding::FramesEqual { frames, samples } => {
@@ -120,8 +120,8 @@ fn of_board(finding: &Finding) -> String {
             format!("the board counts {counted} {words}; the right number is {bound}{right}{tried}")
         }
         Finding::GapsMiscounted { row, frame, counted, expected } => format!(
-            "the board counts {counted} board clocks of gaps in row {row} of frame {frame}, but the gaps of its \
-             seed are {expected}"
+            "the board counts {} of gaps in row {row} of frame {frame}, but the gaps of its seed are {expected}",
+            count(*counted, "board clock")
         ),
         Finding::LatencyMiscounted { least, most, counted_least, counted_most } => format!(
             "the rows name latencies of {least} to {most} pixel clocks, but the board's counters say \
@@ -140,7 +140,7 @@ fn samples_differ(
         "{} of {} {}, in {} of {}",
         grouped(differences),
         count(samples, "sample"),
-        differ(differences),
+        verb(differences, "differ"),
         grouped(differing_frames),
         count(frames, "frame")
     )

@@ -1,7 +1,7 @@
 //! Words for rows with another latency than the board claims.
 
 use crate::result::LateRows;
-use crate::words::{count, grouped};
+use crate::words::{count, grouped, verb};
 
 /// The sentence of such a finding.
 pub(super) fn sentence(late: &LateRows) -> String {
@@ -10,7 +10,7 @@ pub(super) fn sentence(late: &LateRows) -> String {
         true => format!("{} of {}", grouped(*rows), count(*of_rows, "row")),
         false => count(*rows, "row"),
     };
-    let has = if *rows == 1 { "has" } else { "have" };
+    let has = verb(*rows, "have");
     let which = if late.are_one_row() { format!(", all row {row}") } else { String::new() };
     let took = match first == last {
         true => format!("took {first}"),

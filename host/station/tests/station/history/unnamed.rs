@@ -118,7 +118,7 @@ fn a_record_whose_run_has_no_row_is_told_and_is_in_every_copy() {
     let (code, said, _) = did(&folder, &["check"]);
     assert!(code == 3 && said.contains(&run) && said.contains(record), "{said}");
     let copied = did(&folder, &["backup", place.path().join("third").to_str().unwrap()]).1;
-    assert!(copied.contains("1 records of runs that no row names"), "{copied}");
+    assert!(copied.contains("1 record of runs that no row names"), "{copied}");
 }
 
 /// The power failed between the record and its row: the next start ends the run as ERROR, with another record.
@@ -255,7 +255,7 @@ fn runs_that_are_recorded_meanwhile_lose_nothing() {
                 station.store().blobs().put(b"nobody's").unwrap();
                 let (code, said, complained) = did(&station.data(), &["prune"]);
                 assert!([0, 4].contains(&code), "{complained}");
-                removals.fetch_add(usize::from(said.starts_with("1 pieces")), Ordering::Relaxed);
+                removals.fetch_add(usize::from(said.starts_with("1 piece ")), Ordering::Relaxed);
             }
         });
         let mut serials = (1..).map(|number| format!("CAT{number:05}"));
@@ -283,10 +283,10 @@ fn the_command_says_what_it_removed() {
     spool(&made.folder(), &id(BEGIN_MS, 7), 25 * HOUR);
     let folder = made.closed();
     let (code, said, _) = did(&folder, &["prune"]);
-    let expected = "1 pieces and 1 spools that no row names were removed, 11 bytes; every record is kept\n";
+    let expected = "1 piece and 1 spool that no row names were removed, 11 bytes; every record is kept\n";
     assert_eq!((code, said.as_str()), (0, expected));
     let (code, said, _) = did(&folder, &["prune", "--older-than", "1"]);
-    let expected = "1 pieces of evidence were removed, 4 bytes; 0 pieces and 0 spools that no row names \
+    let expected = "1 piece of evidence was removed, 4 bytes; 0 pieces and 0 spools that no row names \
                     were removed, 0 bytes; every record is kept\n";
     assert_eq!((code, said.as_str()), (0, expected));
 }

@@ -144,7 +144,7 @@ fn a_record_with_another_plan_than_its_hash_is_of_is_found() {
     let did = station.check();
     assert_eq!(did.code, Some(3), "{did:?}");
     assert!(
-        did.said.contains("1 faults found") && did.said.contains("has another hash than it says"),
+        did.said.contains("1 fault found") && did.said.contains("has another hash than it says"),
         "{did:?}"
     );
 }
