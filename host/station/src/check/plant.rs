@@ -148,11 +148,13 @@ impl Look<'_> {
         self.plant.others_begin(key, &device, &unit)
     }
 
-    /// Checks records, jobs and mismatches against the runs that they name.
+    /// Checks records, waivers, jobs and mismatches against the runs that they name.
     fn at_what_names_runs(&mut self) -> Result<(), StoreError> {
         let surplus = |table| move |key| Fault::Surplus { table, key };
         self.faults.extend(self.plant.unnamed_records()?.into_iter().map(surplus("record")));
         self.faults.extend(self.plant.other_mismatches()?.into_iter().map(surplus("mismatch")));
+        let waivers = self.plant.contradicted_waivers_of_plant()?.into_iter();
+        self.faults.extend(waivers.map(|run| Fault::Waiver { run }));
         let jobs = self.plant.jobs_without_runs()?.into_iter();
         self.faults.extend(jobs.map(|job| Fault::Job { job }));
         Ok(())

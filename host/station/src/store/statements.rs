@@ -166,6 +166,7 @@ statements! {
     pub(crate) MISMATCHES = "mismatches.sql";
     pub(super) KEPT_RUNS = "plant/kept-runs.sql";
     pub(super) UNNAMED_RECORDS = "plant/unnamed-records.sql";
+    pub(super) CONTRADICTED_WAIVERS = "plant/contradicted-waivers.sql";
     pub(super) JOBS_WITHOUT_RUNS = "plant/jobs-without-runs.sql";
     pub(super) PLANS_OF_JOBS = "plant/plans-of-jobs.sql";
     pub(super) OTHER_MISMATCHES = "plant/other-mismatches.sql";

@@ -84,6 +84,14 @@ impl Snapshot {
         self.rows("to tell its jobs", sql::JOBS_WITHOUT_RUNS, &[], |row| row.get(0))
     }
 
+    /// The runs of which a plant's waiver and audit tell different things; either may come before the other.
+    ///
+    /// # Errors
+    /// Like [`Self::kept_runs`].
+    pub fn contradicted_waivers_of_plant(&self) -> Result<Vec<String>, StoreError> {
+        self.rows("to tell its waivers", sql::CONTRADICTED_WAIVERS, &[], |row| row.get(0))
+    }
+
     /// The runs of mismatches that contradict their run.
     ///
     /// # Errors

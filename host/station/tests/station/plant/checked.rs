@@ -166,7 +166,7 @@ fn rows_of_old_runs_are_removed_and_nothing_else_is_missed() {
 }
 
 /// Changes that the schema allows, and part of the fault that names each.
-const CHANGES: [(&str, &str); 33] = [
+const CHANGES: [(&str, &str); 35] = [
     ("UPDATE plan SET version = '2' WHERE version = '1'", "table plan, row"),
     ("UPDATE plan SET first_used_ms = first_used_ms + 1 WHERE name = 'final'", "first_used_ms is"),
     ("UPDATE unit SET serial = 'S99' WHERE serial = 'S2'", "serial is `S99`, and the records say `S2`"),
@@ -198,6 +198,8 @@ const CHANGES: [(&str, &str); 33] = [
     ("INSERT INTO outbox VALUES ('plant', 'run', repeat('o', 36), 0, 0, NULL, NULL, NULL)", "table outbox has a row plant run ooo"),
     ("INSERT INTO origin VALUES (repeat('o', 36))", "table origin has a row ooo"),
     ("UPDATE job SET run_id = repeat('j', 36) WHERE state = 'done'", "is done, and its run is not there"),
+    ("UPDATE waiver SET reason = 'sound'", "is not as the audit has it"),
+    ("UPDATE audit SET operator_id = 'nobody' WHERE act = 'waive'", "is not as the audit has it"),
     ("UPDATE mismatch SET last_ms = last_ms + 1", "table mismatch has a row"),
     (
         "INSERT INTO run (id, station, lane, unit_id, plan_sha256, variant, operator_id, target, nth, fence, started_ms, state)
