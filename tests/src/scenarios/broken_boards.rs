@@ -145,7 +145,7 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         "another datapath",
         ",fault=wrong-datapath",
         SMALLER,
-        "this program judges datapath 1",
+        "which this program does not know",
     ),
 ];
 

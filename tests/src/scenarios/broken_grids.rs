@@ -128,7 +128,7 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
         "another datapath than one of grids",
         ",fault=wrong-datapath",
         GRID,
-        "this program judges datapath 1",
+        "which this program does not know",
     ),
 ];
 

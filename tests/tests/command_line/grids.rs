@@ -209,7 +209,7 @@ fn the_board_s_identity_names_the_datapath_that_it_is_judged_by() {
     for (call, datapath) in [(exact(&["verify", "-q"]), 2), ([&["verify", "-q"], &SMALL[..]].concat(), 1)] {
         let told = halfrow(call.iter().copied()).stdout;
         let identity = told.lines().find(|line| line.contains(" identity ")).unwrap_or_default();
-        assert!(identity.ends_with(&format!(", wire 1, judged by datapath {datapath}")), "{told}");
+        assert!(identity.ends_with(&format!(", wire 1, tables for datapath {datapath}")), "{told}");
         assert!(told.contains(", datapath 1 and 2, wire 1\n"), "{told}");
     }
 }

@@ -362,11 +362,11 @@ pub enum Finding {
     SecondLookBrokenOff(Box<BrokenOff>),
     /// No frame came back, so nothing was judged.
     NothingJudged {},
-    /// The board computes another datapath than this program judges.
+    /// The board computes a datapath that this program does not know.
     DatapathUnknown {
         /// The board's.
         datapath: u16,
-        /// The one that is judged.
+        /// The one that every board must compute, whatever further one it has.
         known: u16,
     },
     /// The plan or call requires hardware, and this is a simulated board or a recording.

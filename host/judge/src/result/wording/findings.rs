@@ -14,7 +14,7 @@ pub fn sentence(finding: &Finding) -> String {
             format!("this computer reproduces all {} reference samples ({path})", grouped(*samples))
         }
         Finding::BoardIdentified { name, wire, datapath } => {
-            format!("{}, wire {wire}, judged by datapath {datapath}", board_name(name))
+            format!("{}, wire {wire}, tables for datapath {datapath}", board_name(name))
         }
         Finding::EchoesReturned { bytes, echoes } => {
             format!(
@@ -275,8 +275,8 @@ fn unjudged(finding: &Finding) -> String {
     match finding {
         Finding::NothingJudged {} => "nothing was judged: no frame came back".to_owned(),
         Finding::DatapathUnknown { datapath, known } => format!(
-            "the board computes datapath {datapath}, but this program judges datapath {known}; load a bitstream of \
-             datapath {known}, or install a halfrow that knows {datapath}"
+            "the board computes datapath {datapath}, which this program does not know; load a bitstream of datapath \
+             {known}, or install a halfrow that knows {datapath}"
         ),
         Finding::HardwareRequired { .. } => {
             "hardware is required, and this board is not hardware, so nothing was judged; name a real board"
