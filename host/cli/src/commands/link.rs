@@ -91,14 +91,30 @@ fn text(figures: &Figures) -> String {
     let mut lines = vec![
         format!("{:<12} {link}", "link"),
         format!(
-            "{:<12} {damaged} of {} packets ({} out, {} in): {share}, below {:.1e} at 95 % confidence; {} sent again",
-            "damaged", errors.packets, errors.damaged_out, errors.damaged_in, errors.bound, errors.retries
+            "{:<12} {} of {} ({} out, {} in): {share}, below {:.1e} at 95 % confidence; {} sent again",
+            "damaged",
+            grouped(damaged),
+            count(errors.packets, "packet"),
+            grouped(errors.damaged_out),
+            grouped(errors.damaged_in),
+            errors.bound,
+            grouped(errors.retries)
         ),
-        format!("{:<12} {}", "round trip", times(round_trips)),
     ];
-    let parts =
-        [("to board", &figures.to_board), ("to host", &figures.to_host), ("together", &figures.together)];
-    lines.extend(parts.map(|(name, both)| format!("{name:<12} {}", rates(both))));
+    let timed = [
+        ("round trip", times(round_trips)),
+        ("to board", rates(&figures.to_board)),
+        ("to host", rates(&figures.to_host)),
+        ("together", rates(&figures.together)),
+    ];
+    if timed.iter().all(|(_, told)| told.is_none()) {
+        lines.push(format!("{:<12} {NOT_MEASURED}", "times"));
+    } else {
+        lines.extend(timed.map(|(name, told)| {
+            let told = told.unwrap_or_else(|| NOT_MEASURED.to_owned());
+            format!("{name:<12} {told}")
+        }));
+    }
     if errors.wrong > 0 {
         let (answers, hold) = (count(errors.wrong, "answer"), verb(errors.wrong, "hold"));
         lines.push(format!("{:<12} {answers} {hold} other bytes than were sent, with a right CRC", "BOARD"));
@@ -109,21 +125,20 @@ fn text(figures: &Figures) -> String {
 /// What replaces a figure that cannot be measured on a wire without a speed.
 const NOT_MEASURED: &str = "not measured on a simulated link";
 
-fn times(trips: &RoundTrips) -> String {
+fn times(trips: &RoundTrips) -> Option<String> {
     if trips.most_us <= 0.0 {
-        return NOT_MEASURED.to_owned();
+        return None;
     }
-    format!(
-        "median {:.0} µs, 90 % {:.0} µs, 99 % {:.0} µs, {:.0} to {:.0} µs in {}",
-        trips.median_us, trips.p90_us, trips.p99_us, trips.least_us, trips.most_us, trips.count
-    )
+    let RoundTrips { median_us, p90_us, p99_us, least_us, most_us, count } = *trips;
+    let [median, p90, p99, least, most] =
+        [median_us, p90_us, p99_us, least_us, most_us].map(|time| grouped(time.round() as u64));
+    let count = grouped(count);
+    Some(format!("median {median} µs, 90 % {p90} µs, 99 % {p99} µs, {least} to {most} µs in {count}"))
 }
 
-fn rates(both: &Throughput) -> String {
-    match (both.out.bytes_per_second, both.back.bytes_per_second) {
-        (None, None) => NOT_MEASURED.to_owned(),
-        _ => format!("{} out, {} in", rate(&both.out), rate(&both.back)),
-    }
+fn rates(both: &Throughput) -> Option<String> {
+    both.out.bytes_per_second.or(both.back.bytes_per_second)?;
+    Some(format!("{} out, {} in", rate(&both.out), rate(&both.back)))
 }
 
 fn rate(rate: &Rate) -> String {
