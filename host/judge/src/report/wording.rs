@@ -230,12 +230,7 @@ pub fn link(link: &LinkReport) -> String {
             grouped(link.retry_limit)
         )),
     }
-    if link.late > 0 {
-        parts.push(format!("{} answered late", count(link.late, "request")));
-    }
-    if link.strays > 0 {
-        parts.push(format!("{} (duplicates or late answers)", count(link.strays, "unexpected packet")));
-    }
+    parts.extend(late(link));
     if link.line_errors.sum() > 0 {
         parts.push(format!("errors on the line: {}", link.line_errors));
     }
@@ -247,6 +242,15 @@ pub fn link(link: &LinkReport) -> String {
         parts.push(format!("the board went away and came back {}", count(link.reconnections.len(), "time")));
     }
     format!("{}: {}", link.name, parts.join(", "))
+}
+
+/// What came late over a link, or twice, if anything.
+pub(super) fn late(link: &LinkReport) -> Option<String> {
+    let late = (link.late > 0).then(|| format!("{} answered late", count(link.late, "request")));
+    let strays = count(link.strays, "unexpected packet");
+    let strays = (link.strays > 0).then(|| format!("{strays} (duplicates or late answers)"));
+    let told: Vec<_> = late.into_iter().chain(strays).collect();
+    (!told.is_empty()).then(|| told.join(", "))
 }
 
 /// The share of the differences that a suspect explains; none where there is nothing to count.

@@ -95,10 +95,7 @@ pub(super) fn link(link: &LinkReport) -> Markup {
             (pair("Packets", format!("{} out, {} in", grouped(link.packets_out), grouped(link.packets_in))))
             (pair("Damaged", format!("{} out, {} in", grouped(link.damaged_out), grouped(link.damaged_in))))
             (pair("Sent again", format!("{}; limit {}", grouped(link.retries), grouped(link.retry_limit))))
-            @if link.late.saturating_add(link.strays) > 0 {
-                (pair("Late", format!("{} answered late, {} (duplicates or late answers)",
-                    count(link.late, "request"), count(link.strays, "unexpected packet"))))
-            }
+            @if let Some(late) = wording::late(link) { (pair("Late", late)) }
             @if link.line_errors.sum() > 0 { (pair("Line errors", link.line_errors.to_string())) }
             @if let Some(time) = link.round_trip_us { (pair("Round trip", format!("{} µs", grouped(time)))) }
             (pair("Time", format!("{:.3} s on the link's clock", link.seconds)))
