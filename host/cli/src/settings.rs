@@ -20,6 +20,7 @@ use serde::de::{Error, IgnoredAny};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
+use halfrow::call::{self, MOST_SECONDS, NoTime};
 use halfrow::model::Short;
 use halfrow::tables::text::{self, quoted, told};
 
@@ -202,23 +203,27 @@ fn line(text: &str, span: &Range<usize>) -> usize {
 }
 
 fn seconds<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
-    time(deserializer, |_| true, "0 or more")
+    time(deserializer, call::seconds, "0 or more")
 }
 
 fn time_limit<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
-    time(deserializer, |limit| !limit.is_zero(), "more than 0")
+    time(deserializer, call::time_limit, "more than 0")
 }
 
 fn time<'de, D: Deserializer<'de>>(
     deserializer: D,
-    is_legal: fn(&Duration) -> bool,
+    read: fn(&'static str, Option<f64>) -> Result<Option<Duration>, NoTime>,
     legal: &str,
 ) -> Result<Option<f64>, D::Error> {
     let seconds = f64::deserialize(deserializer)?;
-    match Duration::try_from_secs_f64(seconds).ok().filter(is_legal) {
-        Some(_) => Ok(Some(seconds)),
-        None => Err(D::Error::custom(format!("{} is no time in seconds, which is {legal}", Short(seconds)))),
-    }
+    let wrong = |_| {
+        let shown = Short(seconds);
+        D::Error::custom(format!(
+            "{shown} is no time in seconds, which is {legal} and at most {MOST_SECONDS:e}"
+        ))
+    };
+    read("", Some(seconds)).map_err(wrong)?;
+    Ok(Some(seconds))
 }
 
 fn percent<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {

@@ -121,9 +121,11 @@ fn a_value_of_the_wrong_kind_is_named_with_its_line() {
 
 #[test]
 fn a_time_that_is_none_is_refused() {
-    let expected = "line 1: -1 is no time in seconds, which is 0 or more; correct or remove that line";
+    let expected =
+        "line 1: -1 is no time in seconds, which is 0 or more and at most 1e9; correct or remove that line";
     assert_eq!(sentence("reconnect = -1"), expected);
-    let expected = "line 1: 0 is no time in seconds, which is more than 0; correct or remove that line";
+    let expected =
+        "line 1: 0 is no time in seconds, which is more than 0 and at most 1e9; correct or remove that line";
     assert_eq!(sentence("timeout = 0"), expected);
     assert!(load("reconnect = 0").is_ok() && load("at_speed = 0").is_ok());
     for timeout in ["-1", "nan", "inf", "1e300"] {

@@ -77,6 +77,7 @@ fn a_wrong_value_of_the_environment_is_told_as_the_variable_s() {
         ("HALFROW_TIMEOUT", "abc", "give a number of seconds"),
         ("HALFROW_TIMEOUT", "-1", "--timeout takes a number of seconds"),
         ("HALFROW_AT_SPEED", "-1", "--at-speed takes a number of seconds"),
+        ("HALFROW_AT_SPEED", "1e30", "give 0 or more, and at most 1e9"),
         ("HALFROW_RECONNECT", "-1", "--reconnect takes a number of seconds"),
         ("HALFROW_SEED", "-1", "give a whole number"),
         ("HALFROW_BOARD", "moon", "`moon` is not a known kind of board"),

@@ -11,7 +11,7 @@ mod size;
 pub use files::{Files, FilesError};
 pub use input::Input;
 pub use options::{
-    BESIDE_RECORDING, FRAMES, NoTime, REPEATS, VoidOption, Voided, WHILE_RECORDED, WITHIN, WITHIN_TAKES,
-    seconds, time_limit, within,
+    BESIDE_RECORDING, FRAMES, MOST_SECONDS, NoTime, REPEATS, VoidOption, Voided, WHILE_RECORDED, WITHIN,
+    WITHIN_TAKES, seconds, time_limit, within,
 };
 pub use size::{FrameOfOtherSize, check_size};

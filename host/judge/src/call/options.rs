@@ -8,6 +8,9 @@ use thiserror::Error;
 /// How often a call can have its frames streamed.
 pub const REPEATS: RangeInclusive<u32> = 1..=1000;
 
+/// The most seconds that an option takes: some thirty years.
+pub const MOST_SECONDS: f64 = 1e9;
+
 /// The longest time that a run can be asked to keep within, and the advice on what [`within`] takes.
 macro_rules! longest {
     ($seconds:literal) => {
@@ -32,7 +35,10 @@ pub struct VoidOption {
 
 /// The option's value is not a number of seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("{option} takes a number of seconds; give {}", if *.is_limit { "more than 0" } else { "0 or more" })]
+#[error(
+    "{option} takes a number of seconds; give {}, and at most {MOST_SECONDS:e}",
+    if *.is_limit { "more than 0" } else { "0 or more" }
+)]
 pub struct NoTime {
     /// The option, as the caller names it.
     pub option: &'static str,
@@ -106,19 +112,22 @@ impl Voided {
 /// The time of an `option` in seconds.
 ///
 /// # Errors
-/// [`NoTime`] when it is below 0, not finite, or beyond all measure.
+/// [`NoTime`] when it is below 0, not a number, or above [`MOST_SECONDS`].
 pub fn seconds(option: &'static str, seconds: Option<f64>) -> Result<Option<Duration>, NoTime> {
-    let no_time = |_| NoTime { option, is_limit: false };
-    seconds.map(Duration::try_from_secs_f64).transpose().map_err(no_time)
+    seconds.map(|seconds| time(seconds).ok_or(NoTime { option, is_limit: false })).transpose()
 }
 
 /// The most time that an `option` gives, in seconds.
 ///
 /// # Errors
-/// [`NoTime`] when it is no time that anything could end within: not above 0, not finite, or beyond all measure.
+/// [`NoTime`] when it is no time that anything could end within: not above 0, not a number, or above [`MOST_SECONDS`].
 pub fn time_limit(option: &'static str, seconds: Option<f64>) -> Result<Option<Duration>, NoTime> {
-    let limit = |seconds| Duration::try_from_secs_f64(seconds).ok().filter(|limit| !limit.is_zero());
+    let limit = |seconds| time(seconds).filter(|limit| !limit.is_zero());
     seconds.map(|seconds| limit(seconds).ok_or(NoTime { option, is_limit: true })).transpose()
+}
+
+fn time(seconds: f64) -> Option<Duration> {
+    (0.0..=MOST_SECONDS).contains(&seconds).then(|| Duration::from_secs_f64(seconds))
 }
 
 /// `seconds` as a time to judge within; none if it is not what [`WITHIN_TAKES`] asks for.

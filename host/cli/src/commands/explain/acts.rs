@@ -112,7 +112,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     ("ocam-sign-wrong", "change the signs of all coefficients if z counts forwards in your program"),
     (
         "option-is-no-time",
-        "give a number of seconds: more than 0 for a limit of time, 0 or more for any other",
+        "give a number of seconds: more than 0 for a limit of time, 0 or more for any other, and at most 1e9",
     ),
     ("option-without-effect", "leave the option out, or the one that decides in its place"),
     ("paper-board-failed", "do what its cause says about the board, then run again"),
