@@ -61,6 +61,12 @@ pub(crate) fn until_found<T, E: Debug>(what: &str, mut look: impl FnMut() -> Res
     }
 }
 
+/// Puts a named pipe, whose reader waits for a writer, in the place of a file.
+pub(crate) fn replaced_by_pipe(path: &Path) {
+    fs::remove_file(path).unwrap();
+    assert!(Command::new("mkfifo").arg(path).status().unwrap().success());
+}
+
 /// The writing end of the FIFO at `path`, as soon as a reader has opened it. The reader waits until it is dropped.
 pub(crate) fn held_up(path: &Path) -> File {
     let begun = Instant::now();

@@ -12,6 +12,7 @@ mod looked_at;
 pub(crate) mod made;
 mod pages;
 mod pareto;
+mod piped;
 mod put_back;
 pub(crate) mod released;
 pub(crate) mod served;

@@ -7,6 +7,7 @@ use std::process::Command;
 use serde_json::Value;
 
 use super::bench::{Did, PLAN, Station, program};
+use crate::common::replaced_by_pipe;
 
 /// A station with a PASS, a FAIL and an ERROR.
 fn station() -> Station {
@@ -60,8 +61,7 @@ fn a_pipe_in_the_place_of_evidence_is_found_and_nobody_waits_for_it() {
     let station = station();
     let hash = station.query("SELECT record_sha256 FROM run ORDER BY id").remove(0);
     let path = station.store().blobs().path(&hash);
-    fs::remove_file(&path).unwrap();
-    assert!(Command::new("mkfifo").arg(&path).status().unwrap().success());
+    replaced_by_pipe(&path);
     let (data, to) = (station.data(), station.path("out"));
     for (command, more) in [("check", None), ("backup", Some(&to)), ("export", Some(&to))] {
         let mut call = Command::new("timeout");
