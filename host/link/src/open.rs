@@ -16,7 +16,8 @@ const MOCK: &str = "the mock board";
 /// Checks that `target` is written correctly. This is possible before its board is plugged in or powered.
 ///
 /// # Errors
-/// [`OpenError`] when its kind does not exist, or its address or options do not suit the kind.
+/// [`OpenError`] when its kind does not exist, or its address or options do not suit the kind, as those of a file that is no
+/// serial port.
 pub fn check(target: &Target) -> Result<(), OpenError> {
     (kind(target)?.check)(target)
 }

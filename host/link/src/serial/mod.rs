@@ -4,12 +4,14 @@ mod error;
 mod holder;
 mod options;
 
+use std::fs::{self, Metadata};
+use std::io;
 use std::os::fd::AsRawFd;
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use std::{fs, io};
 
+use nix::sys::stat::{major, minor};
 use serialport::{ClearBuffer, ErrorKind, FlowControl, SerialPort, TTYPort};
 
 use super::descriptor::{Gone, Pump, never_block};
@@ -39,9 +41,13 @@ pub(crate) struct SerialLink {
 }
 
 impl SerialLink {
-    /// Checks that `target` names a path, with options of this kind.
+    /// Checks that `target` names a path, with options of this kind, and that what is there now is no other thing than a port.
     pub(crate) fn check(target: &Target) -> Result<(), OpenError> {
-        asked(target).map(drop)
+        let (path, _) = asked(target)?;
+        match fs::metadata(&path) {
+            Ok(found) if is_no_port(&found) => Err(SerialError::NotAPort(path).into()),
+            _ => Ok(()),
+        }
     }
 
     /// Opens the port of a `serial:PATH` target, locked for this program, configures it, and drops what is in its buffers.
@@ -55,7 +61,7 @@ impl SerialLink {
 
     fn open_port(path: PathBuf, options: SerialOptions) -> Result<Self, SerialError> {
         let metadata = fs::metadata(&path).map_err(|error| failed(&path, error))?;
-        if !metadata.file_type().is_char_device() {
+        if is_no_port(&metadata) {
             return Err(SerialError::NotAPort(path));
         }
         check_rate(&path, options.baud)?;
@@ -134,6 +140,15 @@ fn asked(target: &Target) -> Result<(PathBuf, SerialOptions), OpenError> {
     let options = SerialOptions::parse(target)?;
     let path = target.address.as_ref().filter(|path| !path.is_empty());
     Ok((PathBuf::from(path.ok_or_else(|| OpenError::address_missing(target))?), options))
+}
+
+/// Whether this is certainly no port. It is not opened to find out, because that sets a port's lines.
+fn is_no_port(found: &Metadata) -> bool {
+    let device = found.rdev();
+    let class = format!("/sys/dev/char/{}:{}/subsystem", major(device), minor(device));
+    // A pseudo-terminal has no such entry.
+    let is_other = || fs::read_link(class).is_ok_and(|class| !class.ends_with("tty"));
+    !found.file_type().is_char_device() || is_other()
 }
 
 fn lock(path: &Path, options: SerialOptions) -> Result<TTYPort, SerialError> {

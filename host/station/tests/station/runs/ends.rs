@@ -188,6 +188,8 @@ fn a_call_that_is_wrong_begins_no_run() {
         "tcp:127.0.0.1:3001,baud=0",
         "mock,fault=nope",
         "mock,serial=1234567890123456789",
+        "serial:/dev/null",
+        "serial:/etc/passwd",
     ] {
         let did = station.run("CAT00001", wrong);
         assert_eq!((did.code, did.said.as_str()), (Some(2), ""), "{wrong}: {did:?}");
