@@ -220,3 +220,25 @@ pub(crate) fn how_to_get_access(port: &Path) -> String {
         _ => RULES.to_owned(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write as _;
+
+    use super::*;
+
+    /// They are of another session, or of a board that was started again.
+    #[test]
+    fn bytes_that_lay_in_a_port_before_it_was_opened_are_dropped() {
+        let (mut board, port) = TTYPort::pair().unwrap();
+        board.write_all(b"stale").unwrap();
+        let target = format!("serial:{}", port.name().unwrap()).parse().unwrap();
+        let mut link = SerialLink::open(&target).unwrap();
+        board.write_all(b"fresh").unwrap();
+        let (mut came, begun) = (Vec::new(), Instant::now());
+        while came.len() < b"fresh".len() && begun.elapsed() < Duration::from_secs(60) {
+            link.exchange(&[], &mut came, QUIET).unwrap();
+        }
+        assert_eq!(came, b"fresh");
+    }
+}
