@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use halfrow::board::{Board, OpenOptions, Stop};
 use halfrow::link::{self, Candidate, OpenError};
 use halfrow::link_test::{self, Figures, LinkTestError};
-use halfrow::result::{BoardReport, Finding, FrameTotals, Identity, Problem, Suspect};
+use halfrow::result::{BoardReport, Finding, FrameTotals, Identity, Outcome, Problem, Suspect};
 use halfrow::run::{Circumstances, Draws};
 use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::{Cause, StoppedBy, Verdict};
@@ -23,6 +23,9 @@ use crate::plan::{DeviceRule, Judging, Plan};
 use crate::record::{BoardSeen, Measured, RunCause, StepOutcome, SuspectRecord, judged};
 use crate::said::{DIFFERED, Said, Saying};
 
+/// The code of [`halfrow::board::BoardError::SessionLost`].
+const SESSION_LOST: &str = "session-lost";
+
 /// What a try of a step came to.
 #[derive(Debug)]
 pub(super) struct Try {
@@ -35,6 +38,8 @@ pub(super) struct Try {
     pub(super) suspects: Vec<SuspectRecord>,
     pub(super) board: Option<BoardSeen>,
     pub(super) evidence: Option<Value>,
+    /// Whether the judge saw something wrong with the board, whatever ended the try.
+    pub(super) speaks_against_board: bool,
 }
 
 impl Try {
@@ -55,7 +60,17 @@ impl Try {
             suspects: Vec::new(),
             board: None,
             evidence: None,
+            speaks_against_board: false,
         }
+    }
+
+    /// Whether the station may try the step again by itself, which at first saw the board `first`. If something was seen that
+    /// speaks against the board, or the board was reset and has no number by which it is known to be the same one, a PASS of the
+    /// next try would hide that.
+    pub(super) fn may_be_repeated(&self, first: Option<&BoardSeen>) -> bool {
+        let has_number = self.board.as_ref().or(first).is_some_and(|board| board.device.is_some());
+        let may_be_another = self.finding.code == SESSION_LOST && !has_number;
+        self.cause.is_retryable() && !self.speaks_against_board && !may_be_another
     }
 
     fn error(cause: Cause, error: &(dyn Error + 'static)) -> Self {
@@ -228,6 +243,7 @@ impl Common<'_> {
             suspects: report.suspects.iter().map(suspect).collect(),
             board: seen,
             evidence: serde_json::to_value(&report).ok(),
+            speaks_against_board: speaks_against_board(&report),
             ..Try::of(report.cause, found(&report))
         };
         result.measured(measured)
@@ -310,6 +326,12 @@ fn found(report: &Report) -> Said {
         said.parameters.insert(DIFFERED.to_owned(), differed);
     }
     said
+}
+
+/// Whether a frame or a check was wrong, even if the run broke off before it was known why.
+fn speaks_against_board(report: &Report) -> bool {
+    FrameTotals::of(&report.frames).differing_frames > 0
+        || report.checks.iter().any(|check| check.outcome == Outcome::Failed)
 }
 
 /// What the operator does: for a wrong board what a technician would do, otherwise what the finding asks for.

@@ -111,13 +111,13 @@ fn steps(job: &Job, plan: &Plan, target: &Target, heeded: &Heeded, tell: &(dyn F
         let passed = loop {
             let name = step.name.clone();
             tell(&Message::Step { seq, attempt, name });
-            let record = tried(step, (seq, attempt), &common, tell);
+            let (record, may_be_repeated) = tried(step, (seq, attempt), &common, tell);
             if common.first.is_none() {
                 common.first.clone_from(&record.board);
             }
             let passed = record.outcome == StepOutcome::Passed;
-            let is_retryable = record.cause.is_retryable() && heeded.stop.get().is_none();
-            let again = !passed && is_retryable && attempt <= step.retries;
+            let may_go_on = may_be_repeated && heeded.stop.get().is_none();
+            let again = !passed && may_go_on && attempt <= step.retries;
             tell(&Message::Ended { step: Box::new(record) });
             if !again {
                 break passed;
@@ -130,12 +130,13 @@ fn steps(job: &Job, plan: &Plan, target: &Target, heeded: &Heeded, tell: &(dyn F
     }
 }
 
+/// What the try came to, and whether the station may try the step again.
 fn tried(
     step: &Step,
     (seq, attempt): (u32, u32),
     common: &Common<'_>,
     tell: &(dyn Fn(&Message) + Sync),
-) -> StepRecord {
+) -> (StepRecord, bool) {
     let started_ms = clock::now_ms();
     let within = step.timeout;
     let came = match &step.act {
@@ -143,8 +144,9 @@ fn tried(
         Act::Link { each } => common.link(*each, within),
         Act::Verify(judging) => common.verify(judging, (within, (seq, attempt)), &Told::by(tell)),
     };
-    let Try { outcome, cause, exit, finding, remedy, measurements, suspects, board, evidence } = came;
-    StepRecord {
+    let may_be_repeated = came.may_be_repeated(common.first.as_ref());
+    let Try { outcome, cause, exit, finding, remedy, measurements, suspects, board, evidence, .. } = came;
+    let record = StepRecord {
         seq,
         attempt,
         name: step.name.clone(),
@@ -161,5 +163,6 @@ fn tried(
         suspects,
         board,
         evidence,
-    }
+    };
+    (record, may_be_repeated)
 }

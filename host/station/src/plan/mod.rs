@@ -112,7 +112,7 @@ pub struct Step {
     pub name: String,
     /// What it does.
     pub act: Act,
-    /// How often it is tried again when the link or the station was in the way; after a FAIL it never is.
+    /// How often it is tried again when the link or the station was in the way, and nothing speaks against the board.
     pub retries: u32,
     /// The longest that one try may take.
     pub timeout: Duration,

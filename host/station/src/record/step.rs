@@ -150,7 +150,7 @@ impl RunCause {
         }
     }
 
-    /// Whether a step that ended for this cause may be tried again; a FAIL never is.
+    /// Whether a step that ended for this cause may be tried again if nothing else is against it; a FAIL never is.
     #[must_use]
     pub const fn is_retryable(self) -> bool {
         matches!(self, Self::Link | Self::Station)
