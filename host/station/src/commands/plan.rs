@@ -8,7 +8,7 @@ use halfrow::words::{count, plain, span};
 use super::beginning::SettingsFile;
 use super::{Failure, print, publish};
 use crate::exit::Exit;
-use crate::plan::limits::Limit;
+use crate::plan::limits::{Limit, Measurement};
 use crate::plan::{Act, Again, Bad, JSON_SCHEMA, Plan, Seed, Selected, Shift, Step};
 
 /// Look at plans, and have the plant publish them
@@ -138,12 +138,7 @@ fn told(step: &Step) -> String {
 fn bounds(limit: &Limit) -> String {
     let side = |word: &str, bound: Option<f64>| bound.map(|bound| format!(" {word} {bound}"));
     let sides = [side("at least", limit.least), side("at most", limit.most)].into_iter().flatten();
-    let measurement = limit.measurement;
-    format!(
-        "{}{} {}, blames {}",
-        measurement.name,
-        sides.collect::<String>(),
-        measurement.unit,
-        limit.blames.name()
-    )
+    let Measurement { name, unit, .. } = limit.measurement;
+    let unit = if unit == "1" { String::new() } else { format!(" {unit}") };
+    format!("{name}{}{unit}, blames {}", sides.collect::<String>(), limit.blames.name())
 }

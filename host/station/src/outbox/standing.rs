@@ -1,5 +1,7 @@
 //! What the log says of a sink: once that it takes nothing or not all, and once that it does again.
 
+use halfrow::words::{count, verb};
+
 use super::Undelivered;
 use crate::said::Said;
 use crate::store::{Entry, Kind, SINK_OF_PLANT, StoreError};
@@ -61,13 +63,21 @@ impl Standing {
         if self.is_away {
             self.is_away = false;
             let waited = u64::from(entries - dead) + sent as u64;
-            tracing::warn!("{} takes what it is sent again: {waited} waited", called(sink));
+            tracing::warn!("{} answers again: {waited} waited", called(sink));
         }
         if self.is_behind && !was_tried {
             self.is_behind = false;
-            tracing::warn!("{} has taken all that it did not take before", called(sink));
+            let sink = called(sink);
+            match dead {
+                0 => tracing::warn!("{sink} has taken all that it did not take before"),
+                _ => tracing::warn!("nothing waits for {sink} any more, but {} for a person", waiting(dead)),
+            }
         }
     }
+}
+
+fn waiting(entries: u32) -> String {
+    format!("{} {}", count(entries, "entry"), verb(entries, "wait"))
 }
 
 /// What people call a sink.

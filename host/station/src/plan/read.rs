@@ -6,7 +6,7 @@ use std::time::Duration;
 use toml::Spanned;
 
 use super::files::Files;
-use super::limits::{Limit, MEASUREMENTS, Maker, Measurement, SAMPLES_DIFFERING};
+use super::limits::{Blame, Limit, MEASUREMENTS, Maker, Measurement, SAMPLES_DIFFERING};
 use super::mock::BARCODE;
 use super::serial::SerialRule;
 use super::tables;
@@ -342,7 +342,13 @@ fn limit(name: &Spanned<String>, text: &LimitText, steps: &[Step]) -> Result<Lim
         return Err(Fault::wrong(unit.span().start, what, remedy));
     }
     let (least, most) = bounds(at, text)?;
-    Ok(Limit { measurement, least, most, blames: text.blames.unwrap_or(measurement.blames) })
+    let blames = text.blames.unwrap_or(measurement.blames);
+    if blames == Blame::Board && measurement.blames != Blame::Board {
+        let what =
+            format!("a cable or a computer changes {}, so it cannot blame the board", measurement.name);
+        return Err(Fault::wrong(at, what, "write blames = \"station\" or blames = \"nobody\""));
+    }
+    Ok(Limit { measurement, least, most, blames })
 }
 
 /// The least and the most value, at least one of which is given.

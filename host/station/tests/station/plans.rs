@@ -132,13 +132,13 @@ fn a_plan_says_what_is_done_with_each_variant() {
 #[test]
 fn what_differs_from_what_holds_without_it_is_what_the_plan_says() {
     let text = WHOLE.replace("seconds = 0.5", "seconds = 0.25").replace("at_speed = 1.5", "at_speed = 0.0");
-    let plan = load(&text.replace("blames = \"station\"", "blames = \"board\"")).unwrap();
+    let plan = load(&text.replace("blames = \"station\"", "blames = \"nobody\"")).unwrap();
     let selected = plan.variant("N");
     assert!(matches!(selected.steps[1].act, Act::Link { each } if each == Duration::from_millis(250)));
     let Act::Verify(judging) = &selected.steps[2].act else { panic!("{selected:?}") };
     assert_eq!(judging.plan(0).at_speed, AtSpeed::Off, "no frames of the board's own");
     let limit = selected.limits.iter().find(|limit| limit.measurement.name == "link.together").unwrap();
-    assert_eq!(limit.blames, Blame::Board);
+    assert_eq!(limit.blames, Blame::Nobody);
 }
 
 /// The hash is that of the text and of the files that it names. The expected one is computed from the same bytes by `sha256sum`.
@@ -164,7 +164,7 @@ fn the_hash_changes_with_the_text_and_with_every_file_that_it_names() {
 }
 
 /// What is replaced in the plan, by what, and how the message begins then.
-const BAD: [(&str, &str, &str); 38] = [
+const BAD: [(&str, &str, &str); 39] = [
     ("schema = 1", "schema = 2", "plan.toml:1: this program reads plans of schema 1, not 2; take the"),
     ("schema = 1", "schema = 1\nschma = 1", "plan.toml:2: unknown field `schma`"),
     ("version = \"7\"", "version = \"7\"\nversion = \"8\"", "plan.toml:5: duplicate key"),
@@ -242,6 +242,7 @@ const BAD: [(&str, &str, &str); 38] = [
         "unit = \"kB/s\"",
         "plan.toml:40: link.together is measured in B/s, not in kB/s; write",
     ),
+    ("{ most = 60 }", "{ most = 60, blames = \"board\" }", "plan.toml:41: a cable or a computer changes"),
     ("least = 1.1e6", "least = nan", "plan.toml:40: NaN is no limit; write a number"),
     (
         "{ most = 60 }",

@@ -323,6 +323,20 @@ fn a_proxy_of_the_settings_carries_what_it_cannot_read() {
     }
 }
 
+/// Waits until the log has `count` lines with `of`, and fails if it has more.
+fn logged(log: &Path, count: usize, of: &str) {
+    let begun = Instant::now();
+    loop {
+        let text = fs::read_to_string(log).unwrap_or_default();
+        let found = text.lines().filter(|line| line.contains(of)).count();
+        if found == count {
+            return;
+        }
+        assert!(found < count && begun.elapsed() < HANG, "{found} of {of}: {text}");
+        thread::sleep(Duration::from_millis(50));
+    }
+}
+
 #[test]
 fn the_log_says_once_that_a_sink_takes_nothing_and_once_that_it_does_again() {
     let server = Server::start(None);
@@ -334,18 +348,7 @@ fn the_log_says_once_that_a_sink_takes_nothing_and_once_that_it_does_again() {
     let mut logging = Command::new("sh");
     logging.args(["-c", "exec \"$0\" \"$@\" 2>\"$LOG\""]).arg(program()).env("LOG", &log);
     let mut running = station.started(logging);
-    let told = |count: usize, of: &str| {
-        let begun = Instant::now();
-        loop {
-            let text = fs::read_to_string(&log).unwrap_or_default();
-            let found = text.lines().filter(|line| line.contains(of)).count();
-            if found == count {
-                return;
-            }
-            assert!(found < count && begun.elapsed() < HANG, "{found} of {of}: {text}");
-            thread::sleep(Duration::from_millis(50));
-        }
-    };
+    let told = |count: usize, of: &str| logged(&log, count, of);
     running.scan(SERIALS[0]);
     running.state("1", "PASS");
     let tried = "SELECT count(*) FROM outbox WHERE kind = 'run' AND attempts > 1";
@@ -355,13 +358,16 @@ fn the_log_says_once_that_a_sink_takes_nothing_and_once_that_it_does_again() {
     told(0, "is sent again");
     fs::create_dir(station.path("share")).unwrap();
     server.answers("200 taken");
-    told(1, "WARN the sink share takes what it is sent again: 1 waited");
+    told(1, "WARN the sink share answers again: 1 waited");
     told(1, "WARN the sink mes has taken all that it did not take before");
-    server.answers("422 unknown");
+    server.answers("500 oops");
     running.scan(SERIALS[1]);
     running.state("1", "PASS");
+    told(2, "WARN the sink mes does not take the run ");
+    server.answers("422 unknown");
     told(1, "WARN the sink mes refuses the run ");
     told(1, "which waits for a person: 127.0.0.1 answers 422 to this (unknown)");
+    told(1, "WARN nothing waits for the sink mes any more, but 1 entry waits for a person");
     assert_eq!(running.end().0, Some(0));
-    assert_eq!(fs::read_to_string(&log).unwrap().lines().count(), 5);
+    assert_eq!(fs::read_to_string(&log).unwrap().lines().count(), 7);
 }
