@@ -21,7 +21,7 @@ const FEW: u32 = 2;
 /// How long a burst may take in addition to its frames' time on the board's clock, and again for each packet of records.
 pub(super) const PATIENCE: Duration = Duration::from_secs(5);
 /// The longest time between two looks at a burst: no link ends a shorter wait early.
-const LONGEST_IDLE: Duration = Duration::from_millis(250);
+pub(super) const LONGEST_IDLE: Duration = Duration::from_millis(250);
 /// A blanking between frames is not tried if fewer than this many pass in a second.
 const LEAST_RATE: u32 = 100;
 /// Bytes that are sent to the board between the beginning of a burst and its end, so that each is cut at another place.
