@@ -113,6 +113,14 @@ fn its_bursts_are_waited_for_where_rules_are_tried() {
     passes(&Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() });
 }
 
+/// A simulated board may take far longer for a frame than the clock that it names.
+#[test]
+fn a_burst_is_waited_for_as_long_as_its_frames_come() {
+    let plan = Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() };
+    let report = judge_by_plan(&plan, board_of(0, |_| 12_000));
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
+}
+
 /// The report on a board that begins a frame only `late` milliseconds after the one before has its record, by the link's
 /// clock. So it holds none back that may begin earlier.
 fn beginning_late(late: u64) -> Report {
