@@ -1,20 +1,20 @@
 //! Boards with a slow pixel clock, behind links that insert zeros between packets, which mean nothing: they pass, unless their
 //! clock differs from the one that they name.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use halfrow::link::{Candidate, Link, LinkError};
-use halfrow::result::{Check, Finding, NotExercised, Report};
+use halfrow::result::{Check, CheckName, Finding, NotExercised, Report};
 use halfrow::run::{Part, Plan, Selection};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
-use halfrow_protocol::message::{BurstState, Records, Request};
+use halfrow_protocol::message::{BurstState, FrameRecord, Records, Request};
 use halfrow_protocol::{Packet, Reply};
 use halfrow_tests::altered::{Altered, Passing, Toward};
-use halfrow_tests::system::{System, judge_by_plan};
+use halfrow_tests::system::{System, failed_check, judge_by_plan};
 
 /// 10 kHz, in Hz.
 const CLOCK: u32 = 10_000;
@@ -111,6 +111,66 @@ fn its_frames_at_speed_are_waited_for() {
 #[test]
 fn its_bursts_are_waited_for_where_rules_are_tried() {
     passes(&Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() });
+}
+
+/// A simulated board may take far longer for a frame than the clock that it names.
+#[test]
+fn a_burst_is_waited_for_as_long_as_its_frames_come() {
+    let plan = Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() };
+    let report = judge_by_plan(&plan, board_of(0, |_| 12_000));
+    assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
+}
+
+/// The report on a board that begins a frame only `late` milliseconds after the one before has its record, by the link's
+/// clock. So it holds none back that may begin earlier.
+fn beginning_late(late: u64) -> Report {
+    let clock = Arc::new(AtomicU64::new(0));
+    let options = Options::default();
+    let (now, kept) = (Arc::clone(&clock), u32::from(options.records));
+    let (mut of, mut full_since, mut in_time) = ((0, 0), None, BTreeSet::new());
+    let alter = move |toward, packet: Passing| {
+        let now = now.load(Ordering::Relaxed);
+        let read = Packet { header: packet.header, payload: &packet.payload };
+        match (toward, Request::read(&read), packet.reply()) {
+            (Toward::Board, Ok(Request::Records { from }), _)
+                if from > of.1
+                    && from <= of.1 + kept
+                    && full_since.take().is_some_and(|since| now - since < late) =>
+            {
+                in_time.insert((of.0, of.1 + kept));
+            }
+            (Toward::Host, _, Some(Reply::Records(records))) => {
+                of = (records.burst, records.from);
+                if records.bytes.len() == kept as usize {
+                    full_since.get_or_insert(now);
+                }
+                let said = records.bytes.iter().zip(records.from..).map(|(&record, n)| {
+                    let record = FrameRecord::from(record);
+                    let held_back = record.held_back && !in_time.contains(&(records.burst, n));
+                    FrameRecord { held_back, ..record }.to_bytes()
+                });
+                let bytes: Vec<_> = said.collect();
+                return vec![packet.saying(&Reply::Records(Records { bytes: &bytes, ..records }))];
+            }
+            _ => {}
+        }
+        vec![packet]
+    };
+    let candidate = Altered::new(&options, alter).candidate();
+    let link = Box::new(Trickles { link: candidate.link, clock });
+    let plan = Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() };
+    judge_by_plan(&plan, Candidate { link, ..candidate })
+}
+
+#[test]
+fn a_frame_that_could_begin_before_a_record_was_wanted_need_not_say_that_it_was_held_back() {
+    for late in [30, 1000] {
+        let report = beginning_late(late);
+        assert_eq!(report.verdict(), Verdict::Pass, "{late} ms: {}", report.headline());
+    }
+    let never = beginning_late(u64::from(u32::MAX));
+    assert_eq!(failed_check(&never), Some(CheckName::Rules), "{}", never.headline());
+    assert!(never.headline().contains("RECORDS"), "{}", never.headline());
 }
 
 /// Values of clock_source (WIRE.md, 01).

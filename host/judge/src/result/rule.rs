@@ -97,7 +97,8 @@ pub enum Answer {
     },
     /// A reply.
     Replied {
-        /// The first bytes of its payload, in hexadecimal.
+        /// The first bytes of its payload, in hexadecimal; of one that begins as the right one does, what follows, and from which
+        /// byte on.
         payload: String,
     },
     /// Credit for rows.

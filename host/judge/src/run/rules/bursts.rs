@@ -18,10 +18,12 @@ use crate::run::findings::End;
 
 /// Frames of a burst that must be right: every board has records for two.
 const FEW: u32 = 2;
-/// How long a burst may take in addition to its frames' time on the board's clock, and again for each packet of records.
+/// How long a burst may stand still in addition to the time that its frames take.
 pub(super) const PATIENCE: Duration = Duration::from_secs(5);
+/// The longest that a row takes a board (WIRE.md, 2), whatever its clock.
+const LONGEST_ROW: Duration = Duration::from_millis(100);
 /// The longest time between two looks at a burst: no link ends a shorter wait early.
-const LONGEST_IDLE: Duration = Duration::from_millis(250);
+pub(super) const LONGEST_IDLE: Duration = Duration::from_millis(250);
 /// A blanking between frames is not tried if fewer than this many pass in a second.
 const LEAST_RATE: u32 = 100;
 /// Bytes that are sent to the board between the beginning of a burst and its end, so that each is cut at another place.
@@ -186,7 +188,8 @@ impl Rules<'_, '_> {
         Duration::from_secs_f64(f64::from(frames) * clocks as f64 / f64::from(clock_hz(&self.capabilities)))
     }
 
-    /// Looks at `burst` from frame `from` on until it is as `awaited`, which takes about as long as `frames` frames.
+    /// Looks at `burst` from frame `from` on until it is as `awaited`, which takes about as long as `frames` frames, or stands
+    /// still.
     pub(super) fn look(
         &mut self,
         burst: &Burst,
@@ -195,8 +198,8 @@ impl Rules<'_, '_> {
         awaited: Awaited,
     ) -> Result<Fetched, End> {
         let time = self.time_of(frames);
-        let patience = time + PATIENCE * (1 + frames / Records::MOST as u32);
-        let (mut idle, mut passed) = (time.min(LONGEST_IDLE), Duration::ZERO);
+        let patience = time + PATIENCE + self.longest_unseen(frames);
+        let (mut idle, mut stood, mut most) = (time.min(LONGEST_IDLE), Duration::ZERO, 0);
         loop {
             let fetched = self.run.board.records(burst.burst, from).map_err(of_board)?;
             let has_ended = fetched.state == BurstState::Ended;
@@ -204,12 +207,22 @@ impl Rules<'_, '_> {
             if awaited.is_met_by(came) {
                 return Ok(fetched);
             }
-            if passed >= patience {
+            if came.records > most {
+                (stood, most) = (Duration::ZERO, came.records);
+            }
+            if stood >= patience {
                 return Err(super::broken(Rule::Ended, Kind::Records, awaited.into(), came.into()));
             }
             self.run.board.idle(idle).map_err(of_board)?;
-            (passed, idle) = (passed + idle, (2 * idle).min(LONGEST_IDLE));
+            (stood, idle) = (stood + idle, (2 * idle).min(LONGEST_IDLE));
         }
+    }
+
+    /// How long a board may work on `frames` frames while RECORDS shows nothing new: on one of them, or on all if they are more
+    /// than it shows.
+    fn longest_unseen(&self, frames: u32) -> Duration {
+        let unseen = if frames > Records::MOST as u32 { frames } else { 1 };
+        LONGEST_ROW.saturating_mul(self.height as u32).saturating_mul(unseen)
     }
 
     pub(super) fn busy_with_burst(&mut self, burst: &Burst) -> Result<(), End> {

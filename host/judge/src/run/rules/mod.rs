@@ -13,6 +13,7 @@ mod depths;
 mod grids;
 mod power_up;
 mod price;
+mod quoted;
 mod refusals;
 mod requests;
 mod rows;
@@ -41,12 +42,11 @@ use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Outcome, Rule};
 use crate::verdict::Cause;
 use compared::{Compared, WrongRow};
 pub(super) use price::price;
+use quoted::{answer, answers};
 use refusals::Refusals;
 use small::Small;
 pub(super) use waiting::MOST_FILLED;
 
-/// The most bytes of a reply that a finding quotes.
-const TOLD: usize = 32;
 /// The first row factor of the shadow bank.
 const FIRST_FACTOR: Span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
 
@@ -148,19 +148,19 @@ impl<'a, 'run> Rules<'a, 'run> {
         said: Result<Said, BoardError>,
         right: &Said,
     ) -> Result<(), End> {
-        let found = match said {
+        let (right, found) = match said {
             Ok(said) if is_as(&said, right) => {
                 self.right += 1;
                 self.refusals.note(right);
                 return Ok(());
             }
-            Ok(said) => answer(&said),
+            Ok(said) => answers(kind, right, &said),
             Err(BoardError::NoAnswer { heard, .. }) if heard.damaged == 0 && self.had_it_each_time() => {
                 return Err(unanswered(rule, kind, answer(right)));
             }
             Err(error) => return Err(of_board(error)),
         };
-        Err(broken(rule, kind, answer(right), found))
+        Err(broken(rule, kind, right, found))
     }
 
     /// Whether the board answers and had every packet that was sent to it: only then is it known what it did not answer.
@@ -325,15 +325,5 @@ fn is_as(said: &Said, right: &Said) -> bool {
     match (said, right) {
         (Said::Replied(said), Said::Replied(right)) => said.starts_with(right),
         (said, right) => said == right,
-    }
-}
-
-fn answer(said: &Said) -> Answer {
-    match said {
-        Said::Refused(refusal) => Answer::Refused { code: refusal.code as u8, detail: refusal.detail },
-        Said::Replied(payload) => {
-            let told = &payload[..payload.len().min(TOLD)];
-            Answer::Replied { payload: told.iter().map(|byte| format!("{byte:02x}")).collect() }
-        }
     }
 }

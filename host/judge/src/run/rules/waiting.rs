@@ -1,18 +1,22 @@
 //! Bursts that wait for free records, and what RECORDS says of them.
 
 use std::ops::Range;
+use std::time::Duration;
 
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Burst, BurstState, Records, RefusalCode, Request};
 
-use super::Rules;
-use super::bursts::{Awaited, looked_at};
+use super::bursts::{Awaited, LONGEST_IDLE, PATIENCE, looked_at};
+use super::{Rules, of_board};
 use crate::board::Said;
 use crate::result::Rule;
 use crate::run::findings::End;
 
 /// How many records are freed each time that a burst waits for free ones.
 const TAKEN: [u32; 4] = [5, 1, 9, 4];
+/// How long a burst is left waiting for a free record, try by try. A frame is held back only if its blanking has passed by then,
+/// which a host does not see, and a board whose clock is slow or not known takes its time over it.
+const LEFT_WAITING: [Duration; 3] = [Duration::ZERO, LONGEST_IDLE, PATIENCE];
 /// The most records that a burst fills: a slow board would take too long to make more frames.
 pub(in crate::run) const MOST_FILLED: u32 = 1024;
 /// Records that fit into a packet.
@@ -25,12 +29,24 @@ impl Rules<'_, '_> {
         if kept > AT_ONCE { self.of_many_records(kept) } else { self.of_few_records(kept) }
     }
 
-    /// For boards whose records all fit into a packet: a burst that waits for free records again and again, which that
-    /// packet shows.
+    /// For boards whose records all fit into a packet, which so shows how a burst waits. It is left waiting for longer if a
+    /// frame that was held back does not say so.
     fn of_few_records(&mut self, kept: u32) -> Result<(), End> {
+        for left_waiting in LEFT_WAITING {
+            if self.held_back(kept, left_waiting)? {
+                break;
+            }
+            self.drop_rows()?;
+        }
+        Ok(())
+    }
+
+    /// A burst that waits for free records again and again, each time at least as long as `left_waiting`. Returns whether all
+    /// frames that waited say so, which they must after the longest of these times.
+    fn held_back(&mut self, kept: u32, left_waiting: Duration) -> Result<bool, End> {
         let taken = TAKEN.map(|taken| taken.min(kept));
         let all = kept + taken.iter().sum::<u32>();
-        let Some(burst) = self.small_burst(2 * all) else { return Ok(()) };
+        let Some(burst) = self.small_burst(2 * all) else { return Ok(true) };
         let burst = self.start(burst)?;
         let (mut from, mut held) = (0, Vec::new());
         for taken in taken {
@@ -40,18 +56,58 @@ impl Rules<'_, '_> {
                 // Now fewer frames than were asked for first.
                 self.set_frames(&burst, all)?;
             }
-            self.must_tell(Rule::Records, &burst, from..from + kept, BurstState::UnderWay, Some(&held))?;
-            self.never_told(from..from + kept)?;
+            let frames = from..from + kept;
+            if !self.tells_held(&burst, frames.clone(), BurstState::UnderWay, &held, left_waiting)? {
+                return Ok(false);
+            }
+            self.never_told(frames)?;
+            self.leave_waiting(&burst, from, left_waiting)?;
             held.push(from + kept);
             from += taken;
         }
         self.look(&burst, from, kept, Awaited::ended(all - from))?;
-        self.must_tell(Rule::Records, &burst, from..all, BurstState::Ended, Some(&held))?;
+        if !self.tells_held(&burst, from..all, BurstState::Ended, &held, left_waiting)? {
+            return Ok(false);
+        }
         self.stays(&burst, 2 * all)?;
         for from in from..=all {
             self.must_tell(Rule::Records, &burst, from..all, BurstState::Ended, Some(&held))?;
         }
-        self.never_told(all..all)
+        self.never_told(all..all)?;
+        Ok(true)
+    }
+
+    /// RECORDS must give the records of `frames`. Returns whether those in `held`, and no others, say that they were held back;
+    /// after the longest time they must.
+    fn tells_held(
+        &mut self,
+        burst: &Burst,
+        frames: Range<u32>,
+        state: BurstState,
+        held: &[u32],
+        left_waiting: Duration,
+    ) -> Result<bool, End> {
+        self.must_tell(Rule::Records, burst, frames.clone(), state, None)?;
+        match self.must_tell(Rule::Records, burst, frames, state, Some(held)) {
+            Err(end) if end.is_failed() && left_waiting < PATIENCE => Ok(false),
+            told => told.map(|()| true),
+        }
+    }
+
+    /// Lets `time` pass, and that of a frame, without freeing a record. A board that is clocked by its packets is asked
+    /// meanwhile.
+    fn leave_waiting(&mut self, burst: &Burst, from: u32, time: Duration) -> Result<(), End> {
+        if time.is_zero() {
+            return Ok(());
+        }
+        let mut left = time + self.time_of(1);
+        while !left.is_zero() {
+            let idle = left.min(LONGEST_IDLE);
+            self.run.board.idle(idle).map_err(of_board)?;
+            self.run.board.records(burst.burst, from).map_err(of_board)?;
+            left -= idle;
+        }
+        Ok(())
     }
 
     /// For boards with more records: a burst that waits for free records, which no packet shows, so frames may be held

@@ -1,0 +1,97 @@
+//! What a finding quotes of answers.
+
+use halfrow_protocol::Kind;
+use halfrow_protocol::message::{FrameRecord, Records};
+
+use crate::board::Said;
+use crate::result::Answer;
+
+/// The most bytes of a reply that a finding quotes.
+const QUOTED: usize = 32;
+/// The fields of a record, each with its first byte (AT-SPEED.md, *Record*), from the last on.
+const OF_RECORD: [(usize, &str); 8] = [
+    (17, "flags"),
+    (16, "generation"),
+    (14, "pauses"),
+    (12, "most_latency"),
+    (10, "least_latency"),
+    (8, "rows"),
+    (4, "samples"),
+    (0, "signature"),
+];
+
+/// What is quoted of an answer by itself.
+pub(super) fn answer(said: &Said) -> Answer {
+    match said {
+        Said::Refused(refusal) => Answer::Refused { code: refusal.code as u8, detail: refusal.detail },
+        Said::Replied(payload) => Answer::Replied { payload: beginning(payload) },
+    }
+}
+
+/// What is quoted of the right answer to a request of `kind` and of the one that came: of two replies that begin alike, what
+/// follows from the first byte that differs on.
+pub(super) fn answers(kind: Kind, right: &Said, found: &Said) -> (Answer, Answer) {
+    let (Said::Replied(expected), Said::Replied(came)) = (right, found) else {
+        return (answer(right), answer(found));
+    };
+    let alike = expected.iter().zip(came).take_while(|(expected, came)| expected == came).count();
+    if alike < QUOTED {
+        return (answer(right), answer(found));
+    }
+    let quote = |payload: &[u8]| {
+        let rest = beginning(&payload[alike..]);
+        Answer::Replied { payload: format!("…{rest} from byte {alike} on{}", field(kind, alike)) }
+    };
+    (quote(expected), quote(came))
+}
+
+/// The first bytes, in hexadecimal.
+fn beginning(payload: &[u8]) -> String {
+    let bytes = payload.iter().take(QUOTED).map(|byte| format!("{byte:02x}"));
+    bytes.chain((payload.len() > QUOTED).then(|| "…".to_owned())).collect()
+}
+
+/// The field of a reply to a request of `kind` that has this byte, in brackets; nothing where none is known.
+fn field(kind: Kind, byte: usize) -> String {
+    let Some(place) = byte.checked_sub(Records::HEAD).filter(|_| kind == Kind::Records) else {
+        return String::new();
+    };
+    let (record, within) = (place / FrameRecord::BYTES, place % FrameRecord::BYTES);
+    let named = OF_RECORD.iter().find(|(first, _)| *first <= within);
+    named.map_or_else(String::new, |(_, name)| format!(" ({name} of record {record})"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn quoted(kind: Kind, expected: &[u8], came: &[u8]) -> [String; 2] {
+        let said = |payload: &[u8]| Said::Replied(payload.to_vec());
+        let (right, found) = answers(kind, &said(expected), &said(came));
+        [right, found].map(|answer| match answer {
+            Answer::Replied { payload } => payload,
+            other => panic!("{other:?}"),
+        })
+    }
+
+    /// WIRE.md: 10 bytes before the records; AT-SPEED.md: the flags are byte 17 of 18 of a record. 10 + 2·18 + 17 = 63.
+    #[test]
+    fn replies_that_begin_alike_are_quoted_from_where_they_differ_on() {
+        let right = [0xab; 100];
+        let mut wrong = right;
+        wrong[63] = 0;
+        let rest = "ab".repeat(31);
+        let flags = "from byte 63 on (flags of record 2)";
+        let [expected, came] = quoted(Kind::Records, &right, &wrong);
+        assert_eq!(expected, format!("…ab{rest}… {flags}"));
+        assert_eq!(came, format!("…00{rest}… {flags}"));
+        assert_eq!(quoted(Kind::Trap, &[7; 33], &[7; 32]), ["…07 from byte 32 on", "… from byte 32 on"]);
+    }
+
+    #[test]
+    fn replies_that_differ_early_are_quoted_from_their_beginning() {
+        assert_eq!(quoted(Kind::Status, &[1, 2], &[1, 3]), ["0102", "0103"]);
+        let long = "00".repeat(32);
+        assert_eq!(quoted(Kind::Status, &[0; 33], &[9]), [format!("{long}…"), "09".to_owned()]);
+    }
+}
