@@ -15,6 +15,8 @@ use crate::run::findings::End;
 const TAKEN: [u32; 4] = [5, 1, 9, 4];
 /// The most records that a burst fills: a slow board would take too long to make more frames.
 pub(in crate::run) const MOST_FILLED: u32 = 1024;
+/// So many frames that a burst does not end on its own, though it would if only the lower bits of the number counted.
+const MANY: u32 = 1 << 24 | 1;
 /// Records that fit into a packet.
 const AT_ONCE: u32 = Records::MOST as u32;
 
@@ -30,7 +32,7 @@ impl Rules<'_, '_> {
     fn of_few_records(&mut self, kept: u32) -> Result<(), End> {
         let taken = TAKEN.map(|taken| taken.min(kept));
         let all = kept + taken.iter().sum::<u32>();
-        let Some(burst) = self.small_burst(2 * all) else { return Ok(()) };
+        let Some(burst) = self.small_burst(MANY) else { return Ok(()) };
         let burst = self.start(burst)?;
         let (mut from, mut held) = (0, Vec::new());
         for taken in taken {
