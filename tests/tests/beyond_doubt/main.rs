@@ -29,6 +29,7 @@ mod rule_by_rule;
 mod rules;
 mod second_look;
 mod seen_once;
+mod seldom_asked;
 mod session_rules;
 mod skipped;
 mod slow_clocks;

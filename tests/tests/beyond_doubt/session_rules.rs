@@ -142,7 +142,7 @@ fn rows_that_are_asked_for_again_and_those_that_are_not_needed_must_be_counted()
 #[test]
 fn any_number_but_0_must_clear_the_counters() {
     let report = hearing(|packet| {
-        if packet.is(Kind::Status) && packet.payload[0] > 1 {
+        if packet.is(Kind::Status) && packet.payload.first() > Some(&1) {
             packet.payload[0] = 0;
         }
     });

@@ -193,7 +193,16 @@ impl Board {
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
     pub(crate) fn credit_after_reset(&mut self) -> Result<u32, BoardError> {
-        let reset = Reset { level: ResetLevel::Rows, next_row: self.credit() };
+        self.credit_after_reset_to(self.credit())
+    }
+
+    /// The same if the board then waits for row sequence number `next_row`, which may be smaller than any before. With a smaller
+    /// one a session is good for no more rows.
+    ///
+    /// # Errors
+    /// Like [`Self::credit_after_reset`].
+    pub(crate) fn credit_after_reset_to(&mut self, next_row: u32) -> Result<u32, BoardError> {
+        let reset = Reset { level: ResetLevel::Rows, next_row };
         let request = Request::Reset(reset);
         let answer = self.conversation.ask(&Asking::Request(&request), Step::Request, |_| true)?;
         take_reply(Kind::Reset, &answer, |reply| matches!(reply, Reply::Reset).then_some(()))?;

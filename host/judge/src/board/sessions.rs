@@ -68,13 +68,21 @@ impl Board {
     /// # Errors
     /// Like [`Self::ask`].
     pub(crate) fn greet_as_another_host(&mut self) -> Result<Said, BoardError> {
-        let hello = Hello {
-            nonce: !self.options.nonce,
-            host: !self.options.host,
-            version_min: VERSION,
-            version_max: VERSION,
-            take_over: false,
-        };
+        self.greet_aside(!self.options.host, [VERSION; 2])
+    }
+
+    /// Greets the board as its holder, which wants another session and speaks these versions, from the least to the greatest.
+    /// Returns the board's answer. If the board opens the session, it is closed.
+    ///
+    /// # Errors
+    /// Like [`Self::ask`].
+    pub(crate) fn greet_in_versions(&mut self, versions: [u8; 2]) -> Result<Said, BoardError> {
+        self.greet_aside(self.options.host, versions)
+    }
+
+    fn greet_aside(&mut self, host: u32, [version_min, version_max]: [u8; 2]) -> Result<Said, BoardError> {
+        let nonce = !self.options.nonce;
+        let hello = Hello { nonce, host, version_min, version_max, take_over: false };
         self.conversation.queue_zeros(2);
         let request = Request::Hello(hello);
         let asking = Asking::Request(&request);

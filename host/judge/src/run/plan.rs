@@ -5,7 +5,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use halfrow_model::{Equidistant, Frame, Geometry, Interpolant, Kernel, Phase, TableSet};
+use rand_pcg::Pcg64Mcg;
 
+use super::at_speed::{WILD, drawn_factors, drawn_kernel};
 use super::parts::{Part, Selection};
 use super::variations::{Build, Vary, varied};
 use crate::frames::{Builtin, Scene};
@@ -267,10 +269,26 @@ impl Plan {
 
     /// The decoy: tables with half the stretch. Row factors half way to 1 reach half as far, so the ring's limits hold.
     /// In a grid rounding may bring a row that begins or ends at the frame's edge beyond it; then there is no decoy.
+    ///
+    /// A board without bursts shows the whole range of weights, sums and factors in the decoy alone, which is drawn then.
     pub(super) fn decoy(&self, build: &Build) -> Option<Generation> {
+        if let Some(drawn) = self.drawn_decoy(build).filter(|_| !build.bursts) {
+            return Some(drawn);
+        }
         let tables = self.tables.halved();
         let fits = tables.shape().is_none() || tables.check_ring(build.ring).is_ok();
         fits.then(|| Generation { number: DECOY, tables, kernel: self.decoy_kernel(build.taps) })
+    }
+
+    /// Random factors up to what the ring allows, and a random kernel with weights at both ends of their range.
+    fn drawn_decoy(&self, build: &Build) -> Option<Generation> {
+        let mut draws = Pcg64Mcg::new(u128::from(self.seed) | 1 << 68);
+        let kernel = drawn_kernel(build.taps, WILD, &mut draws)?;
+        let tables = match self.tables.shape() {
+            None => drawn_factors(*self.tables.geometry(), build.ring, &mut draws)?,
+            Some(_) => Some(self.tables.halved()).filter(|tables| tables.check_ring(build.ring).is_ok())?,
+        };
+        Some(Generation { number: DECOY, tables, kernel })
     }
 
     /// The tables to judge with, with another centre and with other depths.

@@ -3,6 +3,7 @@
 use halfrow_model::{BitDepth, Geometry, TableSet};
 use serde::{Deserialize, Serialize};
 
+use super::at_speed::known_bursts;
 use crate::board::Capabilities;
 
 /// Which settings of its tables a run varies, in additional frames after all others.
@@ -25,6 +26,8 @@ pub struct Build {
     pub ring: usize,
     /// Its sample depths.
     pub depths: Vec<BitDepth>,
+    /// Whether it makes frames itself, of a content that this program knows.
+    pub bursts: bool,
 }
 
 impl Build {
@@ -37,6 +40,7 @@ impl Build {
             taps: capabilities.taps,
             ring: capabilities.ring.into(),
             depths: BitDepth::ALL.into_iter().filter(|depth| depths.has(depth.bits() as u8)).collect(),
+            bursts: known_bursts(capabilities).is_ok(),
         }
     }
 
@@ -45,7 +49,7 @@ impl Build {
     pub fn full(width: usize) -> Self {
         let ring = width.checked_next_power_of_two().unwrap_or(usize::MAX);
         let (table_banks, taps) = (2, 7);
-        Self { table_banks, taps, ring, depths: BitDepth::ALL.to_vec() }
+        Self { table_banks, taps, ring, depths: BitDepth::ALL.to_vec(), bursts: true }
     }
 }
 
@@ -78,9 +82,10 @@ fn other_centres(geometry: &Geometry) -> impl Iterator<Item = u32> {
 
 #[cfg(test)]
 mod tests {
-    use halfrow_model::RowFactor;
+    use halfrow_model::{Interpolant, Kernel, RowFactor};
 
     use super::*;
+    use crate::Plan;
 
     fn tables(width: usize, centre2: u32, factor: u32) -> TableSet {
         let geometry = Geometry::new(width, 1, BitDepth::Twelve, centre2).unwrap();
@@ -113,6 +118,18 @@ mod tests {
     fn a_centre_that_the_ring_does_not_allow_is_passed_over() {
         assert_eq!(centre(&tables(64, 63, 1 << 23), 64), Some(0));
         assert_eq!(centre(&tables(64, 63, 1), 64), Some(62));
+    }
+
+    /// Nothing else reaches the ends of their range on such a board (DATAPATH.md, "Signed bits that hold every legal case").
+    #[test]
+    fn without_bursts_the_decoy_has_weights_at_both_ends_of_their_range() {
+        let plan = Plan::new(tables(64, 63, 1 << 23), Kernel::from(Interpolant::Hermite));
+        let ends = |bursts| {
+            let generations = plan.generations(&Build { bursts, ..Build::full(64) });
+            let weights = generations[0].kernel.nodes().as_flattened().to_vec();
+            [i16::MIN, i16::MAX].map(|end| weights.contains(&end))
+        };
+        assert_eq!((ends(true), ends(false)), ([false; 2], [true; 2]));
     }
 
     #[test]

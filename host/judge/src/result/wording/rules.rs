@@ -101,7 +101,7 @@ pub(super) fn meaning(rule: Rule) -> &'static str {
         Rule::CommitCrc => "a commit whose CRC does not match the tables must be refused",
         Rule::Generation => "a commit of active or pending tables must be answered, generation 0 refused",
         Rule::Shape => "a commit of a grid that the board cannot have must be refused",
-        Rule::CommitFrame => "a commit must take effect with its frame, not before",
+        Rule::CommitFrame => "a commit must take effect with its frame, not before, and swap the banks",
         Rule::Pending => "nothing may change the tables of a pending commit",
         Rule::Forgotten => "RESET must forget a pending commit",
         Rule::RowPlace => "a row out of place must be refused",

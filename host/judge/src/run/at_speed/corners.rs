@@ -21,7 +21,7 @@ const FIRST_OF_GRIDS: u8 = FIRST + 8;
 pub(in crate::run) const BY_TURNS: [usize; 2] = [0x5555, 0xaaaa];
 /// The bits by which random weights of 16 bits are shifted down: for weights of any sign and size, and for weights with
 /// which few samples reach the end of their range.
-const WILD: u32 = 0;
+pub(in crate::run) const WILD: u32 = 0;
 pub(in crate::run) const CALM: u32 = 3;
 
 /// Tables for each corner of a board's settings, one set for each of its table banks, drawn from `seed`.

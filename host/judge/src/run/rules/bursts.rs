@@ -299,7 +299,12 @@ impl Rules<'_, '_> {
         self.must_tell(rule, &burst, 0..FEW, BurstState::Ended, Some(&[]))
     }
 
+    /// A burst that repeats a frame, whose rows must be in no counter.
     fn repeating(&mut self) -> Result<(), End> {
-        self.right_burst(Rule::Repeated, BurstMode::Repeating)
+        self.drop_rows()?;
+        self.clear()?;
+        self.right_burst(Rule::Repeated, BurstMode::Repeating)?;
+        let status = self.run.board.status(false).map_err(of_board)?;
+        self.not_counted(None, &status)
     }
 }

@@ -2,10 +2,11 @@
 
 use std::mem;
 
+use halfrow_model::GridShape;
 use halfrow_protocol::message::{Commit, Entries, RefusalCode, Request, Span, Table};
 
 use super::compared::Compared;
-use super::{FIRST_FACTOR, Rules};
+use super::{FIRST_FACTOR, Rules, payload};
 use crate::result::Rule;
 use crate::run::Generation;
 use crate::run::findings::End;
@@ -23,7 +24,7 @@ impl Rules<'_, '_> {
         // One row a frame.
         self.configure(1)?;
         self.upload(0)?;
-        self.commit(0, FIRST, FRAME)?;
+        self.half_a_shape(FIRST)?;
         self.one_rows(Rule::CommitFrame, &[FRAME], (FIRST, 0))?;
         self.upload(1)?;
         self.wrong_sums()?;
@@ -50,6 +51,14 @@ impl Rules<'_, '_> {
     fn commit(&mut self, place: usize, generation: u8, first_frame: u16) -> Result<(), End> {
         let request = Request::Commit(self.commit_of(place, generation, first_frame));
         self.replied(Rule::Generation, &request, vec![generation])
+    }
+
+    /// Commits the small tables at place 0 with a v but no k: that is no shape, so the bank holds row factors.
+    fn half_a_shape(&mut self, generation: u8) -> Result<(), End> {
+        let request = Request::Commit(self.commit_of(0, generation, FRAME));
+        let mut bytes = payload(&request);
+        bytes.push(*GridShape::V.end() as u8);
+        self.bytes_replied(Rule::Skipped, request.kind(), &bytes, vec![generation])
     }
 
     /// Frames of one row each, which must be made with the small tables at `place` as `generation`.
@@ -123,7 +132,9 @@ impl Rules<'_, '_> {
         self.one_rows(Rule::Forgotten, &[FRAME], (SECOND, 1))?;
         self.sums(Rule::Forgotten, 0)?;
         self.commit(0, FIRST, FRAME)?;
-        self.one_rows(Rule::CommitFrame, &[FRAME], (FIRST, 0))
+        self.one_rows(Rule::CommitFrame, &[FRAME], (FIRST, 0))?;
+        // The banks have changed places.
+        self.sums(Rule::CommitFrame, 1)
     }
 
     /// Tables that change while the row before still leaves, from each output bank in turn.

@@ -2,6 +2,8 @@
 
 use std::mem;
 
+use halfrow_protocol::{Header, Kind, Packet, Reply};
+
 use super::rows::{FRAME, GENERATION};
 use super::without_effect::others;
 use super::{Refusals, Rules, miscounted, of_board, of_rows};
@@ -21,7 +23,7 @@ impl Rules<'_, '_> {
         if self.height >= ROWS {
             self.thrice(Self::rows_counted)?;
         }
-        self.cleared()
+        self.always(Self::cleared)
     }
 
     /// Neither STATUS without *clear* nor RESET may clear a counter.
@@ -105,14 +107,40 @@ impl Rules<'_, '_> {
         )
     }
 
-    /// STATUS with any number but 0 must clear all counters.
+    /// STATUS with any number but 0 must clear all counters, and tell what they were before. A second copy of it is told of
+    /// cleared ones, but the link does not make one each time.
     fn cleared(&mut self) -> Result<(), End> {
-        let said = self.run.board.clear_by(CLEAR).map_err(of_board)?;
-        if let Said::Replied(_) = said {
-            (self.refusals, self.before) = (Refusals::default(), Status::default());
+        self.right_frames(&[FRAME])?;
+        let before = self.run.board.status(false).map_err(of_board)?;
+        let had_each_once = self.run.board.had_each_packet_once(&before);
+        let retries = self.run.board.tally().retries;
+        let told = self.clear()?;
+        let is_calm = had_each_once && self.run.board.tally().retries == retries;
+        if let Some(told) = told.filter(|_| is_calm) {
+            at_least(
+                None,
+                [
+                    (Counter::RowsIn, told.rows_in, before.rows_in),
+                    (Counter::RowsOut, told.rows_out, before.rows_out),
+                    (Counter::MostLatency, told.most_latency, before.most_latency),
+                ],
+            )?;
         }
         let status = self.run.board.status(false).map_err(of_board)?;
         self.not_counted(None, &status)
+    }
+
+    /// Clears all counters, and returns what the board says that they were.
+    pub(super) fn clear(&mut self) -> Result<Option<Status>, End> {
+        let Said::Replied(payload) = self.run.board.clear_by(CLEAR).map_err(of_board)? else {
+            return Ok(None);
+        };
+        (self.refusals, self.before) = (Refusals::default(), Status::default());
+        let header = Header { kind: Kind::Status.code(), sequence: 0, reply: true, session: 0, window: 0 };
+        match Reply::read(&Packet { header, payload: &payload }) {
+            Ok(Reply::Status(status)) => Ok(Some(status)),
+            _ => Ok(None),
+        }
     }
 
     /// `status`, which came after something that clears all counters, must have all of them 0.

@@ -80,6 +80,8 @@ impl Rules<'_, '_> {
             let (kind, whole) = (request.kind(), payload(&request));
             self.malformed(kind, &whole[..whole.len() - 1])?;
         }
+        self.malformed(Kind::Status, &[])?;
+        self.malformed(Kind::Reset, &[0; 4])?;
         for bit in FIRST_BIT..u8::BITS {
             let no_meaning = 1 << bit;
             self.malformed(Kind::Reset, &[no_meaning, 0, 0, 0, 0])?;

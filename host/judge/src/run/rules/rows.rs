@@ -8,7 +8,7 @@ use halfrow_protocol::samples::pack;
 
 use super::compared::Compared;
 use super::counts::equal;
-use super::{FIRST_FACTOR, Rules, broken, longer, of_board, of_rows, other_row};
+use super::{FIRST_FACTOR, Rules, broken, longer, of_board, of_rows, other_row, payload};
 use crate::board::BoardError;
 use crate::reference::correct;
 use crate::result::{Answer, CheckName, Counter, Finding, Rule};
@@ -24,6 +24,8 @@ pub(super) const FRAME: u16 = 0x1234;
 /// Where the flags of a row's place are, just before its generation, and the one flag that has a meaning (WIRE.md, 20).
 const FLAGS: usize = 10;
 const LAST: u8 = 1;
+/// The bytes of a row's place.
+const PLACE: usize = 12;
 /// How often a row is given until it is inside the core.
 pub(super) const TRIES: u32 = 8;
 /// How often a row is asked for again.
@@ -106,6 +108,7 @@ impl Rules<'_, '_> {
         for place in wrong {
             self.row_refused(Rule::RowPlace, place, RefusalCode::Row)?;
         }
+        self.odd_rows(first)?;
         let credit = self.run.board.credit();
         self.marked_row_refused(second, RefusalCode::Row)?;
         self.marked_row_refused(RowPlace { row_sequence: credit, ..first }, RefusalCode::Credit)?;
@@ -120,9 +123,29 @@ impl Rules<'_, '_> {
         self.row_refused(Rule::RowPlace, following, RefusalCode::Row)
     }
 
+    /// A row of an odd width whose pairs are there, and rows of which a byte is missing. A board that does not look for the
+    /// missing byte says of a row beyond the window that there is no credit, so it plays none.
+    fn odd_rows(&mut self, first: RowPlace) -> Result<(), End> {
+        let packed = black(RowPlace { width: first.width + 2, ..first });
+        let odd = RowPlace { width: first.width + 1, ..first };
+        let request = Request::RowIn(RowIn { place: odd, packed: &packed });
+        self.refused(Rule::RowPlace, &request, RefusalCode::Row, 0)?;
+        let beyond = RowPlace { row_sequence: self.run.board.credit(), ..first };
+        let whole = payload(&Request::RowIn(RowIn { place: beyond, packed: &black(beyond) }));
+        for bytes in [whole.len() - 1, PLACE, PLACE - 1] {
+            self.bytes_refused(Rule::Payload, Kind::RowIn, &whole[..bytes], RefusalCode::Payload, 0)?;
+        }
+        Ok(())
+    }
+
     /// After a RESET no row is inside, so the window must be as far ahead as there are input banks.
     fn window(&mut self) -> Result<(), End> {
         let rows = self.run.board.credit_after_reset().map_err(of_board)?;
+        self.must_have_credit(rows)
+    }
+
+    /// After a RESET the board must give credit for as many rows as it has input banks.
+    pub(super) fn must_have_credit(&mut self, rows: u32) -> Result<(), End> {
         let banks = self.capabilities.row_banks_in.into();
         if rows != banks {
             let (right, found) = (Answer::Credit { rows: banks }, Answer::Credit { rows });

@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use halfrow_protocol::Kind;
 use halfrow_protocol::message::{
     Burst, BurstMode, Commit, Entries, Records, Refusal, RefusalCode, Request, Span, Table,
 };
+use halfrow_protocol::{Kind, VERSION};
 
 use super::bursts::Awaited;
 use super::counts::equal;
@@ -24,15 +24,26 @@ pub(super) const TIMES: usize = 3;
 /// The tenths of a second for which a board is held after its holder's last packet; and half of that time.
 const HELD: u16 = 100;
 const SURELY_HELD: Duration = Duration::from_secs(5);
+/// Versions that a host may speak and no board does: version 0 is none, and a board would have to know all up to the last.
+const NOT_SPOKEN: [[u8; 2]; 2] = [[0, 0], [u8::MAX, u8::MAX]];
+/// The greatest version that a refusal may name as the board's newest.
+const MOST_VERSION: u16 = u8::MAX as u16 - 1;
+/// A row sequence number below the greatest that the rules reach, and far from any that they used.
+const SMALLER: u32 = 3 << 29;
 /// The frame for which a commit is pending when its session ends, and the generation that it would make.
 const PENDING: (u16, u8) = (0x4321, 0x3c);
 /// Frames of a burst that have been made when its session ends: every board has records for two.
 const FEW: u32 = 2;
+/// The first row that is trapped in it. A board that forgot what it expects would trap the row before.
+const SECOND_ROW: usize = 1;
 
 impl Rules<'_, '_> {
     pub(super) fn sessions(&mut self) -> Result<(), End> {
         self.powered(Self::held)?;
+        self.other_versions()?;
         self.powered(|rules| rules.always(Self::greeted_again))?;
+        // The session that follows drops what the link still holds of this one, with greater numbers of rows.
+        self.thrice(Self::window_goes_down)?;
         self.numbers_of_sessions()?;
         self.powered(Self::session_after_rows)?;
         if self.run.known_bursts().is_ok() {
@@ -104,6 +115,31 @@ impl Rules<'_, '_> {
         self.judge(Rule::Held, Kind::Hello, said, &Said::Refused(right))
     }
 
+    /// A host that speaks no version that the board speaks must be refused. Which is the board's newest is not known.
+    fn other_versions(&mut self) -> Result<(), End> {
+        for versions in NOT_SPOKEN {
+            let said = self.run.board.greet_in_versions(versions).map(|said| match said {
+                Said::Refused(refusal @ Refusal { detail: 1..=MOST_VERSION, .. }) => {
+                    Said::Refused(Refusal { detail: VERSION.into(), ..refusal })
+                }
+                said => said,
+            });
+            if matches!(said, Ok(Said::Replied(_))) {
+                self.next_session()?;
+            }
+            let (code, kind) = (RefusalCode::Version, Kind::Hello.code());
+            let right = Refusal { code, kind, detail: VERSION.into() };
+            self.judge(Rule::NewSession, Kind::Hello, said, &Said::Refused(right))?;
+        }
+        Ok(())
+    }
+
+    /// After a RESET to a smaller number the window must be as far ahead of that one as there are input banks.
+    fn window_goes_down(&mut self) -> Result<(), End> {
+        let rows = self.run.board.credit_after_reset_to(SMALLER).map_err(of_board)?;
+        self.must_have_credit(rows)
+    }
+
     /// The HELLO that opened the session, repeated, must open no other one.
     fn greeted_again(&mut self) -> Result<(), End> {
         self.rows_again()?;
@@ -171,17 +207,18 @@ impl Rules<'_, '_> {
         self.rows_again()?;
         let Some(burst) = self.small_burst(Burst::ENDLESS) else { return Ok(()) };
         let mode = if self.has_trap() { BurstMode::Trapped } else { BurstMode::Fresh };
-        if self.has_trap() {
-            // A row has this signature only by a rare chance.
-            self.run.board.expect(&vec![!0; self.height]).map_err(of_board)?;
-        }
+        let frame = self.expect_others_from(SECOND_ROW)?;
         let burst = self.start(Burst { mode, ..burst })?;
         self.look(&burst, 0, FEW, Awaited::under_way(FEW))?;
         let before = self.run.board.status(false).map_err(of_board)?;
         self.next_session()?;
         self.begun_anew(Rule::NewSession, &before)?;
         self.right_frames(&[FRAME])?;
-        self.right_burst(Rule::NewSession, BurstMode::Fresh)
+        self.right_burst(Rule::NewSession, BurstMode::Fresh)?;
+        // What is expected of rows stays when a session ends.
+        let Some(frame) = frame.filter(|frame| frame.height() > SECOND_ROW) else { return Ok(()) };
+        self.trapping()?;
+        self.kept(SECOND_ROW, frame.row(SECOND_ROW))
     }
 
     /// Last of all: a RESET that closes the session. After it another host may have the board.

@@ -54,10 +54,16 @@ impl Rules<'_, '_> {
             self.trapping()?;
             self.kept(row, rows[row])?;
         }
+        let last = (u32::BITS - 1) as usize % rows.len();
+        // A burst that does not set the trap leaves what is in it.
+        if let Some(burst) = self.small_burst(2) {
+            let burst = self.start(burst)?;
+            self.look(&burst, 0, burst.frames, Awaited::ended(burst.frames))?;
+            self.kept(last, rows[last])?;
+        }
         self.drop_rows()?;
         self.replied(Rule::Trap, &Request::Trap, NOTHING_KEPT.to_vec())?;
         // Expected signatures stay, whatever happens.
-        let last = (u32::BITS - 1) as usize % rows.len();
         self.trapping()?;
         self.kept(last, rows[last])?;
         self.tall_trapped()
@@ -86,6 +92,17 @@ impl Rules<'_, '_> {
         self.run.board.expect(&expected).map_err(of_board)?;
         self.trapping()?;
         self.kept(row, frame.row(row))
+    }
+
+    /// On a board with a trap, expects of the rows from `row` on what they have only by a rare chance, and what is right of
+    /// those before. Returns the frame that is repeated.
+    pub(super) fn expect_others_from(&mut self, row: usize) -> Result<Option<Frame>, End> {
+        let made = self.small.made(0, self.height, GENERATION);
+        let Some(frame) = self.trapped_frame(&made).filter(|_| self.has_trap()) else { return Ok(None) };
+        let mut expected: Vec<_> = frame.rows().map(row_signature).collect();
+        expected.iter_mut().skip(row).for_each(|signature| *signature = !0);
+        self.run.board.expect(&expected).map_err(of_board)?;
+        Ok(Some(frame))
     }
 
     /// The same in a frame whose height has every bit set and is at most the greatest, unless two such frames take the
@@ -125,14 +142,14 @@ impl Rules<'_, '_> {
     }
 
     /// Has the board repeat a frame, with the trap set for the signatures that it was given.
-    fn trapping(&mut self) -> Result<(), End> {
+    pub(super) fn trapping(&mut self) -> Result<(), End> {
         let Some(burst) = self.trap_burst() else { return Ok(()) };
         let burst = self.start(burst)?;
         self.look(&burst, 0, burst.frames, Awaited::ended(burst.frames)).map(drop)
     }
 
     /// Row `row` of the first frame must have been kept, with `samples`.
-    fn kept(&mut self, row: usize, samples: &[u16]) -> Result<(), End> {
+    pub(super) fn kept(&mut self, row: usize, samples: &[u16]) -> Result<(), End> {
         let mut kept = vec![1, 0, 0, 0, 0];
         kept.extend((row as u16).to_le_bytes());
         kept.extend((samples.len() as u16).to_le_bytes());

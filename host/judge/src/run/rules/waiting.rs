@@ -19,6 +19,8 @@ const TAKEN: [u32; 4] = [5, 1, 9, 4];
 const LEFT_WAITING: [Duration; 3] = [Duration::ZERO, LONGEST_IDLE, PATIENCE];
 /// The most records that a burst fills: a slow board would take too long to make more frames.
 pub(in crate::run) const MOST_FILLED: u32 = 1024;
+/// So many frames that a burst does not end on its own, though it would if only the lower bits of the number counted.
+const MANY: u32 = 1 << 24 | 1;
 /// Records that fit into a packet.
 const AT_ONCE: u32 = Records::MOST as u32;
 
@@ -46,7 +48,7 @@ impl Rules<'_, '_> {
     fn held_back(&mut self, kept: u32, left_waiting: Duration) -> Result<bool, End> {
         let taken = TAKEN.map(|taken| taken.min(kept));
         let all = kept + taken.iter().sum::<u32>();
-        let Some(burst) = self.small_burst(2 * all) else { return Ok(true) };
+        let Some(burst) = self.small_burst(MANY) else { return Ok(true) };
         let burst = self.start(burst)?;
         let (mut from, mut held) = (0, Vec::new());
         for taken in taken {
