@@ -9,6 +9,7 @@
 
 mod back_off;
 mod plant;
+mod sent;
 mod sinks;
 mod standing;
 
@@ -19,6 +20,7 @@ use std::time::{Duration, Instant};
 
 pub use crate::clock::HeardClock;
 pub use plant::PlantSink;
+pub(crate) use sent::{Sent, awaited};
 pub use sinks::{SinkError, SinkSettingsError, open};
 
 use crate::clock;
