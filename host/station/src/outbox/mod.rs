@@ -95,8 +95,7 @@ pub struct Round {
 /// # Errors
 /// [`StoreError`] when the store cannot be read or written. What was sent is then sent again, which changes nothing.
 pub fn round(store: &SharedStore, sink: &mut dyn Sink) -> Result<Round, StoreError> {
-    let due = folder(store).due(sink.name(), clock::now_ms(), back_off::LONGEST_MS)?;
-    given(store, sink, due, |_, _, _| ())
+    logged_round(store, sink, &mut Standing::default())
 }
 
 /// Gives `sink` all that it does not have, each entry once, however recently it was tried, unless the entry waits for
