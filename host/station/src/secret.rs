@@ -1,16 +1,16 @@
 //! Files of secrets, which nobody else may read.
 
-use std::fs::{self, File, Metadata, Permissions};
+use std::fs::{self, Metadata, Permissions};
 use std::io::{self, Write as _};
-use std::os::unix::fs::{MetadataExt as _, OpenOptionsExt as _, PermissionsExt as _};
+use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
-use halfrow::files::written_aside::{folder_of, sync_folder};
+use halfrow::files::written_aside::{Claim, folder_of, sync_folder};
 use halfrow::tables::text::{MAX_BYTES, read as read_text};
 use nix::unistd::{getegid, geteuid};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use tempfile::Builder;
+use tempfile::{Builder, NamedTempFile};
 
 /// A file of secrets that cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -57,9 +57,14 @@ pub enum SecretError {
     NoRandomness(#[source] rand::rngs::SysError),
 }
 
+/// A file beside `path` that nobody else may read, to be put in its place.
+fn aside(path: &Path) -> io::Result<NamedTempFile> {
+    Builder::new().permissions(Permissions::from_mode(0o600)).tempfile_in(folder_of(path))
+}
+
 /// Creates a new file of one line that nobody else may read, completely or not at all.
 pub(crate) fn create(path: &Path, line: &str) -> io::Result<()> {
-    let mut aside = Builder::new().permissions(Permissions::from_mode(0o600)).tempfile_in(folder_of(path))?;
+    let mut aside = aside(path)?;
     writeln!(aside, "{line}")?;
     aside.as_file().sync_all()?;
     aside.persist_noclobber(path)?;
@@ -115,14 +120,12 @@ impl Rights {
 /// cut.
 fn keep(path: &Path, secrets: &str, lasts: bool) -> Result<(), SecretError> {
     let write = || {
-        let mut aside = PathBuf::from(path).into_os_string();
-        aside.push(".new");
-        let mut file = File::options().write(true).create(true).truncate(true).mode(0o600).open(&aside)?;
-        file.write_all(secrets.as_bytes())?;
+        let mut aside = aside(path)?;
+        aside.write_all(secrets.as_bytes())?;
         if lasts {
-            file.sync_all()?;
+            aside.as_file().sync_all()?;
         }
-        fs::rename(&aside, path)?;
+        aside.persist(path)?;
         if lasts { sync_folder(folder_of(path)) } else { Ok(()) }
     };
     write().map_err(|source| SecretError::File { path: path.to_owned(), source })
@@ -139,7 +142,25 @@ pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<T, SecretError> {
 
 /// Like [`read`]; the default if there is no file.
 pub(crate) fn read_or_none<T: DeserializeOwned + Default>(path: &Path) -> Result<T, SecretError> {
-    if path.exists() { read(path) } else { Ok(T::default()) }
+    match read(path) {
+        Err(SecretError::File { source, .. }) if source.kind() == io::ErrorKind::NotFound => Ok(T::default()),
+        found => found,
+    }
+}
+
+/// Changes the content of the TOML file `path` of secrets, which may not exist yet. Whoever changes it at the same time waits, so
+/// that no change is lost.
+pub(crate) fn change<T, R, E>(path: &Path, change: impl FnOnce(&mut T) -> Result<R, E>) -> Result<R, E>
+where
+    T: DeserializeOwned + Serialize + Default,
+    E: From<SecretError>,
+{
+    let refused = |error| SecretError::File { path: path.to_owned(), source: io::Error::other(error) };
+    let _turn = Claim::wait(path).map_err(refused)?;
+    let mut content: T = read_or_none(path)?;
+    let changed = change(&mut content)?;
+    write(path, &content, true)?;
+    Ok(changed)
 }
 
 /// Writes secrets to the TOML file `path`, like [`keep`].

@@ -1,6 +1,6 @@
 //! `halfrow-station board`
 
-use std::io::{self, Read as _};
+use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -268,7 +268,7 @@ fn end_of_stdin() -> Result<Arc<AtomicBool>, Failure> {
     let over = Arc::new(AtomicBool::new(false));
     let noted = Arc::clone(&over);
     let read = move || {
-        let _ = io::stdin().read_to_end(&mut Vec::new());
+        let _ = io::copy(&mut io::stdin(), &mut io::sink());
         noted.store(true, Ordering::Relaxed);
     };
     thread::Builder::new().name("stdin".to_owned()).spawn(read).map_err(Failure::error)?;

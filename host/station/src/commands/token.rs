@@ -49,9 +49,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             print(&add_token(&settings, file, name.trim(), *scope)?)
         }
         What::Remove { name } => {
-            let mut tokens = Tokens::load_or_none(file).map_err(Failure::call)?;
-            tokens.remove(name)?;
-            tokens.save(file).map_err(Failure::error)?;
+            Tokens::remove_from(file, name)?;
             print(&format!("{name} may not read any more"))
         }
         What::List => {

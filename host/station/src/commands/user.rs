@@ -60,9 +60,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             print(&format!("{} may act as {}", name.trim(), word(*role)))
         }
         What::Remove { name } => {
-            let mut users = Users::load(&access.users).map_err(Failure::call)?;
-            users.remove(name)?;
-            users.save(&access.users).map_err(Failure::error)?;
+            Users::remove_from(&access.users, name)?;
             print(&format!("{name} may not act any more"))
         }
         What::List => {

@@ -18,19 +18,19 @@ use crate::floor::{Accepted, Event, Shown};
 use crate::guard::guarded;
 use crate::history::PlanName;
 use crate::lane::Message;
+use crate::outbox::{Sent, awaited};
 use crate::plan::{Plan, mock::is_mock};
 use crate::record::Record;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::said::{Said, Saying};
 use crate::settings::Settings;
-use crate::store::{Folder, SINK_OF_PLANT, SharedStore};
+use crate::store::{Folder, SharedStore};
 
 /// How long to wait before trying again to save a result.
 const AGAIN: Duration = Duration::from_secs(2);
 
-/// How long a verdict waits for a plant that must have it, and how often that is checked.
+/// How long a verdict waits for a plant that must have it.
 const PLANT: Duration = Duration::from_secs(10);
-const LOOK: Duration = Duration::from_millis(50);
 
 /// What all lanes have in common.
 #[derive(Debug)]
@@ -132,20 +132,18 @@ pub(super) fn hook(shared: &Shared, lane: usize, shown: &Shown) {
 }
 
 /// The verdict of a run that is saved. If the plant must have it, too, this waits until it does, or reports after
-/// `patience` that it does not.
+/// `patience` that it does not, or at once that it never will as things are.
 fn at_plant(shared: &Shared, saved: Saved, patience: Duration) -> Event {
     let Settings { data, plant, .. } = &shared.settings;
     if !plant.as_ref().is_some_and(|plant| plant.is_green_at_plant) {
         return Event::Ended(shown(saved));
     }
     let (folder, until) = (Folder::new(data), Instant::now() + patience);
-    loop {
-        match folder.is_sent(SINK_OF_PLANT, &saved.record.run.id) {
-            Ok(true) => return Event::Ended(shown(saved)),
-            Ok(false) if Instant::now() < until => thread::sleep(LOOK),
-            Ok(false) => return Event::Unsaved { why: Saying::NotAtPlant.into() },
-            Err(error) => return unsaved(&error),
-        }
+    match awaited(&folder, &saved.record.run.id, &|| Instant::now() >= until) {
+        Ok(Sent::Yes) => Event::Ended(shown(saved)),
+        Ok(Sent::NotYet) => Event::NotAtPlant { why: Saying::NotAtPlant.into() },
+        Ok(Sent::Refused(why)) => Event::NotAtPlant { why },
+        Err(error) => unsaved(&error),
     }
 }
 

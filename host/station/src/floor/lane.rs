@@ -23,7 +23,7 @@ enum Phase {
     Running { of: Accepted, run: Option<String> },
     Saving { of: Accepted, run: Option<String> },
     Ended,
-    Unsaved { of: Accepted, run: Option<String>, why: Said },
+    Unsaved { of: Accepted, run: Option<String>, why: Said, awaits_plant: bool },
 }
 
 /// A lane.
@@ -89,7 +89,7 @@ impl Lane {
     /// Whether its result is saved, but not yet at the plant, which must have it.
     #[must_use]
     pub fn awaits_plant(&self) -> bool {
-        matches!(&self.phase, Phase::Unsaved { why, .. } if *why == Said::from(Saying::NotAtPlant))
+        matches!(self.phase, Phase::Unsaved { awaits_plant: true, .. })
     }
 
     /// Whether a board is in it.
@@ -284,6 +284,7 @@ impl Lane {
     /// Takes what its run reports. A report that does not fit the phase is late, and changes nothing.
     fn reported(&mut self, event: Event) -> Option<Effect> {
         let before = discriminant(&self.phase);
+        let awaits_plant = matches!(event, Event::NotAtPlant { .. });
         let phase = std::mem::replace(&mut self.phase, Phase::Idle);
         let (phase, effect) = match (phase, event) {
             (Phase::Running { of, .. }, Event::Begun { run }) => {
@@ -300,10 +301,10 @@ impl Lane {
             }
             (
                 Phase::Running { of, run } | Phase::Saving { of, run } | Phase::Unsaved { of, run, .. },
-                Event::Unsaved { why },
+                Event::Unsaved { why } | Event::NotAtPlant { why },
             ) => {
                 let effect = run.clone().map(|run| Effect::Recover { run });
-                (Phase::Unsaved { of, run, why }, effect)
+                (Phase::Unsaved { of, run, why, awaits_plant }, effect)
             }
             (phase, Event::Stuck) => {
                 self.is_stuck = true;

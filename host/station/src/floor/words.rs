@@ -149,6 +149,11 @@ pub enum Event {
         /// Why.
         why: Said,
     },
+    /// Its run's result is saved, but not at the plant, which must have it.
+    NotAtPlant {
+        /// Why.
+        why: Said,
+    },
     /// Its process cannot be killed, and may still have the board: it is out of service as soon as its result is settled.
     Stuck,
     /// What it is to do before its production counts, if anything.

@@ -9,6 +9,7 @@
 
 mod back_off;
 mod plant;
+mod sent;
 mod sinks;
 mod standing;
 
@@ -19,6 +20,7 @@ use std::time::{Duration, Instant};
 
 pub use crate::clock::HeardClock;
 pub use plant::PlantSink;
+pub(crate) use sent::{Sent, awaited};
 pub use sinks::{SinkError, SinkSettingsError, open};
 
 use crate::clock;
@@ -93,8 +95,7 @@ pub struct Round {
 /// # Errors
 /// [`StoreError`] when the store cannot be read or written. What was sent is then sent again, which changes nothing.
 pub fn round(store: &SharedStore, sink: &mut dyn Sink) -> Result<Round, StoreError> {
-    let due = folder(store).due(sink.name(), clock::now_ms(), back_off::LONGEST_MS)?;
-    given(store, sink, due, |_, _, _| ())
+    logged_round(store, sink, &mut Standing::default())
 }
 
 /// Gives `sink` all that it does not have, each entry once, however recently it was tried, unless the entry waits for

@@ -284,14 +284,6 @@ impl Folder {
         })
     }
 
-    /// Whether `sink` certainly has this run.
-    ///
-    /// # Errors
-    /// Like [`Self::due`].
-    pub fn is_sent(&self, sink: &str, run: &str) -> Result<bool, StoreError> {
-        Ok(self.standing(sink, run)?.is_done)
-    }
-
     /// The newest run that `sink` certainly has.
     ///
     /// # Errors

@@ -7,7 +7,6 @@
 //! ```
 
 mod held;
-mod sent;
 
 use std::path::PathBuf;
 use std::thread;
@@ -18,10 +17,10 @@ use halfrow::verdict::StoppedBy;
 use rand::{RngExt as _, rng};
 
 pub use held::{Held, Holding, Lost};
-use sent::Sent;
 
 use crate::clock;
 use crate::labgrid::LaneBoard;
+use crate::outbox::{Sent, awaited};
 use crate::record::JobClaim;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch, recover_run};
 use crate::said::Said;
@@ -291,11 +290,11 @@ impl Work<'_> {
         }
     }
 
-    /// The state of a run at the plant, as [`sent::awaited`] says. If the store cannot say, it is not waited for: the run is
+    /// The state of a run at the plant, as [`awaited`] says. If the store cannot say, it is not waited for: the run is
     /// saved, and sent when the outbox can.
     fn sent(&self, run: &str, is_over: &dyn Fn() -> bool) -> Sent {
         let folder = self.store.with(|store| store.folder().clone());
-        sent::awaited(&folder, run, is_over).unwrap_or_else(|error| {
+        awaited(&folder, run, is_over).unwrap_or_else(|error| {
             tracing::warn!("whether the plant has the run {run} is not known: {}", Said::of(&error));
             Sent::NotYet
         })

@@ -23,7 +23,7 @@ pub use users::{Role, UserError, Users};
 
 use super::visit::User;
 use crate::clock;
-use crate::secret::SecretError;
+use crate::secret::{self, SecretError};
 use crate::settings::Settings;
 use failures::Failures;
 pub(super) use failures::network;
@@ -276,10 +276,7 @@ fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
 /// [`TokenError`]
 pub fn add_token(settings: &Settings, file: &Path, name: &str, scope: Scope) -> Result<String, TokenError> {
     let key = Key::load(&key_file(&settings.data))?;
-    let mut tokens = Tokens::load_or_none(file)?;
-    let token = tokens.add(&key, name, scope)?;
-    tokens.save(file)?;
-    Ok(token)
+    secret::change(file, |tokens: &mut Tokens| tokens.add(&key, name, scope))
 }
 
 /// Adds somebody to `file`, the people of the settings.
@@ -294,8 +291,6 @@ pub fn add_user(
     password: &str,
 ) -> Result<(), UserError> {
     let key = Key::load(&key_file(&settings.data))?;
-    let mut users = Users::load_or_none(file)?;
     let badge = settings.scanner.label(badge).unwrap_or(badge);
-    users.add(&key, who.0, who.1, badge, password)?;
-    Ok(users.save(file)?)
+    secret::change(file, |users: &mut Users| users.add(&key, who.0, who.1, badge, password))
 }

@@ -59,12 +59,12 @@ impl Tokens {
         secret::read_or_none(path)
     }
 
-    /// Writes every token to the file `path`, all or nothing.
+    /// Removes a token from the file `path`.
     ///
     /// # Errors
-    /// [`SecretError::File`]
-    pub fn save(&self, path: &Path) -> Result<(), SecretError> {
-        secret::write(path, self, true)
+    /// [`TokenError`]
+    pub fn remove_from(path: &Path, name: &str) -> Result<(), TokenError> {
+        secret::change(path, |tokens: &mut Self| tokens.remove(name))
     }
 
     /// Adds a token of 256 random bits. Returns it in hexadecimal digits; it is written nowhere.
@@ -85,7 +85,7 @@ impl Tokens {
     ///
     /// # Errors
     /// [`TokenError::Nothing`]
-    pub fn remove(&mut self, name: &str) -> Result<(), TokenError> {
+    fn remove(&mut self, name: &str) -> Result<(), TokenError> {
         let before = self.token.len();
         self.token.retain(|token| token.name != name);
         if self.token.len() < before { Ok(()) } else { Err(TokenError::Nothing(name.to_owned())) }
@@ -120,7 +120,7 @@ mod tests {
         let [mes, other] = ["mes", "other"].map(|name| tokens.add(&key, name, Scope::Read).unwrap());
         assert!(mes.len() == 64 && mes.bytes().all(|digit| digit.is_ascii_hexdigit()), "{mes}");
         assert!(matches!(tokens.add(&key, "mes", Scope::Read), Err(TokenError::Name(_))));
-        tokens.save(&path).unwrap();
+        secret::write(&path, &tokens, true).unwrap();
         let text = fs::read_to_string(&path).unwrap();
         assert!(!text.contains(&mes) && !text.contains(&other), "{text}");
         let mut tokens = Tokens::load_or_none(&path).unwrap();

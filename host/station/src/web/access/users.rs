@@ -106,12 +106,12 @@ impl Users {
         secret::read_or_none(path)
     }
 
-    /// Writes everybody to the file `path`, all or nothing.
+    /// Removes somebody from the file `path`.
     ///
     /// # Errors
-    /// [`SecretError::File`]
-    pub fn save(&self, path: &Path) -> Result<(), SecretError> {
-        secret::write(path, self, true)
+    /// [`UserError`]
+    pub fn remove_from(path: &Path, name: &str) -> Result<(), UserError> {
+        secret::change(path, |users: &mut Self| users.remove(name))
     }
 
     /// Adds somebody. An engineer has a password.
@@ -151,7 +151,7 @@ impl Users {
     ///
     /// # Errors
     /// [`UserError::Nobody`]
-    pub fn remove(&mut self, name: &str) -> Result<(), UserError> {
+    fn remove(&mut self, name: &str) -> Result<(), UserError> {
         let before = self.user.len();
         self.user.retain(|user| user.name != name);
         if self.user.len() < before { Ok(()) } else { Err(UserError::Nobody(name.to_owned())) }
@@ -221,7 +221,7 @@ mod tests {
         assert!(matches!(users.add(&key, "Weber", Role::Operator, "C3", ""), Err(UserError::Name(_))));
         assert!(matches!(users.add(&key, "Vogel", Role::Operator, "A17", ""), Err(UserError::Badge(_))));
         let path = folder.path().join("users.toml");
-        users.save(&path).unwrap();
+        secret::write(&path, &users, true).unwrap();
         let users = Users::load(&path).unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
         assert!(!text.contains("A17") && !text.contains("horse") && text.contains("$argon2id$"), "{text}");

@@ -9,5 +9,6 @@ mod lanes;
 mod languages;
 mod places;
 mod prompt;
+mod secrets;
 pub(crate) mod station;
 mod table;

@@ -113,3 +113,20 @@ fn nothing_is_judged_beside_unsent_results_on_a_full_disk() {
     running.state("1", "PASS");
     assert_eq!(running.end().0, Some(0));
 }
+
+/// A person has to act then, and no time that passes helps.
+#[test]
+fn a_lane_that_waits_for_a_plant_says_why_the_plant_never_takes_its_result() {
+    let server = Server::prepared();
+    // A character that the encoding lacks (PostgreSQL, appendix A).
+    let never = "CREATE FUNCTION never() RETURNS trigger LANGUAGE plpgsql AS
+            $$ BEGIN RAISE EXCEPTION 'no such character' USING ERRCODE = '22021'; END $$;
+        CREATE TRIGGER never BEFORE INSERT ON run FOR EACH ROW EXECUTE FUNCTION never()";
+    server.client("plant").batch_execute(never).unwrap();
+    let waits = station(&server, "12", "green = \"plant\"");
+    let mut running = waits.start();
+    running.scan(SERIALS[0]);
+    let unsaved = running.state("1", "UNSAVED");
+    assert!(unsaved["note"].as_str().unwrap().contains("no such character"), "{unsaved}");
+    assert_eq!(running.end().0, Some(0));
+}

@@ -1,4 +1,4 @@
-//! Whether the plant has the run of a job, and why if it does not take it.
+//! Whether the plant has a run, and why if it does not take it.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ const LOOK: Duration = Duration::from_millis(200);
 
 /// The state of a run at the plant.
 #[derive(Debug)]
-pub(super) enum Sent {
+pub(crate) enum Sent {
     /// The plant has it.
     Yes,
     /// It will be sent when the outbox can.
@@ -26,7 +26,7 @@ pub(super) enum Sent {
 
 /// The state of a run at the plant. Waits until the plant has it, the run waits for a person, the plant has taken nothing for too
 /// long, or the wait `is_over`.
-pub(super) fn awaited(folder: &Folder, run: &str, is_over: &dyn Fn() -> bool) -> Result<Sent, StoreError> {
+pub(crate) fn awaited(folder: &Folder, run: &str, is_over: &dyn Fn() -> bool) -> Result<Sent, StoreError> {
     let mut until = Instant::now() + PATIENCE;
     loop {
         let entry = folder.standing(SINK_OF_PLANT, run)?;
