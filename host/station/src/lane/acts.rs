@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use halfrow::board::{Board, OpenOptions, Stop};
 use halfrow::link::{self, Candidate, OpenError};
 use halfrow::link_test::{self, Figures, LinkTestError};
-use halfrow::result::{BoardReport, Finding, FrameTotals, Identity, Problem, Suspect};
+use halfrow::result::{BoardReport, Finding, FrameTotals, Identity, Outcome, Problem, Suspect};
 use halfrow::run::{Circumstances, Draws};
 use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::{Cause, StoppedBy, Verdict};
@@ -35,6 +35,8 @@ pub(super) struct Try {
     pub(super) suspects: Vec<SuspectRecord>,
     pub(super) board: Option<BoardSeen>,
     pub(super) evidence: Option<Value>,
+    /// Whether the board did something that may be its own fault, whatever the try came to.
+    pub(super) is_incriminating: bool,
 }
 
 impl Try {
@@ -55,6 +57,7 @@ impl Try {
             suspects: Vec::new(),
             board: None,
             evidence: None,
+            is_incriminating: cause == Cause::Different,
         }
     }
 
@@ -78,6 +81,7 @@ impl Try {
     fn measured(mut self, measurements: Vec<Measured>) -> Self {
         let faults: Vec<_> = measurements.iter().filter_map(|one| Some((one.fault()?, one.said()))).collect();
         self.measurements = measurements;
+        self.is_incriminating |= faults.iter().any(|(cause, _)| *cause == RunCause::Board);
         // A fault that is not the board's is worse: the board was not judged correctly then.
         let worst = faults.iter().find(|(cause, _)| *cause != RunCause::Board).or(faults.first());
         let is_worse = |cause: &RunCause| match self.outcome {
@@ -224,6 +228,7 @@ impl Common<'_> {
         }
         let measured = judged(Maker::Verify, &of_verify(&report, begun.elapsed()), self.limits);
         let result = Try {
+            is_incriminating: is_incriminating(&report),
             remedy: at_the_bench(&report),
             suspects: report.suspects.iter().map(suspect).collect(),
             board: seen,
@@ -310,6 +315,14 @@ fn found(report: &Report) -> Said {
         said.parameters.insert(DIFFERED.to_owned(), differed);
     }
     said
+}
+
+/// Whether the report holds anything against the board, also if it broke off before that was looked into.
+fn is_incriminating(report: &Report) -> bool {
+    report.cause == Cause::Different
+        || FrameTotals::of(&report.frames).differences > 0
+        || !report.suspects.is_empty()
+        || report.checks.iter().any(|check| check.outcome == Outcome::Failed)
 }
 
 /// What the operator does: for a wrong board what a technician would do, otherwise what the finding asks for.

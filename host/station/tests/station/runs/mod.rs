@@ -11,5 +11,6 @@ mod killed;
 mod killed_lane;
 mod limited;
 mod recovered;
+mod retried;
 mod saved;
 mod unsaved;
