@@ -57,6 +57,11 @@ impl Said {
         REMEDIES.into_iter().find(|(code, _)| *code == self.code).map(|(_, remedy)| remedy)
     }
 
+    /// Whether it, or a cause of it, is that the board no longer knew the session.
+    pub(crate) fn is_of_lost_session(&self) -> bool {
+        self.code == "session-lost" || self.causes.iter().any(Self::is_of_lost_session)
+    }
+
     /// A sentence in English that has no code.
     pub(crate) fn uncoded(message: String) -> Self {
         Self { code: String::new(), parameters: Parameters::new(), message, causes: Vec::new() }

@@ -23,9 +23,6 @@ use crate::plan::{DeviceRule, Judging, Plan};
 use crate::record::{BoardSeen, Measured, RunCause, StepOutcome, SuspectRecord, judged};
 use crate::said::{DIFFERED, Said, Saying};
 
-/// The code of [`halfrow::board::BoardError::SessionLost`].
-const SESSION_LOST: &str = "session-lost";
-
 /// What a try of a step came to.
 #[derive(Debug)]
 pub(super) struct Try {
@@ -38,8 +35,8 @@ pub(super) struct Try {
     pub(super) suspects: Vec<SuspectRecord>,
     pub(super) board: Option<BoardSeen>,
     pub(super) evidence: Option<Value>,
-    /// Whether the judge saw something wrong with the board, whatever ended the try.
-    pub(super) speaks_against_board: bool,
+    /// Whether the board did something that may be its own fault, whatever the try came to.
+    pub(super) is_incriminating: bool,
 }
 
 impl Try {
@@ -60,17 +57,8 @@ impl Try {
             suspects: Vec::new(),
             board: None,
             evidence: None,
-            speaks_against_board: false,
+            is_incriminating: cause == Cause::Different,
         }
-    }
-
-    /// Whether the station may try the step again by itself, which at first saw the board `first`. If something was seen that
-    /// speaks against the board, or the board was reset and has no number by which it is known to be the same one, a PASS of the
-    /// next try would hide that.
-    pub(super) fn may_be_repeated(&self, first: Option<&BoardSeen>) -> bool {
-        let has_number = self.board.as_ref().or(first).is_some_and(|board| board.device.is_some());
-        let may_be_another = self.finding.code == SESSION_LOST && !has_number;
-        self.cause.is_retryable() && !self.speaks_against_board && !may_be_another
     }
 
     fn error(cause: Cause, error: &(dyn Error + 'static)) -> Self {
@@ -93,6 +81,7 @@ impl Try {
     fn measured(mut self, measurements: Vec<Measured>) -> Self {
         let faults: Vec<_> = measurements.iter().filter_map(|one| Some((one.fault()?, one.said()))).collect();
         self.measurements = measurements;
+        self.is_incriminating |= faults.iter().any(|(cause, _)| *cause == RunCause::Board);
         // A fault that is not the board's is worse: the board was not judged correctly then.
         let worst = faults.iter().find(|(cause, _)| *cause != RunCause::Board).or(faults.first());
         let is_worse = |cause: &RunCause| match self.outcome {
@@ -239,11 +228,11 @@ impl Common<'_> {
         }
         let measured = judged(Maker::Verify, &of_verify(&report, begun.elapsed()), self.limits);
         let result = Try {
+            is_incriminating: is_incriminating(&report),
             remedy: at_the_bench(&report),
             suspects: report.suspects.iter().map(suspect).collect(),
             board: seen,
             evidence: serde_json::to_value(&report).ok(),
-            speaks_against_board: speaks_against_board(&report),
             ..Try::of(report.cause, found(&report))
         };
         result.measured(measured)
@@ -328,9 +317,11 @@ fn found(report: &Report) -> Said {
     said
 }
 
-/// Whether a frame or a check was wrong, even if the run broke off before it was known why.
-fn speaks_against_board(report: &Report) -> bool {
-    FrameTotals::of(&report.frames).differing_frames > 0
+/// Whether the report holds anything against the board, also if it broke off before that was looked into.
+fn is_incriminating(report: &Report) -> bool {
+    report.cause == Cause::Different
+        || FrameTotals::of(&report.frames).differences > 0
+        || !report.suspects.is_empty()
         || report.checks.iter().any(|check| check.outcome == Outcome::Failed)
 }
 

@@ -111,13 +111,13 @@ fn steps(job: &Job, plan: &Plan, target: &Target, heeded: &Heeded, tell: &(dyn F
         let passed = loop {
             let name = step.name.clone();
             tell(&Message::Step { seq, attempt, name });
-            let (record, may_be_repeated) = tried(step, (seq, attempt), &common, tell);
+            let (record, is_incriminating) = tried(step, (seq, attempt), &common, tell);
             if common.first.is_none() {
                 common.first.clone_from(&record.board);
             }
             let passed = record.outcome == StepOutcome::Passed;
-            let may_go_on = may_be_repeated && heeded.stop.get().is_none();
-            let again = !passed && may_go_on && attempt <= step.retries;
+            let may_repeat = !is_incriminating && may_repeat(step, &record, common.first.as_ref());
+            let again = !passed && may_repeat && heeded.stop.get().is_none() && attempt <= step.retries;
             tell(&Message::Ended { step: Box::new(record) });
             if !again {
                 break passed;
@@ -130,7 +130,17 @@ fn steps(job: &Job, plan: &Plan, target: &Target, heeded: &Heeded, tell: &(dyn F
     }
 }
 
-/// What the try came to, and whether the station may try the step again.
+/// Whether a step that came to this on the board that the run began with may be tried again without a person.
+fn may_repeat(step: &Step, record: &StepRecord, first: Option<&BoardSeen>) -> bool {
+    let is_lost = record.finding.as_ref().is_some_and(Said::is_of_lost_session);
+    // A board that resets while it is judged may be at fault; and only its own number proves that the board which comes back
+    // is the same one.
+    let may_go_on =
+        || !matches!(step.act, Act::Verify(_)) && first.is_some_and(|board| board.device.is_some());
+    record.cause.is_retryable() && (!is_lost || may_go_on())
+}
+
+/// The record of a try, and whether it holds anything against the board.
 fn tried(
     step: &Step,
     (seq, attempt): (u32, u32),
@@ -144,8 +154,18 @@ fn tried(
         Act::Link { each } => common.link(*each, within),
         Act::Verify(judging) => common.verify(judging, (within, (seq, attempt)), &Told::by(tell)),
     };
-    let may_be_repeated = came.may_be_repeated(common.first.as_ref());
-    let Try { outcome, cause, exit, finding, remedy, measurements, suspects, board, evidence, .. } = came;
+    let Try {
+        outcome,
+        cause,
+        exit,
+        finding,
+        remedy,
+        measurements,
+        suspects,
+        board,
+        evidence,
+        is_incriminating,
+    } = came;
     let record = StepRecord {
         seq,
         attempt,
@@ -164,5 +184,5 @@ fn tried(
         board,
         evidence,
     };
-    (record, may_be_repeated)
+    (record, is_incriminating)
 }

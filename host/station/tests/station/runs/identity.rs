@@ -6,7 +6,7 @@ use std::process::Command;
 use std::thread;
 use std::time::Duration;
 
-use halfrow::link::{self, Link};
+use halfrow::link;
 use halfrow_station::store::{Admission, Change, RebindError};
 
 use super::bench::{Did, PLAN, Station, program};
@@ -84,32 +84,21 @@ pub(super) fn one_after_the_other(boards: Vec<String>, before: impl Fn() + Send 
         for board in boards {
             let (mut host, _) = listener.accept().unwrap();
             before();
-            let mut board = opened(&board);
+            let mut board = link::open(&board.parse().unwrap()).unwrap().link;
             let mut bytes = [0; 4096];
             while let Ok(read @ 1..) = host.read(&mut bytes) {
-                let Some(said) = answers(&mut *board, &bytes[..read]) else { break };
+                let (mut left, mut said, mut has_moved) = (&bytes[..read], Vec::new(), true);
+                while has_moved {
+                    let before = said.len();
+                    let taken = board.exchange(left, &mut said, Duration::from_millis(1)).unwrap();
+                    left = &left[taken..];
+                    has_moved = taken > 0 || said.len() > before;
+                }
                 host.write_all(&said).unwrap();
             }
         }
     });
     target
-}
-
-/// The link to this board.
-pub(super) fn opened(board: &str) -> Box<dyn Link> {
-    link::open(&board.parse().unwrap()).unwrap().link
-}
-
-/// What the board says to these bytes; none if its link is broken.
-pub(super) fn answers(board: &mut dyn Link, mut bytes: &[u8]) -> Option<Vec<u8>> {
-    let (mut said, mut has_moved) = (Vec::new(), true);
-    while has_moved {
-        let before = said.len();
-        let taken = board.exchange(bytes, &mut said, Duration::from_millis(1)).ok()?;
-        bytes = &bytes[taken..];
-        has_moved = taken > 0 || said.len() > before;
-    }
-    Some(said)
 }
 
 #[test]

@@ -1,65 +1,116 @@
-//! Which steps a station tries again by itself: none of which a PASS would hide what was seen before.
+//! Which steps are tried again without a person: none after which the board may be to blame.
 
 use std::io::{Read as _, Write as _};
 use std::net::TcpListener;
 use std::thread;
+use std::time::Duration;
+
+use halfrow::link;
 
 use super::bench::{PLAN, Station};
-use super::identity::{answers, device, one_after_the_other, opened};
+use super::identity::device;
 
-/// [`PLAN`], whose only step besides the identity may be tried twice.
-fn plan() -> String {
-    PLAN.replace("timeout = 60", "timeout = 60\nretries = 1")
+/// What happens to the first board once it has said enough.
+#[derive(Clone, Copy, Debug)]
+enum Then {
+    /// Its session is lost: the second board answers over the same connection, and ever after.
+    Reset,
+    /// The connection ends, and the second board answers from the next one on.
+    Cut,
 }
 
-const TRIES: &str =
-    "SELECT group_concat(outcome) FROM (SELECT outcome FROM step WHERE name = 'verify' ORDER BY attempt)";
-
-/// The cable of the first try breaks. The control is a board with which nothing is wrong until then.
-#[test]
-fn a_board_whose_samples_differed_before_its_link_broke_is_not_tried_again() {
-    for (fault, code, tries) in [("", 0, "error,passed"), (",fault=stuck-data", 3, "error")] {
-        let station = Station::with(&plan());
-        let breaks = format!("{}{fault},fault=disconnect,byte=9000,toward=host", device(0x11));
-        let did =
-            station.run("CAT00001", &one_after_the_other(vec![device(0x11), breaks, device(0x11)], || ()));
-        assert_eq!((did.code, &*station.query(TRIES)), (Some(code), &[tries.to_owned()][..]), "{did:?}");
-        assert_eq!(did.said.contains("samples differ"), code == 3, "{did:?}");
-    }
-}
-
-/// Another board is put in its place while it is judged, without the connection breaking. The control has a number, by which
-/// it is known to be the same one.
-#[test]
-fn a_board_that_was_reset_and_has_no_number_is_not_tried_again() {
-    for (board, code, tries) in [("mock,serial=17", 0, "error,passed"), ("mock,serial=0", 3, "error")] {
-        let station = Station::with(&plan());
-        let did = station.run("CAT00001", &reset_after(board, 20_000));
-        assert_eq!((did.code, &*station.query(TRIES)), (Some(code), &[tries.to_owned()][..]), "{did:?}");
-        let lost =
-            "SELECT count(*) FROM step WHERE attempt = 1 AND detail LIKE '%no longer knows this session%'";
-        assert_eq!(station.query(lost), ["1"], "{did:?}");
-    }
-}
-
-/// The target of `board`, which loses power for a moment when the host has sent this many bytes.
-fn reset_after(board: &str, bytes: usize) -> String {
+/// A port at which `first` answers until it has sent `bytes`, and then `second`.
+fn interrupted(first: String, second: String, bytes: usize, then: Then) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("tcp:{}", listener.local_addr().unwrap());
-    let board = board.to_owned();
+    let open = |board: &str| link::open(&board.parse().unwrap()).unwrap().link;
     thread::spawn(move || {
-        let (mut powered, mut sent) = (opened(&board), 0);
-        while let Ok((mut host, _)) = listener.accept() {
-            let mut buffer = [0; 4096];
-            while let Ok(read @ 1..) = host.read(&mut buffer) {
-                if (sent..sent + read).contains(&bytes) {
-                    powered = opened(&board);
+        let (mut board, mut sent, mut is_over) = (open(&first), 0, false);
+        for host in listener.incoming() {
+            let (mut host, mut received) = (host.unwrap(), [0; 4096]);
+            while let Ok(read @ 1..) = host.read(&mut received) {
+                let (mut left, mut said, mut has_moved) = (&received[..read], Vec::new(), true);
+                while has_moved {
+                    let before = said.len();
+                    let taken = board.exchange(left, &mut said, Duration::from_millis(1)).unwrap();
+                    left = &left[taken..];
+                    has_moved = taken > 0 || said.len() > before;
                 }
-                sent += read;
-                let said = answers(&mut *powered, &buffer[..read]).unwrap();
-                host.write_all(&said).unwrap();
+                sent += said.len();
+                // The host may have ended the connection.
+                drop(host.write_all(&said));
+                if sent > bytes && !is_over {
+                    (board, is_over) = (open(&second), true);
+                    match then {
+                        Then::Reset => {}
+                        Then::Cut => break,
+                    }
+                }
             }
         }
     });
     target
+}
+
+/// The verdict of a run whose first board is interrupted in the step `kind`, that step's tries, and what the first one told. A
+/// retry would meet a sound board.
+fn came(kind: &str, (first, second): (String, String), then: Then) -> (String, Vec<String>, String) {
+    let step = match kind {
+        "link" => "kind = \"link\"\nretries = 1\nseconds = 0.2\n[[step]]\n".to_owned(),
+        _ => String::new(),
+    };
+    let plan = match kind {
+        "link" => PLAN.replace("[[step]]\n", &format!("[[step]]\n{step}")),
+        _ => PLAN.replace("timeout = 60", "timeout = 60\nretries = 1\nrepeat = 20"),
+    };
+    let station = Station::with(&plan);
+    station.run("CAT00001", &interrupted(first, second, 20_000, then));
+    assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+    let tries = format!("SELECT attempt || ' ' || outcome FROM step WHERE name = '{kind}' ORDER BY attempt");
+    let first = format!("SELECT detail FROM step WHERE name = '{kind}' AND attempt = 1");
+    let [verdict, first] = ["SELECT verdict FROM run", &first].map(|query| station.query(query).remove(0));
+    (verdict, station.query(&tries), first)
+}
+
+const NUMBER: u64 = 0x11;
+
+#[test]
+fn a_try_in_which_samples_differed_is_not_repeated_whatever_broke_it_off() {
+    for then in [Then::Cut, Then::Reset] {
+        let wrong = format!("{},fault=stuck-data,bit=4", device(NUMBER));
+        let (verdict, tries, told) = came("verify", (wrong, device(NUMBER)), then);
+        assert_eq!((verdict.as_str(), tries), ("ERROR", vec!["1 error".to_owned()]), "{then:?}: {told}");
+        // Otherwise nothing would have been held against the board yet.
+        assert!(told.contains("samples differ") && told.contains("broke off"), "{then:?}: {told}");
+    }
+}
+
+#[test]
+fn a_sound_board_whose_link_broke_is_judged_by_the_next_try() {
+    let (verdict, tries, told) = came("verify", (device(NUMBER), device(NUMBER)), Then::Cut);
+    assert_eq!(
+        (verdict.as_str(), tries),
+        ("PASS", ["1 error", "2 passed"].map(str::to_owned).to_vec()),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_board_that_loses_its_session_while_it_is_judged_is_tested_again_by_a_person() {
+    let (verdict, tries, told) = came("verify", (device(NUMBER), device(NUMBER)), Then::Reset);
+    assert_eq!((verdict.as_str(), tries), ("ERROR", vec!["1 error".to_owned()]), "{told}");
+}
+
+/// Without a number it may be another board that answers from then on.
+#[test]
+fn a_step_during_which_the_session_was_lost_is_repeated_only_with_a_board_that_proves_who_it_is() {
+    let (verdict, tries, told) = came("link", (device(NUMBER), device(NUMBER)), Then::Reset);
+    assert_eq!(
+        (verdict.as_str(), tries),
+        ("PASS", ["1 error", "2 passed"].map(str::to_owned).to_vec()),
+        "{told}"
+    );
+    let unnumbered = || "mock".to_owned();
+    let (verdict, tries, told) = came("link", (unnumbered(), unnumbered()), Then::Reset);
+    assert_eq!((verdict.as_str(), tries), ("ERROR", vec!["1 error".to_owned()]), "{told}");
 }
