@@ -176,7 +176,7 @@ fn gaps_are_compared_with_their_seed() {
         Some(at) if at.row == 5 => changed(&packet, packet.header.sequence, |row, _| row.pauses += 1),
         _ => packet,
     });
-    fails(&report, CheckName::Counters, "the board counts 1 board clocks of gaps");
+    fails(&report, CheckName::Counters, "the board counts 1 board clock of gaps");
 }
 
 /// The report on a board after `change` was made to each row that `is_meant`.
