@@ -272,7 +272,9 @@ impl Plan {
     ///
     /// A board without bursts shows the whole range of weights, sums and factors in the decoy alone, which is drawn then.
     pub(super) fn decoy(&self, build: &Build) -> Option<Generation> {
-        if let Some(drawn) = self.drawn_decoy(build).filter(|_| !build.bursts) {
+        if !build.bursts
+            && let Some(drawn) = self.drawn_decoy(build)
+        {
             return Some(drawn);
         }
         let tables = self.tables.halved();

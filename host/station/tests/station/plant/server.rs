@@ -51,6 +51,17 @@ impl Server {
         server
     }
 
+    /// From now on the plant can never hold a new row of `table`, as if it had a character that the encoding lacks (PostgreSQL,
+    /// appendix A).
+    pub(crate) fn never_holds(&self, table: &str) {
+        let never = format!(
+            "CREATE FUNCTION never() RETURNS trigger LANGUAGE plpgsql AS
+                $$ BEGIN RAISE EXCEPTION 'no such character' USING ERRCODE = '22021'; END $$;
+            CREATE TRIGGER never BEFORE INSERT ON {table} FOR EACH ROW EXECUTE FUNCTION never()"
+        );
+        self.client("plant").batch_execute(&never).unwrap();
+    }
+
     pub(crate) fn data(&self) -> PathBuf {
         self.folder.path().join("data")
     }

@@ -32,11 +32,7 @@ fn no_character_keeps_a_result_from_the_plant() {
 #[test]
 fn what_a_plant_can_never_hold_waits_for_a_person() {
     let server = Server::prepared();
-    // A character that the encoding lacks (appendix A).
-    let never = "CREATE FUNCTION never() RETURNS trigger LANGUAGE plpgsql AS
-            $$ BEGIN RAISE EXCEPTION 'no such character' USING ERRCODE = '22021'; END $$;
-        CREATE TRIGGER never BEFORE INSERT ON waiver FOR EACH ROW EXECUTE FUNCTION never()";
-    server.client("plant").batch_execute(never).unwrap();
+    server.never_holds("waiver");
     let (made, all) = send(history(), server.address());
     assert_eq!((all.sent, all.failed, all.is_away), (9, 1, false));
     let unsent = made.now().unsent().unwrap();

@@ -118,11 +118,7 @@ fn nothing_is_judged_beside_unsent_results_on_a_full_disk() {
 #[test]
 fn a_lane_that_waits_for_a_plant_says_why_the_plant_never_takes_its_result() {
     let server = Server::prepared();
-    // A character that the encoding lacks (PostgreSQL, appendix A).
-    let never = "CREATE FUNCTION never() RETURNS trigger LANGUAGE plpgsql AS
-            $$ BEGIN RAISE EXCEPTION 'no such character' USING ERRCODE = '22021'; END $$;
-        CREATE TRIGGER never BEFORE INSERT ON run FOR EACH ROW EXECUTE FUNCTION never()";
-    server.client("plant").batch_execute(never).unwrap();
+    server.never_holds("run");
     let waits = station(&server, "12", "green = \"plant\"");
     let mut running = waits.start();
     running.scan(SERIALS[0]);

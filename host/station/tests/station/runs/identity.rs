@@ -6,7 +6,7 @@ use std::process::Command;
 use std::thread;
 use std::time::Duration;
 
-use halfrow::link;
+use halfrow::link::{self, Link};
 use halfrow_station::store::{Admission, Change, RebindError};
 
 use super::bench::{Did, PLAN, Station, program};
@@ -87,18 +87,24 @@ pub(super) fn one_after_the_other(boards: Vec<String>, before: impl Fn() + Send 
             let mut board = link::open(&board.parse().unwrap()).unwrap().link;
             let mut bytes = [0; 4096];
             while let Ok(read @ 1..) = host.read(&mut bytes) {
-                let (mut left, mut said, mut has_moved) = (&bytes[..read], Vec::new(), true);
-                while has_moved {
-                    let before = said.len();
-                    let taken = board.exchange(left, &mut said, Duration::from_millis(1)).unwrap();
-                    left = &left[taken..];
-                    has_moved = taken > 0 || said.len() > before;
-                }
+                let said = answers(&mut *board, &bytes[..read]);
                 host.write_all(&said).unwrap();
             }
         }
     });
     target
+}
+
+/// What the board says to these bytes.
+pub(super) fn answers(board: &mut dyn Link, mut bytes: &[u8]) -> Vec<u8> {
+    let (mut said, mut has_moved) = (Vec::new(), true);
+    while has_moved {
+        let before = said.len();
+        let taken = board.exchange(bytes, &mut said, Duration::from_millis(1)).unwrap();
+        bytes = &bytes[taken..];
+        has_moved = taken > 0 || said.len() > before;
+    }
+    said
 }
 
 #[test]
