@@ -13,7 +13,7 @@ use halfrow::run::{RunOptions, verify};
 use halfrow::verdict::{Cause, StoppedBy};
 use halfrow_mock::Options;
 use halfrow_model::{Frame, Kernel, Phase, TableSet};
-use halfrow_protocol::message::{Reset, ResetLevel, Welcome};
+use halfrow_protocol::message::{Hello, Reset, ResetLevel, Welcome};
 use halfrow_protocol::{Packet, Reply, Request};
 use halfrow_tests::altered::{Altered, Passing, Toward, judge};
 use halfrow_tests::patience::LIMIT;
@@ -106,13 +106,13 @@ fn an_answer_to_an_old_greeting_opens_no_session() {
     }));
 }
 
-/// What a host says of its sessions: whether each greeting takes the board over, and how many times it closes one.
-fn sessions(options: &RunOptions, is_stopped: Arc<AtomicBool>) -> (Report, Vec<bool>, usize) {
+/// What a host says of its sessions: its greetings, and how many times it closes one.
+fn sessions(options: &RunOptions, is_stopped: Arc<AtomicBool>) -> (Report, Vec<Hello>, usize) {
     let (sender, said) = std::sync::mpsc::channel();
     let alter = move |toward, packet: Passing| {
         let request = Request::read(&Packet { header: packet.header, payload: &packet.payload });
         match (toward, request) {
-            (Toward::Board, Ok(Request::Hello(hello))) => sender.send(Some(hello.take_over)).unwrap(),
+            (Toward::Board, Ok(Request::Hello(hello))) => sender.send(Some(hello)).unwrap(),
             (Toward::Board, Ok(Request::Reset(Reset { level: ResetLevel::Session, .. }))) => {
                 sender.send(None).unwrap();
             }
@@ -128,13 +128,23 @@ fn sessions(options: &RunOptions, is_stopped: Arc<AtomicBool>) -> (Report, Vec<b
     (report, said.into_iter().flatten().collect(), closed)
 }
 
+/// Whether only the first greeting can take the board from another host. The rules take it over as another host, and take it
+/// back with the greeting that follows.
+fn takes_over_once(greetings: &[Hello]) -> bool {
+    let takes: Vec<_> = (0..greetings.len()).filter(|&at| greetings[at].take_over).collect();
+    let [0, other, back] = takes[..] else { return false };
+    back == other + 1
+        && greetings[other].host != greetings[0].host
+        && greetings[back].host == greetings[0].host
+}
+
 /// Behind a session that was closed on purpose the board may be another host's.
 #[test]
 fn a_board_is_taken_over_once() {
     let options = RunOptions { take_over: true, ..RunOptions::default() };
-    let (report, taken, _) = sessions(&options, Arc::default());
+    let (report, greetings, _) = sessions(&options, Arc::default());
     passes(&report);
-    assert!(taken.len() > 3 && taken[0] && !taken[1..].contains(&true), "{taken:?}");
+    assert!(takes_over_once(&greetings), "{greetings:?}");
 }
 
 #[test]
@@ -151,14 +161,14 @@ fn a_run_that_is_stopped_leaves_a_board_that_is_free() {
 #[test]
 fn whoever_has_a_board_that_comes_back_keeps_it() {
     let is_cut = Arc::new(AtomicBool::new(false));
-    let (cut, taken) = (Arc::clone(&is_cut), Arc::new(Mutex::new(Vec::new())));
-    let seen = Arc::clone(&taken);
+    let (cut, greetings) = (Arc::clone(&is_cut), Arc::new(Mutex::new(Vec::new())));
+    let seen = Arc::clone(&greetings);
     let board = move || {
         let (cut, seen) = (Arc::clone(&cut), Arc::clone(&seen));
         let alter = move |toward, packet: Passing| {
             match Request::read(&Packet { header: packet.header, payload: &packet.payload }) {
                 Ok(Request::Hello(hello)) if toward == Toward::Board => {
-                    seen.lock().unwrap().push(hello.take_over);
+                    seen.lock().unwrap().push(hello);
                 }
                 Ok(Request::RowIn(_)) if toward == Toward::Board => cut.store(true, Ordering::Relaxed),
                 _ => {}
@@ -173,6 +183,6 @@ fn whoever_has_a_board_that_comes_back_keeps_it() {
     let options = RunOptions { take_over: true, reconnect: Some(LIMIT), ..RunOptions::default() };
     let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
     passes(&report);
-    let taken = taken.lock().unwrap();
-    assert!(taken.len() > 3 && taken[0] && !taken[1..].contains(&true), "{taken:?}");
+    let greetings = greetings.lock().unwrap();
+    assert!(takes_over_once(&greetings), "{greetings:?}");
 }

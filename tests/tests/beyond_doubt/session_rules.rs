@@ -59,6 +59,19 @@ fn another_host_must_not_get_a_board_that_is_held() {
     assert_eq!(broken(&report).0, Rule::Held);
 }
 
+#[test]
+fn a_held_board_must_let_itself_be_taken_over() {
+    let mut own = None;
+    let report = hearing(move |packet| {
+        if let Some((_, host)) = greeting(packet)
+            && *own.get_or_insert(host) != host
+        {
+            packet.payload[10] = 0;
+        }
+    });
+    assert_eq!(broken(&report).0, Rule::Held, "{}", report.headline());
+}
+
 /// The board answers with the nonce that it received.
 #[test]
 fn a_greeting_that_is_repeated_must_open_no_session() {

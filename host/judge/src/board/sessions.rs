@@ -5,6 +5,7 @@ use std::mem;
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Hello, Refusal, RefusalCode, Request, ResetLevel, Welcome};
 
+use super::answer::OwnedPacket;
 use super::asked::Asking;
 use super::counted::Counted;
 use super::deadlines::Step;
@@ -34,8 +35,20 @@ impl Board {
     /// # Errors
     /// Like [`Self::open_another_session`].
     pub(crate) fn open_free_session(&mut self, nonce: u32) -> Result<(), BoardError> {
+        self.open_by(nonce, false)
+    }
+
+    /// The same after [`Self::take_over_as_another_host`]: this host takes the board back.
+    ///
+    /// # Errors
+    /// Like [`Self::open_another_session`].
+    pub(crate) fn take_back(&mut self, nonce: u32) -> Result<(), BoardError> {
+        self.open_by(nonce, true)
+    }
+
+    fn open_by(&mut self, nonce: u32, take_over: bool) -> Result<(), BoardError> {
         let given = self.options.clone();
-        self.options = OpenOptions { take_over: false, polite: true, ..given.clone() };
+        self.options = OpenOptions { take_over, polite: true, ..given.clone() };
         let opened = self.open_another_session(nonce);
         self.options = OpenOptions { nonce, ..given };
         opened
@@ -68,7 +81,22 @@ impl Board {
     /// # Errors
     /// Like [`Self::ask`].
     pub(crate) fn greet_as_another_host(&mut self) -> Result<Said, BoardError> {
-        self.greet_aside(!self.options.host, [VERSION; 2])
+        let hello = self.hello_of_another_host();
+        self.greet_and_close(hello)
+    }
+
+    /// Greets the board as another host that takes it over, and returns the board's answer. The session stays open: nobody else
+    /// may take the board before this host has it back.
+    ///
+    /// # Errors
+    /// Like [`Self::ask`].
+    pub(crate) fn take_over_as_another_host(&mut self) -> Result<Said, BoardError> {
+        let hello = Hello { take_over: true, ..self.hello_of_another_host() };
+        said(Kind::Hello, &self.greet_aside(hello)?)
+    }
+
+    fn hello_of_another_host(&self) -> Hello {
+        Hello { host: !self.options.host, ..self.hello_aside([VERSION; 2]) }
     }
 
     /// Greets the board as its holder, which wants another session and speaks these versions, from the least to the greatest.
@@ -77,22 +105,31 @@ impl Board {
     /// # Errors
     /// Like [`Self::ask`].
     pub(crate) fn greet_in_versions(&mut self, versions: [u8; 2]) -> Result<Said, BoardError> {
-        self.greet_aside(self.options.host, versions)
+        let hello = self.hello_aside(versions);
+        self.greet_and_close(hello)
     }
 
-    fn greet_aside(&mut self, host: u32, [version_min, version_max]: [u8; 2]) -> Result<Said, BoardError> {
-        let nonce = !self.options.nonce;
-        let hello = Hello { nonce, host, version_min, version_max, take_over: false };
-        self.conversation.queue_zeros(2);
-        let request = Request::Hello(hello);
-        let asking = Asking::Request(&request);
-        let answer = self.conversation.under_session(0, |conversation| {
-            conversation.ask(&asking, Step::Hello, |packet| is_for(packet, hello.nonce))
-        })?;
+    /// The holder's greeting for another session than the open one.
+    fn hello_aside(&self, [version_min, version_max]: [u8; 2]) -> Hello {
+        let OpenOptions { nonce, host, .. } = self.options;
+        Hello { nonce: !nonce, host, version_min, version_max, take_over: false }
+    }
+
+    fn greet_and_close(&mut self, hello: Hello) -> Result<Said, BoardError> {
+        let answer = self.greet_aside(hello)?;
         if answer.header.kind == Kind::Hello.code() && answer.header.session != self.session() {
             self.close_foreign(answer.header.session);
         }
         said(Kind::Hello, &answer)
+    }
+
+    fn greet_aside(&mut self, hello: Hello) -> Result<OwnedPacket, BoardError> {
+        self.conversation.queue_zeros(2);
+        let request = Request::Hello(hello);
+        let asking = Asking::Request(&request);
+        self.conversation.under_session(0, |conversation| {
+            conversation.ask(&asking, Step::Hello, |packet| is_for(packet, hello.nonce))
+        })
     }
 
     fn close_foreign(&mut self, session: u8) {

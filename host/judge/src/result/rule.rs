@@ -26,7 +26,7 @@ pub enum Rule {
     Once,
     /// A packet of another session is refused, and has no effect.
     Session,
-    /// A board that another host holds refuses HELLO, and says for how long.
+    /// A board that another host holds refuses HELLO, and says for how long, unless that host takes it over.
     Held,
     /// HELLO opens the next session, once; only tables and configuration are left of the one before.
     NewSession,

@@ -12,7 +12,7 @@ use super::counts::equal;
 use super::rows::{FRAME, GENERATION};
 use super::trap::NOTHING_KEPT;
 use super::{FIRST_FACTOR, Refusals, Rules, broken, of_board};
-use crate::board::{BoardError, Given, Said, Status};
+use crate::board::{Board, BoardError, Given, Said, Status};
 use crate::result::{Answer, CheckName, Counter, Doubt, Rule};
 use crate::run::Generation;
 use crate::run::counters::rows_numbered;
@@ -44,6 +44,7 @@ impl Rules<'_, '_> {
         self.powered(|rules| rules.always(Self::greeted_again))?;
         // The session that follows drops what the link still holds of this one, with greater numbers of rows.
         self.thrice(Self::window_goes_down)?;
+        self.thrice(Self::taken_over)?;
         self.numbers_of_sessions()?;
         self.powered(Self::session_after_rows)?;
         if self.run.known_bursts().is_ok() {
@@ -113,6 +114,18 @@ impl Rules<'_, '_> {
             said => said,
         });
         self.judge(Rule::Held, Kind::Hello, said, &Said::Refused(right))
+    }
+
+    /// Another host that takes the board over must get it, whoever holds it.
+    fn taken_over(&mut self) -> Result<(), End> {
+        self.run.board.status(false).map_err(of_board)?;
+        self.ends_right()?;
+        let said = self.run.board.take_over_as_another_host().map(|said| match said {
+            Said::Replied(_) => Said::Replied(Vec::new()),
+            refused => refused,
+        });
+        self.judge(Rule::Held, Kind::Hello, said, &Said::Replied(Vec::new()))?;
+        self.greet_by(Board::take_back).map_err(of_board)
     }
 
     /// A host that speaks no version that the board speaks must be refused. Which is the board's newest is not known.
@@ -271,11 +284,15 @@ impl Rules<'_, '_> {
     }
 
     fn greet(&mut self) -> Result<(), BoardError> {
+        self.greet_by(Board::open_free_session)
+    }
+
+    fn greet_by(&mut self, open: fn(&mut Board, u32) -> Result<(), BoardError>) -> Result<(), BoardError> {
         let doubt = Doubt::of_session(self.run.board);
         let earlier = &mut self.run.findings.look.doubt;
         *earlier = earlier.take().or(doubt);
         let nonce = self.run.next_nonce();
-        self.run.board.open_free_session(nonce)?;
+        open(self.run.board, nonce)?;
         (self.refusals, self.before) = (Refusals::default(), Status::default());
         Ok(())
     }
