@@ -32,6 +32,25 @@ pub enum Exit {
 }
 
 impl Exit {
+    const ALL: [Self; 10] = [
+        Self::Pass,
+        Self::Fail,
+        Self::Usage,
+        Self::Error,
+        Self::Busy,
+        Self::NothingJudged,
+        Self::Refused,
+        Self::HungUp,
+        Self::Interrupted,
+        Self::Terminated,
+    ];
+
+    /// The one with this exit code, if any.
+    #[must_use]
+    pub fn of(code: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|exit| exit.code() == code)
+    }
+
     /// The process's exit code.
     #[must_use]
     pub const fn code(self) -> u8 {
@@ -102,7 +121,9 @@ mod tests {
     #[test]
     fn a_code_carries_the_verdict_of_its_cause_and_a_signal_is_known_by_it() {
         for cause in Cause::ALL {
-            assert_eq!(Exit::from(cause).verdict(), Some(cause.verdict()), "{cause}");
+            let exit = Exit::from(cause);
+            assert_eq!(exit.verdict(), Some(cause.verdict()), "{cause}");
+            assert_eq!(Exit::of(exit.code()), Some(exit), "{cause}");
         }
         let signals = [129, 130, 143, 0, 3].map(Exit::stopped_by);
         let (gone, person, system) = (StoppedBy::Disconnection, StoppedBy::Person, StoppedBy::System);

@@ -48,7 +48,8 @@ pub enum Cause {
 }
 
 /// Who ended a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum StoppedBy {
     /// The person who watches it.
     Person,

@@ -262,17 +262,7 @@ fn why_no_production(plan: &Plan, record: &Record) -> &'static str {
 
 /// The exit code that was read back.
 fn exit(saved: &Saved) -> Exit {
-    let all = [
-        Exit::Pass,
-        Exit::Fail,
-        Exit::Busy,
-        Exit::NothingJudged,
-        Exit::Refused,
-        Exit::HungUp,
-        Exit::Interrupted,
-        Exit::Terminated,
-    ];
-    all.into_iter().find(|exit| exit.code() == saved.stored.exit_code).unwrap_or(Exit::Error)
+    Exit::of(saved.stored.exit_code).filter(|exit| exit.verdict().is_some()).unwrap_or(Exit::Error)
 }
 
 /// This computer's name.

@@ -45,7 +45,7 @@ impl Orders {
     pub fn take(&self, control: Control) {
         match control {
             // Only the first one counts.
-            Control::Stop(stopper) => drop(self.stop.set(stopper.into())),
+            Control::Stop(by) => drop(self.stop.set(by)),
             // A job that is over waits for no ruling.
             Control::Device(ruling) => drop(self.rulings.send(ruling)),
         }

@@ -40,23 +40,9 @@ pub struct Job {
 #[serde(rename_all = "lowercase")]
 pub enum Control {
     /// The run is to end.
-    Stop(Stopper),
+    Stop(StoppedBy),
     /// The answer to [`Message::Identified`].
     Device(Ruling),
-}
-
-/// Who wants a run to end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Stopper {
-    /// A person.
-    Person,
-    /// The system.
-    System,
-    /// Nobody: the terminal is gone.
-    Disconnection,
-    /// The station itself, which has lost what the run is about.
-    Caller,
 }
 
 /// Whether a device may be judged under the serial number of the run.
@@ -77,28 +63,6 @@ pub enum Ruling {
         /// Why.
         why: Said,
     },
-}
-
-impl From<StoppedBy> for Stopper {
-    fn from(by: StoppedBy) -> Self {
-        match by {
-            StoppedBy::Person => Self::Person,
-            StoppedBy::System => Self::System,
-            StoppedBy::Disconnection => Self::Disconnection,
-            StoppedBy::Caller => Self::Caller,
-        }
-    }
-}
-
-impl From<Stopper> for StoppedBy {
-    fn from(stopper: Stopper) -> Self {
-        match stopper {
-            Stopper::Person => Self::Person,
-            Stopper::System => Self::System,
-            Stopper::Disconnection => Self::Disconnection,
-            Stopper::Caller => Self::Caller,
-        }
-    }
 }
 
 /// What the lane reports.

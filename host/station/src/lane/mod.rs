@@ -21,4 +21,4 @@ pub const MEMORY_MIB: u64 = 4096;
 /// How much it may be given, in MiB.
 pub const MEMORIES_MIB: std::ops::RangeInclusive<u64> = 64..=1_048_576;
 
-pub use message::{Control, Job, Message, Ruling, Stopper};
+pub use message::{Control, Job, Message, Ruling};

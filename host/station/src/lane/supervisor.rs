@@ -174,7 +174,7 @@ impl Lane {
             if asked.is_none()
                 && let Some(by) = attendant.stop()
             {
-                self.tell(&Control::Stop(by.into()));
+                self.tell(&Control::Stop(by));
                 asked = Some(Instant::now());
             }
             if let Some(why) = impatient(patience, begun, last, asked) {

@@ -8,8 +8,9 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use halfrow::Verdict;
+use halfrow::verdict::StoppedBy;
 use halfrow_station::lane::child::{carry_out, orders};
-use halfrow_station::lane::{Control, Job, MEMORY_MIB, Message, Ruling, Stopper};
+use halfrow_station::lane::{Control, Job, MEMORY_MIB, Message, Ruling};
 use halfrow_station::plan::Plan;
 use halfrow_station::record::{RunCause, StepOutcome, StepRecord};
 
@@ -324,7 +325,7 @@ fn stopped(text: String, target: String, is_last: impl Fn(&Message) -> bool + Sy
             _ => {}
         }
         if is_last(message) {
-            orders.take(Control::Stop(Stopper::Person));
+            orders.take(Control::Stop(StoppedBy::Person));
         }
     };
     let [run, variant] = ["r", ""].map(str::to_owned);
