@@ -156,6 +156,7 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     let begun = Instant::now();
     let folder = store.with(|store| store.folder().clone());
     let spool = folder.spool(&head.id);
+    recovered::note_claim(&spool, head.job.as_ref());
     let job = job(&head, order, ids::seed(id), &spool);
     let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked };
     let heard =

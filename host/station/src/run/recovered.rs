@@ -1,6 +1,7 @@
 //! Runs that are found open when the station starts: the program or the computer ended in the middle of them.
 
 use std::fs;
+use std::io;
 use std::path::Path;
 
 use crate::clock;
@@ -9,12 +10,30 @@ use crate::lane::Message;
 use crate::lane::supervisor::{EVENTS, kill_left_behind};
 use crate::plan::Production;
 use crate::record::{
-    BoardSeen, Conclusion, DeviceSeen, PlanRecord, Record, RunCause, RunHead, SCHEMA, StepRecord,
+    BoardSeen, Conclusion, DeviceSeen, JobClaim, PlanRecord, Record, RunCause, RunHead, SCHEMA, StepRecord,
 };
 use crate::said::Saying;
 use crate::store::{Folder, InLane, OpenRun, SharedStore, Store, StoreError, Stored};
 
 use super::{RunError, Saved, save};
+
+/// The claim of the job that a run belongs to, in the run's spool: the row of an open run does not have it.
+const CLAIM: &str = "claim.json";
+
+/// Keeps `claim` for whoever closes the run if this process ends in the middle of it.
+pub(super) fn note_claim(spool: &Path, claim: Option<&JobClaim>) {
+    let Some(claim) = claim else { return };
+    let written = fs::create_dir_all(spool)
+        .and_then(|()| serde_json::to_vec(claim).map_err(io::Error::from))
+        .and_then(|bytes| fs::write(spool.join(CLAIM), bytes));
+    if let Err(error) = written {
+        tracing::warn!("if this run is broken off, its record will not name its job {}: {error}", claim.id);
+    }
+}
+
+fn noted_claim(spool: &Path) -> Option<JobClaim> {
+    serde_json::from_slice(&fs::read(spool.join(CLAIM)).ok()?).ok()
+}
 
 /// Closes every open run as ERROR, cause crash, with what its lane wrote down. The verdict that it was heading for does not
 /// count: to test a board again costs a minute, a wrong PASS costs more.
@@ -47,7 +66,7 @@ pub fn recover_run(store: &SharedStore, run: &str) -> Result<Saved, RunError> {
         let why = |tries| Saying::SavedTooLate { tries };
         return closed(&folder, open, why, |record| store.with(|store| store.finish(record, 0)));
     }
-    let (stored, record) = store.with(|store| store.saved(run)).map_err(unsaved)?;
+    let (stored, record) = store.with(|store| store.saved_after_all(run)).map_err(unsaved)?;
     Ok(Saved { record, stored, saved_ms: clock::now_ms() })
 }
 
@@ -78,6 +97,7 @@ fn closed(
 ) -> Result<Saved, RunError> {
     let OpenRun { run, plan_sha256, plan: [name, version, text] } = open;
     let spool = folder.spool(&run.id);
+    let run = RunHead { job: noted_claim(&spool), ..run };
     kill_left_behind(&spool);
     let steps = told(&spool);
     let why = why(steps.len());

@@ -273,6 +273,16 @@ impl Store {
         if is_same { Ok((stored, record)) } else { Err(otherwise()) }
     }
 
+    /// The same of a run that [`Self::finish`] could not read back. Its device may be judged again.
+    ///
+    /// # Errors
+    /// Like [`Self::saved`].
+    pub fn saved_after_all(&mut self, run: &str) -> Result<(Stored, Record), StoreError> {
+        let saved = self.saved(run)?;
+        self.admitted.retain(|_, admitted| admitted != run);
+        Ok(saved)
+    }
+
     /// Every run that is open, the earliest first.
     ///
     /// # Errors

@@ -93,6 +93,9 @@ fn a_worker_that_is_killed_leaves_a_job_that_another_one_does() {
         .output()
         .unwrap();
     assert!(again.status.success(), "{again:?}");
+    let claims = "SELECT text::json #>> '{run,job,fence}' FROM record, run WHERE sha256 = record_sha256 AND cause = 'crash'";
+    let claims = server.rows(claims);
+    assert_eq!(claims, [["1"]]);
     // A station without a lane also tells what it has not sent.
     let unsent = Command::new(program())
         .args(["outbox", "list", "--settings"])
