@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use jiff::tz::TimeZone;
 use jiff::{Timestamp, Zoned};
@@ -18,6 +18,29 @@ const ZONES: &str = "/usr/share/zoneinfo";
 pub(crate) fn now_ms() -> i64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     i64::try_from(since.as_millis()).unwrap_or(i64::MAX)
+}
+
+/// A moment on the clock that nobody sets and that keeps running while the computer sleeps, on which `Instant` stands still.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Moment {
+    since_start_ms: i64,
+}
+
+impl Moment {
+    pub(crate) fn now() -> Self {
+        Self { since_start_ms: since_start_ms() }
+    }
+
+    /// The time that has passed since then.
+    pub(crate) fn elapsed(self) -> Duration {
+        let passed_ms = since_start_ms().saturating_sub(self.since_start_ms);
+        Duration::from_millis(u64::try_from(passed_ms).unwrap_or(0))
+    }
+
+    #[cfg(test)]
+    pub(crate) fn ago(time: Duration) -> Self {
+        Self { since_start_ms: since_start_ms() - time.as_millis() as i64 }
+    }
 }
 
 /// Another computer's clock, as it was last heard.

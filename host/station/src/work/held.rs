@@ -4,8 +4,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use crate::clock::Moment;
 use crate::guard::guarded;
 use crate::said::Said;
 use crate::store::{Claim, LEASE_MS, Lease, Plant, PlantLink, StoreError};
@@ -136,7 +137,7 @@ struct Known {
 
 #[derive(Debug)]
 struct Renewed {
-    since: Instant,
+    since: Moment,
     /// Why it was not renewed since then.
     said: String,
 }
@@ -162,7 +163,7 @@ impl Known {
     }
 
     /// Notes that it was still held after `since`.
-    fn renew(&self, since: Instant) {
+    fn renew(&self, since: Moment) {
         self.renewed().since = since;
     }
 
@@ -179,7 +180,7 @@ impl Known {
 fn renew(plant: &PlantLink, held: &Held, known: &Known, stopped: &Receiver<()>) {
     let mut wait = RENEWED;
     while stopped.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
-        let asked = Instant::now();
+        let asked = Moment::now();
         match plant.ask(|plant| held.renew(plant)) {
             Ok(true) => {
                 known.renew(asked);
@@ -214,7 +215,7 @@ mod tests {
 
     /// Something that was last renewed this long ago.
     fn renewed(ago: Duration) -> Known {
-        let since = Instant::now().checked_sub(ago).unwrap();
+        let since = Moment::ago(ago);
         let renewed = Mutex::new(Renewed { since, said: "no route to host".to_owned() });
         Known { board: "shelf-1".to_owned(), is_taken: AtomicBool::new(false), renewed }
     }
@@ -229,7 +230,7 @@ mod tests {
         );
         let held = renewed(RENEWED);
         assert_eq!(held.lost(), None);
-        held.renew(Instant::now());
+        held.renew(Moment::now());
         held.is_taken.store(true, Ordering::Relaxed);
         assert_eq!(held.lost(), Some(Lost::Taken { board: "shelf-1".to_owned() }));
     }

@@ -1,15 +1,14 @@
 //! Boards that several computers share. Each is held by one of them, until a time by the plant's clock; whoever has waited
 //! longest gets it next.
 
-use std::time::Instant;
-
 use serde::Serialize;
 
 use super::super::audit::Line;
 use super::super::database::{Database, DatabaseError, Row, values};
 use super::super::{Snapshot, StoreError, statements as sql};
 use super::Plant;
-use crate::{clock, ids};
+use crate::clock::{self, Moment};
+use crate::ids;
 
 /// How long a board or a job is held without being renewed, in milliseconds.
 pub const LEASE_MS: i64 = 30_000;
@@ -52,9 +51,9 @@ pub struct Lease {
     pub holder: String,
     /// How often it was given to somebody, this time included.
     pub fence: i64,
-    /// A moment not later than when it was given, by this computer's clock.
+    /// A moment not later than when it was given.
     #[serde(skip)]
-    pub(crate) since: Instant,
+    pub(crate) since: Moment,
     /// The product that it is a unit of; empty if no plan judges it.
     #[serde(skip)]
     pub(crate) product: String,
@@ -265,7 +264,7 @@ fn left_to_others(queue: &[Queue], station: &str) -> i64 {
 
 /// Gives the board of this name to `holder`; its row is locked.
 pub(super) fn hold(to: &mut dyn Database, name: &str, holder: &str) -> Result<Lease, DatabaseError> {
-    let since = Instant::now();
+    let since = Moment::now();
     to.one(sql::HOLD_BOARD, values![holder, LEASE_MS, name], |row| {
         Ok(Lease {
             board: row.get(0)?,
