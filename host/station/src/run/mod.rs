@@ -158,12 +158,12 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     let spool = folder.spool(&head.id);
     let job = job(&head, order, ids::seed(id), &spool);
     let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked };
-    let heard =
+    let (heard, lost) =
         lent_board::supervised(order, job, &spool, patience::of(order.silence, &selected), &mut attending);
     let (device, is_stuck) = (attending.device, matches!(heard.end, End::Stuck(_)));
     let was_killed = is_stuck || matches!(heard.end, End::Killed(_));
     attending.watch.hear(Stage::Saving { was_killed, is_stuck });
-    let why = attending.watch.why();
+    let why = attending.watch.why().or(lost);
     let mut record = record(head, planned, order, &selected, (heard, device), begun.elapsed());
     record.conclusion = record.conclusion.stopped_since(why);
     let steps = selected.steps.len() as u32;
