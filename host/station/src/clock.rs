@@ -52,7 +52,7 @@ impl HeardClock {
 
 /// Milliseconds since the computer was started, by the clock that nobody sets and that keeps running while the
 /// computer sleeps (`CLOCK_BOOTTIME` of clock_gettime(2)).
-fn since_start_ms() -> i64 {
+pub(crate) fn since_start_ms() -> i64 {
     let now = clock_gettime(ClockId::CLOCK_BOOTTIME).map(|now| (now.tv_sec(), now.tv_nsec()));
     let (seconds, nanoseconds) = now.unwrap_or_default();
     seconds.saturating_mul(1000).saturating_add(nanoseconds / 1_000_000)

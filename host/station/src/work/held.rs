@@ -4,8 +4,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use crate::clock::since_start_ms;
 use crate::guard::guarded;
 use crate::said::Said;
 use crate::store::{Claim, LEASE_MS, Lease, Plant, PlantLink, StoreError};
@@ -136,14 +137,15 @@ struct Known {
 
 #[derive(Debug)]
 struct Renewed {
-    since: Instant,
+    /// In milliseconds since this computer was started, asleep or not: its leases run out while it sleeps.
+    since_ms: i64,
     /// Why it was not renewed since then.
     said: String,
 }
 
 impl Known {
-    fn of(Lease { board, since, .. }: &Lease) -> Self {
-        let renewed = Mutex::new(Renewed { since: *since, said: "it does not answer".to_owned() });
+    fn of(Lease { board, since_ms, .. }: &Lease) -> Self {
+        let renewed = Mutex::new(Renewed { since_ms: *since_ms, said: "it does not answer".to_owned() });
         Self { board: board.clone(), is_taken: AtomicBool::new(false), renewed }
     }
 
@@ -152,8 +154,9 @@ impl Known {
         if self.is_taken.load(Ordering::Relaxed) {
             return Some(Lost::Taken { board });
         }
-        let Renewed { since, said } = &*self.renewed();
-        let passed = since.elapsed();
+        let Renewed { since_ms, said } = &*self.renewed();
+        let passed_ms = since_start_ms().saturating_sub(*since_ms);
+        let passed = Duration::from_millis(u64::try_from(passed_ms).unwrap_or_default());
         (passed + ENDS >= HELD).then(|| Lost::Unreached {
             board,
             seconds: passed.as_secs(),
@@ -161,9 +164,9 @@ impl Known {
         })
     }
 
-    /// Notes that it was still held after `since`.
-    fn renew(&self, since: Instant) {
-        self.renewed().since = since;
+    /// Notes that it was still held after `since_ms`.
+    fn renew(&self, since_ms: i64) {
+        self.renewed().since_ms = since_ms;
     }
 
     fn note(&self, said: String) {
@@ -179,10 +182,10 @@ impl Known {
 fn renew(plant: &PlantLink, held: &Held, known: &Known, stopped: &Receiver<()>) {
     let mut wait = RENEWED;
     while stopped.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
-        let asked = Instant::now();
+        let asked_ms = since_start_ms();
         match plant.ask(|plant| held.renew(plant)) {
             Ok(true) => {
-                known.renew(asked);
+                known.renew(asked_ms);
                 wait = RENEWED;
             }
             Ok(false) => return known.is_taken.store(true, Ordering::Relaxed),
@@ -214,8 +217,8 @@ mod tests {
 
     /// Something that was last renewed this long ago.
     fn renewed(ago: Duration) -> Known {
-        let since = Instant::now().checked_sub(ago).unwrap();
-        let renewed = Mutex::new(Renewed { since, said: "no route to host".to_owned() });
+        let since_ms = since_start_ms() - i64::try_from(ago.as_millis()).unwrap();
+        let renewed = Mutex::new(Renewed { since_ms, said: "no route to host".to_owned() });
         Known { board: "shelf-1".to_owned(), is_taken: AtomicBool::new(false), renewed }
     }
 
@@ -229,7 +232,7 @@ mod tests {
         );
         let held = renewed(RENEWED);
         assert_eq!(held.lost(), None);
-        held.renew(Instant::now());
+        held.renew(since_start_ms());
         held.is_taken.store(true, Ordering::Relaxed);
         assert_eq!(held.lost(), Some(Lost::Taken { board: "shelf-1".to_owned() }));
     }

@@ -1,8 +1,6 @@
 //! Boards that several computers share. Each is held by one of them, until a time by the plant's clock; whoever has waited
 //! longest gets it next.
 
-use std::time::Instant;
-
 use serde::Serialize;
 
 use super::super::audit::Line;
@@ -52,9 +50,9 @@ pub struct Lease {
     pub holder: String,
     /// How often it was given to somebody, this time included.
     pub fence: i64,
-    /// A moment not later than when it was given, by this computer's clock.
+    /// A moment not later than when it was given, in milliseconds since this computer was started.
     #[serde(skip)]
-    pub(crate) since: Instant,
+    pub(crate) since_ms: i64,
     /// The product that it is a unit of; empty if no plan judges it.
     #[serde(skip)]
     pub(crate) product: String,
@@ -265,14 +263,14 @@ fn left_to_others(queue: &[Queue], station: &str) -> i64 {
 
 /// Gives the board of this name to `holder`; its row is locked.
 pub(super) fn hold(to: &mut dyn Database, name: &str, holder: &str) -> Result<Lease, DatabaseError> {
-    let since = Instant::now();
+    let since_ms = clock::since_start_ms();
     to.one(sql::HOLD_BOARD, values![holder, LEASE_MS, name], |row| {
         Ok(Lease {
             board: row.get(0)?,
             target: row.get(1)?,
             holder: holder.to_owned(),
             fence: row.get(2)?,
-            since,
+            since_ms,
             product: row.get(3)?,
             serial: row.get(4)?,
         })
