@@ -10,7 +10,8 @@ mod patience;
 mod recovered;
 
 use std::borrow::Cow;
-use std::fs;
+use std::fs::{self, File};
+use std::io::{self, Read as _};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -32,6 +33,9 @@ use crate::record::{
 use crate::said::{Said, Saying};
 use crate::store::{Admission, Folder, SharedStore, StoreError, Stored};
 use crate::{clock, ids};
+
+/// How much of a file that a lane wrote is kept, in bytes.
+const MOST_ATTACHED: u64 = 64 << 20;
 
 /// What to run on which board.
 #[derive(Clone, Copy, Debug)]
@@ -331,14 +335,14 @@ fn save(
     let saved_ms = clock::now_ms();
     // A lane that was not started wrote nothing down.
     if let Err(error) = fs::remove_dir_all(&spool)
-        && error.kind() != std::io::ErrorKind::NotFound
+        && error.kind() != io::ErrorKind::NotFound
     {
         tracing::warn!("{} cannot be removed: {error}; it is not needed any more", spool.display());
     }
     Ok(Saved { record, stored, saved_ms })
 }
 
-/// Stores what a lane wrote down as evidence.
+/// Stores what a lane wrote down as evidence, each file up to [`MOST_ATTACHED`].
 fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> {
     let mut attachments = Vec::new();
     let text = "text/plain; charset=utf-8";
@@ -346,16 +350,16 @@ fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> 
     let told = told.map(|(name, media_type)| (name.to_owned(), media_type));
     let frames = match kept_frame::names(spool) {
         // A lane that was not started has no folder.
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
         names => names.map_err(|source| BlobError::Read { path: spool.to_owned(), source })?,
     };
     let frames = frames.into_iter().map(|name| (name, "image/png"));
     for (name, media_type) in told.into_iter().chain(frames) {
         let path = spool.join(&name);
-        let bytes = match fs::read(&path) {
+        let bytes = match beginning(&path) {
             Ok(bytes) if bytes.is_empty() => continue,
             Ok(bytes) => bytes,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => continue,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
             Err(source) => return Err(BlobError::Read { path, source }.into()),
         };
         let sha256 = blobs.put(&bytes)?;
@@ -363,4 +367,11 @@ fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> 
         attachments.push(Attachment { name, sha256, bytes, media_type });
     }
     Ok(attachments)
+}
+
+/// The first bytes of a file, at most [`MOST_ATTACHED`].
+fn beginning(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(MOST_ATTACHED).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
