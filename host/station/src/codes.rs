@@ -172,6 +172,7 @@ codes::codes! {
         Held [place, holder] => "labgrid-place-held",
         NotAcquired [place, said] => "labgrid-place-not-given",
         NotReleased [place] => "labgrid-place-not-taken-back",
+        Lost [place, status] => "labgrid-place-lost",
         NoPort [place] => "labgrid-place-without-port",
         SeveralPorts [place, ports] => "labgrid-place-with-several-ports",
         PortAway [place] => "labgrid-port-away",

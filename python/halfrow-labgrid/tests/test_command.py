@@ -82,3 +82,32 @@ def test_a_place_is_released_where_what_fails_is_behind_its_acquiring(lab):
     told = Hold(lab, "cam-empty").told("sync_with_coordinator", goes_on="release")
     assert told == {"refused": {"why": "coordinator-away", "coordinator": lab.coordinator}}
     assert lab.holder("cam-empty") is None
+
+
+# The program, which gets a signal when it calls a given method.
+SIGNALLED = """
+import os, signal, sys
+from halfrow_labgrid import command, place
+
+number, method = int(sys.argv.pop(1)), sys.argv.pop(1)
+whole = getattr(place.Coordinator, method)
+
+def signalled(*given):
+    # Once alone.
+    setattr(place.Coordinator, method, whole)
+    os.kill(os.getpid(), number)
+    return whole(*given)
+
+setattr(place.Coordinator, method, signalled)
+command.main()
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("method", ["acquire", "_port"])
+def test_a_signal_while_a_place_is_acquired_releases_it(lab, method, number):
+    hold = [sys.executable, "-c", SIGNALLED, str(int(number)), method, "hold", *Hold(lab, "cam-good").of]
+    done = subprocess.run(hold, stdin=subprocess.PIPE, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (128 + number, ""), done.stderr
+    assert "Traceback" not in done.stderr, done.stderr
+    assert lab.holder("cam-good") is None

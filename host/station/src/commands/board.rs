@@ -19,6 +19,7 @@ use super::why::Why;
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
+use crate::said::Said;
 use crate::store::{
     Plant, PlantAddress, PlantLink, PlantPool, SharedBoard, StoreError, Turn, Waiter, boards,
 };
@@ -234,20 +235,28 @@ fn hold(address: &PlantAddress, kind: &str, station: &str) -> Result<Exit, Failu
     Ok(Exit::Pass)
 }
 
-/// Waits for a turn, and prints how many are in front. `None` if the wait is over without one.
+/// Waits for a turn, and prints how many are in front. `None` if the wait is over without one. A plant that has answered once is
+/// asked again when it is away.
 fn wait(
     plant: &PlantLink,
     waiter: &Waiter,
     is_over: &dyn Fn() -> bool,
 ) -> Result<Option<crate::store::Lease>, Failure> {
-    let begun = Instant::now();
+    let (begun, mut is_heard) = (Instant::now(), false);
     loop {
-        let before = match plant.ask(|plant| plant.wait(waiter))? {
-            Turn::Held(lease) => return Ok(Some(lease)),
-            Turn::Never => return Err(Failure::call(NoKind { kind: waiter.kind.clone() })),
-            Turn::Waits { before } => before,
-        };
-        print(&json!({ "waits": { "before": before, "seconds": begun.elapsed().as_secs() } }).to_string())?;
+        match plant.ask(|plant| plant.wait(waiter)) {
+            Ok(Turn::Held(lease)) => return Ok(Some(lease)),
+            Ok(Turn::Never) => return Err(Failure::call(NoKind { kind: waiter.kind.clone() })),
+            Ok(Turn::Waits { before }) => {
+                is_heard = true;
+                let waits = json!({ "before": before, "seconds": begun.elapsed().as_secs() });
+                print(&json!({ "waits": waits }).to_string())?;
+            }
+            Err(error) if is_heard && error.may_pass() => {
+                console::error(&format_args!("the plant is asked again: {}", Said::of(&error)));
+            }
+            Err(error) => return Err(error.into()),
+        }
         sleep_unless(ASKED, is_over);
         if is_over() {
             left(plant, waiter);

@@ -17,6 +17,9 @@ use crate::lane::{Control, Job, Message};
 /// The program's name, which has the 15 letters that the system keeps.
 const PROGRAM: &str = "halfrow-station";
 
+/// The size of the largest file that a lane may write, in MiB. All the frames that it keeps have half of that.
+const FILE_MIB: u64 = 64;
+
 /// Carry out one run; the station starts it
 #[derive(Debug, Args)]
 #[command(hide = true)]
@@ -49,12 +52,18 @@ fn name() {
     }
 }
 
-/// Limits the process to `mib` MiB of addresses, or to what it was allowed before if that is less. If more is needed,
-/// this process ends, and not the station or another lane.
+/// Limits the process to `mib` MiB of addresses. If more is needed, this process ends, and not the station or another lane.
+/// Likewise what it logs does not fill the station's disk: its files are limited, too.
 fn limit(mib: u64) -> nix::Result<()> {
-    let (_, most) = getrlimit(Resource::RLIMIT_AS)?;
+    limit_to(Resource::RLIMIT_AS, mib)?;
+    limit_to(Resource::RLIMIT_FSIZE, FILE_MIB)
+}
+
+/// Limits a resource to `mib` MiB, or to what was allowed before if that is less.
+fn limit_to(resource: Resource, mib: u64) -> nix::Result<()> {
+    let (_, most) = getrlimit(resource)?;
     let bytes = mib.saturating_mul(1 << 20).min(most);
-    setrlimit(Resource::RLIMIT_AS, bytes, bytes)
+    setrlimit(resource, bytes, bytes)
 }
 
 /// Heeds what the station says until the station is gone, and then ends the process.

@@ -10,6 +10,7 @@ use halfrow::verdict::StoppedBy;
 
 use super::bay::{self, Shared, StopAsked};
 use super::in_turn::{InTurn, NotStarted};
+use super::known::Known;
 use super::news::{LaneState, News};
 use super::unsent;
 use super::{Board, Heard, Input, in_time};
@@ -24,32 +25,6 @@ use crate::store::{AgainError, Folder, InLane, Owed};
 /// How often to check which boards are there.
 const LOOK: Duration = Duration::from_millis(500);
 
-/// How long to wait before asking again what a lane owes when that could not be found out: a store in trouble takes
-/// its time to say so, and other lanes wait for it.
-const REST: Duration = Duration::from_secs(1);
-
-/// What is known about what a lane owes its shift.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Known {
-    /// It was not asked for yet.
-    Nothing,
-    /// Known to hold between these moments, in milliseconds since 1970; a clock that was set back is outside them.
-    Between(i64, i64),
-    /// It could not be found out at this moment.
-    Untold(Instant),
-}
-
-impl Known {
-    /// Whether it is to be asked for.
-    fn is_due(self, now_ms: i64, now: Instant) -> bool {
-        match self {
-            Self::Nothing => true,
-            Self::Between(since_ms, until_ms) => now_ms < since_ms || now_ms > until_ms,
-            Self::Untold(since) => now.saturating_duration_since(since) >= REST,
-        }
-    }
-}
-
 /// What only the engine's thread has.
 pub(super) struct AtWork {
     floor: Floor,
@@ -61,6 +36,8 @@ pub(super) struct AtWork {
     asked: Vec<Option<String>>,
     /// What is known of what each lane owes its shift.
     known: Vec<Known>,
+    /// The lane that is asked about first.
+    next_due: usize,
     /// For each lane, the run that there was no thread to save.
     unrecovered: Vec<Option<String>>,
     hooks: Vec<InTurn>,
@@ -79,6 +56,7 @@ impl AtWork {
             stops: vec![StopAsked::default(); lanes],
             asked: vec![None; lanes],
             known: vec![Known::Nothing; lanes],
+            next_due: 0,
             unrecovered: vec![None; lanes],
             hooks: (0..lanes).map(|_| InTurn::new()).collect(),
             threads: Vec::new(),
@@ -90,7 +68,7 @@ impl AtWork {
     pub(super) fn run(mut self, inbox: &Receiver<Input>) {
         let (mut looked, mut is_closing) = (None::<Instant>, false);
         while !(is_closing && self.is_idle()) {
-            self.board.lock().unwrap_or_else(PoisonError::into_inner).worked = Some(Instant::now());
+            self.works();
             if !is_closing && looked.is_none_or(|looked| looked.elapsed() >= LOOK) {
                 looked = Some(Instant::now());
                 self.look();
@@ -117,6 +95,11 @@ impl AtWork {
             }
         }
         self.end(inbox);
+    }
+
+    /// Shows a sign of life.
+    fn works(&self) {
+        self.board.lock().unwrap_or_else(PoisonError::into_inner).worked = Some(Instant::now());
     }
 
     /// Waits for hooks, recoveries and what labgrid lent, and publishes what hooks still report.
@@ -169,6 +152,8 @@ impl AtWork {
         let Some(lane) = lanes.get(lane) else { return (None, Known::Between(now_ms, until_ms)) };
         for &plan in &lane.plans {
             let Some(PlanFile { plan: of, .. }) = plans.get(plan) else { continue };
+            // A store in trouble takes its time for each question.
+            self.works();
             match Folder::new(data).owed(&InLane::of(name, &lane.name, of), now_ms) {
                 Ok(checked) => {
                     until_ms = until_ms.min(checked.until_ms);
@@ -187,7 +172,11 @@ impl AtWork {
     }
 
     fn check(&mut self, lane: usize) {
-        let (owed, now_known) = self.owed(lane);
+        let (owed, known) = self.owed(lane);
+        self.owes(lane, owed, known);
+    }
+
+    fn owes(&mut self, lane: usize, owed: Option<Owes>, now_known: Known) {
         if let Some(known) = self.known.get_mut(lane) {
             *known = now_known;
         }
@@ -195,14 +184,31 @@ impl AtWork {
     }
 
     /// Asks what lanes owe, where that is no longer known. In between only runs of this station change it, and each of
-    /// them is followed by a check.
+    /// them is followed by a check. A store that fails is not asked about the other lanes for now: they are out of service, too,
+    /// and those that waited longest are asked about next.
     fn check_due(&mut self) {
         let (now_ms, now) = (clock::now_ms(), Instant::now());
-        for lane in 0..self.known.len() {
-            if self.known.get(lane).is_some_and(|known| known.is_due(now_ms, now)) {
-                self.check(lane);
+        let is_due = |lane: &usize| self.known.get(*lane).is_some_and(|known| known.is_due(now_ms, now));
+        let lanes = self.known.len();
+        let due: Vec<_> = (self.next_due..lanes).chain(0..self.next_due).filter(is_due).collect();
+        let mut failed = None::<Said>;
+        for lane in due {
+            let (owed, known) = match &failed {
+                None => self.owed(lane),
+                Some(why) => (self.untold(lane, why.clone()), Known::Untold(Instant::now())),
+            };
+            if let (None, Known::Untold(_), Some(Owes { why, .. })) = (&failed, known, &owed) {
+                failed = Some(why.clone());
+                self.next_due = (lane + 1) % lanes;
             }
+            self.owes(lane, owed, known);
         }
+    }
+
+    /// What a lane owes that was not asked about, since the store failed about another one.
+    fn untold(&self, lane: usize, why: Said) -> Option<Owes> {
+        let plan = *self.shared.settings.lanes.get(lane)?.plans.first()?;
+        Some(Owes { plan, serial: None, why })
     }
 
     fn scan(&mut self, number: u64, text: String, operator: &str) {
@@ -366,24 +372,5 @@ impl AtWork {
 
     fn tell(&self, news: &News) {
         self.board.lock().unwrap_or_else(PoisonError::into_inner).listeners.tell(news);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_could_not_be_told_is_not_asked_for_before_every_scan() {
-        let now = Instant::now();
-        let known = Known::Untold(now);
-        assert!(!known.is_due(0, now) && !known.is_due(i64::MAX, now + REST / 2));
-        assert!(known.is_due(0, now + REST), "though the clock was set back");
-    }
-
-    #[test]
-    fn what_is_owed_is_asked_for_again_when_its_time_is_over_or_the_clock_was_set_back() {
-        let due = [2, 3, 5, 6].map(|now_ms| Known::Between(3, 5).is_due(now_ms, Instant::now()));
-        assert_eq!(due, [true, false, false, true]);
     }
 }

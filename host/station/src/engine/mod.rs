@@ -12,6 +12,7 @@ mod bay;
 mod figures;
 mod hooks;
 mod in_turn;
+mod known;
 mod news;
 mod unsent;
 

@@ -74,6 +74,16 @@ pub enum LabgridError {
         /// The place.
         place: String,
     },
+    /// What held labgrid's place has ended while the board was judged, so the place may be somebody else's.
+    #[error(
+        "labgrid's place {place} is not ours any more: what held it ended with {status}; look at labgrid's coordinator"
+    )]
+    Lost {
+        /// The place.
+        place: String,
+        /// How it ended.
+        status: String,
+    },
     /// labgrid's place has no serial port.
     #[error(
         "labgrid's place {place} has no NetworkSerialPort; give it one by `labgrid-client -p {place} add-match`"

@@ -33,8 +33,8 @@ impl Place {
     /// [`LabgridError`]
     pub fn hold(&self, is_stopped: &dyn Fn() -> bool) -> Result<Option<Held>, LabgridError> {
         self.wait_until_left();
-        let mut holder = Holder::start(self.call("hold")).map_err(|source| self.not_started(source))?;
-        let answer = self.answered(&mut holder, is_stopped);
+        let (holder, lines) = Holder::start(self.call("hold")).map_err(|source| self.not_started(source))?;
+        let answer = self.answered(&lines, is_stopped);
         if let Ok(Some(Answer::Held(port))) = &answer {
             return Ok(Some(Held { target: reached(port), holder, place: self.clone() }));
         }
@@ -50,8 +50,9 @@ impl Place {
     /// # Errors
     /// [`LabgridError`]
     pub fn free(&self) -> Result<(), LabgridError> {
-        let mut holder = Holder::start(self.call("free")).map_err(|source| self.not_started(source))?;
-        let answer = self.answered(&mut holder, &|| false);
+        let (mut holder, lines) =
+            Holder::start(self.call("free")).map_err(|source| self.not_started(source))?;
+        let answer = self.answered(&lines, &|| false);
         drop(holder.stdin.take());
         holder.left(&self.name, self.labgrid.deadline);
         match answer? {
@@ -63,13 +64,13 @@ impl Place {
     /// The process's answer; `None` if `is_stopped` comes first.
     fn answered(
         &self,
-        holder: &mut Holder,
+        lines: &Receiver<Line>,
         is_stopped: &dyn Fn() -> bool,
     ) -> Result<Option<Answer>, LabgridError> {
         let begun = Instant::now();
         let mut complaint = String::new();
         loop {
-            match holder.lines.recv_timeout(LOOK) {
+            match lines.recv_timeout(LOOK) {
                 Ok(Line::Said(line)) => match serde_json::from_str(&line) {
                     Ok(answer) => return Ok(Some(answer)),
                     Err(_) => return Err(self.failed(line)),
@@ -124,6 +125,12 @@ impl Place {
 }
 
 impl Held {
+    /// Why the place is not held any more, if what held it has ended.
+    pub(crate) fn lost(&mut self) -> Option<LabgridError> {
+        let status = self.holder.child.try_wait().ok()??.to_string();
+        Some(LabgridError::Lost { place: self.place.name.clone(), status })
+    }
+
     /// Gives the place back. Only the next hold of the place waits for that.
     pub fn give_back(self) {
         self.place.leave(self.holder);
@@ -151,11 +158,11 @@ enum Line {
 struct Holder {
     child: Child,
     stdin: Option<ChildStdin>,
-    lines: Receiver<Line>,
 }
 
 impl Holder {
-    fn start(mut call: Command) -> std::io::Result<Self> {
+    /// Starts it. What it writes can be received until that is dropped.
+    fn start(mut call: Command) -> std::io::Result<(Self, Receiver<Line>)> {
         // In a group of its own, so that Ctrl-C ends the run first.
         call.process_group(0).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = call.spawn()?;
@@ -164,13 +171,13 @@ impl Holder {
             child.stdout.take().map(|stdout| read(stdout, Line::Said, sender.clone())),
             child.stderr.take().map(|stderr| read(stderr, Line::Complained, sender)),
         ];
-        let mut holder = Self { stdin: child.stdin.take(), child, lines };
+        let mut holder = Self { stdin: child.stdin.take(), child };
         for thread in heard.into_iter().flatten() {
             thread.inspect_err(|_| {
                 killed(&mut holder.child);
             })?;
         }
-        Ok(holder)
+        Ok((holder, lines))
     }
 
     /// Waits for the end of the process, whose stdin is closed.
@@ -223,10 +230,9 @@ mod tests {
     /// Ctrl-C goes to the whole group of the station, and the run is to end before its board is given back.
     #[test]
     fn what_has_the_place_is_in_a_group_of_its_own() {
-        let holder = Holder::start(Command::new("cat")).unwrap();
+        let (mut holder, _) = Holder::start(Command::new("cat")).unwrap();
         let process = Pid::from_raw(holder.child.id().cast_signed());
         assert_eq!(getpgid(Some(process)), Ok(process));
-        let mut holder = holder;
         drop(holder.stdin.take());
         holder.left("cam-1", Duration::from_secs(60));
     }

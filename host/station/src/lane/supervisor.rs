@@ -2,11 +2,11 @@
 //! or takes too long.
 
 use std::fs::{self, File};
-use std::io::{self, BufRead as _, BufReader, Write as _};
+use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
 use std::os::unix::process::CommandExt as _;
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender, SyncSender};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -21,6 +21,15 @@ use crate::said::{Said, Saying};
 const LOOK: Duration = Duration::from_millis(50);
 /// How long a lane may take to end once it is told to, or has nothing left to do.
 const GRACE: Duration = Duration::from_secs(10);
+
+/// The longest line that a lane may report, in bytes. One with all that a step measured has some thousands.
+const MOST_LINE: u64 = 16 << 20;
+/// How many lines may wait to be taken; after that the lane waits.
+const MOST_WAITING: usize = 256;
+/// How much is written down of what a lane reports, in bytes.
+const MOST_EVENTS: u64 = 64 << 20;
+/// How many characters are shown of a line that makes no sense.
+const MOST_SHOWN: usize = 200;
 
 /// What the lane reports, in the run's spool.
 pub const EVENTS: &str = "events.jsonl";
@@ -105,6 +114,8 @@ struct Lane {
     orders: Option<Sender<String>>,
     lines: Receiver<String>,
     events: File,
+    /// How many bytes may still be written there.
+    room: u64,
     /// Whether the lane has said that it is of this program.
     is_own: bool,
 }
@@ -124,9 +135,9 @@ impl Lane {
             .stdout(Stdio::piped())
             .stderr(File::create(spool.join(LOG))?)
             .spawn()?;
-        let (sender, lines) = mpsc::channel();
+        let (sender, lines) = mpsc::sync_channel(MOST_WAITING);
         let (stdout, stdin) = (child.stdout.take(), child.stdin.take());
-        let mut lane = Self { orders: None, child, lines, events, is_own: false };
+        let mut lane = Self { orders: None, child, lines, events, room: MOST_EVENTS, is_own: false };
         match hear(stdout, sender).and_then(|()| lane.brief(stdin, job, spool)) {
             Ok(()) => Ok(lane),
             Err(error) => {
@@ -160,7 +171,7 @@ impl Lane {
         loop {
             match self.lines.recv_timeout(LOOK) {
                 Ok(line) => {
-                    if let Some(end) = self.take(line, attendant, steps) {
+                    if let Some(end) = self.take(&line, attendant, steps) {
                         return end;
                     }
                     // The answer may have waited for the store, which does not count as silence of the lane.
@@ -186,14 +197,16 @@ impl Lane {
     /// Takes a line of the lane; returns how the lane ended, if that was the last one.
     fn take(
         &mut self,
-        line: String,
+        line: &str,
         attendant: &mut dyn Attendant,
         steps: &mut Vec<StepRecord>,
     ) -> Option<End> {
-        // What is lost here is lost only as evidence; the record has all that counts.
-        let _ = writeln!(self.events, "{line}");
-        match serde_json::from_str(&line) {
-            Err(_) => return Some(End::Killed(Saying::LaneBabbles { line }.into())),
+        self.write_down(line);
+        match serde_json::from_str(line) {
+            Err(_) => {
+                let line = line.chars().take(MOST_SHOWN).collect();
+                return Some(End::Killed(Saying::LaneBabbles { line }.into()));
+            }
             Ok(Message::Begun { program }) if program == halfrow::VERSION => self.is_own = true,
             // The record names this program, and another one may judge differently.
             Ok(message) if !self.is_own || matches!(message, Message::Begun { .. }) => {
@@ -205,6 +218,14 @@ impl Lane {
             Ok(message) => self.answer(&message, attendant, steps),
         }
         None
+    }
+
+    /// Writes a line down, unless the lane has reported too much already. What is lost here is lost only as evidence; the record has
+    /// all that counts.
+    fn write_down(&mut self, line: &str) {
+        let Some(room) = self.room.checked_sub(line.len() as u64 + 1) else { return };
+        self.room = room;
+        let _ = writeln!(self.events, "{line}");
     }
 
     /// Takes a message that is not the last, and answers it if it asks something.
@@ -245,12 +266,19 @@ impl Lane {
     }
 }
 
-/// Passes on what the lane reports, line by line.
-fn hear(stdout: Option<ChildStdout>, to: Sender<String>) -> io::Result<()> {
+/// Passes on what the lane reports, line by line. A line that is too long is cut, and then makes no sense.
+fn hear(stdout: Option<ChildStdout>, to: SyncSender<String>) -> io::Result<()> {
     let hand_on = move || {
-        let lines = stdout.into_iter().flat_map(|stdout| BufReader::new(stdout).lines());
-        // Nobody listens any more once the run is over.
-        lines.map_while(Result::ok).take_while(|line| to.send(line.clone()).is_ok()).for_each(drop);
+        let Some(mut stdout) = stdout.map(BufReader::new) else { return };
+        let mut line = Vec::new();
+        while let Ok(1..) = stdout.by_ref().take(MOST_LINE).read_until(b'\n', &mut line) {
+            let text = String::from_utf8_lossy(line.strip_suffix(b"\n").unwrap_or(&line)).into_owned();
+            // Nobody listens any more once the run is over.
+            if to.send(text).is_err() {
+                return;
+            }
+            line.clear();
+        }
     };
     in_thread(hand_on)
 }

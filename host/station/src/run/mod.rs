@@ -10,7 +10,8 @@ mod patience;
 mod recovered;
 
 use std::borrow::Cow;
-use std::fs;
+use std::fs::{self, File};
+use std::io::{self, Read as _};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -32,6 +33,9 @@ use crate::record::{
 use crate::said::{Said, Saying};
 use crate::store::{Admission, Folder, SharedStore, StoreError, Stored};
 use crate::{clock, ids};
+
+/// How much of a file that a lane wrote is kept, in bytes.
+const MOST_ATTACHED: u64 = 64 << 20;
 
 /// What to run on which board.
 #[derive(Clone, Copy, Debug)]
@@ -159,12 +163,12 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     recovered::note_claim(&spool, head.job.as_ref());
     let job = job(&head, order, ids::seed(id), &spool);
     let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked };
-    let heard =
+    let (heard, lost) =
         lent_board::supervised(order, job, &spool, patience::of(order.silence, &selected), &mut attending);
     let (device, is_stuck) = (attending.device, matches!(heard.end, End::Stuck(_)));
     let was_killed = is_stuck || matches!(heard.end, End::Killed(_));
     attending.watch.hear(Stage::Saving { was_killed, is_stuck });
-    let why = attending.watch.why();
+    let why = attending.watch.why().or(lost);
     let mut record = record(head, planned, order, &selected, (heard, device), begun.elapsed());
     record.conclusion = record.conclusion.stopped_since(why);
     let steps = selected.steps.len() as u32;
@@ -332,14 +336,14 @@ fn save(
     let saved_ms = clock::now_ms();
     // A lane that was not started wrote nothing down.
     if let Err(error) = fs::remove_dir_all(&spool)
-        && error.kind() != std::io::ErrorKind::NotFound
+        && error.kind() != io::ErrorKind::NotFound
     {
         tracing::warn!("{} cannot be removed: {error}; it is not needed any more", spool.display());
     }
     Ok(Saved { record, stored, saved_ms })
 }
 
-/// Stores what a lane wrote down as evidence.
+/// Stores what a lane wrote down as evidence, each file up to [`MOST_ATTACHED`].
 fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> {
     let mut attachments = Vec::new();
     let text = "text/plain; charset=utf-8";
@@ -347,16 +351,16 @@ fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> 
     let told = told.map(|(name, media_type)| (name.to_owned(), media_type));
     let frames = match kept_frame::names(spool) {
         // A lane that was not started has no folder.
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
         names => names.map_err(|source| BlobError::Read { path: spool.to_owned(), source })?,
     };
     let frames = frames.into_iter().map(|name| (name, "image/png"));
     for (name, media_type) in told.into_iter().chain(frames) {
         let path = spool.join(&name);
-        let bytes = match fs::read(&path) {
+        let bytes = match beginning(&path) {
             Ok(bytes) if bytes.is_empty() => continue,
             Ok(bytes) => bytes,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => continue,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
             Err(source) => return Err(BlobError::Read { path, source }.into()),
         };
         let sha256 = blobs.put(&bytes)?;
@@ -364,4 +368,11 @@ fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> 
         attachments.push(Attachment { name, sha256, bytes, media_type });
     }
     Ok(attachments)
+}
+
+/// The first bytes of a file, at most [`MOST_ATTACHED`].
+fn beginning(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(MOST_ATTACHED).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }

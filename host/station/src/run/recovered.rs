@@ -66,7 +66,7 @@ pub fn recover_run(store: &SharedStore, run: &str) -> Result<Saved, RunError> {
         let why = |tries| Saying::SavedTooLate { tries };
         return closed(&folder, open, why, |record| store.with(|store| store.finish(record, 0)));
     }
-    let (stored, record) = store.with(|store| store.saved_after_all(run)).map_err(unsaved)?;
+    let (stored, record) = store.with(|store| store.settled(run)).map_err(unsaved)?;
     Ok(Saved { record, stored, saved_ms: clock::now_ms() })
 }
 

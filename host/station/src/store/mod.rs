@@ -254,9 +254,24 @@ impl Store {
         if changed != 1 {
             return Err(StoreError::NotOpen { run: run() });
         }
-        self.admitted.retain(|_, admitted| *admitted != record.run.id);
+        self.forget_device_of(&record.run.id);
         let (stored, _) = self.saved(&run())?;
         if stored.record_sha256 == hash { Ok(stored) } else { Err(StoreError::ReadsOtherwise { run: run() }) }
+    }
+
+    /// Lets the device of a run that is over be judged again.
+    fn forget_device_of(&mut self, run: &str) {
+        self.admitted.retain(|_, admitted| admitted != run);
+    }
+
+    /// Like [`Self::saved`], for a run that was ended without being read back.
+    ///
+    /// # Errors
+    /// Like [`Self::saved`].
+    pub fn settled(&mut self, run: &str) -> Result<(Stored, Record), StoreError> {
+        let saved = self.saved(run)?;
+        self.forget_device_of(run);
+        Ok(saved)
     }
 
     /// A run that is over, as a second connection reads it back.
@@ -271,16 +286,6 @@ impl Store {
         self.refuse_replaced()?;
         let is_same = stored.verdict == record.conclusion.verdict && record.run.id == run;
         if is_same { Ok((stored, record)) } else { Err(otherwise()) }
-    }
-
-    /// The same of a run that [`Self::finish`] could not read back. Its device may be judged again.
-    ///
-    /// # Errors
-    /// Like [`Self::saved`].
-    pub fn saved_after_all(&mut self, run: &str) -> Result<(Stored, Record), StoreError> {
-        let saved = self.saved(run)?;
-        self.admitted.retain(|_, admitted| admitted != run);
-        Ok(saved)
     }
 
     /// Every run that is open, the earliest first.

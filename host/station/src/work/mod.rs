@@ -127,15 +127,16 @@ impl Work<'_> {
         self.plant.ask(|plant| plant.claim(&self.worker))
     }
 
-    /// Waits for the next job that this station can judge, also while the plant is away; none when `stop` ends the wait.
+    /// Waits for the next job that this station can judge, also while the plant is away or refuses for a while; none when `stop`
+    /// ends the wait.
     ///
     /// # Errors
-    /// [`StoreError`] when the plant is there and refuses.
+    /// [`StoreError`] when its tables are older or newer.
     pub fn next(&self, stop: &dyn Fn() -> Option<StoppedBy>) -> Result<Option<Claim>, StoreError> {
         while stop().is_none() {
             let about_ms = match self.claim() {
                 Ok(None) => IDLE_MS,
-                Err(error) if error.is_away() => {
+                Err(error) if error.may_pass() => {
                     tracing::warn!("there is no job for now: {}", Said::of(&error));
                     AWAY_MS
                 }

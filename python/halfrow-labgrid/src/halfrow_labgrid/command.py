@@ -33,6 +33,24 @@ def arguments() -> argparse.Namespace:
     return parser.parse_args()
 
 
+SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP)
+
+
+def heed(loop: asyncio.AbstractEventLoop) -> None:
+    """Has the first signal end what the loop waits for by SystemExit, and so what is held be given back; others change nothing then.
+
+    A signal outside the loop is heeded when the loop goes on, hence never between an acquisition and its guard.
+    """
+
+    def end(number: int) -> None:
+        for each in SIGNALS:
+            loop.add_signal_handler(each, lambda: None)
+        sys.exit(128 + number)
+
+    for number in SIGNALS:
+        loop.add_signal_handler(number, end, number)
+
+
 def tell(**said: object) -> None:
     print(json.dumps(said), flush=True)
 
@@ -47,7 +65,7 @@ def wait(loop: asyncio.AbstractEventLoop) -> None:
             pass
         loop.call_soon_threadsafe(over.set)
 
-    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+    for number in SIGNALS:
         loop.add_signal_handler(number, over.set)
     threading.Thread(target=read, daemon=True).start()
     loop.run_until_complete(over.wait())
@@ -55,6 +73,7 @@ def wait(loop: asyncio.AbstractEventLoop) -> None:
 
 def act(of: argparse.Namespace) -> None:
     coordinator = Coordinator(of.coordinator, of.user)
+    heed(coordinator.loop)
     with ended_by(coordinator.close):
         if of.act == "free":
             coordinator.free(of.place)

@@ -4,8 +4,9 @@ mod postgres;
 mod sqlite;
 mod value;
 
+use std::error::Error as _;
 use std::fmt::Debug;
-use std::io;
+use std::{io, iter};
 
 use rusqlite::ErrorCode;
 
@@ -76,7 +77,7 @@ impl DatabaseError {
         };
         // Connection exceptions, insufficient resources, operator interventions and system errors: PostgreSQL, appendix A.
         let away = |code: &str| ["08", "53", "57", "58"].iter().any(|class| code.starts_with(class));
-        error.as_db_error().is_none_or(|said| away(said.code().code()))
+        error.as_db_error().map_or_else(|| is_of_connection(error), |said| away(said.code().code()))
     }
 
     /// Whether the engine can never store what it was given. What contradicts other rows may be accepted once they have changed.
@@ -85,6 +86,12 @@ impl DatabaseError {
         // Data exceptions: PostgreSQL, appendix A.
         error.code().is_some_and(|code| code.code().starts_with("22"))
     }
+}
+
+/// Whether an error that is not the server's is one of the connection, and not of a value.
+fn is_of_connection(error: &tokio_postgres::Error) -> bool {
+    let mut causes = iter::successors(error.source(), |&cause| cause.source());
+    error.is_closed() || causes.any(<dyn std::error::Error>::is::<io::Error>)
 }
 
 /// A row as an engine returns it.
@@ -236,5 +243,24 @@ impl Drop for Open<'_, '_> {
         {
             tracing::debug!("a transaction was over before it was taken back: {error}");
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use tokio_postgres::{Config, NoTls};
+
+    use super::*;
+
+    #[test]
+    fn an_error_of_the_connection_means_that_the_engine_is_away_and_one_of_a_text_does_not() {
+        // Nothing answers there.
+        let nobody: Config = "host=127.0.0.1 port=1".parse().unwrap();
+        let refused = Postgres::connect(&nobody, NoTls, Duration::from_secs(60), None).unwrap_err();
+        assert!(refused.is_away(), "{refused:?}");
+        let wrong = DatabaseError::from("host='".parse::<Config>().unwrap_err());
+        assert!(!wrong.is_away(), "{wrong:?}");
     }
 }

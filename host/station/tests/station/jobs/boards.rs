@@ -240,3 +240,21 @@ fn a_board_is_held_until_stdin_ends_and_the_next_one_gets_it() {
     assert_eq!(third.process.wait().unwrap().code(), Some(3));
     drop(Plant::connect(&server.address()).unwrap());
 }
+
+/// Its place in the queue is kept for ten seconds.
+#[test]
+fn whoever_waits_for_a_board_goes_on_when_the_plant_was_away() {
+    let (server, _plant) = shared(1);
+    let mut first = Hold::start(&server, "12");
+    first.tells("held");
+    let mut second = Hold::start(&server, "13");
+    second.tells("waits");
+    // That of the second, which connected last.
+    let newest = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity
+        WHERE application_name = 'halfrow-station' AND backend_start = (SELECT max(backend_start)
+            FROM pg_stat_activity WHERE application_name = 'halfrow-station')";
+    assert_eq!(server.rows(newest).len(), 1);
+    drop(first.stdin.take());
+    assert!(first.process.wait().unwrap().success());
+    assert_eq!(second.tells("held")["fence"], 2);
+}

@@ -1,5 +1,6 @@
 //! Stations that take jobs: real processes, and real runs on mock boards.
 
+use std::cell::{Cell, RefCell};
 use std::fs;
 use std::process::{Command, Stdio};
 
@@ -307,4 +308,28 @@ fn a_station_whose_settings_say_nothing_of_jobs_takes_none() {
     fs::write(&path, text.split("[work]").next().unwrap()).unwrap();
     let refused = engineer.did(&["work", "--once", "--any-disk"]);
     assert!(refused.code == Some(2) && refused.complained.contains("into [work]"), "{refused:?}");
+}
+
+/// A standby that takes over is read-only until it has done so (PostgreSQL, appendix A: 25006).
+#[test]
+fn a_worker_waits_for_a_plant_that_refuses_for_a_while() {
+    let (server, _plant, id) = super::with_a_job();
+    let folder = crate::common::folder();
+    let path = settings(&server, folder.path(), "12");
+    let settings = halfrow_station::settings::Settings::load_without_lanes(&path).unwrap();
+    let work = super::at_work(&settings, program().to_owned());
+    let mut client = server.client("postgres");
+    client.batch_execute("ALTER DATABASE plant SET default_transaction_read_only = on").unwrap();
+    let (client, asked) = (RefCell::new(client), Cell::new(0));
+    // Who waits asks first before it claims, and again before it claims once more.
+    let stop = || {
+        asked.set(asked.get() + 1);
+        if asked.get() == 2 {
+            let reset = "ALTER DATABASE plant RESET default_transaction_read_only";
+            client.borrow_mut().batch_execute(reset).unwrap();
+        }
+        None
+    };
+    assert_eq!(work.next(&stop).unwrap().unwrap().job, id);
+    assert!(asked.get() > 1);
 }

@@ -189,6 +189,26 @@ fn neither_a_lane_nor_what_has_its_place_is_told_the_plant_s_password() {
     running.state("1", "ERROR");
 }
 
+/// Somebody else may have the board then.
+#[test]
+fn a_run_ends_when_what_has_its_place_ends() {
+    let (listener, target) = silent_board();
+    let port = target.rsplit(':').next().unwrap();
+    let answer = format!(r#"{{"held": {{"host": "127.0.0.1", "port": {port}}}}}"#);
+    let station = station(&answer, "");
+    let lender = LENDER.replace("cat > /dev/null", "while [ ! -e gone ]; do sleep 0.1; done\nexit 7");
+    fs::write(station.path("lender"), lender).unwrap();
+    let mut running = station.start();
+    running.test("1", SERIALS[0]);
+    connected(&listener);
+    fs::write(station.path("gone"), "").unwrap();
+    let ended = running.state("1", "ERROR");
+    assert_eq!(ended["shown"]["finding"]["code"], "labgrid-place-lost", "{ended}");
+    let headline = ended["shown"]["headline"].as_str().unwrap();
+    assert!(headline.starts_with("labgrid's place cam-1 is not ours any more"), "{ended}");
+    assert_eq!(station.query("SELECT cause FROM run"), ["station"]);
+}
+
 #[test]
 fn a_run_that_waits_for_its_place_can_be_ended() {
     let station = station("", "deadline = 600.0");

@@ -70,6 +70,15 @@ fn a_lane_is_not_silent_while_the_station_takes_what_it_told() {
     assert_eq!(end_of(&told, silence, slow), End::Done);
 }
 
+/// It would fill the station's memory.
+#[test]
+fn a_lane_whose_line_has_no_end_is_killed_and_quoted_in_part() {
+    let endless = format!("printf '{}'\nexec tr '\\0' x < /dev/zero\n", begun());
+    let end = end_of_script(&endless, String::new(), HANG, &mut Slow(Duration::ZERO));
+    let End::Killed(why) = end else { panic!("{end:?}") };
+    assert_eq!((why.code.as_str(), &why.parameters["line"]), ("lane-told-nonsense", &"x".repeat(200).into()));
+}
+
 /// Its job is longer than what a pipe holds.
 #[test]
 fn a_lane_that_reads_nothing_is_silent() {

@@ -7,7 +7,8 @@ use std::thread;
 use std::time::Duration;
 
 use halfrow::link::{self, Link};
-use halfrow_station::store::{Admission, Change, RebindError};
+use halfrow_station::run::recover_run;
+use halfrow_station::store::{Admission, Change, RebindError, SharedStore};
 
 use super::bench::{Did, PLAN, Station, program};
 use super::ends::with_link;
@@ -181,6 +182,22 @@ fn a_device_that_is_being_judged_is_admitted_and_bound_nowhere_else() {
         let bound = made.store.rebind(&change);
         assert!(matches!(bound, Err(RebindError::UnderTest { .. })), "{bound:?}");
     }
+}
+
+/// As after a commit that reached the disk, of which the station was not told.
+#[test]
+fn the_device_of_a_run_that_was_found_to_be_over_can_be_judged_again() {
+    let mut made = Made::new();
+    let over = Run::of("CAT00017", End::Pass);
+    let (head, plan) = made.begin(&over);
+    made.finish(&over, head.clone(), plan);
+    let (next, _) = made.begin(&Run { lane: "2".to_owned(), ..Run::of("CAT00071", End::Open) });
+    let (_folder, mut store) = made.parts();
+    let device = "0000000000000011";
+    assert_eq!(store.admit(&head, device).unwrap(), Admission::New);
+    let store = SharedStore::new(store);
+    assert_eq!(recover_run(&store, &head.id).unwrap().record.run.id, head.id);
+    assert_eq!(store.with(|store| store.admit(&next, device)).unwrap(), Admission::New);
 }
 
 #[test]
