@@ -342,6 +342,7 @@ codes::codes! {
         LaneStuck [why] => "lane-stuck",
         LaneEndless => "lane-endless",
         PlanChanged => "plan-changed",
+        PlanFileOther [file] => "plan-file-other",
         StationEnded [tries] => "station-ended",
         SavedTooLate [tries] => "result-saved-too-late",
         NotAtPlant => "result-not-at-plant",

@@ -247,6 +247,11 @@ pub enum Saying {
     LaneEndless,
     #[error("a file that the plan names was changed while the run began; test the board again")]
     PlanChanged,
+    #[error(
+        "the file {file}, which the plan names, has changed since the station started; put it back, or give the plan a \
+         new version and start the station again"
+    )]
+    PlanFileOther { file: String },
     #[error("the station ended in the middle of the run (tries of steps on record: {tries})")]
     StationEnded { tries: usize },
     #[error("the result could not be saved when the run was over (tries of steps on record: {tries})")]

@@ -3,6 +3,8 @@
 use std::fs;
 use std::process::Command;
 
+use serde_json::Value;
+
 use super::ends::{connected, lane_of};
 use super::floor::{Running, SERIALS, Station};
 use crate::common::{program, script, silent_board};
@@ -46,7 +48,7 @@ fn a_lane_s_process_has_the_program_s_name() {
     assert_eq!(read("cmdline"), format!("{}\0lane\0", own.display()));
 }
 
-/// A lane reads the files of its plan itself, and judges only by those that the record names.
+/// The lane says which file it is, and takes boards again once it is put back.
 #[test]
 fn a_file_of_the_plan_that_becomes_another_one_at_work_judges_no_board() {
     let station = Station::with(&["mock"], "");
@@ -61,9 +63,18 @@ fn a_file_of_the_plan_that_becomes_another_one_at_work_judges_no_board() {
     running.state("1", "READY");
     picture(9);
     running.test("1", SERIALS[0]);
-    let ended = running.wait("a verdict", |news| news["shown"]["serial"] == SERIALS[0]);
-    assert_eq!(ended["shown"]["verdict"], "ERROR", "{ended}");
+    let said = "the file a.pgm, which the plan names, has changed since the station started; put it back";
+    let is_told = |news: &Value| news["note"].as_str().is_some_and(|note| note.contains(said));
+    let told = running.wait("why no run begins", is_told);
+    assert_eq!((&told["state"], &told["shown"]), (&"READY".into(), &Value::Null), "{told}");
+    fs::remove_file(station.path("a.pgm")).unwrap();
+    running.test("1", SERIALS[0]);
+    running.state("1", "RUNNING");
+    running.wait("why no run begins", is_told);
+    picture(7);
+    running.test("1", SERIALS[0]);
+    running.state("1", "PASS");
     assert_eq!(running.end().0, Some(0));
-    assert_eq!(station.query("SELECT cause FROM run"), ["station"]);
+    assert_eq!(station.query("SELECT verdict FROM run"), ["PASS"]);
     station.assert_well();
 }
