@@ -13,6 +13,7 @@ use halfrow::verdict::StoppedBy;
 
 use super::figures::Counter;
 use super::hooks;
+use super::standing::Standings;
 use super::{Heard, Input};
 use crate::floor::{Accepted, Event, Shown};
 use crate::guard::guarded;
@@ -41,12 +42,21 @@ pub(super) struct Shared {
     pub(super) program: PathBuf,
     pub(super) inbox: Sender<Input>,
     pub(super) figures: Arc<Counter>,
+    pub(super) standings: Standings,
 }
 
 impl Shared {
     /// Whether anything is started for this verdict.
     pub(super) fn has_hook(&self, verdict: Verdict) -> bool {
         self.settings.hooks.iter().any(|hook| hook.on == verdict)
+    }
+
+    /// Logs and counts what happened to a lane.
+    pub(super) fn note(&self, lane: usize, event: &Event) {
+        let name = self.settings.lanes.get(lane).map_or("", |lane| lane.name.as_str());
+        if let Some(reason) = self.standings.note(lane, name, event) {
+            self.figures.refused(reason);
+        }
     }
 
     fn tell(&self, lane: usize, heard: Heard) {
