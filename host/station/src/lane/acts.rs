@@ -184,10 +184,12 @@ impl Common<'_> {
             Ok(figures) => figures,
             Err(error) => {
                 let cause = match &error {
-                    LinkTestError::Board(error) => error.cause(),
+                    LinkTestError::Board(source) | LinkTestError::BrokeOff { source, .. } => source.cause(),
                     LinkTestError::NoFrame(_) => Cause::Station,
                 };
-                return Try { board: Some(seen), ..Try::error(cause, &error) };
+                // A try that met a board which answers wrong is not repeated without a person.
+                let is_incriminating = matches!(error, LinkTestError::BrokeOff { .. });
+                return Try { board: Some(seen), is_incriminating, ..Try::error(cause, &error) };
             }
         };
         let result = match figures.errors.wrong {
