@@ -42,6 +42,7 @@ codes::codes! {
         TooLong [characters] => "serial-too-long",
         Character [character, place] => "serial-character-wrong",
         Reserved [serial] => "serial-reserved",
+        Blank [serial] => "serial-with-blank",
         Pattern [serial, pattern] => "serial-of-no-product",
         CheckDigit [serial] => "serial-check-digit-wrong",
     }
@@ -321,6 +322,9 @@ codes::codes! {
         DeviceKnown [name, kind, build, device] => "device-known",
         DeviceNew [name, kind, build, device] => "device-new",
         StoppedBefore => "run-stopped-before",
+        StillHeld [seconds] => "board-still-held",
+        NotRepeatedWrong => "step-not-repeated-wrong",
+        NotRepeatedLost => "step-not-repeated-lost",
         LinkTested [link] => "link-tested",
         LinkAnswersWrong [wrong] => "link-answers-wrong",
         BoardSwapped [first, now] => "board-swapped",

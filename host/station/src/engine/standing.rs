@@ -18,13 +18,14 @@ const REASONS: [(&str, &[&str]); 4] = [
 pub(super) const STORE: &str = "store";
 
 /// The codes of reasons that are about one unit, and about nothing at the station.
-const OF_UNITS: [&str; 8] = [
+const OF_UNITS: [&str; 9] = [
     "unit-passed-already",
     "unit-passed-already-asks",
     "unit-being-judged",
     "serial-empty",
     "serial-too-long",
     "serial-character-wrong",
+    "serial-with-blank",
     "serial-of-no-product",
     "serial-check-digit-wrong",
 ];
