@@ -62,6 +62,22 @@ impl Said {
         self.code == "session-lost" || self.causes.iter().any(Self::is_of_lost_session)
     }
 
+    /// What the judge says, for people who cannot do what is done at a bench: nobody takes a board over from a lane.
+    pub(crate) fn at_the_station(self) -> Self {
+        match self.parameters.get("seconds").and_then(Value::as_f64) {
+            Some(seconds) if self.code == "board-held" => {
+                Saying::StillHeld { seconds: seconds.ceil() }.into()
+            }
+            _ => self,
+        }
+    }
+
+    /// What to do about a board that an earlier session still holds.
+    pub(crate) fn scan_again(&self) -> Option<String> {
+        let seconds = self.parameters.get("seconds").and_then(Value::as_f64)?;
+        (self.code == "board-still-held").then(|| format!("Scan the label again in {seconds:.0} s."))
+    }
+
     /// A sentence in English that has no code.
     pub(crate) fn uncoded(message: String) -> Self {
         Self { code: String::new(), parameters: Parameters::new(), message, causes: Vec::new() }
@@ -196,6 +212,17 @@ pub enum Saying {
     DeviceNew { name: String, kind: String, build: String, device: String },
     #[error("the run was stopped before the board was judged")]
     StoppedBefore,
+    #[error(
+        "the board is still held by an earlier session, as by a run of this station that was killed; scan the label again \
+         in {seconds:.0} s"
+    )]
+    StillHeld { seconds: f64 },
+    #[error("the step is not repeated by itself, since something was found wrong with the board")]
+    NotRepeatedWrong,
+    #[error(
+        "the step is not repeated by itself, since a board that lost its session may be at fault, or another one"
+    )]
+    NotRepeatedLost,
     #[error("the link was tested: {link}")]
     LinkTested { link: String },
     #[error("{} {} other bytes than were sent, with a right CRC", count(*.wrong, "answer"), verb(*.wrong, "hold"))]
@@ -247,9 +274,14 @@ pub enum Saying {
     LaneEndless,
     #[error("a file that the plan names was changed while the run began; test the board again")]
     PlanChanged,
-    #[error("the station ended in the middle of the run (tries of steps on record: {tries})")]
+    #[error(
+        "the file {file}, which the plan names, has changed since the station started; put it back, or give the plan a \
+         new version and start the station again"
+    )]
+    PlanFileOther { file: String },
+    #[error("the station ended in the middle of the run ({} of its steps on record)", count(*.tries, "try"))]
     StationEnded { tries: usize },
-    #[error("the result could not be saved when the run was over (tries of steps on record: {tries})")]
+    #[error("the result could not be saved when the run was over ({} of its steps on record)", count(*.tries, "try"))]
     SavedTooLate { tries: usize },
     #[error("the result is saved here, but not at the plant yet; the lane waits for the plant")]
     NotAtPlant,
@@ -260,4 +292,19 @@ pub enum Saying {
     TooMuchUnsent { entries: u32, most: u32 },
     #[error("the disk is {percent} % full; make room on it, or have the plant take what is unsent")]
     DiskTooFull { percent: u64 },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use halfrow::board::BoardError;
+
+    #[test]
+    fn a_board_that_a_killed_lane_held_is_scanned_again_and_not_taken_over() {
+        let told = Said::of(&BoardError::Held { seconds: 6.6 }).at_the_station();
+        assert!(told.message.ends_with("was killed; scan the label again in 7 s"), "{told}");
+        assert_eq!(told.scan_again().as_deref(), Some("Scan the label again in 7 s."));
+        let other = Said::of(&BoardError::SessionLost).at_the_station();
+        assert_eq!((other.code.as_str(), other.scan_again()), ("session-lost", None), "the control");
+    }
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use halfrow::board::{Board, OpenOptions, Stop};
 use halfrow::link::{Candidate, Link, LinkError};
-use halfrow::link_test;
+use halfrow::link_test::{self, LinkTestError};
 use halfrow::progress::Silent;
 use halfrow::result::{CheckName, Finding, Outcome, Report};
 use halfrow::run::{Circumstances, Draws, RunOptions, verify};
@@ -96,6 +96,31 @@ fn wrong_of_link(broken: bool) -> (u64, bool) {
     let mut board = Board::open(link, &OpenOptions::default()).unwrap();
     let figures = link_test::run(&mut board, Duration::from_millis(50), 1).unwrap();
     (figures.errors.wrong, delivered.try_recv().is_ok())
+}
+
+/// What a link test says of a board that answers no TABLE_WRITE, and before that echoes wrong bytes if it is `broken`.
+fn broke_off(broken: bool) -> LinkTestError {
+    let alter = move |toward, mut packet: Passing| {
+        if toward == Toward::Host {
+            let last =
+                packet.payload.last_mut().filter(|_| broken && packet.header.kind == Kind::Echo.code());
+            last.into_iter().for_each(|byte| *byte ^= 1);
+        } else if packet.is(Kind::TableWrite) {
+            return Vec::new();
+        }
+        vec![packet]
+    };
+    let link = Altered::new(&halfrow_mock::Options::default(), alter).candidate().link;
+    let mut board = Board::open(link, &OpenOptions::default()).unwrap();
+    link_test::run(&mut board, Duration::from_millis(50), 1).unwrap_err()
+}
+
+#[test]
+fn a_link_test_that_breaks_off_says_what_was_answered_wrong_by_then() {
+    let (sound, broken) = (broke_off(false), broke_off(true));
+    assert!(matches!(sound, LinkTestError::Board(_)), "{sound}");
+    assert!(matches!(broken, LinkTestError::BrokeOff { wrong: 1.., .. }), "{broken}");
+    assert!(broken.to_string().contains("held other bytes than were sent"), "{broken}");
 }
 
 /// What happens after a host has found something wrong, before the answer to the STATUS by which it asks whether the link is at

@@ -39,6 +39,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let (tested, board) = asked?;
     let figures = tested.map_err(|error| match error {
         LinkTestError::Board(error) => error.into(),
+        LinkTestError::BrokeOff { ref source, .. } => Failure::of(source.cause().into(), error),
         error @ LinkTestError::NoFrame(_) => Failure::error(error),
     })?;
     let limit = arguments.board.retry_limit(&context.settings);

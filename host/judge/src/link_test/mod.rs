@@ -15,6 +15,7 @@ use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
 use crate::board::{Bank, Board, BoardError, Table, TablePort, Tally};
+use crate::words::count;
 
 pub use figures::{Errors, Figures, Rate, RoundTrips, Throughput};
 use times::Times;
@@ -25,9 +26,25 @@ pub enum LinkTestError {
     /// The board could not be driven.
     #[error(transparent)]
     Board(#[from] BoardError),
+    /// The board could not be driven to the end, and had answered with other bytes than were sent by then. Nothing damaged those
+    /// answers after the board or its link chip had made their CRC.
+    #[error(
+        "the link test broke off, and {} other bytes than were sent by then, with a right CRC",
+        held(*.wrong)
+    )]
+    BrokeOff {
+        /// How many answers were wrong.
+        wrong: u64,
+        /// What broke it off.
+        source: BoardError,
+    },
     /// The board's capabilities leave no frame that could be streamed to it.
     #[error("the board takes no frame that could be streamed; check its capabilities with `halfrow info`")]
     NoFrame(#[source] Box<dyn std::error::Error + Send + Sync>),
+}
+
+fn held(wrong: u64) -> String {
+    format!("{} held", count(wrong, "answer"))
 }
 
 /// Tests the link to `board`. Each of the five parts takes `seconds`, by the link's clock or the wall's, whichever ends first;
@@ -38,27 +55,21 @@ pub enum LinkTestError {
 /// [`LinkTestError`] when the board stops answering, or the link is too poor.
 pub fn run(board: &mut Board, seconds: Duration, seed: u64) -> Result<Figures, LinkTestError> {
     let random = Pcg64Mcg::new(u128::from(seed) | 1 << 64);
-    let mut test = Test { board, seconds, random };
-    test.board.start_afresh()?;
-    let before = test.board.tally();
-    let round_trips = test.round_trips()?;
-    let wrong_echoes = test.echoes()?;
-    let to_board = test.outward()?;
-    let damaged_before = test.damaged_out()?;
-    // A late copy of what was written would make the tables of a sound board wrong from then on.
-    test.board.open_another_session(test.board.welcome.nonce.wrapping_add(1))?;
-    let (to_host, wrong_reads) = test.inward()?;
-    let together = test.together()?;
-    let damaged_out = damaged_before + test.damaged_out()?;
-    let errors = Errors::between(before, test.board.tally(), damaged_out, wrong_echoes + wrong_reads);
-    let limit = test.board.bytes_per_second();
-    Ok(Figures { link: test.board.link_name(), limit, errors, round_trips, to_board, to_host, together })
+    let mut test = Test { board, seconds, random, wrong: 0 };
+    test.figures().map_err(|error| match error {
+        LinkTestError::Board(source) if test.wrong > 0 => {
+            LinkTestError::BrokeOff { wrong: test.wrong, source }
+        }
+        error => error,
+    })
 }
 
 struct Test<'a> {
     board: &'a mut Board,
     seconds: Duration,
     random: Pcg64Mcg,
+    /// Answers so far that held other bytes than were sent.
+    wrong: u64,
 }
 
 /// When a part of the test began.
@@ -69,6 +80,23 @@ struct Begun {
 }
 
 impl Test<'_> {
+    fn figures(&mut self) -> Result<Figures, LinkTestError> {
+        self.board.start_afresh()?;
+        let before = self.board.tally();
+        let round_trips = self.round_trips()?;
+        self.echoes()?;
+        let to_board = self.outward()?;
+        let damaged_before = self.damaged_out()?;
+        // A late copy of what was written would make the tables of a sound board wrong from then on.
+        self.board.open_another_session(self.board.welcome.nonce.wrapping_add(1))?;
+        let to_host = self.inward()?;
+        let together = self.together()?;
+        let damaged_out = damaged_before + self.damaged_out()?;
+        let errors = Errors::between(before, self.board.tally(), damaged_out, self.wrong);
+        let limit = self.board.bytes_per_second();
+        Ok(Figures { link: self.board.link_name(), limit, errors, round_trips, to_board, to_host, together })
+    }
+
     fn begin(&self) -> Begun {
         Begun { on_link: self.board.now(), on_wall: Instant::now(), tally: self.board.tally() }
     }
@@ -101,16 +129,15 @@ impl Test<'_> {
         Ok(times.round_trips())
     }
 
-    /// Sends random bytes of random length there and back. Returns how many echoes differed.
-    fn echoes(&mut self) -> Result<u64, BoardError> {
+    /// Sends random bytes of random length there and back, and counts the echoes that differ.
+    fn echoes(&mut self) -> Result<(), BoardError> {
         let begun = self.begin();
-        let mut wrong = 0;
         while !self.is_over(&begun) {
             let mut bytes = vec![0; self.random.next_u32() as usize % (MAX_PAYLOAD + 1)];
             self.random.fill_bytes(&mut bytes);
-            wrong += u64::from(!self.board.echo(&bytes)?.0);
+            self.wrong += u64::from(!self.board.echo(&bytes)?.0);
         }
-        Ok(wrong)
+        Ok(())
     }
 
     /// Writes random row factors; no frame is streamed with them.
@@ -123,18 +150,17 @@ impl Test<'_> {
         Ok(self.throughput(&begun))
     }
 
-    /// Reads row factors back. Also returns how many packets differed from what was written.
-    fn inward(&mut self) -> Result<(Throughput, u64), BoardError> {
+    /// Reads row factors back, and counts the packets that differ from what was written.
+    fn inward(&mut self) -> Result<Throughput, BoardError> {
         let entries = self.entries();
         self.board.write(Table::RowFactors, &entries)?;
         let begun = self.begin();
         let port = TablePort { table: Table::RowFactors, port: 0 };
-        let mut wrong = 0;
         while !self.is_over(&begun) {
             let read = self.board.read_entries(Bank::Shadow, port, entries.len() / ROW_FACTOR_BYTES)?;
-            wrong += u64::from(read != entries);
+            self.wrong += u64::from(read != entries);
         }
-        Ok((self.throughput(&begun), wrong))
+        Ok(self.throughput(&begun))
     }
 
     /// A packet of row factors, 1 to 2^24, as many as fit into packet and table.

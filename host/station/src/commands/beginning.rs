@@ -15,10 +15,11 @@ use crate::console;
 use crate::disk;
 use crate::engine::Engine;
 use crate::exit::Exit;
+use crate::history::PlanName;
 use crate::lane::supervisor::OWN_PROGRAM;
 use crate::outbox::{self, Outbox, PlantSink, Sink};
 use crate::run::{self as runs, Saved};
-use crate::settings::Settings;
+use crate::settings::{PlanFile, Settings};
 use crate::store::{Folder, Store};
 
 /// How often signals are checked for.
@@ -128,7 +129,18 @@ impl<'a> Ready<'a> {
     /// The station with these settings, if `disk` takes its folder.
     pub(super) fn of(settings: &'a Settings, disk: &Disk) -> Result<Self, Failure> {
         let signal = Signal::heed()?;
-        Ok(Self { store: disk.opens(&settings.data)?, settings, signal })
+        let mut store = disk.opens(&settings.data)?;
+        for PlanFile { plan, path } in &settings.plans {
+            if store.other_of_version(plan)?.is_some() {
+                let (of, version) = (PlanName::from(plan), &plan.version);
+                console::error(&format_args!(
+                    "{}: runs were judged here by another plan {of} {version}, and yields add up both; give this one a \
+                     version of its own",
+                    path.display()
+                ));
+            }
+        }
+        Ok(Self { store, settings, signal })
     }
 
     /// Starts the engine, with nothing left open.

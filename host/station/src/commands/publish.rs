@@ -238,13 +238,16 @@ fn text(found: &[Holds]) -> String {
     table(&["plan", "version", "number", "since", "by", "why"], &[2], found.iter().map(row))
 }
 
+/// What is said of a plan that was not here before.
+const NEW: &str = ", is new; a station at work goes on with the plan that it has until it is started again";
+
 /// Fetches every plan that the settings take from the plant, and prints which ones are new.
 pub(super) fn fetch_all(settings: &SettingsFile) -> Result<Exit, Failure> {
     let published = published(settings)?;
     let mut said = Vec::new();
     for fetched in fetched(&KeptPlans::of(&published.data), offers(&published))? {
         let Fetched { statement: Statement { version, number, .. }, is_new } = fetched?;
-        said.push(format!("{version}, number {number}{}", if is_new { ", is new" } else { "" }));
+        said.push(format!("{version}, number {number}{}", if is_new { NEW } else { "" }));
     }
     let named = published.plans.iter().zip(said).map(|(plan, said)| format!("{plan} {said}"));
     print(&in_lines(named))

@@ -262,6 +262,7 @@ impl AtWork {
     }
 
     fn happened(&mut self, lane: usize, event: Event) {
+        self.shared.note(lane, &event);
         let effect = self.floor.happened(lane, event, self.now());
         // When plugging a board in started the run, it is the lane that says why it was not begun.
         let effect = self.admit(lane, effect).ok().flatten();
@@ -273,7 +274,9 @@ impl AtWork {
     fn admit(&mut self, lane: usize, effect: Option<Effect>) -> Result<Option<Effect>, Said> {
         let Some(Effect::Begin(of)) = &effect else { return Ok(effect) };
         let Some(why) = self.why_not(lane, of) else { return Ok(effect) };
-        self.floor.happened(lane, Event::NotBegun { why: why.clone() }, self.now());
+        let not_begun = Event::NotBegun { why: why.clone() };
+        self.shared.note(lane, &not_begun);
+        self.floor.happened(lane, not_begun, self.now());
         Err(why)
     }
 

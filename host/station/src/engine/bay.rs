@@ -13,13 +13,14 @@ use halfrow::verdict::StoppedBy;
 
 use super::figures::Counter;
 use super::hooks;
+use super::standing::Standings;
 use super::{Heard, Input};
 use crate::floor::{Accepted, Event, Shown};
 use crate::guard::guarded;
 use crate::history::PlanName;
 use crate::lane::Message;
 use crate::outbox::{Sent, awaited};
-use crate::plan::{Plan, mock::is_mock};
+use crate::plan::{Plan, changed, mock::is_mock};
 use crate::record::Record;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::said::{Said, Saying};
@@ -41,12 +42,21 @@ pub(super) struct Shared {
     pub(super) program: PathBuf,
     pub(super) inbox: Sender<Input>,
     pub(super) figures: Arc<Counter>,
+    pub(super) standings: Standings,
 }
 
 impl Shared {
     /// Whether anything is started for this verdict.
     pub(super) fn has_hook(&self, verdict: Verdict) -> bool {
         self.settings.hooks.iter().any(|hook| hook.on == verdict)
+    }
+
+    /// Logs and counts what happened to a lane.
+    pub(super) fn note(&self, lane: usize, event: &Event) {
+        let name = self.settings.lanes.get(lane).map_or("", |lane| lane.name.as_str());
+        if let Some(reason) = self.standings.note(lane, name, event) {
+            self.figures.refused(reason);
+        }
     }
 
     fn tell(&self, lane: usize, heard: Heard) {
@@ -79,6 +89,10 @@ fn carried_out(shared: &Shared, lane: usize, accepted: &Accepted, stop: StopAske
     let (Some(of), Some(file)) = (lanes.get(lane), plans.get(accepted.plan)) else {
         return Event::NotBegun { why: Saying::NoLaneOrPlan.into() };
     };
+    // Each board would be an ERROR, and none of them is to blame.
+    if let Some(file) = changed(&file.path, &file.plan.files) {
+        return Event::NotBegun { why: Saying::PlanFileOther { file: file.to_owned() }.into() };
+    }
     let order = Order {
         plan: &file.plan,
         plan_file: &file.path,

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
+use super::standing::reasons;
 use crate::history::PlanName;
 use crate::settings::{LaneSettings, Settings};
 
@@ -65,6 +66,8 @@ pub struct Figures {
     pub commits: Histogram,
     /// How often the process of each lane had to be killed.
     pub kills: BTreeMap<String, u64>,
+    /// How often the station itself began no run, by its reason.
+    pub refusals: BTreeMap<&'static str, u64>,
 }
 
 impl Figures {
@@ -79,6 +82,7 @@ impl Figures {
             runs: settings.lanes.iter().flat_map(plans).collect(),
             commits: Histogram::new(COMMITS),
             kills: settings.lanes.iter().map(|lane| (lane.name.clone(), 0)).collect(),
+            refusals: reasons().map(|reason| (reason, 0)).collect(),
         }
     }
 }
@@ -99,6 +103,11 @@ impl Counter {
     /// Counts that the process of `lane` had to be killed.
     pub(super) fn killed(&self, lane: &str) {
         self.with(|figures| *figures.kills.entry(lane.to_owned()).or_default() += 1);
+    }
+
+    /// Counts that no run was begun for this reason.
+    pub(super) fn refused(&self, reason: &'static str) {
+        self.with(|figures| *figures.refusals.entry(reason).or_default() += 1);
     }
 
     /// Counts a result that was saved within `took`.

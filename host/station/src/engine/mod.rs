@@ -14,6 +14,7 @@ mod hooks;
 mod in_turn;
 mod known;
 mod news;
+mod standing;
 mod unsent;
 
 use std::path::PathBuf;
@@ -38,6 +39,7 @@ use at_work::AtWork;
 use bay::Shared;
 use figures::Counter;
 use news::Listeners;
+use standing::Standings;
 
 /// How long its thread may show no sign of life. It shows one twice a second, and may have to wait for a slow disk.
 const SILENT: Duration = Duration::from_secs(5);
@@ -99,6 +101,7 @@ impl Engine {
             program,
             inbox: inbox.clone(),
             figures: Arc::clone(&figures),
+            standings: Standings::of(floor.lanes().len()),
         };
         let at_work = AtWork::new(floor, Arc::new(shared), Arc::clone(&board));
         let thread =
@@ -150,6 +153,11 @@ impl Engine {
     #[must_use]
     pub fn figures(&self) -> Figures {
         self.figures.now()
+    }
+
+    /// Counts a scan that the store kept from reaching the engine.
+    pub(crate) fn refused_by_store(&self) {
+        self.figures.refused(standing::STORE);
     }
 
     /// Whether its thread works, as seen within the last seconds.

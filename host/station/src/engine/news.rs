@@ -71,6 +71,9 @@ pub struct LaneState {
     /// Why it is out of service, what it is to test first, why nothing was saved, or why no run was begun.
     #[serde(serialize_with = "said::as_text_if_any")]
     pub note: Option<Said>,
+    /// Why its last scan came to nothing, where the note says what it is to test first.
+    #[serde(serialize_with = "said::as_text_if_any", skip_serializing_if = "Option::is_none")]
+    pub refused: Option<Said>,
     /// Whether its result is saved, but not yet at the plant, which must have it.
     #[serde(skip)]
     pub awaits_plant: bool,
@@ -89,6 +92,7 @@ impl From<&Lane> for LaneState {
             run: lane.run().map(str::to_owned),
             shown: lane.shown().cloned(),
             note: lane.note().cloned(),
+            refused: lane.refused().cloned(),
             awaits_plant: lane.awaits_plant(),
             can: lane.can(),
         }

@@ -157,6 +157,13 @@ impl Lane {
         }
     }
 
+    /// Why its last scan came to nothing, where [`Self::note`] says what it is to test first.
+    #[must_use]
+    pub fn refused(&self) -> Option<&Said> {
+        let owes_note = matches!(self.phase, Phase::Idle | Phase::Ended) && self.owes.is_some();
+        self.note.as_ref().filter(|_| owes_note && self.missed.is_none())
+    }
+
     /// Keeps the reason why it did not take the serial number of the board that came, as long as that board stays
     /// without one and the lane has nothing new to say.
     pub(super) fn miss(&mut self, why: Said) {

@@ -41,7 +41,7 @@ pub(super) struct Try {
 
 impl Try {
     fn of(cause: Cause, finding: impl Into<Said>) -> Self {
-        let finding = finding.into();
+        let finding = finding.into().at_the_station();
         let outcome = match cause.verdict() {
             Verdict::Pass => StepOutcome::Passed,
             Verdict::Fail => StepOutcome::Failed,
@@ -63,7 +63,9 @@ impl Try {
 
     fn error(cause: Cause, error: &(dyn Error + 'static)) -> Self {
         let problem = Problem::of(error);
-        Self { remedy: problem.remedy.clone(), ..Self::of(cause, problem) }
+        let remedy = problem.remedy.clone();
+        let made = Self::of(cause, problem);
+        Self { remedy: made.finding.scan_again().or(remedy), ..made }
     }
 
     fn refused(why: impl Into<Said>) -> Self {
@@ -184,10 +186,12 @@ impl Common<'_> {
             Ok(figures) => figures,
             Err(error) => {
                 let cause = match &error {
-                    LinkTestError::Board(error) => error.cause(),
+                    LinkTestError::Board(source) | LinkTestError::BrokeOff { source, .. } => source.cause(),
                     LinkTestError::NoFrame(_) => Cause::Station,
                 };
-                return Try { board: Some(seen), ..Try::error(cause, &error) };
+                // A try that met a board which answers wrong is not repeated without a person.
+                let is_incriminating = matches!(error, LinkTestError::BrokeOff { .. });
+                return Try { board: Some(seen), is_incriminating, ..Try::error(cause, &error) };
             }
         };
         let result = match figures.errors.wrong {
@@ -327,7 +331,8 @@ fn is_incriminating(report: &Report) -> bool {
 
 /// What the operator does: for a wrong board what a technician would do, otherwise what the finding asks for.
 fn at_the_bench(report: &Report) -> Option<String> {
-    report.technician().or_else(|| report.remedy())
+    let held = Said::from(&report.finding).at_the_station().scan_again();
+    held.or_else(|| report.technician()).or_else(|| report.remedy())
 }
 
 fn suspect(suspect: &Suspect) -> SuspectRecord {

@@ -111,13 +111,17 @@ fn steps(job: &Job, plan: &Plan, target: &Target, heeded: &Heeded, tell: &(dyn F
         let passed = loop {
             let name = step.name.clone();
             tell(&Message::Step { seq, attempt, name });
-            let (record, is_incriminating) = tried(step, (seq, attempt), &common, tell);
+            let (mut record, is_incriminating) = tried(step, (seq, attempt), &common, tell);
             if common.first.is_none() {
                 common.first.clone_from(&record.board);
             }
             let passed = record.outcome == StepOutcome::Passed;
             let may_repeat = !is_incriminating && may_repeat(step, &record, common.first.as_ref());
-            let again = !passed && may_repeat && heeded.stop.get().is_none() && attempt <= step.retries;
+            let is_left = !passed && heeded.stop.get().is_none() && attempt <= step.retries;
+            let again = is_left && may_repeat;
+            if is_left && !may_repeat && record.cause.is_retryable() {
+                record.not_repeated(is_incriminating);
+            }
             tell(&Message::Ended { step: Box::new(record) });
             if !again {
                 break passed;

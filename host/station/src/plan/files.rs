@@ -58,6 +58,14 @@ impl Files {
     }
 }
 
+/// The first of these files of the plan in the file `plan` that is not what was read when they were hashed.
+pub(crate) fn changed<'a>(plan: &Path, files: &'a [FileHash]) -> Option<&'a str> {
+    let folder = plan.parent().unwrap_or(Path::new(""));
+    let is_same =
+        |file: &FileHash| fs::read(folder.join(&file.path)).is_ok_and(|bytes| sha256([bytes]) == file.sha256);
+    files.iter().find(|file| !is_same(file)).map(|file| file.path.as_str())
+}
+
 /// The SHA-256 of a plan: of its text, and of a line `path`, NUL, hash for every file that it names, in order.
 pub(crate) fn plan_hash(text: &str, files: &[FileHash]) -> String {
     let lines = files.iter().map(|FileHash { path, sha256 }| format!("\n{path}\0{sha256}"));

@@ -28,7 +28,7 @@ use halfrow::optics::Chosen;
 use halfrow::result::FileHash;
 
 use crate::input_error::{InputError, text_of};
-pub(crate) use files::plan_hash;
+pub(crate) use files::{changed, plan_hash};
 use limits::Limit;
 pub use production::{Bad, Production, Shift};
 use serial::{Serial, SerialError, SerialRule};

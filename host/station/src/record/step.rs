@@ -50,6 +50,15 @@ pub struct StepRecord {
 }
 
 impl StepRecord {
+    /// Adds to an ERROR why nothing repeats the step without a person, though the plan has a retry left: the board
+    /// `was_wrong`, or else lost its session.
+    pub(crate) fn not_repeated(&mut self, was_wrong: bool) {
+        let Some(finding) = &mut self.finding else { return };
+        let why = if was_wrong { Saying::NotRepeatedWrong } else { Saying::NotRepeatedLost };
+        finding.causes.push(why.into());
+        self.detail = finding.to_string();
+    }
+
     /// The record of a step that was not reached before the run ended, at `at_ms`.
     #[must_use]
     pub fn skipped(seq: u32, step: &Step, at_ms: i64) -> Self {

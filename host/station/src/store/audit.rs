@@ -47,7 +47,7 @@ impl Store {
     /// # Errors
     /// [`StoreError`] when the database does not take it.
     pub fn note(&mut self, operator: &str, act: &str, subject: &str, detail: &str) -> Result<(), StoreError> {
-        self.audited("an audit", [operator, act, subject, detail], |_| Ok(1)).map(drop)
+        self.audited("a line of the audit", [operator, act, subject, detail], |_| Ok(1)).map(drop)
     }
 
     /// Carries out `change`, and enters it in the audit if it changed any row. Returns how many rows it changed.

@@ -22,15 +22,16 @@ impl Store {
         if !self.sinks.iter().any(|sink| sink == SINK_OF_PLANT) {
             return Ok(());
         }
-        let minutes = |ms: i64| ms.unsigned_abs().div_ceil(MINUTE_MS);
         let plant_ms = self.plant_clock.and_then(|plant| plant.now_ms());
         let apart_ms = plant_ms.map_or(0, |plant_ms| run.started_ms.saturating_sub(plant_ms));
         if apart_ms.abs() > TOLERATED_MS {
-            return Err(StoreError::ClockApart { minutes: minutes(apart_ms) });
+            // To the nearest minute: the two clocks are not read at the same moment.
+            let minutes = (apart_ms.unsigned_abs() + MINUTE_MS / 2) / MINUTE_MS;
+            return Err(StoreError::ClockApart { minutes });
         }
         let ahead_ms = ids::made_ms(&run.id).saturating_sub(run.started_ms);
         if ahead_ms > TOLERATED_MS {
-            return Err(StoreError::DatedAhead { minutes: minutes(ahead_ms) });
+            return Err(StoreError::DatedAhead { minutes: ahead_ms.unsigned_abs().div_ceil(MINUTE_MS) });
         }
         Ok(())
     }

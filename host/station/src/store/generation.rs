@@ -144,7 +144,7 @@ impl Drop for Opened {
 }
 
 fn refused(folder: &Folder, source: DatabaseError) -> StoreError {
-    StoreError::of_file(&folder.database(), "to be told from its copies", source)
+    StoreError::of_file(&folder.database(), "a new number, by which it is told from its copies", source)
 }
 
 /// What is known of the log beside a database.

@@ -19,6 +19,7 @@ mod folder;
 mod generation;
 mod migrations;
 mod outbox;
+mod plan_versions;
 mod plant;
 mod retention;
 mod retest_policy;

@@ -107,7 +107,7 @@ impl Store {
         let named: Result<Vec<_>, NoRandomness> = subjects.iter().map(id).collect();
         let named = named?;
         let sinks = Arc::clone(&self.sinks);
-        self.change("an audit", |to| {
+        self.change("a line of the audit", |to| {
             for (id, subject) in named.iter().zip(subjects) {
                 Line { id, at_ms, operator, act, subject, detail: why }.enter(to, &sinks)?;
             }

@@ -40,6 +40,7 @@ statements! {
     pub(super) ADD_PLAN = "add-plan.sql";
     pub(super) ADD_UNIT = "add-unit.sql";
     pub(super) UNIT_OF = "unit-of.sql";
+    pub(super) PLAN_OF_VERSION = "plan-of-version.sql";
     pub(super) PLAN_EARLIER = "plan-earlier.sql";
     pub(super) UNIT_EARLIER = "unit-earlier.sql";
     pub(super) OPEN_RUN = "open-run.sql";

@@ -163,7 +163,12 @@ impl App {
                 self.blocking(visit, move || pool.note(&name, act, &subject, &detail)).await?
             }
         };
-        entered.map_err(|error| Trouble::store(visit, &error))
+        entered.map_err(|error| {
+            if let Ok(floor) = self.floor(visit) {
+                floor.engine.refused_by_store();
+            }
+            Trouble::store(visit, &error)
+        })
     }
 
     /// What `look` finds in the store as it is at one moment. Other requests go on meanwhile.

@@ -96,6 +96,10 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "link-broke",
         "do what its cause says, which has a code of its own: most often check the cable and the board's power, then run again",
     ),
+    (
+        "link-test-broke-off",
+        "do what its cause says, then run again: the board or its link chip may be wrong",
+    ),
     ("link-without-board", "plug the board in at the far end, and check the device that its ser2net names"),
     ("mem-depth-unknown", "make the file again with `halfrow tables` and --bits 8, 10 or 12"),
     ("mem-file-wrong", "do what its cause says, or make the file again with `halfrow tables`"),
@@ -332,7 +336,7 @@ mod tests {
         lane-put-back lane-silent lane-starts lane-stuck lane-taken-out lane-told-nonsense lane-told-to-end link-answers-wrong \
         link-tested measurement-beyond-limit measurement-missing mock-judged out-by-person plan-takes-hardware \
         result-saved-too-late run-stopped-before serial-tested serial-waits serial-waits-for-board serial-waits-instead \
-        settings-without-lane-or-plan shared-board-taken shared-board-unreached station-ended step-not-reached steps-unknown";
+        settings-without-lane-or-plan shared-board-taken shared-board-unreached station-ended step-not-reached step-not-repeated-lost step-not-repeated-wrong steps-unknown";
 
     /// Whether an act tells its reader what to do.
     fn is_act(act: &str) -> bool {

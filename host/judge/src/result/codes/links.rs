@@ -118,6 +118,7 @@ codes! {
         = Recording,
     }
     LinkTestError {
+        BrokeOff [wrong] => "link-test-broke-off",
         NoFrame => "link-test-frame-not-made",
         = Board,
     }

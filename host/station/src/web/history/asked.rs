@@ -52,12 +52,12 @@ impl Asked {
     /// # Errors
     /// [`Wrong`] when a value is not valid.
     pub(super) fn filter(&self) -> Result<Filter, Wrong> {
-        let verdict = match self.verdict.as_str() {
+        let verdict = match self.verdict.to_ascii_uppercase().as_str() {
             "" => None,
             "PASS" => Some(Verdict::Pass),
             "FAIL" => Some(Verdict::Fail),
             "ERROR" => Some(Verdict::Error),
-            other => return Err(Wrong(other.to_owned())),
+            _ => return Err(Wrong(self.verdict.clone())),
         };
         Ok(Filter {
             // What was scanned is taken as it is: a blank at its end is part of it.

@@ -68,7 +68,7 @@ fn form(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanNam
                 select name="verdict" {
                     option value="" { (visit.say("history.any")) }
                     @for word in ["PASS", "FAIL", "ERROR"] {
-                        option value=(word) selected[asked.verdict == word] { (word) }
+                        option value=(word) selected[asked.verdict.eq_ignore_ascii_case(word)] { (word) }
                     }
                 }
             }

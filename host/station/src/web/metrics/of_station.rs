@@ -46,6 +46,11 @@ const KILLS: Metric = Metric {
     kind: Kind::Counter,
     help: "Runs since the start whose process had to be killed because it was silent or took too long.",
 };
+const REFUSALS: Metric = Metric {
+    name: "halfrow_refusals",
+    kind: Kind::Counter,
+    help: "Scans since the start that led to no run, or were not even taken, because of the station itself.",
+};
 const RUNS: Metric =
     Metric { name: "halfrow_runs", kind: Kind::Counter, help: "Finished runs in the store." };
 const UNITS: Metric =
@@ -120,6 +125,10 @@ fn since_the_start(text: &mut Text, figures: &Figures) {
     let mut of = text.of(&KILLS);
     for (lane, kills) in &figures.kills {
         of.put(&[("lane", lane)], *kills);
+    }
+    let mut of = text.of(&REFUSALS);
+    for (reason, refusals) in &figures.refusals {
+        of.put(&[("reason", reason)], *refusals);
     }
     let mut of = text.of(&SECONDS);
     for ((PlanName { product, plan }, lane), seconds) in &figures.runs {

@@ -98,14 +98,18 @@ fn length(word: &str) -> &'static str {
 /// What the operator should do now, and why.
 fn says(visit: &Visit, state: &LaneState) -> Markup {
     let shown = state.shown.as_ref().filter(|_| is_verdict(state.state));
+    let refused = state.refused.as_ref().map(|why| visit.words.parted(why, None));
+    // What kept the last scan from being tested has to be dealt with first.
+    let is_second = refused.as_ref().is_some_and(|(_, asked)| asked.is_some());
     let note = state.note.as_ref().map(|note| match state.state {
         // There is only one thing to do, whatever the reason.
         Word::Unsaved => (visit.words.tell(note), None),
+        _ if is_second => (visit.words.tell(note), None),
         _ => visit.words.parted(note, None),
     });
     let error = shown.filter(|_| state.state == Word::Error).map(|shown| of_error(visit, shown));
     let fail = shown.filter(|_| state.state == Word::Fail);
-    let told: Vec<_> = note.into_iter().chain(error).collect();
+    let told: Vec<_> = refused.into_iter().chain(note).chain(error).collect();
     let asked = told.iter().find_map(|(_, asked)| asked.as_ref());
     html! {
         @if let Some(does) = does(visit, state, asked.is_some()) { p.does { (does) } }

@@ -120,3 +120,30 @@ fn a_number_that_was_not_given_does_not_hide_why_its_lane_is_out_or_saved_nothin
     running.happened(0, full(), at(7));
     assert!(noted(&running).contains(&serial(2)), "{}", noted(&running));
 }
+
+/// The shift is to be checked, and the unit that checks it could not be tested.
+#[test]
+fn why_a_run_was_not_begun_is_kept_beside_what_its_lane_owes_until_the_next_scan() {
+    let mut floor = floor(&[SCAN], false);
+    plug(&mut floor, 0);
+    let said = |text: &str| Said::of(&std::io::Error::other(text.to_owned()));
+    let owes = Owes { plan: 0, serial: Some(serial(0)), why: said("the good unit first") };
+    floor.happened(0, Event::Owes(Some(owes)), at(0));
+    floor.scan(&serial(0), WEBER, at(1)).unwrap();
+    floor.happened(0, Event::NotBegun { why: said("the disk is full") }, at(2));
+    let told = |floor: &Floor| {
+        let lane = &floor.lanes()[0];
+        [lane.note(), lane.refused()].map(|said| said.map(ToString::to_string).unwrap_or_default())
+    };
+    assert_eq!(
+        (words(&floor)[0], told(&floor)),
+        (Word::Out, ["the good unit first", "the disk is full"].map(str::to_owned))
+    );
+    floor.scan(&serial(0), WEBER, at(3)).unwrap();
+    floor.happened(0, Event::Ended(shown(Verdict::Error)), at(4));
+    assert_eq!(told(&floor)[1], "");
+    floor.happened(0, Event::Owes(None), at(5));
+    floor.scan(&serial(1), WEBER, at(6)).unwrap();
+    floor.happened(0, Event::NotBegun { why: said("the disk is full") }, at(7));
+    assert_eq!(told(&floor), ["the disk is full", ""], "once and not twice");
+}

@@ -65,7 +65,7 @@ fn lists_are_what_was_entered_page_by_page_whatever_is_asked_for() {
         wanted(&|run| { run.lane == "2" && run.end == End::Pass })
     );
     assert_eq!(
-        walked(&served, "/history?operator=lang&verdict=ERROR&plan=final"),
+        walked(&served, "/history?operator=lang&verdict=error&plan=final"),
         wanted(&|run| { run.operator == "lang" && matches!(run.end, End::Error(_)) })
     );
     assert_eq!(

@@ -1,11 +1,13 @@
 //! A station at work while one of its files is replaced: its program, as in an upgrade, or a file of its plan.
 
 use std::fs;
-use std::process::Command;
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
 
 use super::ends::{connected, lane_of};
 use super::floor::{Running, SERIALS, Station};
-use crate::common::{program, script, silent_board};
+use crate::common::{Did, program, script, silent_board};
 
 /// Starts the station by a program file of its own; returns that file as well.
 fn started(station: &Station) -> (Running, std::path::PathBuf) {
@@ -46,7 +48,30 @@ fn a_lane_s_process_has_the_program_s_name() {
     assert_eq!(read("cmdline"), format!("{}\0lane\0", own.display()));
 }
 
-/// A lane reads the files of its plan itself, and judges only by those that the record names.
+/// A plan that is changed without a new version: nobody could tell its runs from those before.
+#[test]
+fn a_start_warns_of_a_plan_that_is_another_one_than_runs_were_judged_by_under_its_version() {
+    let station = Station::with(&["mock"], "");
+    let mut running = station.start();
+    running.scan(SERIALS[0]);
+    running.state("1", "PASS");
+    running.end();
+    let warns = |plan: &str| {
+        fs::write(station.path("plan.toml"), plan).unwrap();
+        let mut call = Command::new(program());
+        let call =
+            call.args(["lanes", "--operator", "weber", "--settings"]).arg(station.path("station.toml"));
+        let did: Did = call.stdin(Stdio::null()).output().unwrap().into();
+        assert_eq!(did.code, Some(0), "{did:?}");
+        did.complained.contains("runs were judged here by another plan CAM-T/quick 1")
+    };
+    let plan = fs::read_to_string(station.path("plan.toml")).unwrap();
+    let other = format!("{plan}\n# other\n");
+    let newer = other.replace("version = \"1\"", "version = \"2\"");
+    assert_eq!([&plan, &other, &newer].map(|plan| warns(plan)), [false, true, false]);
+}
+
+/// The lane says which file it is, and takes boards again once it is put back.
 #[test]
 fn a_file_of_the_plan_that_becomes_another_one_at_work_judges_no_board() {
     let station = Station::with(&["mock"], "");
@@ -61,9 +86,18 @@ fn a_file_of_the_plan_that_becomes_another_one_at_work_judges_no_board() {
     running.state("1", "READY");
     picture(9);
     running.test("1", SERIALS[0]);
-    let ended = running.wait("a verdict", |news| news["shown"]["serial"] == SERIALS[0]);
-    assert_eq!(ended["shown"]["verdict"], "ERROR", "{ended}");
+    let said = "the file a.pgm, which the plan names, has changed since the station started; put it back";
+    let is_told = |news: &Value| news["note"].as_str().is_some_and(|note| note.contains(said));
+    let told = running.wait("why no run begins", is_told);
+    assert_eq!((&told["state"], &told["shown"]), (&"READY".into(), &Value::Null), "{told}");
+    fs::remove_file(station.path("a.pgm")).unwrap();
+    running.test("1", SERIALS[0]);
+    running.state("1", "RUNNING");
+    running.wait("why no run begins", is_told);
+    picture(7);
+    running.test("1", SERIALS[0]);
+    running.state("1", "PASS");
     assert_eq!(running.end().0, Some(0));
-    assert_eq!(station.query("SELECT cause FROM run"), ["station"]);
+    assert_eq!(station.query("SELECT verdict FROM run"), ["PASS"]);
     station.assert_well();
 }

@@ -120,6 +120,27 @@ fn a_lane_that_was_killed_and_a_result_that_is_not_saved_are_told() {
     once(&serving, "halfrow_unsaved_results", 0.0);
 }
 
+/// As on a full disk: neither a run nor a line of the audit can be entered.
+#[test]
+fn boards_that_are_not_tested_because_of_the_station_are_counted() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    in_state(&serving, "1", "ready");
+    assert_eq!(Figures::of(&serving).at("halfrow_refusals_total{reason=\"store\"}"), 0.0);
+    let database = rusqlite::Connection::open(station.path("data").join("station.db")).unwrap();
+    let full = "CREATE TRIGGER no_run BEFORE INSERT ON run BEGIN SELECT RAISE(FAIL, 'the disk is full'); END";
+    database.execute_batch(full).unwrap();
+    scan(&serving, "1", SERIALS[0]);
+    once(&serving, "halfrow_refusals_total{reason=\"store\"}", 1.0);
+    database.execute_batch(common::NO_AUDIT).unwrap();
+    assert_eq!(serving.here().post("/scan", &[("text", SERIALS[0])]).send().status, 503);
+    let figures = Figures::of(&serving);
+    assert_eq!(figures.at("halfrow_refusals_total{reason=\"store\"}"), 2.0);
+    for reason in ["clock", "plan", "plant", "other"] {
+        assert_eq!(figures.at(&format!("halfrow_refusals_total{{reason=\"{reason}\"}}")), 0.0, "{reason}");
+    }
+}
+
 /// Whoever is called at night then checks the plant, not the disk.
 #[test]
 fn a_verdict_that_waits_for_the_plant_is_told_from_a_result_that_is_not_saved() {

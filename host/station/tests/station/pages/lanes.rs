@@ -99,6 +99,26 @@ fn a_verdict_is_drawn_with_what_its_lane_owes_beside_it() {
     }
 }
 
+/// As on a full disk, before the shift is checked: what to put right comes before what to scan then.
+#[test]
+fn why_a_run_was_not_begun_stands_above_what_its_lane_owes() {
+    let shift = format!("[shift]\ngood = \"{}\"\nbad = \"HR:MOCK\"\nhours = 8\n[tables]", SERIALS[0]);
+    let station = Station::private(1).where_instead("plan.toml", "[tables]", &shift);
+    let serving = station.serve();
+    let owed = "the good unit CA0131103628 must be judged PASS first";
+    let before = seen(&serving, owed);
+    assert!(before.contains("<p class=\"asks\">Scan its label</p>"), "{before}");
+    let database = rusqlite::Connection::open(station.path("data").join("station.db")).unwrap();
+    let full = "CREATE TRIGGER full BEFORE INSERT ON run BEGIN SELECT RAISE(FAIL, 'the disk is full'); END";
+    database.execute_batch(full).unwrap();
+    serving.here().post("/scan", &[("text", SERIALS[0])]).until_taken();
+    let page = seen(&serving, "the run was not begun");
+    assert!(page.contains("lane out") && page.contains("the disk is full"), "{page}");
+    assert!(page.contains("<p class=\"asks\">Check that its folder is writable and has space</p>"), "{page}");
+    let [why, owed] = ["the run was not begun", owed].map(|said| page.find(said).unwrap());
+    assert!(why < owed, "{page}");
+}
+
 #[test]
 fn without_a_script_the_page_says_the_states_and_takes_a_serial_number() {
     let station = Station::private(1);

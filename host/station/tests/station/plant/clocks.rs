@@ -41,7 +41,7 @@ fn no_run_begins_while_the_clocks_of_station_and_plant_are_apart() {
     sink.rest();
     made.store.heard_plant(sink.beat(0, 0).unwrap().unwrap());
     let refused = begun(&mut made, "S2").unwrap_err();
-    assert!(matches!(refused, StoreError::ClockApart { minutes: 60..=61 }), "{refused}");
+    assert!(matches!(refused, StoreError::ClockApart { minutes: 60 }), "{refused}");
     // A station that only sends elsewhere only needs to be in order with itself.
     made.store.sends_to(vec!["mes".to_owned()]).unwrap();
     begun(&mut made, "S3").unwrap();

@@ -11,6 +11,9 @@ use tempfile::TempDir;
 use super::server::Server;
 use crate::common::{Did, PLAN, plant_settings, program};
 
+pub(super) const IS_NEW: &str =
+    "is new; a station at work goes on with the plan that it has until it is started again";
+
 /// A picture of eight rows, which a plan names.
 fn picture(level: u8) -> Vec<u8> {
     let mut bytes = b"P5\n64 8\n4095\n".to_vec();
@@ -107,7 +110,7 @@ fn a_name_that_a_terminal_would_obey_is_spelt_out() {
     instead("station.toml", "CAM-T/quick", "CAM-T/q\\u001b[8m\\nPASS");
     let told = "CAM-T/q\\u{1b}[8m\\nPASS 1\\u{7}";
     assert_eq!(made.publish("engel.key").said, format!("{told} holds, as number 1\n"));
-    assert_eq!(made.fetch().said, format!("{told}, number 1, is new\n"));
+    assert_eq!(made.fetch().said, format!("{told}, number 1, {IS_NEW}\n"));
     let (name, key) = ("CAM-T/q\u{1b}[8m\nPASS", made.path("engel.key"));
     let back = made.did(&["plan", "back", name, "1\u{7}", "--key", &key, "--reason", "as it was"]);
     assert_eq!(back.said, format!("{told} holds, as number 2\n"));
@@ -120,7 +123,7 @@ fn a_plan_comes_to_the_station_with_its_files_and_an_older_one_can_hold_again() 
     assert!(early.contains("station.toml:") && early.contains("plan fetch"), "{early}");
     assert!(made.fetch().complained.contains("the plant has no plan CAM-T/quick"));
     assert_eq!(made.publish("engel.key").said, "CAM-T/quick 1 holds, as number 1\n");
-    assert_eq!(made.fetch().said, "CAM-T/quick 1, number 1, is new\n");
+    assert_eq!(made.fetch().said, format!("CAM-T/quick 1, number 1, {IS_NEW}\n"));
     assert_eq!(made.held(), ("1".to_owned(), 1));
     assert_eq!(made.fetch().said, "CAM-T/quick 1, number 1\n");
     // A plan by which runs were judged keeps its content under its version.
@@ -158,7 +161,7 @@ fn an_empty_database_is_prepared_by_the_settings_of_a_station_with_plans_of_the_
     assert_eq!(prepared.code, Some(0), "{prepared:?}");
     assert_eq!(made.did(&["plant", "check"]).code, Some(0));
     made.publish("engel.key");
-    assert_eq!(made.fetch().said, "CAM-T/quick 1, number 1, is new\n");
+    assert_eq!(made.fetch().said, format!("CAM-T/quick 1, number 1, {IS_NEW}\n"));
 }
 
 #[test]
@@ -195,7 +198,7 @@ fn what_nobody_signed_who_is_trusted_is_not_taken() {
     // A statement that was valid once is refused after a later one.
     made.plan("3", 3);
     made.publish("engel.key");
-    assert_eq!(made.fetch().said, "CAM-T/quick 3, number 3, is new\n");
+    assert_eq!(made.fetch().said, format!("CAM-T/quick 3, number 3, {IS_NEW}\n"));
     change("DELETE FROM publication WHERE number > 1");
     let older = made.fetch();
     assert!(older.complained.contains("as its number 1, and here is number 3 already"), "{older:?}");
@@ -369,7 +372,7 @@ fn a_plan_whose_product_has_a_slash_is_not_published() {
     }
     let settings = fs::read_to_string(made.path("station.toml")).unwrap();
     fs::write(made.path("station.toml"), settings.replace("CAM-T/quick", "CAM-T/quick/final")).unwrap();
-    assert_eq!(made.fetch().said, "CAM-T/quick/final 1, number 1, is new\n");
+    assert_eq!(made.fetch().said, format!("CAM-T/quick/final 1, number 1, {IS_NEW}\n"));
 }
 
 #[test]

@@ -9,7 +9,7 @@ use halfrow_station::published::{Bundle, SigningKey, Statement};
 use halfrow_station::store::Plant;
 use serde_json::{Value, json};
 
-use super::plans::Published;
+use super::plans::{IS_NEW, Published};
 use crate::common::PLAN;
 
 /// A second step, to follow the first.
@@ -61,7 +61,7 @@ fn a_plan_that_was_cut_in_two_is_refused_until_it_is_published_again() {
     assert!(refused.code == Some(3) && refused.complained.contains("publish it again"), "{refused:?}");
     assert_eq!((made.held(), kept(&made)), (("1".to_owned(), 1), before), "nothing was changed");
     assert_eq!(made.publish("engel.key").said, "CAM-T/quick 2 holds, as number 3\n");
-    assert_eq!(made.fetch().said, "CAM-T/quick 2, number 3, is new\n");
+    assert_eq!(made.fetch().said, format!("CAM-T/quick 2, number 3, {IS_NEW}\n"));
     assert_eq!(made.held(), ("2".to_owned(), 2));
 }
 
@@ -73,7 +73,7 @@ fn publishing_again_puts_a_damaged_plan_right() {
     let refused = made.fetch();
     assert!(refused.code == Some(3) && refused.complained.contains("publish it again"), "{refused:?}");
     assert_eq!(made.publish("engel.key").said, "CAM-T/quick 1 holds, as number 2\n");
-    assert_eq!(made.fetch().said, "CAM-T/quick 1, number 2, is new\n");
+    assert_eq!(made.fetch().said, format!("CAM-T/quick 1, number 2, {IS_NEW}\n"));
 }
 
 /// It is signed, but the plan in it has another hash than the whole.

@@ -73,6 +73,10 @@ fn a_try_in_which_samples_differed_is_not_repeated_whatever_broke_it_off() {
         assert_eq!((verdict.as_str(), tries.as_str()), ("ERROR", "1 error"), "{then:?}: {told}");
         // Otherwise nothing would have been held against the board yet.
         assert!(told.contains("samples differ") && told.contains("broke off"), "{then:?}: {told}");
+        assert!(
+            told.ends_with("not repeated by itself, since something was found wrong with the board"),
+            "{told}"
+        );
     }
 }
 
@@ -96,4 +100,5 @@ fn a_step_during_which_the_session_was_lost_is_repeated_only_with_a_board_that_p
     let unnumbered = || "mock".to_owned();
     let (verdict, tries, told) = came("link", (unnumbered(), unnumbered()), Then::Reset);
     assert_eq!((verdict.as_str(), tries.as_str()), ("ERROR", "1 error"), "{told}");
+    assert!(told.contains("since a board that lost its session may be at fault, or another one"), "{told}");
 }
