@@ -48,7 +48,8 @@ pub use check::{Check, CheckName, Outcome};
 pub use counter::Counter;
 pub use coverage::CoverageReport;
 pub use defect::{
-    ClampEnd, Counting, Defect, FlippedBit, Instead, MadeWith, Memory, Reading, RowSource, StaleFrames,
+    ClampEnd, ContentKind, Counting, Defect, FlippedBit, Instead, MadeAs, MadeWith, Memory, Reading,
+    RowSource, StaleFrames,
 };
 pub use document::{Document, SCHEMA, Schema};
 pub use doubt::{BrokenOff, Doubt};
