@@ -62,7 +62,7 @@ pub use late_rows::LateRows;
 pub use link::{LinkReport, Reconnection};
 pub use not_exercised::NotExercised;
 pub use problem::{Parameters, Problem};
-pub use rule::{Answer, NumberedRow, RepeatedRow, Rule};
+pub use rule::{Answer, NumberedRow, RepeatedRow, RowPart, Rule};
 pub(crate) use sha256::little_endian;
 pub use sha256::sha256;
 pub use soak::{SoakChart, SoakDifference, SoakInterval, SoakLength, SoakReport};
