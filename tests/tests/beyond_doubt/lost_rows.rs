@@ -1,7 +1,7 @@
 //! Rows that do not come back: the board's fault only when the board itself says so.
 
 use halfrow::link::{Candidate, Link};
-use halfrow::result::{Finding, Report};
+use halfrow::result::{CheckName, Finding, Outcome, Report};
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
 use halfrow_protocol::message::Status;
@@ -96,13 +96,17 @@ fn withheld(change: fn(&mut Status)) -> Report {
 }
 
 fn withhold(packet: Passing, change: fn(&mut Status)) -> Vec<Passing> {
+    withhold_row(3, packet, change)
+}
+
+fn withhold_row(row: u16, packet: Passing, change: fn(&mut Status)) -> Vec<Passing> {
     match packet.reply() {
         Some(Reply::Status(mut status)) => {
             (status.rows_repeated, status.rows_unneeded) = (0, 3);
             change(&mut status);
             vec![packet.saying(&Reply::Status(status))]
         }
-        Some(Reply::RowOut(row)) if row.place.row == 3 => Vec::new(),
+        Some(Reply::RowOut(out)) if out.place.row == row => Vec::new(),
         _ => vec![packet],
     }
 }
@@ -209,4 +213,47 @@ fn a_row_is_not_swallowed_where_packets_are_missing_of_which_nobody_hears() {
     });
     assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
     assert_eq!(report.finding, Finding::RowLostAmongOthers { row: 3, frame: 0 });
+}
+
+/// The report on a board that withholds `row` of each frame, and whose other rows that are `meant` take a clock more than claimed.
+fn withheld_and_late(row: u16, meant: fn(u16) -> bool) -> Report {
+    judge(&System::TINY, move |_, packet| {
+        let mut packets = withhold_row(row, packet, |_| {});
+        for packet in &mut packets {
+            if let Some(Reply::RowOut(mut out)) = packet.reply()
+                && meant(out.place.row)
+            {
+                (out.first_latency, out.last_latency) = (out.first_latency + 1, out.last_latency + 1);
+                *packet = packet.saying(&Reply::RowOut(out));
+            }
+        }
+        packets
+    })
+}
+
+/// One register too many: after a frame's last row the player stops before its last sample is out.
+#[test]
+fn the_last_row_of_a_frame_whose_rows_are_all_late_is_lost_to_the_latency() {
+    let last = System::TINY.height as u16 - 1;
+    let report = withheld_and_late(last, |_| true);
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
+    let Finding::LatencyWrong(late) = &report.finding else { panic!("{}", report.headline()) };
+    // W/2 + 12 of the mock, and one.
+    assert_eq!((late.first, late.last, late.claimed), (45, 45, 44));
+    assert!(report.remedy().unwrap().starts_with("Check the depth of the pipeline"), "{report:?}");
+    let frames = report.checks.iter().find(|check| check.name == CheckName::Frames).unwrap();
+    assert_eq!(frames.outcome, Outcome::Failed);
+    assert_eq!(frames.finding, Finding::RowSwallowed { row: last, frame: 0, again: last });
+    assert_eq!(halfrow::report::wording::differences(&report, &report.frames[0]), "incomplete");
+}
+
+/// Neither another row nor some late rows show where the player stops.
+#[test]
+fn a_row_is_swallowed_where_the_latency_does_not_explain_it() {
+    let last = System::TINY.height as u16 - 1;
+    for (row, meant) in [(3, (|_| true) as fn(u16) -> bool), (last, |row| row % 2 == 0), (last, |_| false)] {
+        let report = withheld_and_late(row, meant);
+        assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
+        assert_eq!(report.finding, Finding::RowSwallowed { row, frame: 0, again: row });
+    }
 }

@@ -1,6 +1,6 @@
 //! What a board must refuse, keep and end: a board that does not fails, wherever that is, and a sound one never does.
 
-use halfrow::result::{Answer, Check, CheckName, Finding, NotExercised, Outcome, Report, Rule};
+use halfrow::result::{Answer, Check, CheckName, Finding, NotExercised, Outcome, Report, RowPart, Rule};
 use halfrow::run::{AtSpeed, Part, Plan, Selection};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
@@ -271,7 +271,58 @@ fn a_row_that_comes_back_wrong_after_what_was_refused_fails() {
         Some(packet.saying(&Reply::RowOut(RowOut { packed: &packed, ..row })))
     });
     let right = Answer::Row { row: 2, frame: FRAME };
-    assert_eq!(broken(&report), (Rule::Rows, &right, &Answer::OtherRow {}), "{}", report.headline());
+    let (rule, must, Answer::OtherRow { differs }) = broken(&report) else { panic!("{}", report.headline()) };
+    assert_eq!((rule, must), (Rule::Rows, &right), "{}", report.headline());
+    // Bit 2 of byte 3, which is the low byte of sample 2.
+    let [RowPart::Samples { differing: 1, column: 2, found, right }] = **differs else {
+        panic!("{differs:?}")
+    };
+    assert_eq!(found ^ right, 4);
+    let told =
+        format!("returned it with 1 wrong sample (the first, in column 2, is {found} instead of {right})");
+    assert!(report.headline().contains(&told), "{}", report.headline());
+}
+
+/// What a row that is otherwise right may say of itself.
+type Statement = (fn(&mut RowOut<'_>), fn(&RowPart) -> bool, &'static str);
+
+#[test]
+fn what_a_row_says_wrongly_of_itself_is_told() {
+    let statements: [Statement; 4] = [
+        (
+            |row| row.pauses += 5,
+            |part| matches!(part, RowPart::Pauses { found: 5, right: 0 }),
+            "returned it with pauses of 5 board clocks instead of 0",
+        ),
+        (
+            |row| row.entered = row.entered.map(|crc| !crc),
+            |part| matches!(part, RowPart::Entered { found: Some(_), .. }),
+            "as the CRC of the samples that entered the core",
+        ),
+        (
+            |row| row.generation ^= 7,
+            |part| matches!(part, RowPart::Generation { .. }),
+            "returned it with generation ",
+        ),
+        (
+            |row| row.last_latency += 1,
+            |part| matches!(part, RowPart::LastLatency { found, right } if found - right == 1),
+            "for its last sample",
+        ),
+    ];
+    for (change, is_meant, told) in statements {
+        let report = saying(move |packet| {
+            let Some(Reply::RowOut(mut row)) = packet.reply() else { return Some(packet) };
+            if row.place.frame == FRAME && row.place.row == 2 {
+                change(&mut row);
+            }
+            Some(packet.saying(&Reply::RowOut(row)))
+        });
+        let (.., Answer::OtherRow { differs }) = broken(&report) else { panic!("{}", report.headline()) };
+        let [part] = &**differs else { panic!("{differs:?}") };
+        assert!(is_meant(part), "{part:?}");
+        assert!(report.headline().contains(told), "{}", report.headline());
+    }
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 use halfrow::report;
 use halfrow::result::{
-    BurstCount, CheckName, Finding, NotExercised, Outcome, Repetition, Report, SoakLength,
+    BurstCount, CheckName, Defect, Finding, MadeAs, NotExercised, Outcome, Repetition, Report, SoakLength,
+    Suspect,
 };
 use halfrow::run::{AtSpeed, Part, Plan, Selection};
 use halfrow::verdict::Verdict;
@@ -98,6 +99,88 @@ fn a_row_that_was_kept_under_another_signature_shows_nothing() {
     assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
     let Finding::DiffersAtSpeed { repetition, .. } = report.finding else { panic!("{}", report.headline()) };
     assert!(matches!(repetition, Repetition::NothingTrapped { .. }), "{repetition:?}");
+}
+
+/// The report on a board that keeps a row with right samples under another signature, which is why it kept it.
+fn signed_otherwise() -> Report {
+    judge_each(&System::TINY, move |toward, mut packet| {
+        if toward == Toward::Board && packet.is(Kind::Expect) {
+            // The last bytes are the signature of the last row: the board then differs in a row that is right.
+            packet.payload.iter_mut().rev().take(4).for_each(|byte| *byte ^= 0xff);
+        }
+        match packet.reply() {
+            Some(Reply::Records(found)) if toward == Toward::Host => {
+                let mut records: Vec<_> = found.records().collect();
+                records.iter_mut().for_each(|record| record.signature ^= 1);
+                let bytes: Vec<_> = records.iter().map(FrameRecord::to_bytes).collect();
+                packet.saying(&Reply::Records(Records { bytes: &bytes, ..found }))
+            }
+            Some(Reply::Trap(Some(kept))) => {
+                packet.saying(&Reply::Trap(Some(TrappedRow { signature: !kept.signature, ..kept })))
+            }
+            _ => packet,
+        }
+    })
+}
+
+#[test]
+fn a_right_row_under_another_signature_shows_that_it_is_signed_wrongly() {
+    let report = signed_otherwise();
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
+    let Finding::DiffersAtSpeed { repetition, .. } = &report.finding else { panic!("{}", report.headline()) };
+    // The row whose expected signature was spoilt.
+    let row = System::TINY.height - 1;
+    assert!(
+        matches!(repetition, Repetition::SignedWrong { row: kept, .. } if *kept == row),
+        "{repetition:?}"
+    );
+    assert_eq!(report.suspects[0].defect, Defect::SignatureWrong { row });
+    assert!(report.headline().contains("signature is not their CRC"), "{}", report.headline());
+}
+
+/// The report on a board whose records of a burst each hold the signature of the frame before.
+fn with_signatures_of_frames_before() -> Report {
+    let mut last = (0, 0);
+    judge_each(&System::TINY, move |_, packet| match packet.reply() {
+        Some(Reply::Records(found)) => {
+            let mut records: Vec<_> = found.records().collect();
+            for (n, record) in (found.from..).zip(&mut records) {
+                let own = record.signature;
+                if n > 0 && last.0 == n - 1 {
+                    record.signature = last.1;
+                }
+                last = (n, own);
+            }
+            let bytes: Vec<_> = records.iter().map(FrameRecord::to_bytes).collect();
+            packet.saying(&Reply::Records(Records { bytes: &bytes, ..found }))
+        }
+        _ => packet,
+    })
+}
+
+#[test]
+fn records_of_the_frames_before_are_known_by_their_signatures() {
+    let report = with_signatures_of_frames_before();
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
+    assert_eq!(report.suspects[0].defect, Defect::RecordsLate {}, "{}", report.headline());
+}
+
+/// Content is a function of the seed, so a board that is given another makes what one makes that keeps only a part of it.
+#[test]
+fn a_row_of_another_content_that_is_corrected_rightly_is_no_matter_of_timing() {
+    let report = judge_each(&System::TINY, |toward, mut packet| {
+        if toward == Toward::Board && packet.is(Kind::Burst) {
+            // WIRE.md, BURST: the upper half of the seed.
+            packet.payload[10..12].fill(0);
+        }
+        packet
+    });
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
+    let [Suspect { defect: Defect::ContentWrong { made, .. }, .. }] = &report.suspects[..] else {
+        panic!("{:?}", report.suspects)
+    };
+    assert_eq!(*made, MadeAs::SeedOf { bits: 16 });
+    assert!(report.headline().contains("the generator of the content at speed"), "{}", report.headline());
 }
 
 /// What a PASS by the first row of a frame and by three frames at speed, with or without a pause in one of them, leaves of the table.

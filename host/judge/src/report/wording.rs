@@ -317,15 +317,16 @@ pub(crate) fn frame_outcome(report: &Report, frame: &FrameReport) -> Outcome {
     let judged = frame.rows >= frame.comparison.by_row.len() && frame.comparison.samples > 0;
     match (report.verdict(), frame.comparison.differences) {
         (_, 0) if judged => Outcome::Passed,
-        (Verdict::Fail, 0) if is_swallowed(&report.finding, frame) => Outcome::Failed,
+        (Verdict::Fail, 0) if is_swallowed(report, frame) => Outcome::Failed,
         (Verdict::Error, _) | (_, 0) => Outcome::Error,
         (Verdict::Pass | Verdict::Fail, _) => Outcome::Failed,
     }
 }
 
 /// Whether the board took a row of this frame that never came out.
-fn is_swallowed(finding: &Finding, frame: &FrameReport) -> bool {
-    matches!(finding, Finding::RowSwallowed { frame: of, .. } if *of == frame.number)
+fn is_swallowed(report: &Report, frame: &FrameReport) -> bool {
+    let mut found = report.checks.iter().map(|check| &check.finding).chain([&report.finding]);
+    found.any(|finding| matches!(finding, Finding::RowSwallowed { frame: of, .. } if *of == frame.number))
 }
 
 /// How many samples of a frame differ. `0` is only said of a frame that came back whole.

@@ -139,6 +139,13 @@ pub enum Repetition {
         /// Frames up to and including the first wrong one.
         frames: u32,
     },
+    /// It was wrong again, and a row was kept whose samples are right, and whose signature is not the CRC of them.
+    SignedWrong {
+        /// Frames up to and including the first wrong one.
+        frames: u32,
+        /// The row that was kept.
+        row: usize,
+    },
     /// It could not be made again.
     Impossible {},
 }
@@ -152,6 +159,7 @@ impl Repetition {
             | Self::NoTrap {}
             | Self::AllRight { .. }
             | Self::NothingTrapped { .. }
+            | Self::SignedWrong { .. }
             | Self::Impossible {} => Streamed::NotTried,
         }
     }

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::Extent;
 pub use parameters::{
-    ClampEnd, Counting, FlippedBit, Instead, MadeWith, Memory, Reading, RowSource, StaleFrames,
+    ClampEnd, ContentKind, Counting, FlippedBit, Instead, MadeAs, MadeWith, Memory, Reading, RowSource,
+    StaleFrames,
 };
 
 /// A single defect of a board.
@@ -131,6 +132,11 @@ pub enum Defect {
         /// What stands in its place.
         instead: Instead,
     },
+    /// The board uses an optical centre that is beside the one that was set.
+    CentreOff {
+        /// How far to the right, in half columns.
+        halves: i32,
+    },
     /// One bit of the register that holds the optical centre is stuck.
     CentreBitStuck {
         /// The bit of twice the column.
@@ -221,6 +227,22 @@ pub enum Defect {
     TablesChangeLate {
         /// So many rows.
         rows: usize,
+    },
+    /// Records of frames hold the signature of the frame before.
+    RecordsLate {},
+    /// At the full pixel clock, rows are corrected rightly, but made of another content than AT-SPEED.md gives them.
+    ContentWrong {
+        /// A row in which it was seen.
+        row: usize,
+        /// The kind of content that it must have.
+        kind: ContentKind,
+        /// What it was made as.
+        made: MadeAs,
+    },
+    /// The samples of a row at the full pixel clock are right, and its signature is not the CRC of them.
+    SignatureWrong {
+        /// The row.
+        row: usize,
     },
     /// Frames are right when they are sent row by row, and the same frames with the same tables are wrong at the full pixel
     /// clock.

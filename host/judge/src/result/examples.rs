@@ -1,10 +1,10 @@
 //! An example of every finding and every defect, for the page of codes and for tests.
 
 use super::{
-    Account, Answer, BoardKind, BrokenOff, BurstCount, ClampEnd, ClockSeen, Corner, Counter, Counting,
-    Defect, Doubt, EqualAtSpeed, Extent, Finding, FlippedBit, Instead, KeptRow, LateRows, MadeWith, Memory,
-    NoBurst, NotExercised, NumberedRow, Problem, Reading, RepeatedRow, Repetition, RowSource, Rule,
-    StaleFrames, Streamed, Suspect,
+    Account, Answer, BoardKind, BrokenOff, BurstCount, ClampEnd, ClockSeen, ContentKind, Corner, Counter,
+    Counting, Defect, Doubt, EqualAtSpeed, Extent, Finding, FlippedBit, Instead, KeptRow, LateRows, MadeAs,
+    MadeWith, Memory, NoBurst, NotExercised, NumberedRow, Problem, Reading, RepeatedRow, Repetition,
+    RowSource, Rule, StaleFrames, Streamed, Suspect,
 };
 use crate::compare::Difference;
 use crate::verdict::Verdict;
@@ -242,7 +242,8 @@ pub fn suspects() -> Vec<Suspect> {
         account: Account::Signatures { wrong: 2, explained: 2 },
         explained: 1.0,
     };
-    seen.chain(read).chain([late]).chain(without_share()).chain([unknown]).collect()
+    let before = Suspect { defect: Defect::RecordsLate {}, ..late.clone() };
+    seen.chain(read).chain([late, before]).chain(without_share()).chain([unknown]).collect()
 }
 
 fn in_tables() -> Vec<Defect> {
@@ -310,12 +311,18 @@ fn of_logic() -> Vec<Defect> {
         Defect::RoundingMissing {},
         Defect::ClampMissing { end: ClampEnd::High },
         Defect::CentreIgnored { instead: Instead::Usual },
+        Defect::CentreOff { halves: 1 },
         Defect::CentreBitStuck { bit: 3, value: 0 },
         Defect::DepthIgnored { instead: Instead::FrameBefore },
         Defect::RowsExchanged { source: RowSource::Output { frames: 0, rows: -1 }, mostly: false },
         Defect::RowShifted { columns: 1 },
         Defect::ColumnPairsExchanged {},
         Defect::RowsLost { rows: 2, first: 3 },
+        Defect::ContentWrong {
+            row: 3,
+            kind: ContentKind::Toggle,
+            made: MadeAs::Toggle { p: 2, high: false },
+        },
     ]
 }
 
@@ -353,6 +360,7 @@ fn without_share() -> impl Iterator<Item = Suspect> {
     [
         Defect::RowsChangedOnEntry { rows: 9, first: 3, frame: 2, flipped: Some(FLIPPED) },
         Defect::OnlyAtSpeed { row: Some(3), samples: 1, bits: vec![11] },
+        Defect::SignatureWrong { row: 3 },
         Defect::SeenAtSpeed { row: Some(3), samples: 1, bits: vec![11] },
     ]
     .into_iter()

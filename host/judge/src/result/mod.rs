@@ -48,7 +48,8 @@ pub use check::{Check, CheckName, Outcome};
 pub use counter::Counter;
 pub use coverage::CoverageReport;
 pub use defect::{
-    ClampEnd, Counting, Defect, FlippedBit, Instead, MadeWith, Memory, Reading, RowSource, StaleFrames,
+    ClampEnd, ContentKind, Counting, Defect, FlippedBit, Instead, MadeAs, MadeWith, Memory, Reading,
+    RowSource, StaleFrames,
 };
 pub use document::{Document, SCHEMA, Schema};
 pub use doubt::{BrokenOff, Doubt};
@@ -61,7 +62,7 @@ pub use late_rows::LateRows;
 pub use link::{LinkReport, Reconnection};
 pub use not_exercised::NotExercised;
 pub use problem::{Parameters, Problem};
-pub use rule::{Answer, NumberedRow, RepeatedRow, Rule};
+pub use rule::{Answer, NumberedRow, RepeatedRow, RowPart, Rule};
 pub(crate) use sha256::little_endian;
 pub use sha256::sha256;
 pub use soak::{SoakChart, SoakDifference, SoakInterval, SoakLength, SoakReport};

@@ -127,12 +127,68 @@ pub enum Answer {
         /// The frame's number.
         frame: u16,
     },
-    /// A row with wrong samples, latency, pauses or generation.
-    OtherRow {},
+    /// A row with wrong samples, latency, pauses or generation, or another CRC of what entered the core.
+    OtherRow {
+        /// What is wrong with it; empty in reports of versions that did not tell.
+        #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
+        differs: Box<[RowPart]>,
+    },
     /// An answer that came twice.
     Twice {},
     /// No answer, although later requests are answered.
     Nothing {},
+}
+
+/// Something that a board tells of a row, and that is not what it must be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "of", rename_all = "kebab-case")]
+pub enum RowPart {
+    /// The corrected samples.
+    Samples {
+        /// How many differ.
+        differing: usize,
+        /// The first of them, by its column.
+        column: usize,
+        /// What it is.
+        found: u16,
+        /// What it must be.
+        right: u16,
+    },
+    /// The latency of its first sample.
+    FirstLatency {
+        /// In pixel clocks.
+        found: u16,
+        /// The right one.
+        right: u16,
+    },
+    /// The latency of its last sample.
+    LastLatency {
+        /// In pixel clocks.
+        found: u16,
+        /// The right one.
+        right: u16,
+    },
+    /// The generation of its tables.
+    Generation {
+        /// What it names.
+        found: u8,
+        /// What was committed.
+        right: u8,
+    },
+    /// How long the enable was off while it was played.
+    Pauses {
+        /// In board clocks.
+        found: u16,
+        /// By the seed of the gaps.
+        right: u16,
+    },
+    /// The CRC of the samples that entered the core.
+    Entered {
+        /// What it is; none if it names none.
+        found: Option<u32>,
+        /// That of the samples that were sent.
+        right: u32,
+    },
 }
 
 /// Two `ROW_OUT` packets that have the same number, named by the second one.

@@ -36,8 +36,15 @@ enum Replay {
 
 impl Run<'_> {
     /// Why the run ends when the row at `place` of `frame`, which has `geometry`, did not come back, however often it was
-    /// asked for.
-    pub(super) fn row_lost(&mut self, frame: &ScheduledFrame, geometry: &Geometry, place: RowPlace) -> End {
+    /// asked for. It is the last of its frame, and all rows before it were `late`, if that is given: where the player stops,
+    /// a row that takes longer than claimed cannot come out as a whole.
+    pub(super) fn row_lost(
+        &mut self,
+        frame: &ScheduledFrame,
+        geometry: &Geometry,
+        place: RowPlace,
+        late: Option<Finding>,
+    ) -> End {
         let RowPlace { frame: number, row: lost, .. } = place;
         let unclear = |finding| End::error(CheckName::Frames, Cause::Station, finding);
         for _ in 0..REPLAYS {
@@ -45,7 +52,10 @@ impl Run<'_> {
                 Err(error) => return End::board(CheckName::Frames, &error),
                 Ok(Replay::Swallowed { row }) => {
                     let swallowed = Finding::RowSwallowed { row: lost, frame: number, again: row };
-                    return End::failed(CheckName::Frames, swallowed);
+                    let swallowed = End::failed(CheckName::Frames, swallowed);
+                    let Some(late) = late.filter(|_| row == lost) else { return swallowed };
+                    self.findings.note_end(&swallowed);
+                    return End::failed(CheckName::Latency, late);
                 }
                 Ok(Replay::Complete) => {
                     return unclear(Finding::RowLostOnce { row: lost, frame: number });

@@ -102,6 +102,11 @@ impl<'a> RowJudge<'a> {
         self.frames_done
     }
 
+    /// The finding that every row that came was late by as much, if so.
+    pub(super) fn all_late(&self) -> Option<Finding> {
+        self.seen.all_late()
+    }
+
     /// Whether something that came back is wrong.
     pub(super) fn has_found(&self) -> bool {
         !self.seen.is_right() || self.in_flight.iter().any(|frame| frame.comparison.differences > 0)

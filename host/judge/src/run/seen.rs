@@ -71,6 +71,14 @@ impl Seen {
         self.totals().samples
     }
 
+    /// The finding that every row took the same latency, longer than the one that the board claims, if so. The last row of
+    /// a frame then does not come out where the player stops after as many clocks as the claimed latency needs.
+    pub(super) fn all_late(&self) -> Option<Finding> {
+        let latency = self.latency.filter(|seen| seen.wrong_rows == seen.rows && seen.least == seen.most)?;
+        let wrong = self.wrong_latency.as_ref().filter(|_| latency.most > latency.claimed)?;
+        Some(wrong.finding(latency.wrong_rows, latency.rows))
+    }
+
     /// Notes the latency of a row that came back. The board claims `claimed` pixel clocks, and `limit` are allowed.
     pub(super) fn note_latency(&mut self, row: &ReturnedRow<'_>, claimed: u32, limit: u32) {
         let (first, last) = (u32::from(row.first_latency), u32::from(row.last_latency));

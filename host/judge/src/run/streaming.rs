@@ -41,7 +41,7 @@ impl Run<'_> {
     fn stream_to_the_end(&mut self, segment: &Segment, judge: &mut RowJudge<'_>) -> Result<(), End> {
         while let Err(error) = self.board.stream(judge) {
             self.findings.look.found |= judge.has_found();
-            let end = self.interrupted(segment, error);
+            let end = self.interrupted(segment, judge, error);
             self.return_to(segment, judge.frames_done(), end)?;
             judge.begin_again();
         }
@@ -77,7 +77,7 @@ impl Run<'_> {
     }
 
     /// A row did not come back, or the link broke.
-    fn interrupted(&mut self, segment: &Segment, error: BoardError) -> End {
+    fn interrupted(&mut self, segment: &Segment, judge: &RowJudge<'_>, error: BoardError) -> End {
         if let Some(misconduct) = self.misconduct(CheckName::Frames) {
             return misconduct;
         }
@@ -85,7 +85,8 @@ impl Run<'_> {
             BoardError::RowMissing { place, .. } => {
                 let frame = segment.frames.iter().find(|frame| frame.number == place.frame);
                 let of_board = || End::board(CheckName::Frames, &error);
-                frame.map_or_else(of_board, |frame| self.row_lost(frame, &segment.geometry, place))
+                let late = judge.all_late().filter(|_| place.last);
+                frame.map_or_else(of_board, |frame| self.row_lost(frame, &segment.geometry, place, late))
             }
             BoardError::WrongPlace { place } => {
                 let finding = Finding::RowMisplaced { row: place.row, frame: place.frame };

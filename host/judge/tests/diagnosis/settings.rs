@@ -33,6 +33,22 @@ fn diagnose(bench: &Bench, made: impl Fn(usize, &Geometry) -> Geometry) -> Suspe
 }
 
 #[test]
+fn a_centre_that_is_half_a_column_off_is_named() {
+    for bench in benches() {
+        for (halves, place) in [
+            (-1, "the optical centre, half a column too far to the left"),
+            (1, "the optical centre, half a column too far to the right"),
+        ] {
+            let off = diagnose(&bench, |_, own| {
+                let centre2 = own.centre2().checked_add_signed(halves).unwrap();
+                Geometry::new(192, 24, own.depth(), centre2).unwrap()
+            });
+            assert_eq!(off.place(), place);
+        }
+    }
+}
+
+#[test]
 fn a_centre_that_is_not_taken_is_named() {
     for bench in benches() {
         let middle = diagnose(&bench, |_, own| Geometry::centred(192, 24, own.depth()).unwrap());

@@ -11,14 +11,18 @@ use crate::result::{Defect, Instead};
 
 /// Bits of C.
 const CENTRE_BITS: u32 = 13;
+/// How far beside the centre that was set another is tried, in half columns.
+const OFF: [i32; 2] = [-1, 1];
 
-/// The optical centre and the depth, each with the values that the board may use instead, and the centre with a bit stuck.
+/// The optical centre and the depth, each with the values that the board may use instead, and the centre with a bit
+/// stuck or beside the one that was set.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let case = witnesses.case;
     [Instead::Usual, Instead::FirstFrame, Instead::FrameBefore]
         .into_iter()
         .flat_map(|instead| [centre(case, instead), depth(case, instead)])
         .chain(StuckLine::all(CENTRE_BITS).map(|line| centre_bit(case, line)))
+        .chain(OFF.map(|halves| centre_off(case, halves)))
         .collect()
 }
 
@@ -38,6 +42,13 @@ fn centre(case: Case<'_>, instead: Instead) -> Hypothesis<'_> {
             Instead::FrameBefore => made_for(&case, witness.frame.checked_sub(1)?)?.centre2(),
         };
         made_by(&case, witness, own.depth(), centre2)
+    })
+}
+
+fn centre_off(case: Case<'_>, halves: i32) -> Hypothesis<'_> {
+    Hypothesis::new(Defect::CentreOff { halves }, move |witness| {
+        let own = witness.geometry();
+        made_by(&case, witness, own.depth(), own.centre2().checked_add_signed(halves)?)
     })
 }
 

@@ -44,6 +44,58 @@ pub enum ClampEnd {
     Both,
 }
 
+/// A kind of content that a board makes (AT-SPEED.md, "Content").
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ContentKind {
+    /// A random level in each column.
+    Noise,
+    /// The least or the greatest level in each column, at random.
+    Swing,
+    /// Groups of columns that are alternately high and low.
+    Toggle,
+    /// Levels that are held for some columns.
+    Steps,
+}
+
+/// What a board makes a row of content as that must be made otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "of", rename_all = "kebab-case")]
+pub enum MadeAs {
+    /// Another kind with the same draws.
+    Kind {
+        /// Which.
+        kind: ContentKind,
+    },
+    /// A toggle in groups of 2^p columns.
+    Toggle {
+        /// p.
+        p: u32,
+        /// Whether the first group is high.
+        high: bool,
+    },
+    /// Steps whose edges are at one in so many draws.
+    Steps {
+        /// One in so many.
+        one_in: u32,
+    },
+    /// The content of the seed's low bits alone.
+    SeedOf {
+        /// How many.
+        bits: u32,
+    },
+    /// The content of another frame.
+    OtherFrame {
+        /// How many frames later.
+        frames: i16,
+    },
+    /// The content of another row.
+    OtherRow {
+        /// How many rows below.
+        rows: isize,
+    },
+}
+
 /// What the board uses instead of a setting that it ignores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

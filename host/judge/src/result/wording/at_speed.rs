@@ -243,6 +243,10 @@ fn shown(repetition: &Repetition) -> String {
         Repetition::NothingTrapped { frames } => {
             format!("; repeated, it was wrong again at try {frames}, but the board kept no row that differs")
         }
+        Repetition::SignedWrong { frames, row } => format!(
+            "; repeated, it was wrong again at try {frames}, and the board kept row {row}, whose samples are right and whose \
+             signature is not their CRC"
+        ),
         Repetition::Impossible {} => "; it could not be repeated".to_owned(),
     }
 }

@@ -96,6 +96,21 @@ pub(super) fn centre_ignored(instead: Instead) -> Words {
     }
 }
 
+pub(super) fn centre_off(halves: i32) -> Words {
+    let side = if halves < 0 { "left" } else { "right" };
+    let distance = match halves.unsigned_abs() {
+        1 => "half a column".to_owned(),
+        more => format!("{:.1} columns", f64::from(more) / 2.0),
+    };
+    Words {
+        part: "setting",
+        place: format!("the optical centre, {distance} too far to the {side}"),
+        defect: format!("C {halves:+} taken instead of C, which is twice the centre's column"),
+        designer: "Check where C enters the source columns: it is twice a column, and may be odd.".to_owned(),
+        technician: LOGIC,
+    }
+}
+
 pub(super) fn depth_ignored(instead: Instead) -> Words {
     Words {
         part: "setting",

@@ -2,6 +2,7 @@
 
 mod at_speed;
 mod bench;
+mod content;
 mod evidence;
 mod findings;
 mod latency;
@@ -121,6 +122,7 @@ fn elsewhere(defect: &Defect) -> Words {
         Defect::RoundingMissing {} => logic::rounding(),
         Defect::ClampMissing { end } => logic::clamp(*end),
         Defect::CentreIgnored { instead } => logic::centre_ignored(*instead),
+        Defect::CentreOff { halves } => logic::centre_off(*halves),
         Defect::CentreBitStuck { bit, value } => lines::centre_bit(*bit, *value),
         Defect::DepthIgnored { instead } => logic::depth_ignored(*instead),
         Defect::ColumnPairsExchanged {} => logic::pairs_exchanged(),
@@ -128,6 +130,9 @@ fn elsewhere(defect: &Defect) -> Words {
             at_speed::changed_on_entry((*rows, *first, *frame), *flipped)
         }
         Defect::TablesChangeLate { rows } => at_speed::tables_late(*rows),
+        Defect::RecordsLate {} => content::records_late(),
+        Defect::ContentWrong { row, kind, made } => content::wrong(*row, *kind, *made),
+        Defect::SignatureWrong { row } => content::signature_wrong(*row),
         Defect::OnlyAtSpeed { row, samples, bits } => at_speed::only_at_speed(*row, *samples, bits),
         Defect::SeenAtSpeed { row, samples, bits } => at_speed::seen_at_speed(*row, *samples, bits),
         other => places::words(other),

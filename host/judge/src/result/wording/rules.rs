@@ -2,7 +2,7 @@
 
 use halfrow_protocol::message::RefusalCode;
 
-use crate::result::{Answer, Finding, Rule};
+use crate::result::{Answer, Finding, RowPart, Rule};
 use crate::words::count;
 
 /// What to do about any broken rule.
@@ -44,7 +44,7 @@ fn must(right: &Answer, request: &str) -> String {
             format!("answer {request} with a burst {state} and {}", count(*records, "record"))
         }
         Answer::Row { row, frame } => format!("return row {row} of frame {frame} as it is made"),
-        Answer::OtherRow {} => format!("answer {request} with another row"),
+        Answer::OtherRow { .. } => format!("answer {request} with another row"),
         Answer::Twice {} => format!("answer {request} twice"),
         Answer::Nothing {} => format!("leave {request} unanswered"),
     }
@@ -63,9 +63,40 @@ fn did(found: &Answer) -> String {
             format!("answered with one {state} and {}", count(*records, "record"))
         }
         Answer::Row { row, frame } => format!("returned row {row} of frame {frame}"),
-        Answer::OtherRow {} => "returned another".to_owned(),
+        Answer::OtherRow { differs } => other_row(differs),
         Answer::Twice {} => "did so twice".to_owned(),
         Answer::Nothing {} => "did not".to_owned(),
+    }
+}
+
+/// `returned it with 3 wrong samples (the first, in column 5, is 17 instead of 16) and generation 3 instead of 2`
+fn other_row(differs: &[RowPart]) -> String {
+    let told: Vec<_> = differs.iter().map(|part| row_part(*part)).collect();
+    match told.split_last() {
+        None => "returned another".to_owned(),
+        Some((only, [])) => format!("returned it with {only}"),
+        Some((last, others)) => format!("returned it with {} and {last}", others.join(", ")),
+    }
+}
+
+fn row_part(part: RowPart) -> String {
+    match part {
+        RowPart::Samples { differing, column, found, right } => format!(
+            "{} (the first, in column {column}, is {found} instead of {right})",
+            count(differing, "wrong sample")
+        ),
+        RowPart::FirstLatency { found, right } => {
+            format!("a latency of {found} pixel clocks instead of {right} for its first sample")
+        }
+        RowPart::LastLatency { found, right } => {
+            format!("a latency of {found} pixel clocks instead of {right} for its last sample")
+        }
+        RowPart::Generation { found, right } => format!("generation {found} instead of {right}"),
+        RowPart::Pauses { found, right } => format!("pauses of {found} board clocks instead of {right}"),
+        RowPart::Entered { found: Some(found), right } => {
+            format!("{found:08x} instead of {right:08x} as the CRC of the samples that entered the core")
+        }
+        RowPart::Entered { found: None, .. } => "no CRC of the samples that entered the core".to_owned(),
     }
 }
 

@@ -5,10 +5,12 @@
 
 mod burst;
 mod clock;
+mod content_wrong;
 mod corners;
 mod grids;
 mod predicted;
 mod price;
+mod records_late;
 mod repeated;
 mod soak;
 mod streamed;

@@ -7,7 +7,9 @@ use halfrow_model::{Content, Frame, Phase, row_signature};
 use halfrow_protocol::message::BurstMode;
 
 use super::burst::BurstPlan;
+use super::content_wrong::content_wrong;
 use super::predicted::signer;
+use super::records_late::records_late;
 use super::tables_late::tables_late;
 use super::watched::{EndsEarly, Watched};
 use super::{FEW, USUAL};
@@ -33,6 +35,14 @@ const TELLING: usize = 4;
 struct Again {
     repetition: Repetition,
     suspects: Vec<Suspect>,
+}
+
+/// What a row shows that the trap kept.
+enum Kept {
+    /// Its samples differ.
+    Differs(Box<Seen>),
+    /// Its samples are right, and their CRC is not the signature that the board says.
+    SignedWrong,
 }
 
 /// Rows, and the generation that made them.
@@ -74,7 +84,9 @@ impl Run<'_> {
     ) -> End {
         let Watched { frames, wrong, .. } = *watched;
         let first = watched.wrong_frames.first().map_or(0, |frame| frame.n);
-        let again = match tables_late(plan, tables, watched) {
+        let by_signatures =
+            || tables_late(plan, tables, watched).or_else(|| records_late(plan, tables, watched));
+        let again = match by_signatures() {
             _ if plan.mode == BurstMode::Trapped => self.told_of_trap(plan, tables, watched),
             Some(suspect) => Ok(Again { repetition: Repetition::NotNeeded {}, suspects: vec![suspect] }),
             // The signatures came under the board's own CRC, so the verdict stands, whatever making the frame again shows.
@@ -133,9 +145,11 @@ impl Run<'_> {
         let frames = first.n + 1;
         let content = plan.content(0);
         let trapped = self.board.trap().during(CheckName::AtSpeed)?;
-        let told = trapped.and_then(|trapped| Some((trapped.row, self.seen(generation, content, &trapped)?)));
-        let Some((row, seen)) = told else {
-            return Ok(Repetition::NothingTrapped { frames }.into());
+        let told = trapped.and_then(|trapped| Some((trapped.row, self.kept(generation, content, &trapped)?)));
+        let (row, seen) = match told {
+            None => return Ok(Repetition::NothingTrapped { frames }.into()),
+            Some((row, Kept::SignedWrong)) => return Ok(signed_wrong(frames, row)),
+            Some((row, Kept::Differs(seen))) => (row, seen),
         };
         let kept = kept_row(&seen);
         // A soak goes on, and spends no time on rows that a link must carry.
@@ -168,19 +182,25 @@ impl Run<'_> {
         self.unless_misconduct(CheckName::AtSpeed, streamed)
     }
 
-    /// What a trapped row shows of a frame that `generation` made of `content`; none if the row is as it should be.
+    /// What a trapped row shows of a frame that `generation` made of `content`; none if the row is as it should be, or if
+    /// neither its samples nor its signature are right.
     ///
     /// It is the first row of its burst that differs, so the rows above it were right: the diagnosis gets the frame up to
     /// this row.
-    fn seen(&self, generation: &Generation, content: Content, trapped: &Trapped) -> Option<Seen> {
+    fn kept(&self, generation: &Generation, content: Content, trapped: &Trapped) -> Option<Kept> {
         let Trapped { row, signature, samples } = trapped;
         let own = generation.tables.geometry();
         let is_row = *row < own.height() && samples.len() == own.width();
-        if !is_row || row_signature(samples) != *signature {
+        if !is_row {
             return None;
         }
         let above = correct_up_to(generation, content, row + 1, self.plan.phase)?.ending_in(samples)?;
-        (above.evidence.found != above.evidence.expected).then_some(above)
+        let is_right = above.evidence.found == above.evidence.expected;
+        match (is_right, row_signature(samples) == *signature) {
+            (false, true) => Some(Kept::Differs(Box::new(above))),
+            (true, false) => Some(Kept::SignedWrong),
+            (true, true) | (false, false) => None,
+        }
     }
 
     /// What the first rows of the frame of `content` show, which was streamed through `generation` and came `back`.
@@ -196,6 +216,9 @@ impl Run<'_> {
         let Evidence { expected, found, .. } = &seen.evidence;
         let row = expected.height() - 1;
         let kept = (row, expected.row(row), found.row(row));
+        if let Some(made) = content_wrong(seen, content, self.plan.phase) {
+            return vec![made];
+        }
         let (differing, _) = changed(kept);
         let mut suspects = self.diagnose_seen(seen, "at speed", content.frame);
         // If the same frame came back right when streamed, none of the lines that it went through is wrong.
@@ -240,6 +263,13 @@ impl Run<'_> {
         }
         suspects
     }
+}
+
+/// A frame that was wrong again at try `frames`, of which the trap kept `row` with right samples and another signature.
+fn signed_wrong(frames: u32, row: usize) -> Again {
+    let suspect =
+        Suspect { defect: Defect::SignatureWrong { row }, account: Account::Nothing, explained: 0.0 };
+    Again { repetition: Repetition::SignedWrong { frames, row }, suspects: vec![suspect] }
 }
 
 /// What differs in the last row of `seen`, which is the one that the trap kept.

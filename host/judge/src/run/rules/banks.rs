@@ -209,7 +209,7 @@ impl Rules<'_, '_> {
         kept.asked += 1;
         let is_counted = came.repeats == repeats || !self.is_calm(kept.retries)?;
         if !is_counted || !kept.right.is_right(&came.row(&place)) {
-            return Err(other_row(Rule::Banks, place.row.into(), place.frame));
+            return Err(other_row(Rule::Banks, place.row.into(), place.frame, Vec::new()));
         }
         self.right += 1;
         Ok(())

@@ -9,6 +9,7 @@ use halfrow_model::{BitDepth, Frame, row_signature};
 use super::small::Small;
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::reference::correct;
+use crate::result::RowPart;
 use crate::run::Generation;
 use crate::run::at_speed::Seen;
 use crate::run::pauses::pauses;
@@ -43,6 +44,8 @@ pub(super) struct WrongRow {
     pub(super) row: usize,
     /// Its frame.
     pub(super) frame: u16,
+    /// What is wrong with it.
+    pub(super) differs: Vec<RowPart>,
     /// What the frame up to it shows, if only its samples are wrong.
     pub(super) seen: Option<Seen>,
 }
@@ -125,9 +128,10 @@ impl Compared {
     fn wrong(&self, row: &ReturnedRow<'_>) -> WrongRow {
         let mut others = self.right.iter().flat_map(|right| right.frame.rows());
         let is_other = others.any(|other| other == row.samples);
-        let right = self.right.iter().find(|right| right.number == row.frame && right.is_told_of(row));
-        let right = right.filter(|_| !is_other);
-        WrongRow { row: row.row, frame: row.frame, seen: right.and_then(|right| right.seen(row)) }
+        let right = self.right.iter().find(|right| right.number == row.frame);
+        let differs = right.map(|right| right.differing(row)).unwrap_or_default();
+        let right = right.filter(|right| right.is_told_of(row) && !is_other);
+        WrongRow { row: row.row, frame: row.frame, differs, seen: right.and_then(|right| right.seen(row)) }
     }
 }
 
@@ -138,6 +142,36 @@ impl Right {
             && self.generation == row.generation
             && self.pauses.get(row.row) == Some(&row.pauses)
             && self.entered[row.row].is_none_or(|entered| row.entered == Some(entered))
+    }
+
+    /// What is wrong with a row that is not right.
+    fn differing(&self, row: &ReturnedRow<'_>) -> Vec<RowPart> {
+        let expected = self.frame.row(row.row);
+        let pairs = expected.iter().zip(row.samples).enumerate();
+        let mut wrong = pairs.filter(|(_, (right, found))| right != found);
+        let differing = wrong.clone().count();
+        let samples = wrong.next().map(|(column, (&right, &found))| RowPart::Samples {
+            differing,
+            column,
+            found,
+            right,
+        });
+        let (first, last) = (row.first_latency, row.last_latency);
+        let (latency, generation) = (self.latency, self.generation);
+        let pauses = self.pauses.get(row.row).filter(|&&right| right != row.pauses);
+        let entered = self.entered[row.row].filter(|&right| row.entered != Some(right));
+        [
+            samples,
+            (first != latency).then_some(RowPart::FirstLatency { found: first, right: latency }),
+            (last != latency).then_some(RowPart::LastLatency { found: last, right: latency }),
+            (row.generation != generation)
+                .then_some(RowPart::Generation { found: row.generation, right: generation }),
+            pauses.map(|&right| RowPart::Pauses { found: row.pauses, right }),
+            entered.map(|right| RowPart::Entered { found: row.entered, right }),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
     }
 
     /// The frame up to `row`, whose earlier rows were right.

@@ -38,7 +38,7 @@ use super::steps::Run;
 use crate::board::{BoardError, Capabilities, Given, RowTiming, Said, Status};
 use crate::compare::Comparison;
 use crate::progress::Step;
-use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Outcome, Rule};
+use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Outcome, RowPart, Rule};
 use crate::verdict::Cause;
 use compared::{Compared, WrongRow};
 pub(super) use price::price;
@@ -243,7 +243,7 @@ impl<'a, 'run> Rules<'a, 'run> {
     /// Ends with the first wrong row. If only its samples are wrong and a known defect explains them, the finding is that
     /// samples differ, not that a rule is broken.
     fn judge_rows(&self, rule: Rule, compared: &Compared) -> Result<(), End> {
-        let Some(WrongRow { row, frame, seen }) = &compared.wrong else { return Ok(()) };
+        let Some(WrongRow { row, frame, seen, differs }) = &compared.wrong else { return Ok(()) };
         if let Some(seen) = seen {
             let suspects = self.run.diagnose_seen(seen, "rules", *frame);
             if let Some(first) = suspects.first().filter(|first| first.is_known()) {
@@ -259,7 +259,7 @@ impl<'a, 'run> Rules<'a, 'run> {
                 return Err(End::Failed { check: CheckName::Rules, finding, suspects });
             }
         }
-        Err(other_row(rule, *row, *frame))
+        Err(other_row(rule, *row, *frame, differs.clone()))
     }
 
     fn stream(&mut self, compared: &mut Compared) -> Result<(), BoardError> {
@@ -304,8 +304,8 @@ fn rule_broken(rule: Rule, kind: Kind, right: Answer, found: Answer) -> Finding 
     Finding::RuleBroken { rule, request: kind.to_string(), right, found }
 }
 
-fn other_row(rule: Rule, row: usize, frame: u16) -> End {
-    broken(rule, Kind::RowIn, Answer::Row { row, frame }, Answer::OtherRow {})
+fn other_row(rule: Rule, row: usize, frame: u16, differs: Vec<RowPart>) -> End {
+    broken(rule, Kind::RowIn, Answer::Row { row, frame }, Answer::OtherRow { differs: differs.into() })
 }
 
 fn payload(request: &Request<'_>) -> Vec<u8> {

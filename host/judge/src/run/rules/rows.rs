@@ -268,7 +268,7 @@ impl Rules<'_, '_> {
             let beside = (came.clocks, came.entered.filter(|_| self.small.names_entered));
             let is_same = *at_first.get_or_insert(beside) == beside;
             if !is_right || !is_counted || !is_same || came.generation != GENERATION {
-                return Err(other_row(Rule::Again, 0, FRAME));
+                return Err(other_row(Rule::Again, 0, FRAME, Vec::new()));
             }
         }
         // Nothing is inside now, but both rows are still kept.
