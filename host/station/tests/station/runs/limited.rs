@@ -33,6 +33,8 @@ fn a_lane_has_one_thread_to_judge_with_and_so_much_memory() {
     let limit = limits.lines().find(|line| line.starts_with("Max address space")).unwrap();
     assert_eq!(limit.split_whitespace().nth(3), Some("1048576000"), "{limit}");
     let environment = fs::read(format!("/proc/{lane}/environ")).unwrap();
+    let files = limits.lines().find(|line| line.starts_with("Max file size")).unwrap();
+    assert_eq!(files.split_whitespace().nth(3), Some("67108864"), "{files}");
     assert!(environment.split(|&byte| byte == 0).any(|one| one == b"RAYON_NUM_THREADS=1"));
     running.kill().unwrap();
     running.wait().unwrap();
