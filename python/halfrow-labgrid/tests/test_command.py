@@ -6,6 +6,8 @@ import sys
 
 import pytest
 from conftest import LABGRID
+from halfrow_labgrid import NotJudged
+from halfrow_labgrid.report import info
 
 # The program, with its coordinator process stopped when it calls a given method after it has connected, and continued when it
 # calls another one.
@@ -111,3 +113,9 @@ def test_a_signal_while_a_place_is_acquired_releases_it(lab, method, number):
     assert (done.returncode, done.stdout) == (128 + number, ""), done.stderr
     assert "Traceback" not in done.stderr, done.stderr
     assert lab.holder("cam-good") is None
+
+
+@pytest.mark.parametrize("said", ["", "no JSON", "[]"])
+def test_what_does_not_read_as_a_board_is_none(said):
+    with pytest.raises(NotJudged):
+        info(said)

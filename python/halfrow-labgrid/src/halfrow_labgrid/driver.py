@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import re
 import subprocess
 import time
@@ -15,7 +14,7 @@ from labgrid.resource import SerialPort
 from labgrid.step import step
 from labgrid.util.proxy import proxymanager
 
-from .report import Report, error, read, wrong_call
+from .report import Report, error, info, read, wrong_call
 
 # How long halfrow itself may take beyond the time of a run, in seconds.
 GRACE = 30.0
@@ -88,8 +87,7 @@ class HalfrowDriver(Driver):
         while True:
             code, said = self._run(["info"], GRACE)
             if code == 0:
-                told: Dict[str, Any] = json.loads(said)
-                return told
+                return info(said)
             if code == CALL_WRONG or time.monotonic() - begun > patience:
                 read(code, said)
             time.sleep(LOOK)

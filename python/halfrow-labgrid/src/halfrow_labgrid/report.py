@@ -91,3 +91,11 @@ def of(document: Dict[str, Any]) -> Report:
     suspects = tuple(suspect["place"] for suspect in document.get("suspects") or ())
     verdict = document["verdict"] or "ERROR"
     return Report(verdict, document["exit_code"], told.get("code") or "", headline, remedy, suspects, document)
+
+
+def info(said: str) -> Dict[str, Any]:
+    """What `halfrow info` printed about a board. Raises NotJudged if that does not read as such."""
+    try:
+        return dict(json.loads(said).items())
+    except (AttributeError, ValueError) as unreadable:
+        raise error("halfrow ended with 0 and printed nothing about the board", "Run the same command by hand.") from unreadable
