@@ -272,7 +272,10 @@ pub enum Saying {
     LaneStuck { why: Said },
     #[error("the lane did not end, and could not even be killed")]
     LaneEndless,
-    #[error("a file that the plan names was changed while the run began; test the board again")]
+    #[error(
+        "a file that the plan names was changed since the plan was read; put it back, or start the station again, and then \
+         test the board again"
+    )]
     PlanChanged,
     #[error(
         "the file {file}, which the plan names, has changed since the station started; put it back, or give the plan a \

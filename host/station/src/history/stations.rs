@@ -47,3 +47,12 @@ pub fn stations(of: &Snapshot) -> Result<Vec<Station>, StoreError> {
         })
     })
 }
+
+/// The plans, as [`Station::plans`] has them, of which runs were judged by several of one version: stations judge differently
+/// under one name.
+///
+/// # Errors
+/// [`StoreError`] when the plant cannot be read.
+pub fn ambiguous(of: &Snapshot) -> Result<Vec<String>, StoreError> {
+    of.rows("to tell its plans", statements::PLANS_OF_ONE_VERSION, &[], |row| row.get(0))
+}

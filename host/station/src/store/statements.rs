@@ -113,6 +113,7 @@ statements! {
     pub(super) SEEN = "plant/seen.sql";
     pub(super) FORGET_STATION = "plant/forget-station.sql";
     pub(crate) STATIONS = "plant/stations.sql";
+    pub(crate) PLANS_OF_ONE_VERSION = "plant/plans-of-one-version.sql";
     pub(super) LOCK_UNIT = "plant/lock-unit.sql";
     pub(super) ADD_RECORD = "plant/add-record.sql";
     pub(super) RECORD = "plant/record.sql";

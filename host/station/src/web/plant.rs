@@ -11,7 +11,7 @@ use super::state::App;
 use super::trouble::Trouble;
 use super::visit::Visit;
 use crate::history::mismatch::mismatches;
-use crate::history::stations::{Station, stations};
+use crate::history::stations::{Station, ambiguous, stations};
 use crate::published::Statement;
 use crate::store::publications;
 
@@ -20,11 +20,12 @@ pub(super) fn routes() -> Vec<Route> {
 }
 
 async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
-    let (found, differing, plans) =
-        app.look(&visit, |now| Ok((stations(now)?, mismatches(now)?, publications(now)?))).await?;
+    let (found, ambiguous, differing, plans) = app
+        .look(&visit, |now| Ok((stations(now)?, ambiguous(now)?, mismatches(now)?, publications(now)?)))
+        .await?;
     let content = html! {
         h1 { (visit.say("plant.stations")) }
-        @if found.is_empty() { p.nothing { (visit.say("plant.none")) } } @else { (table(&visit, &found)) }
+        @if found.is_empty() { p.nothing { (visit.say("plant.none")) } } @else { (table(&visit, &found, &ambiguous)) }
         (mismatch::table(&visit, &differing))
         @if !plans.is_empty() {
             h2 { (visit.say("plant.published")) }
@@ -35,7 +36,7 @@ async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble>
     Ok(Page { here: Here::Stations, title, head: show::head(), content }.answer(&visit))
 }
 
-fn table(visit: &Visit, stations: &[Station]) -> Markup {
+fn table(visit: &Visit, stations: &[Station], ambiguous: &[String]) -> Markup {
     html! {
         div.wide tabindex="0" { table.runs {
             thead { tr {
@@ -43,7 +44,7 @@ fn table(visit: &Visit, stations: &[Station]) -> Markup {
                 th { (visit.say("history.last")) } th.number { (visit.say("outbox.entries")) }
                 th { (visit.say("history.plan")) } th { (visit.say("plant.program")) }
             } }
-            tbody { @for station in stations { (row(visit, station)) } }
+            tbody { @for station in stations { (row(visit, station, ambiguous)) } }
         } }
     }
 }
@@ -69,7 +70,7 @@ fn published(visit: &Visit, plans: &[(Statement, i64)]) -> Markup {
     }
 }
 
-fn row(visit: &Visit, station: &Station) -> Markup {
+fn row(visit: &Visit, station: &Station, ambiguous: &[String]) -> Markup {
     html! {
         tr {
             td.name { b { (show::said(&station.name)) } }
@@ -82,7 +83,12 @@ fn row(visit: &Visit, station: &Station) -> Markup {
                 (station.unsent)
                 @if station.dead > 0 { " " span.few { (visit.say("outbox.waits")) " " (station.dead) } }
             }
-            td { @for plan in &station.plans { div { (show::said(plan)) } } }
+            td { @for plan in &station.plans {
+                div {
+                    (show::said(plan))
+                    @if ambiguous.contains(plan) { " " span.few { (visit.say("plant.ambiguous")) } }
+                }
+            } }
             td.soft { (show::said(&station.program)) }
         }
     }
