@@ -61,6 +61,8 @@ pub(super) struct Conversation {
     pub(super) sequence: u16,
     pub(super) session: Session,
     pub(super) tally: Tally,
+    /// What came damaged before the session.
+    before: Heard,
     pub(super) limit: RetryLimit,
     /// The time spent waiting for the link, by which deadlines are measured. While the host is kept from running, or is busy
     /// elsewhere, it cannot tell that a board is late.
@@ -86,6 +88,7 @@ impl Conversation {
             sequence: options.sequence,
             session: Session::default(),
             tally: Tally::default(),
+            before: Heard::default(),
             limit: options.retry_limit,
             waited: Duration::ZERO,
             counted: Counted::default(),
@@ -127,7 +130,8 @@ impl Conversation {
     /// What came so far, and what may have kept more from coming.
     fn heard(&self) -> Heard {
         let Tally { bytes_in: bytes, packets_in: packets, damaged_in: damaged, .. } = self.tally;
-        Heard { bytes, packets, damaged, waits_for_cts: self.link.waits_for_cts() }
+        let waits_for_cts = self.link.waits_for_cts();
+        Heard { bytes, packets, damaged, waits_for_cts, ..self.before }
     }
 
     pub(super) fn is_exclusive(&self) -> bool {
@@ -277,7 +281,11 @@ impl Conversation {
                 }
                 Err(damage) => {
                     tracing::debug!("a damaged packet: {damage}");
-                    self.tally.damaged_in += u64::from(self.session.number != 0);
+                    if self.session.number == 0 {
+                        self.before.note(damage);
+                    } else {
+                        self.tally.damaged_in += 1;
+                    }
                 }
             }
         }

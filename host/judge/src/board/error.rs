@@ -9,6 +9,7 @@ use halfrow_protocol::message::{Malformed, Refusal, RefusalCode, RowPlace};
 
 use super::Tally;
 use super::conversation::Conversation;
+use super::heard::{Heard, suspect};
 use crate::link::LinkError;
 use crate::verdict::{Cause, StoppedBy};
 use crate::words::{count, span};
@@ -96,6 +97,16 @@ pub enum BoardError {
          or take the board over"
     )]
     Held {
+        /// What is left of the ten seconds.
+        seconds: f64,
+    },
+    /// Another host is using the board, and the board was told to leave it.
+    #[error(
+        "another host holds the board, and the board was told to let this one take it over and refuses, which protocol/WIRE.md, \
+         section 2.3, forbids; wait until the other is done (silent for 10 s, of which {seconds:.1} s are left), or switch the \
+         board off and on"
+    )]
+    NotGivenUp {
         /// What is left of the ten seconds.
         seconds: f64,
     },
@@ -221,48 +232,6 @@ impl From<OpenFailed> for BoardError {
     }
 }
 
-/// What came over a link since it was opened.
-#[derive(Clone, Copy, Debug)]
-pub struct Heard {
-    /// Bytes, whatever they were.
-    pub bytes: u64,
-    /// Whole packets.
-    pub packets: u64,
-    /// Packets that came damaged since the session began.
-    pub damaged: u64,
-    /// Whether nothing is sent unless the board's end drives CTS.
-    pub waits_for_cts: bool,
-}
-
-/// What silence suggests: the board if nothing was ever heard from it, otherwise the connection to it.
-fn suspect(heard: Heard) -> String {
-    match heard {
-        Heard { bytes: 0, waits_for_cts: true, .. } => {
-            "; check that the board is powered and loaded, that the target's rate is the board's, and that the board drives CTS \
-             (a ULX3S does not, and needs flow=none)"
-                .into()
-        }
-        Heard { bytes: 0, .. } => {
-            "; check that the board is powered and loaded, and that the target's rate is the board's".into()
-        }
-        Heard { packets: 0, damaged: 0, bytes, .. } => format!(
-            ", though {} came, with no packet among them; check that the target's rate is the board's, and that the \
-             device at this port is a halfrow board",
-            count(bytes, "byte")
-        ),
-        Heard { damaged: 0, .. } => {
-            ", though the board had answered before; check the cable, its connectors and the rate, and that \
-                   the board still has power"
-                .into()
-        }
-        Heard { damaged, .. } => format!(
-            ", and {} came damaged: the link loses what is sent over it; check the cable, its \
-             connectors and the rate",
-            count(damaged, "packet")
-        ),
-    }
-}
-
 /// Whether a request is refused only for its content and the board's abilities, whatever the board did before. Then the board
 /// does not do what its capabilities say, since this program asks for nothing else.
 fn is_own(refusal: &Refusal) -> bool {
@@ -352,6 +321,7 @@ impl BoardError {
         match self {
             Self::TurnedAway(by) => matches!(**by, LinkError::InUse { .. }),
             Self::Held { .. }
+            | Self::NotGivenUp { .. }
             | Self::NotABoard
             | Self::Version { .. }
             | Self::Echoed
@@ -366,7 +336,7 @@ impl BoardError {
     #[must_use]
     pub fn cause(&self) -> Cause {
         match self {
-            Self::Held { .. } => Cause::Busy,
+            Self::Held { .. } | Self::NotGivenUp { .. } => Cause::Busy,
             Self::TurnedAway(by) if matches!(**by, LinkError::InUse { .. }) => Cause::Busy,
             Self::NotABoard | Self::Version { .. } | Self::Impossible { .. } | Self::Malformed { .. } => {
                 Cause::Refused

@@ -10,6 +10,7 @@ mod counters;
 pub mod deadlines;
 mod draws;
 mod error;
+mod heard;
 mod lateness;
 mod legal;
 mod rows;
@@ -38,7 +39,8 @@ pub(crate) use bursts::{Fetched, Trapped};
 pub(crate) use conduct::Misconduct;
 pub(crate) use counted::Miscount;
 pub use draws::Draws;
-pub use error::{BoardError, Heard, OpenFailed};
+pub use error::{BoardError, OpenFailed};
+pub use heard::Heard;
 pub(crate) use legal::{LEAST_ENTRIES, MAX_LATENCY, grids, possible};
 pub(crate) use rows::{Given, Unjudged, Unreturned};
 pub use rows::{NumberedFrame, ReturnedRow, RowTraffic};
@@ -364,7 +366,7 @@ fn greet(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welco
         Reply::Hello(welcome) => Some(welcome),
         _ => None,
     });
-    match welcome.map_err(not_greeted)? {
+    match welcome.map_err(|error| not_greeted(error, options.take_over))? {
         welcome @ Welcome { version: VERSION, session: 1.., .. } => Ok(welcome),
         Welcome { version: VERSION, .. } => Err(BoardError::NotABoard),
         Welcome { version, .. } => Err(BoardError::Version { board: version.into(), ours: VERSION }),
@@ -381,11 +383,12 @@ fn is_for(packet: &Packet<'_>, nonce: u32) -> bool {
     }
 }
 
-/// What an error means that came in place of the reply to HELLO.
-fn not_greeted(error: BoardError) -> BoardError {
+/// What an error means that came in place of the reply to a HELLO that `takes_over`.
+fn not_greeted(error: BoardError, takes_over: bool) -> BoardError {
     match error {
         BoardError::Refused { refusal, .. } if refusal.code == RefusalCode::Held => {
-            BoardError::Held { seconds: f64::from(refusal.detail) / 10.0 }
+            let seconds = f64::from(refusal.detail) / 10.0;
+            if takes_over { BoardError::NotGivenUp { seconds } } else { BoardError::Held { seconds } }
         }
         BoardError::Refused { refusal, .. } if refusal.code == RefusalCode::Version => {
             BoardError::Version { board: refusal.detail, ours: VERSION }

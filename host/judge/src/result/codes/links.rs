@@ -27,6 +27,7 @@ codes! {
         Console [bytes] => "console-answers",
         Version [board, ours] => "wire-version-unknown",
         Held [seconds] => "board-held",
+        NotGivenUp [seconds] => "take-over-refused",
         SessionLost => "session-lost",
         Refused [kind, refusal] => "request-refused",
         Malformed [kind] => "answer-malformed",

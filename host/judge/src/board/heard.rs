@@ -1,0 +1,76 @@
+//! What came over a link on which a board does not answer, and what that suggests.
+
+use halfrow_protocol::Damage;
+
+use crate::words::count;
+
+/// What came over a link since it was opened.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Heard {
+    /// Bytes, whatever they were.
+    pub bytes: u64,
+    /// Whole packets.
+    pub packets: u64,
+    /// Packets that came damaged since the session began.
+    pub damaged: u64,
+    /// Before the session, what was stuffed like a packet and had a wrong CRC.
+    pub wrong_crc: u32,
+    /// Before the session, what had a right CRC and another length than its header says.
+    pub wrong_length: u32,
+    /// Before the session, what was no packet at all.
+    pub unframed: u32,
+    /// Whether nothing is sent unless the board's end drives CTS.
+    pub waits_for_cts: bool,
+}
+
+impl Heard {
+    /// Counts what came `damage`d before the session.
+    pub(super) fn note(&mut self, damage: Damage) {
+        let count = match damage {
+            Damage::Crc => &mut self.wrong_crc,
+            Damage::Length => &mut self.wrong_length,
+            Damage::Stuffing | Damage::Size | Damage::Version(_) => &mut self.unframed,
+        };
+        *count = count.saturating_add(1);
+    }
+}
+
+/// What silence suggests: the board if nothing was ever heard from it, otherwise the connection to it.
+pub(super) fn suspect(heard: Heard) -> String {
+    match heard {
+        Heard { bytes: 0, waits_for_cts: true, .. } => {
+            "; check that the board is powered and loaded, that the target's rate is the board's, and that the board drives CTS \
+             (a ULX3S does not, and needs flow=none)"
+                .into()
+        }
+        Heard { bytes: 0, .. } => {
+            "; check that the board is powered and loaded, and that the target's rate is the board's".into()
+        }
+        Heard { packets: 0, damaged: 0, wrong_length: 1.., bytes, .. } => format!(
+            ", though {} came, with packets among them whose CRC is right and whose length is not what their header says: the \
+             length counts the payload alone; check the board's packets against protocol/WIRE.md, section 1",
+            count(bytes, "byte")
+        ),
+        Heard { packets: 0, damaged: 0, bytes, wrong_crc, unframed, .. } if wrong_crc > 1 + unframed => format!(
+            ", though {} came, {wrong_crc} times stuffed like a packet, but with another CRC-32; check that the target's rate \
+             is the board's, and over which bytes and in which order the board computes and sends the CRC (protocol/WIRE.md, \
+             section 1)",
+            count(bytes, "byte")
+        ),
+        Heard { packets: 0, damaged: 0, bytes, .. } => format!(
+            ", though {} came, with no packet among them; check that the target's rate is the board's, and that the \
+             device at this port is a halfrow board",
+            count(bytes, "byte")
+        ),
+        Heard { damaged: 0, .. } => {
+            ", though the board had answered before; check the cable, its connectors and the rate, and that \
+                   the board still has power"
+                .into()
+        }
+        Heard { damaged, .. } => format!(
+            ", and {} came damaged: the link loses what is sent over it; check the cable, its \
+             connectors and the rate",
+            count(damaged, "packet")
+        ),
+    }
+}
