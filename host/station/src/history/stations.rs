@@ -53,6 +53,6 @@ pub fn stations(of: &Snapshot) -> Result<Vec<Station>, StoreError> {
 ///
 /// # Errors
 /// [`StoreError`] when the plant cannot be read.
-pub fn ambiguous(of: &Snapshot) -> Result<Vec<String>, StoreError> {
+pub(crate) fn ambiguous(of: &Snapshot) -> Result<Vec<String>, StoreError> {
     of.rows("to tell its plans", statements::PLANS_OF_ONE_VERSION, &[], |row| row.get(0))
 }

@@ -9,7 +9,7 @@ impl Store {
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
-    pub fn other_of_version(&mut self, plan: &Plan) -> Result<Option<String>, StoreError> {
+    pub(crate) fn other_of_version(&mut self, plan: &Plan) -> Result<Option<String>, StoreError> {
         let of = values![&plan.product, &plan.name, &plan.version, &plan.sha256];
         self.read("to tell its plans", |from| from.first(statements::PLAN_OF_VERSION, of, |row| row.get(0)))
     }
