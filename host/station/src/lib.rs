@@ -31,7 +31,7 @@ pub mod export;
 pub mod floor;
 pub mod history;
 mod ids;
-pub mod input_error;
+pub(crate) mod input_error;
 pub mod kept;
 pub mod labgrid;
 pub mod lane;

@@ -16,7 +16,7 @@ use crate::settings::Settings;
 use board::{Fixture, drawn};
 
 /// The most lanes.
-pub const MOST_LANES: usize = 16;
+pub(crate) const MOST_LANES: usize = 16;
 /// The name under which the line scans.
 const OPERATOR: &str = "demonstration";
 /// How often the line checks its lanes.
@@ -31,7 +31,7 @@ const PLAN: &str = include_str!("../../assets/demo-plan.toml");
 
 /// The station of the demonstration.
 #[derive(Debug)]
-pub struct Demo {
+pub(crate) struct Demo {
     /// Its settings, in the folder that it was made in.
     pub settings: PathBuf,
     fixtures: Vec<Fixture>,
@@ -43,7 +43,7 @@ impl Demo {
     ///
     /// # Errors
     /// When the folder already has files of these names, or the system has no room.
-    pub fn new(folder: &Path, lanes: usize, port: u16) -> io::Result<Self> {
+    pub(crate) fn new(folder: &Path, lanes: usize, port: u16) -> io::Result<Self> {
         let fixtures: Vec<_> = (0..lanes).map(|_| Fixture::start()).collect::<io::Result<_>>()?;
         let lane = |(fixture, name): (&Fixture, usize)| {
             format!(
@@ -67,7 +67,7 @@ impl Demo {
     ///
     /// # Errors
     /// When the system has no thread for it.
-    pub fn start(self, engine: &Arc<Engine>, settings: &Settings) -> io::Result<()> {
+    pub(crate) fn start(self, engine: &Arc<Engine>, settings: &Settings) -> io::Result<()> {
         let Some(rule) = settings.plans.first().map(|file| file.plan.serial.clone()) else { return Ok(()) };
         let engine = Arc::downgrade(engine);
         thread::Builder::new().name("line".to_owned()).spawn(move || line(&engine, &self.fixtures, &rule))?;

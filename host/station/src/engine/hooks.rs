@@ -18,7 +18,7 @@ const LISTENED: Duration = Duration::from_secs(5);
 
 /// A hook that did not do what it should have done.
 #[derive(Debug, thiserror::Error)]
-pub enum HookError {
+pub(crate) enum HookError {
     /// The hook could not be started.
     #[error("the hook {program} cannot be started; check that it is there and may be executed")]
     Start {

@@ -26,7 +26,7 @@ use std::time::{Duration, Instant};
 use halfrow::verdict::StoppedBy;
 
 pub use figures::{Figures, Histogram};
-pub use hooks::HookError;
+pub(crate) use hooks::HookError;
 pub use news::{LaneState, News};
 
 use crate::floor::{Act, Event, ScanError};
@@ -162,7 +162,7 @@ impl Engine {
 
     /// Whether its thread works, as seen within the last seconds.
     #[must_use]
-    pub fn is_well(&self) -> bool {
+    pub(crate) fn is_well(&self) -> bool {
         let board = self.board.lock().unwrap_or_else(PoisonError::into_inner);
         board.worked.is_some_and(|worked| worked.elapsed() < SILENT)
     }

@@ -88,13 +88,13 @@ impl Lane {
 
     /// Whether its result is saved, but not yet at the plant, which must have it.
     #[must_use]
-    pub fn awaits_plant(&self) -> bool {
+    pub(crate) fn awaits_plant(&self) -> bool {
         matches!(self.phase, Phase::Unsaved { awaits_plant: true, .. })
     }
 
     /// Whether a board is in it.
     #[must_use]
-    pub fn is_present(&self) -> bool {
+    pub(crate) fn is_present(&self) -> bool {
         self.is_present
     }
 
@@ -107,7 +107,7 @@ impl Lane {
 
     /// The board that it has in hand: being tested, not saved yet, or waited for.
     #[must_use]
-    pub fn under_test(&self) -> Option<&Accepted> {
+    pub(crate) fn under_test(&self) -> Option<&Accepted> {
         match &self.phase {
             Phase::Running { of, .. } | Phase::Saving { of, .. } | Phase::Unsaved { of, .. } => Some(of),
             _ => self.waiting.as_ref(),
@@ -118,7 +118,7 @@ impl Lane {
     ///
     /// # Errors
     /// [`Refusal`] when the lane is not free, or does not owe its shift a mock board.
-    pub fn owed_mock(&self) -> Result<(usize, String), Refusal> {
+    pub(crate) fn owed_mock(&self) -> Result<(usize, String), Refusal> {
         self.free()?;
         let lane = self.name.clone();
         match &self.owes {

@@ -125,7 +125,7 @@ fn places<'a>(boards: impl Iterator<Item = &'a LaneBoard>) -> impl Iterator<Item
 
 /// Waits until what the last runs of these lanes had is given back, because whoever started the station may kill all
 /// that it leaves behind.
-pub fn wait_until_left<'a>(boards: impl Iterator<Item = &'a LaneBoard>) {
+pub(crate) fn wait_until_left<'a>(boards: impl Iterator<Item = &'a LaneBoard>) {
     places(boards).for_each(Place::wait_until_left);
 }
 

@@ -19,6 +19,6 @@ pub mod supervisor;
 /// arenas of its threads count as addresses, too.
 pub const MEMORY_MIB: u64 = 4096;
 /// How much it may be given, in MiB.
-pub const MEMORIES_MIB: std::ops::RangeInclusive<u64> = 64..=1_048_576;
+pub(crate) const MEMORIES_MIB: std::ops::RangeInclusive<u64> = 64..=1_048_576;
 
 pub use message::{Control, Job, Message, Ruling};

@@ -32,7 +32,7 @@ const MOST_EVENTS: u64 = 64 << 20;
 const MOST_SHOWN: usize = 200;
 
 /// What the lane reports, in the run's spool.
-pub const EVENTS: &str = "events.jsonl";
+pub(crate) const EVENTS: &str = "events.jsonl";
 /// What it logs.
 pub const LOG: &str = "lane.log";
 /// Its process id, and when the process began.
@@ -42,7 +42,7 @@ const PROCESS: &str = "lane.pid";
 const THREADS: &str = "RAYON_NUM_THREADS";
 
 /// This very program, even if its file has been replaced or removed.
-pub const OWN_PROGRAM: &str = "/proc/self/exe";
+pub(crate) const OWN_PROGRAM: &str = "/proc/self/exe";
 
 /// How long a lane may take.
 #[derive(Clone, Copy, Debug)]
@@ -313,7 +313,7 @@ fn impatient(patience: Patience, begun: Instant, last: Instant, asked: Option<In
 
 /// Kills the lane of a run whose station ended before it, if the lane still exists. It is known by its id and by when
 /// it began, because ids are reused.
-pub fn kill_left_behind(spool: &Path) {
+pub(crate) fn kill_left_behind(spool: &Path) {
     let noted = fs::read_to_string(spool.join(PROCESS)).unwrap_or_default();
     let mut words = noted.split_whitespace().map(str::parse::<u64>);
     let (Some(Ok(id)), Some(Ok(born))) = (words.next(), words.next()) else { return };

@@ -21,7 +21,8 @@ use std::time::{Duration, Instant};
 pub use crate::clock::HeardClock;
 pub use plant::PlantSink;
 pub(crate) use sent::{Sent, awaited};
-pub use sinks::{SinkError, SinkSettingsError, open};
+pub(crate) use sinks::SinkError;
+pub use sinks::{SinkSettingsError, open};
 
 use crate::clock;
 use crate::guard::guarded;

@@ -7,7 +7,7 @@ use super::serial::RESERVED;
 use super::{Act, Selected};
 
 /// What stands for it in a plan, and the barcode that has a lane judge it.
-pub const BARCODE: &str = "HR:MOCK";
+pub(crate) const BARCODE: &str = "HR:MOCK";
 
 /// Faults of the datapath that even the fewest frames of a plan show, whatever is drawn, each with its parameters; not
 /// all that the mock has. Bits are flipped hidden, because a board that notices a flipped bit refuses its tables, and

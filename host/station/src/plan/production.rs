@@ -49,13 +49,13 @@ impl Production {
     /// What the text of a plan that was once read whole demands; `None` if this program cannot read it. The files that
     /// the plan names may have changed since.
     #[must_use]
-    pub fn of_text(text: &str) -> Option<Self> {
+    pub(crate) fn of_text(text: &str) -> Option<Self> {
         read::production_of(text).ok()
     }
 
     /// Whether the unit of this serial number checks shifts, and so is not a product.
     #[must_use]
-    pub fn is_reference(&self, serial: &str) -> bool {
+    pub(crate) fn is_reference(&self, serial: &str) -> bool {
         let is_bad = |bad: &Bad| matches!(bad, Bad::Unit(bad) if bad == serial);
         let checks = |shift: &Shift| shift.good == serial || is_bad(&shift.bad);
         mock::is_mock(serial) || self.shift.as_ref().is_some_and(checks)

@@ -5,9 +5,9 @@ use regex::Regex;
 use super::check_digit::CheckDigit;
 
 /// The most characters of a serial number.
-pub const MOST_CHARACTERS: usize = 64;
+pub(crate) const MOST_CHARACTERS: usize = 64;
 /// What barcodes of the station's own begin with; no serial number does.
-pub const RESERVED: &str = "HR:";
+pub(crate) const RESERVED: &str = "HR:";
 
 /// A serial number that a plan has taken.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -105,7 +105,7 @@ impl SerialRule {
 
     /// Whether the pattern has a group `variant`.
     #[must_use]
-    pub fn has_variants(&self) -> bool {
+    pub(crate) fn has_variants(&self) -> bool {
         self.pattern.capture_names().any(|name| name == Some("variant"))
     }
 

@@ -123,7 +123,7 @@ impl Offer {
 ///
 /// # Errors
 /// [`FetchError`]
-pub fn look_whole(plant: &mut Plant, statement: &Statement) -> Result<(), FetchError> {
+pub(crate) fn look_whole(plant: &mut Plant, statement: &Statement) -> Result<(), FetchError> {
     let text = plant.bundle(&statement.sha256)?;
     let folder =
         tempfile::tempdir().map_err(|source| BundleError::Folder { path: std::env::temp_dir(), source })?;

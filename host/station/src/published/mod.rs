@@ -15,7 +15,8 @@ mod kept;
 mod signed;
 
 pub use bundle::{Bundle, BundleError};
-pub use fetched::{FetchError, Fetched, Offer, look_whole, offered};
+pub(crate) use fetched::look_whole;
+pub use fetched::{FetchError, Fetched, Offer, offered};
 pub use kept::KeptPlans;
 pub use signed::{PublicKey, SigningError, SigningKey, Statement};
 

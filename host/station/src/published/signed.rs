@@ -111,7 +111,7 @@ impl PublicKey {
 
     /// Whether `signature` is its signature of `text`.
     #[must_use]
-    pub fn has_signed(&self, text: &str, signature: &str) -> bool {
+    pub(crate) fn has_signed(&self, text: &str, signature: &str) -> bool {
         let decoded = BASE64_STANDARD.decode(&self.0).ok().zip(BASE64_STANDARD.decode(signature).ok());
         decoded.is_some_and(|(key, signature)| {
             let signed = PURPOSE.to_owned() + text;

@@ -69,7 +69,7 @@ impl Blobs {
 
     /// Whether there is any evidence.
     #[must_use]
-    pub fn has_any(&self) -> bool {
+    pub(crate) fn has_any(&self) -> bool {
         let is_used =
             |folder: fs::DirEntry| fs::read_dir(folder.path()).is_ok_and(|mut files| files.next().is_some());
         fs::read_dir(&self.folder).into_iter().flatten().flatten().any(is_used)

@@ -69,14 +69,14 @@ impl Conclusion {
 
     /// Whether the findings of the steps are not believed, because a limit says that the station is wrong.
     #[must_use]
-    pub fn disbelieves_steps(&self) -> bool {
+    pub(crate) fn disbelieves_steps(&self) -> bool {
         let is_limit = |said: &Said| LIMITS.contains(&said.code.as_str());
         self.verdict == Verdict::Error && self.finding.as_ref().is_some_and(is_limit)
     }
 
     /// Adds [`IDENTITY_NOT_CHECKED`] to a PASS if it could not be checked whether the board has the scanned serial number.
     #[must_use]
-    pub fn note_unchecked_identity(self, device: DeviceSeen) -> Self {
+    pub(crate) fn note_unchecked_identity(self, device: DeviceSeen) -> Self {
         if self.verdict == Verdict::Pass && device == DeviceSeen::NotChecked {
             return Self { headline: format!("{}; {IDENTITY_NOT_CHECKED}", self.headline), ..self };
         }
@@ -85,7 +85,7 @@ impl Conclusion {
 
     /// Gives `why` as the reason of a run that the station stopped, with the station as the cause instead of the operator.
     #[must_use]
-    pub fn stopped_since(self, why: Option<Said>) -> Self {
+    pub(crate) fn stopped_since(self, why: Option<Said>) -> Self {
         let is_stopped = self.finding.as_ref().is_some_and(|said| STOPPED.contains(&said.code.as_str()));
         match why.filter(|_| is_stopped) {
             Some(why) => Self::error(RunCause::Station, why),

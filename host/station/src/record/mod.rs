@@ -24,7 +24,7 @@ pub use step::{
 pub(crate) use unnamed::UnnamedRecord;
 
 /// What a PASS says if it could not be checked whether the board has the scanned serial number.
-pub const IDENTITY_NOT_CHECKED: &str = "identity not checked";
+pub(crate) const IDENTITY_NOT_CHECKED: &str = "identity not checked";
 
 /// The version of the record's format.
 pub const SCHEMA: u32 = 1;
@@ -210,7 +210,7 @@ impl Record {
     /// How long one of its steps took by the computer's clock; none if that would be negative or longer than the run, because the
     /// clock was set meanwhile.
     #[must_use]
-    pub fn took_for(&self, step: &StepRecord) -> Option<Duration> {
+    pub(crate) fn took_for(&self, step: &StepRecord) -> Option<Duration> {
         let whole = self.seconds.unwrap_or(f64::INFINITY) + SLACK;
         between(step.started_ms, step.ended_ms).filter(|took| took.as_secs_f64() <= whole)
     }

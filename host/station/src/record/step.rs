@@ -161,7 +161,7 @@ impl RunCause {
 
     /// Whether a step that ended for this cause may be tried again if nothing else is against it; a FAIL never is.
     #[must_use]
-    pub const fn is_retryable(self) -> bool {
+    pub(crate) const fn is_retryable(self) -> bool {
         matches!(self, Self::Link | Self::Station)
     }
 }
@@ -189,7 +189,7 @@ pub struct BoardSeen {
 impl BoardSeen {
     /// Whether it is real hardware, and not a board that a program simulates or replays.
     #[must_use]
-    pub fn is_hardware(&self) -> bool {
+    pub(crate) fn is_hardware(&self) -> bool {
         self.kind == BoardKind::Hardware.to_string()
     }
 }

@@ -206,7 +206,7 @@ pub enum RebindError {
 
 /// Whether this is the number of an FPGA as records write it.
 #[must_use]
-pub fn is_device(text: &str) -> bool {
+pub(crate) fn is_device(text: &str) -> bool {
     let is_hexadecimal = text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'));
     text.len() == 16 && is_hexadecimal && text.bytes().any(|digit| digit != b'0')
 }

@@ -272,7 +272,7 @@ impl StoreError {
     /// Whether whoever waits for the plant goes on waiting: it is away, or its server refuses what it may take later, as while it
     /// is read-only or its passwords are being changed.
     #[must_use]
-    pub const fn may_pass(&self) -> bool {
+    pub(crate) const fn may_pass(&self) -> bool {
         matches!(self, Self::Plant { .. } | Self::Certificate(_))
     }
 

@@ -40,24 +40,28 @@ use std::time::Duration;
 use halfrow::Verdict;
 use uuid::Uuid;
 
-pub use bindings::{Admission, Change, RebindError, Rebinding, is_device};
+pub(crate) use bindings::is_device;
+pub use bindings::{Admission, Change, RebindError, Rebinding};
 pub(crate) use database::{Database, DatabaseError, Row as Found, Value, values};
 pub use error::StoreError;
 pub(crate) use folder::ASIDE;
 pub use folder::Folder;
 use generation::{Log, Opened};
-pub use outbox::{AuditLine, DEAD_SHOWN, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Standing, Tried, Unsent};
+pub(crate) use outbox::DEAD_SHOWN;
+pub use outbox::{AuditLine, Dead, Entry, Kind, Parcel, SINK_OF_PLANT, Standing, Tried, Unsent};
 pub use plant::{
-    Claim, Introduction, Job, KeptRun, LEASE_MS, Lease, NewJob, PlanOfJob, Plant, PlantAddress,
-    PlantAddressError, PlantError, PlantLink, PlantPool, STATES, SharedBoard, Turn, Waiter, Waiting, Wanted,
-    Worker, boards, jobs, publications, waiters,
+    Claim, Introduction, Job, Lease, NewJob, Plant, PlantAddress, PlantAddressError, PlantError, PlantLink,
+    SharedBoard, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
 };
+pub(crate) use plant::{KeptRun, LEASE_MS, PlantPool, STATES, publications, waiters};
 pub use retention::Removed;
 pub use retest_policy::AgainError;
 pub use shared_store::SharedStore;
 pub use shift::{Checked, InLane, Owed};
-pub use snapshot::{Rebuilt, Snapshot, TABLES};
-pub use table::{Key, Row, Rows};
+pub(crate) use snapshot::Rebuilt;
+pub use snapshot::{Snapshot, TABLES};
+pub(crate) use table::Key;
+pub use table::{Row, Rows};
 pub(crate) use waivers::MOST_REASON;
 pub use waivers::{NoWaiver, Waiver};
 
@@ -162,7 +166,7 @@ impl Store {
     ///
     /// # Errors
     /// Like [`Self::open`], and when there is none.
-    pub fn open_existing(folder: &Folder) -> Result<Self, StoreError> {
+    pub(crate) fn open_existing(folder: &Folder) -> Result<Self, StoreError> {
         folder.reader()?;
         Self::open(folder)
     }

@@ -15,7 +15,7 @@ use crate::{clock, ids};
 pub const SINK_OF_PLANT: &str = "plant";
 
 /// The most entries of a sink that are listed as waiting for a person: a sink may have refused everything for years.
-pub const DEAD_SHOWN: u32 = 100;
+pub(crate) const DEAD_SHOWN: u32 = 100;
 
 /// What an entry is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -199,7 +199,7 @@ impl Store {
     ///
     /// # Errors
     /// Like [`Self::sends_to`].
-    pub fn due_at_once(&mut self, sink: &str) -> Result<(), StoreError> {
+    pub(crate) fn due_at_once(&mut self, sink: &str) -> Result<(), StoreError> {
         self.change("what is to be sent now", |to| to.execute(sql::OUTBOX_AT_ONCE, values![sink]).map(drop))
     }
 
@@ -288,7 +288,7 @@ impl Folder {
     ///
     /// # Errors
     /// Like [`Self::due`].
-    pub fn newest_sent(&self, sink: &str) -> Result<Option<String>, StoreError> {
+    pub(crate) fn newest_sent(&self, sink: &str) -> Result<Option<String>, StoreError> {
         self.read("to tell what was sent last", |from| {
             from.first(sql::OUTBOX_NEWEST_SENT, values![sink, Kind::Run.name()], |row| row.get(0))
         })

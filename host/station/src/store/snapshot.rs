@@ -128,7 +128,7 @@ impl Snapshot {
 
     /// Whether there is a piece of evidence of this hash here.
     #[must_use]
-    pub fn has_evidence(&self, hash: &str) -> bool {
+    pub(crate) fn has_evidence(&self, hash: &str) -> bool {
         matches!(&self.of, Of::Station(folder) if folder.blobs().path(hash).is_file())
     }
 
@@ -151,7 +151,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
-    pub fn final_runs(&self) -> Result<Vec<(String, String)>, StoreError> {
+    pub(crate) fn final_runs(&self) -> Result<Vec<(String, String)>, StoreError> {
         self.read("to tell its runs", |reader| {
             reader.all(statements::FINAL_RUNS, &[], |row| Ok((row.get(0)?, row.get(1)?)))
         })
@@ -169,7 +169,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
-    pub fn rebindings(&self) -> Result<Vec<Rebinding>, StoreError> {
+    pub(crate) fn rebindings(&self) -> Result<Vec<Rebinding>, StoreError> {
         self.read("to tell who bound what", bindings::rebindings)
     }
 
@@ -177,7 +177,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
-    pub fn contradicted_waivers(&self) -> Result<Vec<String>, StoreError> {
+    pub(crate) fn contradicted_waivers(&self) -> Result<Vec<String>, StoreError> {
         self.rows("to tell its waivers", statements::WAIVERS_UNLIKE_AUDIT, values![], |row| row.get(0))
     }
 
@@ -221,7 +221,7 @@ fn columns(database: &mut dyn Database) -> Result<Vec<String>, DatabaseError> {
 
 /// Tables that are made anew: in memory, and beyond 64 MiB in a temporary file.
 #[derive(Debug)]
-pub struct Rebuilt {
+pub(crate) struct Rebuilt {
     database: Box<dyn Database>,
 }
 
@@ -230,7 +230,7 @@ impl Rebuilt {
     ///
     /// # Errors
     /// [`StoreError`] when there is no room for it.
-    pub fn new() -> Result<Self, StoreError> {
+    pub(crate) fn new() -> Result<Self, StoreError> {
         let opened = Connection::open("").and_then(|database| {
             database.execute_batch("PRAGMA journal_mode = MEMORY; PRAGMA cache_size = -65536")?;
             Ok(database)
@@ -245,7 +245,7 @@ impl Rebuilt {
     ///
     /// # Errors
     /// [`StoreError`] when it contradicts the runs before.
-    pub fn add(&mut self, record: &Record, hash: &str) -> Result<(), StoreError> {
+    pub(crate) fn add(&mut self, record: &Record, hash: &str) -> Result<(), StoreError> {
         self.change(|to| {
             rows::open(to, &record.run, &record.plan)?;
             rows::finish(to, record, hash).map(drop)
@@ -256,7 +256,7 @@ impl Rebuilt {
     ///
     /// # Errors
     /// Like [`Self::add`].
-    pub fn add_open(&mut self, open: &OpenRun) -> Result<(), StoreError> {
+    pub(crate) fn add_open(&mut self, open: &OpenRun) -> Result<(), StoreError> {
         let [name, version, text] = open.plan.clone();
         let plan = PlanRecord { sha256: open.plan_sha256.clone(), name, version, text, files: None };
         self.change(|to| rows::open(to, &open.run, &plan).map(drop))
@@ -266,12 +266,12 @@ impl Rebuilt {
     ///
     /// # Errors
     /// Like [`Self::add`].
-    pub fn add_rebinding(&mut self, change: &Rebinding) -> Result<(), StoreError> {
+    pub(crate) fn add_rebinding(&mut self, change: &Rebinding) -> Result<(), StoreError> {
         self.change(|to| bindings::rebind(to, change))
     }
 
     /// All rows of the table `name`, by its `key`.
-    pub fn table(&mut self, name: &'static str, key: &'static str) -> Rows<'_> {
+    pub(crate) fn table(&mut self, name: &'static str, key: &'static str) -> Rows<'_> {
         Rows::by(move |after| page(&mut *self.database, name, key, after).map_err(refused))
     }
 

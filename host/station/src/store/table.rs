@@ -13,7 +13,7 @@ const PAGE: usize = 1_000;
 pub type Row = Vec<(String, String)>;
 
 /// The key of a row. Both engines sort rows in the order of these keys.
-pub type Key = Vec<KeyValue>;
+pub(crate) type Key = Vec<KeyValue>;
 
 /// The value of one column of a key.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -31,10 +31,9 @@ mod state;
 mod trouble;
 mod visit;
 
-pub use access::{
-    Access, Address, AddressError, Role, Scope, TokenError, Tokens, UserError, Users, add_token, add_user,
-};
-pub use routes::{Route, Who, routes, routes_of_plant};
+pub use access::{Access, Address, AddressError, Role, Scope};
+pub(crate) use access::{TokenError, Tokens, UserError, Users, add_token, add_user};
+pub use routes::{Route, Who, routes};
 pub use serve::{ServeError, Server};
 pub use state::App;
 pub use visit::User;

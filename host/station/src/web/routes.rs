@@ -78,7 +78,7 @@ pub fn routes() -> Vec<Route> {
 
 /// The table of a plant, whose pages only look.
 #[must_use]
-pub fn routes_of_plant() -> Vec<Route> {
+pub(crate) fn routes_of_plant() -> Vec<Route> {
     let looks = history::routes().into_iter().filter(|route| route.method == Method::GET).collect();
     [assets::routes(), login::routes(), plant::routes(), jobs::routes(), metrics::routes(), looks].concat()
 }

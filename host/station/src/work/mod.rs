@@ -83,7 +83,7 @@ impl WorkError {
 
     /// Whether the station's own store fails, so that another job would get no further.
     #[must_use]
-    pub const fn is_of_store(&self) -> bool {
+    pub(crate) const fn is_of_store(&self) -> bool {
         self.is_not_begun() || matches!(self, Self::Run(RunError::Unsaved { .. }))
     }
 }
@@ -266,7 +266,7 @@ impl Work<'_> {
     ///
     /// # Errors
     /// [`PlantError`] when it is there and refuses.
-    pub fn introduce(
+    pub(crate) fn introduce(
         &self,
         station: &Introduction,
         may_be_away: bool,

@@ -36,7 +36,7 @@ pub enum SinkSettingsError {
 
 /// Why a sink has not taken something.
 #[derive(Debug, thiserror::Error)]
-pub enum SinkError {
+pub(crate) enum SinkError {
     /// The sink's folder does not exist.
     #[error("the folder {} is not there; make it, or mount what it lies on", path.display())]
     NoFolder {

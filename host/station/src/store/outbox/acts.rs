@@ -18,7 +18,12 @@ impl Store {
     ///
     /// # Errors
     /// Like [`Self::sends_to`].
-    pub fn release_all(&mut self, sink: &str, operator: &str, reason: &str) -> Result<u64, StoreError> {
+    pub(crate) fn release_all(
+        &mut self,
+        sink: &str,
+        operator: &str,
+        reason: &str,
+    ) -> Result<u64, StoreError> {
         self.released(sql::OUTBOX_ALL_RELEASED, sink, operator, reason)
     }
 
@@ -32,7 +37,12 @@ impl Store {
     ///
     /// # Errors
     /// Like [`Self::sends_to`].
-    pub fn forget_sink(&mut self, sink: &str, operator: &str, reason: &str) -> Result<u64, StoreError> {
+    pub(crate) fn forget_sink(
+        &mut self,
+        sink: &str,
+        operator: &str,
+        reason: &str,
+    ) -> Result<u64, StoreError> {
         let mut unsent = 0;
         self.audited("that a sink is no more", [operator, "forget-sink", sink, reason], |to| {
             unsent = to.execute(sql::FORGET_UNSENT, values![sink])?;
@@ -46,7 +56,7 @@ impl Store {
     ///
     /// # Errors
     /// Like [`Self::sends_to`].
-    pub fn send_again(&mut self, sink: &str, operator: &str, reason: &str) -> Result<u64, StoreError> {
+    pub(crate) fn send_again(&mut self, sink: &str, operator: &str, reason: &str) -> Result<u64, StoreError> {
         let line = [operator, "send-again", sink, reason];
         self.audited("that a sink has nothing", line, |to| to.execute(sql::OUTBOX_AGAIN, values![sink]))
     }

@@ -11,7 +11,7 @@ use crate::clock::{self, Moment};
 use crate::ids;
 
 /// How long a board or a job is held without being renewed, in milliseconds.
-pub const LEASE_MS: i64 = 30_000;
+pub(crate) const LEASE_MS: i64 = 30_000;
 /// How long the place of a waiter who does not ask again is kept, in milliseconds.
 const WAITING_MS: i64 = 10_000;
 
@@ -118,7 +118,7 @@ impl Plant {
     ///
     /// # Errors
     /// Like [`Self::share`].
-    pub fn other_of_unit(&mut self, board: &SharedBoard) -> Result<Option<String>, StoreError> {
+    pub(crate) fn other_of_unit(&mut self, board: &SharedBoard) -> Result<Option<String>, StoreError> {
         let SharedBoard { name, product, serial, .. } = board;
         self.carry_out("to tell its boards", |database| {
             database.first(sql::OTHER_OF_UNIT, values![product, serial, name], |row| row.get(0))
@@ -316,7 +316,7 @@ pub struct Waiting {
 ///
 /// # Errors
 /// [`StoreError`] when the plant cannot be read.
-pub fn waiters(of: &Snapshot) -> Result<Vec<Waiting>, StoreError> {
+pub(crate) fn waiters(of: &Snapshot) -> Result<Vec<Waiting>, StoreError> {
     of.rows("to tell who waits", sql::WAITERS, &[], |row| {
         Ok(Waiting { kind: row.get(0)?, holder: row.get(1)?, since_ms: ids::made_ms(row.text(2)?) })
     })

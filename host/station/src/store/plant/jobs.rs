@@ -11,7 +11,7 @@ use crate::plan::Plan;
 use crate::{clock, ids};
 
 /// The states of jobs: waiting for a station, claimed by one, judged, given up.
-pub const STATES: [&str; 4] = ["waiting", "claimed", "done", "dead"];
+pub(crate) const STATES: [&str; 4] = ["waiting", "claimed", "done", "dead"];
 
 /// Which board a job is about.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -8,7 +8,7 @@ use crate::record::{PlanRecord, Record, RunHead};
 
 /// A run that a plant keeps.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct KeptRun {
+pub(crate) struct KeptRun {
     /// Its id.
     pub run: String,
     /// Its unit.
@@ -23,7 +23,7 @@ pub struct KeptRun {
 
 /// A plan that a job brought.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PlanOfJob {
+pub(crate) struct PlanOfJob {
     plan: PlanRecord,
     product: String,
     first_used_ms: i64,
@@ -34,7 +34,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
-    pub fn kept_runs(&self, after: &str) -> Result<Vec<KeptRun>, StoreError> {
+    pub(crate) fn kept_runs(&self, after: &str) -> Result<Vec<KeptRun>, StoreError> {
         self.rows("to tell its runs", sql::KEPT_RUNS, values![after], |row| {
             let (run, unit_id, nth) = (row.get(0)?, row.get(1)?, row.get(2)?);
             Ok(KeptRun { run, unit_id, nth, sha256: row.get(3)?, text: row.get(4)? })
@@ -45,7 +45,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// Like [`Self::kept_runs`].
-    pub fn unit_of(&self, product: &str, serial: &str) -> Result<Option<String>, StoreError> {
+    pub(crate) fn unit_of(&self, product: &str, serial: &str) -> Result<Option<String>, StoreError> {
         let found = self.rows("to tell a unit", sql::UNIT_OF, values![product, serial], |row| row.get(0))?;
         Ok(found.into_iter().next())
     }
@@ -63,7 +63,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// Like [`Self::kept_runs`].
-    pub fn others_begin(&self, id: &str, device: &str, unit: &str) -> Result<Vec<i64>, StoreError> {
+    pub(crate) fn others_begin(&self, id: &str, device: &str, unit: &str) -> Result<Vec<i64>, StoreError> {
         let text = "SELECT from_ms FROM binding WHERE id <> $1 AND (device = $2 OR unit_id = $3)";
         self.rows("to tell what is bound", text, values![id, device, unit], |row| row.get(0))
     }
@@ -72,7 +72,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// Like [`Self::kept_runs`].
-    pub fn unnamed_records(&self) -> Result<Vec<String>, StoreError> {
+    pub(crate) fn unnamed_records(&self) -> Result<Vec<String>, StoreError> {
         self.rows("to tell its records", sql::UNNAMED_RECORDS, &[], |row| row.get(0))
     }
 
@@ -80,7 +80,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// Like [`Self::kept_runs`].
-    pub fn jobs_without_runs(&self) -> Result<Vec<String>, StoreError> {
+    pub(crate) fn jobs_without_runs(&self) -> Result<Vec<String>, StoreError> {
         self.rows("to tell its jobs", sql::JOBS_WITHOUT_RUNS, &[], |row| row.get(0))
     }
 
@@ -88,7 +88,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// Like [`Self::kept_runs`].
-    pub fn contradicted_waivers_of_plant(&self) -> Result<Vec<String>, StoreError> {
+    pub(crate) fn contradicted_waivers_of_plant(&self) -> Result<Vec<String>, StoreError> {
         self.rows("to tell its waivers", sql::CONTRADICTED_WAIVERS, &[], |row| row.get(0))
     }
 
@@ -96,7 +96,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// Like [`Self::kept_runs`].
-    pub fn other_mismatches(&self) -> Result<Vec<String>, StoreError> {
+    pub(crate) fn other_mismatches(&self) -> Result<Vec<String>, StoreError> {
         self.rows("to tell what is bound", sql::OTHER_MISMATCHES, &[], |row| row.get(0))
     }
 
@@ -104,7 +104,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// Like [`Self::kept_runs`].
-    pub fn plans_of_jobs(&self) -> Result<Vec<PlanOfJob>, StoreError> {
+    pub(crate) fn plans_of_jobs(&self) -> Result<Vec<PlanOfJob>, StoreError> {
         self.rows("to tell its plans", sql::PLANS_OF_JOBS, &[], |row| {
             let [sha256, name, version, text] = [row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?];
             let plan = PlanRecord { sha256, name, version, text, files: None };
@@ -118,7 +118,7 @@ impl Rebuilt {
     ///
     /// # Errors
     /// [`StoreError`] when there is no room for it.
-    pub fn of_plant() -> Result<Self, StoreError> {
+    pub(crate) fn of_plant() -> Result<Self, StoreError> {
         let mut rebuilt = Self::new()?;
         rebuilt.change(|to| to.batch("DROP INDEX binding_device_now; DROP INDEX binding_unit_now"))?;
         Ok(rebuilt)
@@ -128,7 +128,7 @@ impl Rebuilt {
     ///
     /// # Errors
     /// [`StoreError`] when it cannot be read.
-    pub fn unit_of(
+    pub(crate) fn unit_of(
         &mut self,
         RunHead { product, serial, .. }: &RunHead,
     ) -> Result<Option<String>, StoreError> {
@@ -140,7 +140,7 @@ impl Rebuilt {
     ///
     /// # Errors
     /// [`StoreError`] when it contradicts the runs before.
-    pub fn add_kept(&mut self, record: &Record, hash: &str, counts: bool) -> Result<(), StoreError> {
+    pub(crate) fn add_kept(&mut self, record: &Record, hash: &str, counts: bool) -> Result<(), StoreError> {
         self.change(|to| {
             let unit = rows::unit(to, &record.run, &record.plan)?;
             arrived::entered(to, record, hash, &unit, counts)?;
@@ -156,7 +156,7 @@ impl Rebuilt {
     ///
     /// # Errors
     /// [`StoreError`] when it contradicts what is there.
-    pub fn add_bound(&mut self, change: &Rebinding) -> Result<(), StoreError> {
+    pub(crate) fn add_bound(&mut self, change: &Rebinding) -> Result<(), StoreError> {
         let Rebinding { id, at_ms, operator, unit_id, device, reason } = change;
         let Some(device) = device else { return Ok(()) };
         self.change(|to| {
@@ -170,7 +170,7 @@ impl Rebuilt {
     ///
     /// # Errors
     /// [`StoreError`] when it cannot be read.
-    pub fn bound(&mut self, id: &str) -> Result<Option<(String, String)>, StoreError> {
+    pub(crate) fn bound(&mut self, id: &str) -> Result<Option<(String, String)>, StoreError> {
         let text = "SELECT device, unit_id FROM binding WHERE id = $1";
         self.change(|to| to.first(text, values![id], |row| Ok((row.get(0)?, row.get(1)?))))
     }
@@ -179,7 +179,7 @@ impl Rebuilt {
     ///
     /// # Errors
     /// [`StoreError`] when it contradicts what is there.
-    pub fn add_plan_of_job(&mut self, of: &PlanOfJob) -> Result<(), StoreError> {
+    pub(crate) fn add_plan_of_job(&mut self, of: &PlanOfJob) -> Result<(), StoreError> {
         let PlanOfJob { plan: PlanRecord { sha256, name, version, text, .. }, product, first_used_ms } = of;
         self.change(|to| -> Result<(), DatabaseError> {
             to.execute(sql::ADD_PLAN, values![sha256, name, version, product, text, *first_used_ms])?;

@@ -14,12 +14,14 @@ mod pool;
 mod prune;
 
 pub use address::{PlantAddress, PlantAddressError};
-pub use boards::{LEASE_MS, Lease, SharedBoard, Turn, Waiter, Waiting, boards, waiters};
-pub use jobs::{Claim, Job, NewJob, STATES, Wanted, Worker, jobs};
-pub use kept::{KeptRun, PlanOfJob};
+pub(crate) use boards::{LEASE_MS, waiters};
+pub use boards::{Lease, SharedBoard, Turn, Waiter, Waiting, boards};
+pub(crate) use jobs::STATES;
+pub use jobs::{Claim, Job, NewJob, Wanted, Worker, jobs};
+pub(crate) use kept::KeptRun;
 pub use link::PlantLink;
-pub use plans::publications;
-pub use pool::PlantPool;
+pub(crate) use plans::publications;
+pub(crate) use pool::PlantPool;
 
 use std::path::PathBuf;
 
@@ -218,7 +220,7 @@ impl Plant {
     ///
     /// # Errors
     /// [`PlantError::Lost`] when it does not.
-    pub fn refuse_loss_of(&mut self, run: &str) -> Result<(), PlantError> {
+    pub(crate) fn refuse_loss_of(&mut self, run: &str) -> Result<(), PlantError> {
         self.hash_of(run)?.map(drop).ok_or_else(|| PlantError::Lost { run: run.to_owned() })
     }
 

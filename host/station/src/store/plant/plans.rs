@@ -23,7 +23,7 @@ impl Plant {
     ///
     /// # Errors
     /// Like [`Self::publication`].
-    pub fn published_version(
+    pub(crate) fn published_version(
         &mut self,
         plan: &PlanName,
         version: &str,
@@ -77,7 +77,7 @@ impl Plant {
 ///
 /// # Errors
 /// [`StoreError`] when the plant cannot be read.
-pub fn publications(of: &Snapshot) -> Result<Vec<(Statement, i64)>, StoreError> {
+pub(crate) fn publications(of: &Snapshot) -> Result<Vec<(Statement, i64)>, StoreError> {
     let rows: Vec<(String, i64)> =
         of.rows("to tell its plans", sql::PUBLICATIONS, &[], |row| Ok((row.get(0)?, row.get(1)?)))?;
     Ok(rows

@@ -10,7 +10,7 @@ const KEPT: usize = 4;
 
 /// Connections to the plant. A clone has the same ones.
 #[derive(Clone, Debug)]
-pub struct PlantPool(Arc<Parts>);
+pub(crate) struct PlantPool(Arc<Parts>);
 
 #[derive(Debug)]
 struct Parts {
@@ -21,7 +21,7 @@ struct Parts {
 impl PlantPool {
     /// Connections to the plant at `address`, which are made when somebody looks.
     #[must_use]
-    pub fn new(address: PlantAddress) -> Self {
+    pub(crate) fn new(address: PlantAddress) -> Self {
         Self(Arc::new(Parts { address, idle: Mutex::default() }))
     }
 
@@ -29,7 +29,10 @@ impl PlantPool {
     ///
     /// # Errors
     /// [`StoreError`] when the plant is not there, or cannot be read.
-    pub fn look<T>(&self, look: impl FnOnce(&Snapshot) -> Result<T, StoreError>) -> Result<T, StoreError> {
+    pub(crate) fn look<T>(
+        &self,
+        look: impl FnOnce(&Snapshot) -> Result<T, StoreError>,
+    ) -> Result<T, StoreError> {
         let now = self.snapshot()?;
         let found = look(&now);
         if let Some(plant) = now.end() {
@@ -45,7 +48,13 @@ impl PlantPool {
     ///
     /// # Errors
     /// Like [`Self::look`].
-    pub fn note(&self, operator: &str, act: &str, subject: &str, detail: &str) -> Result<(), StoreError> {
+    pub(crate) fn note(
+        &self,
+        operator: &str,
+        act: &str,
+        subject: &str,
+        detail: &str,
+    ) -> Result<(), StoreError> {
         let mut plant = Plant::connect(&self.0.address)?;
         plant.audited(operator, act, subject, detail, |_| Ok(1)).map(drop)
     }

@@ -47,7 +47,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
-    pub fn pruned_before(&self) -> Result<String, StoreError> {
+    pub(crate) fn pruned_before(&self) -> Result<String, StoreError> {
         let found =
             self.rows("to tell what was removed", sql::PRUNED_ROWS, values![PRUNE], |row| row.get(0))?;
         Ok(found.into_iter().next().flatten().unwrap_or_default())

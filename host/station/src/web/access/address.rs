@@ -64,7 +64,7 @@ impl Address {
     /// Whether nobody outside this computer gets here. A name that is not this computer's is a proxy's, through which others
     /// come.
     #[must_use]
-    pub fn is_private(&self) -> bool {
+    pub(crate) fn is_private(&self) -> bool {
         let is_here = |host: &String| is_near(without_port(host));
         self.listen.ip().is_loopback() && !self.is_https && self.hosts.iter().all(is_here)
     }

@@ -17,9 +17,11 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 pub use address::{Address, AddressError};
-pub use tokens::{Scope, TokenError, Tokens};
+pub use tokens::Scope;
+pub(crate) use tokens::{TokenError, Tokens};
 pub(super) use users::Identified;
-pub use users::{Role, UserError, Users};
+pub use users::Role;
+pub(crate) use users::{UserError, Users};
 
 use super::visit::User;
 use crate::clock;
@@ -274,7 +276,12 @@ fn locked<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
 ///
 /// # Errors
 /// [`TokenError`]
-pub fn add_token(settings: &Settings, file: &Path, name: &str, scope: Scope) -> Result<String, TokenError> {
+pub(crate) fn add_token(
+    settings: &Settings,
+    file: &Path,
+    name: &str,
+    scope: Scope,
+) -> Result<String, TokenError> {
     let key = Key::load(&key_file(&settings.data))?;
     secret::change(file, |tokens: &mut Tokens| tokens.add(&key, name, scope))
 }
@@ -283,7 +290,7 @@ pub fn add_token(settings: &Settings, file: &Path, name: &str, scope: Scope) -> 
 ///
 /// # Errors
 /// [`UserError`]
-pub fn add_user(
+pub(crate) fn add_user(
     settings: &Settings,
     file: &Path,
     who: (&str, Role),

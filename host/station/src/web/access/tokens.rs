@@ -31,14 +31,14 @@ struct SavedToken {
 /// Every token.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Tokens {
+pub(crate) struct Tokens {
     #[serde(default)]
     token: Vec<SavedToken>,
 }
 
 /// A token that cannot be added or removed.
 #[derive(Debug, thiserror::Error)]
-pub enum TokenError {
+pub(crate) enum TokenError {
     /// The name is taken, or none.
     #[error("`{0}` cannot be the name of another token; give another one")]
     Name(String),
@@ -55,7 +55,7 @@ impl Tokens {
     ///
     /// # Errors
     /// [`SecretError`]
-    pub fn load_or_none(path: &Path) -> Result<Self, SecretError> {
+    pub(crate) fn load_or_none(path: &Path) -> Result<Self, SecretError> {
         secret::read_or_none(path)
     }
 
@@ -63,7 +63,7 @@ impl Tokens {
     ///
     /// # Errors
     /// [`TokenError`]
-    pub fn remove_from(path: &Path, name: &str) -> Result<(), TokenError> {
+    pub(crate) fn remove_from(path: &Path, name: &str) -> Result<(), TokenError> {
         secret::change(path, |tokens: &mut Self| tokens.remove(name))
     }
 
@@ -92,7 +92,7 @@ impl Tokens {
     }
 
     /// Every token's name and scope.
-    pub fn names(&self) -> impl Iterator<Item = (&str, Scope)> {
+    pub(crate) fn names(&self) -> impl Iterator<Item = (&str, Scope)> {
         self.token.iter().map(|token| (token.name.as_str(), token.scope))
     }
 

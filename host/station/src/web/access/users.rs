@@ -61,14 +61,14 @@ pub(crate) struct Identified {
 /// Everybody who may act.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Users {
+pub(crate) struct Users {
     #[serde(default)]
     user: Vec<SavedUser>,
 }
 
 /// Somebody who cannot be added or removed.
 #[derive(Debug, thiserror::Error)]
-pub enum UserError {
+pub(crate) enum UserError {
     /// The name is taken, or none.
     #[error("`{0}` cannot be the name of somebody else; give another one")]
     Name(String),
@@ -94,7 +94,7 @@ impl Users {
     ///
     /// # Errors
     /// [`SecretError`]
-    pub fn load(path: &Path) -> Result<Self, SecretError> {
+    pub(crate) fn load(path: &Path) -> Result<Self, SecretError> {
         secret::read(path)
     }
 
@@ -102,7 +102,7 @@ impl Users {
     ///
     /// # Errors
     /// [`SecretError`]
-    pub fn load_or_none(path: &Path) -> Result<Self, SecretError> {
+    pub(crate) fn load_or_none(path: &Path) -> Result<Self, SecretError> {
         secret::read_or_none(path)
     }
 
@@ -110,7 +110,7 @@ impl Users {
     ///
     /// # Errors
     /// [`UserError`]
-    pub fn remove_from(path: &Path, name: &str) -> Result<(), UserError> {
+    pub(crate) fn remove_from(path: &Path, name: &str) -> Result<(), UserError> {
         secret::change(path, |users: &mut Self| users.remove(name))
     }
 
@@ -158,7 +158,7 @@ impl Users {
     }
 
     /// Everybody's name and role.
-    pub fn names(&self) -> impl Iterator<Item = (&str, Role)> {
+    pub(crate) fn names(&self) -> impl Iterator<Item = (&str, Role)> {
         self.user.iter().map(|user| (user.name.as_str(), user.role))
     }
 
