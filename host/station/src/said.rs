@@ -213,14 +213,14 @@ pub enum Saying {
     #[error("the run was stopped before the board was judged")]
     StoppedBefore,
     #[error(
-        "the board is still held by an earlier session, as by a run of this station that was killed; scan the label again \
+        "the board is held by another session: a run that was killed, or another computer that uses it; scan the label again \
          in {seconds:.0} s"
     )]
     StillHeld { seconds: f64 },
     #[error("the step is not repeated by itself, since something was found wrong with the board")]
     NotRepeatedWrong,
     #[error(
-        "the step is not repeated by itself, since a board that lost its session may be at fault, or another one"
+        "the step is not repeated by itself, since the board lost its session: it may be at fault, or be another board now"
     )]
     NotRepeatedLost,
     #[error("the link was tested: {link}")]
@@ -303,9 +303,9 @@ mod tests {
     use halfrow::board::BoardError;
 
     #[test]
-    fn a_board_that_a_killed_lane_held_is_scanned_again_and_not_taken_over() {
+    fn a_board_that_another_session_holds_is_scanned_again_and_not_taken_over() {
         let told = Said::of(&BoardError::Held { seconds: 6.6 }).at_the_station();
-        assert!(told.message.ends_with("was killed; scan the label again in 7 s"), "{told}");
+        assert!(told.message.ends_with("; scan the label again in 7 s"), "{told}");
         assert_eq!(told.scan_again().as_deref(), Some("Scan the label again in 7 s."));
         let other = Said::of(&BoardError::SessionLost).at_the_station();
         assert_eq!((other.code.as_str(), other.scan_again()), ("session-lost", None), "the control");

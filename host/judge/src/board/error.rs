@@ -102,8 +102,8 @@ pub enum BoardError {
     },
     /// Another host is using the board, and the board was told to leave it.
     #[error(
-        "another host holds the board, and the board was told to let this one take it over and refuses, which protocol/WIRE.md, \
-         section 2.3, forbids; wait until the other is done (silent for 10 s, of which {seconds:.1} s are left), or switch the \
+        "another host holds the board, and the board was told to let this one take it over and refuses, which protocol/WIRE.md \
+         (Sessions, 3) forbids; wait until the other is done (silent for 10 s, of which {seconds:.1} s are left), or switch the \
          board off and on"
     )]
     NotGivenUp {

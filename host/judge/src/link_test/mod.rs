@@ -29,8 +29,8 @@ pub enum LinkTestError {
     /// The board could not be driven to the end, and had answered with other bytes than were sent by then. Nothing damaged those
     /// answers after the board or its link chip had made their CRC.
     #[error(
-        "the link test broke off, and {} other bytes than were sent by then, with a right CRC",
-        held(*.wrong)
+        "the link test broke off after {} had held other bytes than were sent, with a right CRC",
+        count(*.wrong, "answer")
     )]
     BrokeOff {
         /// How many answers were wrong.
@@ -41,10 +41,6 @@ pub enum LinkTestError {
     /// The board's capabilities leave no frame that could be streamed to it.
     #[error("the board takes no frame that could be streamed; check its capabilities with `halfrow info`")]
     NoFrame(#[source] Box<dyn std::error::Error + Send + Sync>),
-}
-
-fn held(wrong: u64) -> String {
-    format!("{} held", count(wrong, "answer"))
 }
 
 /// Tests the link to `board`. Each of the five parts takes `seconds`, by the link's clock or the wall's, whichever ends first;
@@ -132,12 +128,14 @@ impl Test<'_> {
     /// Sends random bytes of random length there and back, and counts the echoes that differ.
     fn echoes(&mut self) -> Result<(), BoardError> {
         let begun = self.begin();
-        while !self.is_over(&begun) {
+        loop {
             let mut bytes = vec![0; self.random.next_u32() as usize % (MAX_PAYLOAD + 1)];
             self.random.fill_bytes(&mut bytes);
             self.wrong += u64::from(!self.board.echo(&bytes)?.0);
+            if self.is_over(&begun) {
+                return Ok(());
+            }
         }
-        Ok(())
     }
 
     /// Writes random row factors; no frame is streamed with them.

@@ -133,8 +133,8 @@ impl<'a> Ready<'a> {
         for PlanFile { plan, path } in &settings.plans {
             if store.other_of_version(plan)?.is_some() {
                 let (of, version) = (PlanName::from(plan), &plan.version);
-                console::error(&format_args!(
-                    "{}: runs were judged here by another plan {of} {version}, and yields add up both; give this one a \
+                console::diagnose(&format_args!(
+                    "warning: {}: runs were judged here by another plan {of} {version}, and yields add up both; give this one a \
                      version of its own",
                     path.display()
                 ));

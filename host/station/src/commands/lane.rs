@@ -7,6 +7,7 @@ use std::thread;
 
 use clap::Args;
 use nix::sys::resource::{Resource, getrlimit, setrlimit};
+use nix::sys::signal::{SigSet, Signal};
 
 use super::Failure;
 use crate::console;
@@ -53,9 +54,11 @@ fn name() {
 }
 
 /// Limits the process to `mib` MiB of addresses. If more is needed, this process ends, and not the station or another lane.
-/// Likewise what it logs does not fill the station's disk: its files are limited, too.
+/// Likewise what it logs does not fill the station's disk: its files are limited, too. What has no room there is lost, and not
+/// the run: the signal that would end the process is kept back, in all threads that begin later.
 fn limit(mib: u64) -> nix::Result<()> {
     limit_to(Resource::RLIMIT_AS, mib)?;
+    SigSet::from_iter([Signal::SIGXFSZ]).thread_block()?;
     limit_to(Resource::RLIMIT_FSIZE, FILE_MIB)
 }
 

@@ -155,7 +155,7 @@ impl Engine {
         self.figures.now()
     }
 
-    /// Counts a scan that the store kept from reaching the engine.
+    /// Counts what a person did and the store could not enter, so that it did not reach the engine.
     pub(crate) fn refused_by_store(&self) {
         self.figures.refused(standing::STORE);
     }

@@ -10,7 +10,7 @@ use crate::said::Said;
 const REASONS: [(&str, &[&str]); 4] = [
     ("clock", &["clocks-apart", "last-run-dated-ahead"]),
     ("plan", &["plan-file-other"]),
-    ("plant", &["outbox-too-full", "disk-too-full"]),
+    ("plant", &["outbox-too-full"]),
     ("other", &["thread-missing", "no-randomness", "settings-without-lane-or-plan"]),
 ];
 
@@ -18,7 +18,7 @@ const REASONS: [(&str, &[&str]); 4] = [
 pub(super) const STORE: &str = "store";
 
 /// The codes of reasons that are about one unit, and about nothing at the station.
-const OF_UNITS: [&str; 9] = [
+const OF_UNITS: [&str; 10] = [
     "unit-passed-already",
     "unit-passed-already-asks",
     "unit-being-judged",
@@ -27,6 +27,7 @@ const OF_UNITS: [&str; 9] = [
     "serial-character-wrong",
     "serial-with-blank",
     "serial-of-no-product",
+    "serial-reserved",
     "serial-check-digit-wrong",
 ];
 
@@ -114,6 +115,14 @@ mod tests {
 
     fn not_begun(error: StoreError) -> Event {
         Event::NotBegun { why: Said::of(&RunError::NotBegun(Box::new(error))) }
+    }
+
+    #[test]
+    fn every_code_that_decides_what_is_counted_exists() {
+        let known = crate::codes::all();
+        for code in REASONS.iter().flat_map(|(_, codes)| *codes).chain(&OF_UNITS) {
+            assert!(known.contains(&(*code).into()), "{code}");
+        }
     }
 
     #[test]

@@ -76,7 +76,7 @@ pub enum LabgridError {
     },
     /// What held labgrid's place has ended while the board was judged, so the place may be somebody else's.
     #[error(
-        "labgrid's place {place} is not ours any more: what held it ended with {status}; look at labgrid's coordinator"
+        "labgrid's place {place} is no longer held for this station: what held it ended with {status}; look at labgrid's coordinator"
     )]
     Lost {
         /// The place.

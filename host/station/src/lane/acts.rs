@@ -17,6 +17,7 @@ use serde_json::{Value, json};
 
 use super::Ruling;
 use super::kept_frame::keep;
+use super::kept_report;
 use crate::exit::Exit;
 use crate::plan::limits::{Limit, Maker, SAMPLES_DIFFERING};
 use crate::plan::{DeviceRule, Judging, Plan};
@@ -185,13 +186,17 @@ impl Common<'_> {
         let figures = match tested {
             Ok(figures) => figures,
             Err(error) => {
-                let cause = match &error {
-                    LinkTestError::Board(source) | LinkTestError::BrokeOff { source, .. } => source.cause(),
-                    LinkTestError::NoFrame(_) => Cause::Station,
+                let (cause, by): (_, &(dyn Error + 'static)) = match &error {
+                    LinkTestError::Board(source) | LinkTestError::BrokeOff { source, .. } => {
+                        (source.cause(), source)
+                    }
+                    LinkTestError::NoFrame(_) => (Cause::Station, &error),
                 };
                 // A try that met a board which answers wrong is not repeated without a person.
                 let is_incriminating = matches!(error, LinkTestError::BrokeOff { .. });
-                return Try { board: Some(seen), is_incriminating, ..Try::error(cause, &error) };
+                let found = Try::error(cause, &error);
+                let cause = RunCause::of(cause, &Problem::of(by).code);
+                return Try { board: Some(seen), cause, is_incriminating, ..found };
             }
         };
         let result = match figures.errors.wrong {
@@ -236,7 +241,7 @@ impl Common<'_> {
             remedy: at_the_bench(&report),
             suspects: report.suspects.iter().map(suspect).collect(),
             board: seen,
-            evidence: serde_json::to_value(&report).ok(),
+            evidence: kept_report::kept(self.spool, place, &report),
             ..Try::of(report.cause, found(&report))
         };
         result.measured(measured)

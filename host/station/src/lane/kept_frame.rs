@@ -18,15 +18,17 @@ const ENDING: &str = ".png";
 /// The file that names what is not kept, and why.
 pub(crate) const NOT_KEPT: &str = "not-kept.txt";
 
-/// Why a picture is not kept.
+/// Why a picture or a report is not kept.
 #[derive(Debug, thiserror::Error)]
-enum NotKept {
+pub(super) enum NotKept {
     #[error("it cannot be written as PNG; report this with the plan and the board")]
     Encode(#[source] io::Error),
     #[error("the frames of the run take more than {MOST_BYTES} bytes; let its steps have smaller frames")]
     NoRoom,
     #[error("the judge had no room for it; let its step have smaller frames")]
     LeftOut,
+    #[error("it is too long; let its step have fewer or smaller frames")]
+    LongReport,
     #[error(transparent)]
     Write(#[from] WriteAsideError),
 }
@@ -147,8 +149,8 @@ fn written(path: &Path, png: &[u8]) -> Result<(), NotKept> {
     Ok(write_aside(path, true, |file| file.write_all(png))?)
 }
 
-/// Reports that a picture is not kept, in the place where people look for it.
-fn tell(folder: &Path, name: &str, error: NotKept) {
+/// Reports that something is not kept, in the place where people look for it.
+pub(super) fn tell(folder: &Path, name: &str, error: NotKept) {
     let why = format!("{name} is not kept: {:#}", anyhow::Error::from(error));
     tracing::warn!("{why}");
     let list = File::options().create(true).append(true).open(folder.join(NOT_KEPT));

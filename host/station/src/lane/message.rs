@@ -8,6 +8,10 @@ use serde::{Deserialize, Serialize};
 use crate::record::{BoardSeen, StepRecord};
 use crate::said::Said;
 
+/// The longest line that a lane may report, in bytes. The report of a step is most of it: a frame that differs takes some 15 kB
+/// of it at 1920 columns.
+pub(crate) const MOST_LINE: usize = 32 << 20;
+
 /// What the lane is to do: the first line that it reads.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -11,6 +11,7 @@
 mod acts;
 pub mod child;
 pub(crate) mod kept_frame;
+mod kept_report;
 mod message;
 mod progress;
 pub mod supervisor;

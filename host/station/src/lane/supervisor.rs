@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 
 use halfrow::verdict::StoppedBy;
 
+use super::message::MOST_LINE;
 use super::{Control, Job, Message, Ruling};
 use crate::process_group::{kill, killed, waited, without_secrets};
 use crate::record::{BoardSeen, StepRecord};
@@ -22,10 +23,8 @@ const LOOK: Duration = Duration::from_millis(50);
 /// How long a lane may take to end once it is told to, or has nothing left to do.
 const GRACE: Duration = Duration::from_secs(10);
 
-/// The longest line that a lane may report, in bytes. One with all that a step measured has some thousands.
-const MOST_LINE: u64 = 16 << 20;
 /// How many lines may wait to be taken; after that the lane waits.
-const MOST_WAITING: usize = 256;
+const MOST_WAITING: usize = 4;
 /// How much is written down of what a lane reports, in bytes.
 const MOST_EVENTS: u64 = 64 << 20;
 /// How many characters are shown of a line that makes no sense.
@@ -271,7 +270,7 @@ fn hear(stdout: Option<ChildStdout>, to: SyncSender<String>) -> io::Result<()> {
     let hand_on = move || {
         let Some(mut stdout) = stdout.map(BufReader::new) else { return };
         let mut line = Vec::new();
-        while let Ok(1..) = stdout.by_ref().take(MOST_LINE).read_until(b'\n', &mut line) {
+        while let Ok(1..) = stdout.by_ref().take(MOST_LINE as u64).read_until(b'\n', &mut line) {
             let text = String::from_utf8_lossy(line.strip_suffix(b"\n").unwrap_or(&line)).into_owned();
             // Nobody listens any more once the run is over.
             if to.send(text).is_err() {

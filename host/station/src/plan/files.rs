@@ -1,6 +1,8 @@
 //! The files that a plan names, known by the hash of what was read from each.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::Read as _;
+use std::iter;
 use std::path::{Path, PathBuf};
 
 use halfrow::call::Input;
@@ -58,18 +60,37 @@ impl Files {
     }
 }
 
+/// The longest file of a plan that is compared, in bytes.
+const MOST_BYTES: u64 = 1 << 30;
+/// How much of it is in memory at a time.
+const PIECE: u64 = 1 << 20;
+
 /// The first of these files of the plan in the file `plan` that is not what was read when they were hashed.
 pub(crate) fn changed<'a>(plan: &Path, files: &'a [FileHash]) -> Option<&'a str> {
     let folder = plan.parent().unwrap_or(Path::new(""));
     let is_same =
-        |file: &FileHash| fs::read(folder.join(&file.path)).is_ok_and(|bytes| sha256([bytes]) == file.sha256);
+        |file: &FileHash| hash_of(&folder.join(&file.path)).is_some_and(|sha256| sha256 == file.sha256);
     files.iter().find(|file| !is_same(file)).map(|file| file.path.as_str())
+}
+
+/// The hash of what is in the regular file `path` now, read piece by piece: whoever asks has other lanes to serve.
+fn hash_of(path: &Path) -> Option<String> {
+    check_regular(path).ok()?;
+    let mut file = File::open(path).ok()?.take(MOST_BYTES);
+    let mut is_read = true;
+    let pieces = iter::from_fn(|| {
+        let mut piece = Vec::new();
+        is_read &= file.by_ref().take(PIECE).read_to_end(&mut piece).is_ok();
+        (!piece.is_empty()).then_some(piece)
+    });
+    let hash = sha256(pieces);
+    is_read.then_some(hash)
 }
 
 /// The SHA-256 of a plan: of its text, and of a line `path`, NUL, hash for every file that it names, in order.
 pub(crate) fn plan_hash(text: &str, files: &[FileHash]) -> String {
     let lines = files.iter().map(|FileHash { path, sha256 }| format!("\n{path}\0{sha256}"));
-    sha256(std::iter::once(text.to_owned()).chain(lines))
+    sha256(iter::once(text.to_owned()).chain(lines))
 }
 
 #[cfg(test)]

@@ -126,7 +126,7 @@ pub(super) fn meaning(rule: Rule) -> &'static str {
         Rule::Damage => "a damaged packet must have no effect",
         Rule::Once => "each request must have one answer, and most had two",
         Rule::Session => "a packet of another session must have no effect",
-        Rule::Held => "a board must be held for 10 s after its holder's last packet, unless it is taken over",
+        Rule::Held => "a board must be held for 10 s after its holder's last packet, but can be taken over",
         Rule::NewSession => "a greeting must open the next session, which keeps only tables and settings",
         Rule::Closed => "RESET must close a session at level 1 only, and drop tables at level 2 only",
         Rule::CommitCrc => "a commit whose CRC does not match the tables must be refused",

@@ -9,7 +9,7 @@ use crate::result::{Account, ContentKind, Defect, Evidence, MadeAs, Suspect};
 use crate::run::at_speed::Seen;
 use crate::run::plan::Generation;
 
-/// Bits of a seed, or of a frame's number, that a board may keep of it.
+/// Bits of a seed that a board may keep of it.
 const KEPT: [u32; 3] = [8, 16, 24];
 /// One in so many draws that a board may take as the edge of a step.
 const ONE_IN: [u32; 5] = [2, 4, 8, 32, 64];

@@ -216,11 +216,14 @@ impl Run<'_> {
         let Evidence { expected, found, .. } = &seen.evidence;
         let row = expected.height() - 1;
         let kept = (row, expected.row(row), found.row(row));
-        if let Some(made) = content_wrong(seen, content, self.plan.phase) {
+        let mut suspects = self.diagnose_seen(seen, "at speed", content.frame);
+        let explains_all = |first: &Suspect| first.is_known() && first.explained >= 1.0;
+        if !suspects.first().is_some_and(explains_all)
+            && let Some(made) = content_wrong(seen, content, self.plan.phase)
+        {
             return vec![made];
         }
         let (differing, _) = changed(kept);
-        let mut suspects = self.diagnose_seen(seen, "at speed", content.frame);
         // If the same frame came back right when streamed, none of the lines that it went through is wrong.
         let is_told = streamed != Streamed::Right
             && differing >= TELLING

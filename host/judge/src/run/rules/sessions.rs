@@ -44,7 +44,7 @@ impl Rules<'_, '_> {
         self.powered(|rules| rules.always(Self::greeted_again))?;
         // The session that follows drops what the link still holds of this one, with greater numbers of rows.
         self.thrice(Self::window_goes_down)?;
-        self.thrice(Self::taken_over)?;
+        self.taken_over()?;
         self.numbers_of_sessions()?;
         self.powered(Self::session_after_rows)?;
         if self.run.known_bursts().is_ok() {
@@ -125,7 +125,14 @@ impl Rules<'_, '_> {
             refused => refused,
         });
         self.judge(Rule::Held, Kind::Hello, said, &Said::Replied(Vec::new()))?;
-        self.greet_by(Board::take_back).map_err(of_board)
+        // Until this host has the board back, it is held by a host that is none: nothing may come in between.
+        let held = Answer::Refused { code: RefusalCode::Held as u8, detail: 0 };
+        self.greet_by(Board::take_back).map_err(|error| match error {
+            BoardError::NotGivenUp { .. } => {
+                broken(Rule::Held, Kind::Hello, Answer::Replied { payload: String::new() }, held)
+            }
+            error => of_board(error),
+        })
     }
 
     /// A host that speaks no version that the board speaks must be refused. Which is the board's newest is not known.

@@ -49,7 +49,7 @@ const KILLS: Metric = Metric {
 const REFUSALS: Metric = Metric {
     name: "halfrow_refusals",
     kind: Kind::Counter,
-    help: "Scans since the start that led to no run, or were not even taken, because of the station itself.",
+    help: "Scans since the start that led to no run, and acts that the audit could not take, because of the station itself.",
 };
 const RUNS: Metric =
     Metric { name: "halfrow_runs", kind: Kind::Counter, help: "Finished runs in the store." };

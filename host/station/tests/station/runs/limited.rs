@@ -35,6 +35,10 @@ fn a_lane_has_one_thread_to_judge_with_and_so_much_memory() {
     let environment = fs::read(format!("/proc/{lane}/environ")).unwrap();
     let files = limits.lines().find(|line| line.starts_with("Max file size")).unwrap();
     assert_eq!(files.split_whitespace().nth(3), Some("67108864"), "{files}");
+    // SIGXFSZ, 25, is kept back: what has no room in a file does not end a run.
+    let status = fs::read_to_string(format!("/proc/{lane}/status")).unwrap();
+    let blocked = status.lines().find_map(|line| line.strip_prefix("SigBlk:")).unwrap().trim();
+    assert_eq!(u64::from_str_radix(blocked, 16).unwrap() >> 24 & 1, 1, "{blocked}");
     assert!(environment.split(|&byte| byte == 0).any(|one| one == b"RAYON_NUM_THREADS=1"));
     running.kill().unwrap();
     running.wait().unwrap();

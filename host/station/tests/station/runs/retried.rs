@@ -100,5 +100,5 @@ fn a_step_during_which_the_session_was_lost_is_repeated_only_with_a_board_that_p
     let unnumbered = || "mock".to_owned();
     let (verdict, tries, told) = came("link", (unnumbered(), unnumbered()), Then::Reset);
     assert_eq!((verdict.as_str(), tries.as_str()), ("ERROR", "1 error"), "{told}");
-    assert!(told.contains("since a board that lost its session may be at fault, or another one"), "{told}");
+    assert!(told.contains("since the board lost its session: it may be at fault"), "{told}");
 }
