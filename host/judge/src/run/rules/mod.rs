@@ -255,6 +255,7 @@ impl<'a, 'run> Rules<'a, 'run> {
                     frames: 1,
                     suspect: Some(Box::new(first.defect.clone())),
                     others: first.others(),
+                    short: first.shortfall(),
                 };
                 return Err(End::Failed { check: CheckName::Rules, finding, suspects });
             }
