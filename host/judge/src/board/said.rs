@@ -218,6 +218,15 @@ impl Board {
         self.reset_to(Reset { level: ResetLevel::Rows, next_row }, Step::Request)
     }
 
+    /// Drops the rows inside the board, which then waits for a number that no row of the session has had. So whatever is still
+    /// under way, no row enters before the answer. Returns for how many rows the board then gives credit.
+    ///
+    /// # Errors
+    /// Like [`Self::credit_after_reset`].
+    pub(crate) fn credit_for_new_rows(&mut self) -> Result<u32, BoardError> {
+        self.credit_after_reset_to(self.credit().max(self.conversation.session.rows_sent))
+    }
+
     /// Waits until `row`, which was given and is not acknowledged, comes with a count of at least `repeats`. It is asked for
     /// first if `repeats` is not 0. Each retry asks for it again, together with the row `after` it, which pushes it out of the
     /// core.

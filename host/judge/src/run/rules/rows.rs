@@ -8,13 +8,14 @@ use halfrow_protocol::samples::pack;
 
 use super::compared::Compared;
 use super::counts::equal;
-use super::{FIRST_FACTOR, Rules, broken, longer, of_board, of_rows, other_row, payload};
+use super::{FIRST_FACTOR, Rules, longer, of_board, of_rows, other_row, payload};
 use crate::board::BoardError;
 use crate::reference::correct;
-use crate::result::{Answer, CheckName, Counter, Finding, Rule};
+use crate::result::{CheckName, Counter, Finding, Rule};
 use crate::run::Generation;
 use crate::run::at_speed::{BY_TURNS, fit};
 use crate::run::findings::End;
+use crate::run::window::window_wrong;
 use crate::verdict::Cause;
 
 /// The generation with which rows are made.
@@ -148,8 +149,7 @@ impl Rules<'_, '_> {
     pub(super) fn must_have_credit(&mut self, rows: u32) -> Result<(), End> {
         let banks = self.capabilities.row_banks_in.into();
         if rows != banks {
-            let (right, found) = (Answer::Credit { rows: banks }, Answer::Credit { rows });
-            return Err(broken(Rule::Window, Kind::Reset, right, found));
+            return Err(End::failed(CheckName::Rules, window_wrong(banks, rows)));
         }
         self.right += 1;
         Ok(())
