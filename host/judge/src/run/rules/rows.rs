@@ -29,6 +29,8 @@ const LAST: u8 = 1;
 const PLACE: usize = 12;
 /// How often a row is given until it is inside the core.
 pub(super) const TRIES: u32 = 8;
+/// How often the board must say of a row that it has entered and is not inside.
+const LOOKS: u32 = 3;
 /// How often a row is asked for again.
 const AGAIN: u16 = 3;
 /// The lowest bit of a row's number that a session does not reach by counting.
@@ -165,8 +167,21 @@ impl Rules<'_, '_> {
         self.given.numbers.push(number);
     }
 
-    /// Gives row 0, and waits until it is inside the core. The wire does not say how long a row may wait before that, so
-    /// a row that does not enter makes no board wrong.
+    /// Whether the board says of row 0, whose successor it does not have, that it has entered the core and that none is inside:
+    /// each time in one answer, since an old RESET may drop the row.
+    fn says_entered(&mut self, place: RowPlace) -> Result<bool, End> {
+        let entered = place.row_sequence + 1 + u32::from(self.capabilities.row_banks_in);
+        for _ in 0..LOOKS {
+            let (status, window) = self.run.board.status_and_window().map_err(of_board)?;
+            if status.core_busy == 1 || window != entered {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Gives row 0 of several, and waits until it is inside the core. The wire does not say how long a row may wait before
+    /// that, so a row that does not enter makes no board wrong.
     pub(super) fn enter(&mut self) -> Result<(), End> {
         let place = self.place(0);
         let mut has_come = false;
@@ -183,6 +198,9 @@ impl Rules<'_, '_> {
         }
         let rule = Some(Rule::Inside);
         let finding = Finding::CounterWrong { counter: Counter::CoreBusy, counted: 0, right: 1, rule };
+        if self.says_entered(place)? {
+            return Err(End::failed(CheckName::Rules, finding));
+        }
         Err(End::error(CheckName::Rules, Cause::Station, finding))
     }
 
