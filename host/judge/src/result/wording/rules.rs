@@ -93,6 +93,7 @@ fn row_part(part: RowPart) -> String {
         }
         RowPart::Generation { found, right } => format!("generation {found} instead of {right}"),
         RowPart::Pauses { found, right } => format!("pauses of {found} board clocks instead of {right}"),
+        RowPart::Repeats { found, right } => format!("a count of {found} repeats instead of {right}"),
         RowPart::Entered { found: Some(found), right } => {
             format!("{found:08x} instead of {right:08x} as the CRC of the samples that entered the core")
         }

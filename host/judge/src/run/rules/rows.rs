@@ -266,9 +266,10 @@ impl Rules<'_, '_> {
     /// A row must come as often as it is asked for, until it is acknowledged.
     fn again(&mut self) -> Result<(), End> {
         self.configure(2)?;
-        let Generation { tables, kernel, .. } = self.small.made(0, 2, GENERATION);
-        let frame = self.small.frame(FRAME, &tables).frame;
-        let right = correct(&tables, &kernel, &frame).ok();
+        let made = self.small.made(0, 2, GENERATION);
+        let frame = self.small.frame(FRAME, &made.tables).frame;
+        let right = correct(&made.tables, &made.kernel, &frame).ok();
+        let compared = Compared::default().with(&self.small, [FRAME], &made);
         self.give(0);
         self.give(1);
         let (first, second) = (self.place(0), self.place(1));
@@ -286,7 +287,9 @@ impl Rules<'_, '_> {
             let beside = (came.clocks, came.entered.filter(|_| self.small.names_entered));
             let is_same = *at_first.get_or_insert(beside) == beside;
             if !is_right || !is_counted || !is_same || came.generation != GENERATION {
-                return Err(other_row(Rule::Again, 0, FRAME, Vec::new()));
+                let counted = if is_counted { came.repeats } else { repeats };
+                let differs = compared.differing_again(&came.row(&first), counted);
+                return Err(other_row(Rule::Again, 0, FRAME, differs));
             }
         }
         // Nothing is inside now, but both rows are still kept.
