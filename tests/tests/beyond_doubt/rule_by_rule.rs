@@ -328,14 +328,7 @@ fn a_board_that_counts_less_than_came_fails() {
 
 #[test]
 fn a_row_that_comes_again_with_other_fields_fails() {
-    let told = [
-        "its first sample",
-        "its last sample",
-        "pauses of",
-        "the CRC of",
-        "1 wrong sample",
-        "a count of 3 repeats",
-    ];
+    let told = ["its first", "its last", "pauses of", "the CRC of", "1 wrong sample", "a count of 3 repeats"];
     for (field, told) in told.into_iter().enumerate() {
         let report = altering(move |toward, packet| match packet.reply() {
             Some(Reply::RowOut(mut row)) if toward == Toward::Host && row.repeats > 1 => {

@@ -3,12 +3,13 @@
 
 use halfrow::result::{Answer, Finding, Report, Rule};
 use halfrow::verdict::Verdict;
-use halfrow_protocol::Kind;
+use halfrow_mock::Options;
 use halfrow_protocol::message::{Refusal, RefusalCode};
+use halfrow_protocol::{Kind, Reply};
 use halfrow_tests::altered::{Passing, Toward, judge, judge_each};
 use halfrow_tests::system::System;
 
-use super::rules::refusal;
+use super::rules::{broken, carried_out, refusal, said_by};
 
 /// Where a RESET names the row that the board then waits for (WIRE.md, 03).
 const NEXT_ROW: std::ops::Range<usize> = 1..5;
@@ -90,4 +91,25 @@ fn a_window_of_an_earlier_session_makes_no_sound_board_fail() {
     });
     assert!(refused.try_recv().is_ok(), "{}", report.headline());
     assert_ne!(report.verdict(), Verdict::Fail, "{}", report.headline());
+}
+
+/// Whatever else came with the row or the request in which it showed first.
+#[test]
+fn the_rule_that_is_told_is_the_one_that_is_broken() {
+    let report = said_by(&Options::default(), |packet| {
+        let refusal = refusal(&packet).filter(is_without_credit);
+        let code = RefusalCode::Row;
+        Some(
+            refusal
+                .map_or_else(|| packet.clone(), |it| packet.saying(&Reply::Refusal(Refusal { code, ..it }))),
+        )
+    });
+    assert_eq!(broken(&report).0, Rule::Credit, "{}", report.headline());
+    let report = said_by(&Options::default(), |packet| {
+        let of_records = |it: &Refusal| (it.kind, it.code) == (Kind::Records.code(), RefusalCode::Range);
+        Some(
+            refusal(&packet).filter(of_records).map_or_else(|| packet.clone(), |it| carried_out(&packet, it)),
+        )
+    });
+    assert_eq!(broken(&report).0, Rule::Records, "{}", report.headline());
 }

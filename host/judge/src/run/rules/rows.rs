@@ -89,12 +89,20 @@ impl Rules<'_, '_> {
         self.refused(rule, &Request::RowIn(RowIn { place, packed: &black(place) }), code, 0)
     }
 
-    /// The same with what a board must ignore: the other flags, the generation, and a byte after the samples.
-    fn marked_row_refused(&mut self, place: RowPlace, code: RefusalCode) -> Result<(), End> {
+    /// The same with what a board must ignore: the other flags, the generation, and a byte after the samples. Ends with
+    /// `rule` if the row is not refused without all that either.
+    fn marked_row_refused(&mut self, rule: Rule, place: RowPlace, code: RefusalCode) -> Result<(), End> {
         let mut bytes = longer(&Request::RowIn(RowIn { place, packed: &black(place) }));
         bytes[FLAGS] |= !LAST;
         bytes[FLAGS + 1] = GENERATION;
-        self.bytes_refused(Rule::Skipped, Kind::RowIn, &bytes, code, 0)
+        let marked = self.bytes_refused(Rule::Skipped, Kind::RowIn, &bytes, code, 0);
+        self.or_plain(marked, |rules| {
+            // Should the board have taken the row, it would know this one.
+            let before = rules.run.board.acknowledged();
+            rules.drop_rows()?;
+            let row_sequence = place.row_sequence + (rules.run.board.acknowledged() - before);
+            rules.row_refused(rule, RowPlace { row_sequence, ..place }, code)
+        })
     }
 
     /// After a RESET only row 0 in its place must be taken, and nothing beyond the window.
@@ -113,8 +121,9 @@ impl Rules<'_, '_> {
         }
         self.odd_rows(first)?;
         let credit = self.run.board.credit();
-        self.marked_row_refused(second, RefusalCode::Row)?;
-        self.marked_row_refused(RowPlace { row_sequence: credit, ..first }, RefusalCode::Credit)?;
+        self.marked_row_refused(Rule::RowPlace, second, RefusalCode::Row)?;
+        let beyond = RowPlace { row_sequence: credit, ..first };
+        self.marked_row_refused(Rule::Credit, beyond, RefusalCode::Credit)?;
         let beyond = (0..u32::BITS).filter_map(|bit| credit.checked_add(1 << bit));
         for row_sequence in beyond.chain([credit]) {
             let place = RowPlace { row_sequence, ..first };
