@@ -39,3 +39,4 @@ mod stale_packets;
 mod stalls;
 mod told_at_speed;
 mod told_late;
+mod windows;

@@ -55,6 +55,7 @@ pub(crate) fn soaked() -> Report {
         repetition: Repetition::Trapped { frames: 18, row: 3, streamed: Streamed::NotTried, kept: None },
         suspect: Some(Box::new(defect.clone())),
         others: 0,
+        short: None,
     };
     let suspects = vec![Suspect { defect, account: Account::Nothing, explained: 0.0 }];
     let (seed, generation) = (0x08d1_2e6a, 2);
@@ -105,6 +106,7 @@ pub(crate) fn fail() -> (Report, Vec<Evidence>) {
         differing_frames: 1,
         frames: 2,
         others: 0,
+        short: None,
         suspect: Some(Box::new(defect.clone())),
     };
     let report = Report {

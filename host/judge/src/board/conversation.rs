@@ -45,7 +45,7 @@ pub(super) struct Session {
     /// All requests that were answered twice though sent once.
     pub(super) second_answers: u64,
     /// The row sequence number after that of the last row sent.
-    rows_sent: u32,
+    pub(super) rows_sent: u32,
     /// Rows that may still come back although nobody takes them.
     pub(super) unwanted: u32,
     asked: LastAsked,

@@ -315,6 +315,12 @@ impl BoardError {
         )
     }
 
+    /// Whether the board refused a row because it was beyond the window.
+    #[must_use]
+    pub(crate) fn is_without_credit(&self) -> bool {
+        matches!(self, Self::Refused { kind: Kind::RowIn, refusal } if refusal.code == RefusalCode::Credit)
+    }
+
     /// Whether something answers or holds the port, but is no board for this run at present.
     #[must_use]
     pub(crate) fn shows_device(&self) -> bool {

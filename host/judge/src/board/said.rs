@@ -2,7 +2,9 @@
 
 use std::iter;
 
-use halfrow_protocol::message::{Burst, Refusal, RefusalCode, Reply, Request, Reset, ResetLevel, RowPlace};
+use halfrow_protocol::message::{
+    Burst, Refusal, RefusalCode, Reply, Request, Reset, ResetLevel, RowPlace, Status,
+};
 use halfrow_protocol::{Kind, Packet, samples};
 
 use super::answer::{OwnedPacket, take_reply};
@@ -216,6 +218,29 @@ impl Board {
     /// [`BoardError`] when the board refuses or does not answer.
     pub(crate) fn go_on_from(&mut self, next_row: u32) -> Result<(), BoardError> {
         self.reset_to(Reset { level: ResetLevel::Rows, next_row }, Step::Request)
+    }
+
+    /// The board's counters, and the window in the same answer.
+    ///
+    /// # Errors
+    /// [`BoardError`] when no answer comes.
+    pub(crate) fn status_and_window(&mut self) -> Result<(Status, u32), BoardError> {
+        let request = Request::Status { clear: false };
+        let answer = self.conversation.ask(&Asking::Request(&request), Step::Request, |_| true)?;
+        let status = take_reply(Kind::Status, &answer, |reply| match reply {
+            Reply::Status(status) => Some(status),
+            _ => None,
+        })?;
+        Ok((status, answer.header.window))
+    }
+
+    /// Drops the rows inside the board, which then waits for a number that no row of the session has had. So whatever is still
+    /// under way, no row enters before the answer. Returns for how many rows the board then gives credit.
+    ///
+    /// # Errors
+    /// Like [`Self::credit_after_reset`].
+    pub(crate) fn credit_for_new_rows(&mut self) -> Result<u32, BoardError> {
+        self.credit_after_reset_to(self.credit().max(self.conversation.session.rows_sent))
     }
 
     /// Waits until `row`, which was given and is not acknowledged, comes with a count of at least `repeats`. It is asked for

@@ -90,6 +90,7 @@ fn of_the_board() -> [Finding; 19] {
             frames: 16,
             suspect: Some(defect()),
             others: 0,
+            short: None,
         },
         late_row(),
         Finding::CounterWrong { counter: Counter::RowsOut, counted: 17_279, right: 17_280, rule: None },
@@ -157,6 +158,7 @@ fn on_entry_and_at_speed() -> [Finding; 6] {
             },
             suspect: Some(Box::new(Defect::OnlyAtSpeed { row: Some(3), samples: 1, bits: vec![11] })),
             others: 0,
+            short: None,
         },
         Finding::MiscountedAtSpeed { frame: 17, count: BurstCount::Rows, counted: 1079, right: 1080 },
         Finding::InCorner {

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     Account, Answer, BoardKind, BrokenOff, BurstCount, ClockSeen, Corner, Counter, Defect, Doubt,
     EqualAtSpeed, FlippedBit, LateRows, NoBurst, NumberedRow, Problem, RepeatedRow, Repetition, Rule,
+    Shortfall,
 };
 
 /// What a check or a whole run came to. In JSON `{"code": …, "parameters": …}`; a [`Problem`] has its own code.
@@ -169,6 +170,9 @@ pub enum Finding {
         /// Other causes that explain all of it as well.
         #[serde(default)]
         others: usize,
+        /// What the cause leaves unexplained, if anything.
+        #[serde(default)]
+        short: Option<Shortfall>,
     },
     /// The board's own CRC shows that rows were changed before they entered the core.
     RowsEnteredChanged {
@@ -205,6 +209,9 @@ pub enum Finding {
         /// Other causes that explain all of it as well.
         #[serde(default)]
         others: usize,
+        /// What the cause leaves unexplained, if anything.
+        #[serde(default)]
+        short: Option<Shortfall>,
     },
     /// A frame that the board made on its own has the right samples, but the board counted something wrongly.
     MiscountedAtSpeed {

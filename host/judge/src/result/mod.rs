@@ -66,7 +66,7 @@ pub use rule::{Answer, NumberedRow, RepeatedRow, RowPart, Rule};
 pub(crate) use sha256::little_endian;
 pub use sha256::sha256;
 pub use soak::{SoakChart, SoakDifference, SoakInterval, SoakLength, SoakReport};
-pub use suspect::{Account, Suspect};
+pub use suspect::{Account, Shortfall, Suspect};
 pub use within::{CoveragePoint, WithinPart, WithinReport};
 
 /// A finished run of `verify` or `soak`.

@@ -182,6 +182,13 @@ pub enum RowPart {
         /// By the seed of the gaps.
         right: u16,
     },
+    /// The count of how often it was sent before.
+    Repeats {
+        /// What it is.
+        found: u16,
+        /// What it must be.
+        right: u16,
+    },
     /// The CRC of the samples that entered the core.
     Entered {
         /// What it is; none if it names none.

@@ -53,7 +53,31 @@ pub enum Account {
     Nothing,
 }
 
+/// What a suspect leaves unexplained of the samples that were examined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Shortfall {
+    /// How many differ from the reference.
+    pub differing: usize,
+    /// How many of these the defect gives, to the bit.
+    pub explained: usize,
+    /// Samples that the defect would change and that are right.
+    pub contradicted: usize,
+}
+
 impl Suspect {
+    /// What it leaves unexplained; none if it explains everything, or names no defect that could.
+    #[must_use]
+    pub fn shortfall(&self) -> Option<Shortfall> {
+        match self.account {
+            Account::Samples { differing, explained, contradicted, .. }
+                if explained < differing || contradicted > 0 =>
+            {
+                Some(Shortfall { differing, explained, contradicted })
+            }
+            _ => None,
+        }
+    }
+
     /// How many other defects explain everything equally well; with any, this one is not certain.
     #[must_use]
     pub fn others(&self) -> usize {

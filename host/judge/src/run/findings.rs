@@ -21,7 +21,15 @@ pub(super) enum End {
     /// The board is wrong.
     Failed { check: CheckName, finding: Finding, suspects: Vec<Suspect> },
     /// It could not be judged.
-    Error { check: CheckName, cause: Cause, finding: Finding, unreachable: bool, outage: bool, answer: bool },
+    Error {
+        check: CheckName,
+        cause: Cause,
+        finding: Finding,
+        unreachable: bool,
+        outage: bool,
+        answer: bool,
+        no_credit: bool,
+    },
 }
 
 impl End {
@@ -30,13 +38,14 @@ impl End {
         use BoardError::{Link, NoAnswer, SessionLost, TurnedAway};
         let unreachable = matches!(error, Link { .. } | TurnedAway(_) | NoAnswer { .. } | SessionLost);
         let (cause, finding) = (error.cause(), Problem::of(error).into());
-        let (outage, answer) = (error.is_outage(), error.is_answer());
-        Self::Error { check, cause, finding, unreachable, outage, answer }
+        let (outage, answer, no_credit) = (error.is_outage(), error.is_answer(), error.is_without_credit());
+        Self::Error { check, cause, finding, unreachable, outage, answer, no_credit }
     }
 
     pub(super) fn error(check: CheckName, cause: Cause, finding: impl Into<Finding>) -> Self {
         let finding = finding.into();
-        Self::Error { check, cause, finding, unreachable: false, outage: false, answer: false }
+        let (unreachable, outage, answer, no_credit) = (false, false, false, false);
+        Self::Error { check, cause, finding, unreachable, outage, answer, no_credit }
     }
 
     pub(super) fn failed(check: CheckName, finding: Finding) -> Self {
@@ -72,6 +81,11 @@ impl End {
     /// Whether the board gave an answer that no sound board gives after what the run asked of it.
     pub(super) fn is_answer(&self) -> bool {
         matches!(self, Self::Error { answer: true, .. })
+    }
+
+    /// Whether the board refused a row of the run because it was beyond the window.
+    pub(super) fn is_without_credit(&self) -> bool {
+        matches!(self, Self::Error { no_credit: true, .. })
     }
 
     pub(super) fn is_unreachable(&self) -> bool {

@@ -48,6 +48,7 @@ mod threads;
 mod upload;
 mod variations;
 mod what_came;
+mod window;
 mod within;
 
 use tracing::error_span;

@@ -66,7 +66,7 @@ impl Run<'_> {
     pub(super) fn all_but_identity(&mut self) -> Result<(), End> {
         let schedule = self.plan.schedule(&Build::of(&self.board.capabilities));
         let (plan, generations) = (self.plan, self.generations.clone());
-        thread::scope(|scope| {
+        let ended = thread::scope(|scope| {
             let frames = prepared::ahead(scope, plan, &schedule, generations);
             let frames = frames.map_err(|error| error.during(CheckName::Frames))?;
             self.progress.step(Step::TestTheLink);
@@ -80,7 +80,8 @@ impl Run<'_> {
             self.rules(last)?;
             self.note_not_exercised();
             Ok(())
-        })
+        });
+        ended.map_err(|end| self.told_of_window(end))
     }
 
     /// Streams the segments and returns the last one streamed. It ends early where tables have changed or, if the plan

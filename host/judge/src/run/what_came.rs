@@ -104,6 +104,7 @@ impl Run<'_> {
             frames,
             suspect: suspects.first().map(|suspect| Box::new(suspect.defect.clone())),
             others: suspects.first().map_or(0, Suspect::others),
+            short: suspects.first().and_then(Suspect::shortfall),
         };
         Err(End::Failed { check: CheckName::Frames, finding, suspects })
     }

@@ -103,8 +103,8 @@ pub(super) fn sentence(finding: &Finding) -> Option<String> {
             count(*frames, "frame")
         ),
         Finding::NothingAtSpeed { reason } => format!("nothing was tested at speed: {}", because(*reason)),
-        Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others } => {
-            let suspect = suspect.as_deref().map(|suspect| suspicion(Some(suspect), *others));
+        Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others, short } => {
+            let suspect = suspect.as_deref().map(|suspect| suspicion(Some(suspect), *others, *short));
             differs((*wrong, *frames), *first, repetition, suspect)
         }
         Finding::MiscountedAtSpeed { count: BurstCount::Records, counted, right, .. } => {

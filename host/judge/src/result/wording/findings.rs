@@ -109,9 +109,9 @@ fn of_board(finding: &Finding) -> String {
             "the tables read back right, but the board finds another CRC when it commits them".to_owned()
         }
         Finding::TablesChanged { found } => format!("the tables changed during the run: {}", sentence(found)),
-        Finding::SamplesDiffer { differences, samples, differing_frames, frames, suspect, others } => {
+        Finding::SamplesDiffer { differences, samples, differing_frames, frames, suspect, others, short } => {
             let differ = samples_differ((*differences, *samples), (*differing_frames, *frames));
-            format!("{differ}; {}", suspicion(suspect.as_deref(), *others))
+            format!("{differ}; {}", suspicion(suspect.as_deref(), *others, *short))
         }
         Finding::CounterWrong { counter, counted, right, rule } => {
             let (counted, right) = (grouped(*counted), grouped(*right));

@@ -13,7 +13,8 @@ mod places;
 mod rules;
 mod tables;
 
-use super::{Defect, Memory};
+use super::{Defect, Memory, Shortfall};
+use crate::words::grouped;
 
 pub(crate) use at_speed::{named_clock, seen_of_clock};
 pub use bench::at_the_bench;
@@ -70,10 +71,10 @@ pub fn place(defect: &Defect) -> String {
 }
 
 /// The defect that is suspected behind differing samples, as the end of a sentence. `others` is how many more explain all of
-/// them.
-fn suspicion(suspect: Option<&Defect>, others: usize) -> String {
+/// them, and `short` what it leaves unexplained.
+fn suspicion(suspect: Option<&Defect>, others: usize, short: Option<Shortfall>) -> String {
     let unsure = match others {
-        0 => String::new(),
+        0 => short.map(but).unwrap_or_default(),
         1 => ", or another defect with the same effect".to_owned(),
         more => format!(", or one of {more} others with the same effect"),
     };
@@ -85,6 +86,20 @@ fn suspicion(suspect: Option<&Defect>, others: usize) -> String {
         }
         Some(suspect) => format!("the suspect is {}{unsure}", place(suspect)),
     }
+}
+
+/// Why a suspect is not to be believed as it stands, to follow it.
+fn but(Shortfall { differing, explained, contradicted }: Shortfall) -> String {
+    let rest = match contradicted {
+        0 => None,
+        1 => Some("would change a sample that is right".to_owned()),
+        more => Some(format!("would change {} samples that are right", grouped(more))),
+    };
+    // Rounded down, so that 100 % is all of them.
+    let share = (explained < differing).then(|| explained * 100 / differing);
+    let share = share.map(|share| format!("explains only {share} % of what differs"));
+    let told: Vec<_> = share.into_iter().chain(rest).collect();
+    format!(", but it {}", told.join(" and "))
 }
 
 /// Where the designer of the board should look next, in one sentence.
@@ -177,6 +192,7 @@ mod tests {
             frames: 3607,
             suspect: Some(Box::new(suspect)),
             others: 0,
+            short: None,
         };
         assert_eq!(
             sentence(&differ),
@@ -189,7 +205,7 @@ mod tests {
     fn a_suspect_that_is_one_of_several_is_not_told_as_the_fact() {
         let suspect = Some(Box::new(Defect::OutputDataStuck { bit: 9, value: 1 }));
         let (wrong, differing_frames, first) = (1, 1, 0);
-        let differ = |others| {
+        let differ = |others, short| {
             let [streamed, at_speed] = [suspect.clone(), suspect.clone()];
             let (differences, samples, frames) = (7, 99, 2);
             let streamed = Finding::SamplesDiffer {
@@ -199,18 +215,28 @@ mod tests {
                 frames,
                 suspect: streamed,
                 others,
+                short,
             };
             let (frames, suspect) = (2, at_speed);
             let repetition = Repetition::NotNeeded {};
-            let at_speed = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others };
+            let at_speed =
+                Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others, short };
             [streamed, at_speed].map(|finding| sentence(&finding))
         };
-        for (others, end) in [
-            (0, "the suspect is corrected samples, bit 9 stuck at 1"),
-            (1, "stuck at 1, or another defect with the same effect"),
-            (3, "stuck at 1, or one of 3 others with the same effect"),
+        let short = |explained, contradicted| Some(Shortfall { differing: 2000, explained, contradicted });
+        for (others, short, end) in [
+            (0, None, "the suspect is corrected samples, bit 9 stuck at 1"),
+            (1, None, "stuck at 1, or another defect with the same effect"),
+            (3, None, "stuck at 1, or one of 3 others with the same effect"),
+            (0, short(1044, 0), "stuck at 1, but it explains only 52 % of what differs"),
+            (
+                0,
+                short(1999, 1),
+                "it explains only 99 % of what differs and would change a sample that is right",
+            ),
+            (0, short(2000, 1081), "stuck at 1, but it would change 1,081 samples that are right"),
         ] {
-            for told in differ(others) {
+            for told in differ(others, short) {
                 assert!(told.ends_with(end), "{told}");
             }
         }

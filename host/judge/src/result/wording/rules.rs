@@ -93,6 +93,7 @@ fn row_part(part: RowPart) -> String {
         }
         RowPart::Generation { found, right } => format!("generation {found} instead of {right}"),
         RowPart::Pauses { found, right } => format!("pauses of {found} board clocks instead of {right}"),
+        RowPart::Repeats { found, right } => format!("a count of {found} repeats instead of {right}"),
         RowPart::Entered { found: Some(found), right } => {
             format!("{found:08x} instead of {right:08x} as the CRC of the samples that entered the core")
         }
@@ -145,7 +146,7 @@ pub(super) fn meaning(rule: Rule) -> &'static str {
         Rule::Banks => "the board must keep row_banks_out rows until they are acknowledged, and make no more",
         Rule::Wide => "rows of the greatest width must come back right",
         Rule::RowNumber => "rows must keep their numbers, however large these are",
-        Rule::Burst => "an impossible burst must be refused",
+        Rule::Burst => "an impossible burst must be refused, and no other",
         Rule::UnderWay => "what must not be done while a burst is under way must be refused",
         Rule::Records => "records must be kept until the host has them, and sent again when asked for",
         Rule::Ended => "a burst must end where it is told to",

@@ -102,7 +102,8 @@ impl Run<'_> {
         }
         let suspect = suspects.first().map(|suspect| Box::new(suspect.defect.clone()));
         let others = suspects.first().map_or(0, Suspect::others);
-        let finding = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others };
+        let short = suspects.first().and_then(Suspect::shortfall);
+        let finding = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others, short };
         End::Failed { check: CheckName::AtSpeed, finding, suspects }
     }
 

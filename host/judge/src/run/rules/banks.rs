@@ -208,8 +208,10 @@ impl Rules<'_, '_> {
         let came = self.came(kept, came)?;
         kept.asked += 1;
         let is_counted = came.repeats == repeats || !self.is_calm(kept.retries)?;
-        if !is_counted || !kept.right.is_right(&came.row(&place)) {
-            return Err(other_row(Rule::Banks, place.row.into(), place.frame, Vec::new()));
+        let row = came.row(&place);
+        if !is_counted || !kept.right.is_right(&row) {
+            let differs = kept.right.differing_again(&row, if is_counted { came.repeats } else { repeats });
+            return Err(other_row(Rule::Banks, place.row.into(), place.frame, differs));
         }
         self.right += 1;
         Ok(())

@@ -117,9 +117,11 @@ impl Rules<'_, '_> {
             self.refused(Rule::Burst, &Request::Burst(burst), RefusalCode::Range, field)?;
         }
         let unnamed = Request::Burst(Burst { burst: 0, ..right });
-        for request in [unnamed, Request::Records { from: u32::MAX }] {
+        for (rule, request) in [(Rule::Burst, unnamed), (Rule::Records, Request::Records { from: u32::MAX })]
+        {
             let kind = request.kind();
-            self.bytes_refused(Rule::Skipped, kind, &longer(&request), RefusalCode::Range, 0)?;
+            let longer = self.bytes_refused(Rule::Skipped, kind, &longer(&request), RefusalCode::Range, 0);
+            self.or_plain(longer, |rules| rules.refused(rule, &request, RefusalCode::Range, 0))?;
         }
         Ok(())
     }

@@ -124,12 +124,25 @@ impl Compared {
         right.is_some_and(|right| right.is_told_of(row) && right.frame.row(row.row) == row.samples)
     }
 
+    /// What is wrong with a row, of everything that came with it.
+    pub(super) fn differing(&self, row: &ReturnedRow<'_>) -> Vec<RowPart> {
+        let right = self.right.iter().find(|right| right.number == row.frame);
+        right.map(|right| right.differing(row)).unwrap_or_default()
+    }
+
+    /// What is wrong with a row that was sent again and whose count of repeats must be `repeats`.
+    pub(super) fn differing_again(&self, row: &ReturnedRow<'_>, repeats: u16) -> Vec<RowPart> {
+        let (found, right) = (row.repeats, repeats);
+        let counted = (found != right).then_some(RowPart::Repeats { found, right });
+        self.differing(row).into_iter().chain(counted).collect()
+    }
+
     /// What is wrong with a row that is not right. Its samples are diagnosed only if they are those of no right row.
     fn wrong(&self, row: &ReturnedRow<'_>) -> WrongRow {
         let mut others = self.right.iter().flat_map(|right| right.frame.rows());
         let is_other = others.any(|other| other == row.samples);
         let right = self.right.iter().find(|right| right.number == row.frame);
-        let differs = right.map(|right| right.differing(row)).unwrap_or_default();
+        let differs = self.differing(row);
         let right = right.filter(|right| right.is_told_of(row) && !is_other);
         WrongRow { row: row.row, frame: row.frame, differs, seen: right.and_then(|right| right.seen(row)) }
     }

@@ -199,6 +199,26 @@ impl<'a, 'run> Rules<'a, 'run> {
         self.judge(rule, kind, said, &right)
     }
 
+    /// What `marked` came to, a request with something that must be ignored. If it broke a rule, and does so without that as
+    /// well, as `plain` tries, ends with the latter.
+    fn or_plain(
+        &mut self,
+        marked: Result<(), End>,
+        plain: impl FnOnce(&mut Self) -> Result<(), End>,
+    ) -> Result<(), End> {
+        match marked {
+            Err(found) if found.is_failed() => {
+                let changes = self.run.board.repeated_changes();
+                Err(plain(self).err().filter(End::is_failed).unwrap_or_else(|| {
+                    // Whatever came of that cannot have caused what was found before it.
+                    self.run.board.excuse_changes(changes);
+                    found
+                }))
+            }
+            ended => ended,
+        }
+    }
+
     /// Whether the board has the row in `payload`, by what it counts when that comes once more.
     fn has_taken(&mut self, payload: &[u8]) -> bool {
         let Ok(before) = self.run.board.status(false) else { return false };
@@ -255,6 +275,7 @@ impl<'a, 'run> Rules<'a, 'run> {
                     frames: 1,
                     suspect: Some(Box::new(first.defect.clone())),
                     others: first.others(),
+                    short: first.shortfall(),
                 };
                 return Err(End::Failed { check: CheckName::Rules, finding, suspects });
             }

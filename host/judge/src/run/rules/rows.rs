@@ -8,13 +8,14 @@ use halfrow_protocol::samples::pack;
 
 use super::compared::Compared;
 use super::counts::equal;
-use super::{FIRST_FACTOR, Rules, broken, longer, of_board, of_rows, other_row, payload};
+use super::{FIRST_FACTOR, Rules, longer, of_board, of_rows, other_row, payload};
 use crate::board::BoardError;
 use crate::reference::correct;
-use crate::result::{Answer, CheckName, Counter, Finding, Rule};
+use crate::result::{CheckName, Counter, Finding, Rule};
 use crate::run::Generation;
 use crate::run::at_speed::{BY_TURNS, fit};
 use crate::run::findings::End;
+use crate::run::window::window_wrong;
 use crate::verdict::Cause;
 
 /// The generation with which rows are made.
@@ -28,6 +29,8 @@ const LAST: u8 = 1;
 const PLACE: usize = 12;
 /// How often a row is given until it is inside the core.
 pub(super) const TRIES: u32 = 8;
+/// How often the board must say of a row that it has entered and is not inside.
+const LOOKS: u32 = 3;
 /// How often a row is asked for again.
 const AGAIN: u16 = 3;
 /// The lowest bit of a row's number that a session does not reach by counting.
@@ -86,12 +89,20 @@ impl Rules<'_, '_> {
         self.refused(rule, &Request::RowIn(RowIn { place, packed: &black(place) }), code, 0)
     }
 
-    /// The same with what a board must ignore: the other flags, the generation, and a byte after the samples.
-    fn marked_row_refused(&mut self, place: RowPlace, code: RefusalCode) -> Result<(), End> {
+    /// The same with what a board must ignore: the other flags, the generation, and a byte after the samples. Ends with
+    /// `rule` if the row is not refused without all that either.
+    fn marked_row_refused(&mut self, rule: Rule, place: RowPlace, code: RefusalCode) -> Result<(), End> {
         let mut bytes = longer(&Request::RowIn(RowIn { place, packed: &black(place) }));
         bytes[FLAGS] |= !LAST;
         bytes[FLAGS + 1] = GENERATION;
-        self.bytes_refused(Rule::Skipped, Kind::RowIn, &bytes, code, 0)
+        let marked = self.bytes_refused(Rule::Skipped, Kind::RowIn, &bytes, code, 0);
+        self.or_plain(marked, |rules| {
+            // Should the board have taken the row, it would know this one.
+            let before = rules.run.board.acknowledged();
+            rules.drop_rows()?;
+            let row_sequence = place.row_sequence + (rules.run.board.acknowledged() - before);
+            rules.row_refused(rule, RowPlace { row_sequence, ..place }, code)
+        })
     }
 
     /// After a RESET only row 0 in its place must be taken, and nothing beyond the window.
@@ -110,8 +121,9 @@ impl Rules<'_, '_> {
         }
         self.odd_rows(first)?;
         let credit = self.run.board.credit();
-        self.marked_row_refused(second, RefusalCode::Row)?;
-        self.marked_row_refused(RowPlace { row_sequence: credit, ..first }, RefusalCode::Credit)?;
+        self.marked_row_refused(Rule::RowPlace, second, RefusalCode::Row)?;
+        let beyond = RowPlace { row_sequence: credit, ..first };
+        self.marked_row_refused(Rule::Credit, beyond, RefusalCode::Credit)?;
         let beyond = (0..u32::BITS).filter_map(|bit| credit.checked_add(1 << bit));
         for row_sequence in beyond.chain([credit]) {
             let place = RowPlace { row_sequence, ..first };
@@ -148,8 +160,7 @@ impl Rules<'_, '_> {
     pub(super) fn must_have_credit(&mut self, rows: u32) -> Result<(), End> {
         let banks = self.capabilities.row_banks_in.into();
         if rows != banks {
-            let (right, found) = (Answer::Credit { rows: banks }, Answer::Credit { rows });
-            return Err(broken(Rule::Window, Kind::Reset, right, found));
+            return Err(End::failed(CheckName::Rules, window_wrong(banks, rows)));
         }
         self.right += 1;
         Ok(())
@@ -165,8 +176,21 @@ impl Rules<'_, '_> {
         self.given.numbers.push(number);
     }
 
-    /// Gives row 0, and waits until it is inside the core. The wire does not say how long a row may wait before that, so
-    /// a row that does not enter makes no board wrong.
+    /// Whether the board says of row 0, whose successor it does not have, that it has entered the core and that none is inside:
+    /// each time in one answer, since an old RESET may drop the row.
+    fn says_entered(&mut self, place: RowPlace) -> Result<bool, End> {
+        let entered = place.row_sequence + 1 + u32::from(self.capabilities.row_banks_in);
+        for _ in 0..LOOKS {
+            let (status, window) = self.run.board.status_and_window().map_err(of_board)?;
+            if status.core_busy == 1 || window != entered {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Gives row 0 of several, and waits until it is inside the core. The wire does not say how long a row may wait before
+    /// that, so a row that does not enter makes no board wrong.
     pub(super) fn enter(&mut self) -> Result<(), End> {
         let place = self.place(0);
         let mut has_come = false;
@@ -183,6 +207,9 @@ impl Rules<'_, '_> {
         }
         let rule = Some(Rule::Inside);
         let finding = Finding::CounterWrong { counter: Counter::CoreBusy, counted: 0, right: 1, rule };
+        if self.says_entered(place)? {
+            return Err(End::failed(CheckName::Rules, finding));
+        }
         Err(End::error(CheckName::Rules, Cause::Station, finding))
     }
 
@@ -248,9 +275,10 @@ impl Rules<'_, '_> {
     /// A row must come as often as it is asked for, until it is acknowledged.
     fn again(&mut self) -> Result<(), End> {
         self.configure(2)?;
-        let Generation { tables, kernel, .. } = self.small.made(0, 2, GENERATION);
-        let frame = self.small.frame(FRAME, &tables).frame;
-        let right = correct(&tables, &kernel, &frame).ok();
+        let made = self.small.made(0, 2, GENERATION);
+        let frame = self.small.frame(FRAME, &made.tables).frame;
+        let right = correct(&made.tables, &made.kernel, &frame).ok();
+        let compared = Compared::default().with(&self.small, [FRAME], &made);
         self.give(0);
         self.give(1);
         let (first, second) = (self.place(0), self.place(1));
@@ -268,7 +296,9 @@ impl Rules<'_, '_> {
             let beside = (came.clocks, came.entered.filter(|_| self.small.names_entered));
             let is_same = *at_first.get_or_insert(beside) == beside;
             if !is_right || !is_counted || !is_same || came.generation != GENERATION {
-                return Err(other_row(Rule::Again, 0, FRAME, Vec::new()));
+                let counted = if is_counted { came.repeats } else { repeats };
+                let differs = compared.differing_again(&came.row(&first), counted);
+                return Err(other_row(Rule::Again, 0, FRAME, differs));
             }
         }
         // Nothing is inside now, but both rows are still kept.

@@ -142,11 +142,12 @@ impl Account {
         match end {
             End::Failed {
                 check,
-                finding: Finding::DiffersAtSpeed { first, repetition, suspect, others, .. },
+                finding: Finding::DiffersAtSpeed { first, repetition, suspect, others, short, .. },
                 suspects,
             } => {
                 let (wrong, frames) = (counted(self.report.wrong), counted(self.report.frames));
-                let finding = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others };
+                let finding =
+                    Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others, short };
                 End::Failed { check, finding, suspects }
             }
             other => other,
@@ -170,12 +171,14 @@ fn tell_more(first: &mut End, seen: &[Suspect]) {
         };
         suspects.iter().any(|it| !has_none(&it.defect))
     };
-    if let End::Failed { finding: Finding::DiffersAtSpeed { suspect, others, .. }, suspects, .. } = first
+    if let End::Failed { finding: Finding::DiffersAtSpeed { suspect, others, short, .. }, suspects, .. } =
+        first
         && !names_row(suspects)
         && names_row(seen)
     {
         *suspect = seen.first().map(|first| Box::new(first.defect.clone()));
         *others = seen.first().map_or(0, Suspect::others);
+        *short = seen.first().and_then(Suspect::shortfall);
         *suspects = seen.to_vec();
     }
 }

@@ -25,6 +25,7 @@ impl Played {
             repetition: Repetition::NotNeeded {},
             suspect: None,
             others: 0,
+            short: None,
         });
         differs.or_else(|| miscounted.clone())
     }

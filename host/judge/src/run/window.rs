@@ -1,0 +1,38 @@
+//! Looks at the window of a board that refused a row as beyond it.
+
+use halfrow_protocol::Kind;
+
+use super::findings::End;
+use super::steps::Run;
+use crate::result::{Answer, Finding, Rule};
+
+/// How often the window must be wrong.
+const TIMES: u32 = 2;
+
+impl Run<'_> {
+    /// What the run ends with that ended with `end`. The refusal of a row for want of credit proves nothing: the host may know a
+    /// window from another session, or an old RESET may have taken it down. But no link changes how far ahead a board's own
+    /// answer to a RESET sets the window.
+    pub(super) fn told_of_window(&mut self, end: End) -> End {
+        if !end.is_without_credit() {
+            return end;
+        }
+        let banks = u32::from(self.board.capabilities.row_banks_in);
+        let credits: Vec<_> = (0..TIMES)
+            .map_while(|_| self.board.credit_for_new_rows().ok())
+            .take_while(|&rows| rows != banks)
+            .collect();
+        match credits.last() {
+            Some(&rows) if credits.len() == TIMES as usize => {
+                End::failed(end.name(), window_wrong(banks, rows))
+            }
+            _ => end,
+        }
+    }
+}
+
+/// After a RESET the board gives credit for `rows` instead of one for each of its `banks`.
+pub(super) fn window_wrong(banks: u32, rows: u32) -> Finding {
+    let (right, found) = (Answer::Credit { rows: banks }, Answer::Credit { rows });
+    Finding::RuleBroken { rule: Rule::Window, request: Kind::Reset.to_string(), right, found }
+}

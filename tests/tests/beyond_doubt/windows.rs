@@ -1,0 +1,115 @@
+//! Boards that give another window than they keep to, and links that leave a sound board with a smaller window than the host
+//! knows.
+
+use halfrow::result::{Answer, Finding, Report, Rule};
+use halfrow::verdict::Verdict;
+use halfrow_mock::Options;
+use halfrow_protocol::message::{Refusal, RefusalCode};
+use halfrow_protocol::{Kind, Reply};
+use halfrow_tests::altered::{Passing, Toward, judge, judge_each};
+use halfrow_tests::system::System;
+
+use super::rules::{broken, carried_out, refusal, said_by};
+
+/// Where a RESET names the row that the board then waits for (WIRE.md, 03).
+const NEXT_ROW: std::ops::Range<usize> = 1..5;
+/// The mock's input banks.
+const BANKS: u32 = 4;
+
+/// The credit after a RESET that the board gives instead of that for its banks.
+fn credit(report: &Report) -> u32 {
+    assert_eq!(report.verdict(), Verdict::Fail, "{}", report.headline());
+    let Finding::RuleBroken { rule: Rule::Window, right, found, .. } = &report.finding else {
+        panic!("{}", report.headline())
+    };
+    assert_eq!(right, &Answer::Credit { rows: BANKS }, "{}", report.headline());
+    let Answer::Credit { rows } = found else { panic!("{}", report.headline()) };
+    *rows
+}
+
+#[test]
+fn a_board_that_sends_its_window_with_the_greatest_byte_first_fails() {
+    let report = judge_each(&System::TINY, |toward, mut packet: Passing| {
+        if toward == Toward::Host {
+            packet.header.window = packet.header.window.swap_bytes();
+        }
+        packet
+    });
+    assert_ne!(credit(&report), BANKS);
+}
+
+#[test]
+fn a_board_that_does_not_go_on_from_the_row_that_a_reset_names_fails() {
+    let mut window = BANKS;
+    let report = judge_each(&System::TINY, move |toward, mut packet: Passing| {
+        if toward == Toward::Host {
+            window = packet.header.window;
+        } else if let (true, Some(next_row)) = (packet.is(Kind::Reset), packet.payload.get_mut(NEXT_ROW)) {
+            next_row.copy_from_slice(&(window - BANKS).to_le_bytes());
+        }
+        packet
+    });
+    assert_eq!(credit(&report), 0);
+}
+
+fn is_without_credit(refusal: &Refusal) -> bool {
+    (refusal.kind, refusal.code) == (Kind::RowIn.code(), RefusalCode::Credit)
+}
+
+/// The first RESET comes again, late, in the middle of the first rows of the frames: then the board waits for an earlier row.
+#[test]
+fn a_late_copy_of_a_reset_makes_no_sound_board_fail() {
+    let (mut reset, mut rows) = (None, 0);
+    let report = judge(&System::TINY, move |toward, packet: Passing| {
+        if toward == Toward::Host {
+            return vec![packet];
+        }
+        if packet.is(Kind::Reset) {
+            reset.get_or_insert_with(|| packet.clone());
+        }
+        rows += u32::from(packet.is(Kind::RowIn));
+        let copy = reset.clone().filter(|reset| rows == 20 && reset.header.session == packet.header.session);
+        rows += u32::from(copy.is_some());
+        [Some(packet), copy].into_iter().flatten().collect()
+    });
+    assert_ne!(report.verdict(), Verdict::Fail, "{}", report.headline());
+}
+
+/// A packet of an earlier session, which had the same number, names a window that this one does not have.
+#[test]
+fn a_window_of_an_earlier_session_makes_no_sound_board_fail() {
+    let (sender, refused) = std::sync::mpsc::channel();
+    let mut is_stale = true;
+    let report = judge_each(&System::TINY, move |toward, mut packet: Passing| {
+        if toward == Toward::Host {
+            if is_stale && packet.is(Kind::Configure) {
+                (packet.header.window, is_stale) = (packet.header.window + 9, false);
+            }
+            refusal(&packet).filter(is_without_credit).map(|refusal| sender.send(refusal));
+        }
+        packet
+    });
+    assert!(refused.try_recv().is_ok(), "{}", report.headline());
+    assert_ne!(report.verdict(), Verdict::Fail, "{}", report.headline());
+}
+
+/// Whatever else came with the row or the request in which it showed first.
+#[test]
+fn the_rule_that_is_told_is_the_one_that_is_broken() {
+    let report = said_by(&Options::default(), |packet| {
+        let refusal = refusal(&packet).filter(is_without_credit);
+        let code = RefusalCode::Row;
+        Some(
+            refusal
+                .map_or_else(|| packet.clone(), |it| packet.saying(&Reply::Refusal(Refusal { code, ..it }))),
+        )
+    });
+    assert_eq!(broken(&report).0, Rule::Credit, "{}", report.headline());
+    let report = said_by(&Options::default(), |packet| {
+        let of_records = |it: &Refusal| (it.kind, it.code) == (Kind::Records.code(), RefusalCode::Range);
+        Some(
+            refusal(&packet).filter(of_records).map_or_else(|| packet.clone(), |it| carried_out(&packet, it)),
+        )
+    });
+    assert_eq!(broken(&report).0, Rule::Records, "{}", report.headline());
+}
