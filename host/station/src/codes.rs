@@ -159,6 +159,7 @@ codes::codes! {
         Target [board, target] => "shared-board-without-place",
         NotTaken [run, said] => "job-run-not-taken",
         = Run,
+        = PlanFile,
     }
     Lost {
         Taken [board] => "shared-board-taken",

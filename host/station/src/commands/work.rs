@@ -21,7 +21,7 @@ use crate::outbox::Outbox;
 use crate::said::Said;
 use crate::settings::Settings;
 use crate::store::{Claim, PlantLink, SharedStore, Store, Worker};
-use crate::work::{Judged, Work, WorkError};
+use crate::work::{Aside, Judged, Work, WorkError};
 
 /// Take jobs of the plant, and judge the boards that they are about
 ///
@@ -59,7 +59,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let store = SharedStore::new(store);
     let outbox = Outbox::start(&store, sinks)?;
     let plant = PlantLink::new(address);
-    let work = Work { settings: &settings, plant, store, program: OWN_PROGRAM.into(), worker };
+    let work = Work {
+        settings: &settings,
+        plant,
+        store,
+        program: OWN_PROGRAM.into(),
+        worker,
+        aside: Aside::default(),
+    };
     let stop = || signal.by();
     let at_once = settings.work.as_ref().map_or(1, |work| work.at_once);
     let ended = match work.introduce(&introduction, !arguments.once, &stop) {
@@ -129,8 +136,11 @@ fn one_by_one(
                 console::error(&Said::of(&error));
                 work.until_taken(&saved.record.run.id, next_stop);
             }
-            // Otherwise the store would be asked again for ever.
-            Err(error) if arguments.once && error.is_of_store() => return Err(Failure::error(error)),
+            // Otherwise the store, or a file of the plan, would be tried again for ever.
+            Err(error) if arguments.once && (error.is_of_store() || error.is_of_plan()) => {
+                return Err(Failure::error(error));
+            }
+            Err(error) if error.is_of_plan() => {}
             // The next job may come to something.
             Err(error) => {
                 let said = Said::of(&error);

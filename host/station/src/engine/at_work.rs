@@ -10,7 +10,7 @@ use halfrow::verdict::StoppedBy;
 
 use super::bay::{self, Shared, StopAsked};
 use super::in_turn::{InTurn, NotStarted};
-use super::known::Known;
+use super::known::{Known, OfLanes};
 use super::news::{LaneState, News};
 use super::unsent;
 use super::{Board, Heard, Input, in_time};
@@ -35,9 +35,7 @@ pub(super) struct AtWork {
     /// For each lane, the unit that passed already and that somebody was asked to scan once more.
     asked: Vec<Option<String>>,
     /// What is known of what each lane owes its shift.
-    known: Vec<Known>,
-    /// The lane that is asked about first.
-    next_due: usize,
+    known: OfLanes,
     /// For each lane, the run that there was no thread to save.
     unrecovered: Vec<Option<String>>,
     hooks: Vec<InTurn>,
@@ -55,8 +53,7 @@ impl AtWork {
             presence: vec![Presence::default(); lanes],
             stops: vec![StopAsked::default(); lanes],
             asked: vec![None; lanes],
-            known: vec![Known::Nothing; lanes],
-            next_due: 0,
+            known: OfLanes::nothing(lanes),
             unrecovered: vec![None; lanes],
             hooks: (0..lanes).map(|_| InTurn::new()).collect(),
             threads: Vec::new(),
@@ -171,44 +168,36 @@ impl AtWork {
         (None, Known::Between(now_ms, until_ms))
     }
 
-    fn check(&mut self, lane: usize) {
+    /// Asks what a lane owes; returns why the store failed, if it did.
+    fn check(&mut self, lane: usize) -> Option<Said> {
         let (owed, known) = self.owed(lane);
-        self.owes(lane, owed, known);
-    }
-
-    fn owes(&mut self, lane: usize, owed: Option<Owes>, now_known: Known) {
-        if let Some(known) = self.known.get_mut(lane) {
-            *known = now_known;
-        }
+        self.known.told(lane, known, Instant::now());
+        let failed = owed.as_ref().filter(|_| matches!(known, Known::Untold(_))).map(|owes| owes.why.clone());
         self.happened(lane, Event::Owes(owed));
+        failed
     }
 
     /// Asks what lanes owe, where that is no longer known. In between only runs of this station change it, and each of
     /// them is followed by a check. A store that fails is not asked about the other lanes for now: they are out of service, too,
     /// and those that waited longest are asked about next.
     fn check_due(&mut self) {
-        let (now_ms, now) = (clock::now_ms(), Instant::now());
-        let is_due = |lane: &usize| self.known.get(*lane).is_some_and(|known| known.is_due(now_ms, now));
-        let lanes = self.known.len();
-        let due: Vec<_> = (self.next_due..lanes).chain(0..self.next_due).filter(is_due).collect();
         let mut failed = None::<Said>;
-        for lane in due {
-            let (owed, known) = match &failed {
-                None => self.owed(lane),
-                Some(why) => (self.untold(lane, why.clone()), Known::Untold(Instant::now())),
+        for lane in self.known.due(clock::now_ms(), Instant::now()) {
+            let passed_over = failed.clone().zip(self.with_shift(lane));
+            let Some((why, plan)) = passed_over else {
+                failed = self.check(lane).or(failed);
+                continue;
             };
-            if let (None, Known::Untold(_), Some(Owes { why, .. })) = (&failed, known, &owed) {
-                failed = Some(why.clone());
-                self.next_due = (lane + 1) % lanes;
-            }
-            self.owes(lane, owed, known);
+            self.known.passed_over(lane, Instant::now());
+            self.happened(lane, Event::Owes(Some(Owes { plan, serial: None, why })));
         }
     }
 
-    /// What a lane owes that was not asked about, since the store failed about another one.
-    fn untold(&self, lane: usize, why: Said) -> Option<Owes> {
-        let plan = *self.shared.settings.lanes.get(lane)?.plans.first()?;
-        Some(Owes { plan, serial: None, why })
+    /// The first plan of a lane whose shifts are checked. The store is not asked about a lane without one.
+    fn with_shift(&self, lane: usize) -> Option<usize> {
+        let Settings { lanes, plans, .. } = &self.shared.settings;
+        let has_shift = |plan: &usize| plans.get(*plan).is_some_and(|of| of.plan.production.shift.is_some());
+        lanes.get(lane)?.plans.iter().copied().find(has_shift)
     }
 
     fn scan(&mut self, number: u64, text: String, operator: &str) {

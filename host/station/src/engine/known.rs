@@ -28,9 +28,89 @@ impl Known {
     }
 }
 
+/// What is known of every lane.
+#[derive(Debug)]
+pub(super) struct OfLanes {
+    known: Vec<Known>,
+    /// When each was asked about last.
+    asked: Vec<Option<Instant>>,
+}
+
+impl OfLanes {
+    /// Of so many lanes, of which nothing is known.
+    pub(super) fn nothing(lanes: usize) -> Self {
+        Self { known: vec![Known::Nothing; lanes], asked: vec![None; lanes] }
+    }
+
+    /// The lanes that are to be asked about, first those that were not asked about for longest: lanes about which the store fails
+    /// let every other one have its turn.
+    pub(super) fn due(&self, now_ms: i64, now: Instant) -> Vec<usize> {
+        let lanes = self.known.iter().zip(&self.asked).enumerate();
+        let mut due: Vec<_> = lanes.filter(|(_, (known, _))| known.is_due(now_ms, now)).collect();
+        due.sort_by_key(|(_, (_, asked))| **asked);
+        due.into_iter().map(|(lane, _)| lane).collect()
+    }
+
+    /// Notes what is known of a lane that was asked about just `now`.
+    pub(super) fn told(&mut self, lane: usize, now_known: Known, now: Instant) {
+        self.note(lane, now_known);
+        if let Some(asked) = self.asked.get_mut(lane) {
+            *asked = Some(now);
+        }
+    }
+
+    /// Notes that a lane was not asked about, since the store had just failed about another one.
+    pub(super) fn passed_over(&mut self, lane: usize, now: Instant) {
+        self.note(lane, Known::Untold(now));
+    }
+
+    fn note(&mut self, lane: usize, now_known: Known) {
+        if let Some(known) = self.known.get_mut(lane) {
+            *known = now_known;
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A store that answers about the lanes from `sound` on, and fails about those before; it is asked `every` so often for a minute,
+    /// as [`OfLanes::due`] says. Returns after how many times each lane was known.
+    fn turns(lanes: usize, sound: usize, every: Duration, first: &[usize]) -> Vec<Option<usize>> {
+        let begun = Instant::now();
+        let (mut of, mut known_at) = (OfLanes::nothing(lanes), vec![None; lanes]);
+        // What was asked about alone before is due at other times than the rest.
+        first.iter().for_each(|lane| of.told(*lane, Known::Untold(begun), begun));
+        for turn in 0..(60 * REST.as_millis() / every.as_millis()) as usize {
+            let now = begun + REST / 2 + every * turn as u32;
+            let mut has_failed = false;
+            for lane in of.due(0, now) {
+                if has_failed {
+                    of.passed_over(lane, now);
+                } else if lane < sound {
+                    has_failed = true;
+                    of.told(lane, Known::Untold(now), now);
+                } else {
+                    known_at[lane].get_or_insert(turn);
+                    of.told(lane, Known::Between(0, i64::MAX), now);
+                }
+            }
+        }
+        known_at
+    }
+
+    #[test]
+    fn lanes_about_which_the_store_fails_keep_no_other_one_from_its_turn() {
+        // Two turns in a REST.
+        let every = REST / 2;
+        for first in [&[][..], &[0], &[1], &[0, 1]] {
+            let known_at = turns(5, 2, every, first);
+            assert_eq!(known_at[..2], [None, None], "{first:?}");
+            let late = known_at[2..].iter().filter(|at| at.is_none_or(|at| at > 4)).count();
+            assert_eq!(late, 0, "{first:?}: {known_at:?}");
+        }
+    }
 
     #[test]
     fn what_could_not_be_told_is_not_asked_for_before_every_scan() {

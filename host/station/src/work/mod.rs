@@ -6,6 +6,7 @@
 //!        └ lost: the run is ended; its result is kept and does not count
 //! ```
 
+mod aside;
 mod held;
 
 use std::path::PathBuf;
@@ -16,6 +17,7 @@ use halfrow::target::{Target, TargetError};
 use halfrow::verdict::StoppedBy;
 use rand::{RngExt as _, rng};
 
+pub use aside::Aside;
 pub use held::{Held, Holding, Lost};
 
 use crate::clock;
@@ -23,7 +25,7 @@ use crate::labgrid::LaneBoard;
 use crate::outbox::{Sent, awaited};
 use crate::record::JobClaim;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch, recover_run};
-use crate::said::Said;
+use crate::said::{Said, Saying};
 use crate::settings::{PlanFile, Settings};
 use crate::store::{Claim, InLane, Introduction, PlantError, PlantLink, SharedStore, StoreError, Worker};
 
@@ -44,6 +46,9 @@ pub enum WorkError {
     /// The run has no verdict.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// A file of the plan is another one than at the start.
+    #[error(transparent)]
+    PlanFile(#[from] Saying),
     /// The station lacks the plan of a job, although it said that it has it.
     #[error("this station does not have the plan {sha256} of the job {job}; report this with the version")]
     NoPlan {
@@ -78,13 +83,21 @@ pub enum WorkError {
 impl WorkError {
     /// Whether the board was not touched, for a reason that lies with the station and not with the job.
     const fn is_not_begun(&self) -> bool {
-        matches!(self, Self::Run(RunError::NotBegun(_) | RunError::NoRandomness(_)))
+        matches!(self, Self::Run(RunError::NotBegun(_) | RunError::NoRandomness(_)) | Self::PlanFile(_))
+    }
+
+    /// Whether a file of the job's plan was changed. The log has said so, and jobs of other plans may get further.
+    pub(crate) const fn is_of_plan(&self) -> bool {
+        matches!(self, Self::PlanFile(_))
     }
 
     /// Whether the station's own store fails, so that another job would get no further.
     #[must_use]
     pub(crate) const fn is_of_store(&self) -> bool {
-        self.is_not_begun() || matches!(self, Self::Run(RunError::Unsaved { .. }))
+        matches!(
+            self,
+            Self::Run(RunError::NotBegun(_) | RunError::NoRandomness(_) | RunError::Unsaved { .. })
+        )
     }
 }
 
@@ -116,6 +129,8 @@ pub struct Work<'a> {
     pub program: PathBuf,
     /// Its identity at the plant.
     pub worker: Worker,
+    /// Those of its plans whose jobs it does not take for now.
+    pub aside: Aside,
 }
 
 impl Work<'_> {
@@ -124,7 +139,9 @@ impl Work<'_> {
     /// # Errors
     /// [`StoreError`] when the plant is not there.
     pub fn claim(&self) -> Result<Option<Claim>, StoreError> {
-        self.plant.ask(|plant| plant.claim(&self.worker))
+        let mut worker = self.worker.clone();
+        worker.plans.retain(|sha256| self.aside.lets(sha256));
+        self.plant.ask(|plant| plant.claim(&worker))
     }
 
     /// Waits for the next job that this station can judge, also while the plant is away or refuses for a while; none when `stop`
@@ -236,9 +253,10 @@ impl Work<'_> {
         let board = LaneBoard::Own(target);
         let Settings { plans, silence, memory_mib, .. } = self.settings;
         let file = plans.iter().find(|file| file.plan.sha256 == claim.plan_sha256);
-        let Some(PlanFile { path, plan }) = file else {
+        let Some(file @ PlanFile { path, plan }) = file else {
             return Err(WorkError::NoPlan { job: claim.job.clone(), sha256: claim.plan_sha256.clone() });
         };
+        self.aside.check(file)?;
         let (station, lane) = (&self.worker.station, &claim.lease.board);
         let counts = self.store.with(|store| {
             store.folder().counts(&InLane::of(station, lane, plan), claim.serial(), clock::now_ms())

@@ -55,10 +55,10 @@ impl Station {
 }
 
 /// `halfrow-station work`
-struct Worker(Child);
+pub(super) struct Worker(pub(super) Child);
 
 impl Worker {
-    fn end(mut self) {
+    pub(super) fn end(mut self) {
         kill(Pid::from_raw(self.0.id() as i32), Signal::SIGTERM).unwrap();
         assert_eq!(self.0.wait().unwrap().code(), Some(143));
     }

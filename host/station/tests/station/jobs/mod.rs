@@ -1,6 +1,7 @@
 //! Jobs of a plant, and boards that several computers share, on a real PostgreSQL server.
 
 mod boards;
+mod changed;
 pub(crate) mod claims;
 mod disk;
 mod rate;
@@ -18,7 +19,7 @@ use halfrow_station::settings::Settings;
 use halfrow_station::store::{
     Folder, NewJob, Plant, PlantLink, SharedBoard, SharedStore, Store, Wanted, Worker,
 };
-use halfrow_station::work::{Judged, Work};
+use halfrow_station::work::{Aside, Judged, Work};
 
 use crate::common::PLAN;
 use crate::lanes::floor::HANG;
@@ -106,6 +107,7 @@ fn at_work(settings: &Settings, program: PathBuf) -> Work<'_> {
         program,
         worker: Worker { plans, ..worker(&settings.name) },
         settings,
+        aside: Aside::default(),
     }
 }
 

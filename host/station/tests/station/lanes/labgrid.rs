@@ -9,7 +9,8 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 
 use super::ends::connected;
-use super::floor::{SERIALS, Station};
+use super::floor::{HANG, SERIALS, Station};
+use super::held::{Board, long_plan};
 use crate::common::{program, silent_board, until_found};
 
 /// Prints what is in `answer`, and keeps a diary of its arguments and of the end of its stdin.
@@ -192,15 +193,16 @@ fn neither_a_lane_nor_what_has_its_place_is_told_the_plant_s_password() {
 /// Somebody else may have the board then.
 #[test]
 fn a_run_ends_when_what_has_its_place_ends() {
-    let (listener, target) = silent_board();
-    let port = target.rsplit(':').next().unwrap();
+    let board = Board::new();
+    let port = board.target.rsplit(':').next().unwrap();
     let answer = format!(r#"{{"held": {{"host": "127.0.0.1", "port": {port}}}}}"#);
     let station = station(&answer, "");
     let lender = LENDER.replace("cat > /dev/null", "while [ ! -e gone ]; do sleep 0.1; done\nexit 7");
     fs::write(station.path("lender"), lender).unwrap();
+    fs::write(station.path("plan.toml"), long_plan()).unwrap();
     let mut running = station.start();
     running.test("1", SERIALS[0]);
-    connected(&listener);
+    board.slowed.recv_timeout(HANG).unwrap();
     fs::write(station.path("gone"), "").unwrap();
     let ended = running.state("1", "ERROR");
     assert_eq!(ended["shown"]["finding"]["code"], "labgrid-place-lost", "{ended}");

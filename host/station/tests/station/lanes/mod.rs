@@ -4,6 +4,7 @@ mod again;
 pub(crate) mod ends;
 mod flat;
 pub(crate) mod floor;
+mod held;
 mod hooks;
 mod labgrid;
 mod operators;

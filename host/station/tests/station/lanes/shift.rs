@@ -250,6 +250,32 @@ fn a_checked_lane_asks_its_store_after_its_runs_alone() {
     assert!(blind.is_empty(), "{blind:?}");
 }
 
+/// Each of them has its turn, and one whose plan asks for no check is not asked about at all.
+#[test]
+fn lanes_go_on_beside_those_about_which_their_store_fails() {
+    let lanes = "[[lane]]\nname = \"5\"\nboard = \"mock\"\nplans = [\"other.toml\"]\n";
+    let station = Station::with(&["mock"; 4], lanes);
+    fs::write(station.path("plan.toml"), with_mock()).unwrap();
+    fs::write(station.path("other.toml"), plan().replace("CAM-T", "CAM-U")).unwrap();
+    let mut running = station.start();
+    ["1", "2"].iter().for_each(|lane| drop(good_passes(&mut running, lane)));
+    running.end();
+    let database = rusqlite::Connection::open(station.path("data/station.db")).unwrap();
+    database.execute_batch("UPDATE run SET target = CAST(x'ff' AS TEXT)").unwrap();
+    let mut running = station.start();
+    let mut note = |lane: &str, wanted: &str| {
+        running.wait(wanted, |news| {
+            news["lane"] == lane && news["note"].as_str().is_some_and(|note| note.contains(wanted))
+        })
+    };
+    note("1", "station.db");
+    ["3", "4"].iter().for_each(|lane| drop(note(lane, "the good unit")));
+    good_passes(&mut running, "3");
+    let (_, heard) = running.end();
+    let out = |lane: &str| heard.iter().any(|news| news["lane"] == lane && news["state"] == "OUT");
+    assert_eq!(["1", "2", "5"].map(out), [true, true, false]);
+}
+
 /// A station whose lane was checked at `started_ms`, an SQL expression, according to its database.
 fn checked_at(started_ms: &str) -> Station {
     let station = Station::with(&["mock"], "");

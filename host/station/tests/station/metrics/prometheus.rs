@@ -130,6 +130,16 @@ fn named_by_alerts() -> BTreeSet<String> {
     words.filter(|word| word.starts_with("halfrow_")).map(str::to_owned).collect()
 }
 
+/// Whoever is alerted looks at a dashboard.
+#[test]
+fn what_an_alert_watches_is_on_a_dashboard() {
+    let shown: String =
+        ["grafana-station.json", "grafana-plant.json"].into_iter().flat_map(queries).collect();
+    let named = named_by_alerts();
+    let unseen: Vec<_> = named.iter().filter(|name| !shown.contains(*name)).collect();
+    assert!(named.len() >= 8 && unseen.is_empty(), "{unseen:?}");
+}
+
 /// Judges boards, and waits until the plant has all runs.
 fn judged(serving: &Serving) {
     for ((lane, state), serial) in [("1", "pass"), ("2", "fail")].into_iter().zip(SERIALS) {

@@ -97,7 +97,7 @@ pub(super) fn one_after_the_other(boards: Vec<String>, before: impl Fn() + Send 
 }
 
 /// What the board says to these bytes.
-pub(super) fn answers(board: &mut dyn Link, mut bytes: &[u8]) -> Vec<u8> {
+pub(crate) fn answers(board: &mut dyn Link, mut bytes: &[u8]) -> Vec<u8> {
     let (mut said, mut has_moved) = (Vec::new(), true);
     while has_moved {
         let before = said.len();

@@ -6,7 +6,7 @@ pub(crate) mod bench;
 pub(crate) mod checked;
 mod ends;
 mod faults;
-mod identity;
+pub(crate) mod identity;
 mod killed;
 mod killed_lane;
 mod limited;

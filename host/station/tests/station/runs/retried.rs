@@ -18,21 +18,47 @@ enum Then {
     Cut,
 }
 
-/// A port at which `first` answers until it has sent `bytes`, and then `second`.
-fn interrupted(first: String, second: String, bytes: usize, then: Then) -> String {
+/// When the first board has said enough.
+#[derive(Clone, Copy, Debug)]
+enum Enough {
+    /// It has sent so many bytes.
+    Bytes(usize),
+    /// It has answered so many requests of this kind, whose packets are an empty byte, COBS's first code, the version and the kind.
+    Requests(usize, u8),
+}
+
+impl Enough {
+    /// Whether it is so after the board heard these bytes, and said that many.
+    fn is_so(&mut self, heard: &mut Vec<u8>, said: usize) -> bool {
+        let (left, so_many) = match self {
+            Self::Bytes(bytes) => (bytes, said),
+            Self::Requests(requests, kind) => {
+                let begins = |four: &&[u8]| matches!(four, [0, code, 1, of] if *code > 0 && of == kind);
+                let so_many = heard.windows(4).filter(begins).count();
+                heard.drain(..heard.len().saturating_sub(3));
+                (requests, so_many)
+            }
+        };
+        *left = left.saturating_sub(so_many);
+        *left == 0
+    }
+}
+
+/// A port at which `first` answers until that is enough, and then `second`.
+fn interrupted(first: String, second: String, mut enough: Enough, then: Then) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("tcp:{}", listener.local_addr().unwrap());
     let open = |board: &str| link::open(&board.parse().unwrap()).unwrap().link;
     thread::spawn(move || {
-        let (mut board, mut sent, mut is_over) = (open(&first), 0, false);
+        let (mut board, mut heard, mut is_over) = (open(&first), Vec::new(), false);
         for host in listener.incoming() {
             let (mut host, mut received) = (host.unwrap(), [0; 4096]);
             while let Ok(read @ 1..) = host.read(&mut received) {
                 let said = answers(&mut *board, &received[..read]);
-                sent += said.len();
+                heard.extend_from_slice(&received[..read]);
                 // The host may have ended the connection.
                 drop(host.write_all(&said));
-                if sent > bytes && !is_over {
+                if !is_over && enough.is_so(&mut heard, said.len()) {
                     (board, is_over) = (open(&second), true);
                     match then {
                         Then::Reset => {}
@@ -47,7 +73,17 @@ fn interrupted(first: String, second: String, bytes: usize, then: Then) -> Strin
 
 /// The verdict of a run whose first board is interrupted in the step `kind`, that step's tries, and what the first one told. A
 /// retry would meet a sound board.
-fn came(kind: &str, (first, second): (String, String), then: Then) -> (String, String, String) {
+fn came(kind: &str, boards: (String, String), then: Then) -> (String, String, String) {
+    came_after(Enough::Bytes(20_000), kind, boards, then)
+}
+
+/// Like [`came`], with the first board interrupted when that is enough.
+fn came_after(
+    enough: Enough,
+    kind: &str,
+    (first, second): (String, String),
+    then: Then,
+) -> (String, String, String) {
     let plan = match kind {
         "link" => {
             PLAN.replace("[[step]]\n", "[[step]]\nkind = \"link\"\nretries = 1\nseconds = 0.2\n[[step]]\n")
@@ -55,7 +91,7 @@ fn came(kind: &str, (first, second): (String, String), then: Then) -> (String, S
         _ => PLAN.replace("timeout = 60", "timeout = 60\nretries = 1\nrepeat = 20"),
     };
     let station = Station::with(&plan);
-    station.run("CAT00001", &interrupted(first, second, 20_000, then));
+    station.run("CAT00001", &interrupted(first, second, enough, then));
     assert_eq!(station.check().code, Some(0), "{:?}", station.check());
     let tries = format!("SELECT attempt || ' ' || outcome FROM step WHERE name = '{kind}' ORDER BY attempt");
     let first = format!("SELECT detail FROM step WHERE name = '{kind}' AND attempt = 1");
@@ -78,6 +114,25 @@ fn a_try_in_which_samples_differed_is_not_repeated_whatever_broke_it_off() {
             "{told}"
         );
     }
+}
+
+/// The link test reads back what it wrote: WIRE.md, section 3, has TABLE_READ as kind 11.
+#[test]
+fn a_link_test_that_broke_off_after_wrong_answers_is_not_repeated() {
+    let reads = Enough::Requests(3, 0x11);
+    let wrong = format!("{},fault=row-factor,row=100,bit=0", device(NUMBER));
+    let (verdict, tries, told) = came_after(reads, "link", (wrong, device(NUMBER)), Then::Cut);
+    assert_eq!((verdict.as_str(), tries.as_str()), ("ERROR", "1 error"), "{told}");
+    assert!(
+        told.contains("the link test broke off, and ") && told.contains("other bytes than were sent"),
+        "{told}"
+    );
+    assert!(
+        told.ends_with("not repeated by itself, since something was found wrong with the board"),
+        "{told}"
+    );
+    let (verdict, tries, told) = came_after(reads, "link", (device(NUMBER), device(NUMBER)), Then::Cut);
+    assert_eq!((verdict.as_str(), tries.as_str()), ("PASS", "1 error, 2 passed"), "the control: {told}");
 }
 
 #[test]
