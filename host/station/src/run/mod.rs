@@ -155,12 +155,14 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
         job: order.job.cloned(),
     };
     let planned = plan_record(plan);
-    let head = store.with(|store| store.begin(head, &planned)).map_err(not_begun)?;
-    watch.hear(Stage::Begun(&head));
-    let begun = Instant::now();
     let folder = store.with(|store| store.folder().clone());
     let spool = folder.spool(&head.id);
+    // Whoever finds the run open finds its claim, too.
     recovered::note_claim(&spool, head.job.as_ref());
+    let begun = store.with(|store| store.begin(head, &planned));
+    let head = begun.inspect_err(|_| recovered::drop_claim(&spool)).map_err(not_begun)?;
+    watch.hear(Stage::Begun(&head));
+    let begun = Instant::now();
     let job = job(&head, order, ids::seed(id), &spool);
     let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked };
     let (heard, lost) =

@@ -31,6 +31,12 @@ pub(super) fn note_claim(spool: &Path, claim: Option<&JobClaim>) {
     }
 }
 
+/// Removes the claim of a run that was not begun.
+pub(super) fn drop_claim(spool: &Path) {
+    // What is left of it belongs to no run, and is never read.
+    let _ = fs::remove_file(spool.join(CLAIM)).and_then(|()| fs::remove_dir(spool));
+}
+
 fn noted_claim(spool: &Path) -> Option<JobClaim> {
     serde_json::from_slice(&fs::read(spool.join(CLAIM)).ok()?).ok()
 }
