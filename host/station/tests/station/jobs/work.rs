@@ -2,6 +2,7 @@
 
 use std::cell::{Cell, RefCell};
 use std::fs;
+use std::path::Path;
 use std::process::{Command, Stdio};
 
 use nix::sys::signal::{Signal, kill};
@@ -9,7 +10,7 @@ use nix::unistd::Pid;
 use serde_json::Value;
 
 use super::{any, job, plan, run_out, settings, shared};
-use crate::common::{Did, HANG, program, until};
+use crate::common::{Did, HANG, program, query, until};
 use crate::plant::server::Server;
 
 fn work(server: &Server, name: &str) -> (tempfile::TempDir, Command) {
@@ -24,6 +25,13 @@ fn work(server: &Server, name: &str) -> (tempfile::TempDir, Command) {
 /// Waits until somebody has claimed a job.
 fn until_claimed(server: &Server) {
     until("a claim", || !server.rows("SELECT 1 FROM job WHERE state = 'claimed'").is_empty());
+}
+
+/// Waits until the station with this folder has claimed a job and begun its run.
+fn until_begun(server: &Server, folder: &Path) {
+    until_claimed(server);
+    let data = folder.join("data");
+    until("a run", || !query(&data, "SELECT 1 FROM run WHERE state = 'open'").is_empty());
 }
 
 #[test]
@@ -74,7 +82,7 @@ fn a_worker_that_is_killed_leaves_a_job_that_another_one_does() {
     plant.add_jobs(&job(&plan, &any), 1).unwrap();
     let (folder, mut command) = work(&server, "12");
     let mut first = command.spawn().unwrap();
-    until_claimed(&server);
+    until_begun(&server, folder.path());
     first.kill().unwrap();
     first.wait().unwrap();
     let (_other, mut command) = work(&server, "13");
@@ -133,8 +141,7 @@ fn a_station_judges_so_many_jobs_at_once_and_ends_all_of_them_when_it_is_told_to
     let mut command = Command::new(program());
     command.args(["work", "--json", "--any-disk", "--settings"]).arg(&path);
     let mut worker = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let open =
-        || crate::common::query(&folder.path().join("data"), "SELECT lane FROM run WHERE state = 'open'");
+    let open = || query(&folder.path().join("data"), "SELECT lane FROM run WHERE state = 'open'");
     let both = "SELECT 1 FROM job WHERE state = 'claimed' HAVING count(*) = 2";
     until("two runs of two jobs", || {
         assert_eq!(worker.try_wait().unwrap(), None, "it ends");
@@ -190,9 +197,9 @@ fn a_run_that_was_ended_since_its_job_was_cancelled_says_so_and_blames_nobody() 
     let headline = ended["headline"].as_str().unwrap();
     assert!(headline.contains("the board shelf-0 is not ours any more"), "{did:?}");
     let data = folder.path().join("data");
-    assert_eq!(crate::common::query(&data, "SELECT verdict FROM run"), ["ERROR"]);
-    assert_eq!(crate::common::query(&data, "SELECT cause FROM run"), ["station"]);
-    assert_eq!(crate::common::query(&data, "SELECT headline FROM run"), [headline]);
+    assert_eq!(query(&data, "SELECT verdict FROM run"), ["ERROR"]);
+    assert_eq!(query(&data, "SELECT cause FROM run"), ["station"]);
+    assert_eq!(query(&data, "SELECT headline FROM run"), [headline]);
 }
 
 /// The other one came first.

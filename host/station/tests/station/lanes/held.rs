@@ -92,7 +92,7 @@ fn says_when_to_scan_again(running: &mut Running, board: &Board) {
     let told = ended(running, SERIALS[1]);
     let headline = told["headline"].as_str().unwrap();
     let (_, when) = headline.split_once("scan the label again in ").unwrap_or_else(|| panic!("{told}"));
-    assert!(headline.contains("the board is still held by an earlier session"), "{told}");
+    assert!(headline.contains("the board is held by another session"), "{told}");
     let seconds: u64 = when.strip_suffix(" s").unwrap().parse().unwrap();
     assert!((1..=10).contains(&seconds), "{told}");
     assert_eq!(

@@ -207,7 +207,7 @@ fn a_run_ends_when_what_has_its_place_ends() {
     let ended = running.state("1", "ERROR");
     assert_eq!(ended["shown"]["finding"]["code"], "labgrid-place-lost", "{ended}");
     let headline = ended["shown"]["headline"].as_str().unwrap();
-    assert!(headline.starts_with("labgrid's place cam-1 is not ours any more"), "{ended}");
+    assert!(headline.starts_with("labgrid's place cam-1 is no longer held for this station"), "{ended}");
     assert_eq!(station.query("SELECT cause FROM run"), ["station"]);
 }
 

@@ -124,7 +124,7 @@ fn a_link_test_that_broke_off_after_wrong_answers_is_not_repeated() {
     let (verdict, tries, told) = came_after(reads, "link", (wrong, device(NUMBER)), Then::Cut);
     assert_eq!((verdict.as_str(), tries.as_str()), ("ERROR", "1 error"), "{told}");
     assert!(
-        told.contains("the link test broke off, and ") && told.contains("other bytes than were sent"),
+        told.contains("the link test broke off after ") && told.contains("other bytes than were sent"),
         "{told}"
     );
     assert!(
