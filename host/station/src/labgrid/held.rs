@@ -161,7 +161,7 @@ struct Holder {
 }
 
 impl Holder {
-    /// Starts it. What it writes can be received until that is dropped.
+    /// Starts it. What it writes can be received until the receiver is dropped.
     fn start(mut call: Command) -> std::io::Result<(Self, Receiver<Line>)> {
         // In a group of its own, so that Ctrl-C ends the run first.
         call.process_group(0).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());

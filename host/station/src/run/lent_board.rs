@@ -13,7 +13,7 @@ use crate::record::BoardSeen;
 use crate::said::Said;
 
 /// Has a lane carry out the job. If the board is at a place of labgrid, the place is held meanwhile. Also returns why the place was
-/// lost, if that has ended the run.
+/// lost, if it is no longer held at the end.
 pub(super) fn supervised(
     order: &Order<'_>,
     mut job: Job,

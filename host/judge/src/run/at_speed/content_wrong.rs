@@ -9,6 +9,9 @@ use crate::result::{Account, ContentKind, Defect, Evidence, MadeAs, Suspect};
 use crate::run::at_speed::Seen;
 use crate::run::plan::Generation;
 
+/// The kinds by the lowest two bits of a row's first draw.
+const KINDS: [ContentKind; 4] =
+    [ContentKind::Noise, ContentKind::Swing, ContentKind::Toggle, ContentKind::Steps];
 /// Bits of a seed that a board may keep of it.
 const KEPT: [u32; 3] = [8, 16, 24];
 /// One in so many draws that a board may take as the edge of a step.
@@ -29,9 +32,8 @@ impl Made {
     /// Row `row` of `content`, as AT-SPEED.md says.
     fn of(Content { seed, frame }: Content, row: usize) -> Self {
         let draw = xorshift32((seed ^ (u32::from(frame) << 12 | row as u32)) | 1 << 31);
-        let kinds = [ContentKind::Noise, ContentKind::Swing, ContentKind::Toggle, ContentKind::Steps];
         let toggle = (draw >> 2 & 3, draw >> 4 & 1 == 1);
-        Self { kind: kinds[draw as usize % 4], toggle, one_in: 16, draw }
+        Self { kind: KINDS[draw as usize % 4], toggle, one_in: 16, draw }
     }
 
     /// Samples up to `max`.
@@ -60,8 +62,7 @@ impl Made {
     /// What a board may make of row `row` of `content` in its place.
     fn others(content: Content, row: usize) -> Vec<(MadeAs, Self)> {
         let own = Self::of(content, row);
-        let kinds = [ContentKind::Noise, ContentKind::Swing, ContentKind::Toggle, ContentKind::Steps];
-        let of_kind = kinds.map(|kind| (MadeAs::Kind { kind }, Self { kind, ..own }));
+        let of_kind = KINDS.map(|kind| (MadeAs::Kind { kind }, Self { kind, ..own }));
         let toggles = (0..4).flat_map(|p| [false, true].map(|is_high| (p, is_high)));
         let of_toggle =
             toggles.map(|toggle @ (p, high)| (MadeAs::Toggle { p, high }, Self { toggle, ..own }));

@@ -84,13 +84,15 @@ impl Run<'_> {
     ) -> End {
         let Watched { frames, wrong, .. } = *watched;
         let first = watched.wrong_frames.first().map_or(0, |frame| frame.n);
-        let by_signatures =
-            || tables_late(plan, tables, watched).or_else(|| records_late(plan, tables, watched));
-        let again = match by_signatures() {
-            _ if plan.mode == BurstMode::Trapped => self.told_of_trap(plan, tables, watched),
-            Some(suspect) => Ok(Again { repetition: Repetition::NotNeeded {}, suspects: vec![suspect] }),
+        let again = if plan.mode == BurstMode::Trapped {
+            self.told_of_trap(plan, tables, watched)
+        } else if let Some(suspect) =
+            tables_late(plan, tables, watched).or_else(|| records_late(plan, tables, watched))
+        {
+            Ok(Again { repetition: Repetition::NotNeeded {}, suspects: vec![suspect] })
+        } else {
             // The signatures came under the board's own CRC, so the verdict stands, whatever making the frame again shows.
-            None => self.make_again(plan, tables, first),
+            self.make_again(plan, tables, first)
         };
         let again = again.unwrap_or_else(|end| {
             tracing::warn!("the frame was not made again: {}", end.finding().sentence());
@@ -183,8 +185,8 @@ impl Run<'_> {
         self.unless_misconduct(CheckName::AtSpeed, streamed)
     }
 
-    /// What a trapped row shows of a frame that `generation` made of `content`; none if the row is as it should be, or if
-    /// neither its samples nor its signature are right.
+    /// What a trapped row shows of a frame that `generation` made of `content`; none if it is no row of that frame, if the
+    /// row is as it should be, or if neither its samples nor its signature are right.
     ///
     /// It is the first row of its burst that differs, so the rows above it were right: the diagnosis gets the frame up to
     /// this row.
