@@ -336,7 +336,8 @@ mod tests {
         lane-put-back lane-silent lane-starts lane-stuck lane-taken-out lane-told-nonsense lane-told-to-end link-answers-wrong \
         link-tested measurement-beyond-limit measurement-missing mock-judged out-by-person plan-takes-hardware \
         result-saved-too-late run-stopped-before serial-tested serial-waits serial-waits-for-board serial-waits-instead \
-        settings-without-lane-or-plan shared-board-taken shared-board-unreached station-ended step-not-reached step-not-repeated-lost step-not-repeated-wrong steps-unknown";
+        settings-without-lane-or-plan shared-board-taken shared-board-unreached station-ended step-not-reached \
+        step-not-repeated-lost step-not-repeated-wrong steps-unknown";
 
     /// Whether an act tells its reader what to do.
     fn is_act(act: &str) -> bool {
