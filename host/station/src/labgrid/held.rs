@@ -125,9 +125,10 @@ impl Place {
 }
 
 impl Held {
-    /// Why the place is not held any more, if what held it has ended.
+    /// Why the place is not held any more, if what held it has ended by itself. If it was killed, the place is still acquired.
     pub(crate) fn lost(&mut self) -> Option<LabgridError> {
-        let status = self.holder.child.try_wait().ok()??.to_string();
+        let status = self.holder.child.try_wait().ok()??;
+        let status = status.code().map(|_| status.to_string())?;
         Some(LabgridError::Lost { place: self.place.name.clone(), status })
     }
 
