@@ -46,29 +46,26 @@ fn greeting(packet: &Passing) -> Option<(u32, u32)> {
     packet.is(Kind::Hello).then(|| (u32::from_le_bytes(fields[0]), u32::from_le_bytes(fields[1])))
 }
 
-#[test]
-fn another_host_must_not_get_a_board_that_is_held() {
+/// The report on a board that hears of other hosts than the first that they take over, or that they do not.
+fn hearing_take_over(take_over: bool) -> Report {
     let mut own = None;
-    let report = hearing(move |packet| {
+    hearing(move |packet| {
         if let Some((_, host)) = greeting(packet)
             && *own.get_or_insert(host) != host
         {
-            packet.payload[10] = 1;
+            packet.payload[10] = take_over.into();
         }
-    });
-    assert_eq!(broken(&report).0, Rule::Held);
+    })
+}
+
+#[test]
+fn another_host_must_not_get_a_board_that_is_held() {
+    assert_eq!(broken(&hearing_take_over(true)).0, Rule::Held);
 }
 
 #[test]
 fn a_held_board_must_let_itself_be_taken_over() {
-    let mut own = None;
-    let report = hearing(move |packet| {
-        if let Some((_, host)) = greeting(packet)
-            && *own.get_or_insert(host) != host
-        {
-            packet.payload[10] = 0;
-        }
-    });
+    let report = hearing_take_over(false);
     assert_eq!(broken(&report).0, Rule::Held, "{}", report.headline());
 }
 

@@ -21,31 +21,39 @@ pub(super) enum End {
     /// The board is wrong.
     Failed { check: CheckName, finding: Finding, suspects: Vec<Suspect> },
     /// It could not be judged.
-    Error {
-        check: CheckName,
-        cause: Cause,
-        finding: Finding,
-        unreachable: bool,
-        outage: bool,
-        answer: bool,
-        no_credit: bool,
-    },
+    Error { check: CheckName, cause: Cause, finding: Finding, shown: Shown },
+}
+
+/// What the board's error shows by which a run ends; nothing if it ends for another reason.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Shown {
+    unreachable: bool,
+    outage: bool,
+    answer: bool,
+    no_credit: bool,
+}
+
+impl Shown {
+    fn by(error: &BoardError) -> Self {
+        use BoardError::{Link, NoAnswer, SessionLost, TurnedAway};
+        Self {
+            unreachable: matches!(error, Link { .. } | TurnedAway(_) | NoAnswer { .. } | SessionLost),
+            outage: error.is_outage(),
+            answer: error.is_answer(),
+            no_credit: error.is_without_credit(),
+        }
+    }
 }
 
 impl End {
     /// The run could not go on because the board could not be driven.
     pub(super) fn board(check: CheckName, error: &BoardError) -> Self {
-        use BoardError::{Link, NoAnswer, SessionLost, TurnedAway};
-        let unreachable = matches!(error, Link { .. } | TurnedAway(_) | NoAnswer { .. } | SessionLost);
         let (cause, finding) = (error.cause(), Problem::of(error).into());
-        let (outage, answer, no_credit) = (error.is_outage(), error.is_answer(), error.is_without_credit());
-        Self::Error { check, cause, finding, unreachable, outage, answer, no_credit }
+        Self::Error { check, cause, finding, shown: Shown::by(error) }
     }
 
     pub(super) fn error(check: CheckName, cause: Cause, finding: impl Into<Finding>) -> Self {
-        let finding = finding.into();
-        let (unreachable, outage, answer, no_credit) = (false, false, false, false);
-        Self::Error { check, cause, finding, unreachable, outage, answer, no_credit }
+        Self::Error { check, cause, finding: finding.into(), shown: Shown::default() }
     }
 
     pub(super) fn failed(check: CheckName, finding: Finding) -> Self {
@@ -80,21 +88,21 @@ impl End {
 
     /// Whether the board gave an answer that no sound board gives after what the run asked of it.
     pub(super) fn is_answer(&self) -> bool {
-        matches!(self, Self::Error { answer: true, .. })
+        matches!(self, Self::Error { shown: Shown { answer: true, .. }, .. })
     }
 
     /// Whether the board refused a row of the run because it was beyond the window.
     pub(super) fn is_without_credit(&self) -> bool {
-        matches!(self, Self::Error { no_credit: true, .. })
+        matches!(self, Self::Error { shown: Shown { no_credit: true, .. }, .. })
     }
 
     pub(super) fn is_unreachable(&self) -> bool {
-        matches!(self, Self::Error { unreachable: true, .. })
+        matches!(self, Self::Error { shown: Shown { unreachable: true, .. }, .. })
     }
 
     /// Whether the board went away and may come back.
     pub(super) fn is_outage(&self) -> bool {
-        matches!(self, Self::Error { outage: true, .. })
+        matches!(self, Self::Error { shown: Shown { outage: true, .. }, .. })
     }
 }
 

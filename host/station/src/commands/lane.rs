@@ -13,13 +13,10 @@ use super::Failure;
 use crate::console;
 use crate::exit::Exit;
 use crate::lane::child::{Orders, carry_out, orders};
-use crate::lane::{Control, Job, Message};
+use crate::lane::{Control, FILE_MIB, Job, Message};
 
 /// The program's name, which has the 15 letters that the system keeps.
 const PROGRAM: &str = "halfrow-station";
-
-/// The size of the largest file that a lane may write, in MiB. All the frames that it keeps have half of that.
-const FILE_MIB: u64 = 64;
 
 /// Carry out one run; the station starts it
 #[derive(Debug, Args)]

@@ -13,7 +13,7 @@ use halfrow::verdict::StoppedBy;
 
 use super::figures::Counter;
 use super::hooks;
-use super::standing::Standings;
+use super::logged::LoggedOfLanes;
 use super::{Heard, Input};
 use crate::floor::{Accepted, Event, Shown};
 use crate::guard::guarded;
@@ -42,7 +42,7 @@ pub(super) struct Shared {
     pub(super) program: PathBuf,
     pub(super) inbox: Sender<Input>,
     pub(super) figures: Arc<Counter>,
-    pub(super) standings: Standings,
+    pub(super) logged: LoggedOfLanes,
 }
 
 impl Shared {
@@ -54,7 +54,7 @@ impl Shared {
     /// Logs and counts what happened to a lane.
     pub(super) fn note(&self, lane: usize, event: &Event) {
         let name = self.settings.lanes.get(lane).map_or("", |lane| lane.name.as_str());
-        if let Some(reason) = self.standings.note(lane, name, event) {
+        if let Some(reason) = self.logged.note(lane, name, event) {
             self.figures.refused(reason);
         }
     }

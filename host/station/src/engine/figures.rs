@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use super::standing::reasons;
+use super::logged::reasons;
 use crate::history::PlanName;
 use crate::settings::{LaneSettings, Settings};
 

@@ -13,8 +13,8 @@ mod figures;
 mod hooks;
 mod in_turn;
 mod known;
+mod logged;
 mod news;
-mod standing;
 mod unsent;
 
 use std::path::PathBuf;
@@ -38,8 +38,8 @@ use crate::store::{SharedStore, Store};
 use at_work::AtWork;
 use bay::Shared;
 use figures::Counter;
+use logged::LoggedOfLanes;
 use news::Listeners;
-use standing::Standings;
 
 /// How long its thread may show no sign of life. It shows one twice a second, and may have to wait for a slow disk.
 const SILENT: Duration = Duration::from_secs(5);
@@ -101,7 +101,7 @@ impl Engine {
             program,
             inbox: inbox.clone(),
             figures: Arc::clone(&figures),
-            standings: Standings::of(floor.lanes().len()),
+            logged: LoggedOfLanes::of(floor.lanes().len()),
         };
         let at_work = AtWork::new(floor, Arc::new(shared), Arc::clone(&board));
         let thread =
@@ -157,7 +157,7 @@ impl Engine {
 
     /// Counts what a person did and the store could not enter, so that it did not reach the engine.
     pub(crate) fn refused_by_store(&self) {
-        self.figures.refused(standing::STORE);
+        self.figures.refused(logged::STORE);
     }
 
     /// Whether its thread works, as seen within the last seconds.

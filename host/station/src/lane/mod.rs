@@ -16,6 +16,10 @@ mod message;
 mod progress;
 pub mod supervisor;
 
+/// The size of the largest file that a lane may write, that is written down of what it reports, or that is kept of both, in MiB.
+/// All the frames that it keeps have half of that.
+pub(crate) const FILE_MIB: u64 = 64;
+
 /// How much memory a lane may have by default, in MiB of addresses. It takes some 60 MiB at work; the stacks and
 /// arenas of its threads count as addresses, too.
 pub const MEMORY_MIB: u64 = 4096;

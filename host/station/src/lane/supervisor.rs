@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use halfrow::verdict::StoppedBy;
 
 use super::message::MOST_LINE;
-use super::{Control, Job, Message, Ruling};
+use super::{Control, FILE_MIB, Job, Message, Ruling};
 use crate::process_group::{kill, killed, waited, without_secrets};
 use crate::record::{BoardSeen, StepRecord};
 use crate::said::{Said, Saying};
@@ -25,8 +25,6 @@ const GRACE: Duration = Duration::from_secs(10);
 
 /// How many lines may wait to be taken; after that the lane waits.
 const MOST_WAITING: usize = 4;
-/// How much is written down of what a lane reports, in bytes.
-const MOST_EVENTS: u64 = 64 << 20;
 /// How many characters are shown of a line that makes no sense.
 const MOST_SHOWN: usize = 200;
 
@@ -136,7 +134,7 @@ impl Lane {
             .spawn()?;
         let (sender, lines) = mpsc::sync_channel(MOST_WAITING);
         let (stdout, stdin) = (child.stdout.take(), child.stdin.take());
-        let mut lane = Self { orders: None, child, lines, events, room: MOST_EVENTS, is_own: false };
+        let mut lane = Self { orders: None, child, lines, events, room: FILE_MIB << 20, is_own: false };
         match hear(stdout, sender).and_then(|()| lane.brief(stdin, job, spool)) {
             Ok(()) => Ok(lane),
             Err(error) => {

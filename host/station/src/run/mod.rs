@@ -22,7 +22,7 @@ pub use recovered::{recover, recover_run};
 use crate::ids::NoRandomness;
 use crate::labgrid::LaneBoard;
 use crate::lane::supervisor::{Attendant, EVENTS, End, LOG, LaneReport};
-use crate::lane::{Job, Message, Ruling, kept_frame};
+use crate::lane::{FILE_MIB, Job, Message, Ruling, kept_frame};
 use crate::plan::limits::Maker;
 use crate::plan::serial::{Serial, SerialError};
 use crate::plan::{Plan, Selected, mock};
@@ -33,9 +33,6 @@ use crate::record::{
 use crate::said::{Said, Saying};
 use crate::store::{Admission, Folder, SharedStore, StoreError, Stored};
 use crate::{clock, ids};
-
-/// How much of a file that a lane wrote is kept, in bytes.
-const MOST_ATTACHED: u64 = 64 << 20;
 
 /// What to run on which board.
 #[derive(Clone, Copy, Debug)]
@@ -345,7 +342,7 @@ fn save(
     Ok(Saved { record, stored, saved_ms })
 }
 
-/// Stores what a lane wrote down as evidence, each file up to [`MOST_ATTACHED`].
+/// Stores what a lane wrote down as evidence, each file up to [`FILE_MIB`].
 fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> {
     let mut attachments = Vec::new();
     let text = "text/plain; charset=utf-8";
@@ -372,9 +369,9 @@ fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> 
     Ok(attachments)
 }
 
-/// The first bytes of a file, at most [`MOST_ATTACHED`].
+/// The first bytes of a file, at most [`FILE_MIB`] of them.
 fn beginning(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    File::open(path)?.take(MOST_ATTACHED).read_to_end(&mut bytes)?;
+    File::open(path)?.take(FILE_MIB << 20).read_to_end(&mut bytes)?;
     Ok(bytes)
 }

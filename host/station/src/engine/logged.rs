@@ -51,14 +51,14 @@ fn has_any(said: &Said, codes: &[&str]) -> bool {
 
 /// The state of a lane, as far as the log has reported it.
 #[derive(Clone, Copy, Debug, Default)]
-struct Standing {
+struct Logged {
     /// Why it begins no run.
     refused: Option<&'static str>,
     /// It shows no verdict on a board that was judged.
     is_unsaved: bool,
 }
 
-impl Standing {
+impl Logged {
     /// Takes what happened to the lane `name`; returns what the log says of it.
     // The end of a trouble is a warning, too, so that a log of only warnings has both its beginning and its end.
     fn take(&mut self, name: &str, event: &Event) -> Option<String> {
@@ -84,19 +84,19 @@ impl Standing {
 
 /// The state of every lane, as far as the log has reported it.
 #[derive(Debug)]
-pub(super) struct Standings(Mutex<Vec<Standing>>);
+pub(super) struct LoggedOfLanes(Mutex<Vec<Logged>>);
 
-impl Standings {
+impl LoggedOfLanes {
     /// Of so many lanes, of which nothing was reported.
     pub(super) fn of(lanes: usize) -> Self {
-        Self(Mutex::new(vec![Standing::default(); lanes]))
+        Self(Mutex::new(vec![Logged::default(); lanes]))
     }
 
     /// Logs what happened to the lane `name`, at this index, if it is news; returns why no run was begun, if that is
     /// the station's doing.
     pub(super) fn note(&self, lane: usize, name: &str, event: &Event) -> Option<&'static str> {
-        let mut standings = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(line) = standings.get_mut(lane)?.take(name, event) {
+        let mut logged = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(line) = logged.get_mut(lane)?.take(name, event) {
             tracing::warn!("{line}");
         }
         match event {
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn the_log_says_once_why_a_lane_begins_no_run_and_once_that_it_does_again() {
-        let (mut lane, apart) = (Standing::default(), || not_begun(StoreError::ClockApart { minutes: 7 }));
+        let (mut lane, apart) = (Logged::default(), || not_begun(StoreError::ClockApart { minutes: 7 }));
         let begun = || Event::Begun { run: "r".to_owned() };
         let mut says = |event: &Event| lane.take("2", event).unwrap_or_default();
         assert_eq!(says(&begun()), "");
@@ -143,7 +143,7 @@ mod tests {
 
     #[test]
     fn the_log_says_once_that_a_result_is_not_saved() {
-        let mut lane = Standing::default();
+        let mut lane = Logged::default();
         let unsaved = Event::NotAtPlant { why: Saying::NotAtPlant.into() };
         assert!(
             lane.take("2", &unsaved).unwrap().contains("lane 2 shows no verdict on its board: the result")
