@@ -196,6 +196,12 @@ pub enum MemError {
     /// The comment at the head of the memory image lacks a number.
     #[error("its comments give no whole number as `{key}=`; write the file again with `halfrow tables`", key = .0.key())]
     Header(Place),
+    /// The comments at the head of a kernel's memory image do not say that its weights are in the core's order.
+    #[error("its comments do not say `{order}`; write the file again with `halfrow tables`")]
+    WeightOrder {
+        /// What they must say.
+        order: &'static str,
+    },
     /// The memory image gives a sample depth that the datapath does not have.
     #[error("its comments give bits={found}; {remedy}", remedy = Place::Bits.remedy())]
     Bits {

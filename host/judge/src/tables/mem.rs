@@ -1,8 +1,8 @@
 //! Memory images for Verilog's `$readmemh`: NAME.steps.mem and NAME.kernel.mem.
 //!
 //! A row factor, or an entry of a grid, is a word of 25 bits, written as 7 hexadecimal digits. A node is a word of 80 bits, 20
-//! digits: g0 r1 g4 r5 g6, 16 bits each in two's complement, g0 the most significant. Comments at the top say so, and give the
-//! geometry that [`read`] needs.
+//! digits: g6 r5 g4 r1 g0, 16 bits each in two's complement, g6 the most significant, as the core takes it. Comments at the top
+//! say so, and give the geometry that [`read`] needs.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -23,6 +23,10 @@ const WEIGHT_DIGITS: usize = 4;
 
 /// Hexadecimal digits of a node.
 const NODE_DIGITS: usize = WEIGHT_DIGITS * WEIGHT_NAMES.len();
+
+/// How the comments give the order of the weights, from the most significant. An image in another order would be taken for
+/// another kernel.
+const WEIGHT_ORDER: &str = "order=g6,r5,g4,r1,g0";
 
 /// The parts of the two files' names that tell them apart.
 const PARTS: [&str; 2] = ["steps", "kernel"];
@@ -127,12 +131,13 @@ pub fn tables_text(tables: &TableSet) -> String {
 pub fn kernel_text(kernel: &Kernel) -> String {
     let header = [
         "// halfrow kernel for $readmemh: 80 bits a word, nodes x = 0, 1/32, ..., 2".to_owned(),
-        "// g0 r1 g4 r5 g6, g0 most significant; each 16 bits, two's complement, 14 of them fractional"
+        "// g6 r5 g4 r1 g0, g6 most significant; each 16 bits, two's complement, 14 of them fractional"
             .to_owned(),
-        format!("// datapath={DATAPATH}"),
+        format!("// datapath={DATAPATH} {WEIGHT_ORDER}"),
     ];
-    let words =
-        kernel.nodes().iter().map(|node| node.map(|weight| format!("{weight:0WEIGHT_DIGITS$x}")).concat());
+    let word =
+        |node: &[i16; 5]| node.iter().rev().map(|weight| format!("{weight:0WEIGHT_DIGITS$x}")).collect();
+    let words = kernel.nodes().iter().map(word);
     lines(header.into_iter().chain(words))
 }
 
@@ -174,13 +179,16 @@ pub fn parse_kernel(text: &str) -> Result<Kernel, MemError> {
         // A kernel is the same for both.
         Datapath::RowFactors | Datapath::Grids => {}
     }
+    if !notes(text).any(|note| note == WEIGHT_ORDER) {
+        return Err(MemError::WeightOrder { order: WEIGHT_ORDER });
+    }
     let nodes: Result<_, _> = words::<NODE_DIGITS>(text).map(|word| word.map(weights)).collect();
     Ok(Kernel::from_nodes(nodes?)?)
 }
 
 /// The weights g0 r1 g4 r5 g6 in a node's word.
 fn weights(word: u128) -> [i16; 5] {
-    [64, 48, 32, 16, 0].map(|shift| (word >> shift) as i16)
+    [0, 16, 32, 48, 64].map(|shift| (word >> shift) as i16)
 }
 
 /// The words of `text`, one a line, each `DIGITS` hexadecimal digits.
@@ -197,6 +205,11 @@ fn comment(line: &str) -> Option<&str> {
     line.trim().strip_prefix("//")
 }
 
+/// The words of the comments.
+fn notes(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().filter_map(comment).flat_map(str::split_whitespace)
+}
+
 /// The datapath named in the comments.
 fn datapath(text: &str) -> Result<Datapath, MemError> {
     Ok(WrongDatapath::check(noted(text, Place::Datapath)?)?)
@@ -204,7 +217,6 @@ fn datapath(text: &str) -> Result<Datapath, MemError> {
 
 /// The number given in the comments as `key=number`.
 fn noted<T: FromStr>(text: &str, place: Place) -> Result<T, MemError> {
-    let notes = text.lines().filter_map(comment).flat_map(str::split_whitespace);
-    let mut values = notes.filter_map(|note| note.strip_prefix(place.key())?.strip_prefix('='));
+    let mut values = notes(text).filter_map(|note| note.strip_prefix(place.key())?.strip_prefix('='));
     values.next().and_then(|value| value.parse().ok()).ok_or(MemError::Header(place))
 }

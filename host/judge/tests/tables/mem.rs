@@ -26,12 +26,12 @@ fn row_factors_are_seven_digits_under_a_comment_with_the_geometry() {
 }
 
 #[test]
-fn a_node_is_twenty_digits_with_g0_first() {
+fn a_node_is_twenty_digits_with_g6_first() {
     let kernel = Kernel::from_nodes(vec![[1, -1, 16384, -32768, 32767]; 65]).unwrap();
     let text = kernel_text(&kernel);
     let words: Vec<_> = text.lines().filter(|line| !line.starts_with("//")).collect();
-    assert_eq!(words, ["0001ffff400080007fff"; 65]);
-    assert!(text.contains("g0 most significant"), "{text}");
+    assert_eq!(words, ["7fff80004000ffff0001"; 65]);
+    assert!(text.contains("g6 most significant"), "{text}");
 }
 
 /// At x = 1/2, Eq. 18 gives f_R1 = -9/64, f_G4 = 5/32, f_R5 = -3/64: -2304, 2560 and -768 in 2^-14.
@@ -39,7 +39,7 @@ fn a_node_is_twenty_digits_with_g0_first() {
 fn node_16_of_the_hermite_kernel_is_that_of_eq_18() {
     let text = kernel_text(&Interpolant::Hermite.into());
     let words: Vec<_> = text.lines().filter(|line| !line.starts_with("//")).collect();
-    assert_eq!(words[16], "0000f7000a00fd000000");
+    assert_eq!(words[16], "0000fd000a00f7000000");
 }
 
 #[test]
@@ -150,7 +150,7 @@ fn a_line_that_is_no_word_is_named() {
         let refused = parse_tables(&tables_text(&tables()).replace("0df84a8", word)).unwrap_err();
         assert_eq!(refused, MemError::Word { line: 4, found: word.to_owned(), digits: 7 });
     }
-    let refused = parse_kernel("// datapath=1\n0001\n").unwrap_err();
+    let refused = parse_kernel("// datapath=1 order=g6,r5,g4,r1,g0\n0001\n").unwrap_err();
     let sentence =
         "line 2 is \"0001\", not 20 hexadecimal digits; write the file again with `halfrow tables`";
     assert_eq!(refused.to_string(), sentence);
@@ -172,6 +172,14 @@ fn a_kernel_with_a_node_too_few_is_refused() {
     let text = kernel_text(&Interpolant::Linear.into());
     let shorter = text.trim_end().rsplit_once('\n').unwrap().0;
     assert_eq!(parse_kernel(shorter), Err(MemError::Kernel(KernelError::Count(64))));
+}
+
+#[test]
+fn a_kernel_whose_weights_may_be_in_another_order_is_refused() {
+    let refused = parse_kernel(&kernel_text(&Interpolant::Hermite.into()).replace("g6,", "g0,")).unwrap_err();
+    let sentence =
+        "its comments do not say `order=g6,r5,g4,r1,g0`; write the file again with `halfrow tables`";
+    assert_eq!(refused.to_string(), sentence);
 }
 
 #[test]

@@ -118,6 +118,7 @@ codes! {
     }
     MemError {
         Header (place) => "mem-header-wrong",
+        WeightOrder [order] => "mem-order-missing",
         Bits [found] => "mem-depth-unknown",
         Word [line, found, digits] => "mem-word-wrong",
         = Datapath,
