@@ -63,6 +63,7 @@ use crate::verdict::Cause;
 use conclude::Begun;
 use findings::{End, Findings};
 use reconnect::WayBack;
+pub(crate) use steps::NotAllJudged;
 use steps::Run;
 
 pub use crate::board::Draws;

@@ -25,6 +25,18 @@ use crate::tables::{DATAPATH, datapath_of};
 use crate::target::BoardKind;
 use crate::verdict::Cause;
 
+/// Samples of the plan were not judged although nothing was found, which only a fault of this program can cause.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "{judged} of the plan's {planned} samples were judged, and nothing says why; report this fault of halfrow to its developers"
+)]
+pub(crate) struct NotAllJudged {
+    /// Samples of the frames that were to be streamed.
+    pub planned: usize,
+    /// Samples that were compared.
+    pub judged: usize,
+}
+
 /// A run with an open board.
 pub(super) struct Run<'a> {
     pub(super) plan: &'a Plan,
@@ -47,6 +59,17 @@ pub(super) fn judge_the_judge(findings: &mut Findings) -> Result<(), End> {
         }
         Err(what) => Err(End::error(CheckName::Judge, Cause::Station, Problem::of(&CannotJudge(what)))),
     }
+}
+
+/// Nothing of `schedule` was left out if `judged` samples were compared.
+fn all_judged(schedule: &[Segment], judged: usize) -> Result<(), End> {
+    let samples =
+        |segment: &Segment| segment.frames.len() * segment.geometry.width() * segment.geometry.height();
+    let planned = schedule.iter().map(samples).sum();
+    if judged == planned {
+        return Ok(());
+    }
+    Err(End::error(CheckName::Frames, Cause::Station, Problem::of(&NotAllJudged { planned, judged })))
 }
 
 impl Run<'_> {
@@ -73,6 +96,7 @@ impl Run<'_> {
             self.persist(Self::link)?;
             let last = self.stream_all(&schedule, &frames)?;
             self.judge_over_outages(last)?;
+            all_judged(&schedule, self.findings.look.seen.samples())?;
             match self.plan.at_speed.soak() {
                 Some(length) => self.soak(length, last)?,
                 None => self.at_speed(last)?,
@@ -201,5 +225,37 @@ impl Run<'_> {
         self.start_afresh().during(CheckName::Link)?;
         self.findings.passed(CheckName::Link, Finding::EchoesReturned { bytes, echoes: patterns.len() });
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use halfrow_model::{BitDepth, Geometry};
+
+    use super::{End, all_judged};
+    use crate::frames::Builtin;
+    use crate::run::{FrameSource, JUDGED, Part, ScheduledFrame, Segment, Timing};
+    use crate::verdict::Cause;
+
+    fn segment(width: usize, frames: u16) -> Segment {
+        let geometry = Geometry::new(width, 16, BitDepth::Twelve, 63).unwrap();
+        let frame = |number| ScheduledFrame {
+            number,
+            source: FrameSource::Builtin(Builtin::Noise),
+            generation: JUDGED,
+            part: Part::Gaps,
+        };
+        Segment { geometry, timing: Timing::Least, commit: None, frames: (0..frames).map(frame).collect() }
+    }
+
+    /// 64 x 16 and twice 96 x 16 samples.
+    #[test]
+    fn a_run_that_judged_less_than_its_plan_has_no_verdict() {
+        let schedule = [segment(64, 1), segment(96, 2)];
+        assert!(all_judged(&schedule, 4096).is_ok());
+        for judged in [0, 1024, 4095, 4097] {
+            let end = all_judged(&schedule, judged);
+            assert!(matches!(end, Err(End::Error { cause: Cause::Station, .. })), "{judged}");
+        }
     }
 }

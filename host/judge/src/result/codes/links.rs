@@ -8,7 +8,8 @@ use crate::coverage::FaultsError;
 use crate::link::{LinkError, OpenError, RecordingError, SerialError, TcpError, UsbError, UsbFailure};
 use crate::link_test::LinkTestError;
 use crate::run::{
-    CannotJudge, GoldenError, Misfit, NoThread, PrepareError, RestoreError, TooManyFrames, WithinError,
+    CannotJudge, GoldenError, Misfit, NoThread, NotAllJudged, PrepareError, RestoreError, TooManyFrames,
+    WithinError,
 };
 use crate::target::TargetError;
 
@@ -159,6 +160,8 @@ codes! {
     }
     ;
     CannotJudge => "computer-cannot-judge"
+    ;
+    NotAllJudged [planned, judged] => "samples-not-judged"
     ;
     TooManyFrames [frames] => "too-many-frames"
     ;

@@ -40,7 +40,7 @@ const OF_STATION: [&str; 19] = [
     "UnknownBarcode",
 ];
 /// The types of the judge's errors that they may see.
-const OF_JUDGE: [&str; 15] = [
+const OF_JUDGE: [&str; 16] = [
     "BoardError",
     "LinkError",
     "OpenError",
@@ -53,6 +53,7 @@ const OF_JUDGE: [&str; 15] = [
     "Misfit",
     "GoldenError",
     "CannotJudge",
+    "NotAllJudged",
     "TooManyFrames",
     "NoThread",
     "UsbFailure",
