@@ -4,7 +4,7 @@
 
 module board_choice #(
     parameter [15:0] LEAST_KHZ = 16'd4000,     // what counts as a PIXCLK
-    parameter [16:0] MOST_KHZ = 17'd100000,
+    parameter [16:0] MOST_KHZ = 17'd96100,     // the rate in the constraints, and a thousandth for both oscillators
     parameter WINDOW = 16,                     // milliseconds in which PIXCLK / 16 gives its rate in kHz; not to be changed
     parameter SETTLE = 7                       // the core's reset lasts 2 ** SETTLE link clocks on either side of a change
 ) (
