@@ -313,7 +313,7 @@ mod tests {
     use super::*;
     use crate::store::Kind;
 
-    /// docs/station.md: a second, then two, four, up to five minutes.
+    /// docs/station-results.md: a second, then two, four, up to five minutes.
     #[test]
     fn what_is_not_taken_is_tried_again_later_and_later() {
         for (attempts, most) in [(0, 1_000), (3, 8_000), (20, 300_000)] {

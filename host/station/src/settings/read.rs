@@ -20,7 +20,7 @@ use crate::published::named_by;
 use crate::web::{Address, AddressError};
 
 /// What to do about a wrong key: where all keys are listed.
-const KEYS: &str = "the table \"All settings\" of docs/station.md names every key";
+const KEYS: &str = "the table \"All settings\" of docs/station-lanes.md names every key";
 /// How long a lane may be silent, in seconds.
 const SILENCE: f64 = 60.0;
 /// How long a hook may take, in seconds.

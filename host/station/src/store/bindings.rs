@@ -297,7 +297,7 @@ mod tests {
         }
     }
 
-    /// Each row of the table in docs/station.md.
+    /// Each row of the table in docs/station-lanes.md.
     #[test]
     fn what_belongs_together_is_admitted_and_a_mix_up_is_refused() {
         let nothing = Known::default();

@@ -14,6 +14,7 @@ use serde_json::Value;
 
 use crate::common::{PLAN, program};
 
+const PAGE: &str = include_str!("../../../../docs/station-plans.md");
 /// A plan that uses every key.
 const WHOLE: &str = r#"schema = 1
 [plan]
@@ -374,8 +375,7 @@ fn the_schema_says_of_plans_what_the_program_does() {
 
 #[test]
 fn the_plan_of_the_page_is_one_by_the_schema() {
-    let page = include_str!("../../../../docs/station.md");
-    let plan = page.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+    let plan = PAGE.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
     let validator = jsonschema::validator_for(&serde_json::from_str(JSON_SCHEMA).unwrap()).unwrap();
     let errors: Vec<_> =
         validator.iter_errors(&as_json(plan).unwrap()).map(|error| error.to_string()).collect();
@@ -385,7 +385,6 @@ fn the_plan_of_the_page_is_one_by_the_schema() {
 /// The page, and the schema for whoever writes a plan with it, list the limits that exist and whom each one blames.
 #[test]
 fn the_page_and_the_schema_tell_what_can_have_a_limit() {
-    let page = include_str!("../../../../docs/station.md");
     let schema: Value = serde_json::from_str(JSON_SCHEMA).unwrap();
     let limits = &schema["$defs"]["limits"]["properties"];
     let settable = MEASUREMENTS.iter().filter(|known| known.name != "frames.samples_differing");
@@ -396,5 +395,5 @@ fn the_page_and_the_schema_tell_what_can_have_a_limit() {
         table += &format!("| `{name}` | {unit} | {by} | {blames} | {meaning} |\n");
         assert_eq!(limits[name]["description"], format!("{meaning} (blames: {blames})"));
     }
-    assert!(page.contains(&format!("|---|---|---|---|---|\n{table}\n")), "docs/station.md has not\n{table}");
+    assert!(PAGE.contains(&format!("|---|---|---|---|---|\n{table}\n")), "the page has not\n{table}");
 }

@@ -112,7 +112,7 @@ start = ["presence"]
 program = "lamp"
 "#;
 
-/// The defaults are those of docs/station.md and docs/plant.md; the ports are IANA's for MQTT.
+/// The defaults are those of docs/station-lanes.md and docs/plant.md; the ports are IANA's for MQTT.
 #[test]
 fn what_is_left_out_is_as_the_pages_say() {
     let settings = load(REST).unwrap();
@@ -301,7 +301,7 @@ fn known(text: &str) -> Vec<String> {
 /// The error about an unknown key refers its reader to this page.
 #[test]
 fn the_page_names_every_key() {
-    let page = include_str!("../../../../docs/station.md");
+    let page = include_str!("../../../../docs/station-lanes.md");
     let table = page.split("\n### All settings\n").nth(1).unwrap().split("\n#").next().unwrap();
     let mut named = vec!["schema".to_owned()];
     for row in table.lines().filter(|line| line.starts_with("| `[")) {

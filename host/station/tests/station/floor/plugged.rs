@@ -95,7 +95,7 @@ fn a_number_whose_board_came_to_a_lane_that_does_not_take_it_waits_for_no_other(
     }
 }
 
-/// docs/station.md says of OUT and UNSAVED that their reason is there. After a verdict the label is still to be scanned again.
+/// docs/station-lanes.md says of OUT and UNSAVED that their reason is there. After a verdict the label is still to be scanned again.
 #[test]
 fn a_number_that_was_not_given_does_not_hide_why_its_lane_is_out_or_saved_nothing() {
     let noted = |floor: &Floor| floor.lanes()[0].note().map(ToString::to_string).unwrap_or_default();

@@ -29,7 +29,7 @@ fn only_run(made: &Made) -> String {
     page(&made.now(), &Filter::default(), None, 1).unwrap().runs[0].id.clone()
 }
 
-/// docs/station.md: `at_speed = 0` is for none of the frames at full speed.
+/// docs/station-plans.md: `at_speed = 0` is for none of the frames at full speed.
 #[test]
 fn a_pass_says_what_was_not_tested_wherever_it_is_told() {
     let untested = "frames at the full pixel clock without a pause";
