@@ -117,7 +117,7 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",fault=damaged-ack",
         "(rule: a damaged packet must have no effect)",
     ),
-    fails("a row that denies that it came before", ",fault=stuck-repeats", "says 0 both times"),
+    fails("a row that denies that it came before", ",fault=stuck-repeats", "twice with `repeats` = 0"),
     fails(
         "any host at any time",
         ",fault=never-held",

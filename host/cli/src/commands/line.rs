@@ -102,9 +102,9 @@ commands! {
     Tables(super::tables::Arguments), "tables";
     /// Show a lens's figures and the error that remains after correction
     ///
-    /// The error is the distance of each sample from where the exact projection puts it: every vertical of the scene stands at the
-    /// column where the lens images it on the horizon. The vertical part of the error is the distance from the row where the lens
-    /// images the sample's latitude above or below the axis; no row factor changes that.
+    /// The error is the distance of each sample from its place in the exact projection, where a vertical line of the scene stays in
+    /// one column: the one that it has on the horizon. Row factors correct columns only. The vertical part of the error is given
+    /// too, but no table can change it.
     Lens(super::lens::Arguments), "lens";
     /// Fit a kernel to photographs, or measure one on them
     Kernel(super::kernel::Arguments), "kernel";

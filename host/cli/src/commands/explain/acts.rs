@@ -2,7 +2,7 @@
 //! another error, or is missing.
 
 /// What to do where tables of a station or of a plant contradict its records.
-const MEND_TABLES: &str = "mend first what `check` says of records, and if this is still reported, put back a copy \
+const MEND_TABLES: &str = "first repair the records that `check` names; if this is still reported, put back a copy \
                            of the database: station.db, or the plant's";
 
 /// What to do where the cause says it.

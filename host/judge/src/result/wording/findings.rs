@@ -202,8 +202,7 @@ fn of_conduct(finding: &Finding) -> String {
              so has another row shortly before it"
         ),
         Finding::RowRepeatsStand(RepeatedRow { row, frame, repeats }) => format!(
-            "the board sent row {row} of frame {frame} again, and `repeats` says {repeats} both times, and must grow by one \
-             each time"
+            "the board sent row {row} of frame {frame} twice with `repeats` = {repeats}, which must grow by one each time"
         ),
         Finding::RowOutOfOrder { row, frame } => format!(
             "the board reorders rows: by the board's own packet numbers, row {row} of frame {frame} left it after a \
