@@ -128,6 +128,23 @@ fn evidence_that_the_disk_did_not_take_at_once_is_none() {
     assert_eq!(seen, 3);
 }
 
+/// A file that is damaged, as by a copy that ended early, must not keep every later board with the same frames from its verdict.
+#[test]
+fn evidence_that_was_damaged_is_written_anew() {
+    let station = Station::with(&PLAN.replace("frames =", "seed = 7\nframes ="));
+    let fail = |serial| station.run(serial, "mock,fault=stuck-data");
+    assert_eq!(fail("CAT00001").code, Some(1));
+    let named = station.query("SELECT sha256 FROM attachment WHERE name LIKE '%.png'");
+    let path = station.store().blobs().path(&named[0]);
+    std::fs::write(&path, "half of it").unwrap();
+    assert_eq!(station.check().code, Some(3));
+    let again = fail("CAT00002");
+    assert_eq!(again.code, Some(1), "{again:?}");
+    let both = format!("SELECT count(*) FROM attachment WHERE sha256 = '{}'", named[0]);
+    assert_eq!(station.query(&both), ["2"], "both name it");
+    assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+}
+
 /// What the lane kept of a FAIL stays in its spool when the system does not say what is there.
 #[test]
 fn frames_that_cannot_be_listed_are_not_left_out() {
