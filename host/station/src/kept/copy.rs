@@ -1,7 +1,7 @@
 //! Copies of a station's folder: the index as of one moment, every piece of evidence that it names, the records that
 //! it does not name, and the plans of the plant.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::fs::{self, DirBuilder, File, Permissions};
 use std::io;
 use std::os::unix::fs::{DirBuilderExt as _, PermissionsExt as _};
@@ -73,7 +73,7 @@ pub enum CopyError {
 }
 
 /// Copies the station in `from` to the new folder `to`. Runs may go on meanwhile; the copy is of the moment at which
-/// it began. It has whatever faults the station has, which [`faults`] finds.
+/// it began. It has whatever faults the station has, which [`faults`] finds; evidence that is damaged is missing in it.
 ///
 /// # Errors
 /// [`CopyError`]
@@ -229,30 +229,23 @@ fn into(from: &Folder, aside: &Path) -> Result<Copied, CopyError> {
         }
         taken => taken?,
     };
-    let runs = copy.final_runs()?;
-    let evidence = copy_named(&copy, &runs, &from.blobs(), &to.blobs())?;
-    let unknown = copy_unnamed(&copy, &pieces, &from.blobs(), &to.blobs())?;
+    let named = copy.named_evidence()?;
+    let evidence = copy_named(&named, &from.blobs(), &to.blobs())?;
+    let unknown = copy_unnamed(&copy, (&pieces, &named), &from.blobs(), &to.blobs())?;
     synced(aside).map_err(StoreError::from)?;
-    Ok(Copied { runs: runs.len(), evidence, unknown })
+    Ok(Copied { runs: copy.final_runs()?.len(), evidence, unknown })
 }
 
-/// Copies what rows name, and returns how many pieces.
-fn copy_named(
-    copy: &Snapshot,
-    runs: &[(String, String)],
-    from: &Blobs,
-    to: &Blobs,
-) -> Result<usize, StoreError> {
-    let pruned = copy.pruned()?;
-    // A record is never removed.
-    let records = runs.iter().map(|(_, hash)| (hash.clone(), i64::MAX));
-    let all: BTreeMap<_, _> = copy.attachments()?.into_iter().chain(records).collect();
+/// Copies the evidence that rows name, and returns how many pieces. A piece that is damaged or gone is left out: a check of the copy
+/// says whether it should be there, and all others may be needed one day.
+fn copy_named(named: &BTreeSet<String>, from: &Blobs, to: &Blobs) -> Result<usize, StoreError> {
     let mut evidence = 0;
-    for (hash, ended_ms) in &all {
+    for hash in named {
         match from.get(hash) {
-            Err(error) if error.is_gone() && pruned.explains(hash, *ended_ms) => {}
-            bytes => {
-                to.put(&bytes?)?;
+            Err(error) if error.is_withheld() => return Err(error.into()),
+            Err(_) => {}
+            Ok(bytes) => {
+                to.put(&bytes)?;
                 evidence += 1;
             }
         }
@@ -262,9 +255,13 @@ fn copy_named(
 
 /// Copies the records among `pieces` that no row names, and what they name; returns how many of them are of runs
 /// without a row.
-fn copy_unnamed(copy: &Snapshot, pieces: &[Piece], from: &Blobs, to: &Blobs) -> Result<usize, StoreError> {
-    let named = copy.named_evidence()?;
-    let records = from.unnamed_records(pieces, &named)?;
+fn copy_unnamed(
+    copy: &Snapshot,
+    (pieces, named): (&[Piece], &BTreeSet<String>),
+    from: &Blobs,
+    to: &Blobs,
+) -> Result<usize, StoreError> {
+    let records = from.unnamed_records(pieces, named)?;
     for record in &records {
         to.put(&from.get(&record.sha256)?)?;
         for hash in record.attachments.iter().filter(|hash| !named.contains(*hash)) {

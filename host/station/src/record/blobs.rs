@@ -52,6 +52,12 @@ impl BlobError {
     pub fn is_gone(&self) -> bool {
         matches!(self, Self::Read { source, .. } if source.kind() == io::ErrorKind::NotFound)
     }
+
+    /// Whether this program may not read the evidence, which need not be wrong.
+    #[must_use]
+    pub(crate) fn is_withheld(&self) -> bool {
+        matches!(self, Self::Read { source, .. } if source.kind() == io::ErrorKind::PermissionDenied)
+    }
 }
 
 /// A folder of evidence.

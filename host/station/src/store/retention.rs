@@ -22,17 +22,15 @@ impl Folder {
     /// Copies the database as it is at this moment to the new file `to`.
     pub(crate) fn copy_database(&self, to: &Path) -> Result<(), StoreError> {
         let copied = self.reader()?.execute("VACUUM INTO $1", values![&*to.to_string_lossy()]);
-        copied.map_err(|source| StoreError::of_file(&self.database(), "to be copied", source))?;
+        copied.map_err(|source| match source.is_of_reading() {
+            true => StoreError::of_file(&self.database(), "to be copied", source),
+            false => StoreError::of_file(to, "to be written", source),
+        })?;
         generation::remove(to)
     }
 }
 
 impl Snapshot {
-    /// The hashes of all attachments, each with when the last run that has it ended, in milliseconds since 1970, UTC.
-    pub(crate) fn attachments(&self) -> Result<Vec<(String, i64)>, StoreError> {
-        self.rows("to tell its evidence", sql::ATTACHMENTS, &[], |row| Ok((row.get(0)?, row.get(1)?)))
-    }
-
     /// The hashes of all evidence that a row names, records among it.
     pub(crate) fn named_evidence(&self) -> Result<BTreeSet<String>, StoreError> {
         let named =

@@ -58,7 +58,6 @@ statements! {
     pub(super) ADD_WAIVER = "add-waiver.sql";
     pub(super) ADD_AUDIT = "add-audit.sql";
     pub(super) WAIVER_OF = "waiver-of.sql";
-    pub(super) ATTACHMENTS = "attachments.sql";
     pub(super) PRUNED = "pruned.sql";
     pub(super) OLD_EVIDENCE = "old-evidence.sql";
     pub(super) NAMED_EVIDENCE = "named-evidence.sql";

@@ -8,7 +8,7 @@ use std::error::Error as _;
 use std::fmt::Debug;
 use std::{io, iter};
 
-use rusqlite::ErrorCode;
+use rusqlite::{ErrorCode, ffi};
 
 pub(crate) use self::postgres::Postgres;
 pub(crate) use sqlite::Sqlite;
@@ -61,6 +61,13 @@ impl DatabaseError {
         use rusqlite::Error::{SqlInputError, SqliteFailure};
         let Self::Sqlite(SqliteFailure(error, _) | SqlInputError { error, .. }) = self else { return false };
         matches!(error.code, ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase)
+    }
+
+    /// Whether the file could not be read, as opposed to another one that was to be written from it.
+    pub(crate) fn is_of_reading(&self) -> bool {
+        let code = if let Self::Sqlite(error) = self { error.sqlite_error() } else { None };
+        let unread = [ffi::SQLITE_IOERR_READ, ffi::SQLITE_IOERR_SHORT_READ];
+        self.is_damage() || code.is_some_and(|code| unread.contains(&code.extended_code))
     }
 
     /// Whether the station's engine already has a row that must be unique.

@@ -2,6 +2,7 @@
 
 pub(crate) mod commands;
 mod control;
+mod copied;
 mod copied_plans;
 mod counted;
 mod exports;

@@ -1,0 +1,62 @@
+//! Copies of a station that is not as it should be, and on a disk that is not.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::Command;
+
+use halfrow_station::kept::{backup, restore};
+use halfrow_station::store::Folder;
+use tempfile::TempDir;
+
+use super::commands::did;
+use super::made::{End, Made, Run};
+use crate::common::{Did, program, query};
+
+/// A FAIL with evidence, the path of that within a station's folder, and a place for copies.
+fn failed() -> (Made, PathBuf, TempDir) {
+    let mut made = Made::new();
+    made.run(&Run { evidence: vec!["seen"], ..Run::of("S1", End::Fail(&["memory"])) });
+    let hash = &query(made.as_ref(), "SELECT sha256 FROM attachment")[0];
+    let path = PathBuf::from("blobs").join(&hash[..2]).join(hash);
+    (made, path, tempfile::tempdir().unwrap())
+}
+
+/// Otherwise a station with one bad sector would have no copy of all the rest.
+#[test]
+fn a_copy_lacks_what_is_damaged_or_lost_and_has_all_the_rest() {
+    let (made, evidence, place) = failed();
+    let [whole, damaged, lost] = ["whole", "damaged", "lost"].map(|name| place.path().join(name));
+    assert_eq!(backup(&made.folder(), &whole).unwrap().evidence, 2);
+    let of_station = made.folder().path().join(&evidence);
+    for copy in [&damaged, &lost] {
+        if copy == &damaged {
+            fs::write(&of_station, "other").unwrap();
+        } else {
+            fs::remove_file(&of_station).unwrap();
+        }
+        let (code, said, complained) = did(&made, &["backup", copy.to_str().unwrap()]);
+        assert_eq!((code, complained.as_str()), (3, ""), "{said}");
+        assert!(said.starts_with("fault: evidence of run "), "{said}");
+        assert!(said.contains("1 run and 1 piece of evidence are in "), "{said}");
+        assert!(said.contains("; `restore` refuses it for 1 fault"), "{said}");
+    }
+    // Put back by hand, as the fault says, it is a copy like any other.
+    let to = lost.join(&evidence);
+    fs::create_dir_all(to.parent().unwrap()).unwrap();
+    fs::copy(whole.join(evidence), to).unwrap();
+    restore(&Folder::new(&lost), &place.path().join("again")).unwrap();
+}
+
+/// People look for space where an error tells them to.
+#[test]
+fn a_copy_without_room_names_the_disk_that_is_full() {
+    let (made, _, place) = failed();
+    let copy = place.path().join("copy");
+    let mut full = Command::new("strace");
+    full.args(["-qq", "-o", "/dev/null", "-e", "inject=pwrite64:error=ENOSPC"]).arg(program()).arg("backup");
+    let did = Did::from(full.arg(&copy).arg("--data").arg(made.as_ref()).output().unwrap());
+    assert_eq!(did.code, Some(3), "{did:?}");
+    assert!(did.complained.contains(place.path().to_str().unwrap()), "{did:?}");
+    assert!(!did.complained.contains(made.as_ref().to_str().unwrap()), "{did:?}");
+    assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0, "what was begun is removed");
+}
