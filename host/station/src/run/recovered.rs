@@ -1,8 +1,10 @@
 //! Runs that are found open when the station starts: the program or the computer ended in the middle of them.
 
-use std::fs;
-use std::io;
+use std::fs::{self, File};
+use std::io::Write as _;
 use std::path::Path;
+
+use halfrow::files::written_aside::{folder_of, sync_folder};
 
 use crate::clock;
 use crate::kept::{Spool, spools};
@@ -20,13 +22,18 @@ use super::{RunError, Saved, save};
 /// The claim of the job that a run belongs to, in the run's spool: the row of an open run does not have it.
 const CLAIM: &str = "claim.json";
 
-/// Keeps `claim` for whoever closes the run if this process ends in the middle of it.
+/// Keeps `claim` for whoever closes the run if this process, or the computer, ends in the middle of it.
 pub(super) fn note_claim(spool: &Path, claim: Option<&JobClaim>) {
     let Some(claim) = claim else { return };
-    let written = fs::create_dir_all(spool)
-        .and_then(|()| serde_json::to_vec(claim).map_err(io::Error::from))
-        .and_then(|bytes| fs::write(spool.join(CLAIM), bytes));
-    if let Err(error) = written {
+    let write = || {
+        fs::create_dir_all(spool)?;
+        let mut file = File::create(spool.join(CLAIM))?;
+        file.write_all(&serde_json::to_vec(claim)?)?;
+        file.sync_all()?;
+        sync_folder(spool)?;
+        sync_folder(folder_of(spool))
+    };
+    if let Err(error) = write() {
         tracing::warn!("if this run is broken off, its record will not name its job {}: {error}", claim.id);
     }
 }

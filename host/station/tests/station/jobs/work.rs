@@ -182,6 +182,27 @@ fn a_station_without_a_thread_for_each_of_its_jobs_ends_and_says_so() {
     assert!(did.code == Some(3) && did.complained.contains("temporarily unavailable"), "{did:?}");
 }
 
+/// Whoever finds the run open after a power cut has its row, which is on the disk, too.
+#[test]
+fn the_claim_of_a_run_and_its_name_are_on_the_disk_before_its_board_is_touched() {
+    let (server, _plant, _) = super::with_a_job();
+    let folder = crate::common::folder();
+    let path = settings(&server, folder.path(), "12");
+    let trace = folder.path().join("calls");
+    let mut traced = Command::new("strace");
+    traced.args(["-f", "-y", "-qq", "-e", "trace=fsync,execve", "-e", "signal=none", "-o"]).arg(&trace);
+    traced.arg(program()).args(["work", "--once", "--settings"]).arg(path);
+    let did = Did::from(traced.output().unwrap());
+    assert_eq!(did.code, Some(0), "{did:?}");
+    let calls = fs::read_to_string(trace).unwrap();
+    let (before, _) = calls.split_once("\"lane\"").unwrap();
+    let run = &server.rows("SELECT id FROM run")[0][0];
+    for synced in ["/data/spool>".to_owned(), format!("/spool/{run}>"), format!("/spool/{run}/claim.json>")] {
+        let is_synced = |line: &str| line.contains("fsync(") && line.contains(&synced);
+        assert!(before.lines().any(is_synced), "{synced}: {before}");
+    }
+}
+
 #[test]
 fn a_run_that_was_ended_since_its_job_was_cancelled_says_so_and_blames_nobody() {
     let (server, mut plant) = shared(0);
