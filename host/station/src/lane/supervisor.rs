@@ -41,13 +41,15 @@ const THREADS: &str = "RAYON_NUM_THREADS";
 /// This very program, even if its file has been replaced or removed.
 pub(crate) const OWN_PROGRAM: &str = "/proc/self/exe";
 
-/// How long a lane may take.
+/// How long a lane may take, and how much it may report.
 #[derive(Clone, Copy, Debug)]
 pub struct Patience {
     /// The longest time between two messages.
     pub silence: Duration,
     /// The longest time in all.
     pub whole: Duration,
+    /// The most tries of steps.
+    pub tries: usize,
 }
 
 /// What a lane reported, and how it ended.
@@ -171,6 +173,10 @@ impl Lane {
                     if let Some(end) = self.take(&line, attendant, steps) {
                         return end;
                     }
+                    if steps.len() > patience.tries {
+                        steps.truncate(patience.tries);
+                        return End::Killed(babbles(&line));
+                    }
                     // The answer may have waited for the store, which does not count as silence of the lane.
                     last = Instant::now();
                 }
@@ -200,10 +206,7 @@ impl Lane {
     ) -> Option<End> {
         self.write_down(line);
         match serde_json::from_str(line) {
-            Err(_) => {
-                let line = line.chars().take(MOST_SHOWN).collect();
-                return Some(End::Killed(Saying::LaneBabbles { line }.into()));
-            }
+            Err(_) => return Some(End::Killed(babbles(line))),
             Ok(Message::Begun { program }) if program == halfrow::VERSION => self.is_own = true,
             // The record names this program, and another one may judge differently.
             Ok(message) if !self.is_own || matches!(message, Message::Begun { .. }) => {
@@ -293,6 +296,11 @@ fn give(stdin: Option<ChildStdin>, given: Receiver<String>) -> io::Result<()> {
 
 fn in_thread(hand_on: impl FnOnce() + Send + 'static) -> io::Result<()> {
     thread::Builder::new().name("lane".to_owned()).spawn(hand_on).map(drop)
+}
+
+/// Why a lane that said this is not heard any more.
+fn babbles(line: &str) -> Said {
+    Saying::LaneBabbles { line: line.chars().take(MOST_SHOWN).collect() }.into()
 }
 
 /// Why the lane is waited for no longer.

@@ -10,7 +10,8 @@ const LINK_TEST_PARTS: u32 = 5;
 
 /// The patience with a lane that carries out `selected` and may be silent for `silence` in addition to its link tests.
 pub(super) fn of(silence: Duration, selected: &Selected) -> Patience {
-    Patience { silence: silence.saturating_add(longest_link_test(selected)), whole: whole(selected) }
+    let tries = selected.steps.iter().map(|step| step.retries as usize + 1).sum();
+    Patience { silence: silence.saturating_add(longest_link_test(selected)), whole: whole(selected), tries }
 }
 
 /// How long the longest link test is silent when all is well.
@@ -47,6 +48,7 @@ mod tests {
         let tested = patience(vec![step(1, 0, Act::Identity), step(20, 2, link(3)), step(30, 0, link(2))]);
         assert_eq!(tested.silence, Duration::from_secs(5 + 5 * 3));
         assert_eq!(tested.whole, Duration::from_secs(1 + 3 * 20 + 30 + 30));
+        assert_eq!(tested.tries, 1 + 3 + 1);
         assert_eq!(patience(vec![step(1, 0, Act::Identity)]).silence, Duration::from_secs(5));
     }
 }

@@ -9,7 +9,7 @@ use halfrow_station::lane::{Job, Message, Ruling};
 use halfrow_station::record::BoardSeen;
 
 use super::floor::HANG;
-use crate::common::{folder, script};
+use crate::common::{PLAN, folder, program, script};
 
 /// A station that takes this long for every message.
 struct Slow(Duration);
@@ -59,7 +59,7 @@ fn end_of_script(lane: &str, text: String, silence: Duration, attendant: &mut dy
         spool: folder.path().to_owned(),
         memory_mib: 64,
     };
-    supervise(&lane, &job, folder.path(), Patience { silence, whole: HANG }, attendant).end
+    supervise(&lane, &job, folder.path(), Patience { silence, whole: HANG, tries: 2 }, attendant).end
 }
 
 #[test]
@@ -77,6 +77,44 @@ fn a_lane_whose_line_has_no_end_is_killed_and_quoted_in_part() {
     let end = end_of_script(&endless, String::new(), HANG, &mut Slow(Duration::ZERO));
     let End::Killed(why) = end else { panic!("{end:?}") };
     assert_eq!((why.code.as_str(), &why.parameters["line"]), ("lane-told-nonsense", &"x".repeat(200).into()));
+}
+
+/// They would fill the station's memory, too.
+#[test]
+fn a_lane_that_ends_more_tries_than_its_plan_has_is_killed() {
+    let step = r#"{"seq":1,"attempt":1,"name":"a","kind":"verify","outcome":"passed","cause":"none","exit_code":0,"started_ms":1,
+        "ended_ms":2,"detail":"","remedy":null,"measurements":[],"suspects":[],"board":null,"evidence":null}"#;
+    let ended = format!(r#"{{"told":"ended","step":{}}}\n"#, step.split_whitespace().collect::<String>());
+    let endless = format!("printf '{}'\nwhile printf '{ended}'; do :; done\n", begun());
+    let end = end_of_script(&endless, String::new(), HANG, &mut Slow(Duration::ZERO));
+    let End::Killed(why) = end else { panic!("{end:?}") };
+    assert_eq!(why.code, "lane-told-nonsense");
+    // The control: as many as the plan has.
+    let told = format!("{}{ended}{ended}{TWO}", begun());
+    assert_eq!(end_of(&told, HANG, &mut Slow(Duration::ZERO)), End::Done);
+}
+
+/// What the lane read need not be what the station read, however shortly before.
+#[test]
+fn a_lane_whose_plan_is_another_one_refuses_it() {
+    let place = folder();
+    let job = Job {
+        run: "run".to_owned(),
+        target: "mock".to_owned(),
+        plan: place.path().join("plan.toml"),
+        text: PLAN.to_owned(),
+        sha256: "0".repeat(64),
+        variant: String::new(),
+        seed: 0,
+        is_mock: false,
+        spool: place.path().to_owned(),
+        memory_mib: 4096,
+    };
+    let patience = Patience { silence: HANG, whole: HANG, tries: 2 };
+    let report = supervise(program(), &job, place.path(), patience, &mut Slow(Duration::ZERO));
+    let End::Refused(why) = report.end else { panic!("{report:?}") };
+    assert_eq!(why.code, "plan-changed");
+    assert!(report.steps.is_empty(), "the board was not touched");
 }
 
 /// Its job is longer than what a pipe holds.
