@@ -1,12 +1,13 @@
 //! `halfrow-station lanes`
 
-use std::io::{self, BufRead as _};
+use std::io::{self, BufRead};
 use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
-use std::thread;
 use std::time::Duration;
+use std::{iter, thread};
 
 use clap::Args;
+use halfrow::words::plain;
 
 use super::Failure;
 use super::beginning::{Disk, Ready, outbox, settings};
@@ -21,7 +22,7 @@ const LOOK: Duration = Duration::from_millis(100);
 
 /// Judge the boards in all lanes of a station, with scans from stdin
 ///
-/// Every line of stdin is a scan: a serial number, or HR:LANE:NAME, HR:START, HR:ABORT, HR:OUT, HR:IN, HR:MOCK. What
+/// Every whole line of stdin is a scan: a serial number, or HR:LANE:NAME, HR:START, HR:ABORT, HR:OUT, HR:IN, HR:MOCK. What
 /// happens is printed, one JSON object per line. When stdin ends, the runs under way are finished; a signal ends them at
 /// once.
 #[derive(Debug, Args)]
@@ -74,13 +75,28 @@ pub(super) struct EngineEnded;
 fn scans() -> io::Result<Receiver<(u64, String)>> {
     let (sender, scans) = mpsc::channel();
     thread::Builder::new().name("scans".to_owned()).spawn(move || {
-        // What is not UTF-8 gets characters that no label has, so it is refused.
-        let text = |line: Vec<u8>| String::from_utf8_lossy(&line).trim_end_matches('\r').to_owned();
-        let lines = io::stdin().lock().split(b'\n').map_while(Result::ok).map(text);
+        let mut stdin = io::stdin().lock();
+        let lines = iter::from_fn(|| line(&mut stdin));
         // Once the station closes, nobody takes scans any more.
         (1..).zip(lines).take_while(|scan| sender.send(scan.clone()).is_ok()).for_each(drop);
     })?;
     Ok(scans)
+}
+
+/// The next line; none at the end. A line without an end is no scan: a scanner that was pulled out has sent only a part of a label.
+fn line(from: &mut impl BufRead) -> Option<String> {
+    let mut line = Vec::new();
+    from.read_until(b'\n', &mut line).ok()?;
+    // What is not UTF-8 gets characters that no label has, so it is refused.
+    let text = String::from_utf8_lossy(&line);
+    match text.strip_suffix('\n') {
+        Some(label) => Some(label.trim_end_matches('\r').to_owned()),
+        None if text.is_empty() => None,
+        None => {
+            tracing::warn!("stdin ended within a scan, which is not taken: {}", plain(&text));
+            None
+        }
+    }
 }
 
 fn print(news: &Receiver<News>) {
@@ -89,5 +105,18 @@ fn print(news: &Receiver<News>) {
             Ok(line) => console::tell(&line),
             Err(error) => tracing::error!("a piece of news is no JSON: {error}"),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Some serial numbers begin with another one.
+    #[test]
+    fn a_label_that_was_cut_off_is_no_scan() {
+        let mut stdin = b"CAT00001\r\n\xff\n\nCAT000".as_slice();
+        let lines: Vec<_> = iter::from_fn(|| line(&mut stdin)).collect();
+        assert_eq!(lines, ["CAT00001", "\u{fffd}", ""]);
     }
 }
