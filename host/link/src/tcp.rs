@@ -3,6 +3,8 @@
 use std::io;
 use std::net::{SocketAddr, TcpStream, ToSocketAddrs};
 use std::os::fd::AsRawFd;
+use std::sync::mpsc;
+use std::thread;
 use std::time::{Duration, Instant};
 
 use super::descriptor::{Gone, Pump, never_block};
@@ -14,6 +16,9 @@ use crate::target::Target;
 /// The limit for each address of the host. In a laboratory a connection takes a millisecond, around the world a third of a
 /// second.
 const PATIENCE: Duration = Duration::from_secs(3);
+
+/// The limit for the host's name: enough for a second name server where the first one is off (resolv.conf(5): five seconds).
+const RESOLVED: Duration = Duration::from_secs(15);
 
 /// The longest text that is kept of a server that sends words instead of a board's bytes.
 const LONGEST_TEXT: usize = 200;
@@ -200,13 +205,36 @@ fn check_address(address: &str) -> Result<(), TcpError> {
 }
 
 fn resolve(address: &str) -> Result<Vec<SocketAddr>, TcpError> {
-    let unknown = |source| TcpError::UnknownHost { address: address.to_owned(), source };
-    Ok(address.to_socket_addrs().map_err(unknown)?.collect())
+    let asked = address.to_owned();
+    let found = in_time(RESOLVED, move || asked.to_socket_addrs().map(Iterator::collect));
+    found.map_err(|source| TcpError::UnknownHost { address: address.to_owned(), source })
+}
+
+/// What `ask` finds, which must not take longer than `patience`: while all name servers are silent, the system waits for as long as
+/// its resolv.conf says, and nothing can stop it.
+fn in_time<T: Send + 'static>(
+    patience: Duration,
+    ask: impl FnOnce() -> io::Result<T> + Send + 'static,
+) -> io::Result<T> {
+    let (tell, told) = mpsc::channel();
+    // Nobody may listen any more.
+    thread::Builder::new().name("resolver".to_owned()).spawn(move || drop(tell.send(ask())))?;
+    told.recv_timeout(patience).unwrap_or_else(|_| Err(io::ErrorKind::TimedOut.into()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_name_server_that_says_nothing_is_not_waited_for() {
+        let (hold, held) = mpsc::channel::<()>();
+        let silent = move || held.recv().map_err(io::Error::other);
+        let found = in_time(Duration::from_millis(1), silent).unwrap_err();
+        assert_eq!(found.kind(), io::ErrorKind::TimedOut);
+        drop(hold);
+        assert_eq!(in_time(RESOLVED, || Ok(7)).unwrap(), 7);
+    }
 
     #[test]
     fn an_address_is_a_host_and_a_port() {
