@@ -72,6 +72,7 @@ codes::codes! {
     RunError {
         NotBegun => "run-not-begun",
         Unsaved [run] => "run-unsaved",
+        = PlanFile,
         = Serial,
         = NoRandomness,
     }
@@ -159,7 +160,6 @@ codes::codes! {
         Target [board, target] => "shared-board-without-place",
         NotTaken [run, said] => "job-run-not-taken",
         = Run,
-        = PlanFile,
     }
     Lost {
         Taken [board] => "shared-board-taken",

@@ -20,7 +20,7 @@ use crate::guard::guarded;
 use crate::history::PlanName;
 use crate::lane::Message;
 use crate::outbox::{Sent, awaited};
-use crate::plan::{Plan, changed, mock::is_mock};
+use crate::plan::{Plan, mock::is_mock};
 use crate::record::Record;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::said::{Said, Saying};
@@ -89,10 +89,6 @@ fn carried_out(shared: &Shared, lane: usize, accepted: &Accepted, stop: StopAske
     let (Some(of), Some(file)) = (lanes.get(lane), plans.get(accepted.plan)) else {
         return Event::NotBegun { why: Saying::NoLaneOrPlan.into() };
     };
-    // Each board would be an ERROR, and none of them is to blame.
-    if let Some(file) = changed(&file.path, &file.plan.files) {
-        return Event::NotBegun { why: Saying::PlanFileOther { file: file.to_owned() }.into() };
-    }
     let order = Order {
         plan: &file.plan,
         plan_file: &file.path,

@@ -25,7 +25,7 @@ use crate::lane::supervisor::{Attendant, EVENTS, End, LOG, LaneReport};
 use crate::lane::{FILE_MIB, Job, Message, Ruling, kept_frame};
 use crate::plan::limits::Maker;
 use crate::plan::serial::{Serial, SerialError};
-use crate::plan::{Plan, Selected, mock};
+use crate::plan::{Plan, Selected, changed, mock};
 use crate::record::{
     Attachment, BlobError, Blobs, BoardSeen, Conclusion, DeviceSeen, JobClaim, PlanRecord, Record, RunCause,
     RunHead, SCHEMA, StepRecord, SuspectRecord, judged,
@@ -115,6 +115,10 @@ pub enum RunError {
     /// The same.
     #[error(transparent)]
     NoRandomness(#[from] NoRandomness),
+    /// A file that the plan names is another one than when the plan was read. Nothing was begun: each board would be an ERROR, and
+    /// none of them is to blame.
+    #[error(transparent)]
+    PlanFile(#[from] Saying),
     /// The run is over, but its result could not be saved, so there is none.
     #[error(
         "the result of run {run} could not be saved, so there is none; test the board again when this is put right"
@@ -133,6 +137,7 @@ pub enum RunError {
 /// [`RunError`] when there is no verdict that may be shown.
 pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Result<Saved, RunError> {
     let Order { plan, .. } = order;
+    refuse_changed(order)?;
     let started_ms = clock::now_ms();
     let not_begun = |error| RunError::NotBegun(Box::new(error));
     let id = store.with(|store| store.new_id(started_ms)).map_err(not_begun)?;
@@ -172,6 +177,14 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     record.conclusion = record.conclusion.stopped_since(why);
     let steps = selected.steps.len() as u32;
     save(&folder, record, |record| store.with(|store| store.finish(record, steps)))
+}
+
+/// Refuses a plan of which a file is another one than when it was read.
+fn refuse_changed(order: &Order<'_>) -> Result<(), Saying> {
+    match changed(order.plan_file, &order.plan.files) {
+        Some(file) => Err(Saying::PlanFileOther { file: file.to_owned() }),
+        None => Ok(()),
+    }
 }
 
 /// What is judged.

@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use crate::plan::changed;
+use crate::plan::Plan;
 use crate::said::Saying;
-use crate::settings::PlanFile;
 
 /// How long no job of such a plan is taken before its files are looked at again.
 const AGAIN: Duration = Duration::from_secs(5);
@@ -21,26 +20,19 @@ impl Aside {
         self.plans().get(sha256).is_none_or(|until| *until <= Instant::now())
     }
 
-    /// Looks at the files of a plan before a run, and sets it aside if one was changed. The log says that once, and once that it
-    /// was put back.
-    ///
-    /// # Errors
-    /// [`Saying::PlanFileOther`]
-    pub(super) fn check(&self, PlanFile { path, plan }: &PlanFile) -> Result<(), Saying> {
-        let changed = changed(path, &plan.files);
-        let (product, name, version) = (&plan.product, &plan.name, &plan.version);
-        let Some(file) = changed else {
-            if self.plans().remove(&plan.sha256).is_some() {
-                tracing::warn!("jobs of the plan {product}/{name} {version} are taken again");
-            }
-            return Ok(());
-        };
-        let why = Saying::PlanFileOther { file: file.to_owned() };
+    /// Takes note of a run that was not begun because a file of `plan` was changed: the plan is set aside. The log says that once.
+    pub(super) fn put(&self, Plan { sha256, product, name, version, .. }: &Plan, why: &Saying) {
         let until = Instant::now() + AGAIN;
-        if self.plans().insert(plan.sha256.clone(), until).is_none() {
+        if self.plans().insert(sha256.clone(), until).is_none() {
             tracing::warn!("no job of the plan {product}/{name} {version} is taken for now: {why}");
         }
-        Err(why)
+    }
+
+    /// Takes note of a run by `plan`. If it was set aside, the log says that it is not any more.
+    pub(super) fn take_back(&self, Plan { sha256, product, name, version, .. }: &Plan) {
+        if self.plans().remove(sha256).is_some() {
+            tracing::warn!("jobs of the plan {product}/{name} {version} are taken again");
+        }
     }
 
     fn plans(&self) -> MutexGuard<'_, BTreeMap<String, Instant>> {

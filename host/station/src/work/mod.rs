@@ -25,7 +25,7 @@ use crate::labgrid::LaneBoard;
 use crate::outbox::{Sent, awaited};
 use crate::record::JobClaim;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch, recover_run};
-use crate::said::{Said, Saying};
+use crate::said::Said;
 use crate::settings::{PlanFile, Settings};
 use crate::store::{Claim, InLane, Introduction, PlantError, PlantLink, SharedStore, StoreError, Worker};
 
@@ -46,9 +46,6 @@ pub enum WorkError {
     /// The run has no verdict.
     #[error(transparent)]
     Run(#[from] RunError),
-    /// A file of the plan is another one than at the start.
-    #[error(transparent)]
-    PlanFile(#[from] Saying),
     /// The station lacks the plan of a job, although it said that it has it.
     #[error("this station does not have the plan {sha256} of the job {job}; report this with the version")]
     NoPlan {
@@ -83,12 +80,12 @@ pub enum WorkError {
 impl WorkError {
     /// Whether the board was not touched, for a reason that lies with the station and not with the job.
     const fn is_not_begun(&self) -> bool {
-        matches!(self, Self::Run(RunError::NotBegun(_) | RunError::NoRandomness(_)) | Self::PlanFile(_))
+        matches!(self, Self::Run(RunError::NotBegun(_) | RunError::NoRandomness(_) | RunError::PlanFile(_)))
     }
 
     /// Whether a file of the job's plan was changed. The log has said so, and jobs of other plans may get further.
     pub(crate) const fn is_of_plan(&self) -> bool {
-        matches!(self, Self::PlanFile(_))
+        matches!(self, Self::Run(RunError::PlanFile(_)))
     }
 
     /// Whether the station's own store fails, so that another job would get no further.
@@ -253,10 +250,9 @@ impl Work<'_> {
         let board = LaneBoard::Own(target);
         let Settings { plans, silence, memory_mib, .. } = self.settings;
         let file = plans.iter().find(|file| file.plan.sha256 == claim.plan_sha256);
-        let Some(file @ PlanFile { path, plan }) = file else {
+        let Some(PlanFile { path, plan }) = file else {
             return Err(WorkError::NoPlan { job: claim.job.clone(), sha256: claim.plan_sha256.clone() });
         };
-        self.aside.check(file)?;
         let (station, lane) = (&self.worker.station, &claim.lease.board);
         let counts = self.store.with(|store| {
             store.folder().counts(&InLane::of(station, lane, plan), claim.serial(), clock::now_ms())
@@ -276,7 +272,12 @@ impl Work<'_> {
             silence: *silence,
             memory_mib: *memory_mib,
         };
-        Ok(run::run(&self.store, &order, watched)?)
+        let ended = run::run(&self.store, &order, watched);
+        match &ended {
+            Err(RunError::PlanFile(why)) => self.aside.put(plan, why),
+            _ => self.aside.take_back(plan),
+        }
+        Ok(ended?)
     }
 
     /// Tells the plant of this station, from which it takes nothing while another one has its name. Waits for a plant that is
