@@ -17,11 +17,8 @@ use super::logged::LoggedOfLanes;
 use super::{Heard, Input};
 use crate::floor::{Accepted, Event, Shown};
 use crate::guard::guarded;
-use crate::history::PlanName;
 use crate::lane::Message;
 use crate::outbox::{Sent, awaited};
-use crate::plan::{Plan, mock::is_mock};
-use crate::record::Record;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::said::{Said, Saying};
 use crate::settings::Settings;
@@ -104,12 +101,9 @@ fn carried_out(shared: &Shared, lane: usize, accepted: &Accepted, stop: StopAske
         silence: *silence,
         memory_mib: *memory_mib,
     };
-    let mut watched = Watched { shared, lane, run: String::new(), stop, ended: None };
+    let mut watched = Watched { shared, lane, run: String::new(), stop };
     match run::run(&shared.store, &order, &mut watched) {
-        Ok(saved) => {
-            watched.saved(&saved, &file.plan);
-            at_plant(shared, saved, PLANT)
-        }
+        Ok(saved) => at_plant(shared, saved, PLANT),
         Err(error @ RunError::Unsaved { .. }) => unsaved(&error),
         Err(error) => Event::NotBegun { why: Said::of(&error) },
     }
@@ -141,9 +135,10 @@ pub(super) fn hook(shared: &Shared, lane: usize, shown: &Shown) {
     }
 }
 
-/// The verdict of a run that is saved. If the plant must have it, too, this waits until it does, or reports after
-/// `patience` that it does not, or at once that it never will as things are.
+/// The verdict of a run that is saved, which is counted. If the plant must have it, too, this waits until it does, or
+/// reports after `patience` that it does not, or at once that it never will as things are.
 fn at_plant(shared: &Shared, saved: Saved, patience: Duration) -> Event {
+    shared.figures.saved(&saved.record);
     let Settings { data, plant, .. } = &shared.settings;
     if !plant.as_ref().is_some_and(|plant| plant.is_green_at_plant) {
         return Event::Ended(shown(saved));
@@ -182,24 +177,9 @@ struct Watched<'a> {
     lane: usize,
     run: String,
     stop: StopAsked,
-    /// When its lane ended.
-    ended: Option<Instant>,
 }
 
 impl Watched<'_> {
-    /// Counts a run of `plan` that is saved.
-    fn saved(&self, saved: &Saved, plan: &Plan) {
-        let figures = &self.shared.figures;
-        if let Some(ended) = self.ended {
-            figures.saved(ended.elapsed());
-        }
-        let Record { seconds, run, .. } = &saved.record;
-        // Yields leave the mock out, too.
-        if let Some(seconds) = seconds.filter(|_| !is_mock(&run.serial)) {
-            figures.ran(PlanName::from(plan), &run.lane, seconds);
-        }
-    }
-
     fn name(&self) -> &str {
         self.shared.settings.lanes.get(self.lane).map_or("", |lane| lane.name.as_str())
     }
@@ -217,7 +197,7 @@ impl Watch for Watched<'_> {
                 Heard::Happened(Event::Begun { run: run.id.clone() })
             }
             Stage::Saving { was_killed, is_stuck } => {
-                self.ended = Some(Instant::now());
+                self.shared.figures.ended(&self.run);
                 if was_killed {
                     self.shared.figures.killed(self.name());
                 }

@@ -1,11 +1,13 @@
 //! What is counted since the engine began, for whoever monitors stations from afar.
 
 use std::collections::BTreeMap;
-use std::sync::{Mutex, PoisonError};
-use std::time::Duration;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 use super::logged::reasons;
 use crate::history::PlanName;
+use crate::plan::mock::is_mock;
+use crate::record::Record;
 use crate::settings::{LaneSettings, Settings};
 
 /// The bounds by which the times of runs are counted, in seconds: from a frame over a fast link to a soak over a slow one.
@@ -89,11 +91,15 @@ impl Figures {
 
 /// Figures that several lanes add to.
 #[derive(Debug)]
-pub(super) struct Counter(Mutex<Figures>);
+pub(super) struct Counter {
+    figures: Mutex<Figures>,
+    /// The runs whose results are not saved yet, and when their lanes ended.
+    unsaved: Mutex<BTreeMap<String, Instant>>,
+}
 
 impl Counter {
     pub(super) fn of(settings: &Settings) -> Self {
-        Self(Mutex::new(Figures::of(settings)))
+        Self { figures: Mutex::new(Figures::of(settings)), unsaved: Mutex::default() }
     }
 
     pub(super) fn now(&self) -> Figures {
@@ -110,19 +116,32 @@ impl Counter {
         self.with(|figures| *figures.refusals.entry(reason).or_default() += 1);
     }
 
-    /// Counts a result that was saved within `took`.
-    pub(super) fn saved(&self, took: Duration) {
-        self.with(|figures| figures.commits.add(took.as_secs_f64()));
+    /// Takes note that the lane of a run has ended.
+    pub(super) fn ended(&self, run: &str) {
+        self.unsaved().insert(run.to_owned(), Instant::now());
     }
 
-    /// Counts a run of `plan` in `lane` that took `seconds`.
-    pub(super) fn ran(&self, plan: PlanName, lane: &str, seconds: f64) {
-        let of = (plan, lane.to_owned());
-        self.with(|figures| figures.runs.entry(of).or_insert(Histogram::new(RUNS)).add(seconds));
+    /// Counts a run that is saved, however late; one whose verdict still waits for the plant is not counted again.
+    pub(super) fn saved(&self, Record { seconds, run, plan, .. }: &Record) {
+        let Some(ended) = self.unsaved().remove(&run.id) else { return };
+        let took = ended.elapsed().as_secs_f64();
+        self.with(|figures| {
+            figures.commits.add(took);
+            // Yields leave the mock out, too.
+            if let Some(seconds) = seconds.filter(|_| !is_mock(&run.serial)) {
+                let plan = PlanName { product: run.product.clone(), plan: plan.name.clone() };
+                let of = (plan, run.lane.clone());
+                figures.runs.entry(of).or_insert(Histogram::new(RUNS)).add(seconds);
+            }
+        });
+    }
+
+    fn unsaved(&self) -> MutexGuard<'_, BTreeMap<String, Instant>> {
+        self.unsaved.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn with<T>(&self, act: impl FnOnce(&mut Figures) -> T) -> T {
-        act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+        act(&mut self.figures.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 

@@ -117,7 +117,10 @@ fn a_lane_that_was_killed_and_a_result_that_is_not_saved_are_told() {
     assert_eq!(unsaved.at("halfrow_lane_awaits_plant{lane=\"2\"}"), 0.0);
     fs::remove_file(&blobs).unwrap();
     fs::rename(&aside, &blobs).unwrap();
-    once(&serving, "halfrow_unsaved_results", 0.0);
+    let saved = once(&serving, "halfrow_unsaved_results", 0.0);
+    assert_eq!(saved.at("halfrow_commit_seconds_count"), 2.0, "it was saved late");
+    // The station tries again every two seconds.
+    assert!(saved.at("halfrow_commit_seconds_sum") >= 2.0, "{}", saved.text);
 }
 
 /// As on a full disk: neither a run nor a line of the audit can be entered.
