@@ -20,9 +20,11 @@ use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
 use crate::said::Said;
+use crate::settings::moving;
 use crate::store::{
     Plant, PlantAddress, PlantLink, PlantPool, SharedBoard, StoreError, Turn, Waiter, boards,
 };
+use crate::trust::is_near;
 use crate::work::{Held, Holding, sleep_unless};
 
 /// How often a waiting caller asks again.
@@ -124,6 +126,27 @@ pub(super) struct NoBoardKind {
     pub(super) kind: String,
 }
 
+/// A place that may be another board than the one that is shared.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum OtherPlace {
+    /// The place of the shared board is another board when boards are plugged in in another order.
+    #[error("{what}; {remedy}")]
+    Moves {
+        /// What is wrong with it.
+        what: String,
+        /// What to write instead.
+        remedy: String,
+    },
+    /// The place of the shared board is one of this computer's own. At every other one it is another board, or none.
+    #[error(
+        "`{board}` is another board at every computer; name the one station that reaches it by --station"
+    )]
+    Local {
+        /// The place.
+        board: String,
+    },
+}
+
 /// No shared board is of this kind.
 #[derive(Debug, thiserror::Error)]
 #[error(
@@ -142,6 +165,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
                 return Err(Failure::call(NoBoardKind { kind: share.board.kind.clone() }));
             }
             link::check(&share.board).map_err(Failure::call)?;
+            share.refuse_other_place().map_err(Failure::call)?;
             shared(&mut Plant::connect(&address)?, share)
         }
         What::List { json } => {
@@ -163,6 +187,18 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
 }
 
 impl Share {
+    /// Refuses a place that whoever has the board may find another board at.
+    fn refuse_other_place(&self) -> Result<(), OtherPlace> {
+        let Self { board, station, .. } = self;
+        if station.is_none() && is_own(board) {
+            return Err(OtherPlace::Local { board: board.to_string() });
+        }
+        match moving(board) {
+            Some((what, remedy)) => Err(OtherPlace::Moves { what, remedy }),
+            None => Ok(()),
+        }
+    }
+
     fn board(&self) -> SharedBoard {
         let text = |given: &Option<String>| given.clone().unwrap_or_default();
         SharedBoard {
@@ -177,6 +213,15 @@ impl Share {
             holder: None,
             until_ms: None,
         }
+    }
+}
+
+/// Whether every computer has a place of this name.
+fn is_own(board: &Target) -> bool {
+    match (board.kind.as_str(), &board.address) {
+        ("usb" | "serial", _) => true,
+        ("tcp", Some(address)) => address.rsplit_once(':').is_some_and(|(host, _)| is_near(host)),
+        _ => false,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use halfrow::result::codes;
 
-use super::board::{NoBoard, NoBoardKind, NoKind, SharedAlready};
+use super::board::{NoBoard, NoBoardKind, NoKind, OtherPlace, SharedAlready};
 use super::evidence::{EvidenceLost, EvidenceRemoved, NoSuchRun};
 use super::export::{NoFolder, Taken};
 use super::job::{NoJob, NoWord};
@@ -22,6 +22,10 @@ codes::codes! {
         Untrusted [plan] => "plan-statement-untrusted",
         NoNumber [plan] => "plan-without-number",
         Slash [product] => "plan-product-with-slash",
+    }
+    OtherPlace {
+        Moves [what] => "shared-board-place-moves",
+        Local [board] => "shared-board-at-every-station",
     }
     ;
     EngineEnded => "engine-ended"

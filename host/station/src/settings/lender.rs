@@ -6,7 +6,7 @@ use halfrow::link::{self, kinds};
 use halfrow::target::Target;
 
 use super::read::{not_empty, program, seconds};
-use super::stable;
+use super::stable::moving;
 use super::text::{LabgridText, LaneText, SettingsText};
 use crate::input_error::Fault;
 use crate::labgrid::{KIND, Labgrid, LaneBoard, PROGRAM, Place};
@@ -45,7 +45,7 @@ impl Lender {
             let remedy = format!("write one as `halfrow boards` lists them, or {KIND}:PLACE");
             return Err(Fault::wrong(at, what, remedy));
         }
-        if let Some((what, remedy)) = stable::refused(&board) {
+        if let Some((what, remedy)) = moving(&board) {
             return Err(Fault::wrong(at, what, remedy));
         }
         link::check(&board).map_err(|error| Fault::input(at, "the board", error))?;

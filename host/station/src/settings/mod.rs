@@ -17,6 +17,7 @@ pub(crate) use plant::PASSWORD_OF_PLANT;
 pub use plant::{PlantSettings, PlantSettingsError};
 pub(crate) use read::{LANE_NAME, is_lane_name, is_word};
 pub use sink::{Destination, Login, SinkAddress, SinkSettings};
+pub(crate) use stable::moving;
 
 use crate::floor::{Floor, Place, Rule, Starts};
 use crate::history::PlanName;

@@ -8,7 +8,7 @@ use halfrow::target::Target;
 use crate::presence::{USB, chips};
 
 /// What is wrong with a name that may lead to another board tomorrow, and what to write instead.
-pub(super) fn refused(board: &Target) -> Option<(String, String)> {
+pub(crate) fn moving(board: &Target) -> Option<(String, String)> {
     let written = board.to_string();
     match (board.kind.as_str(), board.address.as_deref()) {
         ("usb", None) => {
@@ -53,10 +53,10 @@ mod tests {
 
     #[test]
     fn a_name_that_may_move_is_refused_with_one_that_stays() {
-        for moving in
+        for name in
             ["usb", "usb,speed=high", "serial:/dev/ttyUSB0", "serial:/dev/ttyACM1,baud=9600", "serial"]
         {
-            let (what, remedy) = refused(&moving.parse().unwrap()).unwrap();
+            let (what, remedy) = moving(&name.parse().unwrap()).unwrap();
             assert!(what.starts_with('`') && remedy.starts_with("write "), "{what}; {remedy}");
         }
         for stays in [
@@ -67,7 +67,7 @@ mod tests {
             "tcp:bench:3001",
             "mock",
         ] {
-            assert_eq!(refused(&stays.parse().unwrap()), None, "{stays}");
+            assert_eq!(moving(&stays.parse().unwrap()), None, "{stays}");
         }
     }
 }

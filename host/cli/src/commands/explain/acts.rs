@@ -173,6 +173,7 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "serial-rate-not-made",
         "give baud= a rate that the chip makes, such as those that the message names, and build the board for it",
     ),
+    ("shared-board-place-moves", "write one of the names in the message, which stay the same"),
     (
         "simulation-not-built",
         "install Verilator (`apt-get install verilator g++`), and build with Cargo's feature `sim`",

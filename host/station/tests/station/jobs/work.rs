@@ -328,6 +328,29 @@ fn boards_are_shared_changed_and_listed_by_commands_that_the_audit_keeps() {
     assert_eq!(engineer.acts(), ["share board", "board out", "board in", "unshare board"]);
 }
 
+/// Whoever else got it would judge its own board under this one's serial number.
+#[test]
+fn a_board_that_is_plugged_into_one_computer_is_shared_by_its_station_alone() {
+    let engineer = Engineer::new();
+    let share = |board: &str, more: &[&str]| {
+        engineer.did(&[&["board", "share", "shelf-1", "--kind", "mock", "--board", board], more].concat())
+    };
+    let by_path = "serial:/dev/serial/by-path/pci-0000:00:14.0-usb-0:2:1.0-port0";
+    for board in ["usb:1-2.3", by_path, "serial:/dev/ttyUSB0", "tcp:localhost:3001", "tcp:[::1]:3001"] {
+        let did = share(board, &[]);
+        assert!(did.code == Some(2) && did.complained.contains("by --station"), "{did:?}");
+    }
+    for moving in ["usb", "serial:/dev/ttyUSB0"] {
+        let did = share(moving, &["--station", "12"]);
+        assert!(did.code == Some(2) && did.complained.contains("; write "), "{did:?}");
+    }
+    assert!(engineer.did(&["board", "list"]).said.contains("no board is shared"));
+    for board in ["usb:1-2.3", by_path] {
+        assert_eq!(share(board, &["--station", "12"]).said, "shelf-1 is shared\n");
+    }
+    assert_eq!(share("tcp:shelf:5000", &[]).said, "shelf-1 is shared\n");
+}
+
 #[test]
 fn a_station_whose_settings_say_nothing_of_jobs_takes_none() {
     let engineer = Engineer::new();
