@@ -1,7 +1,7 @@
 //! Whether there is a board in a lane, as far as can be seen without touching it, even through libusb.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use halfrow::target::Target;
@@ -47,6 +47,20 @@ pub(crate) fn is_there(board: &Target, devices: &Path) -> bool {
         }
         _ => true,
     }
+}
+
+/// The place of a board that has one. Several names of a device that is plugged in lead to the same place.
+pub(crate) fn place(board: &Target, devices: &Path) -> Option<PathBuf> {
+    let address = board.address.as_deref()?;
+    let found = match board.kind.as_str() {
+        "serial" => fs::canonicalize(address).ok(),
+        "usb" => {
+            let chip = chips(devices).into_iter().find(|chip| chip.serial.as_deref() == Some(address));
+            chip.map(|chip| chip.place.into())
+        }
+        _ => None,
+    };
+    Some(found.unwrap_or_else(|| address.into()))
 }
 
 /// Whether a board is present. Short absences while its system starts are ignored.
@@ -110,6 +124,12 @@ mod tests {
         let seen = |target: &str| is_there(&target.parse().unwrap(), devices.path());
         assert!(seen("usb:1-2.3") && seen("usb:FT3XYZ") && seen("usb:2-1"));
         assert!(!seen("usb:1-1") && !seen("usb:MOUSE") && !seen("usb:1-2"));
+        let is_same = |one: &str, other: &str| {
+            let [one, other] = [one, other].map(|name| place(&name.parse().unwrap(), devices.path()));
+            one == other
+        };
+        assert!(is_same("usb:1-2.3", "usb:FT3XYZ") && is_same("tcp:bench:1", "tcp:bench:1,baud=9600"));
+        assert!(!is_same("usb:1-2.3", "usb:2-1") && !is_same("tcp:bench:1", "tcp:bench:2"));
         let port = devices.path().join("port");
         let target = format!("serial:{}", port.display());
         assert!(!seen(&target));

@@ -23,7 +23,7 @@ use halfrow::target::Target;
 pub use error::LabgridError;
 pub use held::Held;
 
-use crate::presence;
+use crate::presence::{self, USB};
 use crate::process_group::without_secrets;
 use crate::said::Said;
 
@@ -53,12 +53,13 @@ pub enum LaneBoard {
 }
 
 impl LaneBoard {
-    /// Whether both are the same board, as far as their names say.
+    /// Whether both are the same board, as far as their names and what is plugged in say.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Own(one), Self::Own(other)) => {
-                one.address.is_some() && (&one.kind, &one.address) == (&other.kind, &other.address)
+                let place = |board| presence::place(board, Path::new(USB));
+                one.kind == other.kind && place(one).is_some_and(|one| Some(one) == place(other))
             }
             (Self::Lent(one), Self::Lent(other)) => one.name == other.name,
             _ => false,

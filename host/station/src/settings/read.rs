@@ -231,7 +231,9 @@ fn lanes(folder: &Path, read: &SettingsText, plans: &mut Plans<'_>) -> Result<Ve
             return Err(Fault::wrong(text.name.span().start, what, "give each a name of its own"));
         }
         if let Some(other) = lanes.iter().find(|other| other.board.is_same(&lane.board)) {
-            let what = format!("lane {} has the board `{}` already", other.name, text.board.get_ref());
+            let (written, known) = (text.board.get_ref(), other.board.to_string());
+            let called = if *written == known { String::new() } else { format!(", as `{known}`") };
+            let what = format!("lane {} has the board `{written}` already{called}", other.name);
             return Err(Fault::wrong(text.board.span().start, what, "give each lane a board of its own"));
         }
         lanes.push(lane);

@@ -1,6 +1,7 @@
 //! Settings: what is accepted, and what is refused with its line and a remedy.
 
 use std::fs;
+use std::os::unix::fs::symlink;
 use std::time::Duration;
 
 use halfrow::Verdict;
@@ -272,6 +273,28 @@ fn what_is_wrong_is_told_with_its_line_and_a_remedy() {
     }
     let error = load("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\n").unwrap_err();
     assert_eq!(error, "station.toml:1: the station has no lane; write a [[lane]] with name, board and plans");
+}
+
+/// A board that is scanned into one lane would be judged under the number of the board in the other.
+#[test]
+fn two_lanes_have_no_port_in_common_whatever_it_is_called() {
+    let folder = tempfile::tempdir().unwrap();
+    let named = |port: &str| {
+        ["by-path", "by-id"].map(|name| {
+            let path = folder.path().join(format!("{name}{}", port.replace('/', "-")));
+            symlink(port, &path).unwrap();
+            format!("serial:{}", path.display())
+        })
+    };
+    let with = |[one, other]: &[String; 2]| {
+        load(&WHOLE.replace("usb:1-2.3", one).replace("mock,serial=1", other)).map(drop)
+    };
+    let both = named("/dev/tty");
+    let [one, other] = &both;
+    let said = format!("station.toml:24: lane 1 has the board `{other}` already, as `{one}`; give each lane");
+    let error = with(&both).unwrap_err();
+    assert!(error.starts_with(&said), "{error}");
+    with(&named("/dev/not-plugged-in")).unwrap();
 }
 
 #[test]
