@@ -30,7 +30,7 @@ const MAX_STUFFED: usize = cobs::stuffed_length(MAX_PACKET);
 
 /// Finds packets in a byte stream. A zero ends a packet wherever the stream was entered, so at most the packet that was
 /// damaged is lost.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Decoder {
     /// The bytes so far of a packet that has not ended.
     stuffed: Vec<u8>,

@@ -55,8 +55,8 @@ fn counters_are_compared_with_what_the_host_saw() {
     for (sentence, change) in [
         ("rows in; the right number is", (|status| status.rows_in += 1) as fn(&mut Status)),
         ("rows out; the right number is", |status| status.rows_out += 1),
-        ("as the first row that has not arrived", |status| status.next_row_in += 1),
-        ("as the first row that is not acknowledged", |status| status.next_row_out += 1),
+        ("as the first row that has not arrived (next_row_in)", |status| status.next_row_in += 1),
+        ("as the first row that is not acknowledged (next_row_out)", |status| status.next_row_out += 1),
         ("as the tables' generation; the right number is 2", |status| status.generation = 7),
         ("rows sent again; the right number is 0", |status| status.rows_repeated = 3),
         ("rows that were not needed; the right number is 0", |status| status.rows_unneeded = 3),

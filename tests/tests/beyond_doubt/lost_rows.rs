@@ -1,7 +1,7 @@
 //! Rows that do not come back: the board's fault only when the board itself says so.
 
 use halfrow::link::{Candidate, Link};
-use halfrow::result::{CheckName, Finding, Outcome, Report};
+use halfrow::result::{CheckName, Finding, MissingRow, Outcome, Report};
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_mock::Options;
 use halfrow_protocol::message::Status;
@@ -212,7 +212,8 @@ fn a_row_is_not_swallowed_where_packets_are_missing_of_which_nobody_hears() {
         withhold(packet, |_| {})
     });
     assert_eq!(report.verdict(), Verdict::Error, "{}", report.headline());
-    assert_eq!(report.finding, Finding::RowLostAmongOthers { row: 3, frame: 0 });
+    let alone = MissingRow { row: 3, frame: 0, waits_for: None };
+    assert_eq!(report.finding, Finding::RowLostEachTime(alone));
 }
 
 /// The report on a board that withholds `row` of each frame, and whose other rows that are `meant` take a clock more than claimed.

@@ -24,6 +24,8 @@ fn credit(report: &Report) -> u32 {
     };
     assert_eq!(right, &Answer::Credit { rows: BANKS }, "{}", report.headline());
     let Answer::Credit { rows } = found else { panic!("{}", report.headline()) };
+    let told = "the window must be next_row plus row_banks_in";
+    assert!(report.headline().contains(told), "{}", report.headline());
     *rows
 }
 

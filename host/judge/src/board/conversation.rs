@@ -2,6 +2,8 @@
 
 mod answered;
 mod damaged;
+mod silence;
+mod unclosed;
 
 use std::time::Duration;
 
@@ -63,6 +65,8 @@ pub(super) struct Conversation {
     pub(super) tally: Tally,
     /// What came damaged before the session.
     before: Heard,
+    /// Waits in a row that ended with a packet without its closing zero.
+    unclosed: u32,
     pub(super) limit: RetryLimit,
     /// The time spent waiting for the link, by which deadlines are measured. While the host is kept from running, or is busy
     /// elsewhere, it cannot tell that a board is late.
@@ -89,6 +93,7 @@ impl Conversation {
             session: Session::default(),
             tally: Tally::default(),
             before: Heard::default(),
+            unclosed: 0,
             limit: options.retry_limit,
             waited: Duration::ZERO,
             counted: Counted::default(),

@@ -13,6 +13,8 @@ pub enum Step {
     Row,
     /// The reply to the RESET that ends a session: somebody is waiting for the program to end.
     Close,
+    /// A reply that only tells whether the board is still there.
+    Probe,
 }
 
 /// How long a step may take in addition to the time that its bytes need, and how often it is tried.
@@ -40,6 +42,7 @@ impl Step {
             Self::Request => (200, 2000, 8),
             Self::Row => (250, 2000, 8),
             Self::Close => (200, 200, 8),
+            Self::Probe => (200, 200, 1),
         };
         Deadline { fixed: Duration::from_millis(fixed), longest: Duration::from_millis(longest), attempts }
     }

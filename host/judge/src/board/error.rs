@@ -9,7 +9,7 @@ use halfrow_protocol::message::{Malformed, Refusal, RefusalCode, RowPlace};
 
 use super::Tally;
 use super::conversation::Conversation;
-use super::heard::{Heard, suspect};
+use super::heard::{Heard, suspect, suspect_of_one};
 use crate::link::LinkError;
 use crate::verdict::{Cause, StoppedBy};
 use crate::words::{count, span};
@@ -46,6 +46,30 @@ pub enum BoardError {
         /// What had come by then.
         heard: Heard,
     },
+    /// The board did not answer a request, although it was sent several times, and answered others meanwhile.
+    #[error(
+        "no answer to {kind} with {} in {}, and to this alone: {}",
+        count(*.bytes, "byte"),
+        count(*.attempts, "try"),
+        suspect_of_one(*.had)
+    )]
+    Unanswered {
+        /// The request.
+        kind: Kind,
+        /// Bytes of its payload.
+        bytes: usize,
+        /// Tries.
+        attempts: u32,
+        /// Whether the board counts every packet as received.
+        had: bool,
+    },
+    /// The board's packets end without a zero.
+    #[error(
+        "the board sends its packets without the zero that must follow each of them, so that each is complete only when the next one \
+         begins; check that the board sends a zero behind every packet (protocol/WIRE.md, section 1), and that nothing on the way \
+         holds back the last byte"
+    )]
+    Unclosed,
     /// A device answered, but not as a halfrow board does.
     #[error(
         "the device that answers is not a halfrow board; check the target and what is loaded into the FPGA"
@@ -333,6 +357,7 @@ impl BoardError {
             | Self::Echoed
             | Self::Console { .. }
             | Self::Impossible { .. }
+            | Self::Unclosed
             | Self::Malformed { .. } => true,
             _ => false,
         }
@@ -344,9 +369,11 @@ impl BoardError {
         match self {
             Self::Held { .. } | Self::NotGivenUp { .. } => Cause::Busy,
             Self::TurnedAway(by) if matches!(**by, LinkError::InUse { .. }) => Cause::Busy,
-            Self::NotABoard | Self::Version { .. } | Self::Impossible { .. } | Self::Malformed { .. } => {
-                Cause::Refused
-            }
+            Self::NotABoard
+            | Self::Version { .. }
+            | Self::Impossible { .. }
+            | Self::Unclosed
+            | Self::Malformed { .. } => Cause::Refused,
             Self::Refused { refusal, .. } if is_own(refusal) => Cause::Refused,
             Self::Stopped(by) => Cause::Stopped(*by),
             _ => Cause::Station,

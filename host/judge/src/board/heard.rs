@@ -35,6 +35,16 @@ impl Heard {
     }
 }
 
+/// What to check where one request alone is not answered. `had` is whether the board counts every packet as received.
+pub(super) fn suspect_of_one(had: bool) -> String {
+    let (counts, part) = if had { ("counts", "answers it") } else { ("does not count", "takes it in") };
+    format!(
+        "the board answered others at once, nothing came damaged, and it {counts} each try as received; a poor cable does not choose \
+         one request; check how the board {part}, and whether something on the way swallows certain bytes or lengths, as software \
+         flow control does"
+    )
+}
+
 /// What silence suggests: the board if nothing was ever heard from it, otherwise the connection to it.
 pub(super) fn suspect(heard: Heard) -> String {
     match heard {

@@ -9,6 +9,7 @@
 //! Every suspect is a single defect that was simulated exactly. Its share says how many of the differing samples it predicts to
 //! the bit. Where nothing explains them, [`diagnose`] describes where they lie and names no part.
 
+mod blanking;
 mod datapath;
 mod families;
 mod hypothesis;
@@ -75,5 +76,8 @@ pub fn diagnose(case: &Case<'_>) -> Vec<Suspect> {
         let searched = ranking::rank(&witnesses, families::search(&witnesses));
         ranked = ranking::merge(ranked, searched);
     }
-    ranking::suspects(&ranked, || pattern::summary(&witnesses))
+    let mut suspects = ranking::suspects(&ranked, || pattern::summary(&witnesses));
+    suspects.splice(0..0, blanking::suspect(case));
+    suspects.truncate(ranking::NAMED);
+    suspects
 }

@@ -16,7 +16,7 @@ const MOST_FINALISTS: usize = 128;
 /// Differing rows of the final test.
 const EXAMINED: usize = 192;
 /// The most suspects that are named.
-const NAMED: usize = 3;
+pub(super) const NAMED: usize = 3;
 /// The least share that a suspect must explain.
 const LEAST_SHARE: f64 = 0.2;
 /// The least share that the first suspect must explain.

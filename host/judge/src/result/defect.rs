@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::Extent;
 pub use parameters::{
-    ClampEnd, ContentKind, Counting, FlippedBit, Instead, MadeAs, MadeWith, Memory, Reading, RowSource,
-    StaleFrames,
+    ClampEnd, ColumnParity, ContentKind, Counting, FlippedBit, Instead, KernelSwitch, LineFault, MadeAs,
+    MadeWith, Memory, NamedBlanking, Reading, RowSource, SampleBus, SampleLines, StaleFrames,
 };
 
 /// A single defect of a board.
@@ -95,6 +95,8 @@ pub enum Defect {
         /// Its level.
         value: u8,
     },
+    /// Data lines of samples are inverted, exchanged or connected, or stuck in every other column alone.
+    SampleLinesWrong(SampleLines),
     /// An address line of the line memory is stuck at 0 or at 1.
     LineMemoryAddressStuck {
         /// The line.
@@ -191,6 +193,10 @@ pub enum Defect {
         /// The frames.
         frames: Vec<StaleFrames>,
     },
+    /// A row is made with one kernel at its beginning and with another one at its end.
+    KernelSwitchedInRow(KernelSwitch),
+    /// Rows are wrong only if they follow each other as closely as the board says that it allows.
+    LeastBlankingTooSmall(NamedBlanking),
     /// Some rows hold the samples of other rows.
     RowsExchanged {
         /// Which others.

@@ -2,9 +2,10 @@
 
 use super::{
     Account, Answer, BoardKind, BrokenOff, BurstCount, ClampEnd, ClockSeen, ContentKind, Corner, Counter,
-    Counting, Defect, Doubt, EqualAtSpeed, Extent, Finding, FlippedBit, Instead, KeptRow, LateRows, MadeAs,
-    MadeWith, Memory, NoBurst, NotExercised, NumberedRow, Problem, Reading, RepeatedRow, Repetition,
-    RowSource, Rule, StaleFrames, Streamed, Suspect,
+    Counting, Defect, Doubt, EqualAtSpeed, Extent, Finding, FlippedBit, Instead, KeptRow, KernelSwitch,
+    LateRows, LineFault, MadeAs, MadeWith, Memory, MissingRow, NamedBlanking, NoBurst, NotExercised,
+    NumberedRow, Problem, Reading, RepeatedRow, Repetition, RowSource, Rule, SampleBus, SampleLines,
+    StaleFrames, Streamed, Suspect,
 };
 use crate::compare::Difference;
 use crate::verdict::Verdict;
@@ -173,11 +174,12 @@ fn on_entry_and_at_speed() -> [Finding; 6] {
     ]
 }
 
-fn unjudged() -> [Finding; 12] {
+fn unjudged() -> [Finding; 13] {
     let reason = Problem::new("no-answer", "no answer to ECHO in 8 tries; check that the board is powered");
     [
         Finding::RowLostOnce { row: 3, frame: 2 },
         Finding::RowLostAmongOthers { row: 3, frame: 2 },
+        Finding::RowLostEachTime(MissingRow { row: 3, frame: 2, waits_for: None }),
         Finding::BurstStalled { frame: 17, frames: 138, seconds: 5.0 },
         Finding::BurstEndedEarly { came: 17, frames: 138 },
         Finding::RightInAnotherSession {
@@ -287,6 +289,7 @@ fn in_tables() -> Vec<Defect> {
             rows: Vec::new(),
             frames: vec![StaleFrames { frame: 2, committed: 2, made_with: vec![made] }],
         },
+        Defect::KernelSwitchedInRow(KernelSwitch { row: 1079, frame: 1, column: 960, before: 1, after: 2 }),
     ]
 }
 
@@ -294,6 +297,12 @@ fn of_lines() -> Vec<Defect> {
     vec![
         Defect::LineMemoryDataStuck { bit: 5, value: 1 },
         Defect::OutputDataStuck { bit: 5, value: 0 },
+        Defect::SampleLinesWrong(SampleLines {
+            bus: SampleBus::Output,
+            fault: LineFault::Exchanged,
+            bits: vec![4, 5],
+            columns: None,
+        }),
         Defect::LineMemoryAddressStuck { bit: 10, counting: Counting::Run },
         Defect::RowTableDataStuck { bit: 7, value: 1 },
         Defect::RowTableAddressStuck { bit: 2, value: 0 },
@@ -364,6 +373,7 @@ fn without_share() -> impl Iterator<Item = Suspect> {
         Defect::OnlyAtSpeed { row: Some(3), samples: 1, bits: vec![11] },
         Defect::SignatureWrong { row: 3 },
         Defect::SeenAtSpeed { row: Some(3), samples: 1, bits: vec![11] },
+        Defect::LeastBlankingTooSmall(NamedBlanking { named: 8, right: 900 }),
     ]
     .into_iter()
     .map(|defect| Suspect { defect, account: Account::Nothing, explained: 0.0 })

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Account, Answer, BoardKind, BrokenOff, BurstCount, ClockSeen, Corner, Counter, Defect, Doubt,
-    EqualAtSpeed, FlippedBit, LateRows, NoBurst, NumberedRow, Problem, RepeatedRow, Repetition, Rule,
-    Shortfall,
+    EqualAtSpeed, FlippedBit, LateRows, MissingRow, NoBurst, NumberedRow, Problem, RepeatedRow, Repetition,
+    Rule, Shortfall,
 };
 
 /// What a check or a whole run came to. In JSON `{"code": …, "parameters": …}`; a [`Problem`] has its own code.
@@ -351,6 +351,8 @@ pub enum Finding {
         /// Its frame.
         frame: u16,
     },
+    /// A row did not come back however often its frame was sent again, and nothing else was lost.
+    RowLostEachTime(MissingRow),
     /// Something was wrong, but was right in another session, so the link may have caused it.
     RightInAnotherSession {
         /// What was wrong.

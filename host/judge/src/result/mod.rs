@@ -48,8 +48,8 @@ pub use check::{Check, CheckName, Outcome};
 pub use counter::Counter;
 pub use coverage::CoverageReport;
 pub use defect::{
-    ClampEnd, ContentKind, Counting, Defect, FlippedBit, Instead, MadeAs, MadeWith, Memory, Reading,
-    RowSource, StaleFrames,
+    ClampEnd, ColumnParity, ContentKind, Counting, Defect, FlippedBit, Instead, KernelSwitch, LineFault,
+    MadeAs, MadeWith, Memory, NamedBlanking, Reading, RowSource, SampleBus, SampleLines, StaleFrames,
 };
 pub use document::{Document, SCHEMA, Schema};
 pub use doubt::{BrokenOff, Doubt};
@@ -62,7 +62,7 @@ pub use late_rows::LateRows;
 pub use link::{LinkReport, Reconnection};
 pub use not_exercised::NotExercised;
 pub use problem::{Parameters, Problem};
-pub use rule::{Answer, NumberedRow, RepeatedRow, RowPart, Rule};
+pub use rule::{Answer, MissingRow, NumberedRow, RepeatedRow, RowPart, Rule};
 pub(crate) use sha256::little_endian;
 pub use sha256::sha256;
 pub use soak::{SoakChart, SoakDifference, SoakInterval, SoakLength, SoakReport};

@@ -46,7 +46,7 @@ pub enum Rule {
     Forgotten,
     /// A row out of place is refused.
     RowPlace,
-    /// The window is as many rows ahead as the board has input banks.
+    /// After a RESET the window is `next_row`, and as many rows more as the board has input banks.
     Window,
     /// A row beyond the window is refused.
     Credit,
@@ -218,4 +218,15 @@ pub struct RepeatedRow {
     pub frame: u16,
     /// Its `repeats`, the same both times.
     pub repeats: u16,
+}
+
+/// A row that alone goes missing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MissingRow {
+    /// The row.
+    pub row: u16,
+    /// Its frame.
+    pub frame: u16,
+    /// The row that the board says it waits for, if it has not taken all.
+    pub waits_for: Option<u32>,
 }

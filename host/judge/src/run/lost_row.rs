@@ -14,7 +14,7 @@ use super::findings::End;
 use super::plan::ScheduledFrame;
 use super::steps::Run;
 use crate::board::{BoardError, NumberedFrame, Status, Tally, Unjudged, Unreturned};
-use crate::result::{CheckName, Finding};
+use crate::result::{CheckName, Finding, MissingRow};
 use crate::verdict::Cause;
 
 /// How often a frame is played again until there is no other trouble.
@@ -30,6 +30,8 @@ enum Replay {
     Complete,
     /// A row went missing, but other packets may be missing too.
     Troubled,
+    /// A row went missing, and all that was answered before it and after it was in order.
+    Alone(MissingRow),
     /// The board swallowed a row.
     Swallowed { row: u16 },
 }
@@ -47,6 +49,7 @@ impl Run<'_> {
     ) -> End {
         let RowPlace { frame: number, row: lost, .. } = place;
         let unclear = |finding| End::error(CheckName::Frames, Cause::Station, finding);
+        let mut alone = Vec::new();
         for _ in 0..REPLAYS {
             match self.replay(frame, geometry) {
                 Err(error) => return End::board(CheckName::Frames, &error),
@@ -60,10 +63,16 @@ impl Run<'_> {
                 Ok(Replay::Complete) => {
                     return unclear(Finding::RowLostOnce { row: lost, frame: number });
                 }
+                Ok(Replay::Alone(row)) => alone.push(row),
                 Ok(Replay::Troubled) => {}
             }
         }
-        unclear(Finding::RowLostAmongOthers { row: lost, frame: number })
+        match alone.first() {
+            Some(&row) if alone == [row; REPLAYS] && row.row == lost => {
+                unclear(Finding::RowLostEachTime(row))
+            }
+            _ => unclear(Finding::RowLostAmongOthers { row: lost, frame: number }),
+        }
     }
 
     fn replay(&mut self, frame: &ScheduledFrame, geometry: &Geometry) -> Result<Replay, BoardError> {
@@ -83,13 +92,20 @@ impl Run<'_> {
         }
         echoed &= self.echoes_pass()?;
         let status = self.board.status(false)?;
-        let whole = echoed
-            && is_calm(before, self.board.tally())
-            && self.board.had_each_packet_once(&status)
-            && [status.damaged(), status.foreign_packets] == [0; 2];
-        let row_number = row.place.row;
-        let swallowed = whole && was_taken(&status, first_row, &row) && is_withheld(&status, &row);
-        Ok(if swallowed { Replay::Swallowed { row: row_number } } else { Replay::Troubled })
+        if !echoed || !is_calm(before, self.board.tally()) {
+            return Ok(Replay::Troubled);
+        }
+        let reached =
+            self.board.had_each_packet_once(&status) && [status.damaged(), status.foreign_packets] == [0; 2];
+        let swallowed = reached && was_taken(&status, first_row, &row) && is_withheld(&status, &row);
+        if swallowed {
+            return Ok(Replay::Swallowed { row: row.place.row });
+        }
+        Ok(Replay::Alone(MissingRow {
+            row: row.place.row,
+            frame: row.place.frame,
+            waits_for: status.next_row_in.checked_sub(first_row).filter(|&next| next < row.sent),
+        }))
     }
 
     fn echoes_pass(&mut self) -> Result<bool, BoardError> {

@@ -8,6 +8,7 @@ mod altered;
 mod bench;
 mod grids;
 mod memory;
+mod patterns;
 mod read_back;
 mod scenes;
 mod settings;

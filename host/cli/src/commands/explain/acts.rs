@@ -148,6 +148,10 @@ pub(super) const ACTS: &[(&str, &str)] = &[
         "request-refused",
         "run again; if it refuses each time, correct what the board says of itself (`halfrow info`), or load another bitstream",
     ),
+    (
+        "request-never-answered",
+        "check how the board takes in and answers that request, and whether something on the way swallows certain bytes or lengths",
+    ),
     ("row-factors-impossible", "give one row factor for each row, within the range that its cause names"),
     ("run-evidence-wrong", CAUSE),
     ("run-not-begun", CAUSE),

@@ -20,7 +20,8 @@ impl Conversation {
         accept: impl Fn(&Packet<'_>) -> bool,
     ) -> Result<OwnedPacket, BoardError> {
         let retries = self.tally.retries;
-        let answer = self.ask_until_answered(asking, step, accept)?;
+        let answer = self.ask_until_answered(asking, step, accept);
+        let answer = answer.map_err(|error| self.looked_into(error, asking))?;
         self.counted.note_had(1);
         if step == Step::Request && asking.kind() != Kind::Status {
             self.count_after(retries);
@@ -29,7 +30,7 @@ impl Conversation {
         Ok(answer)
     }
 
-    fn ask_until_answered(
+    pub(super) fn ask_until_answered(
         &mut self,
         asking: &Asking<'_>,
         step: Step,
@@ -43,6 +44,7 @@ impl Conversation {
             // While something waits to be taken by the link, the board cannot have the request.
             let is_sent = attempt == 0 || self.queued() == 0;
             if is_sent && attempt > 0 {
+                self.note_unclosed()?;
                 tracing::info!("{kind} was not answered; asking again");
                 self.session.repeated_changes += u64::from(self.session.asked.note_repeat());
                 self.count_retry()?;
@@ -57,6 +59,7 @@ impl Conversation {
                 let late = self.tally.late;
                 if let Some(answer) = self.answer_within(wait, asking, sequence, &accept)? {
                     self.note_duration(attempt, self.since(begun));
+                    self.unclosed = if attempt == 0 { 0 } else { self.unclosed };
                     self.tally.answered += u64::from(answer.header.kind == kind.code());
                     return Ok(answer);
                 }

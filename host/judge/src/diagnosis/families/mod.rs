@@ -6,12 +6,14 @@ mod generations;
 mod grid_entry;
 mod grid_lines;
 mod kernel_search;
+mod kernel_switch;
 mod kernel_word;
 mod memory_address;
 mod memory_data;
 mod origin_search;
 mod places;
 mod row_factor;
+mod sample_lines;
 mod settings;
 mod table_lines;
 mod table_word;
@@ -51,10 +53,16 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
 
 /// Defects whose parameters must be searched for, tried if nothing else explains everything.
 pub(super) fn search<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
-    [factor_search::propose, kernel_search::propose, origin_search::propose]
-        .into_iter()
-        .flat_map(|propose| propose(witnesses))
-        .collect()
+    [
+        factor_search::propose,
+        kernel_search::propose,
+        origin_search::propose,
+        kernel_switch::propose,
+        sample_lines::propose,
+    ]
+    .into_iter()
+    .flat_map(|propose| propose(witnesses))
+    .collect()
 }
 
 /// The kernels that `change` gives, by generation; generations for which it gives none are left out.

@@ -22,6 +22,8 @@ codes! {
     BoardError {
         Link [doing] => "link-broke",
         NoAnswer [kind, attempts, waited] => "no-answer",
+        Unanswered [kind, bytes, attempts] => "request-never-answered",
+        Unclosed => "packets-unclosed",
         NotABoard => "not-a-board",
         Echoed => "line-echoes",
         Impossible [capability, value, legal] => "capability-out-of-range",

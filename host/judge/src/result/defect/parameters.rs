@@ -164,3 +164,82 @@ pub struct FlippedBit {
     /// The bit; 0 is the least significant.
     pub bit: u32,
 }
+
+/// A bus that carries samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SampleBus {
+    /// The data of the line memory.
+    LineMemory,
+    /// From the datapath's output on, a sample at a time.
+    Output,
+    /// The bytes of packed rows on their way in.
+    BytesIn,
+    /// The bytes of packed rows on their way out.
+    BytesOut,
+}
+
+/// What is wrong with lines of a bus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LineFault {
+    /// The line is stuck at 0.
+    StuckLow,
+    /// The line is stuck at 1.
+    StuckHigh,
+    /// The line is inverted.
+    Inverted,
+    /// Two lines carry each other's bits.
+    Exchanged,
+    /// Two lines are connected, and both are 0 where one of them is.
+    JoinedLow,
+    /// Two lines are connected, and both are 1 where one of them is.
+    JoinedHigh,
+}
+
+/// Every other column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ColumnParity {
+    /// Columns 0, 2 and so on.
+    Even,
+    /// Columns 1, 3 and so on.
+    Odd,
+}
+
+/// Broken data lines of samples.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SampleLines {
+    /// Of which bus.
+    pub bus: SampleBus,
+    /// What is wrong with them.
+    pub fault: LineFault,
+    /// The lines: one, or the two of a pair.
+    pub bits: Vec<u32>,
+    /// The columns that are affected, if these are not all.
+    pub columns: Option<ColumnParity>,
+}
+
+/// A row that changed its kernel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct KernelSwitch {
+    /// The row.
+    pub row: usize,
+    /// Its frame.
+    pub frame: u16,
+    /// The first column that shows the later kernel.
+    pub column: usize,
+    /// The generation of the kernel before it.
+    pub before: u8,
+    /// The generation of the kernel from there on.
+    pub after: u8,
+}
+
+/// The blanking that a board names, and one with which its rows are right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct NamedBlanking {
+    /// The least blanking that it names, in pixel clocks.
+    pub named: u16,
+    /// Pixel clocks with which the same tables gave right rows.
+    pub right: u16,
+}

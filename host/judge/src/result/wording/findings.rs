@@ -1,6 +1,6 @@
 //! The sentence of a finding, and what to do about it.
 
-use super::{at_speed, designer, evidence, latency, place, rules, suspicion};
+use super::{at_speed, designer, evidence, latency, missing, place, rules, suspicion};
 use crate::result::{Account, BoardKind, Defect, Doubt, Finding, NumberedRow, RepeatedRow};
 use crate::words::{board_name, count, grouped, verb};
 
@@ -214,22 +214,16 @@ fn of_conduct(finding: &Finding) -> String {
 
 /// The sentences of findings that board or link may have caused.
 fn perhaps_of_link(finding: &Finding) -> String {
-    let missing = |row: &u16, frame: &u16| {
-        format!("row {row} of frame {frame} did not come back, although it was asked for again and again")
-    };
     match finding {
-        Finding::RowLostOnce { row, frame } => format!(
-            "{}; when it was streamed again, the whole frame came back; check cable and connectors, and run again",
-            missing(row, frame)
-        ),
-        Finding::RowLostAmongOthers { row, frame } => format!(
-            "{}; when it was streamed again, other packets were lost or late as well, so the link may be the cause; \
-             check cable, connectors and rate",
-            missing(row, frame)
-        ),
         Finding::RightInAnotherSession { found, doubt } => format!(
             "{}; the link may have caused that, because {}: in another session everything was right; check the \
              link, and run again",
+            sentence(found),
+            because(*doubt)
+        ),
+        Finding::WrongOverDoubtfulLink { found, doubt: doubt @ Doubt::AnswerLost {} } => format!(
+            "{}; this proves no fault of the board, because {}; check first how the board answers this, then the link, and run \
+             again",
             sentence(found),
             because(*doubt)
         ),
@@ -244,7 +238,7 @@ fn perhaps_of_link(finding: &Finding) -> String {
             because(it.doubt),
             sentence(&it.reason)
         ),
-        other => unjudged(other),
+        other => missing::sentence(other).unwrap_or_else(|| unjudged(other)),
     }
 }
 
@@ -370,11 +364,12 @@ fn asked_of_caller(finding: &Finding) -> Option<String> {
         }
         Finding::BurstStalled { .. } => "Check the board's clock, and run again.".to_owned(),
         Finding::BurstEndedEarly { .. } => "Run again.".to_owned(),
-        Finding::RowLostOnce { .. } => "Check cable and connectors, and run again.".to_owned(),
-        Finding::RowLostAmongOthers { .. } => "Check cable, connectors and rate.".to_owned(),
+        Finding::WrongOverDoubtfulLink { doubt: Doubt::AnswerLost {}, .. } => {
+            "Check first how the board answers this, then the link, and run again.".to_owned()
+        }
         Finding::RightInAnotherSession { .. } | Finding::WrongOverDoubtfulLink { .. } => {
             CHECK_THE_LINK.to_owned()
         }
-        _ => return None,
+        other => return missing::remedy(other).map(str::to_owned),
     })
 }

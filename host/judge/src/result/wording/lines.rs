@@ -1,7 +1,8 @@
 //! Words for stuck lines, as the samples show them.
 
+use super::places::bits;
 use super::{LOGIC, MEMORY, Words, stuck};
-use crate::result::Counting;
+use crate::result::{ColumnParity, Counting, LineFault, SampleBus, SampleLines};
 
 pub(super) fn line_memory_data(bit: u32, value: u8) -> Words {
     Words {
@@ -20,6 +21,40 @@ pub(super) fn output_data(bit: u32, value: u8) -> Words {
         defect: format!("bit {bit} of every output forced to {value}"),
         designer: format!("Check data line {bit} from the datapath's output to the bank of corrected rows."),
         technician: MEMORY,
+    }
+}
+
+pub(super) fn of_samples(SampleLines { bus, fault, bits: numbers, columns }: &SampleLines) -> Words {
+    let columns = match columns {
+        None => "",
+        Some(ColumnParity::Even) => " in even columns alone",
+        Some(ColumnParity::Odd) => " in odd columns alone",
+    };
+    let (state, technician) = match fault {
+        LineFault::StuckLow => ("stuck at 0", MEMORY),
+        LineFault::StuckHigh => ("stuck at 1", MEMORY),
+        LineFault::Inverted => ("inverted", LOGIC),
+        LineFault::Exchanged => ("exchanged", LOGIC),
+        LineFault::JoinedLow => ("connected, where 0 wins", MEMORY),
+        LineFault::JoinedHigh => ("connected, where 1 wins", MEMORY),
+    };
+    let (place, way) = match bus {
+        SampleBus::LineMemory => ("line memory", "the samples' way into the line memory and out of it"),
+        SampleBus::Output => {
+            ("corrected samples", "the way from the datapath's output to the bank of corrected rows")
+        }
+        SampleBus::BytesIn => ("the bytes of rows on their way in", "the way from the packets to the core"),
+        SampleBus::BytesOut => {
+            ("the bytes of rows on their way out", "the way from the banks of corrected rows to the packets")
+        }
+    };
+    let lines = bits(numbers);
+    Words {
+        part: "data lines",
+        place: format!("{place}, {lines} {state}{columns}"),
+        defect: format!("{lines} {state}{columns}"),
+        designer: format!("Check {lines} on {way}: names, pins, and what the columns share."),
+        technician,
     }
 }
 

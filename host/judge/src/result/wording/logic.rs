@@ -1,7 +1,8 @@
 //! Words for logic that computes something else.
 
 use super::{LOGIC, Words};
-use crate::result::{ClampEnd, Instead};
+use crate::result::{ClampEnd, Instead, KernelSwitch, NamedBlanking};
+use crate::words::count;
 
 pub(super) fn tap_offset(columns: i64) -> Words {
     let side = if columns < 0 { "left" } else { "right" };
@@ -135,6 +136,33 @@ pub(super) fn pairs_exchanged() -> Words {
         place: "the pairs of columns".to_owned(),
         defect: "the two outputs of every pair of columns exchanged".to_owned(),
         designer: "Check the order in which samples are packed and unpacked.".to_owned(),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn kernel_switch(KernelSwitch { row, frame, column, before, after }: KernelSwitch) -> Words {
+    Words {
+        part: "kernel switch",
+        place: format!("the switch of the kernel's bank, within row {row} of frame {frame}"),
+        defect: format!(
+            "the kernel of generation {before} up to the column before {column}, and that of generation {after} from there on"
+        ),
+        designer: "Check that a row keeps the kernel that it entered with up to its last output: its second half leaves while the next \
+                   row enters."
+            .to_owned(),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn least_blanking(NamedBlanking { named, right }: NamedBlanking) -> Words {
+    let pause = count(named, "pixel clock");
+    Words {
+        part: "blanking",
+        place: format!("a pause of {pause} between two rows, which the board names as its least_blanking"),
+        defect: format!("rows are wrong after such a pause, and right after one of {}", count(right, "pixel clock")),
+        designer: "Check how many pixel clocks the datapath needs from one row to the next, and name so many in CAPABILITIES \
+                   (least_blanking)."
+            .to_owned(),
         technician: LOGIC,
     }
 }

@@ -8,6 +8,7 @@ mod findings;
 mod latency;
 mod lines;
 mod logic;
+mod missing;
 mod not_exercised;
 mod places;
 mod rules;
@@ -123,6 +124,7 @@ fn elsewhere(defect: &Defect) -> Words {
     match defect {
         Defect::LineMemoryDataStuck { bit, value } => lines::line_memory_data(*bit, *value),
         Defect::OutputDataStuck { bit, value } => lines::output_data(*bit, *value),
+        Defect::SampleLinesWrong(wrong) => lines::of_samples(wrong),
         Defect::LineMemoryAddressStuck { bit, counting } => lines::line_memory_address(*bit, *counting),
         Defect::RowTableDataStuck { bit, value } => lines::row_table_data(*bit, *value),
         Defect::RowTableAddressStuck { bit, value } => lines::row_table_address(*bit, *value),
@@ -144,6 +146,8 @@ fn elsewhere(defect: &Defect) -> Words {
         Defect::RowsChangedOnEntry { rows, first, frame, flipped } => {
             at_speed::changed_on_entry((*rows, *first, *frame), *flipped)
         }
+        Defect::KernelSwitchedInRow(switch) => logic::kernel_switch(*switch),
+        Defect::LeastBlankingTooSmall(blanking) => logic::least_blanking(*blanking),
         Defect::TablesChangeLate { rows } => at_speed::tables_late(*rows),
         Defect::RecordsLate {} => content::records_late(),
         Defect::ContentWrong { row, kind, made } => content::wrong(*row, *kind, *made),

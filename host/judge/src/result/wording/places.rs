@@ -152,13 +152,34 @@ fn lost(rows: usize, first: usize) -> Words {
 
 fn unknown(defect: &Defect) -> Words {
     debug_assert!(matches!(defect, Defect::NoneKnown { .. }), "{defect:?} has no words");
+    let maps = if is_unstreamed(defect) { super::NO_MAPS } else { super::MAPS };
     Words {
         part: "unknown",
         place: "an unknown part".to_owned(),
         defect: format!("no known defect explains most of the differences: {}", clauses(defect).join(", ")),
-        designer: if is_unstreamed(defect) { super::NO_MAPS } else { super::MAPS }.to_owned(),
+        designer: hint(defect).map_or_else(|| maps.to_owned(), |hint| format!("{hint} {maps}")),
         technician: REPORT,
     }
+}
+
+/// What the places of the differences have in common, for the designer.
+fn hint(defect: &Defect) -> Option<String> {
+    let Defect::NoneKnown { rows, columns, bits: numbers, .. } = defect else { return None };
+    if let [bit] = numbers[..] {
+        return Some(format!("Check what carries bit {bit} alone: a line that fails at times."));
+    }
+    let of = |name: &str, extent: &Extent| match extent {
+        Extent::One { at } => Some(format!("what only {name} {at} meets: a beginning, the middle or an end")),
+        Extent::Even { .. } => Some(format!("what only even {name}s use, such as one of two lanes or banks")),
+        Extent::Odd { .. } => Some(format!("what only odd {name}s use, such as one of two lanes or banks")),
+        _ => None,
+    };
+    if let (Some(Extent::One { .. }), Some(Extent::One { .. })) = (rows, columns) {
+        return None;
+    }
+    let columns = columns.as_ref().and_then(|columns| of("column", columns));
+    let told = columns.or_else(|| rows.as_ref().and_then(|rows| of("row", rows)))?;
+    Some(format!("Check {told}."))
 }
 
 fn is_unstreamed(defect: &Defect) -> bool {

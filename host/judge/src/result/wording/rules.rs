@@ -137,7 +137,7 @@ pub(super) fn meaning(rule: Rule) -> &'static str {
         Rule::Pending => "nothing may change the tables of a pending commit",
         Rule::Forgotten => "RESET must forget a pending commit",
         Rule::RowPlace => "a row out of place must be refused",
-        Rule::Window => "the window must be as many rows as row_banks_in says",
+        Rule::Window => "after RESET the window must be next_row plus row_banks_in",
         Rule::Credit => "a row beyond the window must be refused",
         Rule::Inside => "what must not be done while rows are inside or kept must be refused",
         Rule::Rows => "rows must come back in place, whatever was refused between them",

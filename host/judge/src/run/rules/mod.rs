@@ -158,6 +158,9 @@ impl<'a, 'run> Rules<'a, 'run> {
             Err(BoardError::NoAnswer { heard, .. }) if heard.damaged == 0 && self.had_it_each_time() => {
                 return Err(unanswered(rule, kind, answer(right)));
             }
+            Err(BoardError::Unanswered { had: true, .. }) => {
+                return Err(unanswered(rule, kind, answer(right)));
+            }
             Err(error) => return Err(of_board(error)),
         };
         Err(broken(rule, kind, right, found))
@@ -190,7 +193,7 @@ impl<'a, 'run> Rules<'a, 'run> {
         let changes = self.run.board.repeated_changes();
         let said = self.run.board.ask(kind, payload);
         let right = Said::Refused(Refusal { code, kind: kind.code(), detail });
-        let is_unanswered = matches!(said, Err(BoardError::NoAnswer { .. }));
+        let is_unanswered = matches!(said, Err(BoardError::NoAnswer { .. } | BoardError::Unanswered { .. }));
         if is_unanswered && kind == Kind::RowIn && self.has_taken(payload) {
             // It is known what happened to each copy of this request.
             self.run.board.excuse_changes(changes);

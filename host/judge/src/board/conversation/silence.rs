@@ -1,0 +1,51 @@
+//! A request that a board leaves unanswered, while it answers others.
+
+use halfrow_protocol::Kind;
+use halfrow_protocol::message::{Reply, Request, Status};
+
+use super::Conversation;
+use crate::board::BoardError;
+use crate::board::answer::take_reply;
+use crate::board::asked::Asking;
+use crate::board::deadlines::Step;
+
+impl Conversation {
+    /// The `error` with which asking ended, or, if that is a silence which only this request meets, one that says so.
+    pub(super) fn looked_into(&mut self, error: BoardError, asking: &Asking<'_>) -> BoardError {
+        let BoardError::NoAnswer { kind, attempts, .. } = error else { return error };
+        if self.session.number == 0 {
+            return error;
+        }
+        let Some(had) = self.leaves_only(asking) else { return error };
+        let mut payload = Vec::new();
+        asking.write(&mut payload);
+        BoardError::Unanswered { kind, bytes: payload.len(), attempts, had }
+    }
+
+    /// Whether the board answers another request at once, then leaves this one unanswered again, and answers the other one
+    /// again. A link that was broken for a while answers all three, one that brings late answers adds strays, and a noisy one,
+    /// which keeps long packets from getting through, damages them. Returns whether the board counts every packet as received.
+    fn leaves_only(&mut self, asking: &Asking<'_>) -> Option<bool> {
+        let strays = self.tally.strays;
+        self.answers_another(asking.kind()).ok()?;
+        match self.ask_until_answered(asking, Step::Probe, |_| true) {
+            Err(BoardError::NoAnswer { .. }) => {}
+            _ => return None,
+        }
+        let status = self.answers_another(asking.kind()).ok()?;
+        let damaged = self.tally.damaged_in + u64::from(status.map_or(0, |status| status.damaged()));
+        let had = status.is_some_and(|status| self.had_each_packet_once(&status));
+        (self.tally.strays == strays && damaged == 0).then_some(had)
+    }
+
+    /// Has the board answer another request than one of `kind`: its counters, if these are something else.
+    fn answers_another(&mut self, kind: Kind) -> Result<Option<Status>, BoardError> {
+        let other = if kind == Kind::Status { Request::Echo(&[]) } else { Request::Status { clear: false } };
+        let answer = self.ask_until_answered(&Asking::Request(&other), Step::Probe, |_| true)?;
+        take_reply(other.kind(), &answer, |reply| match reply {
+            Reply::Status(status) => Some(Some(status)),
+            Reply::Echo(_) => Some(None),
+            _ => None,
+        })
+    }
+}
