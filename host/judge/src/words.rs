@@ -109,6 +109,14 @@ pub fn plain(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.chars().map(spelt).collect())
 }
 
+/// `words` as a sentence of its own, with a capital and a full stop; none if there are no words.
+#[must_use]
+pub fn sentence(words: &str) -> Option<String> {
+    let mut letters = words.trim().trim_end_matches('.').chars();
+    let first = letters.next()?;
+    Some(format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

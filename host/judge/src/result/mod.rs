@@ -61,7 +61,7 @@ pub use identity::{BurstsReport, GridsReport, Identity};
 pub use late_rows::LateRows;
 pub use link::{LinkReport, Reconnection};
 pub use not_exercised::NotExercised;
-pub use problem::{Parameters, Problem};
+pub use problem::{Parameters, Problem, split_remedy};
 pub use rule::{Answer, MissingRow, NumberedRow, RepeatedRow, RowPart, Rule};
 pub(crate) use sha256::little_endian;
 pub use sha256::sha256;

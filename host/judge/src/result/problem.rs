@@ -8,6 +8,7 @@ use serde_json::{Map, Value};
 
 use super::codes::{self, Coded};
 use super::{Finding, wording};
+use crate::words::sentence;
 
 /// Parameters, by name.
 pub type Parameters = Map<String, Value>;
@@ -36,7 +37,7 @@ impl Problem {
     }
 
     fn with(code: &str, parameters: Parameters, message: String) -> Self {
-        let remedy = asked(&message, &parameters).and_then(|(_, asked)| remedy(asked));
+        let remedy = split_remedy(&message, &parameters).and_then(|(_, remedy)| sentence(remedy));
         Self { code: code.to_owned(), parameters, message, remedy, causes: Vec::new() }
     }
 
@@ -69,7 +70,7 @@ impl Problem {
     pub(crate) fn unasked(mut self) -> Self {
         let causes = self.causes.iter_mut().map(|cause| (&mut cause.message, &cause.parameters));
         for (message, parameters) in std::iter::once((&mut self.message, &self.parameters)).chain(causes) {
-            if let Some((what, _)) = asked(message, parameters) {
+            if let Some((what, _)) = split_remedy(message, parameters) {
                 *message = what.to_owned();
             }
         }
@@ -105,19 +106,19 @@ impl fmt::Display for Problem {
 
 impl Error for Problem {}
 
+/// What stands before a remedy: in English, and in the languages that sentences are translated into.
+const SEMICOLONS: [&str; 2] = ["; ", "；"];
+
 /// Splits a message into what is wrong and what to do. The latter follows the last semicolon that is not part of a name in
 /// `parameters`.
-fn asked<'a>(message: &'a str, parameters: &Parameters) -> Option<(&'a str, &'a str)> {
-    let names = parameters.values().filter_map(Value::as_str).filter(|name| name.contains("; "));
-    let masked = names.fold(message.to_owned(), |text, name| text.replace(name, &name.replace("; ", ", ")));
-    let at = masked.rfind("; ")?;
-    Some((message.get(..at)?, message.get(at + "; ".len()..)?))
-}
-
-fn remedy(asked: &str) -> Option<String> {
-    let mut letters = asked.trim().trim_end_matches('.').chars();
-    let first = letters.next()?;
-    Some(format!("{}{}.", first.to_uppercase(), letters.as_str()))
+#[must_use]
+pub fn split_remedy<'a>(message: &'a str, parameters: &Parameters) -> Option<(&'a str, &'a str)> {
+    let has_mark = |name: &&str| SEMICOLONS.iter().any(|mark| name.contains(mark));
+    let names = parameters.values().filter_map(Value::as_str).filter(has_mark);
+    let masked = names.fold(message.to_owned(), |text, name| text.replace(name, &"_".repeat(name.len())));
+    let marks = SEMICOLONS.iter().filter_map(|mark| Some((masked.rfind(mark)?, mark.len())));
+    let (at, length) = marks.max()?;
+    Some((message.get(..at)?, message.get(at + length..)?))
 }
 
 impl Finding {

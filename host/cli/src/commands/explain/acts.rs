@@ -1,6 +1,8 @@
 //! What to do about errors whose message does not end in such an act: because it is filled in when the error happens, belongs to
 //! another error, or is missing.
 
+use halfrow::result::{Parameters, split_remedy};
+
 /// What to do where tables of a station or of a plant contradict its records.
 const MEND_TABLES: &str = "first repair the records that `check` names; if this is still reported, put back a copy \
                            of the database: station.db, or the plant's";
@@ -256,7 +258,7 @@ pub(super) fn of(code: &str, sentence: &str) -> Option<String> {
 
 /// The act at the end of a message, unless a part of it is filled in when the error happens.
 fn of_message(sentence: &str) -> Option<String> {
-    let (_, act) = sentence.rsplit_once("; ")?;
+    let (_, act) = split_remedy(sentence, &Parameters::new())?;
     (act.contains(char::is_lowercase) && !act.contains('…')).then(|| act.to_owned())
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use halfrow::result::{CheckName, examples};
 use halfrow::verdict::Verdict;
+use halfrow::words::sentence;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -106,7 +107,7 @@ fn words() -> impl Iterator<Item = Explanation> {
     let faults = halfrow_mock::catalogue().map(|it| Explanation {
         code: it.name.to_owned(),
         of: "fault".to_owned(),
-        meaning: as_sentence(&it.summary()),
+        meaning: sentence(&it.summary()).unwrap_or_default(),
         fault: "the mock board's, when it is asked for one: `--board mock,fault=NAME`",
         parameters: it.parameters.iter().map(|parameter| parameter.key.to_owned()).collect(),
         place: "what `halfrow faults --json` lists",
@@ -193,19 +194,13 @@ fn named_places(message: &str) -> String {
     text
 }
 
-/// `words` with a capital at the beginning and a full stop at the end.
-fn as_sentence(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
-}
-
 impl Explanation {
     /// Takes what the sources say. Without a comment, the message serves as the meaning.
     fn say(&mut self, meaning: &str, message: &str) {
         self.sentence = named_places(message);
         self.acts = acts::of(&self.code, &self.sentence).into_iter().collect();
         if meaning.is_empty() {
-            self.meaning = as_sentence(&std::mem::take(&mut self.sentence));
+            self.meaning = sentence(&std::mem::take(&mut self.sentence)).unwrap_or_default();
         } else {
             self.meaning = meaning.to_owned();
         }

@@ -5,6 +5,7 @@ mod parameters;
 #[cfg(test)]
 mod tests;
 
+use halfrow::result::split_remedy;
 use serde_json::Value;
 
 use super::{Words, filled};
@@ -38,8 +39,7 @@ impl Words {
         Told { text: sentences.join(self.say("told.colon")), foreign }
     }
 
-    /// What was said without its remedy, and the remedy: `recorded`, which is in English, or what stands after the last
-    /// semicolon.
+    /// What was said without its remedy, and the remedy: `recorded`, which is in English, or the one that it ends in.
     pub(in crate::web) fn parted(&self, said: &Said, recorded: Option<&str>) -> (Told, Option<Told>) {
         let (why, asked) = self.split(said, recorded);
         let asked = asked.or_else(|| {
@@ -60,17 +60,18 @@ impl Words {
     /// What was said, split before its remedy where it ends in that.
     fn split(&self, said: &Said, recorded: Option<&str>) -> (Told, Option<Told>) {
         let is_asked = |one: &Said| {
-            parts(&one.message)
+            split_remedy(&one.message, &one.parameters)
                 .is_some_and(|(_, asked)| recorded.is_none_or(|known| written(known) == written(asked)))
         };
-        let place = all(said).position(is_asked);
         let (mut sentences, foreign) = self.sentences(said);
-        let parted = place.and_then(|place| sentences.get_mut(place)).and_then(|sentence| {
-            let (why, asked) = parts(sentence).map(|(why, asked)| (why.to_owned(), written(asked)))?;
-            *sentence = why;
-            Some(Told { text: asked, foreign })
+        let asking = all(said).zip(&mut sentences).find(|(one, _)| is_asked(one));
+        let asked = asking.and_then(|(one, sentence)| {
+            let (why, asked) = split_remedy(sentence, &one.parameters)?;
+            let told = Told { text: written(asked), foreign };
+            *sentence = why.to_owned();
+            Some(told)
         });
-        (Told { text: sentences.join(self.say("told.colon")), foreign }, parted)
+        (Told { text: sentences.join(self.say("told.colon")), foreign }, asked)
     }
 
     /// What was said and each of its causes, and their language if it is not the page's.
@@ -130,11 +131,6 @@ impl Words {
 /// What was said, and its causes.
 fn all(said: &Said) -> impl Iterator<Item = &Said> {
     [said].into_iter().chain(&said.causes)
-}
-
-/// What is wrong and what to do about it: sentences of this program say the latter after their last semicolon.
-fn parts(sentence: &str) -> Option<(&str, &str)> {
-    sentence.rsplit_once("; ").or_else(|| sentence.rsplit_once('；'))
 }
 
 /// What to do, written as a line of its own: with a capital and without a full stop.

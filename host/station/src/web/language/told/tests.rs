@@ -50,6 +50,13 @@ fn what_is_asked_for_is_told_apart_from_why() {
     assert_eq!(why.text, "die Verbindung brach ab: usb:1 wurde nach 11,1 s geschlossen");
     let asked = "Kabel und Stromversorgung der Platine prüfen, dann noch einmal";
     assert_eq!(text(told), Some((asked.to_owned(), None)));
+    let named = said("of-tomorrow", "there is no unit CA1; CA2", json!({ "serial": "CA1; CA2" }));
+    let (why, told) = of(None, None).parted(&named, None);
+    assert_eq!(
+        (why.text.as_str(), told),
+        ("there is no unit CA1; CA2", None),
+        "part of a name asks for nothing"
+    );
     let lost = said("row-lost-once", "a row was lost; it is row 3", json!({}));
     let (why, told) = of(None, None).parted(&lost, Some("Check the cable."));
     assert_eq!(
