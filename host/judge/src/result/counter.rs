@@ -1,5 +1,6 @@
 //! The names of a board's counters.
 
+use halfrow_protocol::message::Status;
 use serde::{Deserialize, Serialize};
 
 /// What a board counts and the host also knows: mostly the counters of STATUS in `protocol/WIRE.md`.
@@ -43,6 +44,31 @@ pub enum Counter {
 }
 
 impl Counter {
+    /// What `status` says of it.
+    #[must_use]
+    pub(crate) const fn in_status(self, status: &Status) -> u32 {
+        match self {
+            Self::RowsIn => status.rows_in,
+            Self::RowsOut => status.rows_out,
+            Self::SamplesOver => status.samples_over,
+            Self::NextRowIn => status.next_row_in,
+            Self::NextRowOut => status.next_row_out,
+            Self::Generation => status.generation,
+            Self::RowsRepeated => status.rows_repeated,
+            Self::RowsUnneeded => status.rows_unneeded,
+            Self::Refusals => status.refusals,
+            // Each is a row that came out or one that was sent again.
+            Self::RowsNumbered => status.rows_out.saturating_add(status.rows_repeated),
+            Self::Packets => status.packets,
+            Self::ForeignPackets => status.foreign_packets,
+            Self::CoreBusy => status.core_busy,
+            Self::CrcErrors => status.crc_errors,
+            Self::FramingErrors => status.framing_errors,
+            Self::LeastLatency => status.least_latency,
+            Self::MostLatency => status.most_latency,
+        }
+    }
+
     /// The words that follow its figure in a sentence.
     #[must_use]
     pub const fn words(self) -> &'static str {

@@ -6,6 +6,10 @@ use super::steps::Run;
 use crate::board::Status;
 use crate::result::{CheckName, Counter, Finding, LatencyReport};
 
+/// What a board counts that a link can have caused as well.
+pub(super) const MOVED_BY_LINKS: [Counter; 4] =
+    [Counter::RowsRepeated, Counter::RowsUnneeded, Counter::Refusals, Counter::ForeignPackets];
+
 impl Run<'_> {
     /// Compares the board's counters with what the host saw. Some must agree over any link, however poor; the others are
     /// compared only where nothing was lost or late.
@@ -16,21 +20,19 @@ impl Run<'_> {
         let next_row = self.board.acknowledged();
         let repeated = status.rows_repeated.max(self.findings.look.repeats_counted);
         let is_calm = self.is_calm(status);
-        let pairs = [
-            (Counter::RowsIn, status.rows_in, expected, true),
-            (Counter::RowsOut, status.rows_out, expected, true),
-            (Counter::SamplesOver, status.samples_over, 0, true),
-            (Counter::NextRowIn, status.next_row_in, next_row, true),
-            (Counter::NextRowOut, status.next_row_out, next_row, true),
-            (Counter::Generation, status.generation, generation, true),
-            (Counter::RowsRepeated, status.rows_repeated, repeated, true),
-            (Counter::RowsRepeated, status.rows_repeated, 0, is_calm),
-            (Counter::RowsUnneeded, status.rows_unneeded, 0, is_calm),
-            (Counter::Refusals, status.refusals, 0, is_calm),
-            (Counter::ForeignPackets, status.foreign_packets, 0, is_calm),
+        let over_any_link = [
+            (Counter::RowsIn, expected),
+            (Counter::RowsOut, expected),
+            (Counter::SamplesOver, 0),
+            (Counter::NextRowIn, next_row),
+            (Counter::NextRowOut, next_row),
+            (Counter::Generation, generation),
+            (Counter::RowsRepeated, repeated),
         ];
-        let wrong = pairs.into_iter().find(|(_, counted, right, compared)| *compared && counted != right);
-        if let Some((counter, counted, right, _)) = wrong {
+        let if_calm = MOVED_BY_LINKS.map(|counter| (counter, 0)).into_iter().filter(|_| is_calm);
+        let mut counts = over_any_link.into_iter().chain(if_calm);
+        if let Some((counter, right)) = counts.find(|(counter, right)| counter.in_status(status) != *right) {
+            let counted = counter.in_status(status);
             return Err(miscounted(Finding::CounterWrong { counter, counted, right, rule: None }));
         }
         packets_counted(status, self.board.answered_since_clear())?;
@@ -66,7 +68,7 @@ pub(super) fn is_contradictory(status: &Status) -> bool {
 
 /// Whether it counts what only a link can have caused, since the host gave no reason for it.
 pub(super) fn is_moved_by_links(status: &Status) -> bool {
-    [status.rows_repeated, status.rows_unneeded, status.refusals, status.foreign_packets] != [0; 4]
+    MOVED_BY_LINKS.iter().any(|counter| counter.in_status(status) != 0)
 }
 
 /// Checks the count of packets: each row that was taken or not needed, each refusal and each of the `answered` requests
@@ -82,11 +84,10 @@ fn packets_counted(status: &Status, answered: u64) -> Result<(), End> {
     Err(miscounted(Finding::CounterWrong { counter, counted, right, rule: None }))
 }
 
-/// Checks the numbers of ROW_OUT packets, of which the host saw `counted`. They begin at 0, and each packet is a row that
-/// came out or one that was sent again. No two packets have the same number, and a later row's packet has a greater one,
+/// Checks the numbers of ROW_OUT packets, of which the host saw `counted`. They begin at 0. No two packets have the same number, and a later row's packet has a greater one,
 /// so over a link that loses nothing the numbers have no gap.
 pub(super) fn rows_numbered(status: &Status, counted: u32) -> Result<(), End> {
-    let right = status.rows_out.saturating_add(status.rows_repeated);
+    let right = Counter::RowsNumbered.in_status(status);
     if counted <= right {
         return Ok(());
     }

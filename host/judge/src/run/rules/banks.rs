@@ -139,7 +139,7 @@ impl Rules<'_, '_> {
     /// Whether the board had everything that was sent to it, and itself says that it sent only the rows that came.
     fn says_nothing(&mut self, kept: &FilledBanks) -> Result<bool, End> {
         let status = self.run.board.status(false).map_err(of_board)?;
-        let sent = |status: &Status| status.rows_out.saturating_add(status.rows_repeated);
+        let sent = |status: &Status| Counter::RowsNumbered.in_status(status);
         let came = self.run.board.rows_came() - kept.came;
         let is_all = sent(&status) == sent(&kept.before).saturating_add(came);
         Ok(is_all && self.run.board.had_each_packet_once(&status))
@@ -270,22 +270,19 @@ impl Rules<'_, '_> {
         let status = self.run.board.status(false).map_err(of_board)?;
         let FilledBanks { before, first, asked, unneeded, .. } = kept;
         let rows = self.run.board.acknowledged() - first;
-        equal(
-            Some(Rule::Banks),
-            [
-                (Counter::RowsIn, status.rows_in, before.rows_in.saturating_add(rows)),
-                (Counter::RowsOut, status.rows_out, before.rows_out.saturating_add(rows)),
-            ],
-        )?;
+        let more = |counter: Counter, by| (counter, counter.in_status(before).saturating_add(by));
+        let rule = Some(Rule::Banks);
+        equal(rule, &status, [more(Counter::RowsIn, rows), more(Counter::RowsOut, rows)])?;
         if !is_calm {
             return Ok(());
         }
         equal(
-            Some(Rule::Banks),
+            rule,
+            &status,
             [
-                (Counter::RowsRepeated, status.rows_repeated, before.rows_repeated.saturating_add(*asked)),
-                (Counter::RowsUnneeded, status.rows_unneeded, before.rows_unneeded.saturating_add(*unneeded)),
-                (Counter::Refusals, status.refusals, before.refusals),
+                more(Counter::RowsRepeated, *asked),
+                more(Counter::RowsUnneeded, *unneeded),
+                more(Counter::Refusals, 0),
             ],
         )
     }

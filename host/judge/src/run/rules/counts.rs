@@ -9,12 +9,16 @@ use super::without_effect::others;
 use super::{Refusals, Rules, miscounted, of_board, of_rows};
 use crate::board::{Given, Said, Status};
 use crate::result::{Counter, Finding, Rule};
+use crate::run::counters::MOVED_BY_LINKS;
 use crate::run::findings::End;
 
 /// Rows of a frame whose first row is asked for again: the second one pushes it out.
 const ROWS: usize = 2;
 /// How often a row is given that is no longer needed.
 const UNNEEDED: u32 = 4;
+/// The counters that only rows change which enter the core.
+const MOVED_BY_NEW_ROWS: [Counter; 5] =
+    [Counter::RowsIn, Counter::RowsOut, Counter::SamplesOver, Counter::LeastLatency, Counter::MostLatency];
 /// A value with which STATUS clears, like 1.
 const CLEAR: u8 = 0x80;
 
@@ -51,24 +55,22 @@ impl Rules<'_, '_> {
         let status = self.run.board.status(false).map_err(of_board)?;
         equal(
             Some(Rule::Session),
-            [
-                (Counter::NextRowIn, status.next_row_in, second.row_sequence + 1),
-                (Counter::NextRowOut, status.next_row_out, first.row_sequence),
-            ],
+            &status,
+            [(Counter::NextRowIn, second.row_sequence + 1), (Counter::NextRowOut, first.row_sequence)],
         )?;
         let came =
             self.run.board.again(rows[0], Some(rows[1]), 1).map_err(|error| of_rows(Rule::Again, error))?;
         self.run.board.acknowledge(first.row_sequence + mem::take(&mut self.given).rows);
         let status = self.run.board.status(false).map_err(of_board)?;
         let repeated = before.rows_repeated.saturating_add(came.repeats.into());
-        at_least(Some(Rule::Again), [(Counter::RowsRepeated, status.rows_repeated, repeated)])?;
+        at_least(Some(Rule::Again), &status, [(Counter::RowsRepeated, repeated)])?;
         for _ in 0..UNNEEDED {
             self.run.board.give(&first, frame.row(0));
         }
         let unneeded = status.rows_unneeded.saturating_add(UNNEEDED);
         let status = self.run.board.status(false).map_err(of_board)?;
         if self.run.board.had_each_packet_once(&status) {
-            at_least(Some(Rule::Again), [(Counter::RowsUnneeded, status.rows_unneeded, unneeded)])?;
+            at_least(Some(Rule::Again), &status, [(Counter::RowsUnneeded, unneeded)])?;
         }
         self.configure(self.small.rows())
     }
@@ -97,14 +99,8 @@ impl Rules<'_, '_> {
         let before = self.run.board.status(false).map_err(of_board)?;
         act(self)?;
         let after = self.run.board.status(false).map_err(of_board)?;
-        at_least(
-            rule,
-            [
-                (Counter::RowsIn, after.rows_in, before.rows_in),
-                (Counter::RowsOut, after.rows_out, before.rows_out),
-                (Counter::SamplesOver, after.samples_over, before.samples_over),
-            ],
-        )
+        let counters = [Counter::RowsIn, Counter::RowsOut, Counter::SamplesOver];
+        at_least(rule, &after, counters.map(|counter| (counter, counter.in_status(&before))))
     }
 
     /// STATUS with any number but 0 must clear all counters, and tell what they were before. A second copy of it is told of
@@ -117,14 +113,8 @@ impl Rules<'_, '_> {
         let told = self.clear()?;
         let is_calm = had_each_once && self.run.board.tally().retries == retries;
         if let Some(told) = told.filter(|_| is_calm) {
-            at_least(
-                None,
-                [
-                    (Counter::RowsIn, told.rows_in, before.rows_in),
-                    (Counter::RowsOut, told.rows_out, before.rows_out),
-                    (Counter::MostLatency, told.most_latency, before.most_latency),
-                ],
-            )?;
+            let counters = [Counter::RowsIn, Counter::RowsOut, Counter::MostLatency];
+            at_least(None, &told, counters.map(|counter| (counter, counter.in_status(&before))))?;
         }
         let status = self.run.board.status(false).map_err(of_board)?;
         self.not_counted(None, &status)
@@ -145,58 +135,43 @@ impl Rules<'_, '_> {
 
     /// `status`, which came after something that clears all counters, must have all of them 0.
     pub(super) fn not_counted(&mut self, rule: Option<Rule>, status: &Status) -> Result<(), End> {
-        let of_new_rows = equal(
-            rule,
-            [
-                (Counter::RowsIn, status.rows_in, 0),
-                (Counter::RowsOut, status.rows_out, 0),
-                (Counter::SamplesOver, status.samples_over, 0),
-                (Counter::LeastLatency, status.least_latency, 0),
-                (Counter::MostLatency, status.most_latency, 0),
-            ],
-        );
+        let of_new_rows = equal(rule, status, MOVED_BY_NEW_ROWS.map(|counter| (counter, 0)));
         // There was no new row, and no link can make one.
         self.run.findings.look.beyond_links |= of_new_rows.is_err();
         of_new_rows?;
         let board = &self.run.board;
         let is_calm =
             status.damaged() == 0 && board.had_each_packet_once(status) && board.sent_nothing_again();
-        if !is_calm {
-            return Ok(());
-        }
-        equal(
-            rule,
-            [
-                (Counter::RowsRepeated, status.rows_repeated, 0),
-                (Counter::RowsUnneeded, status.rows_unneeded, 0),
-                (Counter::Refusals, status.refusals, 0),
-                (Counter::ForeignPackets, status.foreign_packets, 0),
-            ],
-        )
+        if is_calm { equal(rule, status, MOVED_BY_LINKS.map(|counter| (counter, 0))) } else { Ok(()) }
     }
 }
 
-/// Each counter, given with what the board counts and with what is right, must be right after `rule` was tried. Ends with the
-/// first that is not.
-pub(super) fn equal<const N: usize>(rule: Option<Rule>, counts: [(Counter, u32, u32); N]) -> Result<(), End> {
-    all_right(rule, counts, |counted, right| counted == right)
+/// Each counter, given with what is right, must be that in `status` after `rule` was tried. Ends with the first that is not.
+pub(super) fn equal<const N: usize>(
+    rule: Option<Rule>,
+    status: &Status,
+    counts: [(Counter, u32); N],
+) -> Result<(), End> {
+    all_right(rule, status, &counts, |counted, right| counted == right)
 }
 
 /// The same for counters of which the board may count more.
 pub(super) fn at_least<const N: usize>(
     rule: Option<Rule>,
-    counts: [(Counter, u32, u32); N],
+    status: &Status,
+    counts: [(Counter, u32); N],
 ) -> Result<(), End> {
-    all_right(rule, counts, |counted, right| counted >= right)
+    all_right(rule, status, &counts, |counted, right| counted >= right)
 }
 
-fn all_right<const N: usize>(
+fn all_right(
     rule: Option<Rule>,
-    counts: [(Counter, u32, u32); N],
+    status: &Status,
+    counts: &[(Counter, u32)],
     is_right: fn(u32, u32) -> bool,
 ) -> Result<(), End> {
-    match counts.into_iter().find(|&(_, counted, right)| !is_right(counted, right)) {
+    match counts.iter().find(|(counter, right)| !is_right(counter.in_status(status), *right)) {
         None => Ok(()),
-        Some((counter, counted, right)) => Err(miscounted(rule, counter, counted, right)),
+        Some(&(counter, right)) => Err(miscounted(rule, counter, counter.in_status(status), right)),
     }
 }

@@ -36,13 +36,10 @@ impl Rules<'_, '_> {
         let (Refusals { own, foreign }, before) = (self.refusals, self.before);
         at_least(
             None,
+            &after,
             [
-                (Counter::Refusals, after.refusals, before.refusals.saturating_add(own)),
-                (
-                    Counter::ForeignPackets,
-                    after.foreign_packets,
-                    before.foreign_packets.saturating_add(foreign),
-                ),
+                (Counter::Refusals, before.refusals.saturating_add(own)),
+                (Counter::ForeignPackets, before.foreign_packets.saturating_add(foreign)),
             ],
         )
     }

@@ -367,10 +367,8 @@ impl Rules<'_, '_> {
         let right = self.run.board.acknowledged();
         equal(
             Some(Rule::RowNumber),
-            [
-                (Counter::NextRowIn, status.next_row_in, right),
-                (Counter::NextRowOut, status.next_row_out, right),
-            ],
+            &status,
+            [Counter::NextRowIn, Counter::NextRowOut].map(|counter| (counter, right)),
         )
     }
 }
