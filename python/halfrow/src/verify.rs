@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use halfrow::board::Stop;
 use halfrow::call::Files;
-use halfrow::link::{self, Candidate, Class, Lost, OpenError, Recorder, Recording, RecordingFile};
+use halfrow::link::{self, Class, OpenError, Recording, RecordingFile};
 use halfrow::result::Problem;
 use halfrow::run::{self, Misfit, RecordedRun};
 use halfrow::target::{Target, TargetError};
@@ -119,21 +119,15 @@ impl Job {
     }
 
     fn judge(&mut self, progress: &dyn halfrow::Progress) -> Result<Finished, NotBegun> {
-        let mut candidate = match self.recording.take() {
+        let candidate = match self.recording.take() {
             None => link::open(&self.target)?,
             Some(recording) => link::replay(&self.target, recording)?,
         };
-        let mut lost = Lost::default();
-        if let Some(file) = self.record.take() {
-            let link = Recorder::begin(candidate.link, file, &RecordedRun::of(&self.plan, &self.options))
-                .map_err(|error| NotBegun { cause: Some(Cause::Station), reason: error.into() })?;
-            lost = link.lost();
-            candidate = Candidate { link: Box::new(link), ..candidate };
-        }
+        let begun = RecordedRun::begin(&self.plan, &self.options, candidate, self.record.take());
+        let (candidate, lost) =
+            begun.map_err(|error| NotBegun { cause: Some(Cause::Station), reason: error.into() })?;
         let mut finished = run::verify(&self.plan, candidate, &self.options, progress)?;
-        if let Some(error) = lost.get() {
-            finished.lose_recording(error);
-        }
+        finished.note_recording(&lost);
         Ok(finished)
     }
 }

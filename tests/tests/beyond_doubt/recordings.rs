@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::time::Duration;
 
-use halfrow::link::{Candidate, Link, LinkError, Recorder, RecordingFile};
+use halfrow::link::{Candidate, Link, LinkError, RecordingFile};
 use halfrow::progress::Silent;
 use halfrow::run::{RecordedRun, RunOptions, verify};
 use halfrow::target::Target;
@@ -74,8 +74,7 @@ fn a_recording_of_a_run_that_asked_for_no_counts_is_judged_as_it_was() {
     for board in ["mock", "mock,fault=stuck-data", "mock,fault=drop,rate=3e-5,seed=3"] {
         let (candidate, path) = (open(board), folder.path().join("run.rec"));
         let file = RecordingFile::prepare(&path, true).unwrap();
-        let recorder = Recorder::begin(candidate.link, file, &RecordedRun::of(&plan, &options)).unwrap();
-        let candidate = Candidate { link: Box::new(recorder), ..candidate };
+        let (candidate, _) = RecordedRun::begin(&plan, &options, candidate, Some(file)).unwrap();
         let report = verify(&plan, candidate, &options, &Silent).unwrap().report;
         let recording = folder.read("run.rec");
         let (head, exchanges) = recording.split_at(first_exchange(&recording));
@@ -130,9 +129,8 @@ fn a_recording_of_a_board_that_was_taken_over_is_judged_as_it_was() {
     let (plan, options) = (System::TINY.plan(), RunOptions::default());
     let candidate = Altered::new(&halfrow_mock::Options::default(), alter).candidate();
     let file = RecordingFile::prepare(&folder.path().join("run.rec"), false).unwrap();
-    let link = Box::new(Exclusive(candidate.link));
-    let recorder = Recorder::begin(link, file, &RecordedRun::of(&plan, &options)).unwrap();
-    let candidate = Candidate { link: Box::new(recorder), ..candidate };
+    let candidate = Candidate { link: Box::new(Exclusive(candidate.link)), ..candidate };
+    let (candidate, _) = RecordedRun::begin(&plan, &options, candidate, Some(file)).unwrap();
     let report = verify(&plan, candidate, &options, &Silent).unwrap().report;
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
     let again = folder.halfrow(["verify", "--json", "--board", "replay:run.rec"]).json();

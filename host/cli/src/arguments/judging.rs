@@ -16,14 +16,14 @@ use crate::exit::Exit;
 use crate::files::prepare_files;
 use crate::pool::PoolError;
 use crate::settings::Settings;
-use crate::{console, flags, text};
+use crate::{console, flags, progress, text};
 use halfrow::call::{self, Files, FilesError, Input};
 use halfrow::files::check_regular;
-use halfrow::link::RecordingFile;
+use halfrow::link::{Candidate, RecordingFile};
 use halfrow::optics::Chosen;
 use halfrow::report::{self, ReportFolder};
 use halfrow::result::FileHash;
-use halfrow::run::{self, Circumstances, Finished, Lack, Plan, RunOptions};
+use halfrow::run::{self, Circumstances, Lack, Plan, RecordedRun, RunOptions};
 use halfrow::target::Target;
 use halfrow::verdict::Cause;
 
@@ -222,15 +222,27 @@ pub(crate) fn time_limit(option: &'static str, seconds: Option<f64>) -> Result<O
     call::time_limit(option, seconds).map_err(|error| Failure::call(error).in_value_of(option))
 }
 
-/// Writes the report into its folder, if there is one, and prints it.
-pub(crate) fn write_and_tell(
-    mut finished: Finished,
-    folder: Option<ReportFolder>,
+/// Judges the board of `candidate`, which `target` names, writes the report, if there is a folder for it, and prints it.
+pub(crate) fn judge(
+    candidate: Result<Candidate, Failure>,
+    (plan, options): (&Plan, &RunOptions),
+    target: &Target,
+    outputs: Outputs,
     context: &Context,
 ) -> Result<Exit, Failure> {
-    if let Some(Err(lack)) = folder.map(|folder| finished.commit(folder)) {
-        tell(&lack);
-    }
+    let Outputs { report: folder, recording } = outputs;
+    let judged = candidate.and_then(|candidate| {
+        let (candidate, lost) =
+            RecordedRun::begin(plan, options, candidate, recording).map_err(Failure::error)?;
+        let watched = progress::for_stderr(context.quiet || context.json);
+        Ok((run::verify(plan, candidate, options, watched.as_ref())?, lost))
+    });
+    let (mut finished, lost) = match judged {
+        Ok(judged) => judged,
+        Err(failure) => return Err(not_begun(failure, (plan, options), target, folder)),
+    };
+    let lacks = [finished.note_recording(&lost), folder.and_then(|folder| finished.commit(folder).err())];
+    lacks.iter().flatten().for_each(tell);
     let report = &finished.report;
     if context.json {
         console::tell(&report::json(report).map_err(Failure::error)?);
@@ -242,7 +254,7 @@ pub(crate) fn write_and_tell(
 
 /// Writes the report of a run that never began, for example because its board cannot be opened, so that nobody mistakes an
 /// earlier report for its own; and returns the failure. A wrong call is no run and has no report.
-pub(crate) fn not_begun(
+fn not_begun(
     failure: Failure,
     (plan, options): (&Plan, &RunOptions),
     target: &Target,
@@ -264,7 +276,7 @@ pub(crate) fn not_begun(
 }
 
 /// Says on stderr what is missing beside a verdict that stands.
-pub(crate) fn tell(lack: &Lack) {
+fn tell(lack: &Lack) {
     if !lack.is_told {
         console::error(&flags::named(&lack.to_string()));
     }

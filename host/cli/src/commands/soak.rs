@@ -8,13 +8,12 @@ use halfrow_program::number::{counted, number};
 use super::{Context, Failure};
 use crate::arguments::board::refuse_recording;
 use crate::arguments::given::Given;
-use crate::arguments::judging::{RunArguments, not_begun, write_and_tell};
+use crate::arguments::judging::{RunArguments, judge};
 use crate::exit::Exit;
-use crate::progress;
 use crate::settings::Settings;
 use halfrow::frames::Builtin;
 use halfrow::result::SoakLength;
-use halfrow::run::{self, AtSpeed, FrameSource, Plan, RunOptions};
+use halfrow::run::{AtSpeed, FrameSource, Plan, RunOptions};
 
 /// How long a board may stay away if the call does not say: longer than it takes somebody to come by and plug it in again.
 const PATIENCE: Duration = Duration::from_secs(300);
@@ -67,14 +66,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let (plan, options) = arguments.plan(settings)?;
     run.board.check_fault(settings, &plan)?;
     let outputs = run.outputs(files, None, context)?;
-    let finished = run.board.candidate(settings).and_then(|candidate| {
-        let watched = progress::for_stderr(context.quiet || context.json);
-        Ok(run::verify(&plan, candidate, &options, watched.as_ref())?)
-    });
-    match finished {
-        Ok(finished) => write_and_tell(finished, outputs.report, context),
-        Err(failure) => Err(not_begun(failure, (&plan, &options), &target, outputs.report)),
-    }
+    judge(run.board.candidate(settings), (&plan, &options), &target, outputs, context)
 }
 
 impl Arguments {

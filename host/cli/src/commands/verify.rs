@@ -13,16 +13,15 @@ use super::{Context, Failure};
 use crate::arguments::board::{self, MOCK, Replays};
 use crate::arguments::given::{Decider, Given};
 use crate::arguments::inputs::{FrameName, InputArguments, frame_sources, tell_fitting};
-use crate::arguments::judging::{RunArguments, not_begun, seconds, tell, write_and_tell};
+use crate::arguments::judging::{RunArguments, judge, seconds};
 use crate::exit::Exit;
-use crate::progress;
 use crate::settings::Settings;
 use halfrow::call::{self, Input};
 use halfrow::files::check_regular;
 use halfrow::frames::Builtin;
-use halfrow::link::{self, Candidate, Lost, Recorder, Recording, RecordingFile};
+use halfrow::link::{self, Recording};
 use halfrow::optics::Chosen;
-use halfrow::run::{self, Finished, FrameSource, Plan, RecordedRun, RestoreError, RunOptions, Vary};
+use halfrow::run::{FrameSource, Plan, RecordedRun, RestoreError, RunOptions, Vary};
 
 #[derive(Debug, Args)]
 #[command(mut_args(|argument| board::helped(argument, Replays::Yes, MOCK)))]
@@ -81,42 +80,14 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let frames = arguments.frames(settings)?;
     let files = arguments.input_files(&frames, settings);
     let (plan, options) = arguments.planned(recording.as_ref(), frames, context)?;
+    let target = board.target(settings)?;
     if arguments.list {
-        let target = board.target(settings)?;
         // The cost of a run can be computed without the device.
         link::check(&target).map_err(board::wrong)?;
         return listing::list(&plan, &target, context.json);
     }
     let outputs = arguments.run.outputs(files, arguments.record.as_deref(), context)?;
-    let finished = board
-        .candidate_of(settings, recording)
-        .and_then(|candidate| judge(candidate, (&plan, &options), outputs.recording, context));
-    match finished {
-        Ok(finished) => write_and_tell(finished, outputs.report, context),
-        Err(failure) => Err(not_begun(failure, (&plan, &options), &board.target(settings)?, outputs.report)),
-    }
-}
-
-/// Judges the board at `candidate`, and records the link if there is a file for that.
-fn judge(
-    mut candidate: Candidate,
-    (plan, options): (&Plan, &RunOptions),
-    recording: Option<RecordingFile>,
-    context: &Context,
-) -> Result<Finished, Failure> {
-    let mut lost = Lost::default();
-    if let Some(file) = recording {
-        let run = RecordedRun::of(plan, options);
-        let link = Recorder::begin(candidate.link, file, &run).map_err(Failure::error)?;
-        lost = link.lost();
-        candidate = Candidate { link: Box::new(link), ..candidate };
-    }
-    let watched = progress::for_stderr(context.quiet || context.json);
-    let mut finished = run::verify(plan, candidate, options, watched.as_ref())?;
-    if let Some(error) = lost.get() {
-        tell(&finished.lose_recording(error));
-    }
-    Ok(finished)
+    judge(board.candidate_of(settings, recording), (&plan, &options), &target, outputs, context)
 }
 
 fn wrong_frame(error: impl Into<anyhow::Error>) -> Failure {

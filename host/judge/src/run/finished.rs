@@ -1,8 +1,8 @@
 //! The final verdict of a run, which also depends on whether what was asked for could be written.
 
-use std::error::Error;
 use std::path::Path;
 
+use crate::link::Lost;
 use crate::report::{ReportError, ReportFolder};
 use crate::result::{Evidence, Problem, Report};
 use crate::verdict::{Cause, Verdict};
@@ -22,10 +22,10 @@ pub struct Finished {
 }
 
 impl Finished {
-    /// Writes the report into its folder.
+    /// Writes the report into its folder. A PASS whose report cannot be written becomes an ERROR.
     ///
     /// # Errors
-    /// [`Lack`] when it cannot be written: the report is then noted as lost, like with [`Self::lose`].
+    /// [`Lack`] when it cannot be written.
     pub fn commit(&mut self, folder: ReportFolder) -> Result<(), Lack> {
         let earlier = folder.earlier().map(Path::to_path_buf);
         let Err(error) = folder.commit(&self.report, &self.evidence) else { return Ok(()) };
@@ -44,18 +44,19 @@ impl Finished {
         Err(self.lose(Problem { causes: Problem::of(&error).chain(), ..what }, remedy))
     }
 
-    /// Notes that the recording of the run could not be finished, like [`Self::lose`].
-    pub fn lose_recording(&mut self, why: &(dyn Error + 'static)) -> Lack {
+    /// What is missing if the run's recording could not be finished, as `lost` says; a PASS then becomes an ERROR.
+    pub fn note_recording(&mut self, lost: &Lost) -> Option<Lack> {
+        let why = lost.get()?;
         let what = Problem::new(RECORDING_LOST, "the recording could not be written");
         // Its sentence already says what its own causes say.
         let causes = vec![Problem { causes: Vec::new(), ..Problem::of(why) }];
         let remedy = "See that its folder is there and has space, or choose another place for the recording, then run again.";
-        self.lose(Problem { causes, ..what }, remedy)
+        Some(self.lose(Problem { causes, ..what }, remedy))
     }
 
     /// Notes that something that was asked for is missing. A PASS without it becomes an ERROR. Any other verdict stands,
     /// so that it is not lost too.
-    pub fn lose(&mut self, what: Problem, remedy: &str) -> Lack {
+    fn lose(&mut self, what: Problem, remedy: &str) -> Lack {
         let report = &mut self.report;
         let what = Box::new(Problem { remedy: Some(remedy.to_owned()), ..what });
         if report.verdict() != Verdict::Pass {

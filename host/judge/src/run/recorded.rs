@@ -13,7 +13,7 @@ use super::{AtSpeed, Circumstances, Draws, FrameSource, JUDGED, Plan, RunOptions
 use crate::board::Sent;
 use crate::board::deadlines::RetryLimit;
 use crate::frames::{Builtin, UnknownBuiltin};
-use crate::link::{Recording, RecordingError};
+use crate::link::{Candidate, LinkError, Lost, Recorder, Recording, RecordingError, RecordingFile};
 use crate::tables::{ContentError, TableFile};
 
 /// The plan of a recorded run.
@@ -87,9 +87,24 @@ impl RestoreError {
 }
 
 impl RecordedRun {
-    /// The plan of a run that is about to begin.
-    #[must_use]
-    pub fn of(plan: &Plan, options: &RunOptions) -> Self {
+    /// `candidate`, its link recorded in `file` as that of a run by `plan`, and where a loss of the recording will be reported.
+    /// Without a file nothing is recorded.
+    ///
+    /// # Errors
+    /// [`LinkError::Record`] when the file cannot be written.
+    pub fn begin(
+        plan: &Plan,
+        options: &RunOptions,
+        candidate: Candidate,
+        file: Option<RecordingFile>,
+    ) -> Result<(Candidate, Lost), LinkError> {
+        let Some(file) = file else { return Ok((candidate, Lost::default())) };
+        let link = Recorder::begin(candidate.link, file, &Self::of(plan, options))?;
+        let lost = link.lost();
+        Ok((Candidate { link: Box::new(link), ..candidate }, lost))
+    }
+
+    fn of(plan: &Plan, options: &RunOptions) -> Self {
         let file = TableFile { tables: plan.tables.clone(), kernel: plan.kernel.clone(), about: None };
         Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),

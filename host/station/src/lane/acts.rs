@@ -8,7 +8,7 @@ use halfrow::board::{Board, OpenOptions, Stop};
 use halfrow::link::{self, Candidate, OpenError};
 use halfrow::link_test::{self, Figures, LinkTestError};
 use halfrow::result::{BoardReport, Finding, FrameTotals, Identity, Outcome, Problem, Suspect};
-use halfrow::run::{Circumstances, Draws};
+use halfrow::run::Circumstances;
 use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::{Cause, StoppedBy, Verdict};
 use halfrow::words::plain;
@@ -251,9 +251,8 @@ impl Common<'_> {
         let circumstances = Circumstances {
             arguments: std::env::args_os().map(|one| one.to_string_lossy().into_owned()).collect(),
             files: self.plan.files.clone(),
-            draws: Draws::draw(),
             // The record has the operator.
-            operator: None,
+            ..Circumstances::default()
         };
         RunOptions {
             timeout: Some(within),
