@@ -84,8 +84,8 @@ fn packets_counted(status: &Status, answered: u64) -> Result<(), End> {
     Err(miscounted(Finding::CounterWrong { counter, counted, right, rule: None }))
 }
 
-/// Checks the numbers of ROW_OUT packets, of which the host saw `counted`. They begin at 0. No two packets have the same number, and a later row's packet has a greater one,
-/// so over a link that loses nothing the numbers have no gap.
+/// Checks the numbers of ROW_OUT packets, of which the host saw `counted`. They begin at 0, no two packets have the same one,
+/// and a later row's packet has a greater one, so over a link that loses nothing they have no gap.
 pub(super) fn rows_numbered(status: &Status, counted: u32) -> Result<(), End> {
     let right = Counter::RowsNumbered.in_status(status);
     if counted <= right {

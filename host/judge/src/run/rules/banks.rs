@@ -272,14 +272,14 @@ impl Rules<'_, '_> {
         let rows = self.run.board.acknowledged() - first;
         let more = |counter: Counter, by| (counter, counter.in_status(before).saturating_add(by));
         let rule = Some(Rule::Banks);
-        equal(rule, &status, [more(Counter::RowsIn, rows), more(Counter::RowsOut, rows)])?;
+        equal(rule, &status, &[more(Counter::RowsIn, rows), more(Counter::RowsOut, rows)])?;
         if !is_calm {
             return Ok(());
         }
         equal(
             rule,
             &status,
-            [
+            &[
                 more(Counter::RowsRepeated, *asked),
                 more(Counter::RowsUnneeded, *unneeded),
                 more(Counter::Refusals, 0),

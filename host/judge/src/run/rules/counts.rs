@@ -56,21 +56,21 @@ impl Rules<'_, '_> {
         equal(
             Some(Rule::Session),
             &status,
-            [(Counter::NextRowIn, second.row_sequence + 1), (Counter::NextRowOut, first.row_sequence)],
+            &[(Counter::NextRowIn, second.row_sequence + 1), (Counter::NextRowOut, first.row_sequence)],
         )?;
         let came =
             self.run.board.again(rows[0], Some(rows[1]), 1).map_err(|error| of_rows(Rule::Again, error))?;
         self.run.board.acknowledge(first.row_sequence + mem::take(&mut self.given).rows);
         let status = self.run.board.status(false).map_err(of_board)?;
         let repeated = before.rows_repeated.saturating_add(came.repeats.into());
-        at_least(Some(Rule::Again), &status, [(Counter::RowsRepeated, repeated)])?;
+        at_least(Some(Rule::Again), &status, &[(Counter::RowsRepeated, repeated)])?;
         for _ in 0..UNNEEDED {
             self.run.board.give(&first, frame.row(0));
         }
         let unneeded = status.rows_unneeded.saturating_add(UNNEEDED);
         let status = self.run.board.status(false).map_err(of_board)?;
         if self.run.board.had_each_packet_once(&status) {
-            at_least(Some(Rule::Again), &status, [(Counter::RowsUnneeded, unneeded)])?;
+            at_least(Some(Rule::Again), &status, &[(Counter::RowsUnneeded, unneeded)])?;
         }
         self.configure(self.small.rows())
     }
@@ -100,7 +100,7 @@ impl Rules<'_, '_> {
         act(self)?;
         let after = self.run.board.status(false).map_err(of_board)?;
         let counters = [Counter::RowsIn, Counter::RowsOut, Counter::SamplesOver];
-        at_least(rule, &after, counters.map(|counter| (counter, counter.in_status(&before))))
+        at_least(rule, &after, &counters.map(|counter| (counter, counter.in_status(&before))))
     }
 
     /// STATUS with any number but 0 must clear all counters, and tell what they were before. A second copy of it is told of
@@ -114,7 +114,7 @@ impl Rules<'_, '_> {
         let is_calm = had_each_once && self.run.board.tally().retries == retries;
         if let Some(told) = told.filter(|_| is_calm) {
             let counters = [Counter::RowsIn, Counter::RowsOut, Counter::MostLatency];
-            at_least(None, &told, counters.map(|counter| (counter, counter.in_status(&before))))?;
+            at_least(None, &told, &counters.map(|counter| (counter, counter.in_status(&before))))?;
         }
         let status = self.run.board.status(false).map_err(of_board)?;
         self.not_counted(None, &status)
@@ -135,33 +135,25 @@ impl Rules<'_, '_> {
 
     /// `status`, which came after something that clears all counters, must have all of them 0.
     pub(super) fn not_counted(&mut self, rule: Option<Rule>, status: &Status) -> Result<(), End> {
-        let of_new_rows = equal(rule, status, MOVED_BY_NEW_ROWS.map(|counter| (counter, 0)));
+        let of_new_rows = equal(rule, status, &MOVED_BY_NEW_ROWS.map(|counter| (counter, 0)));
         // There was no new row, and no link can make one.
         self.run.findings.look.beyond_links |= of_new_rows.is_err();
         of_new_rows?;
         let board = &self.run.board;
         let is_calm =
             status.damaged() == 0 && board.had_each_packet_once(status) && board.sent_nothing_again();
-        if is_calm { equal(rule, status, MOVED_BY_LINKS.map(|counter| (counter, 0))) } else { Ok(()) }
+        if is_calm { equal(rule, status, &MOVED_BY_LINKS.map(|counter| (counter, 0))) } else { Ok(()) }
     }
 }
 
 /// Each counter, given with what is right, must be that in `status` after `rule` was tried. Ends with the first that is not.
-pub(super) fn equal<const N: usize>(
-    rule: Option<Rule>,
-    status: &Status,
-    counts: [(Counter, u32); N],
-) -> Result<(), End> {
-    all_right(rule, status, &counts, |counted, right| counted == right)
+pub(super) fn equal(rule: Option<Rule>, status: &Status, counts: &[(Counter, u32)]) -> Result<(), End> {
+    all_right(rule, status, counts, |counted, right| counted == right)
 }
 
 /// The same for counters of which the board may count more.
-pub(super) fn at_least<const N: usize>(
-    rule: Option<Rule>,
-    status: &Status,
-    counts: [(Counter, u32); N],
-) -> Result<(), End> {
-    all_right(rule, status, &counts, |counted, right| counted >= right)
+pub(super) fn at_least(rule: Option<Rule>, status: &Status, counts: &[(Counter, u32)]) -> Result<(), End> {
+    all_right(rule, status, counts, |counted, right| counted >= right)
 }
 
 fn all_right(

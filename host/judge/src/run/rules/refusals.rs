@@ -37,7 +37,7 @@ impl Rules<'_, '_> {
         at_least(
             None,
             &after,
-            [
+            &[
                 (Counter::Refusals, before.refusals.saturating_add(own)),
                 (Counter::ForeignPackets, before.foreign_packets.saturating_add(foreign)),
             ],

@@ -368,7 +368,7 @@ impl Rules<'_, '_> {
         equal(
             Some(Rule::RowNumber),
             &status,
-            [Counter::NextRowIn, Counter::NextRowOut].map(|counter| (counter, right)),
+            &[Counter::NextRowIn, Counter::NextRowOut].map(|counter| (counter, right)),
         )
     }
 }

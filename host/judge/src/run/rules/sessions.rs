@@ -317,7 +317,7 @@ impl Rules<'_, '_> {
         equal(
             Some(rule),
             &status,
-            [
+            &[
                 (Counter::NextRowIn, 0),
                 (Counter::NextRowOut, 0),
                 (Counter::CoreBusy, 0),
