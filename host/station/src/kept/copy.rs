@@ -11,7 +11,7 @@ use halfrow::files::written_aside::Place;
 
 use crate::check::{Fault, check, foreign};
 use crate::published::{BundleError, KeptPlans};
-use crate::record::{Blobs, Piece, synced};
+use crate::record::{BlobError, Blobs, Piece, synced};
 use crate::store::{ASIDE, Folder, Snapshot, Store, StoreError};
 
 /// What was copied.
@@ -79,7 +79,7 @@ pub enum CopyError {
 /// [`CopyError`]
 pub fn backup(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
     Snapshot::take(from)?;
-    made(to, |aside| into(from, aside))
+    made(to, |aside| into(from, aside, BlobError::is_withheld))
 }
 
 /// Makes a station's new folder `to` from the copy in `from`, if all of it is as it was written. A copy of an older
@@ -93,7 +93,7 @@ pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
     }
     match sound(from, from) {
         // The rest is checked once it is up to date.
-        Err(CopyError::Store(StoreError::Older { .. })) => refuse(from, &foreign(from)?)?,
+        Err(CopyError::Store(StoreError::Older { .. })) => refuse(from, from, &foreign(from)?)?,
         looked_at => looked_at?,
     }
     let mut lock = None;
@@ -102,7 +102,7 @@ pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
             // No station can start there before all is in place.
             lock = Some(Folder::new(to).lock()?);
         }
-        let copied = into(from, aside)?;
+        let copied = into(from, aside, |error| !error.is_gone())?;
         let new = Folder::new(aside);
         sound(&new, from)?;
         if lock.is_some() && new.lock_file().exists() {
@@ -188,23 +188,25 @@ pub fn faults(folder: &Folder) -> Result<Vec<Fault>, StoreError> {
     Ok(faults)
 }
 
-/// Refuses a folder in which anything is not as it was written; the error names the folder `named`.
+/// Refuses a folder in which anything is not as it was written; the error names the folder `named`, of which it is a copy.
 fn sound(folder: &Folder, named: &Folder) -> Result<(), CopyError> {
-    refuse(named, &faults(folder)?)
+    refuse(folder, named, &faults(folder)?)
 }
 
-fn refuse(named: &Folder, faults: &[Fault]) -> Result<(), CopyError> {
+fn refuse(folder: &Folder, named: &Folder, faults: &[Fault]) -> Result<(), CopyError> {
+    let [folder, name] = [folder, named].map(|folder| folder.path().display().to_string());
     match faults.first() {
         None => Ok(()),
         Some(first) => Err(CopyError::Faulty {
             path: named.path().to_owned(),
             faults: faults.len(),
-            first: first.to_string(),
+            first: first.to_string().replace(&folder, &name),
         }),
     }
 }
 
-fn into(from: &Folder, aside: &Path) -> Result<Copied, CopyError> {
+/// Copies the station in `from` to `aside`, without the evidence that is damaged or gone unless `ends` says that the copy ends there.
+fn into(from: &Folder, aside: &Path, ends: fn(&BlobError) -> bool) -> Result<Copied, CopyError> {
     let to = Folder::new(aside);
     let refused = |source| CopyError::Io { path: aside.to_owned(), source };
     // Listed before the database is copied, because a run has a row before it has a record.
@@ -230,19 +232,24 @@ fn into(from: &Folder, aside: &Path) -> Result<Copied, CopyError> {
         taken => taken?,
     };
     let named = copy.named_evidence()?;
-    let evidence = copy_named(&named, &from.blobs(), &to.blobs())?;
+    let evidence = copy_named(&named, &from.blobs(), &to.blobs(), ends)?;
     let unknown = copy_unnamed(&copy, (&pieces, &named), &from.blobs(), &to.blobs())?;
     synced(aside).map_err(StoreError::from)?;
     Ok(Copied { runs: copy.final_runs()?.len(), evidence, unknown })
 }
 
-/// Copies the evidence that rows name, and returns how many pieces. A piece that is damaged or gone is left out: a check of the copy
-/// says whether it should be there, and all others may be needed one day.
-fn copy_named(named: &BTreeSet<String>, from: &Blobs, to: &Blobs) -> Result<usize, StoreError> {
+/// Copies the evidence that rows name, and returns how many pieces. What is left out may have been removed by its age: a check of the
+/// copy says whether it should be there, and all the rest may be needed one day.
+fn copy_named(
+    named: &BTreeSet<String>,
+    from: &Blobs,
+    to: &Blobs,
+    ends: fn(&BlobError) -> bool,
+) -> Result<usize, StoreError> {
     let mut evidence = 0;
     for hash in named {
         match from.get(hash) {
-            Err(error) if error.is_withheld() => return Err(error.into()),
+            Err(error) if ends(&error) => return Err(error.into()),
             Err(_) => {}
             Ok(bytes) => {
                 to.put(&bytes)?;

@@ -256,6 +256,8 @@ fn a_backup_of_a_newer_program_or_with_a_fault_is_refused_and_nothing_is_left() 
     let record = query(backup.path(), "SELECT record_sha256 FROM run WHERE verdict = 'FAIL'").remove(0);
     fs::write(Folder::new(backup.path()).blobs().path(&record), "{}").unwrap();
     refused(&backup, "holds other bytes than its name says");
+    fs::remove_file(Folder::new(backup.path()).blobs().path(&record)).unwrap();
+    refused(&backup, &format!("{record} cannot be read"));
     let backup = left(1);
     fs::create_dir(backup.path().join("plans")).unwrap();
     std::os::unix::fs::symlink(backup.path(), backup.path().join("plans/evil")).unwrap();
@@ -269,6 +271,7 @@ fn refused(backup: &TempDir, told: &str) {
     let (code, said, complained) = did(&place.path().join("new"), &["restore", from]);
     assert_eq!((code, said.as_str()), (3, ""), "{complained}");
     assert!(complained.contains(told) && complained.contains(from), "{complained}");
+    assert!(!complained.contains(place.path().to_str().unwrap()), "it names what is no more: {complained}");
     assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0);
 }
 
