@@ -356,9 +356,9 @@ fn a_part_that_explains_less_than_half_is_not_named_first() {
         expected.samples().iter().enumerate().map(altered).collect()
     });
     assert_eq!((suspects[0].part(), suspects[0].explained), ("unknown", 0.0), "{suspects:#?}");
-    let [_, stuck, ..] = &suspects[..] else { panic!("{suspects:#?}") };
-    assert!((0.2..0.5).contains(&stuck.explained), "{stuck:#?}");
-    assert_eq!(stuck.place(), "corrected samples, bit 6 stuck at 1");
+    assert!(suspects[1..].iter().all(|other| (0.2..0.5).contains(&other.explained)), "{suspects:#?}");
+    let is_stuck = |other: &Suspect| other.place().starts_with("corrected samples, bit 6 stuck at 1");
+    assert!(suspects.iter().any(is_stuck), "{suspects:#?}");
     // Where nothing explains everything, nothing else explains it as well.
     assert!(suspects.iter().all(|suspect| suspect.others() == 0), "{suspects:#?}");
 }

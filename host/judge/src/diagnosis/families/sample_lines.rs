@@ -6,6 +6,9 @@ use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::Witnesses;
 use crate::result::{ColumnParity, Defect, LineFault, SampleBus, SampleLines};
 
+/// Rows at which each of the many hypotheses is tried first, and the share of these that it must explain.
+const GLANCED: usize = 3;
+const PROMISING: f64 = 0.2;
 /// Lines of a byte.
 const OF_BYTES: u32 = 8;
 
@@ -18,7 +21,8 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
         (SampleBus::BytesIn, OF_BYTES),
         (SampleBus::BytesOut, OF_BYTES),
     ];
-    buses.into_iter().flat_map(|(bus, lines)| faults(bus, lines)).map(hypothesis).collect()
+    let all = buses.into_iter().flat_map(|(bus, lines)| faults(bus, lines)).map(hypothesis);
+    all.filter(|lines| lines.score(witnesses.differing.iter().take(GLANCED)).share() >= PROMISING).collect()
 }
 
 /// What may be wrong with the `lines` lines of a bus. That a line is stuck in all columns is no business of this family.
