@@ -39,9 +39,9 @@ impl Heard {
 pub(super) fn suspect_of_one(had: bool) -> String {
     let (counts, part) = if had { ("counts", "answers it") } else { ("does not count", "takes it in") };
     format!(
-        "the board answered others at once, nothing came damaged, and it {counts} each try as received; a poor cable does not choose \
-         one request; check how the board {part}, and whether something on the way swallows certain bytes or lengths, as software \
-         flow control does"
+        "the board answered others at once, nothing came damaged, and it {counts} each try as received, which no poor cable does; \
+         check how the board {part}, and whether something on the way swallows certain bytes or lengths, as software flow control \
+         does"
     )
 }
 

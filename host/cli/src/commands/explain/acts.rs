@@ -147,12 +147,12 @@ pub(super) const ACTS: &[(&str, &str)] = &[
     ("report-folder-not-replaceable", "name a new folder inside it"),
     ("report-lost", "free some space or choose another place for the report, then run again"),
     (
-        "request-refused",
-        "run again; if it refuses each time, correct what the board says of itself (`halfrow info`), or load another bitstream",
-    ),
-    (
         "request-never-answered",
         "check how the board takes in and answers that request, and whether something on the way swallows certain bytes or lengths",
+    ),
+    (
+        "request-refused",
+        "run again; if it refuses each time, correct what the board says of itself (`halfrow info`), or load another bitstream",
     ),
     ("row-factors-impossible", "give one row factor for each row, within the range that its cause names"),
     ("run-evidence-wrong", CAUSE),
