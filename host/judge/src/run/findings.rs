@@ -136,7 +136,7 @@ pub(super) struct Look {
     /// The least number of rows that it should have counted as sent again.
     pub(super) repeats_counted: u32,
     /// Whether something was found wrong over a link that broke, and is not judged yet.
-    pub(super) found: bool,
+    pub(super) found_over_broken_link: bool,
     /// Why the link may have caused it.
     pub(super) doubt: Option<Doubt>,
     /// What was not exercised of a board that is right.
@@ -146,7 +146,7 @@ pub(super) struct Look {
     /// Whether something was found wrong that no link can cause, whatever else the link did.
     pub(super) beyond_links: bool,
     /// Whether a board came back that has no serial number to identify it.
-    pub(super) is_unknown: bool,
+    pub(super) came_back_unnumbered: bool,
     /// What was not exercised at the full pixel clock.
     pub(super) untested_at_speed: Vec<NotExercised>,
     /// The tables with which frames were made in corners, at the full pixel clock.
@@ -263,7 +263,7 @@ impl Findings {
     /// Notes the counts of a link that broke. If something was found wrong before, nothing will show later what that link
     /// did, so a doubt is noted too.
     pub(super) fn keep_counts(&mut self, board: &Board) {
-        if self.look.found || !self.look.seen.is_right() {
+        if self.look.found_over_broken_link || !self.look.seen.is_right() {
             let doubt = Doubt::of_session(board).unwrap_or(Doubt::PacketsUncounted {});
             self.look.doubt.get_or_insert(doubt);
         }

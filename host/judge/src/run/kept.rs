@@ -58,7 +58,7 @@ impl KeptFrames {
         budget: usize,
         evidence: impl FnOnce() -> Option<Evidence>,
     ) {
-        if !self.has_place(offered, budget - budget / SHARE_OF_COUNTS) {
+        if !self.make_room(offered, budget - budget / SHARE_OF_COUNTS) {
             self.left_out += usize::from(offered.is_wanted);
         } else if let Some(evidence) = evidence() {
             if offered.is_pinned {
@@ -70,8 +70,8 @@ impl KeptFrames {
         }
     }
 
-    /// Whether there is room for a frame. Others are removed if they must make room for it.
-    fn has_place(&mut self, offered: &Offered<'_>, budget: usize) -> bool {
+    /// Removes others if there is no room for a frame. Returns whether there is room then.
+    fn make_room(&mut self, offered: &Offered<'_>, budget: usize) -> bool {
         while self.bytes + offered.bytes > budget {
             let Some(place) = self.place_of_another(offered) else { return false };
             let removed = self.evidence.remove(place);

@@ -110,7 +110,7 @@ fn not_opened(error: &(dyn Error + Send + Sync + 'static)) -> Option<End> {
 
 impl Run<'_> {
     /// Does `step`, and repeats it whenever the board went away during it and has come back.
-    pub(super) fn persist(&mut self, step: impl Fn(&mut Self) -> Result<(), End>) -> Result<(), End> {
+    pub(super) fn over_outages(&mut self, step: impl Fn(&mut Self) -> Result<(), End>) -> Result<(), End> {
         while let Err(end) = step(self) {
             self.come_back(end)?;
         }
@@ -148,7 +148,7 @@ impl Run<'_> {
             && board.capabilities == self.board.capabilities;
         *self.board = board;
         // Two boards of the same build without serial numbers look the same.
-        self.findings.look.is_unknown |= self.board.welcome.serial == 0;
+        self.findings.look.came_back_unnumbered |= self.board.welcome.serial == 0;
         if is_same {
             return Ok(());
         }

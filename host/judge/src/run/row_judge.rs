@@ -22,7 +22,7 @@ use crate::result::{Evidence, Finding, FrameReport, FrameTiming, Variation};
 pub(super) const STREET: &str = "builtin:street";
 
 /// How rows are judged, and what is kept.
-pub(super) struct Manner {
+pub(super) struct JudgeOptions {
     pub(super) claimed_latency: u32,
     pub(super) latency_limit: u32,
     pub(super) fail_fast: bool,
@@ -56,7 +56,7 @@ type Source<'a> = Take<mpsc::Iter<'a, Result<Prepared, PrepareError>>>;
 pub(super) struct RowJudge<'a> {
     source: Source<'a>,
     seen: &'a mut Seen,
-    manner: Manner,
+    options: JudgeOptions,
     timing: FrameTiming,
     progress: &'a dyn Progress,
     unprepared: Option<PrepareError>,
@@ -77,14 +77,14 @@ impl<'a> RowJudge<'a> {
     pub(super) fn new(
         source: Source<'a>,
         seen: &'a mut Seen,
-        manner: Manner,
+        options: JudgeOptions,
         timing: FrameTiming,
         progress: &'a dyn Progress,
     ) -> Self {
         Self {
             source,
             seen,
-            manner,
+            options,
             timing,
             progress,
             unprepared: None,
@@ -133,7 +133,7 @@ impl<'a> RowJudge<'a> {
     }
 
     fn check_entry(&mut self, row: &ReturnedRow<'_>, input: &Frame) {
-        if !self.manner.names_entered {
+        if !self.options.names_entered {
             return;
         }
         self.seen.rows_with_entry += 1;
@@ -150,7 +150,7 @@ impl<'a> RowJudge<'a> {
     }
 
     fn check_pauses(&mut self, row: &ReturnedRow<'_>) {
-        let expected = self.manner.pauses.get(row.row).copied().unwrap_or_default();
+        let expected = self.options.pauses.get(row.row).copied().unwrap_or_default();
         if row.pauses != expected {
             let (row, frame, counted) = (row.row, row.frame, row.pauses);
             self.seen.wrong_pauses.get_or_insert(Finding::GapsMiscounted { row, frame, counted, expected });
@@ -164,8 +164,8 @@ impl<'a> RowJudge<'a> {
             name,
             // Rows that did not come back are black.
             differs: is_wrong || !is_whole,
-            is_wanted: is_wrong || self.manner.keep_equal || is_street,
-            is_pinned: is_street && self.manner.first_rows.is_none(),
+            is_wanted: is_wrong || self.options.keep_equal || is_street,
+            is_pinned: is_street && self.options.first_rows.is_none(),
             bytes: 3 * size_of_val(expected.samples()),
         }
     }
@@ -174,7 +174,7 @@ impl<'a> RowJudge<'a> {
         let InFlight { prepared, found, rows, comparison, .. } = frame;
         let Prepared { name, number, generation, sha256, input, expected } = prepared;
         self.seen.levels.note(&input, &expected);
-        let (is_whole, budget) = (rows >= expected.height(), self.manner.evidence_bytes);
+        let (is_whole, budget) = (rows >= expected.height(), self.options.evidence_bytes);
         let offered = self.offered(&name, &expected, is_whole, comparison.differences > 0);
         if is_whole || offered.is_wanted {
             let index = self.seen.frames.len();
@@ -192,8 +192,8 @@ impl<'a> RowJudge<'a> {
             phase: input.phase(),
             generation,
             timing: self.timing,
-            variation: self.manner.variation,
-            first_rows: self.manner.first_rows,
+            variation: self.options.variation,
+            first_rows: self.options.first_rows,
             comparison,
             rows,
             seconds: now.duration_since(self.since).as_secs_f64(),
@@ -234,7 +234,7 @@ impl RowTraffic for RowJudge<'_> {
         let Some(place) = self.in_flight.iter().position(is_new) else {
             return ControlFlow::Continue(());
         };
-        let Manner { claimed_latency, latency_limit, .. } = self.manner;
+        let JudgeOptions { claimed_latency, latency_limit, .. } = self.options;
         self.seen.note_latency(row, claimed_latency, latency_limit);
         self.check_pauses(row);
         let input = Arc::clone(&self.in_flight[place].prepared.input);
@@ -259,7 +259,7 @@ impl RowTraffic for RowJudge<'_> {
         while let Some(front) =
             self.in_flight.pop_front_if(|front| front.rows == front.prepared.expected.height())
         {
-            if front.comparison.differences > 0 && self.manner.fail_fast {
+            if front.comparison.differences > 0 && self.options.fail_fast {
                 flow = ControlFlow::Break(());
             }
             self.frame_done(front);
@@ -287,8 +287,8 @@ mod tests {
         Prepared { name, number, generation: 2, sha256, input: Arc::clone(&frame), expected: frame }
     }
 
-    fn manner() -> Manner {
-        Manner {
+    fn options() -> JudgeOptions {
+        JudgeOptions {
             claimed_latency: 44,
             latency_limit: 64,
             fail_fast: false,
@@ -324,8 +324,13 @@ mod tests {
         [7, 8].into_iter().for_each(|number| sender.send(Ok(frame(number))).unwrap());
         drop(sender);
         let mut seen = Seen::default();
-        let mut judge =
-            RowJudge::new(source.iter().take(2), &mut seen, manner(), FrameTiming::Gaps { seed: 0 }, &Silent);
+        let mut judge = RowJudge::new(
+            source.iter().take(2),
+            &mut seen,
+            options(),
+            FrameTiming::Gaps { seed: 0 },
+            &Silent,
+        );
         let sent = |judge: &mut RowJudge<'_>| judge.next_frame().map(|frame| frame.number);
         assert_eq!((sent(&mut judge), sent(&mut judge)), (Some(7), Some(8)));
         [0, 1].into_iter().for_each(|row| give(&mut judge, 7, row, 7));
@@ -355,7 +360,7 @@ mod tests {
         drop(sender);
         let mut seen = Seen::default();
         let timing = FrameTiming::Gaps { seed: 0 };
-        let mut judge = RowJudge::new(source.iter().take(3), &mut seen, manner(), timing, &Silent);
+        let mut judge = RowJudge::new(source.iter().take(3), &mut seen, options(), timing, &Silent);
         assert_eq!(judge.next_frame().map(|frame| frame.number), Some(7));
         assert!(judge.next_frame().is_none());
         (0..HEIGHT).for_each(|row| give(&mut judge, 7, row, 7));

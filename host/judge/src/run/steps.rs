@@ -93,7 +93,7 @@ impl Run<'_> {
             let frames = prepared::ahead(scope, plan, &schedule, generations);
             let frames = frames.map_err(|error| error.during(CheckName::Frames))?;
             self.progress.step(Step::TestTheLink);
-            self.persist(Self::link)?;
+            self.over_outages(Self::link)?;
             let last = self.stream_all(&schedule, &frames)?;
             self.judge_over_outages(last)?;
             all_judged(&schedule, self.findings.look.seen.samples())?;
@@ -166,7 +166,7 @@ impl Run<'_> {
             untried.then_some(NotExercised::Rules {}),
             are_left.then_some(NotExercised::FurtherRecords { filled: MOST_FILLED }),
             no_grid.then_some(NotExercised::Grids {}),
-            look.is_unknown.then_some(NotExercised::SameBoard {}),
+            look.came_back_unnumbered.then_some(NotExercised::SameBoard {}),
             is_physical.then_some(NotExercised::CameraPins {}),
             look.leaves_counters_out.then_some(NotExercised::CountersOfPoorLinks {}),
         ];

@@ -8,7 +8,7 @@ use super::findings::{During, End};
 use super::pauses::pauses;
 use super::plan::{SENSOR_BLANKING, Segment, Timing};
 use super::prepared::{PrepareError, Prepared};
-use super::row_judge::{Manner, RowJudge};
+use super::row_judge::{JudgeOptions, RowJudge};
 use super::steps::Run;
 use crate::board::{BoardError, MAX_LATENCY, Misconduct};
 use crate::result::{CheckName, Finding, FrameTiming, NumberedRow, Problem, RepeatedRow};
@@ -21,11 +21,11 @@ impl Run<'_> {
         segment: &Segment,
         source: &Receiver<Result<Prepared, PrepareError>>,
     ) -> Result<(), End> {
-        let (manner, timing) = (self.manner(segment), self.timing(segment.timing));
+        let (options, timing) = (self.judge_options(segment), self.timing(segment.timing));
         // While frames are streamed the judge owns what is seen, and the run keeps the board and its link.
         let mut seen = std::mem::take(&mut self.findings.look.seen);
         let frames = source.iter().take(segment.frames.len());
-        let mut judge = RowJudge::new(frames, &mut seen, manner, timing, self.progress);
+        let mut judge = RowJudge::new(frames, &mut seen, options, timing, self.progress);
         let streamed = self.stream_to_the_end(segment, &mut judge);
         let prepared = judge.finish();
         self.findings.look.seen = seen;
@@ -40,7 +40,7 @@ impl Run<'_> {
 
     fn stream_to_the_end(&mut self, segment: &Segment, judge: &mut RowJudge<'_>) -> Result<(), End> {
         while let Err(error) = self.board.stream(judge) {
-            self.findings.look.found |= judge.has_found();
+            self.findings.look.found_over_broken_link |= judge.has_found();
             let end = self.interrupted(segment, judge, error);
             self.return_to(segment, judge.frames_done(), end)?;
             judge.begin_again();
@@ -51,11 +51,11 @@ impl Run<'_> {
         Ok(())
     }
 
-    fn manner(&self, segment: &Segment) -> Manner {
+    fn judge_options(&self, segment: &Segment) -> JudgeOptions {
         let Segment { geometry, timing, .. } = segment;
         let half = geometry.width() as u32 / 2;
         let gap_seed = if let Timing::Gaps(seed) = *timing { seed } else { 0 };
-        Manner {
+        JudgeOptions {
             claimed_latency: half + u32::from(self.board.capabilities.latency),
             latency_limit: half + u32::from(MAX_LATENCY),
             fail_fast: self.plan.fail_fast,

@@ -10,10 +10,10 @@ use halfrow::verdict::StoppedBy;
 
 use super::bay::{self, Shared, StopAsked};
 use super::in_turn::{InTurn, NotStarted};
-use super::known::{Known, OfLanes};
+use super::known::{Known, KnownOfLanes};
 use super::news::{LaneState, News};
 use super::unsent;
-use super::{Board, Heard, Input, in_time};
+use super::{Heard, Input, LiveState, in_time};
 use crate::clock;
 use crate::floor::{Accepted, Answer, Effect, Event, Floor, Owes, ScanError, Shown, Word};
 use crate::labgrid;
@@ -29,13 +29,13 @@ const LOOK: Duration = Duration::from_millis(500);
 pub(super) struct AtWork {
     floor: Floor,
     shared: Arc<Shared>,
-    board: Arc<Mutex<Board>>,
+    live: Arc<Mutex<LiveState>>,
     presence: Vec<Presence>,
     stops: Vec<StopAsked>,
     /// For each lane, the unit that passed already and that somebody was asked to scan once more.
     asked: Vec<Option<String>>,
     /// What is known of what each lane owes its shift.
-    known: OfLanes,
+    known: KnownOfLanes,
     /// For each lane, the run that there was no thread to save.
     unrecovered: Vec<Option<String>>,
     hooks: Vec<InTurn>,
@@ -44,16 +44,16 @@ pub(super) struct AtWork {
 }
 
 impl AtWork {
-    pub(super) fn new(floor: Floor, shared: Arc<Shared>, board: Arc<Mutex<Board>>) -> Self {
+    pub(super) fn new(floor: Floor, shared: Arc<Shared>, live: Arc<Mutex<LiveState>>) -> Self {
         let lanes = floor.lanes().len();
         Self {
             floor,
             shared,
-            board,
+            live,
             presence: vec![Presence::default(); lanes],
             stops: vec![StopAsked::default(); lanes],
             asked: vec![None; lanes],
-            known: OfLanes::nothing(lanes),
+            known: KnownOfLanes::nothing(lanes),
             unrecovered: vec![None; lanes],
             hooks: (0..lanes).map(|_| InTurn::new()).collect(),
             threads: Vec::new(),
@@ -96,7 +96,7 @@ impl AtWork {
 
     /// Shows a sign of life.
     fn works(&self) {
-        self.board.lock().unwrap_or_else(PoisonError::into_inner).worked = Some(Instant::now());
+        self.live.lock().unwrap_or_else(PoisonError::into_inner).worked = Some(Instant::now());
     }
 
     /// Waits for hooks, recoveries and what labgrid lent, and publishes what hooks still report.
@@ -354,15 +354,15 @@ impl AtWork {
     /// Publishes the state of a lane if it has changed.
     fn publish(&mut self, lane: usize) {
         let Some(state) = self.floor.lanes().get(lane).map(LaneState::from) else { return };
-        let mut board = self.board.lock().unwrap_or_else(PoisonError::into_inner);
-        match board.lanes.get_mut(lane) {
+        let mut live = self.live.lock().unwrap_or_else(PoisonError::into_inner);
+        match live.lanes.get_mut(lane) {
             Some(known) if *known != state => *known = state.clone(),
             _ => return,
         }
-        board.listeners.tell(&News::Lane(state));
+        live.listeners.tell(&News::Lane(state));
     }
 
     fn tell(&self, news: &News) {
-        self.board.lock().unwrap_or_else(PoisonError::into_inner).listeners.tell(news);
+        self.live.lock().unwrap_or_else(PoisonError::into_inner).listeners.tell(news);
     }
 }

@@ -30,13 +30,13 @@ impl Known {
 
 /// What is known of every lane.
 #[derive(Debug)]
-pub(super) struct OfLanes {
+pub(super) struct KnownOfLanes {
     known: Vec<Known>,
     /// When each was asked about last.
     asked: Vec<Option<Instant>>,
 }
 
-impl OfLanes {
+impl KnownOfLanes {
     /// Of so many lanes, of which nothing is known.
     pub(super) fn nothing(lanes: usize) -> Self {
         Self { known: vec![Known::Nothing; lanes], asked: vec![None; lanes] }
@@ -76,10 +76,10 @@ mod tests {
     use super::*;
 
     /// A store that answers about the lanes from `sound` on, and fails about those before; it is asked `every` so often for a minute,
-    /// as [`OfLanes::due`] says. Returns after how many times each lane was known.
+    /// as [`KnownOfLanes::due`] says. Returns after how many times each lane was known.
     fn turns(lanes: usize, sound: usize, every: Duration, first: &[usize]) -> Vec<Option<usize>> {
         let begun = Instant::now();
-        let (mut of, mut known_at) = (OfLanes::nothing(lanes), vec![None; lanes]);
+        let (mut of, mut known_at) = (KnownOfLanes::nothing(lanes), vec![None; lanes]);
         // What was asked about alone before is due at other times than the rest.
         first.iter().for_each(|lane| of.told(*lane, Known::Untold(begun), begun));
         for turn in 0..(60 * REST.as_millis() / every.as_millis()) as usize {

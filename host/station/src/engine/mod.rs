@@ -66,7 +66,7 @@ enum Heard {
 #[derive(Debug)]
 pub struct Engine {
     inbox: Sender<Input>,
-    board: Arc<Mutex<Board>>,
+    live: Arc<Mutex<LiveState>>,
     figures: Arc<Counter>,
     store: SharedStore,
     thread: Mutex<Option<JoinHandle<()>>>,
@@ -74,7 +74,7 @@ pub struct Engine {
 
 /// What everybody may see: the lanes as they are, and who listens to changes.
 #[derive(Debug, Default)]
-struct Board {
+struct LiveState {
     lanes: Vec<LaneState>,
     listeners: Listeners,
     /// When the engine's thread was last seen to work.
@@ -92,7 +92,7 @@ impl Engine {
         let (inbox, received) = mpsc::channel();
         let floor = settings.floor();
         let lanes = floor.lanes().iter().map(LaneState::from).collect();
-        let board = Arc::new(Mutex::new(Board { lanes, listeners: Listeners::default(), worked: None }));
+        let live = Arc::new(Mutex::new(LiveState { lanes, listeners: Listeners::default(), worked: None }));
         let store = SharedStore::new(store);
         let figures = Arc::new(Counter::of(&settings));
         let shared = Shared {
@@ -103,10 +103,10 @@ impl Engine {
             figures: Arc::clone(&figures),
             logged: LoggedOfLanes::of(floor.lanes().len()),
         };
-        let at_work = AtWork::new(floor, Arc::new(shared), Arc::clone(&board));
+        let at_work = AtWork::new(floor, Arc::new(shared), Arc::clone(&live));
         let thread =
             thread::Builder::new().name("engine".to_owned()).spawn(move || work(at_work, &received))?;
-        Ok(Self { inbox, board, figures, store, thread: Mutex::new(Some(thread)) })
+        Ok(Self { inbox, live, figures, store, thread: Mutex::new(Some(thread)) })
     }
 
     /// Takes what `operator` scanned. What becomes of it is reported as news with the same `number`.
@@ -138,15 +138,15 @@ impl Engine {
     /// All news from now on, after the present state of every lane. A listener that is too far behind hears no more.
     #[must_use]
     pub fn listen(&self) -> Receiver<News> {
-        let mut board = self.board.lock().unwrap_or_else(PoisonError::into_inner);
-        let lanes: Vec<_> = board.lanes.iter().cloned().map(News::Lane).collect();
-        board.listeners.add(lanes.into_iter())
+        let mut live = self.live.lock().unwrap_or_else(PoisonError::into_inner);
+        let lanes: Vec<_> = live.lanes.iter().cloned().map(News::Lane).collect();
+        live.listeners.add(lanes.into_iter())
     }
 
     /// The state of every lane.
     #[must_use]
     pub fn lanes(&self) -> Vec<LaneState> {
-        self.board.lock().unwrap_or_else(PoisonError::into_inner).lanes.clone()
+        self.live.lock().unwrap_or_else(PoisonError::into_inner).lanes.clone()
     }
 
     /// What was counted since it began.
@@ -163,8 +163,8 @@ impl Engine {
     /// Whether its thread works, as seen within the last seconds.
     #[must_use]
     pub(crate) fn is_well(&self) -> bool {
-        let board = self.board.lock().unwrap_or_else(PoisonError::into_inner);
-        board.worked.is_some_and(|worked| worked.elapsed() < SILENT)
+        let live = self.live.lock().unwrap_or_else(PoisonError::into_inner);
+        live.worked.is_some_and(|worked| worked.elapsed() < SILENT)
     }
 
     /// Whether its thread has ended, which it does unasked only because of a fault. It may also be alive and silent,
@@ -190,7 +190,7 @@ impl Engine {
             tracing::error!("the engine ended early; look at what it said before");
         }
         // There is no more news, which ends the listeners.
-        self.board.lock().unwrap_or_else(PoisonError::into_inner).listeners = Listeners::default();
+        self.live.lock().unwrap_or_else(PoisonError::into_inner).listeners = Listeners::default();
     }
 
     fn put(&self, input: Input) {

@@ -106,7 +106,7 @@ impl Try {
 }
 
 /// What all steps of a run share.
-pub(super) struct Common<'a> {
+pub(super) struct RunContext<'a> {
     pub(super) plan: &'a Plan,
     pub(super) target: &'a Target,
     /// Whether this is the mock in the place of a unit that is known to be bad; the plan's demands on boards do not
@@ -124,7 +124,7 @@ pub(super) struct Common<'a> {
     pub(super) first: Option<BoardSeen>,
 }
 
-impl Common<'_> {
+impl RunContext<'_> {
     /// Asks the board who it is, and whether the plan may judge it. Nothing is uploaded.
     pub(super) fn identity(&self, within: Duration) -> Try {
         let (kind, seen) = match self.with_board(within, |_, kind, seen| (kind, seen)) {

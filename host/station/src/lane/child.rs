@@ -8,8 +8,8 @@ use halfrow::board::Stop;
 use halfrow::target::Target;
 use halfrow::verdict::StoppedBy;
 
-use super::acts::{Common, Try};
-use super::progress::Told;
+use super::acts::{RunContext, Try};
+use super::progress::ProgressMessages;
 use super::{Control, Job, Message, Ruling};
 use crate::clock;
 use crate::plan::{Act, Plan, Step};
@@ -105,18 +105,19 @@ fn steps(job: &Job, plan: &Plan, target: &Target, heeded: &Heeded, tell: &(dyn F
         heeded.ruling()
     };
     let (seed, spool, first) = (job.seed, job.spool.as_path(), None);
-    let mut common = Common { plan, target, is_mock, seed, stop: &stop, rule: &rule, limits, spool, first };
+    let mut context =
+        RunContext { plan, target, is_mock, seed, stop: &stop, rule: &rule, limits, spool, first };
     for (step, seq) in selected.steps.iter().zip(1..) {
         let mut attempt = 1;
         let passed = loop {
             let name = step.name.clone();
             tell(&Message::Step { seq, attempt, name });
-            let (mut record, is_incriminating) = tried(step, (seq, attempt), &common, tell);
-            if common.first.is_none() {
-                common.first.clone_from(&record.board);
+            let (mut record, is_incriminating) = tried(step, (seq, attempt), &context, tell);
+            if context.first.is_none() {
+                context.first.clone_from(&record.board);
             }
             let passed = record.outcome == StepOutcome::Passed;
-            let may_repeat = !is_incriminating && may_repeat(step, &record, common.first.as_ref());
+            let may_repeat = !is_incriminating && may_repeat(step, &record, context.first.as_ref());
             let is_left = !passed && heeded.stop.get().is_none() && attempt <= step.retries;
             let again = is_left && may_repeat;
             if is_left && !may_repeat && record.cause.is_retryable() {
@@ -148,15 +149,17 @@ fn may_repeat(step: &Step, record: &StepRecord, first: Option<&BoardSeen>) -> bo
 fn tried(
     step: &Step,
     (seq, attempt): (u32, u32),
-    common: &Common<'_>,
+    context: &RunContext<'_>,
     tell: &(dyn Fn(&Message) + Sync),
 ) -> (StepRecord, bool) {
     let started_ms = clock::now_ms();
     let within = step.timeout;
     let came = match &step.act {
-        Act::Identity => common.identity(within),
-        Act::Link { each } => common.link(*each, within),
-        Act::Verify(judging) => common.verify(judging, (within, (seq, attempt)), &Told::by(tell)),
+        Act::Identity => context.identity(within),
+        Act::Link { each } => context.link(*each, within),
+        Act::Verify(judging) => {
+            context.verify(judging, (within, (seq, attempt)), &ProgressMessages::by(tell))
+        }
     };
     let Try {
         outcome,

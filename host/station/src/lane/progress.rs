@@ -11,7 +11,7 @@ use super::Message;
 const PACE: Duration = Duration::from_millis(250);
 
 /// Sends progress as messages.
-pub(super) struct Told<'a> {
+pub(super) struct ProgressMessages<'a> {
     tell: &'a (dyn Fn(&Message) + Sync),
     rows: Mutex<Rows>,
 }
@@ -22,7 +22,7 @@ struct Rows {
     told: Option<Instant>,
 }
 
-impl<'a> Told<'a> {
+impl<'a> ProgressMessages<'a> {
     pub(super) fn by(tell: &'a (dyn Fn(&Message) + Sync)) -> Self {
         Self { tell, rows: Mutex::new(Rows { done: 0, expected: 0, told: None }) }
     }
@@ -38,7 +38,7 @@ impl<'a> Told<'a> {
     }
 }
 
-impl Progress for Told<'_> {
+impl Progress for ProgressMessages<'_> {
     fn event(&self, event: Event) {
         match event {
             Event::Step(step) => (self.tell)(&Message::Doing { what: step.to_string() }),

@@ -6,7 +6,7 @@ use halfrow_model::{Content, Frame, Phase, xorshift32};
 
 use crate::reference::correct;
 use crate::result::{Account, ContentKind, Defect, Evidence, MadeAs, Suspect};
-use crate::run::at_speed::Seen;
+use crate::run::at_speed::MadeRows;
 use crate::run::plan::Generation;
 
 /// The kinds by the lowest two bits of a row's first draw.
@@ -85,8 +85,8 @@ impl Made {
 }
 
 /// The suspect, if the last row that was `seen` is exactly what its tables make of another content than that of `content`.
-pub(super) fn content_wrong(seen: &Seen, content: Content, phase: Phase) -> Option<Suspect> {
-    let Seen { made_by, evidence: Evidence { input, expected, found, .. } } = seen;
+pub(super) fn content_wrong(seen: &MadeRows, content: Content, phase: Phase) -> Option<Suspect> {
+    let MadeRows { made_by, evidence: Evidence { input, expected, found, .. } } = seen;
     let row = expected.height().checked_sub(1)?;
     let kind = Made::of(content, row).kind;
     let is_found = |made: &Made| {

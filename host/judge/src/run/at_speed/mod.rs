@@ -33,7 +33,7 @@ use crate::result::{CheckName, ClockSeen, Corner, EqualAtSpeed, Finding, NoBurst
 use burst::BurstPlan;
 pub(super) use burst::{USUAL_CLOCK, content};
 pub(super) use price::{clock_hz, most_frames, price_of_corners, price_of_frames};
-pub(super) use repeated::Seen;
+pub(super) use repeated::MadeRows;
 use watched::{EndsEarly, Watched};
 
 pub(super) use corners::{BY_TURNS, CALM, WILD, drawn_factors, drawn_kernel, fit};

@@ -40,18 +40,18 @@ struct Again {
 /// What a row shows that the trap kept.
 enum Kept {
     /// Its samples differ.
-    Differs(Box<Seen>),
+    Differs(Box<MadeRows>),
     /// Its samples are right, and their CRC is not the signature that the board says.
     SignedWrong,
 }
 
 /// Rows, and the generation that made them.
-pub(in crate::run) struct Seen {
+pub(in crate::run) struct MadeRows {
     pub(in crate::run) made_by: Generation,
     pub(in crate::run) evidence: Evidence,
 }
 
-impl Seen {
+impl MadeRows {
     /// Rows that `made_by` makes of `input` and that were found as `expected`.
     pub(in crate::run) fn right(made_by: Generation, input: Frame, expected: Frame) -> Self {
         Self { made_by, evidence: Evidence { index: 0, input, found: expected.clone(), expected } }
@@ -165,8 +165,8 @@ impl Run<'_> {
             Some(_) => Streamed::Wrong,
         };
         let wrong = back.filter(|_| streamed == Streamed::Wrong);
-        let suspects = match wrong.and_then(|back| self.seen_streamed(generation, content, back)) {
-            Some(seen) => self.diagnose_seen(&seen, "at speed", content.frame),
+        let suspects = match wrong.and_then(|back| self.rows_streamed(generation, content, back)) {
+            Some(seen) => self.diagnose_rows(&seen, "at speed", content.frame),
             None => self.suspects_of(&seen, content, streamed),
         };
         Ok(Again { repetition: Repetition::Trapped { frames, row, streamed, kept }, suspects })
@@ -207,7 +207,7 @@ impl Run<'_> {
     }
 
     /// What the first rows of the frame of `content` show, which was streamed through `generation` and came `back`.
-    fn seen_streamed(&self, generation: &Generation, content: Content, back: Vec<u16>) -> Option<Seen> {
+    fn rows_streamed(&self, generation: &Generation, content: Content, back: Vec<u16>) -> Option<MadeRows> {
         let rows = back.len() / generation.tables.geometry().width();
         let mut seen = correct_up_to(generation, content, rows, self.plan.phase)?;
         seen.evidence.found = as_found(&seen.evidence.expected, back)?;
@@ -215,11 +215,11 @@ impl Run<'_> {
     }
 
     /// The suspects by what was `seen`, whose last row is the one that the trap kept.
-    fn suspects_of(&self, seen: &Seen, content: Content, streamed: Streamed) -> Vec<Suspect> {
+    fn suspects_of(&self, seen: &MadeRows, content: Content, streamed: Streamed) -> Vec<Suspect> {
         let Evidence { expected, found, .. } = &seen.evidence;
         let row = expected.height() - 1;
         let kept = (row, expected.row(row), found.row(row));
-        let mut suspects = self.diagnose_seen(seen, "at speed", content.frame);
+        let mut suspects = self.diagnose_rows(seen, "at speed", content.frame);
         let explains_all = |first: &Suspect| first.is_known() && first.explained >= 1.0;
         if !suspects.first().is_some_and(explains_all)
             && let Some(made) = content_wrong(seen, content, self.plan.phase)
@@ -241,8 +241,8 @@ impl Run<'_> {
     }
 
     /// The suspects by rows of the frame `frame` that are not among the streamed frames to judge.
-    pub(in crate::run) fn diagnose_seen(&self, seen: &Seen, name: &str, frame: u16) -> Vec<Suspect> {
-        let Seen { made_by: Generation { number, tables, kernel }, evidence } = seen;
+    pub(in crate::run) fn diagnose_rows(&self, seen: &MadeRows, name: &str, frame: u16) -> Vec<Suspect> {
+        let MadeRows { made_by: Generation { number, tables, kernel }, evidence } = seen;
         let frame = FrameReport {
             name: name.to_owned(),
             number: frame,
@@ -279,18 +279,18 @@ fn signed_wrong(frames: u32, row: usize) -> Again {
 }
 
 /// What differs in the last row of `seen`, which is the one that the trap kept.
-fn kept_row(seen: &Seen) -> Option<Box<KeptRow>> {
+fn kept_row(seen: &MadeRows) -> Option<Box<KeptRow>> {
     let Evidence { expected, found, .. } = &seen.evidence;
     let row = expected.height().checked_sub(1)?;
     Some(Box::new(KeptRow::new(seen.made_by.number, row, expected.row(row), found.row(row))))
 }
 
 /// The first `rows` rows of the frame that `generation` makes of `content`, as if found right.
-fn correct_up_to(generation: &Generation, content: Content, rows: usize, phase: Phase) -> Option<Seen> {
+fn correct_up_to(generation: &Generation, content: Content, rows: usize, phase: Phase) -> Option<MadeRows> {
     let made_by = generation.upper(rows)?;
     let input = content.frame(made_by.tables.geometry(), phase);
     let expected = correct(&made_by.tables, &made_by.kernel, &input).ok()?;
-    Some(Seen::right(made_by, input, expected))
+    Some(MadeRows::right(made_by, input, expected))
 }
 
 /// A row with differing samples: its number, what it should be, and what it is.

@@ -122,7 +122,7 @@ impl Rules<'_, '_> {
             Err(error) => return Err(of_board(error)),
         };
         let right = Answer::Row { row: place.row.into(), frame: place.frame };
-        if self.says_nothing(kept)? && self.is_silent_again(kept, &place)? {
+        if self.says_it_sent_no_more(kept)? && self.is_silent_when_asked_again(kept, &place)? {
             return Err(broken(Rule::Banks, Kind::RowIn, right, Answer::Nothing {}));
         }
         Err(of_rows(Rule::Banks, BoardError::RowMissing { place, attempts: 1 }))
@@ -130,14 +130,14 @@ impl Rules<'_, '_> {
 
     /// Whether the row at `place` stays away when asked for again, although the board says that it had everything that
     /// was sent.
-    fn is_silent_again(&mut self, kept: &FilledBanks, place: &RowPlace) -> Result<bool, End> {
+    fn is_silent_when_asked_again(&mut self, kept: &FilledBanks, place: &RowPlace) -> Result<bool, End> {
         let black = kept.black();
         let came = self.run.board.again((place, &black), None, 0);
-        Ok(matches!(came, Err(BoardError::RowMissing { .. })) && self.says_nothing(kept)?)
+        Ok(matches!(came, Err(BoardError::RowMissing { .. })) && self.says_it_sent_no_more(kept)?)
     }
 
     /// Whether the board had everything that was sent to it, and itself says that it sent only the rows that came.
-    fn says_nothing(&mut self, kept: &FilledBanks) -> Result<bool, End> {
+    fn says_it_sent_no_more(&mut self, kept: &FilledBanks) -> Result<bool, End> {
         let status = self.run.board.status(false).map_err(of_board)?;
         let sent = |status: &Status| Counter::RowsNumbered.in_status(status);
         let came = self.run.board.rows_came() - kept.came;

@@ -11,7 +11,7 @@ use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::reference::correct;
 use crate::result::RowPart;
 use crate::run::Generation;
-use crate::run::at_speed::Seen;
+use crate::run::at_speed::MadeRows;
 use crate::run::pauses::pauses;
 
 /// How a frame must come back.
@@ -47,7 +47,7 @@ pub(super) struct WrongRow {
     /// What is wrong with it.
     pub(super) differs: Vec<RowPart>,
     /// What the frame up to it shows, if only its samples are wrong.
-    pub(super) seen: Option<Seen>,
+    pub(super) seen: Option<MadeRows>,
 }
 
 impl Compared {
@@ -188,11 +188,11 @@ impl Right {
     }
 
     /// The frame up to `row`, whose earlier rows were right.
-    fn seen(&self, row: &ReturnedRow<'_>) -> Option<Seen> {
+    fn seen(&self, row: &ReturnedRow<'_>) -> Option<MadeRows> {
         let (input, made) = self.of.as_ref()?;
         let made_by = made.upper(row.row + 1)?;
         let (input, expected) = (upper(input, row.row + 1)?, upper(&self.frame, row.row + 1)?);
-        Seen::right(made_by, input, expected).ending_in(row.samples)
+        MadeRows::right(made_by, input, expected).ending_in(row.samples)
     }
 }
 

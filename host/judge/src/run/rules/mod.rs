@@ -194,7 +194,7 @@ impl<'a, 'run> Rules<'a, 'run> {
         let said = self.run.board.ask(kind, payload);
         let right = Said::Refused(Refusal { code, kind: kind.code(), detail });
         let is_unanswered = matches!(said, Err(BoardError::NoAnswer { .. } | BoardError::Unanswered { .. }));
-        if is_unanswered && kind == Kind::RowIn && self.has_taken(payload) {
+        if is_unanswered && kind == Kind::RowIn && self.is_known_when_sent_again(payload) {
             // It is known what happened to each copy of this request.
             self.run.board.excuse_changes(changes);
             return Err(broken(rule, kind, answer(&right), Answer::Taken {}));
@@ -223,7 +223,7 @@ impl<'a, 'run> Rules<'a, 'run> {
     }
 
     /// Whether the board has the row in `payload`, by what it counts when that comes once more.
-    fn has_taken(&mut self, payload: &[u8]) -> bool {
+    fn is_known_when_sent_again(&mut self, payload: &[u8]) -> bool {
         let Ok(before) = self.run.board.status(false) else { return false };
         self.run.board.give_bytes(Kind::RowIn, payload);
         let Ok(after) = self.run.board.status(false) else { return false };
@@ -268,7 +268,7 @@ impl<'a, 'run> Rules<'a, 'run> {
     fn judge_rows(&self, rule: Rule, compared: &Compared) -> Result<(), End> {
         let Some(WrongRow { row, frame, seen, differs }) = &compared.wrong else { return Ok(()) };
         if let Some(seen) = seen {
-            let suspects = self.run.diagnose_seen(seen, "rules", *frame);
+            let suspects = self.run.diagnose_rows(seen, "rules", *frame);
             if let Some(first) = suspects.first().filter(|first| first.is_known()) {
                 let compared = Comparison::of_frames(&seen.evidence.expected, &seen.evidence.found);
                 let finding = Finding::SamplesDiffer {
