@@ -62,12 +62,15 @@ pub struct LaneState {
     pub state: Word,
     /// Whether a board is in it.
     pub is_present: bool,
-    /// The serial number that it tests, that waits, or that it tested last.
+    /// The serial number that it tests, that waits, or whose verdict is shown.
     pub serial: Option<String>,
     /// The run that is under way, or not saved.
     pub run: Option<String>,
     /// The last verdict, which is saved.
     pub shown: Option<Shown>,
+    /// The verdict of the board before, where another one was plugged in since.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub last: Option<Shown>,
     /// Why it is out of service, what it is to test first, why nothing was saved, or why no run was begun.
     #[serde(serialize_with = "said::as_text_if_any")]
     pub note: Option<Said>,
@@ -91,6 +94,7 @@ impl From<&Lane> for LaneState {
             serial: lane.serial().map(str::to_owned),
             run: lane.run().map(str::to_owned),
             shown: lane.shown().cloned(),
+            last: lane.last().cloned(),
             note: lane.note().cloned(),
             refused: lane.refused().cloned(),
             awaits_plant: lane.awaits_plant(),

@@ -2,13 +2,12 @@
 //!
 //! ```text
 //!  EMPTY ─ board ─► READY ─ serial number ─► RUNNING ─► SAVING ─► PASS | FAIL | ERROR ─ next serial number ─► …
-//!    └ serial number ─► WAITING ─ board or button ─┘        └ UNSAVED ─ the disk is well ─► ERROR
+//!    └ serial number ─► WAITING ─ board or button ─┘        │                 └ next board ─► READY
+//!                                                           └ UNSAVED ─ the disk is well ─► ERROR
 //!  OUT: taken out of service by a person, or because its process cannot be killed; or it owes a check, and shows no verdict
 //! ```
 
 use std::mem::discriminant;
-
-use halfrow::Verdict;
 
 use crate::plan::mock::is_mock;
 use crate::said::{Said, Saying};
@@ -35,6 +34,9 @@ pub struct Lane {
     is_present: bool,
     waiting: Option<Accepted>,
     shown: Option<Shown>,
+    last: Option<Shown>,
+    /// Whether another board came before the result of the run was settled.
+    has_other: bool,
     note: Option<Said>,
     /// Why it did not take the serial number that waited for the board now in it.
     missed: Option<Said>,
@@ -54,6 +56,8 @@ impl Lane {
             is_present: false,
             waiting: None,
             shown: None,
+            last: None,
+            has_other: false,
             note: None,
             missed: None,
             owes: None,
@@ -70,15 +74,13 @@ impl Lane {
     /// Its state in one word.
     #[must_use]
     pub fn word(&self) -> Word {
-        match (&self.phase, self.shown.as_ref().map(|shown| shown.verdict)) {
+        match (&self.phase, &self.shown) {
             (Phase::Out { .. }, _) => Word::Out,
             (Phase::Running { .. }, _) => Word::Running,
             (Phase::Saving { .. }, _) => Word::Saving,
             (Phase::Unsaved { .. }, _) => Word::Unsaved,
             // Whatever the lane owes by now, people act on the board whose verdict is shown.
-            (Phase::Ended, Some(Verdict::Pass)) => Word::Pass,
-            (Phase::Ended, Some(Verdict::Fail)) => Word::Fail,
-            (Phase::Ended, Some(Verdict::Error)) => Word::Error,
+            (Phase::Ended, Some(shown)) => shown.verdict.into(),
             _ if self.waiting.is_some() => Word::Waiting,
             _ if self.owes.is_some() => Word::Out,
             _ if self.is_present => Word::Ready,
@@ -98,7 +100,7 @@ impl Lane {
         self.is_present
     }
 
-    /// The serial number that it tests, that waits, or that it tested last.
+    /// The serial number that it tests, that waits, or whose verdict is shown.
     #[must_use]
     pub fn serial(&self) -> Option<&str> {
         let under_test = self.under_test().map(|of| of.serial.as_str());
@@ -139,10 +141,16 @@ impl Lane {
         }
     }
 
-    /// Its last verdict, which stays until the next serial number.
+    /// Its last verdict, which stays until the next serial number, or until another board is plugged in.
     #[must_use]
     pub fn shown(&self) -> Option<&Shown> {
         self.shown.as_ref()
+    }
+
+    /// The verdict of the board before, once another one was plugged in, until the next serial number.
+    #[must_use]
+    pub fn last(&self) -> Option<&Shown> {
+        self.last.as_ref()
     }
 
     /// What else there is to say: why it did not take a number, why it is out of service, what it is to test first,
@@ -221,12 +229,16 @@ impl Lane {
     }
 
     fn begin(&mut self, of: Accepted) -> Effect {
-        (self.waiting, self.shown, self.note, self.missed) = (None, None, None, None);
+        (self.waiting, self.note, self.missed) = (None, None, None);
+        (self.shown, self.last, self.has_other) = (None, None, false);
         self.phase = Phase::Running { of: of.clone(), run: None };
         Effect::Begin(of)
     }
 
     fn present(&mut self, is_present: bool) -> Option<Effect> {
+        if is_present && !self.is_present {
+            self.came();
+        }
         self.is_present = is_present;
         if !is_present {
             self.missed = None;
@@ -238,6 +250,21 @@ impl Lane {
         let starts = is_present && self.starts.presence && self.phase == Phase::Idle;
         let waiting = if starts { self.waiting.take() } else { None };
         waiting.map(|of| self.begin(of))
+    }
+
+    /// A board is there again: no verdict is shown over it until it was judged itself.
+    fn came(&mut self) {
+        match &self.phase {
+            // The run waits for its own board, and takes no other for it.
+            Phase::Running { of, .. } if !is_mock(&of.serial) => {}
+            Phase::Running { .. } | Phase::Saving { .. } | Phase::Unsaved { .. } => self.has_other = true,
+            Phase::Idle | Phase::Ended | Phase::Out { .. } => {
+                self.last = self.shown.take().or_else(|| self.last.take());
+                if self.phase == Phase::Ended {
+                    self.phase = Phase::Idle;
+                }
+            }
+        }
     }
 
     fn given(&mut self, accepted: Accepted) -> Result<Option<Effect>, Refusal> {
@@ -252,7 +279,8 @@ impl Lane {
         if !self.is_present && !self.starts.presence {
             return Err(Refusal::NoBoard { lane: self.name.clone() });
         }
-        (self.waiting, self.shown, self.note, self.missed) = (Some(accepted), None, None, None);
+        (self.waiting, self.note, self.missed) = (Some(accepted), None, None);
+        (self.shown, self.last) = (None, None);
         self.phase = Phase::Idle;
         Ok(None)
     }
@@ -288,6 +316,14 @@ impl Lane {
         Ok(None)
     }
 
+    /// The phase after a verdict, which is shown over no other board.
+    fn ended(&mut self, shown: Shown) -> Phase {
+        let (of, phase) =
+            if self.has_other { (&mut self.last, Phase::Idle) } else { (&mut self.shown, Phase::Ended) };
+        *of = Some(shown);
+        phase
+    }
+
     /// Takes what its run reports. A report that does not fit the phase is late, and changes nothing.
     fn reported(&mut self, event: Event) -> Option<Effect> {
         let before = discriminant(&self.phase);
@@ -303,8 +339,7 @@ impl Lane {
                 (Phase::Idle, None)
             }
             (Phase::Running { .. } | Phase::Saving { .. } | Phase::Unsaved { .. }, Event::Ended(shown)) => {
-                self.shown = Some(shown.clone());
-                (Phase::Ended, Some(Effect::Hooks(shown)))
+                (self.ended(shown.clone()), Some(Effect::Hooks(shown)))
             }
             (
                 Phase::Running { of, run } | Phase::Saving { of, run } | Phase::Unsaved { of, run, .. },

@@ -64,7 +64,7 @@ pub enum Word {
     Running,
     /// It is over, and its result is being saved.
     Saving,
-    /// The last run's verdict, until the next serial number.
+    /// The last run's verdict, until the next serial number or the next board.
     Pass,
     /// As above.
     Fail,
@@ -74,6 +74,16 @@ pub enum Word {
     Unsaved,
     /// Out of service, or its shift is to be checked first and it shows no verdict.
     Out,
+}
+
+impl From<Verdict> for Word {
+    fn from(verdict: Verdict) -> Self {
+        match verdict {
+            Verdict::Pass => Self::Pass,
+            Verdict::Fail => Self::Fail,
+            Verdict::Error => Self::Error,
+        }
+    }
 }
 
 impl Word {

@@ -69,7 +69,8 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
                 @if let Some(shown) = shown { (saved(visit, shown)) }
             }
             p.word { (shape(state.state)) span { (word) } }
-            p.serial { (serial(state.serial.as_deref().unwrap_or_default(), shown)) }
+            @if let Some(last) = &state.last { p.last { (of_before(visit, last)) } }
+            @else { p.serial { (serial(state.serial.as_deref().unwrap_or_default(), shown)) } }
             (says(visit, state))
             @if state.state == Word::Running { (progress(visit, &state.lane, doing)) }
         }
@@ -84,6 +85,12 @@ fn serial(serial: &str, shown: Option<&Shown>) -> Markup {
             None => { (serial) }
         }
     }
+}
+
+/// The verdict of the board before the one that is in the lane.
+fn of_before(visit: &Visit, last: &Shown) -> Markup {
+    let values = [("state", said(visit, last.verdict.into())), ("serial", &last.serial)];
+    html! { a href={ "/runs/" (last.run) } { (visit.words.fill("lane.last", &values)) } }
 }
 
 /// The class of the style sheet for how large a word or a name can be.

@@ -75,11 +75,12 @@ fn a_run_goes_from_the_scan_to_a_verdict_that_stays() {
     assert_eq!(words(&floor), [Word::Saving]);
     let hooks = floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(0));
     assert_eq!(hooks, Some(Effect::Hooks(shown(Verdict::Pass))));
-    floor.happened(0, Event::Present(false), at(0));
-    assert_eq!(words(&floor), [Word::Pass], "it stays until the next serial number");
-    plug(&mut floor, 0);
     floor.scan(&serial(1), WEBER, at(0)).unwrap();
-    assert_eq!((words(&floor), floor.lanes()[0].shown()), (vec![Word::Running], None));
+    assert_eq!(
+        (words(&floor), floor.lanes()[0].shown()),
+        (vec![Word::Running], None),
+        "the next serial number"
+    );
 }
 
 #[test]
@@ -320,8 +321,6 @@ fn a_verdict_stays_though_its_lane_owes_a_check() {
             floor.scan(&serial(0), WEBER, at(0)).unwrap();
             events.into_iter().for_each(|event| drop(floor.happened(0, event, at(1))));
             assert_eq!((words(&floor)[0], floor.lanes()[0].note()), (word, Some(&why)), "{when}");
-            floor.happened(0, Event::Present(false), at(2));
-            plug(&mut floor, 0);
             let refused = floor.scan(&serial(2), WEBER, at(2)).unwrap_err().to_string();
             assert!(refused.contains("the shift is over"), "{refused}");
             assert_eq!((words(&floor)[0], floor.lanes()[0].shown()), (word, Some(&shown(verdict))), "{when}");

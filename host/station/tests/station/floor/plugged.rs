@@ -1,10 +1,97 @@
-//! A serial number that is scanned before its board is plugged in.
+//! Boards that are plugged in: after a verdict, and after their serial number was scanned.
 
 use halfrow::Verdict;
-use halfrow_station::floor::{Act, Effect, Event, Floor, Owes, Place, Word};
+use halfrow_station::floor::{Act, Effect, Event, Floor, Owes, Place, Shown, Word};
 use halfrow_station::said::Said;
 
 use super::{PLUG, SCAN, WEBER, at, floor, plug, rule, serial, shown, words};
+
+/// A lane with a run under way.
+fn running() -> Floor {
+    let mut floor = floor(&[SCAN], false);
+    plug(&mut floor, 0);
+    floor.scan(&serial(0), WEBER, at(0)).unwrap();
+    floor
+}
+
+/// The lane's word, the serial number in it, the verdict shown for it, and the one of the board that was there before.
+fn told(floor: &Floor) -> (Word, Option<&str>, Option<Verdict>, Option<Verdict>) {
+    let lane = &floor.lanes()[0];
+    let verdict = |of: Option<&Shown>| of.map(|of| of.verdict);
+    (lane.word(), lane.serial(), verdict(lane.shown()), verdict(lane.last()))
+}
+
+fn swap(floor: &mut Floor) {
+    floor.happened(0, Event::Present(false), at(2));
+    plug(floor, 0);
+}
+
+/// People read a verdict after they have removed its board, but it says nothing about the next one.
+#[test]
+fn a_verdict_stays_over_an_empty_lane_and_not_over_another_board() {
+    for (verdict, word) in
+        [(Verdict::Pass, Word::Pass), (Verdict::Fail, Word::Fail), (Verdict::Error, Word::Error)]
+    {
+        let mut floor = running();
+        floor.happened(0, Event::Ended(shown(verdict)), at(1));
+        let its = (word, Some("CA"), Some(verdict), None);
+        assert_eq!(told(&floor), its);
+        plug(&mut floor, 0);
+        assert_eq!(told(&floor), its, "the board was there all the time");
+        floor.happened(0, Event::Present(false), at(2));
+        assert_eq!(told(&floor), its);
+        plug(&mut floor, 0);
+        assert_eq!(told(&floor), (Word::Ready, None, None, Some(verdict)));
+        floor.happened(0, Event::Present(false), at(3));
+        assert_eq!(told(&floor), (Word::Empty, None, None, Some(verdict)), "it does not come back");
+        plug(&mut floor, 0);
+        floor.scan(&serial(1), WEBER, at(4)).unwrap();
+        assert_eq!(told(&floor), (Word::Running, Some(serial(1).as_str()), None, None));
+    }
+}
+
+#[test]
+fn a_verdict_that_comes_when_another_board_is_there_is_not_shown_over_it() {
+    let unsaved = || Event::Unsaved { why: Said::of(&std::io::Error::other("full")) };
+    for (before, word) in [(vec![Event::Saving], Word::Saving), (vec![unsaved(), unsaved()], Word::Unsaved)] {
+        let mut floor = running();
+        before.into_iter().for_each(|event| drop(floor.happened(0, event, at(1))));
+        swap(&mut floor);
+        assert_eq!(words(&floor), [word]);
+        let hooks = floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(3));
+        assert_eq!(hooks, Some(Effect::Hooks(shown(Verdict::Pass))), "it holds for its own board");
+        assert_eq!(told(&floor), (Word::Ready, None, None, Some(Verdict::Pass)), "{word:?}");
+    }
+}
+
+/// The run itself follows its board, and takes no other for it.
+#[test]
+fn a_board_that_comes_back_during_its_run_gets_its_verdict() {
+    let mut floor = running();
+    swap(&mut floor);
+    floor.happened(0, Event::Saving, at(3));
+    floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(3));
+    assert_eq!(told(&floor), (Word::Pass, Some("CA"), Some(Verdict::Pass), None));
+}
+
+#[test]
+fn a_board_that_is_plugged_into_a_lane_that_is_out_or_owes_a_check_gets_no_verdict_of_another() {
+    let mut out = running();
+    out.happened(0, Event::Ended(shown(Verdict::Pass)), at(1));
+    out.act(0, Act::Out, WEBER).unwrap();
+    swap(&mut out);
+    assert_eq!(told(&out), (Word::Out, None, None, Some(Verdict::Pass)));
+    out.act(0, Act::In, WEBER).unwrap();
+    assert_eq!(told(&out), (Word::Ready, None, None, Some(Verdict::Pass)));
+    let mut owes = running();
+    owes.happened(0, Event::Ended(shown(Verdict::Pass)), at(1));
+    let why = Said::of(&std::io::Error::other("the shift is over"));
+    let owed = Owes { plan: 0, serial: Some(serial(1)), why: why.clone() };
+    owes.happened(0, Event::Owes(Some(owed)), at(1));
+    swap(&mut owes);
+    assert_eq!(told(&owes), (Word::Out, None, None, Some(Verdict::Pass)));
+    assert_eq!(owes.lanes()[0].note(), Some(&why));
+}
 
 #[test]
 fn a_number_that_was_scanned_first_goes_to_the_board_that_is_plugged_in() {

@@ -1,5 +1,6 @@
 //! What the operator's page says and does, without a browser.
 
+use std::fs;
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::net::TcpStream;
 
@@ -73,6 +74,35 @@ fn news_begin_with_everything_and_have_no_gap_and_every_verdict_has_its_record()
     let stored = station.query(&format!("SELECT verdict || record_sha256 FROM run WHERE id = '{run}'"));
     assert_eq!(stored, [format!("PASS{}", verdict["record_sha256"].as_str().unwrap())]);
     assert!(verdict["html"].as_str().unwrap().contains(SERIALS[0]));
+}
+
+/// The board in the lane is a file, which can be taken away. It is no serial port, so its run is ERROR.
+#[test]
+fn a_verdict_is_drawn_over_the_empty_lane_and_small_over_the_next_board() {
+    let station = Station::private(1);
+    let port = station.path("port");
+    let board = format!("serial:{}", port.display());
+    let station = station.where_instead("station.toml", "mock,serial=1", &board);
+    let serving = station.serve();
+    let mut live = Live::of(&serving);
+    fs::write(&port, "").unwrap();
+    serving.here().post("/scan", &[("text", SERIALS[0])]).until_taken();
+    let mut html = |state: &str| loop {
+        let (_, name, said) = live.next();
+        if name == "lane" && said["state"] == state {
+            break said["html"].as_str().unwrap().to_owned();
+        }
+    };
+    let drawn = html("ERROR");
+    fs::remove_file(&port).unwrap();
+    assert!(html("ERROR").contains("data-record") && drawn.contains("data-record"), "{drawn}");
+    fs::write(&port, "").unwrap();
+    let next = html("READY");
+    assert!(next.contains(&format!(">last: ERROR {}</a></p>", SERIALS[0])), "{next}");
+    assert!(next.contains("scan its label") && !next.contains("data-record"), "{next}");
+    for (preferred, said) in [("de", "zuletzt: STÖRUNG"), ("zh", "上一块板：错误")] {
+        serving.here().get("/still").with("accept-language", preferred).until(said);
+    }
 }
 
 #[test]

@@ -119,15 +119,17 @@ const OVER: &str = "(() => {
     const long = 'a headline that says at some length what was found in which row and what is to be done about it';
     const lane = document.querySelector('.lane');
     const [before, state] = [lane.innerHTML, lane.className];
-    for (const state of ['running', 'pass', 'error']) {
+    for (const state of ['ready', 'running', 'pass', 'error']) {
         lane.className = `lane ${state} ${state === 'running' ? 'middle' : 'short'}`;
         const more = state === 'running' ? '<p class=doing>rows</p><progress></progress>' : `<p class=why>${long}</p>`;
-        lane.innerHTML = before + (state === 'pass' ? '' : more);
+        lane.innerHTML = before + (['ready', 'pass'].includes(state) ? '' : more);
         lane.querySelector('.acts').innerHTML = '<form class=act><button id=out>out</button></form>';
-        const saved = state === 'running' ? '' : '<p class=saved>gesichert 14:02</p>';
+        const saved = ['ready', 'running'].includes(state) ? '' : '<p class=saved>gesichert 14:02</p>';
         lane.querySelector('header').insertAdjacentHTML('beforeend', saved);
         lane.querySelector('.word span').textContent = state.toUpperCase();
-        lane.querySelector('.serial').textContent = 'CA080442957X';
+        const serial = lane.querySelector('.serial');
+        if (state === 'ready') serial.outerHTML = '<p class=last><a href=/>zuletzt: SCHLECHT CA080442957X</a></p>';
+        else serial.textContent = 'CA080442957X';
         const boxes = of => [...of].filter(part => part.checkVisibility()).map(part => [part, part.getBoundingClientRect()]);
         const parts = boxes(lane.children), all = lane.getBoundingClientRect();
         const head = boxes(lane.querySelectorAll('.name, header button:not(.name), .saved'));
