@@ -14,7 +14,9 @@ const UNSENT = { is_taken: false, said: station.unsent, armed: "" };
 const PATIENT = 10000;
 // What each lane showed last.
 const shown = new Map();
-let armed = "", sent = 0, answered = 0, queue = Promise.resolve(), todayIsStale = false, noticed = "";
+// The lane that the next scan is for, until when, and what ends it.
+let armed = "", until = 0, ending;
+let sent = 0, answered = 0, queue = Promise.resolve(), todayIsStale = false, noticed = "";
 
 // Acts are sent one after another, so that a scan is for the lane whose barcode was scanned just before. Each names the last beat
 // heard when it was made: the station refuses what arrives late, because another board may be there by then.
@@ -51,21 +53,41 @@ function answer({ is_taken, scanned, said }) {
   if (!is_taken) play("ERROR");
 }
 
+const isOver = () => performance.now() >= until;
+
+function marks() {
+  const lane = isOver() ? "" : armed;
+  arm(lane);
+  put("armed", lane && count() > 1 ? `${by("armed").dataset.for} ${lane}` : "");
+}
+
+// A choice is over after a while: then somebody else may scan, for the board in another lane.
 function arms(lane) {
+  clearTimeout(ending);
   armed = lane ?? "";
-  arm(armed);
-  put("armed", armed && count() > 1 ? `${by("armed").dataset.for} ${armed}` : "");
+  until = performance.now() + Number(station.chosen);
+  marks();
+  if (armed) ending = setTimeout(ends, Number(station.chosen) + 1);
+}
+
+// The lane itself is kept: the station refuses the next scan, which was perhaps meant for it.
+function ends() {
+  marks();
+  if (count() < 2) return;
+  put("answer", station.over.replace("{lane}", armed));
+  by("answer").className = "answer";
 }
 
 function scan(text, typed) {
   const counter = ++sent;
   const counts = () => put("counter", `${answered} / ${sent}`);
   counts();
-  post("/scan", () => ({ counter, text, typed, lane: armed }), (became) => {
+  post("/scan", () => ({ counter, text, typed, lane: armed, is_over: isOver() }), (became) => {
     answered += 1;
     counts();
     if (became.counter !== undefined && became.counter !== counter) became = UNSENT;
-    if ("armed" in became) arms(became.armed);
+    // A label that was refused does not make the choice last longer.
+    if ("armed" in became && (became.is_taken || (became.armed ?? "") !== armed)) arms(became.armed);
     if (became.is_other) return location.reload();
     answer(became);
   });
@@ -73,7 +95,7 @@ function scan(text, typed) {
 
 function lane(event, isNews) {
   if (!draw(event)) return answer({ is_taken: false, said: station.undrawn });
-  arm(armed);
+  marks();
   const shows = `${event.state} ${event.run}`, isAsBefore = shown.get(event.lane) === shows;
   shown.set(event.lane, shows);
   // A board that comes or goes changes what can be done, but there is nothing new to say.
@@ -134,7 +156,7 @@ function typing(on) {
 document.documentElement.classList.add("scripted");
 addEventListener("click", ({ target }) => {
   const name = target.closest("[data-arm]")?.dataset.arm;
-  if (name && by("hand")) arms(name === armed ? "" : name);
+  if (name && by("hand")) arms(name === armed && !isOver() ? "" : name);
 });
 addEventListener("submit", (event) => {
   const form = event.target;

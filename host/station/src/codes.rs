@@ -51,6 +51,7 @@ codes::codes! {
         Late => "scan-late",
         NoLane [lane, known] => "lane-unknown",
         WhichLane [lanes] => "lane-not-named",
+        ChoiceOver [lane, seconds] => "lane-choice-over",
         Ambiguous [serial, first, second] => "serial-of-two-products",
         Elsewhere [serial, lane] => "serial-in-other-lane",
         = Barcode,

@@ -1,6 +1,6 @@
 //! The lanes of a station side by side, and which of them gets a scan. Pure data: events in, effects out.
 //!
-//! 1. The lane whose barcode was scanned before, for one scan.
+//! 1. The lane whose barcode was scanned before, for one scan, if it comes soon.
 //! 2. The only lane there is.
 //! 3. With the order scan-then-plug: the next lane into which a board is plugged, within a minute.
 //!
@@ -21,6 +21,8 @@ use crate::said::{Said, Saying};
 
 /// How long a serial number waits for a lane.
 const WAIT: Duration = Duration::from_secs(60);
+/// How long a lane that was chosen waits for a scan. Later somebody else may scan, for the board in another lane.
+pub(crate) const CHOSEN: Duration = Duration::from_secs(15);
 
 /// What a plan says about serial numbers.
 #[derive(Clone, Debug)]
@@ -79,6 +81,16 @@ pub enum ScanError {
         /// How many.
         lanes: usize,
     },
+    /// The lane that was named before this scan was named too long ago.
+    #[error(
+        "lane {lane} was chosen more than {seconds} s ago, and is not any more; choose a lane again, and scan again"
+    )]
+    ChoiceOver {
+        /// The lane.
+        lane: String,
+        /// How long a choice lasts.
+        seconds: u64,
+    },
     /// It is no serial number.
     #[error(transparent)]
     Serial(#[from] SerialError),
@@ -107,6 +119,13 @@ pub enum ScanError {
     Lane(#[from] Refusal),
 }
 
+impl ScanError {
+    /// That this lane is not chosen any more.
+    pub(crate) fn choice_over(lane: &str) -> Self {
+        Self::ChoiceOver { lane: lane.to_owned(), seconds: CHOSEN.as_secs() }
+    }
+}
+
 /// The lanes of a station.
 #[derive(Clone, Debug)]
 pub struct Floor {
@@ -114,7 +133,8 @@ pub struct Floor {
     plans_of: Vec<Vec<usize>>,
     rules: Vec<Rule>,
     scan_then_plug: bool,
-    armed: Option<usize>,
+    /// The lane that the next scan is for, and since when.
+    armed: Option<(usize, Duration)>,
     pending: Option<Pending>,
 }
 
@@ -157,15 +177,26 @@ impl Floor {
     /// Takes what `operator` scanned at the time `now`, by any clock that only goes forward.
     ///
     /// # Errors
-    /// [`ScanError`] when it is refused; nothing has changed then.
+    /// [`ScanError`] when it is refused; nothing has changed then, but that a choice whose time is over is forgotten.
     pub fn scan(&mut self, text: &str, operator: &str, now: Duration) -> Result<Answer, ScanError> {
         let scan = Scan::read(text)?;
-        let is_of_lane = matches!(scan, Scan::Lane(_));
-        let answer = self.scanned(scan, self.armed, operator, now)?;
-        if !is_of_lane {
-            self.armed = None;
+        if matches!(scan, Scan::Lane(_)) {
+            return self.scanned(scan, None, operator, now);
         }
+        let armed = self.chosen(now)?;
+        let answer = self.scanned(scan, armed, operator, now)?;
+        self.armed = None;
         Ok(answer)
+    }
+
+    /// The lane that was chosen before. A scan that comes too late for it is for no other lane, either.
+    fn chosen(&mut self, now: Duration) -> Result<Option<usize>, ScanError> {
+        let has_several = self.lanes.len() > 1;
+        let over = self.armed.take_if(|(_, since)| has_several && now.saturating_sub(*since) > CHOSEN);
+        match over {
+            Some((lane, _)) => Err(ScanError::choice_over(self.name(lane))),
+            None => Ok(self.armed.map(|(lane, _)| lane)),
+        }
     }
 
     /// Takes what `operator` scanned for this lane, whichever lane's barcode somebody else scanned before.
@@ -193,7 +224,7 @@ impl Floor {
         match scan {
             Scan::Lane(name) => {
                 let lane = self.named(&name)?;
-                self.armed = Some(lane);
+                self.armed = Some((lane, now));
                 Ok(Answer { lane: Some(lane), effect: None, said: Saying::Armed { lane: name }.into() })
             }
             Scan::Act(act) => self.act(self.meant(armed)?, act, operator),

@@ -12,8 +12,9 @@ use futures_util::future;
 use serde::{Deserialize, Serialize};
 
 use super::page;
+use crate::clock;
 use crate::engine::Engine;
-use crate::floor::{Act, Scan, ScanError};
+use crate::floor::{Act, CHOSEN, Scan, ScanError};
 use crate::said::{Said, Saying};
 use crate::settings::PlanFile;
 use crate::web::access::Claimant;
@@ -31,9 +32,17 @@ pub(super) struct Scanned {
     #[serde(default)]
     counter: u64,
     text: String,
-    /// The lane whose barcode was scanned on this page before.
+    /// The lane that was chosen on this page before.
     #[serde(default)]
     lane: String,
+    /// Whether that was too long ago.
+    #[serde(default)]
+    is_over: bool,
+    /// The lane that a page without a script had chosen when it was made, and when that was, in milliseconds since 1970.
+    #[serde(default)]
+    chosen: String,
+    #[serde(default)]
+    made_ms: i64,
     /// Whether a person may have typed it, without what the scanner adds.
     #[serde(default)]
     typed: bool,
@@ -140,6 +149,10 @@ async fn understood(
         Ok(Scan::Act(Act::Out | Act::In)) if !visit.may(Who::Engineer) => {
             Ok(scanned.answer(None, Err(visit.say("scan.engineer").to_owned()), scanned.armed()))
         }
+        _ if armed.is_some() && app.settings().lanes.len() > 1 && scanned.is_over() => {
+            let over = ScanError::choice_over(&scanned.lane);
+            Ok(scanned.answer(None, Err(told(visit, &over)), None))
+        }
         _ => {
             let (lane, name) = armed.unzip();
             let entry = ("scan", name.unwrap_or_default(), kept(app, &label));
@@ -155,6 +168,12 @@ async fn understood(
 impl Scanned {
     fn armed(&self) -> Option<String> {
         (!self.lane.is_empty()).then(|| self.lane.clone())
+    }
+
+    /// Whether its lane was chosen too long ago.
+    fn is_over(&self) -> bool {
+        let is_as_made = self.chosen == self.lane;
+        self.is_over || is_as_made && clock::now_ms() - self.made_ms > CHOSEN.as_millis() as i64
     }
 
     fn answer(&self, lane: Option<String>, said: Result<String, String>, armed: Option<String>) -> Answer {

@@ -7,6 +7,7 @@ use maud::{Markup, html};
 use super::acts::Answer;
 use super::lane::lane;
 use crate::clock;
+use crate::floor::CHOSEN;
 use crate::history::Period;
 use crate::history::rate::Rate;
 use crate::history::yields::{By, Wanted, Yields, yields};
@@ -41,6 +42,7 @@ async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Respons
     let content = html! {
         section #station data-csrf=(visit.csrf) data-mark=(app.mark()) data-not-live=(visit.say("live.not")) data-live=(visit.say("live.live"))
             data-unsent=(visit.say("scan.unsent")) data-undrawn=(visit.say("live.undrawn"))
+            data-chosen=(CHOSEN.as_millis()) data-over=(visit.say("scan.over"))
             data-known[visit.user.is_some()] {
             h1.heard { (visit.say("nav.lanes")) }
             (scan_box(&visit, &now, answer.as_ref()))
@@ -132,6 +134,10 @@ fn by_hand(visit: &Visit, now: &Now, unscripted: Option<&str>) -> Markup {
         form id=[is_scripted.then_some("hand")] .hand method="post" action="/scan" autocomplete="off" {
             input type="hidden" name="csrf" value=(visit.csrf);
             input type="hidden" name="typed" value="true";
+            @if let Some(chosen) = unscripted.filter(|chosen| !chosen.is_empty()) {
+                input type="hidden" name="chosen" value=(chosen);
+                input type="hidden" name="made_ms" value=(clock::now_ms());
+            }
             @if now.lanes.len() > 1 {
                 label { (visit.say("hand.lane")) " "
                     select name="lane" {

@@ -105,6 +105,27 @@ fn a_verdict_is_drawn_over_the_empty_lane_and_small_over_the_next_board() {
     }
 }
 
+/// A page without a script goes on saying which lane was chosen, but not for ever.
+#[test]
+fn without_a_script_a_lane_that_was_chosen_long_ago_gets_no_scan() {
+    let station = Station::private(2);
+    let serving = station.serve();
+    let here = serving.here();
+    let scan = |text: &str, more: &[(&str, &str)]| {
+        here.post("/scan", &[&[("text", text), ("typed", "true")], more].concat()).send().text()
+    };
+    let chosen = scan("HR:LANE:2", &[]);
+    for part in ["<option selected>2</option>", "name=\"chosen\" value=\"2\"", "name=\"made_ms\" value=\"1"] {
+        assert!(chosen.contains(part), "{part}: {chosen}");
+    }
+    let long_ago = [("chosen", "2"), ("made_ms", "0")];
+    let over = scan(SERIALS[0], &[&[("lane", "2")], &long_ago[..]].concat());
+    assert!(over.contains("lane 2 was chosen more than 15 s ago") && !over.contains("selected"), "{over}");
+    here.get("/").until("lane ready");
+    let by_hand = scan(SERIALS[0], &[&[("lane", "1")], &long_ago[..]].concat());
+    assert!(by_hand.contains(&format!("{} is tested in lane 1", SERIALS[0])), "{by_hand}");
+}
+
 #[test]
 fn a_verdict_is_drawn_with_what_its_lane_owes_beside_it() {
     let shift = format!("[shift]\ngood = \"{}\"\nbad = \"HR:MOCK\"\nhours = 8\n[tables]", SERIALS[0]);

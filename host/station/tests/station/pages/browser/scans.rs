@@ -40,7 +40,9 @@ fn answered(page: &mut Chromium, all: usize) {
 fn was_late(page: &mut Chromium) -> bool {
     let said = "document.getElementById('answer').textContent";
     let unsent = "document.getElementById('station').dataset.unsent";
-    page.evaluate(&format!("{said}.includes('this came too late') || {said} === {unsent}")) == true
+    let late =
+        ["this came too late", "was chosen more than"].map(|late| format!("{said}.includes('{late}')"));
+    page.evaluate(&format!("{} || {said} === {unsent}", late.join(" || "))) == true
 }
 
 /// An operator who scans, and reads the page after each scan.
@@ -181,6 +183,31 @@ fn half_scans_and_doubled_ones_are_refused_and_press_nothing() {
     page.scan("", "Enter", apart);
     page.wait("document.querySelector('.lane.pass') !== null");
     assert_eq!(station.query("SELECT count(*) || '' FROM run"), ["1"]);
+}
+
+/// After lunch the next person scans the label of the board in another lane.
+#[test]
+fn a_lane_that_was_chosen_too_long_ago_gets_no_scan_and_the_page_says_so() {
+    let order = "data = \"data\"\norder = \"scan-then-plug\"";
+    let station = Station::private(2).where_instead("station.toml", "data = \"data\"", order);
+    let serving = station.serve();
+    let mut page = Chromium::live(&serving);
+    let chosen = "document.getElementById('station').dataset.chosen";
+    assert_eq!(page.evaluate(chosen), "15000");
+    page.evaluate(&format!("{chosen} = 200"));
+    page.scan("HR:LANE:2", "Enter", Duration::ZERO);
+    let says = |text: &str| format!("document.getElementById('answer').textContent.includes('{text}')");
+    let is_over = says("Lane 2 is not chosen any more.");
+    page.wait(&format!("{is_over} && document.querySelector('.lane.armed') === null"));
+    assert_eq!(page.evaluate("document.getElementById('armed').textContent"), "");
+    page.scan(&serial(0), "Enter", Duration::ZERO);
+    page.wait(&says("lane 2 was chosen more than 15 s ago"));
+    page.evaluate(&format!("{chosen} = 600000"));
+    page.wait("document.querySelector('#lane-1.ready') !== null");
+    page.evaluate("document.querySelector('#lane-1 .name').click()");
+    page.scan(&serial(1), "Enter", Duration::ZERO);
+    page.wait("document.querySelector('#lane-1.pass') !== null");
+    assert_eq!(station.query("SELECT lane FROM run"), ["1"]);
 }
 
 /// With the keyboard's field open: into the field, by scanners of either kind, and outside it.
