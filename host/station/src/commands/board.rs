@@ -15,7 +15,7 @@ use serde_json::json;
 use super::beginning::{SettingsFile, Signal};
 use super::looking::{either, table, time};
 use super::plant::plant;
-use super::why::Why;
+use super::why::{Why, person};
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
@@ -86,8 +86,8 @@ struct Share {
     /// The one station that reaches it [default: every one does]
     #[arg(long, value_name = "NAME")]
     station: Option<String>,
-    /// Who says so
-    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
+    /// Your name, which the audit keeps
+    #[arg(long, value_name = "NAME", value_parser = person)]
     operator: String,
 }
 

@@ -8,7 +8,7 @@ use halfrow_program::number::counted;
 use super::beginning::SettingsFile;
 use super::looking::{either, table, time};
 use super::plant::plant;
-use super::why::Why;
+use super::why::{Why, person};
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::plan::Plan;
@@ -71,8 +71,8 @@ struct Add {
     /// How many
     #[arg(long, default_value_t = 1, value_parser = counted::<u32>(1, Some(10_000)))]
     count: u32,
-    /// Who wants it
-    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
+    /// Your name, which the audit keeps
+    #[arg(long, value_name = "NAME", value_parser = person)]
     operator: String,
 }
 

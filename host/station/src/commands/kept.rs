@@ -8,6 +8,7 @@ use halfrow_program::number::counted;
 use serde_json::json;
 
 use super::looking::Data;
+use super::why::person;
 use super::{Failure, document, print};
 use crate::clock;
 use crate::console;
@@ -86,8 +87,8 @@ pub(super) struct Prune {
     /// Remove the evidence of runs that ended longer ago, too
     #[arg(long, value_name = "DAYS", value_parser = counted::<u32>(1, None))]
     older_than: Option<u32>,
-    /// Who removes it
-    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
+    /// Your name, which the audit keeps
+    #[arg(long, value_name = "NAME", value_parser = person)]
     operator: String,
     /// Print JSON
     #[arg(long)]

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::why::{person, said};
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::store::{Change, Folder, RebindError, Store, is_device};
@@ -20,7 +21,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     serial: String,
     /// Why, in 500 characters at most
-    #[arg(long, value_parser = not_empty)]
+    #[arg(long, value_parser = said)]
     reason: String,
     /// The number of its FPGA, 16 hexadecimal digits [default: that of the board that is judged next]
     #[arg(long, value_name = "DEVICE", value_parser = device)]
@@ -28,14 +29,9 @@ pub(super) struct Arguments {
     /// Its product, where several have such a serial number
     #[arg(long)]
     product: Option<String>,
-    /// Who says so
-    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
+    /// Your name, which the audit keeps
+    #[arg(long, value_name = "NAME", value_parser = person)]
     operator: String,
-}
-
-fn not_empty(text: &str) -> Result<String, String> {
-    let text = text.trim();
-    if text.is_empty() { Err("say why; it is kept".to_owned()) } else { Ok(text.to_owned()) }
 }
 
 fn device(text: &str) -> Result<String, String> {

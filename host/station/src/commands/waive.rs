@@ -5,6 +5,7 @@ use halfrow::words::plain;
 
 use super::Failure;
 use super::looking::Data;
+use super::why::person;
 use crate::console;
 use crate::exit::Exit;
 use crate::store::{NoWaiver, Store};
@@ -22,8 +23,8 @@ pub(super) struct Arguments {
     /// Why, in 500 characters at most
     #[arg(long, value_name = "TEXT")]
     reason: String,
-    /// Who waives
-    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
+    /// Your name, which the audit keeps
+    #[arg(long, value_name = "NAME", value_parser = person)]
     operator: String,
 }
 

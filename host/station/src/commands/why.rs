@@ -8,13 +8,23 @@ pub(super) struct Why {
     /// Why
     #[arg(long, value_parser = said)]
     pub(super) reason: String,
-    /// Who says so
-    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
+    /// Your name, which the audit keeps
+    #[arg(long, value_name = "NAME", value_parser = person)]
     pub(super) operator: String,
 }
 
 /// A reason, which blanks are not.
-fn said(text: &str) -> Result<String, String> {
-    let reason = text.trim();
-    if reason.is_empty() { Err("say why in a few words".to_owned()) } else { Ok(reason.to_owned()) }
+pub(super) fn said(text: &str) -> Result<String, String> {
+    some(text, "say why in a few words")
+}
+
+/// The name of the person who acts. None is taken from the environment: `sudo -u halfrow` sets USER to a service's account.
+pub(super) fn person(text: &str) -> Result<String, String> {
+    some(text, "say who you are")
+}
+
+/// The text without blanks around it, or what is asked for in its place.
+fn some(text: &str, asked: &str) -> Result<String, String> {
+    let text = text.trim();
+    if text.is_empty() { Err(asked.to_owned()) } else { Ok(text.to_owned()) }
 }

@@ -132,7 +132,7 @@ fn what_prune_removes_is_a_document() {
     let said = document(&did(&["prune", "--json", "--data", &data, "--operator", "engel"]));
     assert_eq!(said["unnamed"], serde_json::json!({ "pieces": 1, "spools": 0, "bytes": 8 }));
     assert_eq!(said["old"], serde_json::json!({ "pieces": 0, "bytes": 0 }));
-    let nowhere = document(&did(&["prune", "--json", "--data", "/nowhere"]));
+    let nowhere = document(&did(&["prune", "--json", "--operator", "engel", "--data", "/nowhere"]));
     assert_eq!(
         (&nowhere["error"]["code"], &nowhere["command"]),
         (&"database-refuses".into(), &"prune".into())

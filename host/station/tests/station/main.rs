@@ -17,6 +17,7 @@ mod jobs;
 mod lanes;
 mod manual;
 mod metrics;
+mod named;
 mod pages;
 mod plans;
 mod plant;

@@ -13,13 +13,7 @@ use crate::held;
 
 /// Runs a command; returns its exit code, stdout and stderr.
 pub(crate) fn did(made: &impl AsRef<Path>, arguments: &[&str]) -> (i32, String, String) {
-    let output = Command::new(program())
-        .args(arguments)
-        .arg("--data")
-        .arg(made.as_ref())
-        .env("USER", "weber")
-        .output()
-        .unwrap();
+    let output = Command::new(program()).args(arguments).arg("--data").arg(made.as_ref()).output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
 }
@@ -157,11 +151,14 @@ fn what_is_counted_and_listed_can_be_of_one_station() {
 fn a_waiver_is_seen_by_everyone() {
     let made = made();
     let run = json(&made, &["history", "--verdict", "fail"])["runs"][0]["id"].as_str().unwrap().to_owned();
-    let (code, _, complained) = did(&made, &["waive", &run, "--reason", "it is"]);
+    let (code, _, complained) = did(&made, &["waive", &run, "--reason", "it is", "--operator", "weber"]);
     assert_eq!(code, 4, "this test writes: {complained}");
     let folder = made.closed();
-    assert!(said(&folder, &["waive", &run, "--reason", "used as it is"]).contains("waived by weber"));
-    assert_eq!(did(&folder, &["waive", &run, "--reason", "again"]).0, 2);
+    assert!(
+        said(&folder, &["waive", &run, "--reason", "used as it is", "--operator", "weber"])
+            .contains("waived by weber")
+    );
+    assert_eq!(did(&folder, &["waive", &run, "--reason", "again", "--operator", "weber"]).0, 2);
     assert!(said(&folder, &["history"]).contains("FAIL, waived"));
     assert!(said(&folder, &["unit", "S1"]).contains("by weber: used as it is"));
     assert_eq!(did(&folder, &["check"]).0, 0);
@@ -193,7 +190,7 @@ fn what_each_command_prints_is_as_its_schema_says() {
     made.run(&Run { started_ms: BEGIN_MS + HOUR_MS, ..Run::of("S5", End::Open) });
     let failed = json(&made, &["history", "--serial", "S5", "--verdict", "fail"])["runs"][0]["id"].clone();
     let folder = made.closed();
-    said(&folder, &["waive", failed.as_str().unwrap(), "--reason", "used as it is"]);
+    said(&folder, &["waive", failed.as_str().unwrap(), "--reason", "used as it is", "--operator", "weber"]);
     for (arguments, place) in [
         (&["history"][..], "/runs/0"),
         (&["history", "--limit", "1"], ""),

@@ -245,7 +245,7 @@ fn a_start_says_once_that_its_database_was_put_back() {
     backup(&made.folder(), &copy.path().join("copy")).unwrap();
     let kept = made.closed();
     let is_said = |data: &Path| {
-        let (code, _, said) = did(&data, &["prune"]);
+        let (code, _, said) = did(&data, &["prune", "--operator", "weber"]);
         assert_eq!(code, 0, "{said}");
         let is_said = said.contains("station.db was put back, or is another one");
         assert_eq!(is_said, said.contains("`halfrow-station check` says what it lacks"), "{said}");

@@ -159,7 +159,7 @@ fn a_copy_of_before_an_upgrade_is_not_written_over() {
 #[test]
 fn of_a_copy_that_was_not_made_nothing_is_left() {
     let data = left(1);
-    let call = "trap '' XFSZ; ulimit -f 64; exec \"$0\" prune --data \"$1\"";
+    let call = "trap '' XFSZ; ulimit -f 64; exec \"$0\" prune --operator weber --data \"$1\"";
     let did = Command::new("sh").args(["-c", call]).arg(program()).arg(data.path()).output().unwrap();
     let said = String::from_utf8(did.stderr).unwrap();
     assert_eq!(did.status.code(), Some(3), "{said}");
@@ -192,7 +192,7 @@ fn a_database_that_is_put_back_is_in_no_start_s_way_wherever_the_one_is_killed_t
         let inject = format!("inject=fsync,fdatasync:signal=KILL:when={number}");
         let mut strace = Command::new("strace");
         strace.args(["-f", "-qq", "-o", "/dev/null", "-e", &inject]).arg(program());
-        let did = strace.args(["prune", "--data"]).arg(data.path()).output().unwrap();
+        let did = strace.args(["prune", "--operator", "weber", "--data"]).arg(data.path()).output().unwrap();
         if did.status.code().is_some() {
             assert!(did.status.success(), "{did:?}");
             break;
@@ -234,7 +234,7 @@ fn a_backup_of_an_earlier_program_is_restored_into_a_folder_that_is_there() {
     assert_eq!((code, complained.as_str()), (0, ""), "{said}");
     assert_eq!(fs::read_to_string(data.path().join("station.lock")).unwrap(), "");
     is_true_of(data.path());
-    let (code, _, complained) = did(&data, &["prune"]);
+    let (code, _, complained) = did(&data, &["prune", "--operator", "weber"]);
     assert_eq!((code, complained.as_str()), (0, ""));
 }
 

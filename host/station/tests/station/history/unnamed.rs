@@ -253,7 +253,7 @@ fn runs_that_are_recorded_meanwhile_lose_nothing() {
         let pruning = scope.spawn(|| {
             while go_on() {
                 station.store().blobs().put(b"nobody's").unwrap();
-                let (code, said, complained) = did(&station.data(), &["prune"]);
+                let (code, said, complained) = did(&station.data(), &["prune", "--operator", "weber"]);
                 assert!([0, 4].contains(&code), "{complained}");
                 removals.fetch_add(usize::from(said.starts_with("1 piece ")), Ordering::Relaxed);
             }
@@ -282,10 +282,10 @@ fn the_command_says_what_it_removed() {
     evidence(&made.folder(), "nobody's", 25 * HOUR);
     spool(&made.folder(), &id(BEGIN_MS, 7), 25 * HOUR);
     let folder = made.closed();
-    let (code, said, _) = did(&folder, &["prune"]);
+    let (code, said, _) = did(&folder, &["prune", "--operator", "weber"]);
     let expected = "1 piece and 1 spool that no row names were removed, 11 bytes; every record is kept\n";
     assert_eq!((code, said.as_str()), (0, expected));
-    let (code, said, _) = did(&folder, &["prune", "--older-than", "1"]);
+    let (code, said, _) = did(&folder, &["prune", "--older-than", "1", "--operator", "weber"]);
     let expected = "1 piece of evidence was removed, 4 bytes; 0 pieces and 0 spools that no row names \
                     were removed, 0 bytes; every record is kept\n";
     assert_eq!((code, said.as_str()), (0, expected));

@@ -176,7 +176,11 @@ fn a_unit_is_shared_under_one_name() {
     let folder = tempfile::tempdir().unwrap();
     let mut command = Command::new(program());
     command.args(["board", "share", "shelf-3", "--kind", "mock", "--board", "mock", "--product", "CAM-T"]);
-    command.args(["--serial", "CAT00000", "--settings"]).arg(settings(&server, folder.path(), "12"));
+    command.args(["--serial", "CAT00000", "--operator", "engel", "--settings"]).arg(settings(
+        &server,
+        folder.path(),
+        "12",
+    ));
     let did: crate::common::Did = command.output().unwrap().into();
     assert_eq!(did.code, Some(2));
     assert!(did.complained.contains("CAT00000 is shared as the board shelf-9 already"), "{did:?}");

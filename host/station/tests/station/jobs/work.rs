@@ -266,7 +266,7 @@ impl Engineer {
     fn did(&self, arguments: &[&str]) -> Did {
         let mut command = Command::new(program());
         command.args(arguments).arg("--settings").arg(self.folder.path().join("station.toml"));
-        command.env("USER", "engel").output().unwrap().into()
+        command.output().unwrap().into()
     }
 
     /// The acts in the audit.
@@ -279,7 +279,9 @@ impl Engineer {
 fn jobs_are_added_changed_and_listed_by_commands_that_the_audit_keeps() {
     let engineer = Engineer::new();
     let plan = engineer.folder.path().join("plan.toml").display().to_string();
-    let add = |more: &[&str]| engineer.did(&[&["job", "add", "--plan", plan.as_str()], more].concat());
+    let add = |more: &[&str]| {
+        engineer.did(&[&["job", "add", "--operator", "engel", "--plan", plan.as_str()], more].concat())
+    };
     let added = add(&["--kind", "mock", "--count", "2", "--needs", "camera"]);
     let ids: Vec<_> = added.said.lines().map(str::to_owned).collect();
     assert_eq!(ids.len(), 2, "{added:?}");
@@ -292,14 +294,17 @@ fn jobs_are_added_changed_and_listed_by_commands_that_the_audit_keeps() {
     for wrong in wrong {
         assert_eq!(add(wrong).code, Some(2), "{wrong:?}");
     }
-    let cancel = ["job", "cancel", &ids[0], "--reason", "a mistake"];
+    let cancel = ["job", "cancel", &ids[0], "--reason", "a mistake", "--operator", "engel"];
     assert_eq!(engineer.did(&cancel).code, Some(0));
     assert_eq!(engineer.did(&cancel).code, Some(2));
     let listed: Value = serde_json::from_str(&engineer.did(&["job", "list", "--json"]).said).unwrap();
     let states: Vec<_> =
         listed.as_array().unwrap().iter().map(|job| job["state"].as_str().unwrap()).collect();
     assert_eq!(states, ["waiting", "dead"], "the newest first");
-    assert_eq!(engineer.did(&["job", "retry", &ids[0], "--reason", "no mistake"]).code, Some(0));
+    assert_eq!(
+        engineer.did(&["job", "retry", &ids[0], "--reason", "no mistake", "--operator", "engel"]).code,
+        Some(0)
+    );
     assert!(engineer.did(&["job", "list", "--state", "waiting"]).said.contains("any mock"));
     assert_eq!(engineer.acts(), ["add job", "cancel job", "retry job"]);
 }
@@ -307,8 +312,19 @@ fn jobs_are_added_changed_and_listed_by_commands_that_the_audit_keeps() {
 #[test]
 fn boards_are_shared_changed_and_listed_by_commands_that_the_audit_keeps() {
     let engineer = Engineer::new();
-    let share =
-        |board: &str| engineer.did(&["board", "share", "shelf-1", "--kind", "mock", "--board", board]);
+    let share = |board: &str| {
+        engineer.did(&[
+            "board",
+            "share",
+            "shelf-1",
+            "--operator",
+            "engel",
+            "--kind",
+            "mock",
+            "--board",
+            board,
+        ])
+    };
     assert_eq!(share("mock").said, "shelf-1 is shared\n");
     for wrong in ["nonsense:1", "tcp:127.0.0.1:99999"] {
         assert_eq!(share(wrong).code, Some(2), "{wrong}");
@@ -317,13 +333,19 @@ fn boards_are_shared_changed_and_listed_by_commands_that_the_audit_keeps() {
     let changes =
         [("out", "shelf-1 is out\n"), ("in", "shelf-1 is in\n"), ("unshare", "shelf-1 is unshared\n")];
     for blank in ["", " "] {
-        let did = engineer.did(&["board", "out", "shelf-1", "--reason", blank]);
+        let did = engineer.did(&["board", "out", "shelf-1", "--reason", blank, "--operator", "engel"]);
         assert_eq!((did.code, did.complained.contains("say why in a few words")), (Some(2), true), "{did:?}");
     }
     for (change, said) in changes {
-        assert_eq!(engineer.did(&["board", change, "shelf-1", "--reason", "why not"]).said, said);
+        assert_eq!(
+            engineer.did(&["board", change, "shelf-1", "--reason", "why not", "--operator", "engel"]).said,
+            said
+        );
     }
-    assert_eq!(engineer.did(&["board", "out", "shelf-1", "--reason", "why not"]).code, Some(2));
+    assert_eq!(
+        engineer.did(&["board", "out", "shelf-1", "--reason", "why not", "--operator", "engel"]).code,
+        Some(2)
+    );
     assert!(engineer.did(&["board", "list"]).said.contains("no board is shared"));
     assert_eq!(engineer.acts(), ["share board", "board out", "board in", "unshare board"]);
 }

@@ -80,7 +80,18 @@ impl Published {
 
     fn back(&self, version: &str) -> Did {
         let key = self.path("engel.key");
-        self.did(&["plan", "back", "CAM-T/quick", version, "--key", &key, "--reason", "it was better"])
+        self.did(&[
+            "plan",
+            "back",
+            "CAM-T/quick",
+            version,
+            "--key",
+            &key,
+            "--reason",
+            "it was better",
+            "--operator",
+            "engel",
+        ])
     }
 
     pub(super) fn fetch(&self) -> Did {
@@ -112,7 +123,18 @@ fn a_name_that_a_terminal_would_obey_is_spelt_out() {
     assert_eq!(made.publish("engel.key").said, format!("{told} holds, as number 1\n"));
     assert_eq!(made.fetch().said, format!("{told}, number 1, {IS_NEW}\n"));
     let (name, key) = ("CAM-T/q\u{1b}[8m\nPASS", made.path("engel.key"));
-    let back = made.did(&["plan", "back", name, "1\u{7}", "--key", &key, "--reason", "as it was"]);
+    let back = made.did(&[
+        "plan",
+        "back",
+        name,
+        "1\u{7}",
+        "--key",
+        &key,
+        "--reason",
+        "as it was",
+        "--operator",
+        "engel",
+    ]);
     assert_eq!(back.said, format!("{told} holds, as number 2\n"));
 }
 

@@ -54,7 +54,11 @@ fn a_plant_that_is_put_back_has_all_again_when_its_stations_send_it_again() {
     assert_eq!(did(folder.path(), &server, &again).code, Some(3));
     database.execute_batch("DROP TRIGGER full").unwrap();
     drop(database);
-    let unknown = did(folder.path(), &server, &["outbox", "again", "mes", "--reason", "it broke"]);
+    let unknown = did(
+        folder.path(),
+        &server,
+        &["outbox", "again", "mes", "--reason", "it broke", "--operator", "engel"],
+    );
     assert!(unknown.code == Some(2) && unknown.complained.contains("no sink mes"), "{unknown:?}");
     let sent = did(folder.path(), &server, &["outbox", "send", "--any-disk"]);
     assert_eq!(sent.code, Some(3), "{sent:?}");

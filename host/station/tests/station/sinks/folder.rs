@@ -97,7 +97,8 @@ fn a_folder_that_is_away_is_waited_for_and_another_file_is_never_written_over() 
     assert!(listed.said.contains("nothing was changed: keep both"), "{listed:?}");
     // A person corrects it, and releases everything that waits for this sink.
     fs::remove_file(&other).unwrap();
-    let release = ["outbox", "release", "--sink", "share", "--reason", "it was a trial"];
+    let release =
+        ["outbox", "release", "--sink", "share", "--reason", "it was a trial", "--operator", "engel"];
     assert_eq!(did(folder.path(), &sink, &release).code, Some(0));
     assert_eq!(did(folder.path(), &sink, &release).code, Some(2));
     assert!(send(folder.path(), &sink).said.contains(" sent, 0 not"));

@@ -174,7 +174,7 @@ fn what_a_server_answers_says_who_waits_for_whom() {
     let listed = did(folder.path(), &sink, &["outbox", "list"]);
     assert!(listed.said.contains("(the serial number is unknown here)"), "{listed:?}");
     server.answers("204 ");
-    let release = ["outbox", "release", "--sink", "mes", "--reason", "known now"];
+    let release = ["outbox", "release", "--sink", "mes", "--reason", "known now", "--operator", "engel"];
     assert_eq!(did(folder.path(), &sink, &release).said, "8 of mes are tried again\n");
     // The release has its line in the audit.
     let sent = send(folder.path(), &sink);
