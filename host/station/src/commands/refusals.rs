@@ -12,6 +12,8 @@ use super::outbox::{NoSink, NotDead, SinkInUse, SinkUnknown};
 use super::plant::{NoPlant, NoStation};
 use super::publish::PublishError;
 use super::run::NoMock;
+use super::token::NoTokens;
+use super::user::NoUsers;
 use super::work::NoWork;
 
 codes::codes! {
@@ -39,6 +41,10 @@ codes::codes! {
     NotDead [what] => "outbox-entry-not-dead"
     ;
     NoSink => "settings-without-sink"
+    ;
+    NoUsers => "settings-without-users"
+    ;
+    NoTokens => "settings-without-tokens"
     ;
     NoWork => "settings-without-work"
     ;

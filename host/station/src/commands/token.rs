@@ -38,11 +38,15 @@ enum What {
     List,
 }
 
+/// The settings do not say where it is kept which machines may read.
+#[derive(Debug, thiserror::Error)]
+#[error("the settings name no file of tokens; write tokens = \"tokens.toml\" into [access]")]
+pub(super) struct NoTokens;
+
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
     let settings = settings.load_without_lanes()?;
-    let no_file = "the settings name no file of tokens; write tokens = \"tokens.toml\" into [access]";
     let file = settings.access.as_ref().and_then(|access| access.tokens.as_ref());
-    let file = file.ok_or_else(|| Failure::call(anyhow::anyhow!(no_file)))?;
+    let file = file.ok_or_else(|| Failure::call(NoTokens))?;
     match what {
         What::Add { name, scope } => {
             std::fs::create_dir_all(&settings.data).map_err(Failure::call)?;

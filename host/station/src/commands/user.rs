@@ -47,10 +47,14 @@ enum What {
     List,
 }
 
+/// The settings do not say where it is kept who may act.
+#[derive(Debug, thiserror::Error)]
+#[error("the settings name no file of users; write [access] with users = \"users.toml\"")]
+pub(super) struct NoUsers;
+
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
     let settings = settings.load_without_lanes()?;
-    let no_file = "the settings name no file of users; write [access] with users = \"users.toml\"";
-    let access = settings.access.as_ref().ok_or_else(|| Failure::call(anyhow::anyhow!(no_file)))?;
+    let access = settings.access.as_ref().ok_or_else(|| Failure::call(NoUsers))?;
     match what {
         What::Add { name, role } => {
             std::fs::create_dir_all(&settings.data).map_err(Failure::call)?;

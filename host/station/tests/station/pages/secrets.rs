@@ -35,3 +35,16 @@ fn a_file_of_tokens_that_cannot_be_reached_is_no_empty_one() {
     let said = String::from_utf8_lossy(&listed.stderr);
     assert!(!listed.status.success() && said.contains("cannot be read or written"), "{listed:?}");
 }
+
+#[test]
+fn a_station_without_access_says_by_a_code_that_it_has_no_users_and_no_tokens() {
+    let station = Station::private(1);
+    for (did, code) in [
+        (station.user(&["list"], ""), "settings-without-users"),
+        (station.token(&["list"]), "settings-without-tokens"),
+    ] {
+        let said = String::from_utf8(did.stderr).unwrap();
+        assert_eq!(did.status.code(), Some(2), "{said}");
+        assert!(said.contains(&format!("halfrow explain {code}")), "{said}");
+    }
+}
