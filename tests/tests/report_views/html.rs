@@ -114,6 +114,20 @@ fn each_figure_stands_there_whatever_others_the_run_has() {
     assert!(!page(&of_mock, &[]).contains("Figures"));
 }
 
+/// The headline of a FAIL counts the samples that differ; other headlines do not.
+#[test]
+fn the_banner_says_each_figure_once() {
+    let banner = |report: &Report| page(report, &[]).split_once("</header>").unwrap().0.to_owned();
+    let (fail, _) = made::fail();
+    let differing = banner(&fail);
+    assert!(differing.contains("5 of 2,076,160 samples differ, in 1 of 2 frames"), "{differing}");
+    let below = differing.split_once("<p class=\"facts\">").unwrap().1;
+    assert!(below.starts_with("latency 972 = 960 + 12 pixel clocks, "), "{below}");
+    assert!(!below.contains(" different") && !below.contains("frames"), "{below}");
+    let gone = Report { finding: Finding::TablesUnused {}, ..made::fail().0 };
+    assert!(banner(&gone).contains("<p class=\"facts\">2 frames, 5 of "), "{}", banner(&gone));
+}
+
 #[test]
 fn nothing_is_loaded_from_anywhere() {
     let (report, evidence) = made::fail();

@@ -69,7 +69,6 @@ pub fn document(title: &str, body: &Markup) -> Markup {
 
 /// The verdict and what it rests on: for PASS only the figures, otherwise the headline first.
 fn banner(report: &Report) -> Markup {
-    let facts = wording::facts(report);
     html! {
         header.(report.verdict().to_string().to_lowercase()) {
             div {
@@ -77,10 +76,10 @@ fn banner(report: &Report) -> Markup {
                 p.kind { (wording::remark(&report.board)) }
             }
             @if report.verdict() == Verdict::Pass {
-                h1 { (facts) }
+                h1 { (wording::facts(report)) }
             } @else {
                 h1 { (plain(&report.headline())) }
-                p.facts { (facts) }
+                p.facts { (wording::facts_below(report)) }
             }
             p.facts {
                 (unit(report)) " · " (plain(&report.run.started))

@@ -140,17 +140,28 @@ pub fn not_exercised(report: &Report) -> Option<String> {
 #[must_use]
 pub fn facts(report: &Report) -> String {
     let FrameTotals { frames, samples, differences, .. } = FrameTotals::of(&report.frames);
-    let mut facts = vec![count(frames, "frame")];
-    facts.push(match differences {
+    let samples = match differences {
         _ if samples == 0 => "nothing judged".to_owned(),
         0 => format!("{} equal", count(samples, "sample")),
         _ => format!("{} of {} different", grouped(differences), count(samples, "sample")),
-    });
-    facts.extend(report.latency.map(|latency| format!("latency {}", measured(&latency))));
-    facts.extend(at_speed(report));
-    facts.extend(report.within.as_ref().map(within::left_out));
-    facts.push(format!("{:.1} s", report.run.seconds));
-    facts.join(", ")
+    };
+    format!("{}, {samples}, {}", count(frames, "frame"), further_facts(report))
+}
+
+/// What stands below the headline of a FAIL or an ERROR: the same, without what the headline says of frames and samples.
+pub(super) fn facts_below(report: &Report) -> String {
+    match report.finding {
+        Finding::SamplesDiffer { .. } => further_facts(report),
+        _ => facts(report),
+    }
+}
+
+/// The figures beside how many frames and samples were judged.
+fn further_facts(report: &Report) -> String {
+    let latency = report.latency.map(|latency| format!("latency {}", measured(&latency)));
+    let further = [latency, at_speed(report), report.within.as_ref().map(within::left_out)];
+    let seconds = format!("{:.1} s", report.run.seconds);
+    further.into_iter().flatten().chain([seconds]).collect::<Vec<_>>().join(", ")
 }
 
 /// What was judged at the full pixel clock; none where the run did not get that far.
