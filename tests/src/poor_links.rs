@@ -18,7 +18,7 @@ use crate::served::Served;
 use crate::system::System;
 
 pub use draw::{draw, real, real_and_short, virtual_};
-pub use kept::Kept;
+pub use kept::SavedResults;
 
 /// How many runs in real time go on at once: they mostly wait.
 const AT_ONCE: usize = 48;
@@ -82,7 +82,7 @@ pub struct PoorLinks(pub Vec<Run>);
 
 /// Judges the boards of all `cases`, each within `bound` of wall-clock time. Those that `kept` knows are not judged again.
 #[must_use]
-pub fn run(cases: &[Case], bound: Duration, kept: &Kept) -> PoorLinks {
+pub fn run(cases: &[Case], bound: Duration, kept: &SavedResults) -> PoorLinks {
     let judge = |case: &Case| {
         let (came, headline) = kept.of(case.index).unwrap_or_else(|| {
             let ended = case.judge_within(bound);

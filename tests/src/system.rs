@@ -5,7 +5,7 @@ use std::time::Duration;
 use halfrow::link::{self, Candidate};
 use halfrow::progress::Silent;
 use halfrow::result::{CheckName, Outcome, Report};
-use halfrow::run::{AtSpeed, Build, Circumstances, Draws, Part, Plan, RunOptions, Selection, Vary, verify};
+use halfrow::run::{AtSpeed, Build, Part, Plan, Provenance, RunOptions, Selection, SessionIds, Vary, verify};
 use halfrow::target::Target;
 use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, Kernel, TableSet};
 
@@ -133,8 +133,8 @@ pub fn judge_by_plan(plan: &Plan, candidate: Candidate) -> Report {
 
 fn judged(plan: &Plan, reconnect: Option<Duration>, candidate: Candidate) -> Report {
     // Fixed, so that every run sends the same packets.
-    let draws = Draws { nonce: 0, host: 0, sequence: 0 };
-    let circumstances = Circumstances { draws, ..Circumstances::default() };
+    let draws = SessionIds { nonce: 0, host: 0, sequence: 0 };
+    let circumstances = Provenance { draws, ..Provenance::default() };
     let options = RunOptions { reconnect, circumstances, ..RunOptions::default() };
     verify(plan, candidate, &options, &Silent).unwrap().report
 }

@@ -22,9 +22,9 @@ pub use qemu::{QEMU_CHIP, QemuBoard, QemuChipOut};
 
 /// How many bytes a board has sent to its host.
 #[derive(Clone, Debug, Default)]
-pub struct Said(Arc<AtomicU64>);
+pub struct BytesSent(Arc<AtomicU64>);
 
-impl Said {
+impl BytesSent {
     /// More than the handshake, tables and echoes of a small run: rows flow.
     const ROWS: u64 = 100_000;
 
@@ -40,7 +40,7 @@ impl Said {
 /// A mock board at a chip's pins. Its wire's clock follows real time.
 struct MockAtChip {
     pipe: Pipe<Board>,
-    said: Said,
+    said: BytesSent,
 }
 
 impl MockAtChip {
@@ -49,7 +49,7 @@ impl MockAtChip {
         let target: Target = format!("mock{options}").parse().unwrap();
         let options: Vec<_> =
             target.options.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();
-        Self { pipe: halfrow_mock::connect(&options).unwrap(), said: Said::default() }
+        Self { pipe: halfrow_mock::connect(&options).unwrap(), said: BytesSent::default() }
     }
 }
 
@@ -98,7 +98,7 @@ pub fn plug(options: &str) -> Plugged {
 /// # Panics
 /// Like [`plug`].
 #[must_use]
-pub fn plug_and_watch(options: &str) -> (Plugged, Said) {
+pub fn plug_and_watch(options: &str) -> (Plugged, BytesSent) {
     let board = MockAtChip::new(options);
     let said = board.said.clone();
     let chip = Chip::new(ChipOptions::default(), Box::new(board));

@@ -11,7 +11,7 @@ use halfrow::result::{Report, SoakLength, SoakReport};
 use halfrow::run::{AtSpeed, Plan, RunOptions, verify};
 use halfrow::verdict::Verdict;
 use halfrow_tests::campaign::{self, Found, Kind};
-use halfrow_tests::poor_links::{self, Case, Kept, Way};
+use halfrow_tests::poor_links::{self, Case, SavedResults, Way};
 use halfrow_tests::program::Folder;
 use halfrow_tests::proxy::Suffers;
 use halfrow_tests::system::{System, streamed};
@@ -36,7 +36,7 @@ const SOON: Duration = Duration::from_secs(300);
 /// Judges the boards of all `cases`, prints the verdicts, and allows no wrong one.
 #[track_caller]
 #[allow(clippy::print_stdout)]
-fn no_verdict_is_false(cases: &[Case], kept: &Kept) {
+fn no_verdict_is_false(cases: &[Case], kept: &SavedResults) {
     let links = poor_links::run(cases, SOON, kept);
     println!("{links}");
     let wrong: Vec<_> = links.false_verdicts().chain(links.hangs()).chain(links.needless_errors()).collect();
@@ -70,7 +70,7 @@ fn no_poor_link_gives_a_false_verdict() {
     // On a board that swallows rows a run waits some ten seconds, which cost nothing on a virtual clock.
     let is_slow = |case: &Case| !matches!(case.way, Way::Virtual(_)) && case.broken.contains("lost-row");
     cases.retain(|case| !is_slow(case));
-    no_verdict_is_false(&cases, &Kept::nothing());
+    no_verdict_is_false(&cases, &SavedResults::nothing());
 }
 
 /// A link that recomputes CRCs is the one thing that a judge cannot see through. The campaign must report it, or it reports
@@ -82,10 +82,10 @@ fn a_campaign_reports_false_verdicts_and_hangs() {
         case.way = Way::Tcp { to_board: Suffers::Nothing, to_host: Suffers::Forges };
         case.broken.clear();
     }
-    let forged = poor_links::run(&cases, SOON, &Kept::nothing());
+    let forged = poor_links::run(&cases, SOON, &SavedResults::nothing());
     assert_eq!((forged.false_verdicts().count(), forged.hangs().count()), (4, 0), "{forged}");
     assert!(forged.to_string().contains("false FAIL: 4 of 4"), "{forged}");
-    let given_no_time = poor_links::run(&cases, Duration::ZERO, &Kept::nothing());
+    let given_no_time = poor_links::run(&cases, Duration::ZERO, &SavedResults::nothing());
     assert_eq!(given_no_time.hangs().count(), 4);
 }
 
@@ -94,18 +94,18 @@ fn a_campaign_goes_on_where_it_stopped() {
     let folder = Folder::new();
     let file = folder.path().join("kept").join("runs.jsonl");
     let cases = poor_links::draw(SEED, 0..6, poor_links::virtual_);
-    let half = poor_links::run(&cases[..3], SOON, &Kept::in_file(&file));
+    let half = poor_links::run(&cases[..3], SOON, &SavedResults::in_file(&file));
     // As if killed in the middle of a line.
     let mut text = std::fs::read_to_string(&file).unwrap();
     text.push_str("{\"index\": 3, \"came\": \"FA");
     std::fs::write(&file, &text).unwrap();
-    let kept = Kept::in_file(&file);
+    let kept = SavedResults::in_file(&file);
     assert_eq!((kept.len(), half.0.len()), (3, 3));
     // Known results are not judged again: with no time at all, only the others do not end.
     let rest = poor_links::run(&cases, Duration::ZERO, &kept);
     assert_eq!(rest.hangs().map(|run| run.case.index).collect::<Vec<_>>(), [3, 4, 5]);
     // Runs that did not end are not kept, and are judged again.
-    assert_eq!(Kept::in_file(&file).len(), 3);
+    assert_eq!(SavedResults::in_file(&file).len(), 3);
 }
 
 #[test]
@@ -117,7 +117,7 @@ fn every_one_of_a_thousand_faults_is_found_at_the_paper_s_size() {
 #[test]
 #[ignore = "minutes long; scripts/soak runs it"]
 fn none_of_twenty_thousand_poor_links_gives_a_false_verdict() {
-    let kept = Kept::of_campaign("campaign", SEED);
+    let kept = SavedResults::of_campaign("campaign", SEED);
     println!("{} runs are known from earlier", kept.len());
     let mut cases = poor_links::draw(SEED, 0..19_000, poor_links::virtual_);
     cases.extend(poor_links::draw(SEED, 19_000..20_000, poor_links::real));

@@ -19,7 +19,7 @@ const PATIENCE: u32 = 400_000;
 
 /// How a board with a fault was judged.
 #[derive(Serialize)]
-pub(crate) struct Judged {
+pub(crate) struct FaultVerdict {
     fault: u16,
     verdict: Verdict,
     /// The code of the verdict's finding.
@@ -41,7 +41,7 @@ pub(crate) struct Judged {
 }
 
 /// Judges the board with this fault, 0 for none, by `plan` and, if that finds the fault, by parts of it.
-pub(crate) fn judge(plan: &Plan, board: &mut FaultyBoard, fault: u16) -> Result<Judged> {
+pub(crate) fn judge(plan: &Plan, board: &mut FaultyBoard, fault: u16) -> Result<FaultVerdict> {
     let whole = report(plan, board, fault)?;
     let mut by = |selection: Selection, is_asked: bool| {
         let plan = Plan { parts: Some(selection), ..plan.clone() };
@@ -53,7 +53,7 @@ pub(crate) fn judge(plan: &Plan, board: &mut FaultyBoard, fault: u16) -> Result<
     let at_speed = by(Selection::all([Part::AtSpeed]), is_asked)?.is_some_and(|part| is_found(&part));
     let corners = by(Selection::all([Part::Corners]), is_asked)?.is_some_and(|part| is_in_corner(&part));
     let rules = by(Selection::all([Part::Rules]), is_asked)?.is_some_and(|part| is_found(&part));
-    Ok(Judged {
+    Ok(FaultVerdict {
         fault,
         verdict: whole.verdict(),
         finding: whole.finding.code(),

@@ -24,13 +24,13 @@ pub(crate) fn for_stderr(quiet: bool) -> Box<dyn Progress> {
 }
 
 /// Shows what another program prints while it runs: its last line on a terminal, every line elsewhere, or nothing.
-pub(crate) enum Told {
+pub(crate) enum ChildOutput {
     Nothing,
     Lines,
     Last(ProgressBar),
 }
 
-impl Told {
+impl ChildOutput {
     /// What suits stderr.
     #[must_use]
     pub(crate) fn on_stderr(quiet: bool) -> Self {

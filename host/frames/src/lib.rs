@@ -50,7 +50,7 @@ pub use raw::{RawGeometry, RawLayout, UnknownLayout};
 pub use rows::{FrameShape, RowReader};
 pub use scene::Scene;
 pub use size::MAX_SIDE;
-pub use turned::lying;
+pub use turned::landscape;
 
 /// What a file does not say about its samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

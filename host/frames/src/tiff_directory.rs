@@ -66,7 +66,7 @@ impl FilterArray {
 
 /// What a TIFF or DNG says about its picture, apart from its coding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Told {
+pub(super) struct PictureTags {
     /// Its columns and rows, as stored in the file.
     pub(super) size: (usize, usize),
     /// Whether each pixel has red, green and blue.
@@ -83,7 +83,7 @@ pub(super) struct Told {
 ///
 /// # Errors
 /// [`DecodeError`] that names what is not accepted, or the byte where the directory breaks off.
-pub(super) fn check(bytes: &[u8]) -> Result<Told, DecodeError> {
+pub(super) fn check(bytes: &[u8]) -> Result<PictureTags, DecodeError> {
     let tags = Tags::read(bytes)?;
     let one = |tag, otherwise| tags.value(tag).unwrap_or(otherwise);
     let (width, height) = size::checked(one(WIDTH, 0).into(), one(HEIGHT, 0).into())?;
@@ -109,7 +109,7 @@ pub(super) fn check(bytes: &[u8]) -> Result<Told, DecodeError> {
     let samples = width * height * if channels == 1 { 1 } else { 3 };
     size::plausible(bytes.len(), samples * if bits == 8 { 1 } else { 2 })?;
     let (size, is_coloured) = ((width, height), channels > 1);
-    Ok(Told { size, is_coloured, array, orientation: Orientation::of_tag(one(Orientation::TAG, 1)) })
+    Ok(PictureTags { size, is_coloured, array, orientation: Orientation::of_tag(one(Orientation::TAG, 1)) })
 }
 
 fn no_bayer_pattern() -> DecodeError {

@@ -4,7 +4,7 @@ use super::preview::RgbImage;
 
 /// `image`, turned a quarter clockwise if it is higher than wide.
 #[must_use]
-pub fn lying(image: RgbImage) -> RgbImage {
+pub fn landscape(image: RgbImage) -> RgbImage {
     if image.height > image.width { turned_clockwise(&image) } else { image }
 }
 
@@ -29,7 +29,7 @@ mod tests {
     fn a_standing_picture_is_turned_clockwise() {
         let grey = |values: &[u8]| values.iter().flat_map(|&value| [value; 3]).collect();
         let standing = RgbImage { width: 2, height: 3, data: grey(&[1, 2, 3, 4, 5, 6]) };
-        let lying = RgbImage { width: 3, height: 2, data: grey(&[5, 3, 1, 6, 4, 2]) };
-        assert_eq!(turned_clockwise(&standing), lying);
+        let landscape = RgbImage { width: 3, height: 2, data: grey(&[5, 3, 1, 6, 4, 2]) };
+        assert_eq!(turned_clockwise(&standing), landscape);
     }
 }

@@ -1,6 +1,6 @@
 //! Asks a device whether it is a board. This sends a greeting to it, whatever the device is.
 
-use crate::board::{Board, BoardError, Capabilities, Heard, OpenOptions};
+use crate::board::{Board, BoardError, Capabilities, OpenOptions, Received};
 use crate::link::discovery::Answer;
 use crate::link::{self, Class, OpenError};
 use crate::result::Problem;
@@ -20,8 +20,10 @@ pub fn probe(target: &Target) -> Answer {
     match greeted.map_err(BoardError::from) {
         Ok(Capabilities { name, datapath, .. }) => Answer::Board { name, datapath },
         Err(BoardError::Held { .. }) => Answer::Held,
-        Err(BoardError::NoAnswer { heard: Heard { bytes: 0, .. }, .. }) => Answer::Silent,
-        Err(BoardError::NoAnswer { heard: Heard { packets: 0, bytes, .. }, .. }) => Answer::Babble { bytes },
+        Err(BoardError::NoAnswer { heard: Received { bytes: 0, .. }, .. }) => Answer::Silent,
+        Err(BoardError::NoAnswer { heard: Received { packets: 0, bytes, .. }, .. }) => {
+            Answer::Babble { bytes }
+        }
         Err(error) if error.cause() == Cause::Busy => Answer::Busy,
         Err(error) if error.shows_device() || error.is_answer() => {
             Answer::Foreign { reason: Problem::of(&error).sentence() }

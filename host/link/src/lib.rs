@@ -8,6 +8,7 @@ compile_error!("halfrow-link is for Linux alone; docs/portable.md says what work
 
 mod candidate;
 mod class;
+mod closed_link;
 pub mod descriptor;
 pub mod discovery;
 mod error;
@@ -19,7 +20,6 @@ mod options;
 mod recording;
 mod replay;
 mod serial;
-mod severed;
 #[cfg(feature = "sim")]
 mod simulated;
 mod sysfs;
@@ -32,6 +32,7 @@ use std::time::Duration;
 
 pub use candidate::{Candidate, Reopener};
 pub use class::Class;
+pub use closed_link::ClosedLink;
 pub use error::OpenError;
 pub use line_errors::LineErrors;
 pub use open::{check, fault, open, recording, recording_file, replay};
@@ -39,7 +40,6 @@ pub use recording::{Lost, Recorder, Recording, RecordingError, RecordingFile};
 pub(crate) use replay::ReplayLink;
 pub use serial::{Holder, SerialError, holders};
 pub(crate) use serial::{SerialLink, how_to_get_access};
-pub use severed::Severed;
 pub use sysfs::UsbDevice;
 pub(crate) use sysfs::usb_device;
 pub use target::{BoardKind, Target, TargetError};

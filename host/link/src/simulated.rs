@@ -16,7 +16,7 @@ const SIMULATED: &str = "the simulated board";
 const SEED: u32 = 1;
 
 /// What a target asks for.
-struct Asked<'a> {
+struct SimOptions<'a> {
     front: Front,
     setup: PipeSetup,
     paced: bool,
@@ -28,7 +28,7 @@ pub(super) fn check_simulated(target: &Target) -> Result<(), OpenError> {
     asked(target).map(drop)
 }
 
-fn asked(target: &Target) -> Result<Asked<'_>, OpenError> {
+fn asked(target: &Target) -> Result<SimOptions<'_>, OpenError> {
     let front = match target.address.as_deref() {
         None => Front::Bytes,
         Some("uart") => Front::Uart,
@@ -39,11 +39,11 @@ fn asked(target: &Target) -> Result<Asked<'_>, OpenError> {
     let trace = options.iter().position(|(key, _)| *key == "trace").map(|place| options.remove(place).1);
     let setup =
         PipeSetup::from_options(&options).map_err(|source| wrong_options(SIMULATED, target, source))?;
-    Ok(Asked { front, setup, paced, trace })
+    Ok(SimOptions { front, setup, paced, trace })
 }
 
 pub(super) fn open_simulated(target: &Target) -> Result<Box<dyn Link>, OpenError> {
-    let Asked { front, setup, paced, trace } = asked(target)?;
+    let SimOptions { front, setup, paced, trace } = asked(target)?;
     let mut board = Board::new(front, SEED);
     if let Some(file) = trace {
         board.trace(Path::new(file))?;

@@ -7,7 +7,7 @@ use halfrow_protocol::message::{
 
 use crate::Boards;
 use crate::at_speed::{FRAME, ONE, ROWS, ready};
-use crate::bench::{Bench, Heard, wire};
+use crate::bench::{Bench, ReceivedPacket, wire};
 use crate::frames::{configuration, row, samples_of};
 use crate::golden_rows::HERMITE;
 use crate::material::{GOLDEN_FACTOR, UNSTRETCHED, hermite};
@@ -17,7 +17,7 @@ use crate::uploads::{TableSet, span, write};
 const APPENDED: [u8; 8] = [1, 0, 0, 0, 1, 0, 0, 0];
 
 /// Sends a request with bytes after its fields; it must be carried out.
-fn longer(bench: &mut Bench, request: &Request<'_>) -> Heard {
+fn longer(bench: &mut Bench, request: &Request<'_>) -> ReceivedPacket {
     let header = bench.header(request.kind().code());
     let mut payload = Vec::new();
     request.write(&mut payload);
@@ -51,7 +51,7 @@ pub(crate) fn requests_may_carry_fields_of_a_later_version(on: &dyn Boards) {
 }
 
 /// Sends the golden row with bytes after its samples, and returns what comes back.
-fn long_row(bench: &mut Bench) -> Heard {
+fn long_row(bench: &mut Bench) -> ReceivedPacket {
     let row = row(1, 0);
     let mut payload = Vec::new();
     RowIn::write_samples(&row.place, &row.samples, &mut payload);

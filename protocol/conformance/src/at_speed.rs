@@ -84,7 +84,7 @@ pub fn activate(bench: &mut Bench, configuration: &Configuration, frame: u16) {
 
 /// A board's answer to RECORDS.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Told {
+pub struct RecordsReply {
     /// The burst.
     pub burst: u32,
     /// How far it has come.
@@ -95,15 +95,15 @@ pub struct Told {
 
 impl Bench {
     /// The records from a frame on. The board drops those before it.
-    pub fn records(&mut self, from: u32) -> Told {
+    pub fn records(&mut self, from: u32) -> RecordsReply {
         let answer = self.done(&Request::Records { from });
         let Reply::Records(records) = answer.reply() else { panic!("{answer:?}") };
         assert_eq!(records.from, from);
-        Told { burst: records.burst, state: records.state, records: records.records().collect() }
+        RecordsReply { burst: records.burst, state: records.state, records: records.records().collect() }
     }
 
     /// Like [`Self::records`], asked until `enough` holds for the answer.
-    pub fn records_when(&mut self, from: u32, enough: impl Fn(&Told) -> bool) -> Told {
+    pub fn records_when(&mut self, from: u32, enough: impl Fn(&RecordsReply) -> bool) -> RecordsReply {
         for _ in 0..3000 {
             let told = self.records(from);
             if enough(&told) {

@@ -13,14 +13,14 @@ pub const HELLO: Hello =
 
 /// A packet that came from the board.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Heard {
+pub struct ReceivedPacket {
     /// Its header.
     pub header: Header,
     /// Its payload.
     pub payload: Vec<u8>,
 }
 
-impl Heard {
+impl ReceivedPacket {
     /// The message that it carries.
     #[must_use]
     pub fn reply(&self) -> Reply<'_> {
@@ -45,7 +45,7 @@ impl Heard {
 }
 
 /// Row sequence numbers of packets that must all be rows.
-pub fn rows_of(heard: &[Heard]) -> Vec<u32> {
+pub fn rows_of(heard: &[ReceivedPacket]) -> Vec<u32> {
     heard.iter().map(|packet| packet.row().place.row_sequence).collect()
 }
 
@@ -84,13 +84,13 @@ impl Bench {
     }
 
     /// Hands bytes to the board and returns what it sends, which must be whole packets.
-    pub fn receive(&mut self, bytes: &[u8]) -> Vec<Heard> {
+    pub fn receive(&mut self, bytes: &[u8]) -> Vec<ReceivedPacket> {
         let outgoing = self.board.answer(bytes, self.now);
         assert!(outgoing.is_empty() || outgoing.starts_with(&[0]) && outgoing.ends_with(&[0]));
         let (mut decoder, mut rest, mut heard) = (Decoder::new(), outgoing.as_slice(), Vec::new());
         while let Some(packet) = decoder.next(&mut rest) {
             let Packet { header, payload } = packet.unwrap();
-            heard.push(Heard { header, payload: payload.to_vec() });
+            heard.push(ReceivedPacket { header, payload: payload.to_vec() });
         }
         heard
     }
@@ -109,13 +109,13 @@ impl Bench {
     }
 
     /// Sends a request and returns everything that comes back.
-    pub fn say(&mut self, request: &Request<'_>) -> Vec<Heard> {
+    pub fn say(&mut self, request: &Request<'_>) -> Vec<ReceivedPacket> {
         let packet = self.packet(request);
         self.receive(&packet)
     }
 
     /// Sends a packet that need not be a request and returns the one answer.
-    pub fn answer(&mut self, header: &Header, payload: &[u8]) -> Heard {
+    pub fn answer(&mut self, header: &Header, payload: &[u8]) -> ReceivedPacket {
         let mut heard = self.receive(&wire(header, |to| to.extend_from_slice(payload)));
         assert_eq!(heard.len(), 1, "one answer to {header:?}: {heard:?}");
         let answer = heard.remove(0);
@@ -128,7 +128,7 @@ impl Bench {
     }
 
     /// Sends a request of the session and returns the one answer.
-    pub fn ask(&mut self, request: &Request<'_>) -> Heard {
+    pub fn ask(&mut self, request: &Request<'_>) -> ReceivedPacket {
         let header = self.header(request.kind().code());
         let mut payload = Vec::new();
         request.write(&mut payload);
@@ -136,7 +136,7 @@ impl Bench {
     }
 
     /// Sends a request that the board must carry out.
-    pub fn done(&mut self, request: &Request<'_>) -> Heard {
+    pub fn done(&mut self, request: &Request<'_>) -> ReceivedPacket {
         let answer = self.ask(request);
         assert_eq!(answer.refusal(), None, "{request:?}");
         answer
@@ -180,7 +180,7 @@ impl Bench {
     }
 
     /// Tells the board that every row before `window` has come back, and returns what it sends.
-    pub fn acknowledge(&mut self, window: u32) -> Vec<Heard> {
+    pub fn acknowledge(&mut self, window: u32) -> Vec<ReceivedPacket> {
         self.window = window;
         self.say(&Request::RowAck)
     }

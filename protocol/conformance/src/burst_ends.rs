@@ -8,7 +8,7 @@ use halfrow_protocol::message::{
 use halfrow_protocol::samples;
 
 use crate::Boards;
-use crate::at_speed::{self, ENDLESS, FRAME, HEIGHT, ONE, ROWS, Told, golden_tables, ready};
+use crate::at_speed::{self, ENDLESS, FRAME, HEIGHT, ONE, ROWS, RecordsReply, golden_tables, ready};
 use crate::bench::{Bench, HELLO, rows_of};
 use crate::frames::{configuration, make_ready, row, samples_of};
 use crate::material::crc_of_words;
@@ -63,7 +63,7 @@ pub(crate) fn a_new_session_ends_a_burst_and_knows_none(on: &dyn Boards) {
     let Some(mut bench) = under_way(on) else { return };
     let hello = Hello { nonce: 5, host: 6, take_over: true, ..HELLO };
     bench.greet(&hello);
-    assert_eq!(bench.records(0), Told { burst: 0, state: BurstState::None, records: vec![] });
+    assert_eq!(bench.records(0), RecordsReply { burst: 0, state: BurstState::None, records: vec![] });
     assert_eq!(bench.status().core_busy, 0);
     // The id of a burst of the previous session counts as a new one.
     assert_eq!(bench.signed(&Burst { frames: 1, ..ENDLESS })[0].signature, FRAME);
@@ -87,7 +87,7 @@ pub(crate) fn ten_seconds_of_silence_end_a_burst_and_its_session(on: &dyn Boards
     bench.now += Duration::from_millis(10_100);
     assert_eq!(bench.refused(&Request::Records { from: 0 }), (RefusalCode::Session, 0));
     bench.greet(&HELLO);
-    assert_eq!(bench.records(0), Told { burst: 0, state: BurstState::None, records: vec![] });
+    assert_eq!(bench.records(0), RecordsReply { burst: 0, state: BurstState::None, records: vec![] });
     corrects_rows(&mut bench);
 }
 

@@ -5,7 +5,7 @@ use halfrow_protocol::message::{
 };
 
 use crate::at_speed::{
-    CONTENTS, ENDLESS, FRAME, HEIGHT, ONE, Told, activate, golden_tables, ready, ready_with,
+    CONTENTS, ENDLESS, FRAME, HEIGHT, ONE, RecordsReply, activate, golden_tables, ready, ready_with,
 };
 use crate::frames::{configuration, lean};
 use crate::material::{factors, hermite, keys};
@@ -121,7 +121,7 @@ pub(crate) fn records_stay_until_the_host_says_that_it_has_them(on: &dyn Boards)
 
 pub(crate) fn without_a_burst_there_are_no_records(on: &dyn Boards) {
     let Some((mut bench, _)) = ready(on) else { return };
-    assert_eq!(bench.records(0), Told { burst: 0, state: BurstState::None, records: vec![] });
+    assert_eq!(bench.records(0), RecordsReply { burst: 0, state: BurstState::None, records: vec![] });
     assert_eq!(bench.refused(&Request::Records { from: 1 }), (RefusalCode::Range, 0));
 }
 

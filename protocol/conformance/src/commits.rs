@@ -2,7 +2,7 @@
 
 use halfrow_protocol::message::{Bank, Commit, Hello, RefusalCode, Reply, Request, Reset, ResetLevel, Table};
 
-use crate::bench::{Bench, HELLO, Heard};
+use crate::bench::{Bench, HELLO, ReceivedPacket};
 use crate::frames::{configuration, ready, row, samples_of};
 use crate::golden_rows::HERMITE;
 use crate::material::{GOLDEN_FACTOR, UNSTRETCHED, hermite, noise_row};
@@ -10,7 +10,7 @@ use crate::uploads::{TableSet, span};
 use crate::{Boards, Build};
 
 /// Generation and samples of the rows that came back.
-fn made(heard: &[Heard]) -> Vec<(u8, Vec<u16>)> {
+fn made(heard: &[ReceivedPacket]) -> Vec<(u8, Vec<u16>)> {
     heard.iter().map(|packet| (packet.row().generation, samples_of(&packet.row()))).collect()
 }
 

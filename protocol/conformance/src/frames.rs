@@ -5,7 +5,7 @@ use halfrow_protocol::samples;
 
 use crate::material::noise_row;
 use crate::uploads::TableSet;
-use crate::{Bench, Boards, Build, HELLO, Heard};
+use crate::{Bench, Boards, Build, HELLO, ReceivedPacket};
 
 /// Columns of a row.
 pub const WIDTH: u16 = 64;
@@ -78,13 +78,13 @@ impl Bench {
     }
 
     /// Sends a row and returns everything that comes back.
-    pub fn send(&mut self, row: &Row) -> Vec<Heard> {
+    pub fn send(&mut self, row: &Row) -> Vec<ReceivedPacket> {
         let packet = self.row_packet(row);
         self.receive(&packet)
     }
 
     /// Sends the rows with these numbers, one packet at a time, and returns everything that comes back.
-    pub fn send_all(&mut self, height: u16, numbers: impl IntoIterator<Item = u32>) -> Vec<Heard> {
+    pub fn send_all(&mut self, height: u16, numbers: impl IntoIterator<Item = u32>) -> Vec<ReceivedPacket> {
         numbers.into_iter().flat_map(|number| self.send(&row(height, number))).collect()
     }
 }

@@ -2,7 +2,7 @@
 
 use halfrow_protocol::message::{Commit, Configuration, Request, RowPlace, Shape};
 
-use crate::bench::{Bench, Heard};
+use crate::bench::{Bench, ReceivedPacket};
 use crate::frames::{Row, WIDTH, lean, row, samples_of};
 use crate::grids::{greeted, narrow};
 use crate::material::{
@@ -103,7 +103,7 @@ fn frame(bench: &mut Bench, number: u32) -> Vec<u8> {
 }
 
 /// Generation and CRC-32 of the samples of each row.
-fn made(heard: &[Heard]) -> Vec<(u8, u32)> {
+fn made(heard: &[ReceivedPacket]) -> Vec<(u8, u32)> {
     heard.iter().map(|it| (it.row().generation, crc_of_words(samples_of(&it.row())))).collect()
 }
 

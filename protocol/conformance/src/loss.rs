@@ -2,7 +2,7 @@
 
 use halfrow_protocol::message::RowOut;
 
-use crate::bench::{Bench, Heard, rows_of};
+use crate::bench::{Bench, ReceivedPacket, rows_of};
 use crate::frames::{Row, ready, ready_if_offered, row, samples_of};
 use crate::{Boards, Build};
 
@@ -28,7 +28,7 @@ pub(crate) fn a_row_inside_the_core_is_not_answered(on: &dyn Boards) {
 pub(crate) fn a_row_that_came_out_is_sent_again_with_one_repeat_more(on: &dyn Boards) {
     let mut bench = board(on);
     let first = bench.send_all(4, 0..2).remove(0);
-    let repeats: Vec<Heard> = bench.send_all(4, [0, 0, 0]);
+    let repeats: Vec<ReceivedPacket> = bench.send_all(4, [0, 0, 0]);
     for (index, packet) in repeats.iter().enumerate() {
         let repeats = index as u16 + 1;
         assert_eq!(packet.row(), RowOut { repeats, ..first.row() });

@@ -3,7 +3,7 @@
 use halfrow_protocol::message::Request;
 use proptest::prelude::*;
 
-use crate::bench::{Bench, Heard};
+use crate::bench::{Bench, ReceivedPacket};
 use crate::frames::{ready, row, samples_of};
 use crate::{Boards, Build, cases, offered};
 
@@ -38,7 +38,7 @@ impl LossyHost {
         }
     }
 
-    fn take(&mut self, packet: &Heard) {
+    fn take(&mut self, packet: &ReceivedPacket) {
         let out = packet.row();
         let number = out.place.row_sequence;
         assert_eq!(samples_of(&out), row(HEIGHT, number).samples);

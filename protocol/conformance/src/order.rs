@@ -5,7 +5,7 @@ use halfrow_protocol::message::{
     Configuration, Hello, RefusalCode, Request, Reset, ResetLevel, RowIn, RowPlace,
 };
 
-use crate::bench::{Bench, HELLO, Heard, rows_of, wire};
+use crate::bench::{Bench, HELLO, ReceivedPacket, rows_of, wire};
 use crate::frames::{Row, configuration, make_ready, ready, row, samples_of};
 use crate::uploads::TableSet;
 use crate::{Boards, Build};
@@ -14,8 +14,8 @@ fn board(on: &dyn Boards, height: u16) -> Bench {
     ready(on, &Build::default(), height)
 }
 
-fn refusals(heard: &[Heard]) -> Vec<(RefusalCode, u16)> {
-    heard.iter().filter_map(Heard::refusal).collect()
+fn refusals(heard: &[ReceivedPacket]) -> Vec<(RefusalCode, u16)> {
+    heard.iter().filter_map(ReceivedPacket::refusal).collect()
 }
 
 const ROW: [(RefusalCode, u16); 1] = [(RefusalCode::Row, 0)];
@@ -154,7 +154,7 @@ pub(crate) fn row_0_may_follow_any_row(on: &dyn Boards) {
 }
 
 /// Sends a row with its payload changed by `change`.
-fn send_changed(bench: &mut Bench, row: &Row, change: impl FnOnce(&mut Vec<u8>)) -> Vec<Heard> {
+fn send_changed(bench: &mut Bench, row: &Row, change: impl FnOnce(&mut Vec<u8>)) -> Vec<ReceivedPacket> {
     let header = bench.header(Kind::RowIn.code());
     let mut payload = Vec::new();
     RowIn::write_samples(&row.place, &row.samples, &mut payload);

@@ -8,7 +8,7 @@ use halfrow_protocol::{Kind, MAX_PAYLOAD, samples};
 use proptest::prelude::*;
 
 use crate::at_speed::ENDLESS;
-use crate::bench::{Bench, HELLO, Heard, rows_of, wire};
+use crate::bench::{Bench, HELLO, ReceivedPacket, rows_of, wire};
 use crate::frames::{lean, make_ready, ready, row, samples_of};
 use crate::{Boards, Build, cases, offered};
 
@@ -150,7 +150,7 @@ struct Observer {
 }
 
 impl Observer {
-    fn receive(&mut self, bytes: &[u8]) -> Vec<Heard> {
+    fn receive(&mut self, bytes: &[u8]) -> Vec<ReceivedPacket> {
         let heard = self.bench.receive(bytes);
         for packet in &heard {
             let window = packet.header.window;

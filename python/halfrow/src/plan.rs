@@ -10,7 +10,7 @@ use halfrow::frames::{Builtin, FrameFile, PictureSize, ReadError, ReadOptions};
 use halfrow::link::Recording;
 use halfrow::model::{Frame, Geometry, Phase};
 use halfrow::result::FileHash;
-use halfrow::run::{Circumstances, Draws, RecordedRun, RunOptions, Vary};
+use halfrow::run::{Provenance, RecordedRun, RunOptions, SessionIds, Vary};
 use halfrow::{FrameSource, Plan};
 use pyo3::prelude::*;
 
@@ -57,7 +57,7 @@ pub(crate) struct Planned {
 }
 
 /// A plan, the files that it was read from, and the name or file of its kernel.
-struct Judged {
+struct LoadedPlan {
     plan: Plan,
     files: Vec<Input>,
     kernel: Option<PathBuf>,
@@ -69,7 +69,7 @@ impl Options<'_> {
         let timeout = choices::time_limit("timeout", self.timeout)?;
         let stop = stop.wall_limit(timeout);
         let Some(recording) = recording else {
-            let Judged { plan, files, kernel } = self.plan()?;
+            let LoadedPlan { plan, files, kernel } = self.plan()?;
             let inputs = files.iter().map(|file| file.path.clone()).collect();
             let options = RunOptions { timeout, stop, ..self.options(files)? };
             return Ok(Planned { plan, options, inputs, kernel });
@@ -114,11 +114,11 @@ impl Options<'_> {
         Ok(())
     }
 
-    fn plan(&mut self) -> PyResult<Judged> {
+    fn plan(&mut self) -> PyResult<LoadedPlan> {
         self.check()?;
         let phase = choices::phase(&self.phase)?;
         let is_free = self.tables.is_none() && self.frames.is_none();
-        let Judged { plan, mut files, kernel } = self.of_tables(phase)?;
+        let LoadedPlan { plan, mut files, kernel } = self.of_tables(phase)?;
         let geometry = plan.tables.geometry();
         let frames = match self.frames.take() {
             None => plan.frames.clone(),
@@ -138,11 +138,11 @@ impl Options<'_> {
             ..plan
         };
         plan.check_length().map_err(errors::input)?;
-        Ok(Judged { plan, files, kernel })
+        Ok(LoadedPlan { plan, files, kernel })
     }
 
     /// A plan with the tables of the call, or else with those of the paper's lens, and the files that they came from.
-    fn of_tables(&mut self, phase: Phase) -> PyResult<Judged> {
+    fn of_tables(&mut self, phase: Phase) -> PyResult<LoadedPlan> {
         let own;
         let tables = match &self.tables {
             Some(tables) => tables.get(),
@@ -159,7 +159,7 @@ impl Options<'_> {
             chosen.source = format!("{}, judged with the {name} kernel", chosen.source);
         }
         let files = tables.files.iter().cloned().chain(chosen.kernel_file.clone()).collect();
-        Ok(Judged { plan: chosen.plan(phase), files, kernel: asked })
+        Ok(LoadedPlan { plan: chosen.plan(phase), files, kernel: asked })
     }
 
     fn options(&mut self, files: Vec<Input>) -> PyResult<RunOptions> {
@@ -178,7 +178,7 @@ impl Options<'_> {
             take_over: self.take_over,
             require_hardware: self.require_hardware,
             keep_equal: self.report.is_some(),
-            circumstances: Circumstances { arguments, files: hashes, draws: Draws::draw(), operator: None },
+            circumstances: Provenance { arguments, files: hashes, draws: SessionIds::draw(), operator: None },
             ..RunOptions::default()
         })
     }

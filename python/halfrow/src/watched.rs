@@ -16,7 +16,7 @@ use crate::errors;
 const LOOK: Duration = Duration::from_millis(20);
 
 /// A message from the work.
-enum Told<T> {
+enum Message<T> {
     Event(Event),
     Result(T),
 }
@@ -36,8 +36,8 @@ pub(crate) fn watched<T: Send + 'static>(
     let worker = thread::Builder::new().name("run".to_owned()).spawn(move || {
         let events = sender.clone();
         // The caller may be gone.
-        let result = work(&move |event| _ = events.send(Told::Event(event)));
-        _ = sender.send(Told::Result(result));
+        let result = work(&move |event| _ = events.send(Message::Event(event)));
+        _ = sender.send(Message::Result(result));
     });
     let worker = worker.map_err(|error| errors::no_thread(&error))?;
     let told = Mutex::new(told);
@@ -47,11 +47,11 @@ pub(crate) fn watched<T: Send + 'static>(
             told.lock().map_or(Err(RecvTimeoutError::Disconnected), |told| told.recv_timeout(LOOK))
         });
         let outcome = match next {
-            Ok(Told::Result(result)) => return raised.map_or(Ok(result), Err),
-            Ok(Told::Event(event)) if raised.is_none() => {
+            Ok(Message::Result(result)) => return raised.map_or(Ok(result), Err),
+            Ok(Message::Event(event)) if raised.is_none() => {
                 tell(listener, &event).and_then(|()| py.check_signals())
             }
-            Ok(Told::Event(_)) | Err(RecvTimeoutError::Timeout) => py.check_signals(),
+            Ok(Message::Event(_)) | Err(RecvTimeoutError::Timeout) => py.check_signals(),
             Err(RecvTimeoutError::Disconnected) => return Err(without_result(worker)),
         };
         if let Err(error) = outcome {

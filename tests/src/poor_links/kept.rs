@@ -14,12 +14,12 @@ use super::Came;
 
 /// Results of runs by their number.
 #[derive(Debug, Default)]
-pub struct Kept {
+pub struct SavedResults {
     known: BTreeMap<usize, (Came, String)>,
     file: Option<Mutex<File>>,
 }
 
-impl Kept {
+impl SavedResults {
     /// Keeps nothing.
     #[must_use]
     pub fn nothing() -> Self {

@@ -16,18 +16,18 @@ use crate::patience::{LIMIT, end_of, wait_until};
 #[derive(Debug)]
 pub struct Running {
     child: Child,
-    stdout: Said,
-    stderr: Said,
+    stdout: Output,
+    stderr: Output,
 }
 
 /// What a program prints on one of its streams, line by line as it comes.
 #[derive(Debug)]
-struct Said {
+struct Output {
     lines: Receiver<String>,
     text: String,
 }
 
-impl Said {
+impl Output {
     fn new(stream: impl Read + Send + 'static) -> Self {
         let (say, lines) = channel();
         thread::spawn(move || {
@@ -64,7 +64,7 @@ impl Running {
     pub fn start(command: &mut Command) -> Self {
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let (stdout, stderr) = (child.stdout.take().unwrap(), child.stderr.take().unwrap());
-        Self { child, stdout: Said::new(stdout), stderr: Said::new(stderr) }
+        Self { child, stdout: Output::new(stdout), stderr: Output::new(stderr) }
     }
 
     /// Waits until it prints `words` on stderr.

@@ -83,7 +83,11 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
         ",fault=damaged-ack",
         "(rule: a damaged packet must have no effect)",
     ),
-    fails("a row behind a grid that denies that it came before", ",fault=stuck-repeats", "twice with `repeats` = 0"),
+    fails(
+        "a row behind a grid that denies that it came before",
+        ",fault=stuck-repeats",
+        "twice with `repeats` = 0",
+    ),
     fails(
         "any host at any time behind a grid",
         ",fault=never-held",

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use halfrow_ft2232h::FarEnd as _;
 use nix::fcntl::OFlag;
 
-use super::{MockAtChip, Said};
+use super::{BytesSent, MockAtChip};
 use crate::parallel::end_beside;
 use crate::patience::wait_until;
 
@@ -25,7 +25,7 @@ pub const QEMU_CHIP: &str = "usb:QEMU0001";
 #[derive(Debug)]
 pub struct QemuBoard {
     is_over: Arc<AtomicBool>,
-    said: Said,
+    said: BytesSent,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -46,7 +46,7 @@ impl QemuBoard {
 
     /// The count of what it sends.
     #[must_use]
-    pub fn said(&self) -> &Said {
+    pub fn said(&self) -> &BytesSent {
         &self.said
     }
 }

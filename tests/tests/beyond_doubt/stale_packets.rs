@@ -10,7 +10,7 @@ use halfrow::link::{Candidate, Link, LinkError};
 use halfrow::link_test::{self, LinkTestError};
 use halfrow::progress::Silent;
 use halfrow::result::{CheckName, Finding, Outcome, Report};
-use halfrow::run::{Circumstances, Draws, RunOptions, verify};
+use halfrow::run::{Provenance, RunOptions, SessionIds, verify};
 use halfrow::verdict::{StoppedBy, Verdict};
 use halfrow_protocol::message::{Refusal, RefusalCode, RowOut, Status};
 use halfrow_protocol::{Kind, Packet, Reply, Request};
@@ -340,7 +340,7 @@ fn what_is_of_an_earlier_session_is_no_answer_to_a_greeting() {
 /// Without a random first number every program's first packet would have number 1, and a refusal names no nonce.
 #[test]
 fn a_refusal_that_an_earlier_program_was_told_is_not_this_one_s() {
-    let draws = Draws { nonce: 5, host: 6, sequence: 0xfffe };
+    let draws = SessionIds { nonce: 5, host: 6, sequence: 0xfffe };
     let alter = |toward, packet: Passing| {
         if toward == Toward::Board || !packet.is(Kind::Hello) {
             return vec![packet];
@@ -351,7 +351,7 @@ fn a_refusal_that_an_earlier_program_was_told_is_not_this_one_s() {
         vec![stale, packet]
     };
     let candidate = Altered::new(&halfrow_mock::Options::default(), alter).candidate();
-    let circumstances = Circumstances { draws, ..Circumstances::default() };
+    let circumstances = Provenance { draws, ..Provenance::default() };
     let options = RunOptions { circumstances, ..RunOptions::default() };
     let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());

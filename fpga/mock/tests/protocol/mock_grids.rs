@@ -7,7 +7,7 @@ use halfrow_conformance::frames::{row, samples_of};
 use halfrow_conformance::grids::{greeted, narrow};
 use halfrow_conformance::material::{drawn_grid, hermite};
 use halfrow_conformance::uploads::{TableSet, span};
-use halfrow_conformance::{Bench, Build, Heard, suite};
+use halfrow_conformance::{Bench, Build, ReceivedPacket, suite};
 use halfrow_mock::{Board, BoardFault, FAULTS, Options};
 use halfrow_pipe::Parameters;
 use halfrow_protocol::message::{
@@ -79,7 +79,7 @@ fn fault(name: &str, given: &[(&str, &str)]) -> BoardFault {
 
 /// All that a host hears from a board that plays frames of four rows through grids and makes frames itself, is given a damaged
 /// packet, a commit and a row that it must refuse, and is greeted by another host.
-fn heard_of(fault: Option<BoardFault>) -> Vec<Heard> {
+fn heard_of(fault: Option<BoardFault>) -> Vec<ReceivedPacket> {
     let mut bench = configured(fault, 4);
     let mut heard = bench.say(&Request::Capabilities);
     let tables = [grid(4, 7), grid(4, 8)];

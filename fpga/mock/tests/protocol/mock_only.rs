@@ -6,7 +6,7 @@ use halfrow_protocol::message::{Bank, Datapath, RefusalCode, Reply, Request, Tab
 use halfrow_conformance::capabilities::values;
 use halfrow_conformance::frames::{configuration, make_ready, row};
 use halfrow_conformance::uploads::{TableSet, span};
-use halfrow_conformance::{Bench, HELLO, Heard, is_busy_while_a_row_is_inside, rows_of};
+use halfrow_conformance::{Bench, HELLO, ReceivedPacket, is_busy_while_a_row_is_inside, rows_of};
 
 fn switched_on(options: &Options, fault: Option<BoardFault>) -> Bench {
     Bench::of(Box::new(Board::new(options, fault).unwrap()))
@@ -112,7 +112,8 @@ fn the_next_frame_enters_while_the_rest_of_the_last_one_leaves() {
     let status = bench.packet(&Request::Status { clear: false });
     let bytes = [bench.row_packet(&row(1, 0)), status.clone(), bench.row_packet(&row(1, 1)), status].concat();
     let heard = bench.receive(&bytes);
-    let busy = |packet: &Heard| matches!(packet.reply(), Reply::Status(status) if status.core_busy == 1);
+    let busy =
+        |packet: &ReceivedPacket| matches!(packet.reply(), Reply::Status(status) if status.core_busy == 1);
     assert!(busy(&heard[0]), "the rest has not left when the STATUS behind it comes");
     assert_eq!(rows_of(&heard[1..2]), [0], "row 0 leaves while row 1 enters");
     assert!(busy(&heard[2]));

@@ -23,7 +23,7 @@ use halfrow::link::{Candidate, RecordingFile};
 use halfrow::optics::Chosen;
 use halfrow::report::{self, ReportFolder};
 use halfrow::result::FileHash;
-use halfrow::run::{self, Circumstances, Lack, Plan, RecordedRun, RunOptions};
+use halfrow::run::{self, Lack, Plan, Provenance, RecordedRun, RunOptions};
 use halfrow::target::Target;
 use halfrow::verdict::Cause;
 
@@ -132,10 +132,10 @@ impl RunArguments {
 
     /// The options of a run that judges with what was read from `inputs`.
     pub(crate) fn options(&self, inputs: Vec<Input>, settings: &Settings) -> Result<RunOptions, Failure> {
-        let circumstances = Circumstances {
+        let circumstances = Provenance {
             arguments: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
             files: inputs.into_iter().map(FileHash::from).collect(),
-            draws: run::Draws::draw(),
+            draws: run::SessionIds::draw(),
             operator: self.operator(),
         };
         Ok(RunOptions {

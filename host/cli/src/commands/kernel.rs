@@ -20,7 +20,7 @@ use crate::{console, progress};
 use halfrow::call::Files;
 use halfrow::files::check_regular;
 use halfrow::frames::preview::RgbImage;
-use halfrow::frames::{FrameFile, lying};
+use halfrow::frames::{FrameFile, landscape};
 use halfrow::result::sha256;
 use halfrow::tables::KernelFile;
 use halfrow::words::count;
@@ -127,7 +127,7 @@ fn check_apart(paths: &[PathBuf], origins: &[Origin]) -> Result<(), CallError> {
 fn photograph(path: &Path) -> anyhow::Result<(Origin, RgbImage)> {
     check_regular(path)?;
     let file = FrameFile::read(path)?;
-    let image = lying(file.decode_rgb()?);
+    let image = landscape(file.decode_rgb()?);
     training::check(&image).with_context(|| format!("{} cannot be used", path.display()))?;
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
     Ok((Origin { name, sha256: sha256([file.bytes()]) }, image))

@@ -56,7 +56,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 }
 
 /// The errors that tables made in one way leave.
-struct Left {
+struct TableResiduals {
     by: TablesBy,
     /// The shape of a grid; none for row factors.
     shape: Option<GridShape>,
@@ -67,7 +67,7 @@ struct Left {
 struct Figures<'a> {
     optics: &'a Optics,
     /// Eq. 9, fitted rows, and the grid, if one has few enough entries.
-    all: Vec<Left>,
+    all: Vec<TableResiduals>,
     /// Why there is no grid, if so.
     no_grid: Option<OpticsError>,
     /// Why a board would not take the requested tables, if so.
@@ -94,13 +94,13 @@ impl<'a> Figures<'a> {
                 illegal = tables.check_ring(optics.camera.geometry().width().next_power_of_two()).err();
             }
             let residuals = Residuals::of(&optics.camera, &tables);
-            all.push(Left { by, shape: tables.shape(), residuals });
+            all.push(TableResiduals { by, shape: tables.shape(), residuals });
         }
         Ok(Self { optics, all, no_grid, illegal })
     }
 
     /// The errors that the requested tables leave.
-    fn used(&self) -> Option<&Left> {
+    fn used(&self) -> Option<&TableResiduals> {
         self.all.iter().find(|left| left.by == self.optics.by)
     }
 

@@ -50,7 +50,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         (0, false) => Exit::Pass,
     };
     if context.json {
-        let link = Told { figures: &figures, retry_limit: most, too_poor };
+        let link = LinkSummary { figures: &figures, retry_limit: most, too_poor };
         return print_or_tell(exit, &result_text("link", exit, Some(&board), json!({ "link": link }))?);
     }
     let (figures, last) = (text(&figures), enough(&figures.errors, limit, too_poor));
@@ -59,7 +59,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 
 /// The figures, and whether a board can be judged over such a link.
 #[derive(Serialize)]
-struct Told<'a> {
+struct LinkSummary<'a> {
     #[serde(flatten)]
     figures: &'a Figures,
     /// The most packets that a run of this length may send again.

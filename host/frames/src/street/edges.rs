@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::facade::MARGIN;
 use super::sight::Sight;
-use super::town::{self, Edge, ROWS, Seen};
+use super::town::{self, Edge, Hit, ROWS};
 
 /// How many columns to either side of its expected place an edge is looked for.
 const REACH: usize = 6;
@@ -105,9 +105,9 @@ fn shows<S: Sight>(scene: &S, edge: &Edge, y: f64) -> bool {
 }
 
 /// Which of the two houses beside `edge` has the plain wall that is seen, if one has.
-fn wall_of(edge: &Edge, seen: Seen) -> Option<usize> {
+fn wall_of(edge: &Edge, seen: Hit) -> Option<usize> {
     match seen {
-        Seen::Facade { row, house, along, .. } if row == edge.row => {
+        Hit::Facade { row, house, along, .. } if row == edge.row => {
             let wall = ROWS.get(row)?.houses.get(edge.house)?.to;
             let beside = house == edge.house || house == edge.house + 1;
             (beside && (along - wall).abs() < MARGIN).then_some(house)

@@ -74,7 +74,7 @@ impl Row {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::street::town::{Seen, seen};
+    use crate::street::town::{Hit, seen};
 
     /// Just below a roof is its façade, unless something is in front of it; just above, no façade has that height.
     #[test]
@@ -88,11 +88,11 @@ mod tests {
             let length = middle.map(|part| part * part).iter().sum::<f64>().sqrt();
             let ray = |down: f64| [middle[0] / length, (middle[1] + down) / length, middle[2] / length];
             let roof = CAMERA - middle[1];
-            if let Seen::Facade { height, .. } = seen(ray(0.1)) {
+            if let Hit::Facade { height, .. } = seen(ray(0.1)) {
                 assert!((roof - height).abs() < 0.5, "{line:?}: {height}");
             }
             assert!(
-                !matches!(seen(ray(-0.1)), Seen::Facade { height, .. } if (roof - height).abs() < 0.05),
+                !matches!(seen(ray(-0.1)), Hit::Facade { height, .. } if (roof - height).abs() < 0.05),
                 "{line:?}"
             );
         }

@@ -119,7 +119,7 @@ pub(super) fn edges() -> impl Iterator<Item = Edge> {
 
 /// What a ray meets. In metres, as everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Seen {
+pub(super) enum Hit {
     /// Nothing.
     Sky,
     /// The ground at (u, w).
@@ -144,35 +144,35 @@ pub(super) enum Seen {
 /// The light that comes back along `ray`, a unit vector.
 pub(super) fn light(ray: [f64; 3]) -> Light {
     match seen(ray) {
-        Seen::Sky => sky::light(ray),
-        Seen::Ground(u, w) => ground::light(u, w),
-        Seen::Facade { row, house, along, height } => {
+        Hit::Sky => sky::light(ray),
+        Hit::Ground(u, w) => ground::light(u, w),
+        Hit::Facade { row, house, along, height } => {
             let row = &ROWS[row];
             facade::light(row.side, &row.houses[house], along, height)
         }
-        Seen::Gable(side, house) => facade::gable(side, &house),
-        Seen::Figure(light) => light,
+        Hit::Gable(side, house) => facade::gable(side, &house),
+        Hit::Figure(light) => light,
     }
 }
 
 /// What `ray` meets first.
-pub(super) fn seen(ray: [f64; 3]) -> Seen {
+pub(super) fn seen(ray: [f64; 3]) -> Hit {
     let (distance, behind) = built(ray);
-    figures::seen(ray, distance).map_or(behind, Seen::Figure)
+    figures::seen(ray, distance).map_or(behind, Hit::Figure)
 }
 
 /// Which house or ground `ray` meets, and how far away.
-fn built(ray: [f64; 3]) -> (f64, Seen) {
+fn built(ray: [f64; 3]) -> (f64, Hit) {
     let [u, v, w] = ray;
     let floor = if v > 0.0 { CAMERA / v } else { f64::INFINITY };
-    let ground = if v > 0.0 { Seen::Ground(u * floor, w * floor) } else { Seen::Sky };
+    let ground = if v > 0.0 { Hit::Ground(u * floor, w * floor) } else { Hit::Sky };
     let meeting = |row: usize| ROWS[row].meets(row, ray).filter(|(distance, _)| *distance < floor);
     meeting(usize::from(u > 0.0)).or_else(|| meeting(2)).unwrap_or((floor, ground))
 }
 
 impl Row {
     /// What `ray` meets of this row, whose index in [`ROWS`] is `index`, and how far away.
-    fn meets(&self, index: usize, [u, v, w]: [f64; 3]) -> Option<(f64, Seen)> {
+    fn meets(&self, index: usize, [u, v, w]: [f64; 3]) -> Option<(f64, Hit)> {
         let (towards, sideways) = match self.side {
             Side::Left => (-u, w),
             Side::Right => (u, w),
@@ -185,13 +185,13 @@ impl Row {
         let (along, height) = (distance * sideways, CAMERA - distance * v);
         let house = self.houses.iter().position(|house| (house.from..house.to).contains(&along))?;
         if height <= self.houses[house].roof {
-            return Some((distance, Seen::Facade { row: index, house, along, height }));
+            return Some((distance, Hit::Facade { row: index, house, along, height }));
         }
         let beyond = |house: &'static House, wall: f64| {
             let distance = wall / sideways;
             let within = distance * towards < self.distance + DEPTH;
             (within && CAMERA - distance * v <= house.roof)
-                .then_some((distance, Seen::Gable(self.side, *house)))
+                .then_some((distance, Hit::Gable(self.side, *house)))
         };
         if sideways > 0.0 {
             self.houses.iter().skip(house + 1).find_map(|house| beyond(house, house.from))

@@ -6,8 +6,8 @@ use halfrow_protocol::message::{RefusalCode, Reply};
 use halfrow_protocol::{Header, Kind, Packet};
 
 use super::BoardError;
-use super::asked::Asking;
 use super::conversation::Conversation;
+use super::sent_requests::Outgoing;
 
 /// How long to listen after an echo for whatever else comes.
 const MORE: Duration = Duration::from_millis(200);
@@ -25,7 +25,7 @@ impl OwnedPacket {
 
     /// Whether it is the request itself, sent under the header `sent`, and not an answer to it. The header tells: a board's
     /// window is ahead of the host's.
-    pub(super) fn is_echo_of(&self, sent: &Header, asking: &Asking<'_>) -> bool {
+    pub(super) fn is_echo_of(&self, sent: &Header, asking: &Outgoing<'_>) -> bool {
         let asked = || {
             let mut payload = Vec::new();
             asking.write(&mut payload);

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, VecDeque};
 use halfrow_protocol::message::{Refusal, RowOut, RowPlace};
 use halfrow_protocol::{Header, Kind, Packet, Reply};
 
-use super::Said;
+use super::Response;
 
 /// ROW_OUT packets that are remembered. One that a link held back for longer is not compared with others.
 const PACKETS: usize = 256;
@@ -80,7 +80,7 @@ pub(super) struct Conduct {
     doubled: u32,
     /// The number of packets that must not be answered.
     damaged: Option<u16>,
-    answer_to_damaged: Option<Said>,
+    answer_to_damaged: Option<Response>,
     /// The last row that was refused, by the number of its packet.
     refused_row: Option<(u16, Refusal)>,
     misconduct: Option<Misconduct>,
@@ -104,7 +104,7 @@ impl Conduct {
     }
 
     /// The answer to them, if there was one.
-    pub(super) fn answer_to_damaged(&self) -> Option<&Said> {
+    pub(super) fn answer_to_damaged(&self) -> Option<&Response> {
         self.answer_to_damaged.as_ref()
     }
 
@@ -142,7 +142,7 @@ impl Conduct {
     pub(super) fn packet(&mut self, packet: &Packet<'_>, sent: u32) {
         let Header { kind, sequence, .. } = packet.header;
         if kind != Kind::RowOut.code() && self.damaged == Some(sequence) {
-            self.answer_to_damaged = Some(Said::of(packet));
+            self.answer_to_damaged = Some(Response::of(packet));
         }
         if ![Kind::RowOut.code(), Kind::Refusal.code()].contains(&kind) {
             return;

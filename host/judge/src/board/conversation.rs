@@ -10,14 +10,14 @@ use std::time::Duration;
 use halfrow_protocol::message::{Request, RowIn, RowPlace};
 use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet};
 
-use super::asked::{Asking, LastAsked, Stray};
 use super::conduct::Conduct;
 use super::counted::Counted;
 use super::deadlines::{RetryLimit, Step};
 use super::lateness::Lateness;
+use super::sent_requests::{LastRequests, Outgoing, Stray};
 use super::tally::Tally;
-use super::{BoardError, Heard, OpenOptions, Stop};
-use crate::link::{Link, LinkError, Severed};
+use super::{BoardError, OpenOptions, Received, Stop};
+use crate::link::{ClosedLink, Link, LinkError};
 
 /// The most that an exchange which moved bytes adds to the time waited. An exchange returns as soon as a byte has moved. If it
 /// took longer, the host may have been kept from running, and what it has not read yet is not held against the board.
@@ -50,7 +50,7 @@ pub(super) struct Session {
     pub(super) rows_sent: u32,
     /// Rows that may still come back although nobody takes them.
     pub(super) unwanted: u32,
-    asked: LastAsked,
+    asked: LastRequests,
 }
 
 pub(super) struct Conversation {
@@ -64,7 +64,7 @@ pub(super) struct Conversation {
     pub(super) session: Session,
     pub(super) tally: Tally,
     /// What came damaged before the session.
-    before: Heard,
+    before: Received,
     /// Waits in a row that ended with a packet without its closing zero.
     unclosed: u32,
     pub(super) limit: RetryLimit,
@@ -92,7 +92,7 @@ impl Conversation {
             sequence: options.sequence,
             session: Session::default(),
             tally: Tally::default(),
-            before: Heard::default(),
+            before: Received::default(),
             unclosed: 0,
             limit: options.retry_limit,
             waited: Duration::ZERO,
@@ -116,7 +116,7 @@ impl Conversation {
 
     /// Closes the link and forgets its tally.
     pub(super) fn hang_up(&mut self) {
-        self.link = Box::new(Severed);
+        self.link = Box::new(ClosedLink);
         self.tally = Tally::default();
     }
 
@@ -133,10 +133,10 @@ impl Conversation {
     }
 
     /// What came so far, and what may have kept more from coming.
-    fn heard(&self) -> Heard {
+    fn heard(&self) -> Received {
         let Tally { bytes_in: bytes, packets_in: packets, damaged_in: damaged, .. } = self.tally;
         let waits_for_cts = self.link.waits_for_cts();
-        Heard { bytes, packets, damaged, waits_for_cts, ..self.before }
+        Received { bytes, packets, damaged, waits_for_cts, ..self.before }
     }
 
     pub(super) fn is_exclusive(&self) -> bool {
@@ -190,7 +190,7 @@ impl Conversation {
     }
 
     /// Sends `asking` without waiting: its answer will be ignored.
-    pub(super) fn tell(&mut self, asking: &Asking<'_>) {
+    pub(super) fn tell(&mut self, asking: &Outgoing<'_>) {
         let sequence = self.next_sequence();
         self.counted.is_blind = true;
         self.session.asked.note_request(asking, sequence, self.now());

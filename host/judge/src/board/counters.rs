@@ -5,7 +5,7 @@ use halfrow_protocol::message::{ResetLevel, Status};
 
 use super::counted::Miscount;
 use super::deadlines::Step;
-use super::said::Said;
+use super::response::Response;
 use super::{Board, BoardError};
 
 impl Board {
@@ -21,7 +21,7 @@ impl Board {
     ///
     /// # Errors
     /// [`BoardError`] when no answer comes.
-    pub(crate) fn clear_by(&mut self, clear: u8) -> Result<Said, BoardError> {
+    pub(crate) fn clear_by(&mut self, clear: u8) -> Result<Response, BoardError> {
         // Counts what came before it is forgotten.
         self.status(false)?;
         let said = self.ask(Kind::Status, &[clear])?;

@@ -9,7 +9,7 @@ use halfrow_protocol::message::{Malformed, Refusal, RefusalCode, RowPlace};
 
 use super::Tally;
 use super::conversation::Conversation;
-use super::heard::{Heard, suspect, suspect_of_one};
+use super::received::{Received, suspect, suspect_of_one};
 use crate::link::LinkError;
 use crate::verdict::{Cause, StoppedBy};
 use crate::words::{count, span};
@@ -44,7 +44,7 @@ pub enum BoardError {
         /// Time in all.
         waited: Duration,
         /// What had come by then.
-        heard: Heard,
+        heard: Received,
     },
     /// The board did not answer a request, although it was sent several times, and answered others meanwhile.
     #[error(

@@ -1,21 +1,21 @@
 //! A board: whatever answers the protocol behind a link. This is the only module that speaks the protocol.
 
 mod answer;
-mod asked;
 mod bursts;
 mod conduct;
 mod conversation;
 mod counted;
 mod counters;
 pub mod deadlines;
-mod draws;
 mod error;
-mod heard;
 mod lateness;
 mod legal;
+mod received;
+mod response;
 mod rows;
-mod said;
 mod sent;
+mod sent_requests;
+mod session_ids;
 mod sessions;
 mod stop;
 mod tables;
@@ -29,23 +29,23 @@ use halfrow_protocol::message::{Configuration, Hello, Reply, Request, Reset, Res
 use halfrow_protocol::{Kind, Packet, VERSION};
 
 use answer::take_reply;
-use asked::Asking;
 use conversation::Conversation;
 use counted::Counted;
 use deadlines::{RetryLimit, Step};
+use sent_requests::Outgoing;
 
 use crate::link::Link;
 pub(crate) use bursts::{Fetched, Trapped};
 pub(crate) use conduct::Misconduct;
 pub(crate) use counted::Miscount;
-pub use draws::Draws;
 pub use error::{BoardError, OpenFailed};
-pub use heard::Heard;
 pub(crate) use legal::{LEAST_ENTRIES, MAX_LATENCY, grids, possible};
+pub use received::Received;
+pub(crate) use response::Response;
 pub(crate) use rows::{Given, Unjudged, Unreturned};
 pub use rows::{NumberedFrame, ReturnedRow, RowTraffic};
-pub(crate) use said::Said;
 pub(crate) use sent::Sent;
+pub use session_ids::SessionIds;
 pub use stop::Stop;
 pub(crate) use tables::{ReadBack, TablePort};
 pub use tally::Tally;
@@ -360,7 +360,7 @@ fn greet(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welco
     };
     conversation.queue_zeros(2);
     let request = Request::Hello(hello);
-    let asking = Asking::Request(&request);
+    let asking = Outgoing::Request(&request);
     let answer = conversation.ask(&asking, Step::Hello, |packet| is_for(packet, hello.nonce))?;
     let welcome = take_reply(Kind::Hello, &answer, |reply| match reply {
         Reply::Hello(welcome) => Some(welcome),

@@ -6,10 +6,10 @@ use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Hello, Refusal, RefusalCode, Request, ResetLevel, Welcome};
 
 use super::answer::OwnedPacket;
-use super::asked::Asking;
 use super::counted::Counted;
 use super::deadlines::Step;
-use super::said::{Said, said};
+use super::response::{Response, said};
+use super::sent_requests::Outgoing;
 use super::{Board, BoardError, OpenOptions, VERSION, greet, greet_or_take_over, is_for};
 
 impl Board {
@@ -80,7 +80,7 @@ impl Board {
     ///
     /// # Errors
     /// Like [`Self::ask`].
-    pub(crate) fn greet_as_another_host(&mut self) -> Result<Said, BoardError> {
+    pub(crate) fn greet_as_another_host(&mut self) -> Result<Response, BoardError> {
         let hello = self.hello_of_another_host();
         self.greet_and_close(hello)
     }
@@ -90,7 +90,7 @@ impl Board {
     ///
     /// # Errors
     /// Like [`Self::ask`].
-    pub(crate) fn take_over_as_another_host(&mut self) -> Result<Said, BoardError> {
+    pub(crate) fn take_over_as_another_host(&mut self) -> Result<Response, BoardError> {
         let hello = Hello { take_over: true, ..self.hello_of_another_host() };
         said(Kind::Hello, &self.greet_aside(hello)?)
     }
@@ -104,7 +104,7 @@ impl Board {
     ///
     /// # Errors
     /// Like [`Self::ask`].
-    pub(crate) fn greet_in_versions(&mut self, versions: [u8; 2]) -> Result<Said, BoardError> {
+    pub(crate) fn greet_in_versions(&mut self, versions: [u8; 2]) -> Result<Response, BoardError> {
         let hello = self.hello_aside(versions);
         self.greet_and_close(hello)
     }
@@ -115,7 +115,7 @@ impl Board {
         Hello { nonce: !nonce, host, version_min, version_max, take_over: false }
     }
 
-    fn greet_and_close(&mut self, hello: Hello) -> Result<Said, BoardError> {
+    fn greet_and_close(&mut self, hello: Hello) -> Result<Response, BoardError> {
         let answer = self.greet_aside(hello)?;
         if answer.header.kind == Kind::Hello.code() && answer.header.session != self.session() {
             self.close_foreign(answer.header.session);
@@ -126,7 +126,7 @@ impl Board {
     fn greet_aside(&mut self, hello: Hello) -> Result<OwnedPacket, BoardError> {
         self.conversation.queue_zeros(2);
         let request = Request::Hello(hello);
-        let asking = Asking::Request(&request);
+        let asking = Outgoing::Request(&request);
         self.conversation.under_session(0, |conversation| {
             conversation.ask(&asking, Step::Hello, |packet| is_for(packet, hello.nonce))
         })
@@ -160,17 +160,17 @@ impl Board {
         session: u8,
         kind: Kind,
         payload: &[u8],
-    ) -> Result<Said, BoardError> {
+    ) -> Result<Response, BoardError> {
         let answer = self.conversation.under_session(session, |conversation| {
             // In a session that is not open the board's counters cannot be read.
             let counts = mem::take(&mut conversation.counts);
-            let answer = conversation.ask(&Asking::Bytes(kind, payload), Step::Request, |_| true);
+            let answer = conversation.ask(&Outgoing::Bytes(kind, payload), Step::Request, |_| true);
             conversation.counts = counts;
             answer
         });
         match answer.and_then(|answer| said(kind, &answer)) {
             Err(BoardError::SessionLost) => {
-                Ok(Said::Refused(Refusal { code: RefusalCode::Session, kind: kind.code(), detail: 0 }))
+                Ok(Response::Refused(Refusal { code: RefusalCode::Session, kind: kind.code(), detail: 0 }))
             }
             said => said,
         }

@@ -10,7 +10,7 @@ use crate::verdict::StoppedBy;
 /// Asked between any two exchanges whether to go on.
 #[derive(Clone, Default)]
 pub struct Stop {
-    asked: Option<Arc<Asked>>,
+    asked: Option<Arc<StopCheck>>,
     limit: Option<Duration>,
     /// How much of the limit had passed when the link's clock began.
     spent: Duration,
@@ -18,7 +18,7 @@ pub struct Stop {
     wall: Option<(Instant, Duration)>,
 }
 
-type Asked = dyn Fn() -> Option<StoppedBy> + Send + Sync;
+type StopCheck = dyn Fn() -> Option<StoppedBy> + Send + Sync;
 
 impl Stop {
     /// Stops as soon as `asked` says who wants it to. It is called often and must be quick, such as a read of an atomic.

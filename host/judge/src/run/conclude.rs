@@ -5,9 +5,9 @@ use std::time::Instant;
 use jiff::Timestamp;
 
 use super::findings::{End, Findings};
+use super::observations::Observations;
 use super::row_judge::STREET;
-use super::seen::Seen;
-use super::{Circumstances, Finished, Plan, RunOptions};
+use super::{Finished, Plan, Provenance, RunOptions};
 use crate::board::Tally;
 use crate::coverage::Faults;
 use crate::frames::street;
@@ -83,7 +83,7 @@ fn coverage(plan: &Plan, findings: &Findings) -> Option<CoverageReport> {
     faults.whole(plan, build)
 }
 
-fn run(plan: &Plan, circumstances: &Circumstances, Begun { at, since }: Begun) -> RunReport {
+fn run(plan: &Plan, circumstances: &Provenance, Begun { at, since }: Begun) -> RunReport {
     RunReport {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         commit: crate::COMMIT.to_owned(),
@@ -130,7 +130,7 @@ fn ending(findings: &mut Findings, end: Option<End>) -> Ending {
 }
 
 /// Why the run broke off, after the differences that were then not looked into.
-fn broken_off(why: Finding, seen: &Seen) -> Finding {
+fn broken_off(why: Finding, seen: &Observations) -> Finding {
     let FrameTotals { frames, differing_frames, samples, differences } = seen.totals();
     let Finding::Problem(problem) = why else { return why };
     if differing_frames == 0 {
@@ -166,7 +166,7 @@ fn skip_the_rest(checks: &mut Vec<Check>, plan: &Plan) {
 }
 
 /// The edges of the built-in street, when it was streamed whole, came back whole, and was kept.
-fn street(plan: &Plan, seen: &Seen) -> Option<StreetReport> {
+fn street(plan: &Plan, seen: &Observations) -> Option<StreetReport> {
     let street = seen.evidence.all().iter().find(|evidence| {
         let is_whole =
             |frame: &FrameReport| frame.first_rows.is_none() && frame.rows == evidence.expected.height();

@@ -1,7 +1,7 @@
 //! The board's counters, compared with what the host saw.
 
 use super::findings::End;
-use super::seen::Seen;
+use super::observations::Observations;
 use super::steps::Run;
 use crate::board::Status;
 use crate::result::{CheckName, Counter, Finding, LatencyReport};
@@ -94,7 +94,7 @@ pub(super) fn rows_numbered(status: &Status, counted: u32) -> Result<(), End> {
     Err(miscounted(Finding::CounterWrong { counter: Counter::RowsNumbered, counted, right, rule: None }))
 }
 
-fn latencies_counted(status: &Status, seen: &Seen) -> Result<(), End> {
+fn latencies_counted(status: &Status, seen: &Observations) -> Result<(), End> {
     let (counted_least, counted_most) = (status.least_latency, status.most_latency);
     match seen.latency {
         Some(LatencyReport { least, most, .. }) if (counted_least, counted_most) != (least, most) => {

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::mem;
 use std::time::{Duration, Instant};
 
+use super::observations::Observations;
 use super::plan::Generation;
-use super::seen::Seen;
 use super::{Misfit, RunOptions};
 use crate::board::{Board, BoardError, Status, Tally};
 use crate::result::{
@@ -130,7 +130,7 @@ pub(super) struct Earlier {
 pub(super) struct Look {
     /// What was seen of all frames. It is empty while a segment is streamed, because the segment's judge has it then
     /// ([`Run::stream`](super::steps::Run::stream)): do not take a frame's index or a verdict from it there.
-    pub(super) seen: Seen,
+    pub(super) seen: Observations,
     /// Rows that the board should have counted since HELLO.
     pub(super) rows_counted: usize,
     /// The least number of rows that it should have counted as sent again.

@@ -28,6 +28,7 @@ mod golden;
 mod kept;
 mod lost_row;
 mod misfit;
+mod observations;
 mod options;
 mod parts;
 mod patterns;
@@ -41,7 +42,6 @@ mod row_judge;
 mod rules;
 mod schedule;
 mod second_look;
-mod seen;
 mod steps;
 mod streaming;
 mod threads;
@@ -62,11 +62,11 @@ use crate::verdict::Cause;
 
 use conclude::Begun;
 use findings::{End, Findings};
-use reconnect::WayBack;
+use reconnect::Opener;
 pub(crate) use steps::NotAllJudged;
 use steps::Run;
 
-pub use crate::board::Draws;
+pub use crate::board::SessionIds;
 pub(crate) use at_speed::FEW as FEW_AT_SPEED;
 pub use finished::{Finished, Lack, RECORDING_LOST, REPORT_LOST};
 pub(crate) use golden::{CannotJudge, GoldenError};
@@ -86,13 +86,13 @@ pub use within::WithinError;
 
 /// What the report says about the run besides its findings. The default draws its numbers.
 #[derive(Clone, Debug, Default)]
-pub struct Circumstances {
+pub struct Provenance {
     /// The command line.
     pub arguments: Vec<String>,
     /// Files that were read.
     pub files: Vec<FileHash>,
     /// Numbers drawn for this run; a replay has those of the recorded one.
-    pub draws: Draws,
+    pub draws: SessionIds,
     /// Who tests, if a name is given.
     pub operator: Option<String>,
 }
@@ -140,9 +140,9 @@ fn run_to_report(
     misfit::check_frames(plan)?;
     let begun = Begun::now();
     let mut findings = Findings::new(options, &candidate.target, candidate.kind, candidate.link.name());
-    let way_back =
-        WayBack { reopen: candidate.reopen, patience: options.reconnect, options: open_options(options) };
-    let end = drive(plan, candidate.link, options, way_back, progress, &mut findings).err();
+    let opener =
+        Opener { reopen: candidate.reopen, patience: options.reconnect, options: open_options(options) };
+    let end = drive(plan, candidate.link, options, opener, progress, &mut findings).err();
     progress.done();
     match findings.misfit.take() {
         Some(misfit) => Err(misfit),
@@ -164,14 +164,14 @@ fn drive(
     plan: &Plan,
     link: Box<dyn Link>,
     options: &RunOptions,
-    mut way_back: WayBack,
+    mut opener: Opener,
     progress: &dyn Progress,
     findings: &mut Findings,
 ) -> Result<(), End> {
     progress.step(Step::JudgeTheJudge);
     steps::judge_the_judge(findings)?;
     progress.step(Step::OpenTheBoard);
-    let mut board = way_back.open(link, findings)?;
+    let mut board = opener.open(link, findings)?;
     tracing::info!("session {} with {}", board.welcome.session, board.capabilities.name);
     let chosen = match plan.within {
         None => Ok(plan.clone()),
@@ -179,9 +179,9 @@ fn drive(
     };
     let end = chosen.and_then(|plan| {
         let generations = plan.generations(&Build::of(&board.capabilities));
-        let (board, way_back) = (&mut board, &mut way_back);
+        let (board, opener) = (&mut board, &mut opener);
         let mut run =
-            Run { plan: &plan, board, generations, sessions: 0, options, way_back, progress, findings };
+            Run { plan: &plan, board, generations, sessions: 0, options, opener, progress, findings };
         run.all_steps()
     });
     findings.note_link(&board);

@@ -19,7 +19,7 @@ const MOST: usize = 16;
 const TICK: Duration = Duration::from_millis(100);
 
 /// How a board is opened, the first time and later.
-pub(super) struct WayBack {
+pub(super) struct Opener {
     /// Opens the link again; none if it cannot be.
     pub(super) reopen: Option<Reopener>,
     /// How long a board may stay away; none if the run ends when it goes away.
@@ -27,7 +27,7 @@ pub(super) struct WayBack {
     pub(super) options: OpenOptions,
 }
 
-impl WayBack {
+impl Opener {
     /// Opens the board at `link`, or at a reopened link if that one breaks. The board is taken over only now: a host that
     /// takes it during the run came later, and is not thrown out.
     pub(super) fn open(&mut self, link: Box<dyn Link>, findings: &mut Findings) -> Result<Board, End> {
@@ -135,14 +135,14 @@ impl Run<'_> {
     pub(super) fn come_back(&mut self, end: End) -> Result<(), End> {
         self.unless_misconduct(end.name(), Ok(()))?;
         let again = self.findings.link.reconnections.len() < MOST;
-        let Some(patience) = self.way_back.patience().filter(|_| end.is_outage() && again) else {
+        let Some(patience) = self.opener.patience().filter(|_| end.is_outage() && again) else {
             return Err(end);
         };
         self.progress.step(Step::WaitForTheBoard);
         self.findings.keep_counts(self.board);
         // The old link, if still open, would keep the new one from being opened.
         self.board.hang_up();
-        let board = self.way_back.open_again(patience, &end, self.findings)?;
+        let board = self.opener.open_again(patience, &end, self.findings)?;
         let is_same = board.welcome.serial == self.board.welcome.serial
             && board.welcome.build == self.board.welcome.build
             && board.capabilities == self.board.capabilities;

@@ -9,7 +9,7 @@ use std::time::Duration;
 use halfrow_model::{Equidistant, Frame, FrameError, Geometry, LensError, Phase, UnknownPhase};
 use serde::{Deserialize, Serialize};
 
-use super::{AtSpeed, Circumstances, Draws, FrameSource, JUDGED, Plan, RunOptions, Selection, Vary};
+use super::{AtSpeed, FrameSource, JUDGED, Plan, Provenance, RunOptions, Selection, SessionIds, Vary};
 use crate::board::Sent;
 use crate::board::deadlines::RetryLimit;
 use crate::frames::{Builtin, UnknownBuiltin};
@@ -21,7 +21,7 @@ use crate::tables::{ContentError, TableFile};
 pub struct RecordedRun {
     version: String,
     arguments: Vec<String>,
-    draws: Draws,
+    draws: SessionIds,
     tables: String,
     tables_source: String,
     rows_outside_circle: Option<usize>,
@@ -165,11 +165,7 @@ impl RecordedRun {
             take_over: run.take_over,
             counts: run.counts,
             keep_equal: true,
-            circumstances: Circumstances {
-                arguments: run.arguments,
-                draws: run.draws,
-                ..Circumstances::default()
-            },
+            circumstances: Provenance { arguments: run.arguments, draws: run.draws, ..Provenance::default() },
             ..RunOptions::default()
         };
         Ok((plan, options))

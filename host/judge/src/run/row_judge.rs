@@ -11,8 +11,8 @@ use halfrow_model::{Frame, row_signature};
 
 use super::entry::{WrongEntry, flipped_bit};
 use super::kept::{Offered, as_found};
+use super::observations::Observations;
 use super::prepared::{PrepareError, Prepared};
-use super::seen::Seen;
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::compare::Comparison;
 use crate::progress::Progress;
@@ -55,7 +55,7 @@ type Source<'a> = Take<mpsc::Iter<'a, Result<Prepared, PrepareError>>>;
 /// The judge of one segment.
 pub(super) struct RowJudge<'a> {
     source: Source<'a>,
-    seen: &'a mut Seen,
+    seen: &'a mut Observations,
     options: JudgeOptions,
     timing: FrameTiming,
     progress: &'a dyn Progress,
@@ -76,7 +76,7 @@ pub(super) struct RowJudge<'a> {
 impl<'a> RowJudge<'a> {
     pub(super) fn new(
         source: Source<'a>,
-        seen: &'a mut Seen,
+        seen: &'a mut Observations,
         options: JudgeOptions,
         timing: FrameTiming,
         progress: &'a dyn Progress,
@@ -323,7 +323,7 @@ mod tests {
         let (sender, source) = channel();
         [7, 8].into_iter().for_each(|number| sender.send(Ok(frame(number))).unwrap());
         drop(sender);
-        let mut seen = Seen::default();
+        let mut seen = Observations::default();
         let mut judge = RowJudge::new(
             source.iter().take(2),
             &mut seen,
@@ -358,7 +358,7 @@ mod tests {
         sender.send(Ok(frame(7))).unwrap();
         sender.send(Err(PrepareError::Render { name: name(), source: cannot })).unwrap();
         drop(sender);
-        let mut seen = Seen::default();
+        let mut seen = Observations::default();
         let timing = FrameTiming::Gaps { seed: 0 };
         let mut judge = RowJudge::new(source.iter().take(3), &mut seen, options(), timing, &Silent);
         assert_eq!(judge.next_frame().map(|frame| frame.number), Some(7));

@@ -66,7 +66,7 @@ impl Run<'_> {
     }
 
     fn nonce(&self, number: u32) -> u32 {
-        self.way_back.options.nonce.wrapping_add(NONCE + number)
+        self.opener.options.nonce.wrapping_add(NONCE + number)
     }
 
     /// The nonce of a further session within the same look.

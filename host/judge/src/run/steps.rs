@@ -14,7 +14,7 @@ use super::options::RunOptions;
 use super::patterns::patterns;
 use super::plan::{Generation, Plan, Segment};
 use super::prepared::{self, PrepareError, Prepared};
-use super::reconnect::WayBack;
+use super::reconnect::Opener;
 use super::rules::MOST_FILLED;
 use super::variations::Build;
 use crate::board::{Board, BoardError, UnknownDatapath, grids, possible};
@@ -45,7 +45,7 @@ pub(super) struct Run<'a> {
     /// Sessions opened so far to make copies of old requests harmless.
     pub(super) sessions: u32,
     pub(super) options: &'a RunOptions,
-    pub(super) way_back: &'a mut WayBack,
+    pub(super) opener: &'a mut Opener,
     pub(super) progress: &'a dyn Progress,
     pub(super) findings: &'a mut Findings,
 }

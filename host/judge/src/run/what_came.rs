@@ -2,8 +2,8 @@
 
 use super::entry::WrongEntry;
 use super::findings::{During, End};
+use super::observations::Observations;
 use super::plan::{DECOY, Generation};
-use super::seen::Seen;
 use super::steps::Run;
 use crate::board::Bank;
 use crate::diagnosis::{self, Case, Uploaded};
@@ -141,7 +141,7 @@ fn changed_on_entry(wrong: WrongEntry, differs: bool, is_every_row: bool) -> End
     }
 }
 
-fn latency(seen: &Seen) -> Result<Finding, End> {
+fn latency(seen: &Observations) -> Result<Finding, End> {
     let Some(first) = &seen.wrong_latency else {
         let clocks = seen.latency.map_or(0, |latency| latency.claimed);
         return Ok(Finding::LatencyRight { clocks });

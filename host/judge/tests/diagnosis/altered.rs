@@ -3,7 +3,7 @@
 use halfrow::result::Suspect;
 use halfrow_model::{Frame, Kernel, RowFactor, TableSet, correct, correct_row, source};
 
-use crate::bench::{Bench, Generation, Seen, WHITE, fault, narrow, off_centre, wide};
+use crate::bench::{Bench, CaseInput, Generation, WHITE, fault, narrow, off_centre, wide};
 
 /// The suspects for a board that gives `found`, frame by frame.
 fn diagnose(bench: &Bench, found: impl Fn(usize, &Frame, &Frame) -> Vec<u16>) -> Vec<Suspect> {
@@ -11,8 +11,8 @@ fn diagnose(bench: &Bench, found: impl Fn(usize, &Frame, &Frame) -> Vec<u16>) ->
 }
 
 /// The frames that `found` makes of the index of each, of what went in and of what should come out.
-fn seen(bench: &Bench, found: impl Fn(usize, &Frame, &Frame) -> Vec<u16>) -> Seen {
-    let mut altered = Seen { frames: Vec::new(), evidence: Vec::new() };
+fn seen(bench: &Bench, found: impl Fn(usize, &Frame, &Frame) -> Vec<u16>) -> CaseInput {
+    let mut altered = CaseInput { frames: Vec::new(), evidence: Vec::new() };
     for (index, (generation, input, expected)) in bench.sound_frames().into_iter().enumerate() {
         let samples = found(index, &input, &expected);
         let found = Frame::new(input.width(), input.depth(), input.phase(), samples).unwrap();

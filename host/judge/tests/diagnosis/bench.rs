@@ -59,7 +59,7 @@ const SCHEDULE: [Scheduled; 9] = [
 pub(crate) const WHITE: usize = 3;
 
 /// What a run gives the diagnosis.
-pub(crate) struct Seen {
+pub(crate) struct CaseInput {
     pub(crate) frames: Vec<FrameReport>,
     pub(crate) evidence: Vec<Evidence>,
 }
@@ -94,7 +94,7 @@ impl Bench {
     }
 
     /// The suspects that the diagnosis names for what was seen.
-    pub(crate) fn judge(&self, seen: &Seen) -> Vec<Suspect> {
+    pub(crate) fn judge(&self, seen: &CaseInput) -> Vec<Suspect> {
         let uploaded = self.generations.each_ref().map(|generation| Uploaded {
             generation: generation.number,
             tables: &generation.tables,
@@ -110,7 +110,7 @@ impl Bench {
 
     /// The frames of the schedule as a board with `fault` gives them. Frames of the same timing follow each other without
     /// a pause.
-    pub(crate) fn play(&self, fault: Option<BoardFault>) -> Seen {
+    pub(crate) fn play(&self, fault: Option<BoardFault>) -> CaseInput {
         let options = Options { ring: Some(self.ring), max_width: self.width(), ..Options::default() };
         let mut player = Player::new(&options, fault).unwrap();
         let mut tables = Tables::new(&options, fault);
@@ -130,7 +130,7 @@ impl Bench {
         }
         player.flush();
         fetch(&mut player, &mut found);
-        let mut seen = Seen { frames: Vec::new(), evidence: Vec::new() };
+        let mut seen = CaseInput { frames: Vec::new(), evidence: Vec::new() };
         for ((generation, input, expected), samples) in sound.into_iter().zip(found) {
             let found = Frame::new(input.width(), input.depth(), input.phase(), samples).unwrap();
             seen.take(generation, input, expected, found);
@@ -201,7 +201,7 @@ impl Bench {
     }
 }
 
-impl Seen {
+impl CaseInput {
     /// Adds a frame, and keeps its samples if it differs.
     pub(crate) fn take(&mut self, generation: u8, input: Frame, expected: Frame, found: Frame) {
         let comparison = Comparison::of_frames(&expected, &found);

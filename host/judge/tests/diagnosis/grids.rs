@@ -4,7 +4,7 @@
 use halfrow::result::Suspect;
 use halfrow_model::{BitDepth, Interpolant, Kernel, TableSet, correct};
 
-use crate::bench::{Bench, Generation, Seen, assert_named, fault, grid, is_told, off_centre_grid};
+use crate::bench::{Bench, CaseInput, Generation, assert_named, fault, grid, is_told, off_centre_grid};
 use crate::scenes::Random;
 
 /// Grid rows of [`grid`], and its columns, including the one of the offsets.
@@ -106,7 +106,7 @@ fn an_address_line_is_named_behind_a_grid_although_the_ring_did_not_begin_with_t
 
 /// The suspects for a board that makes the frames with the tables and the kernel that `made` returns.
 fn diagnose(bench: &Bench, made: impl Fn(&TableSet, &Kernel) -> (TableSet, Kernel)) -> Vec<Suspect> {
-    let mut seen = Seen { frames: Vec::new(), evidence: Vec::new() };
+    let mut seen = CaseInput { frames: Vec::new(), evidence: Vec::new() };
     for (generation, input, expected) in bench.sound_frames() {
         let Generation { tables, kernel, .. } = &bench.generations[usize::from(generation) - 1];
         let (tables, kernel) = made(tables, kernel);
@@ -179,7 +179,7 @@ fn stale_grids_are_named_in_a_frame_with_another_centre() {
     let mut bench = off_centre_grid();
     let stale = bench.generations[0].tables.clone();
     bench.generations[0].tables = stale.with_settings(BitDepth::Eight, 191).unwrap();
-    let mut seen = Seen { frames: Vec::new(), evidence: Vec::new() };
+    let mut seen = CaseInput { frames: Vec::new(), evidence: Vec::new() };
     for (index, (generation, input, expected)) in bench.sound_frames().into_iter().enumerate() {
         let Generation { tables, kernel, .. } = &bench.generations[usize::from(generation) - 1];
         let tables = if index == 2 { &stale } else { tables };

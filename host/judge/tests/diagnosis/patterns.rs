@@ -3,11 +3,11 @@
 use halfrow::result::Suspect;
 use halfrow_model::{Frame, correct};
 
-use crate::bench::{Bench, Generation, Seen, narrow, wide};
+use crate::bench::{Bench, CaseInput, Generation, narrow, wide};
 
 /// The suspects for a board that gives `found` of the index of each frame, of what went in and of what should come out.
 fn diagnose(bench: &Bench, found: impl Fn(usize, &Frame, &Frame) -> Vec<u16>) -> Vec<Suspect> {
-    let mut seen = Seen { frames: Vec::new(), evidence: Vec::new() };
+    let mut seen = CaseInput { frames: Vec::new(), evidence: Vec::new() };
     for (index, (generation, input, expected)) in bench.sound_frames().into_iter().enumerate() {
         let found = with(&input, found(index, &input, &expected));
         seen.take(generation, input, expected, found);

@@ -3,7 +3,7 @@
 use halfrow::result::Suspect;
 use halfrow_model::{BitDepth, Frame, Geometry, correct};
 
-use crate::bench::{Bench, Generation, Seen, off_centre, off_centre_grid};
+use crate::bench::{Bench, CaseInput, Generation, off_centre, off_centre_grid};
 
 /// The benches with 8 bits and a centre of their own, and a decoy whose centre is the middle.
 fn benches() -> [Bench; 2] {
@@ -16,7 +16,7 @@ fn benches() -> [Bench; 2] {
 
 /// The suspect for a board that makes each frame, by its index, with the settings that `made` gives.
 fn diagnose(bench: &Bench, made: impl Fn(usize, &Geometry) -> Geometry) -> Suspect {
-    let mut seen = Seen { frames: Vec::new(), evidence: Vec::new() };
+    let mut seen = CaseInput { frames: Vec::new(), evidence: Vec::new() };
     for (index, (generation, input, expected)) in bench.sound_frames().into_iter().enumerate() {
         let Generation { tables, kernel, .. } = &bench.generations[usize::from(generation) - 1];
         let geometry = made(index, tables.geometry());

@@ -5,7 +5,7 @@ use std::time::Instant;
 use halfrow::result::Evidence;
 use halfrow_model::{Frame, Interpolant};
 
-use crate::bench::{Bench, Seen, fault, is_told, narrow, off_centre, wide};
+use crate::bench::{Bench, CaseInput, fault, is_told, narrow, off_centre, wide};
 use crate::scenes::Random;
 
 /// A random fault as in a target string, and the place that must be named.
@@ -114,7 +114,7 @@ fn full_frames_are_diagnosed_within_two_seconds() {
 }
 
 #[allow(clippy::print_stdout)]
-fn judge_in_time(bench: &Bench, text: &str, seen: &Seen) {
+fn judge_in_time(bench: &Bench, text: &str, seen: &CaseInput) {
     let begun = Instant::now();
     let suspects = bench.judge(seen);
     let (seconds, first) = (begun.elapsed().as_secs_f64(), &suspects[0]);

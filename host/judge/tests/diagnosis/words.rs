@@ -3,7 +3,7 @@
 use halfrow::result::Suspect;
 use halfrow_model::Interpolant;
 
-use crate::bench::{Bench, Seen, WHITE, assert_named, fault, is_told, narrow, wide};
+use crate::bench::{Bench, CaseInput, WHITE, assert_named, fault, is_told, narrow, wide};
 
 #[test]
 fn a_bit_of_a_rows_factor_is_named() {
@@ -105,7 +105,7 @@ fn low_bits_of_a_rows_factor_are_among_the_suspects_or_invisible() {
 }
 
 /// The frames of a sound board up to `first`, and of one with this fault from there on, all of them kept.
-fn setting_in(bench: &Bench, text: &str, first: usize) -> Seen {
+fn setting_in(bench: &Bench, text: &str, first: usize) -> CaseInput {
     let faulty = bench.play(Some(fault(text)));
     let mut seen = bench.play(None);
     seen.frames.truncate(first);

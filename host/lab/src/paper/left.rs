@@ -67,7 +67,7 @@ pub(super) fn exhibit() -> Result<Exhibit, PaperError> {
          computed elsewhere.",
     );
     let (mut ways, mut parts) = (Vec::new(), Vec::new());
-    let all = parallel::map(&CASES, |_, case| Left::of(case));
+    let all = parallel::map(&CASES, |_, case| CaseResiduals::of(case));
     let all = all.into_iter().collect::<Result<Vec<_>, _>>()?;
     for (case, left) in CASES.iter().zip(&all) {
         exhibit.claims.push(claim(case, left));
@@ -106,7 +106,7 @@ const PARTS: [&str; 10] = [
 ];
 
 /// What each way leaves in one case.
-struct Left {
+struct CaseResiduals {
     /// Lens, frame and axis.
     what: [String; 3],
     equation_9: GridResiduals,
@@ -117,7 +117,7 @@ struct Left {
     entries: usize,
 }
 
-impl Left {
+impl CaseResiduals {
     fn of(case: &Case) -> Result<Self, PaperError> {
         let camera = (case.camera)()?;
         let (geometry, (column, row)) = (camera.geometry(), camera.centre());
@@ -166,7 +166,7 @@ fn percent(share: f64) -> Cell {
     Cell::Text(format!("{:.2} %", 100.0 * share))
 }
 
-fn claim(case: &Case, left: &Left) -> Claim {
+fn claim(case: &Case, left: &CaseResiduals) -> Claim {
     let [lens, frame, axis] = &left.what;
     Claim {
         what: format!("largest in the inner picture, {lens}, {frame}, axis at {axis}"),

@@ -13,7 +13,7 @@ const SAMPLES: usize = 48;
 /// What a straight line must be in the picture that is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum Held {
+pub(super) enum Constraint {
     /// A column.
     Upright,
     /// A row.
@@ -28,14 +28,14 @@ pub(super) struct Line {
     /// Directions along it: longitude and latitude in radians, to the right and down.
     pub(super) directions: Vec<(f64, f64)>,
     /// What it must be.
-    pub(super) held: Held,
+    pub(super) held: Constraint,
 }
 
 impl Line {
     /// The line between two rays of any length, u right, v down, w ahead, as far as it counts; none if too little of it counts,
     /// or if both rays are the same.
     #[must_use]
-    pub(super) fn between(ends: [[f64; 3]; 2], held: Held) -> Option<Self> {
+    pub(super) fn between(ends: [[f64; 3]; 2], held: Constraint) -> Option<Self> {
         let [from, to] = ends.map(unit);
         let steps = (0..=SAMPLES).map(|step| step as f64 / SAMPLES as f64);
         let along = steps.map(|share| std::array::from_fn(|at| from[at] + share * (to[at] - from[at])));
@@ -54,9 +54,9 @@ pub(super) fn of_the_street() -> Vec<Line> {
     let line = |line: street::SceneLine| {
         let is_across = line.ends[0][2] == line.ends[1][2];
         let held = match (line.is_upright, is_across) {
-            (true, _) => Held::Upright,
-            (false, true) => Held::Level,
-            (false, false) => Held::Straight,
+            (true, _) => Constraint::Upright,
+            (false, true) => Constraint::Level,
+            (false, false) => Constraint::Straight,
         };
         Line::between(line.ends, held)
     };

@@ -18,7 +18,7 @@ use halfrow::tables::text;
 use halfrow_model::Equidistant;
 use serde::Deserialize;
 
-use super::lines::{Held, Line};
+use super::lines::{Constraint, Line};
 
 /// The radius of the lens by which directions are computed. The photograph's own radius only scales its points.
 const RADIUS: f64 = 1000.0;
@@ -100,7 +100,7 @@ struct Circle {
 struct Marked {
     from: [f64; 2],
     to: [f64; 2],
-    is: Held,
+    is: Constraint,
 }
 
 /// `error` shortened to what can be read, followed by its place.

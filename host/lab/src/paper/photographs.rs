@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::expected::PHOTOGRAPHS;
 use halfrow::frames::preview::RgbImage;
-use halfrow::frames::{self, ReadError, lying};
+use halfrow::frames::{self, ReadError, landscape};
 
 /// Columns of a photograph in landscape format.
 pub(super) const WIDTH: usize = 768;
@@ -28,7 +28,7 @@ pub enum PhotographError {
     },
     /// One of the paper's photographs has another size than the paper's.
     #[error(
-        "{} is {width} x {height}, and the paper's photographs are {WIDTH} x {HEIGHT}, lying or standing; give the \
+        "{} is {width} x {height}, and the paper's photographs are {WIDTH} x {HEIGHT}, landscape or standing; give the \
          pictures as they were released",
         path.display()
     )]
@@ -54,7 +54,7 @@ fn photograph(folder: &Path, number: usize) -> Result<RgbImage, PhotographError>
     let path = folder.join(format!("kodim{number:02}.png"));
     let image = frames::read_rgb(&path).map_err(|source| PhotographError::Read { number, source })?;
     match (image.width, image.height) {
-        (WIDTH, HEIGHT) | (HEIGHT, WIDTH) => Ok(lying(image)),
+        (WIDTH, HEIGHT) | (HEIGHT, WIDTH) => Ok(landscape(image)),
         (width, height) => Err(PhotographError::Size { path, width, height }),
     }
 }

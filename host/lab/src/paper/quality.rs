@@ -78,7 +78,7 @@ mod tests {
     fn a_line_is_as_crooked_as_its_farthest_point_is_from_its_chord() {
         let line = Line {
             directions: vec![(0.0, 0.0), (0.5, 0.0), (1.0, 0.0)],
-            held: super::super::lines::Held::Straight,
+            held: super::super::lines::Constraint::Straight,
         };
         let bent = |longitude: f64, _| (3.0 * longitude, if longitude == 0.5 { 0.25 } else { 0.0 });
         assert_eq!(straightness(&bent, &[line]), 0.25);

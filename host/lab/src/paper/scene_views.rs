@@ -128,7 +128,7 @@ fn pixels(name: &str, caption: &str, image: RgbImage) -> Picture {
 }
 
 /// How well a projection keeps lines and shapes.
-struct Kept {
+struct Quality {
     name: &'static str,
     /// See [`quality::straightness`].
     straightness: f64,
@@ -137,8 +137,8 @@ struct Kept {
 }
 
 /// The same for each projection of Fig. 4, in its order.
-fn kept(subject: &Subject, net: &Net) -> Vec<Kept> {
-    let kept = |name, place: quality::Place<'_>| Kept {
+fn kept(subject: &Subject, net: &Net) -> Vec<Quality> {
+    let kept = |name, place: quality::Place<'_>| Quality {
         name,
         straightness: quality::straightness(place, &subject.lines),
         conformality: quality::conformality(place),
@@ -152,7 +152,7 @@ fn kept(subject: &Subject, net: &Net) -> Vec<Kept> {
 }
 
 /// The claims that the optimised projection does what it is made for.
-fn optimised_for(kept: &[Kept]) -> Vec<Claim> {
+fn optimised_for(kept: &[Quality]) -> Vec<Claim> {
     let named = |name: &str| kept.iter().find(|kept| kept.name == name);
     let views = [View::Mercator, View::Perspective].map(|view| named(view.name()));
     let (Some(own), [Some(mercator), Some(perspective)]) = (named(OPTIMISED), views) else {
@@ -182,9 +182,9 @@ fn optimised_for(kept: &[Kept]) -> Vec<Claim> {
     ]
 }
 
-fn table_of(kept: &[Kept], lines: usize) -> Table {
-    let row = |kept: &Kept| {
-        let Kept { name, straightness, conformality } = kept;
+fn table_of(kept: &[Quality], lines: usize) -> Table {
+    let row = |kept: &Quality| {
+        let Quality { name, straightness, conformality } = kept;
         vec![Cell::Text((*name).to_owned()), Cell::Number(*straightness, 2), Cell::Number(*conformality, 4)]
     };
     Table {

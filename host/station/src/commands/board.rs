@@ -38,11 +38,11 @@ pub(super) struct Arguments {
     #[command(flatten)]
     settings: SettingsFile,
     #[command(subcommand)]
-    what: What,
+    what: Action,
 }
 
 #[derive(Debug, Subcommand)]
-enum What {
+enum Action {
     /// Share a board, or change where it is while nobody has it
     Share(Share),
     /// Print the boards, and who has them
@@ -160,7 +160,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     let settings = settings.load_without_lanes()?;
     let address = plant(&settings)?.address()?;
     match what {
-        What::Share(share) => {
+        Action::Share(share) => {
             if kinds::of(&share.board).is_none() {
                 return Err(Failure::call(NoBoardKind { kind: share.board.kind.clone() }));
             }
@@ -168,21 +168,21 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             share.refuse_other_place().map_err(Failure::call)?;
             shared(&mut Plant::connect(&address)?, share)
         }
-        What::List { json } => {
+        Action::List { json } => {
             let found = PlantPool::new(address).look(boards)?;
             either(&found, *json, |found| text(found))
         }
-        What::Out(Change { name, why: Why { reason, operator } }) => {
+        Action::Out(Change { name, why: Why { reason, operator } }) => {
             let out = Plant::connect(&address)?.take_out(name, reason, operator)?;
             changed(out, name, "out")
         }
-        What::In(Change { name, why: Why { reason, operator } }) => {
+        Action::In(Change { name, why: Why { reason, operator } }) => {
             changed(Plant::connect(&address)?.put_in(name, reason, operator)?, name, "in")
         }
-        What::Unshare(Change { name, why: Why { reason, operator } }) => {
+        Action::Unshare(Change { name, why: Why { reason, operator } }) => {
             changed(Plant::connect(&address)?.unshare(name, operator, reason)?, name, "unshared")
         }
-        What::Hold { kind } => hold(&address, kind, &settings.name),
+        Action::Hold { kind } => hold(&address, kind, &settings.name),
     }
 }
 

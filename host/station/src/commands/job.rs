@@ -26,11 +26,11 @@ pub(super) struct Arguments {
     #[command(flatten)]
     settings: SettingsFile,
     #[command(subcommand)]
-    what: What,
+    what: Action,
 }
 
 #[derive(Debug, Subcommand)]
-enum What {
+enum Action {
     /// Add a job
     Add(Add),
     /// Print the jobs, the newest first
@@ -122,8 +122,8 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     let settings = settings.load_without_lanes()?;
     let address = plant(&settings)?.address()?;
     match what {
-        What::Add(add) => add_jobs(&mut Plant::connect(&address)?, add),
-        What::List { state, most, json } => {
+        Action::Add(add) => add_jobs(&mut Plant::connect(&address)?, add),
+        Action::List { state, most, json } => {
             let states = match state {
                 Some(state) => vec![state.name()],
                 None => STATES.into_iter().filter(|state| *state != State::Done.name()).collect(),
@@ -131,11 +131,11 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             let found = PlantPool::new(address).look(|now| jobs(now, &states, "", *most))?;
             either(&found, *json, |found| text(found))
         }
-        What::Cancel(Change { id, why: Why { reason, operator } }) => {
+        Action::Cancel(Change { id, why: Why { reason, operator } }) => {
             let done = Plant::connect(&address)?.cancel_job(id, operator, reason)?;
             changed(done, id, "cancelled")
         }
-        What::Retry(Change { id, why: Why { reason, operator } }) => {
+        Action::Retry(Change { id, why: Why { reason, operator } }) => {
             let done = Plant::connect(&address)?.retry_job(id, operator, reason)?;
             changed(done, id, "retried")
         }

@@ -108,7 +108,7 @@ impl Counted {
 
 /// Which runs are meant, by what they say of themselves.
 #[derive(Debug, Args)]
-struct Said {
+struct RunChoice {
     /// Only units of this serial number
     #[arg(long)]
     serial: Option<String>,
@@ -133,7 +133,7 @@ struct Said {
 #[derive(Debug, Args)]
 pub(super) struct Filtered {
     #[command(flatten)]
-    said: Said,
+    said: RunChoice,
     #[command(flatten)]
     range: Range,
 }
@@ -141,11 +141,11 @@ pub(super) struct Filtered {
 impl Filtered {
     /// The groups of its arguments, for arguments that conflict with all of them: Clap's group of a structure does not
     /// include what is flattened into it.
-    pub(super) const GROUPS: [&str; 2] = ["Said", "Range"];
+    pub(super) const GROUPS: [&str; 2] = ["RunChoice", "Range"];
 
     /// As a filter.
     pub(super) fn filter(&self) -> Result<Filter, Failure> {
-        let Said { serial, verdict, plan, station, lane, operator } = &self.said;
+        let RunChoice { serial, verdict, plan, station, lane, operator } = &self.said;
         Ok(Filter {
             serial: serial.clone(),
             verdict: verdict.map(Into::into),

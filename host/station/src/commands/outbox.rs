@@ -19,11 +19,11 @@ pub(super) struct Arguments {
     #[command(flatten)]
     settings: SettingsFile,
     #[command(subcommand)]
-    what: What,
+    what: Action,
 }
 
 #[derive(Debug, Subcommand)]
-enum What {
+enum Action {
     /// Print what is still to be sent, and what waits for a person
     ///
     /// Of the entries that wait at a sink, the first hundred are printed; `dead` says how many there are.
@@ -71,7 +71,7 @@ enum What {
 
 /// What is still to be sent.
 #[derive(Debug, Serialize)]
-struct Left {
+struct Backlog {
     unsent: Vec<Unsent>,
     dead: Vec<Dead>,
 }
@@ -80,15 +80,15 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     let settings = settings.load_without_lanes()?;
     let folder = Folder::new(&settings.data);
     match what {
-        What::List { json } => {
+        Action::List { json } => {
             let now = Snapshot::take(&folder)?;
             let unsent = now.unsent()?;
-            either(&Left { dead: now.dead(&unsent)?, unsent }, *json, text)
+            either(&Backlog { dead: now.dead(&unsent)?, unsent }, *json, text)
         }
-        What::Send { disk } => send(&settings, disk.opens(&settings.data)?),
-        What::Release { id, sink, why } => release(&folder, id.as_deref(), sink.as_deref(), why),
-        What::Again { sink, why } => again(&settings, &folder, sink, why),
-        What::Forget { sink, why } => forget(&settings, &folder, sink, why),
+        Action::Send { disk } => send(&settings, disk.opens(&settings.data)?),
+        Action::Release { id, sink, why } => release(&folder, id.as_deref(), sink.as_deref(), why),
+        Action::Again { sink, why } => again(&settings, &folder, sink, why),
+        Action::Forget { sink, why } => forget(&settings, &folder, sink, why),
     }
 }
 
@@ -144,7 +144,7 @@ fn send(settings: &Settings, mut store: Store) -> Result<Exit, Failure> {
     if left.is_empty() { Ok(Exit::Pass) } else { print(&table_of(&left)).map(|_| Exit::Error) }
 }
 
-fn text(Left { unsent, dead }: &Left) -> String {
+fn text(Backlog { unsent, dead }: &Backlog) -> String {
     if unsent.is_empty() {
         return "nothing is left to be sent".to_owned();
     }

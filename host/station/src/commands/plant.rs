@@ -29,11 +29,11 @@ pub(super) struct Arguments {
     #[command(flatten)]
     settings: SettingsFile,
     #[command(subcommand)]
-    what: What,
+    what: Action,
 }
 
 #[derive(Debug, Subcommand)]
-enum What {
+enum Action {
     /// Make the plant's tables, or bring them up to date with a copy of all that is in them
     Prepare,
     /// Let a station have another folder than before: its disk was lost, or its computer replaced without a copy
@@ -68,7 +68,7 @@ enum What {
 impl Arguments {
     /// Whether a document was asked for.
     pub(super) const fn is_documented(&self) -> bool {
-        matches!(self.what, What::Check { json: true })
+        matches!(self.what, Action::Check { json: true })
     }
 }
 
@@ -76,23 +76,23 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     // The plans are not loaded, because those of the plant can be fetched only once it has tables.
     let address = || address(&published(settings)?);
     match what {
-        What::Prepare => {
+        Action::Prepare => {
             let address = address()?;
             let version = Plant::prepare(&address.patient())?;
             print(&format!("the plant {address} has version {version}"))
         }
-        What::Forget { station, why: Why { reason, operator } } => {
+        Action::Forget { station, why: Why { reason, operator } } => {
             if Plant::connect(&address()?)?.forget(station, operator, reason)? {
                 return print(&format!("the next folder that says it is {station} is taken for it"));
             }
             Err(Failure::call(NoStation { station: station.clone() }))
         }
-        What::Check { json } => {
+        Action::Check { json } => {
             let snapshot = Snapshot::of_plant(Plant::connect(&address()?.patient())?)?;
             let mut told = progress("runs read");
             check::tell(&check_plant(&snapshot, &mut |runs| told(runs as u64))?, *json)
         }
-        What::Prune { older_than, why: Why { reason, operator } } => {
+        Action::Prune { older_than, why: Why { reason, operator } } => {
             let before_ms = days_ago_ms(*older_than);
             let mut told = progress("rows removed");
             let removed =
@@ -100,7 +100,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             let (rows, were) = (count(removed, "row"), verb(removed, "were"));
             print(&format!("{rows} {were} removed; every record is kept"))
         }
-        What::Serve => serve(settings.load_without_lanes()?),
+        Action::Serve => serve(settings.load_without_lanes()?),
     }
 }
 

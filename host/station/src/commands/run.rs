@@ -111,7 +111,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     // Closing the database takes a while, and the verdict does not wait for it.
     let store = SharedStore::new(store);
-    let ended = run::run(&store, &order, &mut Watched { signal });
+    let ended = run::run(&store, &order, &mut SignalWatch { signal });
     if let Err(RunError::Unsaved { .. }) = &ended
         && !arguments.json
     {
@@ -167,11 +167,11 @@ impl From<RunError> for Failure {
 }
 
 /// Watches a run: signals end it, and what happens is logged.
-struct Watched {
+struct SignalWatch {
     signal: Signal,
 }
 
-impl Watch for Watched {
+impl Watch for SignalWatch {
     fn stop(&self) -> Option<StoppedBy> {
         self.signal.by()
     }

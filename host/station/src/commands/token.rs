@@ -16,11 +16,11 @@ pub(super) struct Arguments {
     #[command(flatten)]
     settings: SettingsFile,
     #[command(subcommand)]
-    what: What,
+    what: Action,
 }
 
 #[derive(Debug, Subcommand)]
-enum What {
+enum Action {
     /// Draw a token and print it, this once
     Add {
         /// Which machine, as it stands in the audit
@@ -48,15 +48,15 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     let file = settings.access.as_ref().and_then(|access| access.tokens.as_ref());
     let file = file.ok_or_else(|| Failure::call(NoTokens))?;
     match what {
-        What::Add { name, scope } => {
+        Action::Add { name, scope } => {
             std::fs::create_dir_all(&settings.data).map_err(Failure::call)?;
             print(&add_token(&settings, file, name.trim(), *scope)?)
         }
-        What::Remove { name } => {
+        Action::Remove { name } => {
             Tokens::remove_from(file, name)?;
             print(&format!("{name} may not read any more"))
         }
-        What::List => {
+        Action::List => {
             let tokens = Tokens::load_or_none(file).map_err(Failure::call)?;
             let lines: Vec<_> =
                 tokens.names().map(|(name, scope)| format!("{:<5} {name}", word(scope))).collect();

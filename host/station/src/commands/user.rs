@@ -25,11 +25,11 @@ pub(super) struct Arguments {
     #[command(flatten)]
     settings: SettingsFile,
     #[command(subcommand)]
-    what: What,
+    what: Action,
 }
 
 #[derive(Debug, Subcommand)]
-enum What {
+enum Action {
     /// Add somebody: the badge is the first line of stdin, the password of an engineer the second
     Add {
         /// Who, as it stands in records
@@ -56,18 +56,18 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     let settings = settings.load_without_lanes()?;
     let access = settings.access.as_ref().ok_or_else(|| Failure::call(NoUsers))?;
     match what {
-        What::Add { name, role } => {
+        Action::Add { name, role } => {
             std::fs::create_dir_all(&settings.data).map_err(Failure::call)?;
             let badge = asked("badge")?;
             let password = if *role == Role::Engineer { asked("password")? } else { String::new() };
             add_user(&settings, &access.users, (name.trim(), *role), &badge, &password)?;
             print(&format!("{} may act as {}", name.trim(), word(*role)))
         }
-        What::Remove { name } => {
+        Action::Remove { name } => {
             Users::remove_from(&access.users, name)?;
             print(&format!("{name} may not act any more"))
         }
-        What::List => {
+        Action::List => {
             let users = Users::load_or_none(&access.users).map_err(Failure::call)?;
             let lines: Vec<_> =
                 users.names().map(|(name, role)| format!("{:<9} {name}", word(role))).collect();

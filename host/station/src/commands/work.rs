@@ -21,7 +21,7 @@ use crate::outbox::Outbox;
 use crate::said::Said;
 use crate::settings::Settings;
 use crate::store::{Claim, PlantLink, SharedStore, Store, Worker};
-use crate::work::{Aside, Judged, Work, WorkError};
+use crate::work::{Aside, JobResult, Work, WorkError};
 
 /// Take jobs of the plant, and judge the boards that they are about
 ///
@@ -128,7 +128,7 @@ fn one_by_one(
         match work.judge(claim, stop, &mut |_| ()) {
             Ok(judged) => {
                 print(&if arguments.json { document(&judged) } else { text(&judged) })?;
-                let Judged { refused: Some(said), saved, .. } = judged else { continue };
+                let JobResult { refused: Some(said), saved, .. } = judged else { continue };
                 let error = WorkError::NotTaken { run: saved.record.run.id.clone(), said };
                 if arguments.once {
                     return Err(Failure::error(error));
@@ -162,7 +162,7 @@ fn worker(settings: &Settings) -> Result<Worker, Failure> {
     })
 }
 
-fn document(Judged { claim: Claim { job, lease, .. }, saved, is_sent, counts, .. }: &Judged) -> String {
+fn document(JobResult { claim: Claim { job, lease, .. }, saved, is_sent, counts, .. }: &JobResult) -> String {
     let (run, ended) = (&saved.record.run, &saved.record.conclusion);
     json!({
         "job": job, "board": lease.board, "serial": run.serial, "run": run.id, "verdict": ended.verdict,
@@ -171,7 +171,7 @@ fn document(Judged { claim: Claim { job, lease, .. }, saved, is_sent, counts, ..
     .to_string()
 }
 
-fn text(Judged { claim: Claim { job, lease, .. }, saved, is_sent, counts, .. }: &Judged) -> String {
+fn text(JobResult { claim: Claim { job, lease, .. }, saved, is_sent, counts, .. }: &JobResult) -> String {
     let (run, ended) = (&saved.record.run, &saved.record.conclusion);
     let note = match (is_sent, counts) {
         (false, _) => "; the plant does not have it yet",

@@ -13,9 +13,9 @@ use super::in_turn::{InTurn, NotStarted};
 use super::known::{Known, KnownOfLanes};
 use super::news::{LaneState, News};
 use super::unsent;
-use super::{Heard, Input, LiveState, in_time};
+use super::{Input, LaneReport, LiveState, in_time};
 use crate::clock;
-use crate::floor::{Accepted, Answer, Effect, Event, Floor, Owes, ScanError, Shown, Word};
+use crate::floor::{Accepted, Effect, Event, Floor, Owes, ScanError, ScanOutcome, Shown, Word};
 use crate::labgrid;
 use crate::presence::{Presence, USB};
 use crate::said::{Said, Saying};
@@ -109,7 +109,7 @@ impl AtWork {
         }
         labgrid::wait_until_left(self.shared.settings.lanes.iter().map(|lane| &lane.board));
         while let Ok(input) = inbox.try_recv() {
-            if let Input::Heard { lane, heard: heard @ Heard::Hook { .. } } = input {
+            if let Input::Heard { lane, heard: heard @ LaneReport::Hook { .. } } = input {
                 self.heard(lane, heard);
             }
         }
@@ -209,7 +209,7 @@ impl AtWork {
         self.answer(number, text, answer);
     }
 
-    fn label(&mut self, lane: Option<usize>, label: &str, operator: &str) -> Result<Answer, ScanError> {
+    fn label(&mut self, lane: Option<usize>, label: &str, operator: &str) -> Result<ScanOutcome, ScanError> {
         let now = self.now();
         match lane {
             Some(lane) => self.floor.scan_for(lane, label, operator, now),
@@ -218,13 +218,13 @@ impl AtWork {
     }
 
     /// Publishes what became of a scan, and carries out its effect.
-    fn answer(&mut self, number: u64, scanned: String, answer: Result<Answer, ScanError>) {
+    fn answer(&mut self, number: u64, scanned: String, answer: Result<ScanOutcome, ScanError>) {
         let (is_taken, lane, effect, said) = match answer {
-            Ok(Answer { lane: Some(lane), effect, said }) => match self.admit(lane, effect) {
+            Ok(ScanOutcome { lane: Some(lane), effect, said }) => match self.admit(lane, effect) {
                 Ok(effect) => (true, Some(lane), effect, said),
                 Err(why) => (false, Some(lane), None, why),
             },
-            Ok(Answer { lane: None, effect, said }) => (true, None, effect, said),
+            Ok(ScanOutcome { lane: None, effect, said }) => (true, None, effect, said),
             Err(error) => (false, None, None, Said::of(&error)),
         };
         let name = lane.and_then(|lane| Some(self.floor.lanes().get(lane)?.name().to_owned()));
@@ -235,18 +235,20 @@ impl AtWork {
         }
     }
 
-    fn heard(&mut self, lane: usize, heard: Heard) {
+    fn heard(&mut self, lane: usize, heard: LaneReport) {
         let name = || self.floor.lanes().get(lane).map_or_else(String::new, |lane| lane.name().to_owned());
         match heard {
-            Heard::Happened(event) => {
+            LaneReport::Happened(event) => {
                 // A verdict is published together with what the lane owes after it.
                 if matches!(event, Event::Ended(_)) {
                     self.check(lane);
                 }
                 self.happened(lane, event);
             }
-            Heard::Doing { run, what, rows } => self.tell(&News::Doing { lane: name(), run, what, rows }),
-            Heard::Hook { run, said } => self.tell(&News::Hook { lane: name(), run, said }),
+            LaneReport::Doing { run, what, rows } => {
+                self.tell(&News::Doing { lane: name(), run, what, rows });
+            }
+            LaneReport::Hook { run, said } => self.tell(&News::Hook { lane: name(), run, said }),
         }
     }
 
@@ -333,7 +335,7 @@ impl AtWork {
             Err(NotStarted::Behind(verdicts)) => Saying::HooksBehind { verdicts },
             Err(NotStarted::NoThread(error)) => Saying::NoThread { error: error.to_string() },
         };
-        self.heard(lane, Heard::Hook { run, said: why.into() });
+        self.heard(lane, LaneReport::Hook { run, said: why.into() });
     }
 
     fn begin(&mut self, lane: usize, accepted: Accepted) -> std::io::Result<JoinHandle<()>> {

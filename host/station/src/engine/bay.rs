@@ -14,7 +14,7 @@ use halfrow::verdict::StoppedBy;
 use super::figures::Counter;
 use super::hooks;
 use super::logged::LoggedOfLanes;
-use super::{Heard, Input};
+use super::{Input, LaneReport};
 use crate::floor::{Accepted, Event, Shown};
 use crate::guard::guarded;
 use crate::lane::Message;
@@ -56,7 +56,7 @@ impl Shared {
         }
     }
 
-    fn tell(&self, lane: usize, heard: Heard) {
+    fn tell(&self, lane: usize, heard: LaneReport) {
         // An engine that has ended saw all runs end first.
         let _ = self.inbox.send(Input::Heard { lane, heard });
     }
@@ -76,7 +76,7 @@ pub(super) fn begin(
     thread::Builder::new().name(format!("run in lane {lane}")).spawn(move || {
         let run = || carried_out(&shared, lane, &accepted, stop);
         let event = guarded(run).unwrap_or_else(|fault| unsaved(&fault));
-        shared.tell(lane, Heard::Happened(event));
+        shared.tell(lane, LaneReport::Happened(event));
     })
 }
 
@@ -101,7 +101,7 @@ fn carried_out(shared: &Shared, lane: usize, accepted: &Accepted, stop: StopAske
         silence: *silence,
         memory_mib: *memory_mib,
     };
-    let mut watched = Watched { shared, lane, run: String::new(), stop };
+    let mut watched = RunWatch { shared, lane, run: String::new(), stop };
     match run::run(&shared.store, &order, &mut watched) {
         Ok(saved) => at_plant(shared, saved, PLANT),
         Err(error @ RunError::Unsaved { .. }) => unsaved(&error),
@@ -118,7 +118,7 @@ pub(super) fn recover(shared: &Arc<Shared>, lane: usize, run: String) -> std::io
             Ok(saved) => at_plant(&shared, saved, Duration::ZERO),
             Err(error) => unsaved(&error),
         });
-        shared.tell(lane, Heard::Happened(event.unwrap_or_else(|fault| unsaved(&fault))));
+        shared.tell(lane, LaneReport::Happened(event.unwrap_or_else(|fault| unsaved(&fault))));
     })
 }
 
@@ -131,7 +131,7 @@ pub(super) fn hook(shared: &Shared, lane: usize, shown: &Shown) {
             Ok(Err(error)) => Said::of(&error),
             Err(fault) => Said::of(&fault),
         };
-        shared.tell(lane, Heard::Hook { run: shown.run.clone(), said });
+        shared.tell(lane, LaneReport::Hook { run: shown.run.clone(), said });
     }
 }
 
@@ -172,20 +172,20 @@ fn shown(saved: Saved) -> Shown {
 }
 
 /// A run whose progress is reported to the engine.
-struct Watched<'a> {
+struct RunWatch<'a> {
     shared: &'a Shared,
     lane: usize,
     run: String,
     stop: StopAsked,
 }
 
-impl Watched<'_> {
+impl RunWatch<'_> {
     fn name(&self) -> &str {
         self.shared.settings.lanes.get(self.lane).map_or("", |lane| lane.name.as_str())
     }
 }
 
-impl Watch for Watched<'_> {
+impl Watch for RunWatch<'_> {
     fn stop(&self) -> Option<StoppedBy> {
         self.stop.get().copied()
     }
@@ -194,7 +194,7 @@ impl Watch for Watched<'_> {
         let heard = match stage {
             Stage::Begun(run) => {
                 self.run.clone_from(&run.id);
-                Heard::Happened(Event::Begun { run: run.id.clone() })
+                LaneReport::Happened(Event::Begun { run: run.id.clone() })
             }
             Stage::Saving { was_killed, is_stuck } => {
                 self.shared.figures.ended(&self.run);
@@ -203,12 +203,12 @@ impl Watch for Watched<'_> {
                 }
                 if is_stuck {
                     // Whatever becomes of the result.
-                    self.shared.tell(self.lane, Heard::Happened(Event::Stuck));
+                    self.shared.tell(self.lane, LaneReport::Happened(Event::Stuck));
                 }
-                Heard::Happened(Event::Saving)
+                LaneReport::Happened(Event::Saving)
             }
             Stage::Told(message) => match doing(message) {
-                Some((what, rows)) => Heard::Doing { run: self.run.clone(), what, rows },
+                Some((what, rows)) => LaneReport::Doing { run: self.run.clone(), what, rows },
                 None => return,
             },
         };

@@ -46,7 +46,7 @@ pub struct Place {
 
 /// What a scan led to.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Answer {
+pub struct ScanOutcome {
     /// The lane, by its index, if it went to one.
     pub lane: Option<usize>,
     /// What is to be done there.
@@ -178,7 +178,7 @@ impl Floor {
     ///
     /// # Errors
     /// [`ScanError`] when it is refused; nothing has changed then, but that a choice whose time is over is forgotten.
-    pub fn scan(&mut self, text: &str, operator: &str, now: Duration) -> Result<Answer, ScanError> {
+    pub fn scan(&mut self, text: &str, operator: &str, now: Duration) -> Result<ScanOutcome, ScanError> {
         let scan = Scan::read(text)?;
         if matches!(scan, Scan::Lane(_)) {
             return self.scanned(scan, None, operator, now);
@@ -209,7 +209,7 @@ impl Floor {
         text: &str,
         operator: &str,
         now: Duration,
-    ) -> Result<Answer, ScanError> {
+    ) -> Result<ScanOutcome, ScanError> {
         self.scanned(Scan::read(text)?, Some(lane), operator, now)
     }
 
@@ -220,12 +220,12 @@ impl Floor {
         armed: Option<usize>,
         operator: &str,
         now: Duration,
-    ) -> Result<Answer, ScanError> {
+    ) -> Result<ScanOutcome, ScanError> {
         match scan {
             Scan::Lane(name) => {
                 let lane = self.named(&name)?;
                 self.armed = Some((lane, now));
-                Ok(Answer { lane: Some(lane), effect: None, said: Saying::Armed { lane: name }.into() })
+                Ok(ScanOutcome { lane: Some(lane), effect: None, said: Saying::Armed { lane: name }.into() })
             }
             Scan::Act(act) => self.act(self.meant(armed)?, act, operator),
             Scan::Mock => self.mock(self.meant(armed)?, operator),
@@ -241,7 +241,7 @@ impl Floor {
     ///
     /// # Errors
     /// [`ScanError::Lane`] when it cannot be done now.
-    pub fn act(&mut self, lane: usize, act: Act, operator: &str) -> Result<Answer, ScanError> {
+    pub fn act(&mut self, lane: usize, act: Act, operator: &str) -> Result<ScanOutcome, ScanError> {
         let name = self.name(lane).to_owned();
         let said = match act {
             Act::Start => Saying::Starts { lane: name },
@@ -250,7 +250,7 @@ impl Floor {
             Act::In => Saying::PutBack { lane: name },
         };
         let effect = self.lane(lane)?.take(act.event(operator))?;
-        Ok(Answer { lane: Some(lane), effect, said: said.into() })
+        Ok(ScanOutcome { lane: Some(lane), effect, said: said.into() })
     }
 
     /// Takes what happened to a lane at the time `now`. A serial number that waits belongs to the next board that is
@@ -298,7 +298,7 @@ impl Floor {
     }
 
     /// Gives a lane the serial number that `operator` scanned.
-    fn give(&mut self, lane: usize, serial: &str, operator: &str) -> Result<Answer, ScanError> {
+    fn give(&mut self, lane: usize, serial: &str, operator: &str) -> Result<ScanOutcome, ScanError> {
         let plans = self.plans_of.get(lane).map_or(&[][..], Vec::as_slice);
         let accepted = self.read(plans, serial, operator)?;
         self.refuse_elsewhere(lane, &accepted)?;
@@ -310,21 +310,21 @@ impl Floor {
             Some(_) => Saying::Tested { serial, lane: name },
             None => Saying::Waits { serial, lane: name },
         };
-        Ok(Answer { lane: Some(lane), effect, said: said.into() })
+        Ok(ScanOutcome { lane: Some(lane), effect, said: said.into() })
     }
 
     /// Has a lane judge the mock board that it owes its shift.
-    fn mock(&mut self, lane: usize, operator: &str) -> Result<Answer, ScanError> {
+    fn mock(&mut self, lane: usize, operator: &str) -> Result<ScanOutcome, ScanError> {
         let (plan, serial) = self.lane(lane)?.owed_mock()?;
         let product = self.rules.get(plan).map_or_else(String::new, |rule| rule.product.clone());
         let accepted = Accepted { plan, product, serial, operator: operator.to_owned() };
         let effect = self.lane(lane)?.take(Event::Given(accepted))?;
         let said = Saying::MockJudged { lane: self.name(lane).to_owned() };
-        Ok(Answer { lane: Some(lane), effect, said: said.into() })
+        Ok(ScanOutcome { lane: Some(lane), effect, said: said.into() })
     }
 
     /// Keeps the serial number for the next lane into which a board is plugged.
-    fn keep(&mut self, serial: String, operator: &str, now: Duration) -> Result<Answer, ScanError> {
+    fn keep(&mut self, serial: String, operator: &str, now: Duration) -> Result<ScanOutcome, ScanError> {
         let all: Vec<usize> = (0..self.rules.len()).collect();
         let accepted = self.read(&all, &serial, operator)?;
         self.refuse_elsewhere(usize::MAX, &accepted)?;
@@ -333,7 +333,7 @@ impl Floor {
             None => Saying::WaitsForPlug { serial: serial.clone() },
         };
         self.pending = Some(Pending { serial, operator: operator.to_owned(), since: now });
-        Ok(Answer { lane: None, effect: None, said: said.into() })
+        Ok(ScanOutcome { lane: None, effect: None, said: said.into() })
     }
 
     /// Reads the serial number by the one of these plans that takes it.

@@ -126,7 +126,7 @@ pub enum LabgridError {
 /// What the program that reaches labgrid answers.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub(super) enum Answer {
+pub(super) enum HelperReply {
     Held(Port),
     Freed,
     Refused(Why),

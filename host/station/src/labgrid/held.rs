@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use halfrow::target::Target;
 
-use super::error::{Answer, Port};
+use super::error::{HelperReply, Port};
 use super::{LabgridError, Place};
 use crate::process_group::{killed, waited};
 
@@ -19,7 +19,7 @@ const LOOK: Duration = Duration::from_millis(20);
 
 /// A place that the lane has.
 #[derive(Debug)]
-pub struct Held {
+pub struct AcquiredPlace {
     /// Its board, as this computer reaches it.
     pub target: Target,
     holder: Holder,
@@ -31,17 +31,17 @@ impl Place {
     ///
     /// # Errors
     /// [`LabgridError`]
-    pub fn hold(&self, is_stopped: &dyn Fn() -> bool) -> Result<Option<Held>, LabgridError> {
+    pub fn hold(&self, is_stopped: &dyn Fn() -> bool) -> Result<Option<AcquiredPlace>, LabgridError> {
         self.wait_until_left();
         let (holder, lines) = Holder::start(self.call("hold")).map_err(|source| self.not_started(source))?;
         let answer = self.answered(&lines, is_stopped);
-        if let Ok(Some(Answer::Held(port))) = &answer {
-            return Ok(Some(Held { target: reached(port), holder, place: self.clone() }));
+        if let Ok(Some(HelperReply::Held(port))) = &answer {
+            return Ok(Some(AcquiredPlace { target: reached(port), holder, place: self.clone() }));
         }
         self.leave(holder);
         match answer? {
-            Some(Answer::Refused(why)) => Err(why.of(self.name.clone())),
-            Some(Answer::Held(_) | Answer::Freed) | None => Ok(None),
+            Some(HelperReply::Refused(why)) => Err(why.of(self.name.clone())),
+            Some(HelperReply::Held(_) | HelperReply::Freed) | None => Ok(None),
         }
     }
 
@@ -56,8 +56,8 @@ impl Place {
         drop(holder.stdin.take());
         holder.left(&self.name, self.labgrid.deadline);
         match answer? {
-            Some(Answer::Refused(why)) => Err(why.of(self.name.clone())),
-            Some(Answer::Held(_) | Answer::Freed) | None => Ok(()),
+            Some(HelperReply::Refused(why)) => Err(why.of(self.name.clone())),
+            Some(HelperReply::Held(_) | HelperReply::Freed) | None => Ok(()),
         }
     }
 
@@ -66,7 +66,7 @@ impl Place {
         &self,
         lines: &Receiver<Line>,
         is_stopped: &dyn Fn() -> bool,
-    ) -> Result<Option<Answer>, LabgridError> {
+    ) -> Result<Option<HelperReply>, LabgridError> {
         let begun = Instant::now();
         let mut complaint = String::new();
         loop {
@@ -124,7 +124,7 @@ impl Place {
     }
 }
 
-impl Held {
+impl AcquiredPlace {
     /// Why the place is not held any more, if what held it has ended by itself. If it was killed, the place is still acquired.
     pub(crate) fn lost(&mut self) -> Option<LabgridError> {
         let status = self.holder.child.try_wait().ok()??;

@@ -21,7 +21,7 @@ use std::time::Duration;
 use halfrow::target::Target;
 
 pub use error::LabgridError;
-pub use held::Held;
+pub use held::AcquiredPlace;
 
 use crate::presence::{self, USB};
 use crate::process_group::without_secrets;

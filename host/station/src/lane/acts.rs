@@ -8,7 +8,7 @@ use halfrow::board::{Board, OpenOptions, Stop};
 use halfrow::link::{self, Candidate, OpenError};
 use halfrow::link_test::{self, Figures, LinkTestError};
 use halfrow::result::{BoardReport, Finding, FrameTotals, Identity, Outcome, Problem, Suspect};
-use halfrow::run::Circumstances;
+use halfrow::run::Provenance;
 use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::{Cause, StoppedBy, Verdict};
 use halfrow::words::plain;
@@ -248,11 +248,11 @@ impl RunContext<'_> {
     }
 
     fn run_options(&self, within: Duration) -> RunOptions {
-        let circumstances = Circumstances {
+        let circumstances = Provenance {
             arguments: std::env::args_os().map(|one| one.to_string_lossy().into_owned()).collect(),
             files: self.plan.files.clone(),
             // The record has the operator.
-            ..Circumstances::default()
+            ..Provenance::default()
         };
         RunOptions {
             timeout: Some(within),

@@ -28,7 +28,7 @@ use crate::clock;
 use crate::guard::guarded;
 use crate::said::Said;
 use crate::store::{Entry, Folder, Parcel, SharedStore, Snapshot, StoreError, Tried, Unsent};
-use standing::{Left, Standing};
+use standing::{Backlog, Standing};
 
 /// How often to check whether there is something to send.
 const LOOK: Duration = Duration::from_millis(200);
@@ -227,10 +227,10 @@ pub enum OutboxError {
     Store(#[from] StoreError),
 }
 
-fn left(store: &SharedStore, sink: &dyn Sink) -> Result<Left, StoreError> {
+fn left(store: &SharedStore, sink: &dyn Sink) -> Result<Backlog, StoreError> {
     let unsent = Snapshot::take(&folder(store))?.unsent()?;
     let ours = unsent.into_iter().find(|unsent| unsent.sink == sink.name());
-    Ok(ours.map_or_else(Left::default, |Unsent { entries, dead, said, .. }| Left {
+    Ok(ours.map_or_else(Backlog::default, |Unsent { entries, dead, said, .. }| Backlog {
         entries,
         dead,
         was_tried: said.is_some(),

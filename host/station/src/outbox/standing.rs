@@ -14,12 +14,12 @@ pub(super) struct Standing {
     /// It did not take something for a time.
     is_behind: bool,
     /// How much it did not have when that was read last.
-    pub(super) left: Option<Left>,
+    pub(super) left: Option<Backlog>,
 }
 
 /// How much a sink does not have.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Left {
+pub(super) struct Backlog {
     /// Entries.
     pub(super) entries: u32,
     /// Those of them that wait for a person.
@@ -54,12 +54,17 @@ impl Standing {
 
     /// Notes that the sink is there, and has taken `sent` more; `left` finds out what it does not have.
     // The end of an outage is a warning, too, so that a log of only warnings has both its beginning and its end.
-    pub(super) fn there(&mut self, sink: &str, sent: usize, left: impl FnOnce() -> Result<Left, StoreError>) {
+    pub(super) fn there(
+        &mut self,
+        sink: &str,
+        sent: usize,
+        left: impl FnOnce() -> Result<Backlog, StoreError>,
+    ) {
         if !self.is_away && !self.is_behind {
             return;
         }
         // If that cannot be read now, it is tried after the next entry.
-        let Ok(Left { entries, dead, was_tried }) = left() else { return };
+        let Ok(Backlog { entries, dead, was_tried }) = left() else { return };
         if self.is_away {
             self.is_away = false;
             let waited = u64::from(entries - dead) + sent as u64;

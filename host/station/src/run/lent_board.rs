@@ -6,7 +6,7 @@ use std::path::Path;
 use halfrow::verdict::StoppedBy;
 
 use super::Order;
-use crate::labgrid::{Held, LaneBoard, Place};
+use crate::labgrid::{AcquiredPlace, LaneBoard, Place};
 use crate::lane::supervisor::{Attendant, End, LaneReport, Patience, supervise};
 use crate::lane::{Job, Message, Ruling};
 use crate::record::BoardSeen;
@@ -40,7 +40,7 @@ pub(super) fn supervised(
     }
 }
 
-fn held(place: &Place, attendant: &mut dyn Attendant) -> Result<Held, End> {
+fn held(place: &Place, attendant: &mut dyn Attendant) -> Result<AcquiredPlace, End> {
     attendant.hear(&Message::Doing { what: format!("waiting for the place {}", place.name) });
     match place.hold(&|| attendant.stop().is_some()) {
         Ok(Some(held)) => Ok(held),
@@ -51,7 +51,7 @@ fn held(place: &Place, attendant: &mut dyn Attendant) -> Result<Held, End> {
 
 /// Ends the run when the place is lost.
 struct Lent<'a> {
-    held: RefCell<Held>,
+    held: RefCell<AcquiredPlace>,
     attendant: &'a mut dyn Attendant,
 }
 

@@ -53,7 +53,7 @@ pub struct Checked {
 }
 
 /// The last judgement of a unit.
-struct Judged {
+struct LastVerdict {
     run: String,
     verdict: Verdict,
     started_ms: i64,
@@ -98,7 +98,7 @@ impl Folder {
             // After a repair the good unit passes again, and an earlier FAIL of the bad one says nothing of the lane as it is
             // now.
             let last = last.filter(|last| last.verdict != expected || last.run > before);
-            if let Some(Judged { started_ms, .. }) = &last {
+            if let Some(LastVerdict { started_ms, .. }) = &last {
                 until_ms = until_ms.min(started_ms.saturating_add(lasts));
             }
             match last {
@@ -113,12 +113,12 @@ impl Folder {
     }
 }
 
-fn judged(row: &Row<'_>) -> Result<Judged, DatabaseError> {
-    Ok(Judged { run: row.get(0)?, verdict: row.get(1)?, started_ms: row.get(2)?, target: row.get(3)? })
+fn judged(row: &Row<'_>) -> Result<LastVerdict, DatabaseError> {
+    Ok(LastVerdict { run: row.get(0)?, verdict: row.get(1)?, started_ms: row.get(2)?, target: row.get(3)? })
 }
 
 /// Why a lane waits for a judgement that must be `expected`: the `last` one is another, or there is none.
-fn why(shift: &Shift, expected: Verdict, last: Option<Judged>) -> Said {
+fn why(shift: &Shift, expected: Verdict, last: Option<LastVerdict>) -> Said {
     let (serial, is_good) = match (expected, &shift.bad) {
         (Verdict::Pass, _) => (shift.good.clone(), true),
         (_, Bad::Unit(serial)) => (serial.clone(), false),
@@ -126,7 +126,7 @@ fn why(shift: &Shift, expected: Verdict, last: Option<Judged>) -> Said {
             let barcode = BARCODE.to_owned();
             return match last {
                 None => Saying::MockDue { barcode },
-                Some(Judged { verdict, target, .. }) => {
+                Some(LastVerdict { verdict, target, .. }) => {
                     Saying::MockWrong { target, verdict: verdict.to_string(), barcode }
                 }
             }
@@ -134,10 +134,10 @@ fn why(shift: &Shift, expected: Verdict, last: Option<Judged>) -> Said {
         }
     };
     match (last, is_good) {
-        (Some(Judged { verdict, .. }), true) => {
+        (Some(LastVerdict { verdict, .. }), true) => {
             Saying::GoodUnitWrong { serial, verdict: verdict.to_string() }
         }
-        (Some(Judged { verdict, .. }), false) => {
+        (Some(LastVerdict { verdict, .. }), false) => {
             Saying::BadUnitWrong { serial, verdict: verdict.to_string() }
         }
         (None, true) => Saying::GoodUnitDue { serial },

@@ -33,7 +33,7 @@ mod tests {
 
     #[derive(Default, Deserialize)]
     #[serde(default)]
-    struct Asked {
+    struct Query {
         serial: String,
         lane: String,
         plan: String,
@@ -41,7 +41,7 @@ mod tests {
 
     #[test]
     fn a_query_is_never_refused_as_a_whole() {
-        let asked: Asked = of_query("serial=a&serial=b+c&no=1&lane&plan=%ff");
+        let asked: Query = of_query("serial=a&serial=b+c&no=1&lane&plan=%ff");
         assert_eq!(
             (asked.serial.as_str(), asked.lane.as_str(), asked.plan.as_str()),
             ("b c", "", "\u{fffd}")

@@ -24,7 +24,7 @@ pub(super) fn routes() -> Vec<Route> {
 /// Which jobs are asked for.
 #[derive(Default, Deserialize)]
 #[serde(default)]
-struct Asked {
+struct JobFilter {
     /// Only those in this state; all if it is no state.
     state: String,
     /// Only those that were added before this one.
@@ -34,7 +34,7 @@ struct Asked {
 async fn page(
     State(app): State<App>,
     visit: Visit,
-    Fields(asked): Fields<Asked>,
+    Fields(asked): Fields<JobFilter>,
 ) -> Result<Response, Trouble> {
     let states: Vec<_> = match STATES.into_iter().find(|state| *state == asked.state) {
         Some(state) => vec![state],

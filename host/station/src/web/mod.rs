@@ -10,8 +10,9 @@
 
 mod access;
 mod assets;
+mod connection_slots;
+mod etag;
 mod fields;
-mod for_ever;
 mod history;
 mod jobs;
 pub(crate) mod language;
@@ -21,8 +22,6 @@ mod login;
 mod metrics;
 mod operator;
 mod outbox;
-mod patient;
-mod places;
 mod plant;
 mod request_guard;
 mod routes;
@@ -30,6 +29,7 @@ mod serve;
 mod state;
 mod trouble;
 mod visit;
+mod write_timeout;
 
 pub use access::{Access, Address, AddressError, Role, Scope};
 pub(crate) use access::{TokenError, Tokens, UserError, Users, add_token, add_user};

@@ -8,7 +8,7 @@ use axum::routing::{self, MethodRouter};
 
 use super::request_guard::{self, Guarded};
 use super::state::App;
-use super::{assets, for_ever, history, jobs, login, metrics, operator, outbox, plant};
+use super::{assets, etag, history, jobs, login, metrics, operator, outbox, plant};
 
 /// Who may use a route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -37,17 +37,17 @@ pub struct Route {
 
 impl Route {
     /// For content that never changes, because its hash is in its address.
-    pub(super) fn for_ever(self) -> Self {
-        self.tagged(for_ever::ONLY_VERSION.to_owned())
+    pub(super) fn unchanging(self) -> Self {
+        self.tagged(etag::ONLY_VERSION.to_owned())
     }
 
     /// For content that never changes until another version of the program makes it.
     pub(super) fn while_program_is_same(self) -> Self {
-        self.tagged(for_ever::of_program())
+        self.tagged(etag::of_program())
     }
 
     fn tagged(self, tag: String) -> Self {
-        Self { handler: self.handler.layer(middleware::from_fn_with_state(tag, for_ever::for_ever)), ..self }
+        Self { handler: self.handler.layer(middleware::from_fn_with_state(tag, etag::revalidated)), ..self }
     }
 }
 

@@ -16,11 +16,11 @@ use tokio::runtime::{Builder, Runtime};
 use tokio::sync::oneshot;
 use tokio::time;
 
+use super::connection_slots::{self, NoSlot, Slot, Slots};
 use super::login::Peer;
-use super::patient::Patient;
-use super::places::{self, NoPlace, Place, Places};
 use super::routes;
 use super::state::App;
+use super::write_timeout::WriteTimeout;
 
 /// How long the head of a request may take.
 const HEAD: Duration = Duration::from_secs(10);
@@ -76,8 +76,8 @@ impl Server {
         let runtime = Builder::new_current_thread().enable_all().max_blocking_threads(AT_THE_DISK).build();
         let (runtime, router) = (runtime.map_err(ServeError::Room)?, routes::router(app));
         let (stop, stopped) = oneshot::channel();
-        let places = Places::new(app.access().address().may_have_proxy_here());
-        let serve = move || serve(runtime, listener, (router, places), stopped);
+        let slots = Slots::new(app.access().address().may_have_proxy_here());
+        let serve = move || serve(runtime, listener, (router, slots), stopped);
         let thread =
             thread::Builder::new().name("pages".to_owned()).spawn(serve).map_err(ServeError::Room)?;
         Ok(Self { stop, thread })
@@ -95,12 +95,12 @@ impl Server {
 fn serve(
     runtime: Runtime,
     listener: TcpListener,
-    (router, places): (Router, Places),
+    (router, slots): (Router, Slots),
     stopped: oneshot::Receiver<()>,
 ) {
     runtime.block_on(async {
         match tokio::net::TcpListener::from_std(listener) {
-            Ok(listener) => drop(tokio::spawn(accept(listener, router, places))),
+            Ok(listener) => drop(tokio::spawn(accept(listener, router, slots))),
             Err(error) => tracing::error!("the pages cannot be served: {error}"),
         }
         let _ = stopped.await;
@@ -108,15 +108,15 @@ fn serve(
     runtime.shutdown_timeout(LAST);
 }
 
-async fn accept(listener: tokio::net::TcpListener, router: Router, places: Places) {
+async fn accept(listener: tokio::net::TcpListener, router: Router, slots: Slots) {
     loop {
         match listener.accept().await {
             Ok((stream, peer)) => {
-                let Some(place) = place(&places, peer).await else { continue };
-                let place = Arc::new(place);
-                let noted = middleware::from_fn_with_state(Arc::clone(&place), places::noted);
+                let Some(slot) = slot(&slots, peer).await else { continue };
+                let slot = Arc::new(slot);
+                let noted = middleware::from_fn_with_state(Arc::clone(&slot), connection_slots::noted);
                 let router = router.clone().layer(noted).layer(Extension(Peer(peer.ip())));
-                drop(tokio::spawn(connection(stream, router, place)));
+                drop(tokio::spawn(connection(stream, router, slot)));
             }
             Err(error) => {
                 tracing::warn!("a connection was not taken: {error}");
@@ -126,25 +126,25 @@ async fn accept(listener: tokio::net::TcpListener, router: Router, places: Place
     }
 }
 
-/// A place for `peer`; none if it has too many. If all are taken, it waits until one is free.
-async fn place(places: &Places, peer: SocketAddr) -> Option<Place> {
+/// A slot for `peer`; none if it has too many. If all are taken, it waits until one is free.
+async fn slot(slots: &Slots, peer: SocketAddr) -> Option<Slot> {
     loop {
-        match places.take(peer.ip()) {
-            Ok(place) => return Some(place),
-            Err(NoPlace::OfOne) => return None,
-            Err(NoPlace::OfAll) => time::sleep(FULL).await,
+        match slots.take(peer.ip()) {
+            Ok(slot) => return Some(slot),
+            Err(NoSlot::OfOne) => return None,
+            Err(NoSlot::OfAll) => time::sleep(FULL).await,
         }
     }
 }
 
-async fn connection(stream: TcpStream, router: Router, place: Arc<Place>) {
+async fn connection(stream: TcpStream, router: Router, slot: Arc<Slot>) {
     // News are short, and pages wait for each.
     let _ = stream.set_nodelay(true);
     let mut builder = http1::Builder::new();
     builder.timer(TokioTimer::new()).header_read_timeout(HEAD).max_header_size(MOST_HEAD);
     let served =
-        builder.serve_connection(TokioIo::new(Patient::new(stream)), TowerToHyperService::new(router));
-    match select(pin!(served), pin!(place.is_lost())).await {
+        builder.serve_connection(TokioIo::new(WriteTimeout::new(stream)), TowerToHyperService::new(router));
+    match select(pin!(served), pin!(slot.is_lost())).await {
         Either::Left((Err(error), _)) => tracing::debug!("a connection ended: {error}"),
         Either::Left((Ok(()), _)) => {}
         Either::Right(_) => tracing::debug!("a connection gave way to another one"),

@@ -10,7 +10,7 @@ use maud::html;
 use serde_json::json;
 
 use super::history::show;
-use super::language::Told;
+use super::language::Sentence;
 use super::layout::{Here, Page};
 use super::visit::Visit;
 use crate::said::Said;
@@ -22,13 +22,13 @@ use crate::store::StoreError;
 pub(super) struct Trouble {
     status: StatusCode,
     visit: Box<Visit>,
-    told: Told,
+    told: Sentence,
 }
 
 impl Trouble {
     /// What is wrong and what to do, with its status.
     pub(super) fn new(visit: &Visit, status: StatusCode, said: impl Into<String>) -> Self {
-        Self { status, visit: Box::new(visit.clone()), told: Told { text: said.into(), foreign: None } }
+        Self { status, visit: Box::new(visit.clone()), told: Sentence { text: said.into(), foreign: None } }
     }
 
     /// What has a code, in the visitor's language.

@@ -100,7 +100,7 @@ impl WorkError {
 
 /// The result of a job.
 #[derive(Debug)]
-pub struct Judged {
+pub struct JobResult {
     /// The job.
     pub claim: Claim,
     /// Its run.
@@ -176,9 +176,9 @@ impl Work<'_> {
         claim: Claim,
         stop: &dyn Fn() -> Option<StoppedBy>,
         heard: &mut dyn FnMut(Stage<'_>),
-    ) -> Result<Judged, WorkError> {
+    ) -> Result<JobResult, WorkError> {
         let holding = Holding::begin(self.plant.clone(), Held::Job(claim.clone()));
-        let mut watched = Watched { holding: &holding, stop, heard, is_stuck: false };
+        let mut watched = JobWatch { holding: &holding, stop, heard, is_stuck: false };
         let ended = self.run(&claim, &mut watched);
         if watched.is_stuck {
             self.take_out(&claim.lease.board, stop);
@@ -202,7 +202,7 @@ impl Work<'_> {
         let counts = if is_sent { self.counts(run) } else { None };
         let refused = if let Sent::Refused(said) = sent { Some(said.to_string()) } else { None };
         holding.end();
-        Ok(Judged { claim, is_sent, refused, counts, saved })
+        Ok(JobResult { claim, is_sent, refused, counts, saved })
     }
 
     /// Waits until another job may get further than the one that ended with `error`. What could not be saved is closed first,
@@ -241,7 +241,7 @@ impl Work<'_> {
         }
     }
 
-    fn run(&self, claim: &Claim, watched: &mut Watched<'_>) -> Result<Saved, WorkError> {
+    fn run(&self, claim: &Claim, watched: &mut JobWatch<'_>) -> Result<Saved, WorkError> {
         let target: Target = claim.lease.target.parse().map_err(|source| WorkError::Target {
             board: claim.lease.board.clone(),
             target: claim.lease.target.clone(),
@@ -341,7 +341,7 @@ fn free_later(job: &str, back: Result<(), StoreError>) {
 }
 
 /// Ends a run when its job and board are lost.
-struct Watched<'a> {
+struct JobWatch<'a> {
     holding: &'a Holding,
     stop: &'a dyn Fn() -> Option<StoppedBy>,
     heard: &'a mut dyn FnMut(Stage<'_>),
@@ -349,7 +349,7 @@ struct Watched<'a> {
     is_stuck: bool,
 }
 
-impl Watch for Watched<'_> {
+impl Watch for JobWatch<'_> {
     fn stop(&self) -> Option<StoppedBy> {
         (self.stop)().or_else(|| self.holding.is_lost().then_some(StoppedBy::Caller))
     }

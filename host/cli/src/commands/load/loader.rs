@@ -16,7 +16,7 @@ use signal_hook::consts::SIGCHLD;
 
 use super::LoadError;
 use crate::commands::Failure;
-use crate::progress::Told;
+use crate::progress::ChildOutput;
 use halfrow::board::BoardError;
 use halfrow::report::shell_word;
 use halfrow::verdict::StoppedBy;
@@ -69,7 +69,7 @@ impl Call {
     pub(super) fn run(
         &self,
         deadline: Duration,
-        told: &Told,
+        told: &ChildOutput,
         stopped: &dyn Fn() -> Option<StoppedBy>,
     ) -> Result<(), Failure> {
         let begun = Instant::now();
@@ -125,14 +125,19 @@ impl Loader {
             Ok(()) => Ok(loader),
             Err(source) => {
                 drop(sender);
-                let _ = loader.end(&Told::Nothing);
+                let _ = loader.end(&ChildOutput::Nothing);
                 Err(not_run(source))
             }
         }
     }
 
     /// Reads its output until it ends or must end.
-    fn attended(&mut self, deadline: Instant, told: &Told, stopped: &dyn Fn() -> Option<StoppedBy>) -> End {
+    fn attended(
+        &mut self,
+        deadline: Instant,
+        told: &ChildOutput,
+        stopped: &dyn Fn() -> Option<StoppedBy>,
+    ) -> End {
         loop {
             match self.lines.recv_timeout(LOOK) {
                 Ok(line) => self.keep(&line, told),
@@ -152,7 +157,7 @@ impl Loader {
         }
     }
 
-    fn keep(&mut self, line: &str, told: &Told) {
+    fn keep(&mut self, line: &str, told: &ChildOutput) {
         told.line(line);
         if !self.said.is_empty() {
             self.said.push_str(" / ");
@@ -174,7 +179,7 @@ impl Loader {
     }
 
     /// Makes sure that it and its whole process group are gone. Returns its exit status and its last output.
-    fn end(mut self, told: &Told) -> (io::Result<ExitStatus>, String) {
+    fn end(mut self, told: &ChildOutput) -> (io::Result<ExitStatus>, String) {
         // This fails if all have ended already.
         let _ = killpg(self.id(), Signal::SIGKILL);
         let status = self.child.wait();

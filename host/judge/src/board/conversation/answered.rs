@@ -8,14 +8,14 @@ use halfrow_protocol::{Kind, Packet};
 use super::Conversation;
 use crate::board::BoardError;
 use crate::board::answer::{OwnedPacket, take_reply};
-use crate::board::asked::Asking;
 use crate::board::deadlines::Step;
+use crate::board::sent_requests::Outgoing;
 
 impl Conversation {
     /// Asks until a reply comes that `accept` takes.
     pub(in crate::board) fn ask(
         &mut self,
-        asking: &Asking<'_>,
+        asking: &Outgoing<'_>,
         step: Step,
         accept: impl Fn(&Packet<'_>) -> bool,
     ) -> Result<OwnedPacket, BoardError> {
@@ -32,7 +32,7 @@ impl Conversation {
 
     pub(super) fn ask_until_answered(
         &mut self,
-        asking: &Asking<'_>,
+        asking: &Outgoing<'_>,
         step: Step,
         accept: impl Fn(&Packet<'_>) -> bool,
     ) -> Result<OwnedPacket, BoardError> {
@@ -77,7 +77,7 @@ impl Conversation {
     fn answer_within(
         &mut self,
         wait: Duration,
-        asking: &Asking<'_>,
+        asking: &Outgoing<'_>,
         sequence: u16,
         accept: impl Fn(&Packet<'_>) -> bool,
     ) -> Result<Option<OwnedPacket>, BoardError> {
@@ -114,7 +114,7 @@ impl Conversation {
         step: Step,
         take: impl FnOnce(Reply<'_>) -> Option<T>,
     ) -> Result<T, BoardError> {
-        let answer = self.ask(&Asking::Request(request), step, |_| true)?;
+        let answer = self.ask(&Outgoing::Request(request), step, |_| true)?;
         take_reply(request.kind(), &answer, take)
     }
 }

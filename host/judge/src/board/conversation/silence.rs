@@ -6,12 +6,12 @@ use halfrow_protocol::message::{Reply, Request, Status};
 use super::Conversation;
 use crate::board::BoardError;
 use crate::board::answer::take_reply;
-use crate::board::asked::Asking;
 use crate::board::deadlines::Step;
+use crate::board::sent_requests::Outgoing;
 
 impl Conversation {
     /// The `error` with which asking ended, or, if that is a silence which only this request meets, one that says so.
-    pub(super) fn looked_into(&mut self, error: BoardError, asking: &Asking<'_>) -> BoardError {
+    pub(super) fn looked_into(&mut self, error: BoardError, asking: &Outgoing<'_>) -> BoardError {
         let BoardError::NoAnswer { kind, attempts, .. } = error else { return error };
         if self.session.number == 0 {
             return error;
@@ -25,7 +25,7 @@ impl Conversation {
     /// Whether the board answers another request at once, then leaves this one unanswered again, and answers the other one
     /// again. A link that was broken for a while answers all three, one that brings late answers adds strays, and a noisy one,
     /// which keeps long packets from getting through, damages them. Returns whether the board counts every packet as received.
-    fn leaves_only(&mut self, asking: &Asking<'_>) -> Option<bool> {
+    fn leaves_only(&mut self, asking: &Outgoing<'_>) -> Option<bool> {
         let strays = self.tally.strays;
         self.answers_another(asking.kind()).ok()?;
         match self.ask_until_answered(asking, Step::Probe, |_| true) {
@@ -41,7 +41,7 @@ impl Conversation {
     /// Has the board answer another request than one of `kind`: its counters, if these are something else.
     fn answers_another(&mut self, kind: Kind) -> Result<Option<Status>, BoardError> {
         let other = if kind == Kind::Status { Request::Echo(&[]) } else { Request::Status { clear: false } };
-        let answer = self.ask_until_answered(&Asking::Request(&other), Step::Probe, |_| true)?;
+        let answer = self.ask_until_answered(&Outgoing::Request(&other), Step::Probe, |_| true)?;
         take_reply(other.kind(), &answer, |reply| match reply {
             Reply::Status(status) => Some(Some(status)),
             Reply::Echo(_) => Some(None),

@@ -29,7 +29,7 @@ const MOST_WINDOWS: usize = 3;
 const ZOOM: usize = 8;
 
 /// The samples that were kept of a frame, and the report on it.
-type Kept<'a> = (&'a Evidence, &'a FrameReport);
+type FrameEvidence<'a> = (&'a Evidence, &'a FrameReport);
 
 /// A section for each frame of `evidence`, as far as there is room. Frames that differ come first, and the first ones of these
 /// have maps and crops.
@@ -59,7 +59,7 @@ pub(super) fn sections(report: &Report, evidence: &[Evidence]) -> Result<Markup,
 }
 
 /// The frames that get a section, and how many do not.
-fn shown(mut known: Vec<Kept<'_>>) -> (Vec<Kept<'_>>, usize) {
+fn shown(mut known: Vec<FrameEvidence<'_>>) -> (Vec<FrameEvidence<'_>>, usize) {
     let all = known.len();
     let wrong = known.iter().filter(|kept| differs(kept)).count();
     let (mut room, mut room_of_equal) = (MOST_SECTIONS, MOST_SECTIONS.saturating_sub(wrong));
@@ -74,12 +74,12 @@ fn shown(mut known: Vec<Kept<'_>>) -> (Vec<Kept<'_>>, usize) {
     (known, left_out)
 }
 
-fn differs((_, frame): &Kept<'_>) -> bool {
+fn differs((_, frame): &FrameEvidence<'_>) -> bool {
     frame.comparison.differences > 0
 }
 
 /// The maps and crops of the first frames that differ, and the bytes of their pictures.
-fn all_details(shown: &[Kept<'_>]) -> Result<(impl Iterator<Item = Markup>, usize), EncodingError> {
+fn all_details(shown: &[FrameEvidence<'_>]) -> Result<(impl Iterator<Item = Markup>, usize), EncodingError> {
     let (mut all, mut used) = (Vec::new(), 0);
     for (kept, frame) in shown.iter().filter(|kept| differs(kept)) {
         let (details, bytes) = details(frame, kept)?;
@@ -95,7 +95,7 @@ fn all_details(shown: &[Kept<'_>]) -> Result<(impl Iterator<Item = Markup>, usiz
 /// One frame's section with at most `most_bytes` of previews, and the bytes that they took.
 fn section(
     report: &Report,
-    shown: &Kept<'_>,
+    shown: &FrameEvidence<'_>,
     details: &Markup,
     most_bytes: usize,
 ) -> Result<(Markup, usize), EncodingError> {

@@ -6,7 +6,7 @@ use halfrow_protocol::message::{BurstState, Records};
 
 use super::USUAL;
 use super::burst::BurstPlan;
-use super::watched::Watched;
+use super::watched::BurstSeen;
 use crate::board::{BoardNature, Fetched};
 use crate::result::wording::seen_of_clock;
 use crate::result::{CheckName, ClockSeen, Finding, NotExercised};
@@ -52,7 +52,7 @@ impl Stopwatch {
     pub(super) fn note(
         &mut self,
         plan: &BurstPlan,
-        watched: &mut Watched,
+        watched: &mut BurstSeen,
         fetched: &Fetched,
         from: u32,
         (before, at): (Duration, Duration),
@@ -131,7 +131,7 @@ impl Run<'_> {
         &mut self,
         plan: &BurstPlan,
         tables: &[Generation],
-        watched: &Watched,
+        watched: &BurstSeen,
     ) -> Result<ClockSeen, End> {
         let Some(clock_hz) = self.named_clock() else { return Ok(ClockSeen::default()) };
         let source = self.board.capabilities.clock_source;
@@ -195,7 +195,7 @@ mod tests {
     /// waited, and when they were asked for and had come, in milliseconds.
     fn seen(looks: &[(u32, u32, u64, u64)]) -> [Option<u32>; 2] {
         let mut stopwatch = Stopwatch::new(Duration::ZERO, Duration::from_millis(10));
-        let mut watched = Watched::default();
+        let mut watched = BurstSeen::default();
         for &(come, waited, asked, at) in looks {
             watched.frames += come;
             watched.held_back += waited;
@@ -289,7 +289,7 @@ mod tests {
     #[test]
     fn records_beyond_the_burst_are_no_frames_of_the_clock() {
         let mut stopwatch = Stopwatch::new(Duration::ZERO, Duration::from_millis(10));
-        let mut watched = Watched { frames: 2, ..Watched::default() };
+        let mut watched = BurstSeen { frames: 2, ..BurstSeen::default() };
         let fetched = Fetched { state: BurstState::Ended, records: vec![FrameRecord::default(); 3] };
         let times = [1000, 1000].map(Duration::from_millis);
         stopwatch.note(&plan(), &mut watched, &fetched, 0, times.into());

@@ -34,7 +34,7 @@ use burst::BurstPlan;
 pub(super) use burst::{USUAL_CLOCK, content};
 pub(super) use price::{clock_hz, most_frames, price_of_corners, price_of_frames};
 pub(super) use repeated::MadeRows;
-use watched::{EndsEarly, Watched};
+use watched::{BurstSeen, EndsEarly};
 
 pub(super) use corners::{BY_TURNS, CALM, WILD, drawn_factors, drawn_kernel, fit};
 pub(super) use predicted::signer;
@@ -119,7 +119,7 @@ impl Run<'_> {
         let changes = plan.mode == BurstMode::Alternating;
         self.findings.look.untested_at_speed = untested(changes, watched.paused > 0);
         self.findings.look.untested_at_speed.extend(self.clock_not_exercised(seen));
-        let Watched { frames, paused, held_back, .. } = watched;
+        let BurstSeen { frames, paused, held_back, .. } = watched;
         self.note_right(&plan, paused, EqualAtSpeed { frames, held_back, corners, seen, ..NONE });
         Ok(())
     }
@@ -129,9 +129,9 @@ impl Run<'_> {
     }
 
     /// Has the board make the burst. A wrong frame or a wrong count ends the run.
-    fn judge_frames(&mut self, plan: &BurstPlan, tables: &[Generation]) -> Result<Watched, End> {
+    fn judge_frames(&mut self, plan: &BurstPlan, tables: &[Generation]) -> Result<BurstSeen, End> {
         let (ends_early, progress) = (EndsEarly { when_wrong: self.plan.fail_fast, at: None }, self.progress);
-        let mut told = |watched: &Watched, _| {
+        let mut told = |watched: &BurstSeen, _| {
             progress.frame(&format!("{}, {} of {}", Step::AtSpeed, watched.frames, plan.frames));
         };
         let (watched, ended) = self.watch(plan, tables, ends_early, &mut told);

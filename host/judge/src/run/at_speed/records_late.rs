@@ -2,12 +2,12 @@
 
 use super::burst::BurstPlan;
 use super::predicted::signer;
-use super::watched::Watched;
+use super::watched::BurstSeen;
 use crate::result::{Account, Defect, Suspect};
 use crate::run::plan::Generation;
 
 /// The suspect, if the first wrong frame that has another before it has the signature that this one must have.
-pub(super) fn records_late(plan: &BurstPlan, tables: &[Generation], watched: &Watched) -> Option<Suspect> {
+pub(super) fn records_late(plan: &BurstPlan, tables: &[Generation], watched: &BurstSeen) -> Option<Suspect> {
     let mut signers: Vec<_> = tables.iter().map(signer).collect();
     let mut rows = Vec::new();
     let mut before = |n: u32| {

@@ -11,7 +11,7 @@ use super::content_wrong::content_wrong;
 use super::predicted::signer;
 use super::records_late::records_late;
 use super::tables_late::tables_late;
-use super::watched::{EndsEarly, Watched};
+use super::watched::{BurstSeen, EndsEarly};
 use super::{FEW, USUAL};
 use crate::board::{NumberedFrame, Trapped, Unjudged};
 use crate::compare::{Comparison, bits_in};
@@ -38,7 +38,7 @@ struct Again {
 }
 
 /// What a row shows that the trap kept.
-enum Kept {
+enum RowVerdict {
     /// Its samples differ.
     Differs(Box<MadeRows>),
     /// Its samples are right, and their CRC is not the signature that the board says.
@@ -80,9 +80,9 @@ impl Run<'_> {
         &mut self,
         plan: &BurstPlan,
         tables: &[Generation],
-        watched: &Watched,
+        watched: &BurstSeen,
     ) -> End {
-        let Watched { frames, wrong, .. } = *watched;
+        let BurstSeen { frames, wrong, .. } = *watched;
         let first = watched.wrong_frames.first().map_or(0, |frame| frame.n);
         let again = if plan.mode == BurstMode::Trapped {
             self.told_of_trap(plan, tables, watched)
@@ -139,7 +139,7 @@ impl Run<'_> {
         &mut self,
         plan: &BurstPlan,
         tables: &[Generation],
-        watched: &Watched,
+        watched: &BurstSeen,
     ) -> Result<Again, End> {
         let (Some(first), Some(generation)) = (watched.wrong_frames.first(), tables.first()) else {
             return Ok(Repetition::AllRight { frames: watched.frames }.into());
@@ -151,8 +151,8 @@ impl Run<'_> {
         let told = trapped.and_then(|trapped| Some((trapped.row, self.kept(generation, content, &trapped)?)));
         let (row, seen) = match told {
             None => return Ok(Repetition::NothingTrapped { frames }.into()),
-            Some((row, Kept::SignedWrong)) => return Ok(signed_wrong(frames, row)),
-            Some((row, Kept::Differs(seen))) => (row, seen),
+            Some((row, RowVerdict::SignedWrong)) => return Ok(signed_wrong(frames, row)),
+            Some((row, RowVerdict::Differs(seen))) => (row, seen),
         };
         let kept = kept_row(&seen);
         // A soak goes on, and spends no time on rows that a link must carry.
@@ -190,7 +190,7 @@ impl Run<'_> {
     ///
     /// It is the first row of its burst that differs, so the rows above it were right: the diagnosis gets the frame up to
     /// this row.
-    fn kept(&self, generation: &Generation, content: Content, trapped: &Trapped) -> Option<Kept> {
+    fn kept(&self, generation: &Generation, content: Content, trapped: &Trapped) -> Option<RowVerdict> {
         let Trapped { row, signature, samples } = trapped;
         let own = generation.tables.geometry();
         let is_row = *row < own.height() && samples.len() == own.width();
@@ -200,8 +200,8 @@ impl Run<'_> {
         let above = correct_up_to(generation, content, row + 1, self.plan.phase)?.ending_in(samples)?;
         let is_right = above.evidence.found == above.evidence.expected;
         match (is_right, row_signature(samples) == *signature) {
-            (false, true) => Some(Kept::Differs(Box::new(above))),
-            (true, false) => Some(Kept::SignedWrong),
+            (false, true) => Some(RowVerdict::Differs(Box::new(above))),
+            (true, false) => Some(RowVerdict::SignedWrong),
             (true, true) | (false, false) => None,
         }
     }

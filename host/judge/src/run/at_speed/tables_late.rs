@@ -4,13 +4,13 @@ use halfrow_model::{Signer, TableSet, frame_signature};
 
 use super::burst::BurstPlan;
 use super::predicted::signer;
-use super::watched::{Watched, WrongFrame};
+use super::watched::{BurstSeen, WrongFrame};
 use crate::result::{Account, Defect, MadeWith, StaleFrames, Suspect};
 use crate::run::plan::Generation;
 
 /// The suspect, if some number of first rows of the first wrong frame, made with the tables of the other bank, give its
 /// signature.
-pub(super) fn tables_late(plan: &BurstPlan, tables: &[Generation], watched: &Watched) -> Option<Suspect> {
+pub(super) fn tables_late(plan: &BurstPlan, tables: &[Generation], watched: &BurstSeen) -> Option<Suspect> {
     let [active, shadow] = tables else { return None };
     let mut banks = [active, shadow].map(|generation| (signer(generation), &generation.tables));
     let mut late = watched.wrong_frames.iter().map(|frame| rows_late(plan, &mut banks, frame));

@@ -41,7 +41,7 @@ pub(super) struct WrongFrame {
 
 /// What was seen of a burst.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Watched {
+pub(super) struct BurstSeen {
     /// Frames judged.
     pub(super) frames: u32,
     /// Frames with a wrong signature.
@@ -58,7 +58,7 @@ pub(super) struct Watched {
     pub(super) clock: ClockSeen,
 }
 
-impl Watched {
+impl BurstSeen {
     /// Judges the record of the next frame, which must have the signature `expected`.
     fn take(&mut self, watch: &Watch<'_>, expected: u32, record: &FrameRecord) {
         let plan = watch.plan;
@@ -110,14 +110,14 @@ struct Watch<'a> {
     predicted: Receiver<u32>,
     stopwatch: Stopwatch,
     /// Called when records have come, with the time on the link's clock.
-    told: &'a mut dyn FnMut(&Watched, Duration),
+    told: &'a mut dyn FnMut(&BurstSeen, Duration),
     /// For how long no record has come.
     idle: Duration,
 }
 
 impl Watch<'_> {
     /// Fetches and judges the records that there are. Returns whether they were the last.
-    fn look(&mut self, watched: &mut Watched) -> Result<bool, BoardError> {
+    fn look(&mut self, watched: &mut BurstSeen) -> Result<bool, BoardError> {
         let (before, from) = (self.board.heard_at(), watched.frames);
         let fetched = self.board.records(self.burst.burst, from);
         let fetched = fetched.map_err(|error| self.board.of_last_burst(error))?;
@@ -140,13 +140,13 @@ impl Watch<'_> {
     }
 
     /// Whether a burst that is still going on should be ended.
-    fn is_enough(&self, watched: &Watched) -> bool {
+    fn is_enough(&self, watched: &BurstSeen) -> bool {
         let EndsEarly { when_wrong, at } = self.ends_early;
         let is_late = at.is_some_and(|at| self.board.now() >= at);
         self.burst.frames > 0 && (when_wrong && watched.wrong > 0 || is_late)
     }
 
-    fn finish(mut self, watched: &mut Watched) -> Result<(), End> {
+    fn finish(mut self, watched: &mut BurstSeen) -> Result<(), End> {
         let unclear = |finding| End::error(CheckName::AtSpeed, Cause::Station, finding);
         let frames = self.plan.frames;
         while !self.look(watched).during(CheckName::AtSpeed)? {
@@ -175,12 +175,12 @@ impl Run<'_> {
         plan: &BurstPlan,
         tables: &[Generation],
         ends_early: EndsEarly,
-        told: &mut dyn FnMut(&Watched, Duration),
-    ) -> (Watched, Result<(), End>) {
+        told: &mut dyn FnMut(&BurstSeen, Duration),
+    ) -> (BurstSeen, Result<(), End>) {
         // The count is a name that no other burst of the run has.
         self.findings.bursts += 1;
         let burst = plan.request(self.findings.bursts);
-        let mut watched = Watched::default();
+        let mut watched = BurstSeen::default();
         let ended = thread::scope(|scope| {
             let predicted = predicted::ahead(scope, *plan, tables);
             let predicted = predicted.map_err(|error| error.during(CheckName::AtSpeed))?;

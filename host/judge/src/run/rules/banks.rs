@@ -7,7 +7,7 @@ use super::compared::Compared;
 use super::counts::equal;
 use super::rows::{FRAME, GENERATION, TRIES};
 use super::{Rules, answer, broken, miscounted, of_board, of_rows, other_row};
-use crate::board::{BoardError, NumberedFrame, Said, Status};
+use crate::board::{BoardError, NumberedFrame, Response, Status};
 use crate::result::{Answer, Counter, Rule};
 use crate::run::findings::End;
 
@@ -177,7 +177,7 @@ impl Rules<'_, '_> {
         match self.run.board.refusal_of_row(number) {
             None => Ok(()),
             Some(refusal) => {
-                let found = answer(&Said::Refused(refusal));
+                let found = answer(&Response::Refused(refusal));
                 Err(broken(Rule::Banks, Kind::RowIn, Answer::Nothing {}, found))
             }
         }

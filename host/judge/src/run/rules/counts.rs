@@ -7,7 +7,7 @@ use halfrow_protocol::{Header, Kind, Packet, Reply};
 use super::rows::{FRAME, GENERATION};
 use super::without_effect::others;
 use super::{Refusals, Rules, miscounted, of_board, of_rows};
-use crate::board::{Given, Said, Status};
+use crate::board::{Given, Response, Status};
 use crate::result::{Counter, Finding, Rule};
 use crate::run::counters::MOVED_BY_LINKS;
 use crate::run::findings::End;
@@ -122,7 +122,7 @@ impl Rules<'_, '_> {
 
     /// Clears all counters, and returns what the board says that they were.
     pub(super) fn clear(&mut self) -> Result<Option<Status>, End> {
-        let Said::Replied(payload) = self.run.board.clear_by(CLEAR).map_err(of_board)? else {
+        let Response::Replied(payload) = self.run.board.clear_by(CLEAR).map_err(of_board)? else {
             return Ok(None);
         };
         (self.refusals, self.before) = (Refusals::default(), Status::default());

@@ -35,7 +35,7 @@ use super::findings::End;
 use super::parts::of_height;
 use super::plan::Segment;
 use super::steps::Run;
-use crate::board::{BoardError, Capabilities, Given, RowTiming, Said, Status};
+use crate::board::{BoardError, Capabilities, Given, Response, RowTiming, Status};
 use crate::compare::Comparison;
 use crate::progress::Step;
 use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Outcome, RowPart, Rule};
@@ -145,8 +145,8 @@ impl<'a, 'run> Rules<'a, 'run> {
         &mut self,
         rule: Rule,
         kind: Kind,
-        said: Result<Said, BoardError>,
-        right: &Said,
+        said: Result<Response, BoardError>,
+        right: &Response,
     ) -> Result<(), End> {
         let (right, found) = match said {
             Ok(said) if is_as(&said, right) => {
@@ -192,7 +192,7 @@ impl<'a, 'run> Rules<'a, 'run> {
     ) -> Result<(), End> {
         let changes = self.run.board.repeated_changes();
         let said = self.run.board.ask(kind, payload);
-        let right = Said::Refused(Refusal { code, kind: kind.code(), detail });
+        let right = Response::Refused(Refusal { code, kind: kind.code(), detail });
         let is_unanswered = matches!(said, Err(BoardError::NoAnswer { .. } | BoardError::Unanswered { .. }));
         if is_unanswered && kind == Kind::RowIn && self.is_known_when_sent_again(payload) {
             // It is known what happened to each copy of this request.
@@ -239,7 +239,7 @@ impl<'a, 'run> Rules<'a, 'run> {
 
     fn bytes_replied(&mut self, rule: Rule, kind: Kind, payload: &[u8], reply: Vec<u8>) -> Result<(), End> {
         let said = self.run.board.ask(kind, payload);
-        self.judge(rule, kind, said, &Said::Replied(reply))
+        self.judge(rule, kind, said, &Response::Replied(reply))
     }
 
     /// Configures the board for small frames of `rows` rows.
@@ -345,9 +345,9 @@ fn longer(request: &Request<'_>) -> Vec<u8> {
     payload
 }
 
-fn is_as(said: &Said, right: &Said) -> bool {
+fn is_as(said: &Response, right: &Response) -> bool {
     match (said, right) {
-        (Said::Replied(said), Said::Replied(right)) => said.starts_with(right),
+        (Response::Replied(said), Response::Replied(right)) => said.starts_with(right),
         (said, right) => said == right,
     }
 }

@@ -3,7 +3,7 @@
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{FrameRecord, Records};
 
-use crate::board::Said;
+use crate::board::Response;
 use crate::result::Answer;
 
 /// The most bytes of a reply that a finding quotes.
@@ -21,17 +21,17 @@ const OF_RECORD: [(usize, &str); 8] = [
 ];
 
 /// What is quoted of an answer by itself.
-pub(super) fn answer(said: &Said) -> Answer {
+pub(super) fn answer(said: &Response) -> Answer {
     match said {
-        Said::Refused(refusal) => Answer::Refused { code: refusal.code as u8, detail: refusal.detail },
-        Said::Replied(payload) => Answer::Replied { payload: beginning(payload) },
+        Response::Refused(refusal) => Answer::Refused { code: refusal.code as u8, detail: refusal.detail },
+        Response::Replied(payload) => Answer::Replied { payload: beginning(payload) },
     }
 }
 
 /// What is quoted of the right answer to a request of `kind` and of the one that came: of two replies that begin alike, what
 /// follows from the first byte that differs on.
-pub(super) fn answers(kind: Kind, right: &Said, found: &Said) -> (Answer, Answer) {
-    let (Said::Replied(expected), Said::Replied(came)) = (right, found) else {
+pub(super) fn answers(kind: Kind, right: &Response, found: &Response) -> (Answer, Answer) {
+    let (Response::Replied(expected), Response::Replied(came)) = (right, found) else {
         return (answer(right), answer(found));
     };
     let alike = expected.iter().zip(came).take_while(|(expected, came)| expected == came).count();
@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     fn quoted(kind: Kind, expected: &[u8], came: &[u8]) -> [String; 2] {
-        let said = |payload: &[u8]| Said::Replied(payload.to_vec());
+        let said = |payload: &[u8]| Response::Replied(payload.to_vec());
         let (right, found) = answers(kind, &said(expected), &said(came));
         [right, found].map(|answer| match answer {
             Answer::Replied { payload } => payload,

@@ -4,7 +4,7 @@ use halfrow_protocol::message::RefusalCode;
 
 use super::counts::at_least;
 use super::{Rules, of_board};
-use crate::board::Said;
+use crate::board::Response;
 use crate::result::Counter;
 use crate::run::findings::End;
 
@@ -19,11 +19,11 @@ pub(super) struct Refusals {
 
 impl Refusals {
     /// Counts `said` if it is a refusal.
-    pub(super) fn note(&mut self, said: &Said) {
+    pub(super) fn note(&mut self, said: &Response) {
         match said {
-            Said::Refused(refusal) if refusal.code == RefusalCode::Session => self.foreign += 1,
-            Said::Refused(_) => self.own += 1,
-            Said::Replied(_) => {}
+            Response::Refused(refusal) if refusal.code == RefusalCode::Session => self.foreign += 1,
+            Response::Refused(_) => self.own += 1,
+            Response::Replied(_) => {}
         }
     }
 }

@@ -6,7 +6,7 @@ use halfrow_protocol::message::{
 };
 
 use super::{FIRST_FACTOR, Rules, answer, broken, longer, payload};
-use crate::board::Said;
+use crate::board::Response;
 use crate::result::Rule;
 use crate::run::findings::End;
 
@@ -27,11 +27,11 @@ impl Rules<'_, '_> {
     /// An echo must be exact: it has no fields after which more bytes might follow.
     fn echo_of_nothing(&mut self) -> Result<(), End> {
         match self.run.board.ask(Kind::Echo, &[]) {
-            Ok(Said::Replied(more)) if !more.is_empty() => {
-                let nothing = Said::Replied(Vec::new());
-                Err(broken(Rule::Skipped, Kind::Echo, answer(&nothing), answer(&Said::Replied(more))))
+            Ok(Response::Replied(more)) if !more.is_empty() => {
+                let nothing = Response::Replied(Vec::new());
+                Err(broken(Rule::Skipped, Kind::Echo, answer(&nothing), answer(&Response::Replied(more))))
             }
-            said => self.judge(Rule::Skipped, Kind::Echo, said, &Said::Replied(Vec::new())),
+            said => self.judge(Rule::Skipped, Kind::Echo, said, &Response::Replied(Vec::new())),
         }
     }
 

@@ -12,7 +12,7 @@ use super::counts::equal;
 use super::rows::{FRAME, GENERATION};
 use super::trap::NOTHING_KEPT;
 use super::{FIRST_FACTOR, Refusals, Rules, broken, of_board};
-use crate::board::{Board, BoardError, Given, Said, Status};
+use crate::board::{Board, BoardError, Given, Response, Status};
 use crate::result::{Answer, CheckName, Counter, Doubt, Rule};
 use crate::run::Generation;
 use crate::run::counters::rows_numbered;
@@ -98,7 +98,7 @@ impl Rules<'_, '_> {
         let begun = self.run.board.now();
         self.run.board.status(false).map_err(of_board)?;
         let said = self.run.board.greet_as_another_host();
-        if matches!(said, Ok(Said::Replied(_))) {
+        if matches!(said, Ok(Response::Replied(_))) {
             let took = self.run.board.now().saturating_sub(begun);
             self.next_session()?;
             if took > SURELY_HELD {
@@ -108,12 +108,12 @@ impl Rules<'_, '_> {
         let right = Refusal { code: RefusalCode::Held, kind: Kind::Hello.code(), detail: HELD };
         let said = said.map(|said| match said {
             // How much of the time is left depends on when the other host asks.
-            Said::Refused(held @ Refusal { detail: 1..HELD, .. }) => {
-                Said::Refused(Refusal { detail: HELD, ..held })
+            Response::Refused(held @ Refusal { detail: 1..HELD, .. }) => {
+                Response::Refused(Refusal { detail: HELD, ..held })
             }
             said => said,
         });
-        self.judge(Rule::Held, Kind::Hello, said, &Said::Refused(right))
+        self.judge(Rule::Held, Kind::Hello, said, &Response::Refused(right))
     }
 
     /// Another host that takes the board over must get it, whoever holds it.
@@ -121,10 +121,10 @@ impl Rules<'_, '_> {
         self.run.board.status(false).map_err(of_board)?;
         self.ends_right()?;
         let said = self.run.board.take_over_as_another_host().map(|said| match said {
-            Said::Replied(_) => Said::Replied(Vec::new()),
+            Response::Replied(_) => Response::Replied(Vec::new()),
             refused => refused,
         });
-        self.judge(Rule::Held, Kind::Hello, said, &Said::Replied(Vec::new()))?;
+        self.judge(Rule::Held, Kind::Hello, said, &Response::Replied(Vec::new()))?;
         // Until this host has the board back, it is held by a host that is none: nothing may come in between.
         let held = Answer::Refused { code: RefusalCode::Held as u8, detail: 0 };
         self.greet_by(Board::take_back).map_err(|error| match error {
@@ -139,17 +139,17 @@ impl Rules<'_, '_> {
     fn other_versions(&mut self) -> Result<(), End> {
         for versions in NOT_SPOKEN {
             let said = self.run.board.greet_in_versions(versions).map(|said| match said {
-                Said::Refused(refusal @ Refusal { detail: 1..=MOST_VERSION, .. }) => {
-                    Said::Refused(Refusal { detail: VERSION.into(), ..refusal })
+                Response::Refused(refusal @ Refusal { detail: 1..=MOST_VERSION, .. }) => {
+                    Response::Refused(Refusal { detail: VERSION.into(), ..refusal })
                 }
                 said => said,
             });
-            if matches!(said, Ok(Said::Replied(_))) {
+            if matches!(said, Ok(Response::Replied(_))) {
                 self.next_session()?;
             }
             let (code, kind) = (RefusalCode::Version, Kind::Hello.code());
             let right = Refusal { code, kind, detail: VERSION.into() };
-            self.judge(Rule::NewSession, Kind::Hello, said, &Said::Refused(right))?;
+            self.judge(Rule::NewSession, Kind::Hello, said, &Response::Refused(right))?;
         }
         Ok(())
     }
@@ -268,7 +268,7 @@ impl Rules<'_, '_> {
         self.run.board.close_session().map_err(of_board)?;
         let said = self.run.board.ask_in_session(session, Kind::Status, &[0]);
         let refusal = Refusal { code: RefusalCode::Session, kind: Kind::Status.code(), detail: 0 };
-        self.judge(Rule::Closed, Kind::Status, said, &Said::Refused(refusal))
+        self.judge(Rule::Closed, Kind::Status, said, &Response::Refused(refusal))
     }
 
     /// Drops configuration and tables, which must leave the session open.
@@ -340,14 +340,14 @@ impl Rules<'_, '_> {
 
     fn no_records(&mut self, rule: Rule) -> Result<(), End> {
         let said = self.run.board.ask(Kind::Records, &[0; 4]).map(|said| match said {
-            Said::Replied(mut payload) => {
+            Response::Replied(mut payload) => {
                 // The wire does not say which burst was the last one.
                 payload.iter_mut().take(size_of::<u32>()).for_each(|byte| *byte = 0);
-                Said::Replied(payload)
+                Response::Replied(payload)
             }
             refused => refused,
         });
-        self.judge(rule, Kind::Records, said, &Said::Replied(vec![0; Records::HEAD]))
+        self.judge(rule, Kind::Records, said, &Response::Replied(vec![0; Records::HEAD]))
     }
 }
 

@@ -8,7 +8,7 @@ use halfrow_protocol::message::{Burst, BurstState, Records, RefusalCode, Request
 
 use super::bursts::{Awaited, LONGEST_IDLE, PATIENCE, looked_at};
 use super::{Rules, of_board};
-use crate::board::Said;
+use crate::board::Response;
 use crate::result::Rule;
 use crate::run::findings::End;
 
@@ -167,10 +167,10 @@ impl Rules<'_, '_> {
     ) -> Result<(), End> {
         let right = self.records(burst, frames.clone(), state, held.unwrap_or_default());
         let said = self.run.board.ask(Kind::Records, &frames.start.to_le_bytes()).map(|said| match said {
-            Said::Replied(payload) => Said::Replied(looked_at(payload, held.is_some())),
+            Response::Replied(payload) => Response::Replied(looked_at(payload, held.is_some())),
             refused => refused,
         });
-        self.judge(rule, Kind::Records, said, &Said::Replied(right))
+        self.judge(rule, Kind::Records, said, &Response::Replied(right))
     }
 
     /// Requests for records before or beyond `frames` must be refused.

@@ -5,7 +5,7 @@ use halfrow_protocol::message::{Entries, Refusal, RefusalCode, Request};
 
 use super::sessions::TIMES;
 use super::{FIRST_FACTOR, Rules, answer, broken, miscounted, of_board, payload};
-use crate::board::{BoardError, Said};
+use crate::board::{BoardError, Response};
 use crate::result::{Answer, Counter, Rule};
 use crate::run::findings::End;
 
@@ -64,7 +64,7 @@ impl Rules<'_, '_> {
     }
 
     /// What is read in the row factor's place after damaged packets, and how many of each kind these were.
-    fn after_damage(&mut self) -> Result<(Result<Said, BoardError>, [u32; 2]), End> {
+    fn after_damage(&mut self) -> Result<(Result<Response, BoardError>, [u32; 2]), End> {
         self.replied(Rule::Damage, &write(&KEPT), Vec::new())?;
         let damaged = self.run.board.give_damaged(&write(&OTHER));
         Ok((self.read(), damaged))
@@ -109,23 +109,23 @@ impl Rules<'_, '_> {
                 return kept;
             }
             // A link that broke meanwhile must not hide what was answered before.
-            self.judge(Rule::Session, other.kind(), said, &Said::Refused(refusal))?;
+            self.judge(Rule::Session, other.kind(), said, &Response::Refused(refusal))?;
             kept?;
         }
         Ok(())
     }
 
-    fn read(&mut self) -> Result<Said, BoardError> {
+    fn read(&mut self) -> Result<Response, BoardError> {
         self.run.board.ask(READ.kind(), &payload(&READ))
     }
 
     /// Ends if `said`, which was read in the row factor's place, is not what was written there.
-    fn judge_kept(&mut self, rule: Rule, said: Result<Said, BoardError>) -> Result<(), End> {
+    fn judge_kept(&mut self, rule: Rule, said: Result<Response, BoardError>) -> Result<(), End> {
         if is_other(&said) {
             // Whatever else the link did, only a packet that must have no effect can have written this.
             self.run.board.excuse_repeats().map_err(of_board)?;
         }
-        self.judge(rule, READ.kind(), said, &Said::Replied(payload(&write(&KEPT))))
+        self.judge(rule, READ.kind(), said, &Response::Replied(payload(&write(&KEPT))))
     }
 }
 
@@ -135,8 +135,8 @@ fn most_of(packets: u32) -> u32 {
 }
 
 /// Whether the row factor is the one that must not have been written.
-fn is_other(said: &Result<Said, BoardError>) -> bool {
-    matches!(said, Ok(Said::Replied(entry)) if entry.ends_with(&OTHER))
+fn is_other(said: &Result<Response, BoardError>) -> bool {
+    matches!(said, Ok(Response::Replied(entry)) if entry.ends_with(&OTHER))
 }
 
 fn write(bytes: &[u8; 4]) -> Request<'_> {

@@ -8,7 +8,7 @@ mod raster;
 use nalgebra_sparse::factorization::CscCholesky;
 
 use super::PaperError;
-use super::lines::{Held, Line};
+use super::lines::{Constraint, Line};
 use equations::{Equations, Unknown};
 
 pub(super) use raster::shown;
@@ -60,9 +60,9 @@ impl Net {
         pin(&mut equations, scale);
         for (number, line) in lines.iter().enumerate() {
             let normal = match line.held {
-                Held::Upright => Some((1.0, 0.0)),
-                Held::Level => Some((0.0, 1.0)),
-                Held::Straight => before.map(|net| net.normal(line)),
+                Constraint::Upright => Some((1.0, 0.0)),
+                Constraint::Level => Some((0.0, 1.0)),
+                Constraint::Straight => before.map(|net| net.normal(line)),
             };
             keep_line(&mut equations, line, normal, 2 * KNOTS * KNOTS + number);
         }

@@ -7,12 +7,12 @@ use axum::response::{IntoResponse as _, Redirect, Response};
 use maud::{Markup, html};
 use serde::Deserialize;
 
-use super::asked::{Asked, unit_address};
+use super::run_filter::{RunFilter, unit_address};
 use super::{run, show, unit};
 use crate::history::unit::{Unit, UnitRun};
 use crate::said::Said;
 use crate::store::{Change, MOST_REASON, NoWaiver, RebindError};
-use crate::web::language::Told;
+use crate::web::language::Sentence;
 use crate::web::routes::Who;
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
@@ -26,7 +26,7 @@ const DEVICE: &str = "[0-9a-f]{16}";
 pub(super) struct RefusedAct {
     pub(super) status: StatusCode,
     code: String,
-    told: Told,
+    told: Sentence,
 }
 
 impl RefusedAct {
@@ -104,7 +104,7 @@ pub(super) async fn rebind(
         Err(RebindError::Store(_)) => StatusCode::SERVICE_UNAVAILABLE,
     };
     let refused = bound.err().map(|error| RefusedAct::new(&visit, status, &Said::of(&error)));
-    unit::shown(app, visit, Asked::of_serial(&serial), refused).await
+    unit::shown(app, visit, RunFilter::of_serial(&serial), refused).await
 }
 
 /// The form by which an engineer waives the FAIL of a run that has no waiver.

@@ -8,7 +8,7 @@ use axum::http::header::{CACHE_CONTROL, CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::response::{IntoResponse as _, Response};
 use futures_util::stream;
 
-use super::asked::Asked;
+use super::run_filter::RunFilter;
 use crate::export::{self, ExportError, Table};
 use crate::history::runs::{self, Filter, Place};
 use crate::store::{Snapshot, StoreError};
@@ -38,7 +38,7 @@ enum Next {
 pub(super) async fn all(
     State(app): State<App>,
     visit: Visit,
-    Fields(asked): Fields<Asked>,
+    Fields(asked): Fields<RunFilter>,
 ) -> Result<Response, Trouble> {
     let filter = asked.filter().map_err(|wrong| wrong.told(&visit))?;
     let (first, after) = piece(&app, &visit, &filter, None).await?;

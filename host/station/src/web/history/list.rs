@@ -6,7 +6,7 @@ use axum::extract::State;
 use axum::response::Response;
 use maud::{Markup, html};
 
-use super::asked::{Asked, unit_address};
+use super::run_filter::{RunFilter, unit_address};
 use super::show;
 use crate::history::runs::{self, RunLine};
 use crate::history::{self, PlanName};
@@ -23,7 +23,7 @@ const RUNS: u32 = 50;
 pub(super) async fn page(
     State(app): State<App>,
     visit: Visit,
-    Fields(asked): Fields<Asked>,
+    Fields(asked): Fields<RunFilter>,
 ) -> Result<Response, Trouble> {
     let asking = asked.filter().and_then(|filter| Ok((filter, asked.after()?)));
     let (filter, after) = asking.map_err(|wrong| wrong.told(&visit))?;
@@ -60,7 +60,7 @@ pub(super) fn lanes(app: &App) -> Vec<String> {
     app.settings().lanes.iter().map(|lane| lane.name.clone()).collect()
 }
 
-fn form(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanName>) -> Markup {
+fn form(visit: &Visit, asked: &RunFilter, lanes: &[String], plans: &BTreeSet<PlanName>) -> Markup {
     html! {
         form.filters method="get" action="/history" {
             (field(visit.say("history.serial"), "serial", "search", &asked.serial))
@@ -83,7 +83,12 @@ fn form(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanNam
 }
 
 /// The fields that runs, yields and failures have in common: a plant's station, plan, lane, first and last day.
-pub(super) fn common(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanName>) -> Markup {
+pub(super) fn common(
+    visit: &Visit,
+    asked: &RunFilter,
+    lanes: &[String],
+    plans: &BTreeSet<PlanName>,
+) -> Markup {
     html! {
         @if visit.is_plant { (field(visit.say("nav.station"), "station", "search", &asked.station)) }
         label { span { (visit.say("history.plan")) }

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::asked::unit_address;
+use super::run_filter::unit_address;
 use super::show;
 use crate::history::mismatch::{Bound, Mismatch};
 use crate::web::visit::Visit;

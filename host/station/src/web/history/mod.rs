@@ -6,7 +6,6 @@
 //! ```
 
 pub(super) mod acts;
-mod asked;
 mod bars;
 mod csv;
 mod evidence;
@@ -15,6 +14,7 @@ pub(super) mod mismatch;
 mod pareto;
 mod pictures;
 mod run;
+mod run_filter;
 pub(super) mod show;
 mod unit;
 mod yields;
@@ -28,7 +28,7 @@ pub(super) fn routes() -> Vec<Route> {
         look("/runs/{run}", Who::Reader, run::page),
         act("/runs/{run}/waive", Who::Engineer, acts::waive),
         look("/runs/{run}/export/{format}", Who::Reader, evidence::export).while_program_is_same(),
-        look("/runs/{run}/evidence/{hash}", Who::Reader, evidence::attachment).for_ever(),
+        look("/runs/{run}/evidence/{hash}", Who::Reader, evidence::attachment).unchanging(),
         look("/runs/{run}/preview/{hash}", Who::Reader, pictures::preview).while_program_is_same(),
         look("/runs/{run}/difference/{found}/{expected}", Who::Reader, pictures::difference)
             .while_program_is_same(),

@@ -6,7 +6,7 @@ use axum::extract::State;
 use axum::response::Response;
 use maud::{Markup, html};
 
-use super::asked::Asked;
+use super::run_filter::RunFilter;
 use super::{bars, list, show, yields};
 use crate::history::pareto::{self, Bar, Of, Pareto};
 use crate::history::{self, PlanName};
@@ -20,7 +20,7 @@ use crate::web::visit::Visit;
 pub(super) async fn page(
     State(app): State<App>,
     visit: Visit,
-    Fields(asked): Fields<Asked>,
+    Fields(asked): Fields<RunFilter>,
 ) -> Result<Response, Trouble> {
     let choices = [("part", Of::Part), ("check", Of::Check)];
     let asking = asked.wanted().and_then(|wanted| Ok((wanted, asked.by(&choices)?)));
@@ -46,7 +46,7 @@ pub(super) async fn page(
     Ok(page.answer(&visit))
 }
 
-fn form(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanName>) -> Markup {
+fn form(visit: &Visit, asked: &RunFilter, lanes: &[String], plans: &BTreeSet<PlanName>) -> Markup {
     let choices = [("part", visit.say("pareto.part")), ("check", visit.say("pareto.check"))];
     html! {
         form.filters method="get" action="/pareto" {

@@ -10,7 +10,7 @@ use maud::{Markup, html};
 use serde_json::Value;
 
 use super::acts::RefusedAct;
-use super::asked::unit_address;
+use super::run_filter::unit_address;
 use super::{acts, pictures, show};
 use crate::export;
 use crate::history::unit::{self as history, UnitRun};

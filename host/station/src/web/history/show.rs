@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 use crate::history::rate::Rate;
 use crate::history::runs::RunLine;
-use crate::web::language::Told;
+use crate::web::language::Sentence;
 use crate::web::visit::Visit;
 
 /// What a page of the history has in its head.
@@ -26,7 +26,7 @@ pub(in crate::web) fn said(text: &str) -> Markup {
 }
 
 /// A sentence, marked if its language is not that of the page.
-pub(in crate::web) fn told(told: &Told) -> Markup {
+pub(in crate::web) fn told(told: &Sentence) -> Markup {
     match told.foreign {
         Some(language) => html! { span lang=(language) { (said(&told.text)) } },
         None => said(&told.text),

@@ -7,7 +7,7 @@ use halfrow::words::plain;
 use maud::{Markup, html};
 
 use super::acts::RefusedAct;
-use super::asked::Asked;
+use super::run_filter::RunFilter;
 use super::{acts, mismatch, show};
 use crate::history::unit::{self, Binding, Unit, UnitRun};
 use crate::web::fields::Fields;
@@ -22,7 +22,7 @@ const MOST_RUNS: usize = 200;
 pub(super) async fn page(
     State(app): State<App>,
     visit: Visit,
-    Fields(asked): Fields<Asked>,
+    Fields(asked): Fields<RunFilter>,
 ) -> Result<Response, Trouble> {
     shown(app, visit, asked, None).await
 }
@@ -31,7 +31,7 @@ pub(super) async fn page(
 pub(super) async fn shown(
     app: App,
     visit: Visit,
-    asked: Asked,
+    asked: RunFilter,
     refused: Option<RefusedAct>,
 ) -> Result<Response, Trouble> {
     if asked.serial.is_empty() {
@@ -52,7 +52,7 @@ pub(super) async fn shown(
     Ok(page.with_status(&visit, status))
 }
 
-fn of(visit: &Visit, asked: &Asked, unit: &Unit) -> Markup {
+fn of(visit: &Visit, asked: &RunFilter, unit: &Unit) -> Markup {
     let more = unit.runs.len().saturating_sub(MOST_RUNS);
     html! {
         section.unit {

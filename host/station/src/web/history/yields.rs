@@ -6,8 +6,8 @@ use axum::extract::State;
 use axum::response::Response;
 use maud::{Markup, html};
 
-use super::asked::{Asked, unit_address};
 use super::bars::Day;
+use super::run_filter::{RunFilter, unit_address};
 use super::{bars, list, show};
 use crate::history::drift::{Drift, drifts};
 use crate::history::rate::Rate;
@@ -32,7 +32,7 @@ pub(super) const FEW: u64 = 30;
 pub(super) async fn page(
     State(app): State<App>,
     visit: Visit,
-    Fields(asked): Fields<Asked>,
+    Fields(asked): Fields<RunFilter>,
 ) -> Result<Response, Trouble> {
     let choices = [
         ("plan", By::Plan),
@@ -68,7 +68,7 @@ pub(super) async fn page(
     Ok(page.answer(&visit))
 }
 
-fn form(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanName>) -> Markup {
+fn form(visit: &Visit, asked: &RunFilter, lanes: &[String], plans: &BTreeSet<PlanName>) -> Markup {
     let choices = [
         ("plan", visit.say("history.plan")),
         ("day", visit.say("yield.day")),
@@ -86,7 +86,7 @@ fn form(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanNam
 }
 
 /// The choice of what there is a line for.
-pub(super) fn by(visit: &Visit, asked: &Asked, choices: &[(&str, &str)]) -> Markup {
+pub(super) fn by(visit: &Visit, asked: &RunFilter, choices: &[(&str, &str)]) -> Markup {
     html! {
         label { span { (visit.say("history.by")) }
             select name="by" {

@@ -8,7 +8,7 @@ use serde_json::Value;
 use toml::Spanned;
 
 use super::FILES;
-use super::told::{LATE, LATE_AT_TIMES};
+use super::sentence::{LATE, LATE_AT_TIMES};
 use crate::codes as station;
 use crate::input_error::{Fault, InputError};
 use crate::said::REMEDIES;

@@ -4,7 +4,7 @@
 //! the recorded sentence is shown as it is.
 
 mod check;
-mod told;
+mod sentence;
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -13,7 +13,7 @@ use axum::http::HeaderValue;
 use halfrow::words::grouped;
 
 pub(crate) use check::{built_in, faults};
-pub(super) use told::Told;
+pub(super) use sentence::Sentence;
 
 /// The cookie that keeps a visitor's choice.
 pub(super) const COOKIE: &str = "halfrow-language";

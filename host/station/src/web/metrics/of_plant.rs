@@ -57,7 +57,7 @@ const MISMATCHES: Metric = Metric {
 
 /// What the plant holds.
 #[derive(Default)]
-struct Held {
+struct PlantFigures {
     version: Option<u64>,
     counts: BTreeMap<Cell, Count>,
     stations: Vec<Station>,
@@ -69,12 +69,12 @@ pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) {
     let held = turns::counted(app, visit, |now, tally| {
         let version = Some(now.version()?.unsigned_abs());
         let mismatches = Some(mismatches(now)?.len() as u64);
-        Ok(Held { version, counts: tally.counts(now)?, stations: stations(now)?, mismatches })
+        Ok(PlantFigures { version, counts: tally.counts(now)?, stations: stations(now)?, mismatches })
     });
     let held = held.await;
     text.of(&PLANT).put(&[("plant", app.station())], 1_u64);
     text.of(&UP).put(&[], held.is_some());
-    let Held { version, counts, stations, mismatches } = held.unwrap_or_default();
+    let PlantFigures { version, counts, stations, mismatches } = held.unwrap_or_default();
     let mut of = text.of(&VERSION);
     if let Some(version) = version {
         of.put(&[], version);

@@ -87,12 +87,12 @@ const OLDEST: Metric = Metric {
 };
 
 /// What the store holds.
-type Kept = (BTreeMap<Cell, Count>, Vec<Unsent>);
+type StoreFigures = (BTreeMap<Cell, Count>, Vec<Unsent>);
 
 /// Writes all figures. If the store cannot be read they say so, and still have what lanes do.
 pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) -> Result<(), Trouble> {
     let engine = &app.floor(visit)?.engine;
-    let kept: Option<Kept> =
+    let kept: Option<StoreFigures> =
         turns::counted(app, visit, |now, tally| Ok((tally.counts(now)?, now.unsent()?))).await;
     text.of(&STATION).put(&[("station", app.station())], 1_u64);
     text.of(&WELL).put(&[], engine.is_well());

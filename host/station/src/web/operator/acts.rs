@@ -61,7 +61,7 @@ pub(super) struct Pressed {
 
 /// The result of a scan, for the page that sent it.
 #[derive(Debug, Serialize)]
-pub(super) struct Answer {
+pub(super) struct ScanReply {
     counter: u64,
     pub(super) is_taken: bool,
     scanned: String,
@@ -114,7 +114,7 @@ async fn badge(
     let said = visit.words.fill("login.now", &[("name", &known.user.name)]);
     let cookie = logged_in(app, visit, known).await?;
     // A badge is shown to nobody.
-    let answer = Answer { scanned: String::new(), is_other: true, ..scanned.answer(None, Ok(said), None) };
+    let answer = ScanReply { scanned: String::new(), is_other: true, ..scanned.answer(None, Ok(said), None) };
     let response = if visit.is_script { json(&answer) } else { Redirect::to("/").into_response() };
     Ok(Some(([(SET_COOKIE, cookie)], response).into_response()))
 }
@@ -125,7 +125,7 @@ async fn understood(
     visit: &Visit,
     scanned: &Scanned,
     until: Option<Instant>,
-) -> Result<Answer, Trouble> {
+) -> Result<ScanReply, Trouble> {
     let refused = |error: ScanError| Ok(scanned.answer(None, Err(told(visit, &error)), scanned.armed()));
     let label = app.settings().scanner.label(&scanned.text).map(str::to_owned);
     let Some(label) = label.or_else(|| scanned.typed.then(|| scanned.text.clone())) else {
@@ -176,10 +176,10 @@ impl Scanned {
         self.is_over || is_as_made && clock::now_ms() - self.made_ms > CHOSEN.as_millis() as i64
     }
 
-    fn answer(&self, lane: Option<String>, said: Result<String, String>, armed: Option<String>) -> Answer {
+    fn answer(&self, lane: Option<String>, said: Result<String, String>, armed: Option<String>) -> ScanReply {
         let is_taken = said.is_ok();
         let said = said.unwrap_or_else(|refused| refused);
-        Answer {
+        ScanReply {
             counter: self.counter,
             is_taken,
             scanned: self.text.clone(),
@@ -268,7 +268,7 @@ async fn done(button: Button, act: Act) -> Result<Response, Trouble> {
     let ask = |engine: &Engine, number| engine.act(number, place, act, visit.name(), until);
     let became = asked(&app, &visit, ("lane", name, act.barcode()), ask).await?;
     match (visit.is_script, became.is_taken) {
-        (true, is_taken) => Ok(json(&Answer {
+        (true, is_taken) => Ok(json(&ScanReply {
             counter: 0,
             is_taken,
             scanned: became.scanned,
@@ -287,6 +287,6 @@ fn told(visit: &Visit, error: &(dyn Error + 'static)) -> String {
     visit.words.tell(&Said::of(error)).text
 }
 
-fn json(answer: &Answer) -> Response {
+fn json(answer: &ScanReply) -> Response {
     ([(CONTENT_TYPE, "application/json")], serde_json::to_string(answer).unwrap_or_default()).into_response()
 }

@@ -9,7 +9,7 @@ use super::shapes::{does, is_of_mock, said, shape};
 use crate::clock;
 use crate::engine::LaneState;
 use crate::floor::{Act, Shown, Word};
-use crate::web::language::Told;
+use crate::web::language::Sentence;
 use crate::web::live::Doing;
 use crate::web::routes::Who;
 use crate::web::visit::Visit;
@@ -131,7 +131,7 @@ fn says(visit: &Visit, state: &LaneState) -> Markup {
 }
 
 /// Why there is no verdict, and what to do about it.
-fn of_error(visit: &Visit, shown: &Shown) -> (Told, Option<Told>) {
+fn of_error(visit: &Visit, shown: &Shown) -> (Sentence, Option<Sentence>) {
     let recorded = shown.remedy.as_deref();
     match &shown.finding {
         Some(finding) => visit.words.parted(finding, recorded),
@@ -139,7 +139,7 @@ fn of_error(visit: &Visit, shown: &Shown) -> (Told, Option<Told>) {
     }
 }
 
-fn headline(visit: &Visit, shown: &Shown) -> Told {
+fn headline(visit: &Visit, shown: &Shown) -> Sentence {
     match &shown.finding {
         Some(finding) => visit.words.tell(finding),
         None => visit.words.english(shown.headline.clone()),
@@ -147,7 +147,7 @@ fn headline(visit: &Visit, shown: &Shown) -> Told {
 }
 
 /// The reason; what an engineer should do is shown when it is pointed at.
-fn why(told: &Told, remedy: Option<&Told>) -> Markup {
+fn why(told: &Sentence, remedy: Option<&Sentence>) -> Markup {
     html! { p.why lang=[told.foreign] title=[remedy.map(|remedy| &remedy.text)] { (plain(&told.text)) } }
 }
 
@@ -170,9 +170,9 @@ fn progress(visit: &Visit, lane: &str, of: Option<&Doing>) -> Markup {
 }
 
 /// What the run does, in words.
-pub(super) fn doing(visit: &Visit, doing: &Doing) -> Told {
+pub(super) fn doing(visit: &Visit, doing: &Doing) -> Sentence {
     match doing.rows {
-        Some(_) => Told { text: visit.say("lane.rows").to_owned(), foreign: None },
+        Some(_) => Sentence { text: visit.say("lane.rows").to_owned(), foreign: None },
         None => visit.words.doing(&doing.what),
     }
 }

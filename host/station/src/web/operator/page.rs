@@ -4,7 +4,7 @@ use axum::extract::State;
 use axum::response::{Html, IntoResponse as _, Response};
 use maud::{Markup, html};
 
-use super::acts::Answer;
+use super::acts::ScanReply;
 use super::lane::lane;
 use crate::clock;
 use crate::floor::CHOSEN;
@@ -27,11 +27,11 @@ pub(super) async fn page(State(app): State<App>, visit: Visit) -> Result<Respons
 }
 
 /// The page with the result of a scan that was sent without a script.
-pub(super) async fn answered(app: App, visit: Visit, answer: Answer) -> Result<Response, Trouble> {
+pub(super) async fn answered(app: App, visit: Visit, answer: ScanReply) -> Result<Response, Trouble> {
     drawn(app, visit, Some(answer)).await
 }
 
-async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Response, Trouble> {
+async fn drawn(app: App, visit: Visit, answer: Option<ScanReply>) -> Result<Response, Trouble> {
     let Floor { live, hints, .. } = app.floor(&visit)?;
     let (now, today) = (live.now(), counted(&app, &visit).await?);
     let head = html! {
@@ -98,7 +98,7 @@ fn shape_of(lanes: usize) -> usize {
 }
 
 /// Where scans appear. It is also there while nobody is logged in, because badges are scanned.
-fn scan_box(visit: &Visit, now: &Now, answer: Option<&Answer>) -> Markup {
+fn scan_box(visit: &Visit, now: &Now, answer: Option<&ScanReply>) -> Markup {
     let class = answer.map_or("", |answer| if answer.is_taken { "taken" } else { "refused" });
     html! {
         @if visit.can_log_in && !visit.may(Who::Operator) {

@@ -13,7 +13,7 @@ use halfrow_station::store::Snapshot;
 use super::generated::{Draw, Generated, LANES, generate, serial, started_ms};
 use super::made::{End, Run, id};
 use super::served::Served;
-use crate::pages::http::Answer;
+use crate::pages::http::Response;
 
 /// The 95th and the 99th percentile, and the longest time.
 fn slowest(mut times: Vec<Duration>) -> [Duration; 3] {
@@ -105,7 +105,7 @@ fn a_million_runs_are_looked_at_in_time() {
 }
 
 /// The same through the pages that the program serves, without a browser.
-pub(crate) fn served(get: &dyn Fn(&str) -> Answer, runs: u64, draw: &mut Draw) {
+pub(crate) fn served(get: &dyn Fn(&str) -> Response, runs: u64, draw: &mut Draw) {
     let page = |path: &str| timed(|| assert_eq!(get(path).status, 200, "{path}"));
     let mut list = || {
         let started_ms = started_ms(draw.below(runs));

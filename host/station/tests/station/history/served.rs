@@ -7,7 +7,7 @@ use tempfile::TempDir;
 
 use super::made::Made;
 use crate::common::PLAN;
-use crate::pages::http::{Answer, Request};
+use crate::pages::http::{Request, Response};
 use crate::pages::station::{Serving, command};
 
 /// The plan of the runs that were made.
@@ -55,12 +55,12 @@ impl Served {
     }
 
     /// The answer to a request for `path`.
-    pub(crate) fn get(&self, path: &str) -> Answer {
+    pub(crate) fn get(&self, path: &str) -> Response {
         self.get_in(path, "en")
     }
 
     /// The answer to a request for `path` by a browser that prefers `language`.
-    pub(crate) fn get_in(&self, path: &str, language: &str) -> Answer {
+    pub(crate) fn get_in(&self, path: &str, language: &str) -> Response {
         let port = self.serving.port;
         let request = Request::bare(port, "GET", path).with("host", &format!("127.0.0.1:{port}"));
         let answer = request.with("accept-language", language).send();

@@ -19,7 +19,7 @@ use halfrow_station::settings::Settings;
 use halfrow_station::store::{
     Folder, NewJob, Plant, PlantLink, SharedBoard, SharedStore, Store, Wanted, Worker,
 };
-use halfrow_station::work::{Aside, Judged, Work};
+use halfrow_station::work::{Aside, JobResult, Work};
 
 use crate::common::PLAN;
 use crate::lanes::floor::HANG;
@@ -112,7 +112,7 @@ fn at_work(settings: &Settings, program: PathBuf) -> Work<'_> {
 }
 
 /// The next job, judged; it is stopped if it takes too long.
-fn judged(work: &Work<'_>) -> Judged {
+fn judged(work: &Work<'_>) -> JobResult {
     let claim = work.claim().unwrap().unwrap();
     let begun = Instant::now();
     let stop = || (begun.elapsed() > HANG).then_some(StoppedBy::Person);

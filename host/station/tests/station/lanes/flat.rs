@@ -15,24 +15,24 @@ use crate::common::{PLAN, silent_board};
 
 /// The resources of a process.
 #[derive(Clone, Copy, Debug)]
-struct Held {
+struct ProcessResources {
     files: usize,
     threads: u64,
     resident_kib: u64,
 }
 
-fn held(process: u32) -> Held {
+fn held(process: u32) -> ProcessResources {
     let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap();
     let number = |name: &str| {
         let line = status.lines().find_map(|line| line.strip_prefix(name)).unwrap();
         line.trim_start_matches(':').split_whitespace().next().unwrap().parse().unwrap()
     };
     let files = fs::read_dir(format!("/proc/{process}/fd")).unwrap().count();
-    Held { files, threads: number("Threads"), resident_kib: number("VmRSS") }
+    ProcessResources { files, threads: number("Threads"), resident_kib: number("VmRSS") }
 }
 
 /// The median by `key`.
-fn middle(of: &[Held], key: impl Fn(&Held) -> u64) -> u64 {
+fn middle(of: &[ProcessResources], key: impl Fn(&ProcessResources) -> u64) -> u64 {
     let mut all: Vec<_> = of.iter().map(key).collect();
     all.sort_unstable();
     all[all.len() / 2]
@@ -99,7 +99,7 @@ fn ended_by(
 #[derive(Default)]
 struct Shift {
     /// The station's resources, after each round.
-    samples: Vec<Held>,
+    samples: Vec<ProcessResources>,
     /// How long runs took without a hung lane.
     alone: Vec<Duration>,
     /// How long they took next to a hung lane.
@@ -150,10 +150,10 @@ fn a_thousand_runs_with_kills_and_hung_lanes_leave_nothing_behind() {
     let samples = &shift.samples;
     println!("first {:?}\nlast  {:?}", samples[0], samples[19]);
     let (first, last) = (&samples[2..9], &samples[13..]);
-    let files = |held: &Held| held.files as u64;
+    let files = |held: &ProcessResources| held.files as u64;
     assert_eq!(middle(first, files), middle(last, files), "{samples:?}");
     // The thread of a run may be just about to end.
-    let threads = |held: &Held| held.threads;
+    let threads = |held: &ProcessResources| held.threads;
     assert!(middle(last, threads) <= middle(first, threads) + 1, "{samples:?}");
     let (early, late) = (middle(first, |held| held.resident_kib), middle(last, |held| held.resident_kib));
     assert!(late <= early + early / 10, "{early} KiB became {late} KiB: {samples:?}");

@@ -8,7 +8,7 @@ use crate::common::{HANG, until_found};
 
 /// An answer.
 #[derive(Clone, Debug)]
-pub(crate) struct Answer {
+pub(crate) struct Response {
     pub(crate) status: u16,
     pub(crate) headers: BTreeMap<String, String>,
     pub(crate) body: Vec<u8>,
@@ -16,7 +16,7 @@ pub(crate) struct Answer {
     pub(crate) is_whole: bool,
 }
 
-impl Answer {
+impl Response {
     /// The body as text.
     pub(crate) fn text(&self) -> String {
         String::from_utf8(self.body.clone()).unwrap()
@@ -38,7 +38,7 @@ fn connected(port: u16) -> TcpStream {
 ///
 /// # Errors
 /// Why the connection ended, if it ended without an answer.
-pub(crate) fn exchange(port: u16, bytes: &[u8]) -> io::Result<Answer> {
+pub(crate) fn exchange(port: u16, bytes: &[u8]) -> io::Result<Response> {
     let mut stream = connected(port);
     // A server that refuses a request may close the connection before it has read everything.
     let _ = stream.write_all(bytes);
@@ -55,7 +55,7 @@ pub(crate) fn exchange(port: u16, bytes: &[u8]) -> io::Result<Answer> {
     let headers: BTreeMap<String, String> =
         pairs.map(|(name, value)| (name.to_lowercase(), value.to_owned())).collect();
     let (body, is_whole) = body(&mut stream, &headers);
-    Ok(Answer { status, headers, body, is_whole })
+    Ok(Response { status, headers, body, is_whole })
 }
 
 /// The body after a head, and whether it is complete. The head of an answer to HEAD announces a body that does not come, and a
@@ -123,7 +123,7 @@ impl Request {
         self
     }
 
-    pub(crate) fn send(&self) -> Answer {
+    pub(crate) fn send(&self) -> Response {
         let text = self.text();
         exchange(self.port, text.as_bytes()).unwrap_or_else(|error| panic!("no answer to {self:?}: {error}"))
     }

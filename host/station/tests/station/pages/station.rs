@@ -11,7 +11,7 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use tempfile::TempDir;
 
-use super::http::{Answer, Request, escaped};
+use super::http::{Request, Response, escaped};
 pub(crate) use crate::common::SERIALS;
 use crate::common::{self, guarded_plan, program, until_found};
 
@@ -260,7 +260,7 @@ pub(crate) struct Browser {
 
 impl Browser {
     /// Keeps the cookie and the forms' token of an answer.
-    pub(crate) fn learn(&mut self, answer: &Answer) {
+    pub(crate) fn learn(&mut self, answer: &Response) {
         if let Some(cookie) = answer.headers.get("set-cookie") {
             self.cookie = cookie.split(';').next().unwrap().to_owned();
         }

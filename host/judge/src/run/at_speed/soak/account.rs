@@ -7,7 +7,7 @@ use crate::result::{
     CheckName, Defect, Finding, SoakDifference, SoakInterval, SoakLength, SoakReport, Suspect,
 };
 use crate::run::at_speed::burst::BurstPlan;
-use crate::run::at_speed::watched::Watched;
+use crate::run::at_speed::watched::BurstSeen;
 use crate::run::findings::End;
 use crate::run::second_look::broken_off;
 use crate::verdict::Cause;
@@ -76,7 +76,7 @@ impl Account {
     }
 
     /// Adds what came up to `now` of a burst. `watched` is what was seen of it in all; `before` is what was already counted.
-    pub(super) fn add(&mut self, before: &mut SoakInterval, watched: &Watched, now: Duration) -> Soaked {
+    pub(super) fn add(&mut self, before: &mut SoakInterval, watched: &BurstSeen, now: Duration) -> Soaked {
         let all = SoakInterval { frames: watched.frames.into(), wrong: watched.wrong.into() };
         let new = SoakInterval { frames: all.frames - before.frames, wrong: all.wrong - before.wrong };
         *before = all;

@@ -10,7 +10,7 @@ use halfrow_protocol::message::BurstMode;
 
 use super::NONE;
 use super::burst::{BurstPlan, LONGEST_LOOK};
-use super::watched::{EndsEarly, Watched};
+use super::watched::{BurstSeen, EndsEarly};
 use crate::board::{Bank, Bursts, RowTiming};
 use crate::progress::{Event, Step};
 use crate::result::{CheckName, Doubt, EqualAtSpeed, Finding, SoakInterval, SoakLength};
@@ -42,7 +42,7 @@ fn difference(played: &Result<Played, End>) -> Option<End> {
 
 /// Ends a soak in which the burst `plan` brought no frame although `time` was that of the longest burst: it would go on
 /// for ever.
-fn brought_frames(plan: &BurstPlan, watched: &Watched, time: Duration) -> Result<(), End> {
+fn brought_frames(plan: &BurstPlan, watched: &BurstSeen, time: Duration) -> Result<(), End> {
     if watched.frames > 0 || time < LONGEST_BURST {
         return Ok(());
     }
@@ -188,7 +188,7 @@ impl Run<'_> {
         }
         let ends_early = EndsEarly { when_wrong: account.wants_more(), at: Some(now + time) };
         let mut before = SoakInterval::default();
-        let mut told = |watched: &Watched, now| {
+        let mut told = |watched: &BurstSeen, now| {
             progress.event(Event::Soaked(account.add(&mut before, watched, earlier + now)));
         };
         let (watched, ended) = self.watch(&plan, &tables, ends_early, &mut told);

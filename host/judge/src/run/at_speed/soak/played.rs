@@ -2,7 +2,7 @@
 
 use crate::result::{Finding, Repetition};
 use crate::run::at_speed::burst::BurstPlan;
-use crate::run::at_speed::watched::Watched;
+use crate::run::at_speed::watched::BurstSeen;
 use crate::run::findings::End;
 use crate::run::plan::Generation;
 
@@ -10,14 +10,14 @@ use crate::run::plan::Generation;
 pub(super) struct Played {
     pub(super) plan: BurstPlan,
     pub(super) tables: Vec<Generation>,
-    pub(super) watched: Watched,
+    pub(super) watched: BurstSeen,
     pub(super) ended: Result<(), End>,
 }
 
 impl Played {
     /// What differed in it, before it is looked into.
     pub(super) fn finding(&self) -> Option<Finding> {
-        let Watched { frames, wrong, wrong_frames, miscounted, .. } = &self.watched;
+        let BurstSeen { frames, wrong, wrong_frames, miscounted, .. } = &self.watched;
         let differs = wrong_frames.first().map(|first| Finding::DiffersAtSpeed {
             wrong: *wrong,
             frames: *frames,

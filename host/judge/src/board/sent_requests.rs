@@ -10,14 +10,14 @@ const KEPT: usize = 16;
 
 /// A request to be sent.
 #[derive(Clone, Copy)]
-pub(super) enum Asking<'a> {
+pub(super) enum Outgoing<'a> {
     /// A request that the protocol knows.
     Request(&'a Request<'a>),
     /// Any payload under the given kind.
     Bytes(Kind, &'a [u8]),
 }
 
-impl Asking<'_> {
+impl Outgoing<'_> {
     pub(super) fn kind(&self) -> Kind {
         match self {
             Self::Request(request) => request.kind(),
@@ -44,7 +44,7 @@ impl Asking<'_> {
 }
 
 /// A request that was sent.
-struct Asked {
+struct SentRequest {
     sequence: u16,
     kind: Kind,
     changes: bool,
@@ -67,13 +67,13 @@ pub(super) struct Stray {
 
 /// The last requests.
 #[derive(Default)]
-pub(super) struct LastAsked(VecDeque<Asked>);
+pub(super) struct LastRequests(VecDeque<SentRequest>);
 
-impl LastAsked {
-    pub(super) fn note_request(&mut self, asking: &Asking<'_>, sequence: u16, now: Duration) {
+impl LastRequests {
+    pub(super) fn note_request(&mut self, asking: &Outgoing<'_>, sequence: u16, now: Duration) {
         self.0.truncate(KEPT - 1);
         let (kind, changes) = (asking.kind(), asking.changes());
-        self.0.push_front(Asked { sequence, kind, changes, begun: now, took: None, again: 0 });
+        self.0.push_front(SentRequest { sequence, kind, changes, begun: now, took: None, again: 0 });
     }
 
     /// Notes that the last request is sent once more. Returns whether that may change the board.
@@ -155,7 +155,7 @@ mod tests {
     use super::*;
 
     /// What `last` makes of an answer with this number.
-    fn stray(last: &mut LastAsked, sequence: u16, kind: Kind, payload: &[u8]) -> Option<bool> {
+    fn stray(last: &mut LastRequests, sequence: u16, kind: Kind, payload: &[u8]) -> Option<bool> {
         let header = Header { kind: kind.code(), sequence, reply: true, session: 1, window: 0 };
         let packet = Packet { header, payload };
         last.take_answer(&packet, Duration::ZERO).map(|stray| stray.changed)
@@ -164,8 +164,8 @@ mod tests {
     /// WIRE.md numbers packets with 16 bits, so the 65,536th row after a request has that request's number.
     #[test]
     fn a_refused_row_is_no_second_answer_to_a_request_of_its_number() {
-        let mut last = LastAsked::default();
-        last.note_request(&Asking::Bytes(Kind::TableWrite, &[]), 7, Duration::ZERO);
+        let mut last = LastRequests::default();
+        last.note_request(&Outgoing::Bytes(Kind::TableWrite, &[]), 7, Duration::ZERO);
         assert_eq!(stray(&mut last, 7, Kind::TableWrite, &[]), None);
         let refusal = |kind: Kind| {
             let mut payload = Vec::new();

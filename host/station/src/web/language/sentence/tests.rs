@@ -9,7 +9,7 @@ use crate::said::Saying;
 use crate::web::language::of;
 
 fn german(said: &Said) -> (String, Option<&'static str>) {
-    let Told { text, foreign } = of(Some("de"), None).tell(said);
+    let Sentence { text, foreign } = of(Some("de"), None).tell(said);
     (text, foreign)
 }
 
@@ -29,7 +29,7 @@ fn what_has_a_code_is_said_in_the_language_with_its_figures_and_causes() {
 /// In every language what to do is separated from the rest, and a finding's figures stay whole.
 #[test]
 fn what_is_asked_for_is_told_apart_from_why() {
-    let text = |told: Option<Told>| told.map(|told| (told.text, told.foreign));
+    let text = |told: Option<Sentence>| told.map(|told| (told.text, told.foreign));
     let due = Said::from(Saying::MockDue { barcode: "HR:MOCK".to_owned() });
     for (language, asked) in [("en", "Scan HR:MOCK"), ("de", "Scannen Sie HR:MOCK"), ("zh", "请扫描 HR:MOCK")]
     {
@@ -204,7 +204,7 @@ fn what_the_station_asks_for_is_told_in_the_language() {
     let said: Said = Saying::OtherSerial { serial: "CA2".to_owned(), scanned: "CA9".to_owned() }.into();
     let asked = |language, said: &Said, recorded| {
         let (_, asked) = of(Some(language), None).parted(said, Some(recorded));
-        let Told { text, foreign } = asked.unwrap();
+        let Sentence { text, foreign } = asked.unwrap();
         assert_eq!(foreign, None, "{text}");
         text
     };
@@ -224,7 +224,7 @@ fn what_the_station_asks_for_is_told_in_the_language() {
 #[test]
 fn what_a_run_does_is_told_in_the_language_with_its_figures() {
     let told = |language, what: &str| {
-        let Told { text, foreign } = of(Some(language), None).doing(what);
+        let Sentence { text, foreign } = of(Some(language), None).doing(what);
         (text, foreign)
     };
     let own = |text: &str| (text.to_owned(), None);

@@ -9,7 +9,7 @@ use crate::result::{Finding, FrameReport, FrameTotals, LateRows, LatencyReport};
 
 /// What the judge has seen of all frames so far.
 #[derive(Default)]
-pub(super) struct Seen {
+pub(super) struct Observations {
     pub(super) frames: Vec<FrameReport>,
     pub(super) evidence: KeptFrames,
     pub(super) levels: SampleLevels,
@@ -47,7 +47,7 @@ impl WrongLatency {
     }
 }
 
-impl Seen {
+impl Observations {
     /// Whether nothing that was seen is wrong, judged or not.
     pub(super) fn is_right(&self) -> bool {
         let rows =

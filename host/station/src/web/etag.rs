@@ -16,7 +16,7 @@ pub(super) fn of_program() -> String {
 }
 
 /// Goes around a route, within the check of who asks; `tag` is the entity tag of its content.
-pub(super) async fn for_ever(State(tag): State<String>, request: Request, next: Next) -> Response {
+pub(super) async fn revalidated(State(tag): State<String>, request: Request, next: Next) -> Response {
     let mut known = request.headers().get_all(IF_NONE_MATCH).iter();
     let is_known = known.any(|known| known.to_str().is_ok_and(|known| known.contains(&tag)));
     let mut response =

@@ -5,7 +5,7 @@ use super::{OpenOptions, Stop};
 
 /// Numbers drawn at random, which tell a session's packets from those of another one. The default draws them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub struct Draws {
+pub struct SessionIds {
     /// The session's nonce.
     pub nonce: u32,
     /// The number of this host.
@@ -15,7 +15,7 @@ pub struct Draws {
     pub sequence: u16,
 }
 
-impl Draws {
+impl SessionIds {
     /// Draws them from the operating system's randomness.
     #[must_use]
     pub fn draw() -> Self {
@@ -27,14 +27,14 @@ impl Draws {
     }
 }
 
-impl Default for Draws {
+impl Default for SessionIds {
     fn default() -> Self {
         Self::draw()
     }
 }
 
-impl From<Draws> for OpenOptions {
-    fn from(Draws { nonce, host, sequence }: Draws) -> Self {
+impl From<SessionIds> for OpenOptions {
+    fn from(SessionIds { nonce, host, sequence }: SessionIds) -> Self {
         Self {
             nonce,
             host,
@@ -50,6 +50,6 @@ impl From<Draws> for OpenOptions {
 
 impl Default for OpenOptions {
     fn default() -> Self {
-        Draws::default().into()
+        SessionIds::default().into()
     }
 }

@@ -6,7 +6,7 @@ use crate::words::count;
 
 /// What came over a link since it was opened.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Heard {
+pub struct Received {
     /// Bytes, whatever they were.
     pub bytes: u64,
     /// Whole packets.
@@ -23,7 +23,7 @@ pub struct Heard {
     pub waits_for_cts: bool,
 }
 
-impl Heard {
+impl Received {
     /// Counts what came `damage`d before the session.
     pub(super) fn note(&mut self, damage: Damage) {
         let count = match damage {
@@ -46,38 +46,38 @@ pub(super) fn suspect_of_one(had: bool) -> String {
 }
 
 /// What silence suggests: the board if nothing was ever heard from it, otherwise the connection to it.
-pub(super) fn suspect(heard: Heard) -> String {
+pub(super) fn suspect(heard: Received) -> String {
     match heard {
-        Heard { bytes: 0, waits_for_cts: true, .. } => {
+        Received { bytes: 0, waits_for_cts: true, .. } => {
             "; check that the board is powered and loaded, that the target's rate is the board's, and that the board drives CTS \
              (a ULX3S does not, and needs flow=none)"
                 .into()
         }
-        Heard { bytes: 0, .. } => {
+        Received { bytes: 0, .. } => {
             "; check that the board is powered and loaded, and that the target's rate is the board's".into()
         }
-        Heard { packets: 0, damaged: 0, wrong_length: 1.., bytes, .. } => format!(
+        Received { packets: 0, damaged: 0, wrong_length: 1.., bytes, .. } => format!(
             ", though {} came, with packets among them whose CRC is right and whose length is not what their header says: the \
              length counts the payload alone; check the board's packets against protocol/WIRE.md, section 1",
             count(bytes, "byte")
         ),
-        Heard { packets: 0, damaged: 0, bytes, wrong_crc, unframed, .. } if wrong_crc > 1 + unframed => format!(
+        Received { packets: 0, damaged: 0, bytes, wrong_crc, unframed, .. } if wrong_crc > 1 + unframed => format!(
             ", though {} came, {wrong_crc} times stuffed like a packet, but with another CRC-32; check that the target's rate \
              is the board's, and over which bytes and in which order the board computes and sends the CRC (protocol/WIRE.md, \
              section 1)",
             count(bytes, "byte")
         ),
-        Heard { packets: 0, damaged: 0, bytes, .. } => format!(
+        Received { packets: 0, damaged: 0, bytes, .. } => format!(
             ", though {} came, with no packet among them; check that the target's rate is the board's, and that the \
              device at this port is a halfrow board",
             count(bytes, "byte")
         ),
-        Heard { damaged: 0, .. } => {
+        Received { damaged: 0, .. } => {
             ", though the board had answered before; check the cable, its connectors and the rate, and that \
                    the board still has power"
                 .into()
         }
-        Heard { damaged, .. } => format!(
+        Received { damaged, .. } => format!(
             ", and {} came damaged: the link loses what is sent over it; check the cable, its \
              connectors and the rate",
             count(damaged, "packet")

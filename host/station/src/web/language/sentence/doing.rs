@@ -2,14 +2,14 @@
 
 use halfrow::progress::Step;
 
-use super::{Told, Words};
+use super::{Sentence, Words};
 use crate::record::StepOutcome;
 
 impl Words {
     /// What a run does, as its lane reports it. The names that a plan gives to steps and frames stay as they are.
-    pub(in crate::web) fn doing(&self, what: &str) -> Told {
+    pub(in crate::web) fn doing(&self, what: &str) -> Sentence {
         match self.step(what).or_else(|| self.ended(what)).or_else(|| self.board(what)) {
-            Some(text) => Told { text, foreign: None },
+            Some(text) => Sentence { text, foreign: None },
             None => self.english(what.to_owned()),
         }
     }

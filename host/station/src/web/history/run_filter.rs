@@ -13,7 +13,7 @@ use crate::web::visit::Visit;
 /// The fields of every form of the history. What is empty asks for nothing.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(default)]
-pub(super) struct Asked {
+pub(super) struct RunFilter {
     pub(super) serial: String,
     pub(super) verdict: String,
     pub(super) plan: String,
@@ -41,7 +41,7 @@ impl Wrong {
     }
 }
 
-impl Asked {
+impl RunFilter {
     /// A query for this serial number.
     pub(super) fn of_serial(serial: &str) -> Self {
         Self { serial: serial.to_owned(), ..Self::default() }
@@ -143,7 +143,7 @@ impl Asked {
 
 /// The address of the page of a serial number.
 pub(super) fn unit_address(serial: &str) -> String {
-    Asked::of_serial(serial).address("/unit", None)
+    RunFilter::of_serial(serial).address("/unit", None)
 }
 
 fn some(text: &str) -> Option<String> {
@@ -156,14 +156,14 @@ mod tests {
 
     #[test]
     fn an_address_asks_for_what_was_asked_for() {
-        let asked = Asked { serial: "A&B=ü#".to_owned(), lane: "1".to_owned(), ..Asked::default() };
+        let asked = RunFilter { serial: "A&B=ü#".to_owned(), lane: "1".to_owned(), ..RunFilter::default() };
         assert_eq!(asked.address("/history", None), "/history?serial=A%26B%3D%C3%BC%23&lane=1");
-        assert_eq!(Asked::default().address("/history", None), "/history");
+        assert_eq!(RunFilter::default().address("/history", None), "/history");
     }
 
     #[test]
     fn a_serial_number_is_looked_for_as_it_is() {
-        let asked = Asked { serial: " A ".to_owned(), lane: " 1 ".to_owned(), ..Asked::default() };
+        let asked = RunFilter { serial: " A ".to_owned(), lane: " 1 ".to_owned(), ..RunFilter::default() };
         let Filter { serial, lane, operator, .. } = asked.filter().unwrap();
         assert_eq!([serial, lane, operator], [Some(" A ".to_owned()), Some("1".to_owned()), None]);
     }

@@ -8,20 +8,20 @@ use halfrow_protocol::message::{
 use halfrow_protocol::{Kind, Packet, samples};
 
 use super::answer::{OwnedPacket, take_reply};
-use super::asked::Asking;
 use super::deadlines::Step;
+use super::sent_requests::Outgoing;
 use super::{Board, BoardError, Given, ReturnedRow, RowTraffic, rows};
 
 /// The board's answer to a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum Said {
+pub(crate) enum Response {
     /// It refused.
     Refused(Refusal),
     /// It replied with this payload.
     Replied(Vec<u8>),
 }
 
-impl Said {
+impl Response {
     /// The content of a packet that is not a row.
     pub(super) fn of(packet: &Packet<'_>) -> Self {
         match Reply::read(packet) {
@@ -85,14 +85,14 @@ fn is_of_no_session(packet: &Packet<'_>) -> bool {
 }
 
 /// The meaning of `answer` to a request of `kind`.
-pub(super) fn said(kind: Kind, answer: &OwnedPacket) -> Result<Said, BoardError> {
+pub(super) fn said(kind: Kind, answer: &OwnedPacket) -> Result<Response, BoardError> {
     let packet = answer.packet();
     // The caller compares the payload byte by byte.
     if packet.header.kind == kind.code() && kind != Kind::Refusal {
-        return Ok(Said::Replied(packet.payload.to_vec()));
+        return Ok(Response::Replied(packet.payload.to_vec()));
     }
     match take_reply(kind, answer, |_| None) {
-        Err(BoardError::Refused { refusal, .. }) => Ok(Said::Refused(refusal)),
+        Err(BoardError::Refused { refusal, .. }) => Ok(Response::Refused(refusal)),
         said => said,
     }
 }
@@ -102,8 +102,8 @@ impl Board {
     ///
     /// # Errors
     /// [`BoardError`] when it does not answer, or its answer does not fit the kind.
-    pub(crate) fn ask(&mut self, kind: Kind, payload: &[u8]) -> Result<Said, BoardError> {
-        let answer = self.conversation.ask(&Asking::Bytes(kind, payload), Step::Request, |_| true)?;
+    pub(crate) fn ask(&mut self, kind: Kind, payload: &[u8]) -> Result<Response, BoardError> {
+        let answer = self.conversation.ask(&Outgoing::Bytes(kind, payload), Step::Request, |_| true)?;
         said(kind, &answer)
     }
 
@@ -135,7 +135,7 @@ impl Board {
 
     /// Sends a request of `kind` with any payload, without waiting.
     pub(crate) fn give_bytes(&mut self, kind: Kind, payload: &[u8]) {
-        self.conversation.tell(&Asking::Bytes(kind, payload));
+        self.conversation.tell(&Outgoing::Bytes(kind, payload));
     }
 
     /// Declares the requests that changed the board and reached it more than once to be `changes` in number: further ones cast no
@@ -146,7 +146,7 @@ impl Board {
     }
 
     /// The board's answer to the damaged packets, if it gave one.
-    pub(crate) fn answer_to_damaged(&self) -> Option<Said> {
+    pub(crate) fn answer_to_damaged(&self) -> Option<Response> {
         self.conversation.session.conduct.answer_to_damaged().cloned()
     }
 
@@ -206,7 +206,7 @@ impl Board {
     pub(crate) fn credit_after_reset_to(&mut self, next_row: u32) -> Result<u32, BoardError> {
         let reset = Reset { level: ResetLevel::Rows, next_row };
         let request = Request::Reset(reset);
-        let answer = self.conversation.ask(&Asking::Request(&request), Step::Request, |_| true)?;
+        let answer = self.conversation.ask(&Outgoing::Request(&request), Step::Request, |_| true)?;
         take_reply(Kind::Reset, &answer, |reply| matches!(reply, Reply::Reset).then_some(()))?;
         self.conversation.session.acknowledged = reset.next_row;
         Ok(answer.header.window.saturating_sub(reset.next_row))
@@ -226,7 +226,7 @@ impl Board {
     /// [`BoardError`] when no answer comes.
     pub(crate) fn status_and_window(&mut self) -> Result<(Status, u32), BoardError> {
         let request = Request::Status { clear: false };
-        let answer = self.conversation.ask(&Asking::Request(&request), Step::Request, |_| true)?;
+        let answer = self.conversation.ask(&Outgoing::Request(&request), Step::Request, |_| true)?;
         let status = take_reply(Kind::Status, &answer, |reply| match reply {
             Reply::Status(status) => Some(status),
             _ => None,
@@ -326,7 +326,7 @@ impl Board {
     /// # Errors
     /// [`BoardError`] when the board refuses to drop it, or does not answer.
     pub(crate) fn cut(&mut self, burst: &Burst, bytes: usize) -> Result<(), BoardError> {
-        self.conversation.tell(&Asking::Request(&Request::Burst(*burst)));
+        self.conversation.tell(&Outgoing::Request(&Request::Burst(*burst)));
         self.drop_rows_after(bytes, 0)
     }
 

@@ -6,9 +6,9 @@ use super::{Link, LinkError};
 
 /// A link that leads nowhere.
 #[derive(Clone, Copy, Debug)]
-pub struct Severed;
+pub struct ClosedLink;
 
-impl Link for Severed {
+impl Link for ClosedLink {
     fn exchange(&mut self, _: &[u8], _: &mut Vec<u8>, _: Duration) -> Result<usize, LinkError> {
         Err(LinkError::Closed { link: self.name(), at: Duration::ZERO })
     }

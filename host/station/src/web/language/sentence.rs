@@ -25,7 +25,7 @@ pub(super) const LATE_AT_TIMES: &str = "latency-wrong-at-times";
 
 /// A sentence on a page.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(in crate::web) struct Told {
+pub(in crate::web) struct Sentence {
     /// The sentence.
     pub(in crate::web) text: String,
     /// `en` if it is in English on a page of another language.
@@ -34,31 +34,35 @@ pub(in crate::web) struct Told {
 
 impl Words {
     /// What was said, with its causes; in English if the language has no words for all of it.
-    pub(in crate::web) fn tell(&self, said: &Said) -> Told {
+    pub(in crate::web) fn tell(&self, said: &Said) -> Sentence {
         let (sentences, foreign) = self.sentences(said);
-        Told { text: sentences.join(self.say("told.colon")), foreign }
+        Sentence { text: sentences.join(self.say("told.colon")), foreign }
     }
 
     /// What was said without its remedy, and the remedy: `recorded`, which is in English, or the one that it ends in.
-    pub(in crate::web) fn parted(&self, said: &Said, recorded: Option<&str>) -> (Told, Option<Told>) {
+    pub(in crate::web) fn parted(&self, said: &Said, recorded: Option<&str>) -> (Sentence, Option<Sentence>) {
         let (why, asked) = self.split(said, recorded);
         let asked = asked.or_else(|| {
-            let Told { text, foreign } = self.remedy(Some(said), recorded?);
-            Some(Told { text: written(&text), foreign })
+            let Sentence { text, foreign } = self.remedy(Some(said), recorded?);
+            Some(Sentence { text: written(&text), foreign })
         });
         (why, asked)
     }
 
     /// Like [`Self::parted`], but a remedy that is not part of the sentence stays in whole sentences, and nothing is split off
     /// where no remedy is recorded.
-    pub(in crate::web) fn with_remedy(&self, said: &Said, recorded: Option<&str>) -> (Told, Option<Told>) {
+    pub(in crate::web) fn with_remedy(
+        &self,
+        said: &Said,
+        recorded: Option<&str>,
+    ) -> (Sentence, Option<Sentence>) {
         let Some(recorded) = recorded else { return (self.tell(said), None) };
         let (why, asked) = self.split(said, Some(recorded));
         (why, Some(asked.unwrap_or_else(|| self.remedy(Some(said), recorded))))
     }
 
     /// What was said, split before its remedy where it ends in that.
-    fn split(&self, said: &Said, recorded: Option<&str>) -> (Told, Option<Told>) {
+    fn split(&self, said: &Said, recorded: Option<&str>) -> (Sentence, Option<Sentence>) {
         let is_asked = |one: &Said| {
             split_remedy(&one.message, &one.parameters)
                 .is_some_and(|(_, asked)| recorded.is_none_or(|known| written(known) == written(asked)))
@@ -67,11 +71,11 @@ impl Words {
         let asking = all(said).zip(&mut sentences).find(|(one, _)| is_asked(one));
         let asked = asking.and_then(|(one, sentence)| {
             let (why, asked) = split_remedy(sentence, &one.parameters)?;
-            let told = Told { text: written(asked), foreign };
+            let told = Sentence { text: written(asked), foreign };
             *sentence = why.to_owned();
             Some(told)
         });
-        (Told { text: sentences.join(self.say("told.colon")), foreign }, asked)
+        (Sentence { text: sentences.join(self.say("told.colon")), foreign }, asked)
     }
 
     /// What was said and each of its causes, and their language if it is not the page's.
@@ -92,18 +96,18 @@ impl Words {
     }
 
     /// What to do about it: `recorded`, which is in English, unless the language has words for it.
-    pub(in crate::web) fn remedy(&self, said: Option<&Said>, recorded: &str) -> Told {
+    pub(in crate::web) fn remedy(&self, said: Option<&Said>, recorded: &str) -> Sentence {
         let own = said.and_then(|said| self.asked(&said.code, &said.parameters.clone().into()));
         let own = own.or_else(|| (recorded == TEST_AGAIN).then(|| self.say("told.again").to_owned()));
         match own.filter(|_| self.code != ENGLISH) {
-            Some(text) => Told { text, foreign: None },
+            Some(text) => Sentence { text, foreign: None },
             None => self.english(recorded.to_owned()),
         }
     }
 
     /// A sentence in English.
-    pub(in crate::web) fn english(&self, text: String) -> Told {
-        Told { text, foreign: (self.code != ENGLISH).then_some(ENGLISH) }
+    pub(in crate::web) fn english(&self, text: String) -> Sentence {
+        Sentence { text, foreign: (self.code != ENGLISH).then_some(ENGLISH) }
     }
 
     fn sentence(&self, code: &str, parameters: &Value) -> Option<String> {

@@ -34,7 +34,7 @@ enum At {
 
 /// All connections.
 #[derive(Clone, Debug)]
-pub(super) struct Places(Arc<Mutex<Table>>);
+pub(super) struct Slots(Arc<Mutex<Table>>);
 
 #[derive(Debug)]
 struct Table {
@@ -53,41 +53,41 @@ struct Taken {
     close: Arc<Notify>,
 }
 
-/// Why there is no place.
+/// Why there is no slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum NoPlace {
+pub(super) enum NoSlot {
     /// This address has as many as it may.
     OfOne,
     /// All are taken.
     OfAll,
 }
 
-impl Places {
-    /// All places are free. If this computer `has_proxy`, others come through it, so this computer may have all places.
+impl Slots {
+    /// All slots are free. If this computer `has_proxy`, others come through it, so this computer may have all slots.
     pub(super) fn new(has_proxy: bool) -> Self {
         let of_this_computer = if has_proxy { usize::MAX } else { CONNECTIONS_OF_ONE };
         Self(Arc::new(Mutex::new(Table { of_this_computer, last: 0, taken: BTreeMap::new() })))
     }
 
-    /// A place for `peer`, which is free again when it is dropped. If there is none, another connection gives way: one of the
+    /// A slot for `peer`, which is free again when it is dropped. If there is none, another connection gives way: one of the
     /// same address if that has all that it may have, else one of the address with the most connections.
     ///
     /// # Errors
-    /// [`NoPlace`] where all that could give way are being answered.
-    pub(super) fn take(&self, peer: IpAddr) -> Result<Place, NoPlace> {
+    /// [`NoSlot`] where all that could give way are being answered.
+    pub(super) fn take(&self, peer: IpAddr) -> Result<Slot, NoSlot> {
         let (network, mut table) = (network(peer), self.table());
         let most = if network.is_loopback() { table.of_this_computer } else { CONNECTIONS_OF_ONE };
         let own = table.taken.values().filter(|taken| taken.network == network).count();
         if own >= most {
-            table.one_gives_way(Some(network)).ok_or(NoPlace::OfOne)?;
+            table.one_gives_way(Some(network)).ok_or(NoSlot::OfOne)?;
         } else if table.taken.len() >= CONNECTIONS {
-            table.one_gives_way(None).ok_or(NoPlace::OfAll)?;
+            table.one_gives_way(None).ok_or(NoSlot::OfAll)?;
         }
         let (number, close) = (table.next(), Arc::new(Notify::new()));
         table
             .taken
             .insert(number, Taken { network, at: At::Waits, since: number, close: Arc::clone(&close) });
-        Ok(Place { all: self.clone(), number, close })
+        Ok(Slot { all: self.clone(), number, close })
     }
 
     fn table(&self) -> MutexGuard<'_, Table> {
@@ -118,15 +118,15 @@ impl Table {
     }
 }
 
-/// The place of a connection.
+/// The slot of a connection.
 #[derive(Debug)]
-pub(super) struct Place {
-    all: Places,
+pub(super) struct Slot {
+    all: Slots,
     number: u64,
     close: Arc<Notify>,
 }
 
-impl Place {
+impl Slot {
     /// Returns when the connection is to give way to another one.
     pub(super) async fn is_lost(&self) {
         self.close.notified().await;
@@ -141,25 +141,25 @@ impl Place {
     }
 }
 
-impl Drop for Place {
+impl Drop for Slot {
     fn drop(&mut self) {
         self.all.table().taken.remove(&self.number);
     }
 }
 
-/// Goes around every request of a connection, so that its place knows what it is doing until the end of the answer.
-pub(super) async fn noted(State(place): State<Arc<Place>>, request: Request, next: Next) -> Response {
-    place.is_at(At::Answers);
-    let busy = Busy(place);
+/// Goes around every request of a connection, so that its slot knows what it is doing until the end of the answer.
+pub(super) async fn noted(State(slot): State<Arc<Slot>>, request: Request, next: Next) -> Response {
+    slot.is_at(At::Answers);
+    let busy = Busy(slot);
     let response = next.run(request).await;
     if response.headers().get(CONTENT_TYPE).is_some_and(|kind| kind == "text/event-stream") {
         busy.0.is_at(At::TellsNews);
     }
-    response.map(|body| Body::new(Answer { body, _busy: busy }))
+    response.map(|body| Body::new(BusyBody { body, _busy: busy }))
 }
 
 /// A connection that is busy. When this is dropped, it waits for a request again.
-struct Busy(Arc<Place>);
+struct Busy(Arc<Slot>);
 
 impl Drop for Busy {
     fn drop(&mut self) {
@@ -168,12 +168,12 @@ impl Drop for Busy {
 }
 
 /// The body of an answer, until whose end the connection is busy.
-struct Answer {
+struct BusyBody {
     body: Body,
     _busy: Busy,
 }
 
-impl HttpBody for Answer {
+impl HttpBody for BusyBody {
     type Data = Bytes;
     type Error = axum::Error;
 
@@ -201,14 +201,14 @@ mod tests {
         ["127.0.0.1", "10.0.0.1", "10.0.0.2", "10.0.0.3"].map(|peer| peer.parse().unwrap())
     }
 
-    fn taken(places: &Places, peer: IpAddr, count: usize) -> Vec<Place> {
-        (0..count).map(|_| places.take(peer).unwrap()).collect()
+    fn taken(slots: &Slots, peer: IpAddr, count: usize) -> Vec<Slot> {
+        (0..count).map(|_| slots.take(peer).unwrap()).collect()
     }
 
     /// Which of these were told to give way.
-    fn lost(of: &[Place]) -> Vec<usize> {
-        let is_there = |place: &Place| place.all.table().taken.contains_key(&place.number);
-        of.iter().enumerate().filter(|(_, place)| !is_there(place)).map(|(number, _)| number).collect()
+    fn lost(of: &[Slot]) -> Vec<usize> {
+        let is_there = |slot: &Slot| slot.all.table().taken.contains_key(&slot.number);
+        of.iter().enumerate().filter(|(_, slot)| !is_there(slot)).map(|(number, _)| number).collect()
     }
 
     #[test]
@@ -217,50 +217,49 @@ mod tests {
         for (has_proxy, peer, most) in
             [(false, one, 48), (true, one, 48), (false, here, 48), (true, here, 64)]
         {
-            let places = Places::new(has_proxy);
-            let busy = taken(&places, peer, most);
-            busy.iter().for_each(|place| place.is_at(At::Answers));
-            let none = if most == 64 { NoPlace::OfAll } else { NoPlace::OfOne };
-            assert_eq!(places.take(peer).unwrap_err(), none, "{has_proxy} {peer}");
-            assert_eq!(places.take(other).is_ok(), most < 64, "{has_proxy} {peer}");
+            let slots = Slots::new(has_proxy);
+            let busy = taken(&slots, peer, most);
+            busy.iter().for_each(|slot| slot.is_at(At::Answers));
+            let none = if most == 64 { NoSlot::OfAll } else { NoSlot::OfOne };
+            assert_eq!(slots.take(peer).unwrap_err(), none, "{has_proxy} {peer}");
+            assert_eq!(slots.take(other).is_ok(), most < 64, "{has_proxy} {peer}");
             busy[7].is_at(At::Waits);
-            let late = places.take(peer).unwrap();
+            let late = slots.take(peer).unwrap();
             assert_eq!(lost(&busy), [7]);
             drop((busy, late));
-            assert_eq!(taken(&places, peer, most).len(), most);
+            assert_eq!(taken(&slots, peer, most).len(), most);
         }
     }
 
     #[test]
     fn who_has_waited_longest_gives_way_before_news_and_no_request_does() {
         let [here, ..] = addresses();
-        let places = Places::new(false);
-        let all = taken(&places, here, 48);
-        all.iter().for_each(|place| place.is_at(At::Answers));
+        let slots = Slots::new(false);
+        let all = taken(&slots, here, 48);
+        all.iter().for_each(|slot| slot.is_at(At::Answers));
         all[5].is_at(At::TellsNews);
         all[4].is_at(At::TellsNews);
         all[9].is_at(At::Waits);
         all[8].is_at(At::Waits);
         let mut late = Vec::new();
         for gone in [&[9][..], &[8, 9], &[5, 8, 9], &[4, 5, 8, 9]] {
-            late.push(places.take(here).unwrap());
-            late.iter().for_each(|place| place.is_at(At::Answers));
+            late.push(slots.take(here).unwrap());
+            late.iter().for_each(|slot| slot.is_at(At::Answers));
             assert_eq!(lost(&all), gone);
         }
-        assert_eq!(places.take(here).unwrap_err(), NoPlace::OfOne);
+        assert_eq!(slots.take(here).unwrap_err(), NoSlot::OfOne);
     }
 
     #[test]
     fn where_all_are_taken_the_address_that_has_most_gives_way() {
         let [here, one, other, new] = addresses();
-        let places = Places::new(false);
-        let (few, many, some) =
-            (taken(&places, here, 10), taken(&places, one, 34), taken(&places, other, 20));
-        many.iter().for_each(|place| place.is_at(At::TellsNews));
-        let late = taken(&places, new, 3);
+        let slots = Slots::new(false);
+        let (few, many, some) = (taken(&slots, here, 10), taken(&slots, one, 34), taken(&slots, other, 20));
+        many.iter().for_each(|slot| slot.is_at(At::TellsNews));
+        let late = taken(&slots, new, 3);
         assert_eq!((lost(&few), lost(&many), lost(&some)), (vec![], vec![0, 1, 2], vec![]));
-        many.iter().for_each(|place| place.is_at(At::Answers));
-        let later = places.take(new).unwrap();
+        many.iter().for_each(|slot| slot.is_at(At::Answers));
+        let later = slots.take(new).unwrap();
         assert_eq!((lost(&few), lost(&some), late.len()), (vec![], vec![0], 3));
         drop(later);
     }
