@@ -3,6 +3,7 @@
 mod boards;
 mod changed;
 pub(crate) mod claims;
+mod commands;
 mod disk;
 mod rate;
 mod sent;

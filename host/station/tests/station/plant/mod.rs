@@ -10,6 +10,7 @@ mod million;
 mod mismatch;
 pub(crate) mod pages;
 mod plans;
+mod plans_kept;
 mod put_back;
 mod refused;
 pub(crate) mod sent;

@@ -1,7 +1,6 @@
 //! Plans that the plant publishes: a station only takes what an engineer signed, and never anything older than it had.
 
 use std::fs;
-use std::net::TcpListener;
 use std::path::PathBuf;
 use std::process::Command;
 
@@ -328,55 +327,6 @@ fn what_was_kept_is_looked_at_again_whenever_it_is_used() {
     fs::write(&settings, other).unwrap();
     let untrusted = Settings::load(&settings).unwrap_err().to_string();
     assert!(untrusted.contains("does not trust any more"), "{untrusted}");
-}
-
-#[test]
-fn a_station_starts_with_what_it_has_when_the_plant_is_away() {
-    let mut made = Published::new();
-    made.publish("engel.key");
-    let lanes = |made: &Published| made.did(&["lanes", "--any-disk"]);
-    made.server.kill();
-    let without = lanes(&made);
-    assert!(without.code == Some(3) && without.complained.contains("refuses a connection"), "{without:?}");
-    assert!(without.complained.contains("no copy of CAM-T/quick is in "), "{without:?}");
-    made.server.again();
-    assert_eq!(lanes(&made).code, Some(0), "it fetches when it starts");
-    made.server.kill();
-    let with = lanes(&made);
-    assert!(with.code == Some(0) && with.complained.contains("the plans stay as they are"), "{with:?}");
-}
-
-/// As after the station's computer failed: its folder comes from a backup, and the plant is away.
-#[test]
-fn a_restored_station_starts_with_the_plans_that_it_had() {
-    let mut made = Published::new();
-    made.publish("engel.key");
-    assert_eq!(made.did(&["lanes", "--any-disk"]).code, Some(0));
-    made.server.kill();
-    let [data, copy] = ["data", "copy"].map(|name| made.path(name));
-    assert_eq!(made.did(&["backup", &copy, "--data", &data]).code, Some(0));
-    fs::remove_dir_all(&data).unwrap();
-    assert_eq!(made.did(&["restore", &copy, "--data", &data]).code, Some(0));
-    assert_eq!(made.held(), ("1".to_owned(), 1));
-    let started = made.did(&["lanes", "--any-disk"]);
-    assert!(started.code == Some(0) && started.complained.contains("the plans stay"), "{started:?}");
-}
-
-/// The plant accepts connections, and then stays silent for ever.
-#[test]
-fn a_station_starts_with_what_it_has_when_the_plant_does_not_answer() {
-    let made = Published::new();
-    made.publish("engel.key");
-    made.fetch();
-    let mute = TcpListener::bind("127.0.0.1:0").unwrap();
-    let settings = fs::read_to_string(made.path("station.toml")).unwrap();
-    let url = format!("postgres://halfrow@{}/plant", mute.local_addr().unwrap());
-    fs::write(made.path("station.toml"), settings.replace(&made.server.url(), &url)).unwrap();
-    let started = made.did(&["lanes", "--any-disk"]);
-    assert!(
-        started.code == Some(0) && started.complained.contains("the plans stay as they are"),
-        "{started:?}"
-    );
 }
 
 /// Settings and `plan back` name a plan by its product and its name, with a slash between.

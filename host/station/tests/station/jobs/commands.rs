@@ -1,0 +1,145 @@
+//! Jobs and shared boards by the commands of a station's program, and a station that takes no jobs.
+
+use std::fs;
+use std::process::Command;
+
+use serde_json::Value;
+
+use super::{settings, shared};
+use crate::common::{Did, program};
+use crate::plant::server::Server;
+
+/// Runs the commands of an engineer at a plant.
+struct Engineer {
+    server: Server,
+    folder: tempfile::TempDir,
+}
+
+impl Engineer {
+    fn new() -> Self {
+        let (server, _) = shared(0);
+        let folder = crate::common::folder();
+        settings(&server, folder.path(), "plant");
+        Self { server, folder }
+    }
+
+    fn did(&self, arguments: &[&str]) -> Did {
+        let mut command = Command::new(program());
+        command.args(arguments).arg("--settings").arg(self.folder.path().join("station.toml"));
+        command.output().unwrap().into()
+    }
+
+    /// The acts in the audit.
+    fn acts(&self) -> Vec<String> {
+        self.server.rows("SELECT act FROM audit WHERE operator_id = 'engel' ORDER BY id").concat()
+    }
+}
+
+#[test]
+fn jobs_are_added_changed_and_listed_by_commands_that_the_audit_keeps() {
+    let engineer = Engineer::new();
+    let plan = engineer.folder.path().join("plan.toml").display().to_string();
+    let add = |more: &[&str]| {
+        engineer.did(&[&["job", "add", "--operator", "engel", "--plan", plan.as_str()], more].concat())
+    };
+    let added = add(&["--kind", "mock", "--count", "2", "--needs", "camera"]);
+    let ids: Vec<_> = added.said.lines().map(str::to_owned).collect();
+    assert_eq!(ids.len(), 2, "{added:?}");
+    let wrong: [&[&str]; 4] = [
+        &["--serial", "XXX"],
+        &["--kind", "mock", "--needs", "two words"],
+        &["--kind", "mock", "--count", "0"],
+        &[],
+    ];
+    for wrong in wrong {
+        assert_eq!(add(wrong).code, Some(2), "{wrong:?}");
+    }
+    let cancel = ["job", "cancel", &ids[0], "--reason", "a mistake", "--operator", "engel"];
+    assert_eq!(engineer.did(&cancel).code, Some(0));
+    assert_eq!(engineer.did(&cancel).code, Some(2));
+    let listed: Value = serde_json::from_str(&engineer.did(&["job", "list", "--json"]).said).unwrap();
+    let states: Vec<_> =
+        listed.as_array().unwrap().iter().map(|job| job["state"].as_str().unwrap()).collect();
+    assert_eq!(states, ["waiting", "dead"], "the newest first");
+    assert_eq!(
+        engineer.did(&["job", "retry", &ids[0], "--reason", "no mistake", "--operator", "engel"]).code,
+        Some(0)
+    );
+    assert!(engineer.did(&["job", "list", "--state", "waiting"]).said.contains("any mock"));
+    assert_eq!(engineer.acts(), ["add job", "cancel job", "retry job"]);
+}
+
+#[test]
+fn boards_are_shared_changed_and_listed_by_commands_that_the_audit_keeps() {
+    let engineer = Engineer::new();
+    let share = |board: &str| {
+        engineer.did(&[
+            "board",
+            "share",
+            "shelf-1",
+            "--operator",
+            "engel",
+            "--kind",
+            "mock",
+            "--board",
+            board,
+        ])
+    };
+    assert_eq!(share("mock").said, "shelf-1 is shared\n");
+    for wrong in ["nonsense:1", "tcp:127.0.0.1:99999"] {
+        assert_eq!(share(wrong).code, Some(2), "{wrong}");
+    }
+    assert!(engineer.did(&["board", "list"]).said.contains("free"));
+    let changes =
+        [("out", "shelf-1 is out\n"), ("in", "shelf-1 is in\n"), ("unshare", "shelf-1 is unshared\n")];
+    for blank in ["", " "] {
+        let did = engineer.did(&["board", "out", "shelf-1", "--reason", blank, "--operator", "engel"]);
+        assert_eq!((did.code, did.complained.contains("say why in a few words")), (Some(2), true), "{did:?}");
+    }
+    for (change, said) in changes {
+        assert_eq!(
+            engineer.did(&["board", change, "shelf-1", "--reason", "why not", "--operator", "engel"]).said,
+            said
+        );
+    }
+    assert_eq!(
+        engineer.did(&["board", "out", "shelf-1", "--reason", "why not", "--operator", "engel"]).code,
+        Some(2)
+    );
+    assert!(engineer.did(&["board", "list"]).said.contains("no board is shared"));
+    assert_eq!(engineer.acts(), ["share board", "board out", "board in", "unshare board"]);
+}
+
+/// Whoever else got it would judge its own board under this one's serial number.
+#[test]
+fn a_board_that_is_plugged_into_one_computer_is_shared_by_its_station_alone() {
+    let engineer = Engineer::new();
+    let share = |board: &str, more: &[&str]| {
+        let share = ["board", "share", "shelf-1", "--kind", "mock", "--operator", "engel", "--board", board];
+        engineer.did(&[&share[..], more].concat())
+    };
+    let by_path = "serial:/dev/serial/by-path/pci-0000:00:14.0-usb-0:2:1.0-port0";
+    for board in ["usb:1-2.3", by_path, "serial:/dev/ttyUSB0", "tcp:localhost:3001", "tcp:[::1]:3001"] {
+        let did = share(board, &[]);
+        assert!(did.code == Some(2) && did.complained.contains("by --station"), "{did:?}");
+    }
+    for moving in ["usb", "serial:/dev/ttyUSB0"] {
+        let did = share(moving, &["--station", "12"]);
+        assert!(did.code == Some(2) && did.complained.contains("; write "), "{did:?}");
+    }
+    assert!(engineer.did(&["board", "list"]).said.contains("no board is shared"));
+    for board in ["usb:1-2.3", by_path] {
+        assert_eq!(share(board, &["--station", "12"]).said, "shelf-1 is shared\n");
+    }
+    assert_eq!(share("tcp:shelf:5000", &[]).said, "shelf-1 is shared\n");
+}
+
+#[test]
+fn a_station_whose_settings_say_nothing_of_jobs_takes_none() {
+    let engineer = Engineer::new();
+    let path = engineer.folder.path().join("station.toml");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.split("[work]").next().unwrap()).unwrap();
+    let refused = engineer.did(&["work", "--once", "--any-disk"]);
+    assert!(refused.code == Some(2) && refused.complained.contains("into [work]"), "{refused:?}");
+}
