@@ -75,7 +75,7 @@ pub(crate) struct LensArguments {
     #[arg(value_parser = any::<f64>("a number of micrometres"))]
     pixel_pitch: Option<f64>,
     /// Angle that the image circle spans in Eq. 9, in degrees. Leave it at 180 unless you reproduce the paper: any other angle makes
-    /// verticals less straight. With `--rows fitted` only rows inside the circle are fitted [default: 180]
+    /// verticals less straight. Fitted rows are fitted to what is inside the circle [default: 180]
     #[arg(long, value_name = "DEGREES")]
     #[arg(value_parser = any::<f64>("a number of degrees"))]
     field_of_view: Option<f64>,
