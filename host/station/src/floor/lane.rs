@@ -255,8 +255,7 @@ impl Lane {
     /// A board is there again: no verdict is shown over it until it was judged itself.
     fn came(&mut self) {
         match &self.phase {
-            // The run waits for its own board, and takes no other for it.
-            Phase::Running { of, .. } if !is_mock(&of.serial) => {}
+            // No run waits for its board to come back, so this one's result is that of the board before.
             Phase::Running { .. } | Phase::Saving { .. } | Phase::Unsaved { .. } => self.has_other = true,
             Phase::Idle | Phase::Ended | Phase::Out { .. } => {
                 self.last = self.shown.take().or_else(|| self.last.take());
