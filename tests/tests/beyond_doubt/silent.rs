@@ -51,6 +51,9 @@ fn a_request_that_alone_is_left_unanswered_is_not_blamed_on_the_cable() {
         ] {
             assert!(told.contains(&clause), "{told}");
         }
+        // What it counts is asked by STATUS.
+        assert_eq!(told.contains("counts a further try as received"), kind != Kind::Status, "{told}");
+        assert!(!told.contains("does not count"), "{told}");
     }
 }
 
@@ -59,10 +62,10 @@ fn a_silence_tells_what_the_board_counts_and_how_long_the_request_is() {
     let is_long = |packet: &Passing| packet.is(Kind::Echo) && packet.payload.len() == 4080;
     let answered = told(&silent(is_long));
     assert!(answered.contains("no answer to ECHO with 4,080 bytes in 8 tries"), "{answered}");
-    assert!(answered.contains("and it counts each try as received,"), "{answered}");
+    assert!(answered.contains("and it counts a further try as received,"), "{answered}");
     assert!(answered.contains("check how the board answers it"), "{answered}");
     let lost = told(&deaf(is_long));
-    assert!(lost.contains("and it does not count each try as received,"), "{lost}");
+    assert!(lost.contains("and it does not count a further try as received,"), "{lost}");
     assert!(lost.contains("check how the board takes it in"), "{lost}");
 }
 

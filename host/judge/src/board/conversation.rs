@@ -65,7 +65,7 @@ pub(super) struct Conversation {
     pub(super) tally: Tally,
     /// What came damaged before the session.
     before: Received,
-    /// Waits in a row that ended with a packet without its closing zero.
+    /// Waits in succession that ended with a packet without its closing zero.
     unclosed: u32,
     pub(super) limit: RetryLimit,
     /// The time spent waiting for the link, by which deadlines are measured. While the host is kept from running, or is busy

@@ -9,7 +9,7 @@ use halfrow_protocol::message::{Malformed, Refusal, RefusalCode, RowPlace};
 
 use super::Tally;
 use super::conversation::Conversation;
-use super::received::{Received, suspect, suspect_of_one};
+use super::received::{Had, Received, suspect, suspect_of_one};
 use crate::link::LinkError;
 use crate::verdict::{Cause, StoppedBy};
 use crate::words::{count, span};
@@ -60,8 +60,8 @@ pub enum BoardError {
         bytes: usize,
         /// Tries.
         attempts: u32,
-        /// Whether the board counts every packet as received.
-        had: bool,
+        /// What the board counts of it.
+        had: Had,
     },
     /// The board's packets end without a zero.
     #[error(

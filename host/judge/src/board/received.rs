@@ -1,6 +1,7 @@
 //! What came over a link on which a board does not answer, and what that suggests.
 
 use halfrow_protocol::Damage;
+use halfrow_protocol::message::Status;
 
 use crate::words::count;
 
@@ -35,13 +36,39 @@ impl Received {
     }
 }
 
-/// What to check where one request alone is not answered. `had` is whether the board counts every packet as received.
-pub(super) fn suspect_of_one(had: bool) -> String {
-    let (counts, part) = if had { ("counts", "answers it") } else { ("does not count", "takes it in") };
+/// What a board's counters say of a request that it does not answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Had {
+    /// It came.
+    Counted,
+    /// It did not come.
+    NotCounted,
+    /// Nothing: it was the request for these counters.
+    Unknown,
+}
+
+impl Had {
+    /// By the counters `before` and `after` one more try.
+    pub(super) fn between(before: Option<Status>, after: Option<Status>) -> Self {
+        // The try, and the request for the second counters.
+        match before.zip(after).map(|(before, after)| after.packets.wrapping_sub(before.packets)) {
+            Some(2) => Self::Counted,
+            Some(_) => Self::NotCounted,
+            None => Self::Unknown,
+        }
+    }
+}
+
+/// What to check where one request alone is not answered.
+pub(super) fn suspect_of_one(had: Had) -> String {
+    let (counts, part) = match had {
+        Had::Counted => ("and it counts a further try as received, ", "answers it"),
+        Had::NotCounted => ("and it does not count a further try as received, ", "takes it in"),
+        Had::Unknown => ("", "takes it in and answers it"),
+    };
     format!(
-        "the board answered others at once, nothing came damaged, and it {counts} each try as received, which no poor cable does; \
-         check how the board {part}, and whether something on the way swallows certain bytes or lengths, as software flow control \
-         does"
+        "the board answered others at once, nothing came damaged, {counts}which no poor cable does; check how the board {part}, and \
+         whether something on the way swallows certain bytes or lengths, as software flow control does"
     )
 }
 

@@ -77,7 +77,9 @@ pub fn diagnose(case: &Case<'_>) -> Vec<Suspect> {
         ranked = ranking::merge(ranked, searched);
     }
     let mut suspects = ranking::suspects(&ranked, || pattern::summary(&witnesses));
-    suspects.splice(0..0, blanking::suspect(case));
+    if !ranked.first().is_some_and(|best| best.score.is_exact()) {
+        suspects.splice(0..0, blanking::suspect(case));
+    }
     suspects.truncate(ranking::NAMED);
     suspects
 }

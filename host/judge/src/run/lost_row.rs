@@ -92,11 +92,11 @@ impl Run<'_> {
         }
         echoed &= self.echoes_pass()?;
         let status = self.board.status(false)?;
-        if !echoed || !is_calm(before, self.board.tally()) {
+        let is_clean = [status.damaged(), status.foreign_packets] == [0; 2];
+        if !echoed || !is_clean || !is_calm(before, self.board.tally()) {
             return Ok(Replay::Troubled);
         }
-        let reached =
-            self.board.had_each_packet_once(&status) && [status.damaged(), status.foreign_packets] == [0; 2];
+        let reached = self.board.had_each_packet_once(&status);
         let swallowed = reached && was_taken(&status, first_row, &row) && is_withheld(&status, &row);
         if swallowed {
             return Ok(Replay::Swallowed { row: row.place.row });

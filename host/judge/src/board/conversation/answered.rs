@@ -59,7 +59,9 @@ impl Conversation {
                 let late = self.tally.late;
                 if let Some(answer) = self.answer_within(wait, asking, sequence, &accept)? {
                     self.note_duration(attempt, self.since(begun));
-                    self.unclosed = if attempt == 0 { 0 } else { self.unclosed };
+                    if attempt == 0 {
+                        self.unclosed = 0;
+                    }
                     self.tally.answered += u64::from(answer.header.kind == kind.code());
                     return Ok(answer);
                 }

@@ -7,6 +7,7 @@ use super::Conversation;
 use crate::board::BoardError;
 use crate::board::answer::take_reply;
 use crate::board::deadlines::Step;
+use crate::board::received::Had;
 use crate::board::sent_requests::Outgoing;
 
 impl Conversation {
@@ -16,26 +17,33 @@ impl Conversation {
         if self.session.number == 0 {
             return error;
         }
-        let Some(had) = self.leaves_only(asking) else { return error };
-        let mut payload = Vec::new();
-        asking.write(&mut payload);
-        BoardError::Unanswered { kind, bytes: payload.len(), attempts, had }
+        match self.leaves_only(asking) {
+            Ok(Some(had)) => {
+                let mut payload = Vec::new();
+                asking.write(&mut payload);
+                BoardError::Unanswered { kind, bytes: payload.len(), attempts, had }
+            }
+            Err(why @ (BoardError::Stopped(_) | BoardError::Link { .. })) => why,
+            Ok(None) | Err(_) => error,
+        }
     }
 
     /// Whether the board answers another request at once, then leaves this one unanswered again, and answers the other one
     /// again. A link that was broken for a while answers all three, one that brings late answers adds strays, and a noisy one,
-    /// which keeps long packets from getting through, damages them. Returns whether the board counts every packet as received.
-    fn leaves_only(&mut self, asking: &Outgoing<'_>) -> Option<bool> {
+    /// which keeps long packets from getting through, damages them. Returns what the board counts of the request, if it is only this
+    /// one that it leaves.
+    fn leaves_only(&mut self, asking: &Outgoing<'_>) -> Result<Option<Had>, BoardError> {
         let strays = self.tally.strays;
-        self.answers_another(asking.kind()).ok()?;
+        let before = self.answers_another(asking.kind())?;
         match self.ask_until_answered(asking, Step::Probe, |_| true) {
             Err(BoardError::NoAnswer { .. }) => {}
-            _ => return None,
+            Err(other) => return Err(other),
+            Ok(_) => return Ok(None),
         }
-        let status = self.answers_another(asking.kind()).ok()?;
-        let damaged = self.tally.damaged_in + u64::from(status.map_or(0, |status| status.damaged()));
-        let had = status.is_some_and(|status| self.had_each_packet_once(&status));
-        (self.tally.strays == strays && damaged == 0).then_some(had)
+        let after = self.answers_another(asking.kind())?;
+        let damaged = self.tally.damaged_in + u64::from(after.map_or(0, |status| status.damaged()));
+        let is_this_alone = self.tally.strays == strays && damaged == 0;
+        Ok(is_this_alone.then(|| Had::between(before, after)))
     }
 
     /// Has the board answer another request than one of `kind`: its counters, if these are something else.

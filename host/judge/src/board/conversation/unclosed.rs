@@ -3,7 +3,7 @@
 use super::Conversation;
 use crate::board::BoardError;
 
-/// So often in a row no link loses just the zero.
+/// So often in succession no link loses just the zero.
 const TIMES: u32 = 3;
 
 impl Conversation {

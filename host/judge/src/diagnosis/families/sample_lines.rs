@@ -25,7 +25,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     all.filter(|lines| lines.score(witnesses.differing.iter().take(GLANCED)).share() >= PROMISING).collect()
 }
 
-/// What may be wrong with the `lines` lines of a bus. That a line is stuck in all columns is no business of this family.
+/// What may be wrong with the `lines` lines of a bus. Lines stuck in all columns are those of `memory_data`.
 fn faults(bus: SampleBus, lines: u32) -> Vec<SampleLines> {
     use LineFault::{Exchanged, Inverted, JoinedHigh, JoinedLow, StuckHigh, StuckLow};
     let is_of_bytes = matches!(bus, SampleBus::BytesIn | SampleBus::BytesOut);

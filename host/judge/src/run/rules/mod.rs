@@ -35,7 +35,7 @@ use super::findings::End;
 use super::parts::of_height;
 use super::plan::Segment;
 use super::steps::Run;
-use crate::board::{BoardError, Capabilities, Given, Response, RowTiming, Status};
+use crate::board::{BoardError, Capabilities, Given, Had, Response, RowTiming, Status};
 use crate::compare::Comparison;
 use crate::progress::Step;
 use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Outcome, RowPart, Rule};
@@ -158,7 +158,7 @@ impl<'a, 'run> Rules<'a, 'run> {
             Err(BoardError::NoAnswer { heard, .. }) if heard.damaged == 0 && self.had_it_each_time() => {
                 return Err(unanswered(rule, kind, answer(right)));
             }
-            Err(BoardError::Unanswered { had: true, .. }) => {
+            Err(BoardError::Unanswered { had: Had::Counted, .. }) => {
                 return Err(unanswered(rule, kind, answer(right)));
             }
             Err(error) => return Err(of_board(error)),
