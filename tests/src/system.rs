@@ -133,9 +133,9 @@ pub fn judge_by_plan(plan: &Plan, candidate: Candidate) -> Report {
 
 fn judged(plan: &Plan, reconnect: Option<Duration>, candidate: Candidate) -> Report {
     // Fixed, so that every run sends the same packets.
-    let draws = SessionIds { nonce: 0, host: 0, sequence: 0 };
-    let circumstances = Provenance { draws, ..Provenance::default() };
-    let options = RunOptions { reconnect, circumstances, ..RunOptions::default() };
+    let session_ids = SessionIds { nonce: 0, host: 0, sequence: 0 };
+    let provenance = Provenance { session_ids, ..Provenance::default() };
+    let options = RunOptions { reconnect, provenance, ..RunOptions::default() };
     verify(plan, candidate, &options, &Silent).unwrap().report
 }
 

@@ -178,7 +178,12 @@ impl Options<'_> {
             take_over: self.take_over,
             require_hardware: self.require_hardware,
             keep_equal: self.report.is_some(),
-            circumstances: Provenance { arguments, files: hashes, draws: SessionIds::draw(), operator: None },
+            provenance: Provenance {
+                arguments,
+                files: hashes,
+                session_ids: SessionIds::draw(),
+                operator: None,
+            },
             ..RunOptions::default()
         })
     }

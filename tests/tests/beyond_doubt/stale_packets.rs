@@ -340,7 +340,7 @@ fn what_is_of_an_earlier_session_is_no_answer_to_a_greeting() {
 /// Without a random first number every program's first packet would have number 1, and a refusal names no nonce.
 #[test]
 fn a_refusal_that_an_earlier_program_was_told_is_not_this_one_s() {
-    let draws = SessionIds { nonce: 5, host: 6, sequence: 0xfffe };
+    let session_ids = SessionIds { nonce: 5, host: 6, sequence: 0xfffe };
     let alter = |toward, packet: Passing| {
         if toward == Toward::Board || !packet.is(Kind::Hello) {
             return vec![packet];
@@ -351,8 +351,8 @@ fn a_refusal_that_an_earlier_program_was_told_is_not_this_one_s() {
         vec![stale, packet]
     };
     let candidate = Altered::new(&halfrow_mock::Options::default(), alter).candidate();
-    let circumstances = Provenance { draws, ..Provenance::default() };
-    let options = RunOptions { circumstances, ..RunOptions::default() };
+    let provenance = Provenance { session_ids, ..Provenance::default() };
+    let options = RunOptions { provenance, ..RunOptions::default() };
     let report = verify(&System::TINY.plan(), candidate, &options, &Silent).unwrap().report;
     assert_eq!(report.verdict(), Verdict::Pass, "{}", report.headline());
 }

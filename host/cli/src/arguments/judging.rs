@@ -132,10 +132,10 @@ impl RunArguments {
 
     /// The options of a run that judges with what was read from `inputs`.
     pub(crate) fn options(&self, inputs: Vec<Input>, settings: &Settings) -> Result<RunOptions, Failure> {
-        let circumstances = Provenance {
+        let provenance = Provenance {
             arguments: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
             files: inputs.into_iter().map(FileHash::from).collect(),
-            draws: run::SessionIds::draw(),
+            session_ids: run::SessionIds::draw(),
             operator: self.operator(),
         };
         Ok(RunOptions {
@@ -146,7 +146,7 @@ impl RunArguments {
             take_over: self.board.take_over,
             require_hardware: self.requires_hardware(settings),
             keep_equal: self.report_path(settings).is_some(),
-            circumstances,
+            provenance,
             ..RunOptions::default()
         })
     }

@@ -113,7 +113,7 @@ impl Arguments {
             Some(recording) => {
                 self.given.refuse_void(Decider::Recording, &settings.keys()).map_err(Failure::call)?;
                 let (plan, mut options) = RecordedRun::restore(recording)?;
-                options.circumstances.operator = self.run.operator();
+                options.provenance.operator = self.run.operator();
                 let require_hardware = self.run.requires_hardware(settings);
                 (plan, RunOptions { require_hardware, stop: self.run.board.stop(settings)?, ..options })
             }

@@ -71,7 +71,7 @@ pub(super) fn conclude(
         lacks: Vec::new(),
         link: link(findings.link, &findings.tally),
         tables: tables(plan),
-        run: run(plan, &options.circumstances, begun),
+        run: run(plan, &options.provenance, begun),
     };
     Finished { report, evidence }
 }
@@ -83,18 +83,18 @@ fn coverage(plan: &Plan, findings: &Findings) -> Option<CoverageReport> {
     faults.whole(plan, build)
 }
 
-fn run(plan: &Plan, circumstances: &Provenance, Begun { at, since }: Begun) -> RunReport {
+fn run(plan: &Plan, provenance: &Provenance, Begun { at, since }: Begun) -> RunReport {
     RunReport {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         commit: crate::COMMIT.to_owned(),
-        arguments: circumstances.arguments.clone(),
+        arguments: provenance.arguments.clone(),
         seed: plan.seed,
         started: format!("{at:.0}"),
         ended: format!("{:.0}", Timestamp::now()),
         seconds: since.elapsed().as_secs_f64(),
         host: host_name(),
-        operator: circumstances.operator.clone(),
-        files: circumstances.files.clone(),
+        operator: provenance.operator.clone(),
+        files: provenance.files.clone(),
     }
 }
 

@@ -92,7 +92,7 @@ pub struct Provenance {
     /// Files that were read.
     pub files: Vec<FileHash>,
     /// Numbers drawn for this run; a replay has those of the recorded one.
-    pub draws: SessionIds,
+    pub session_ids: SessionIds,
     /// Who tests, if a name is given.
     pub operator: Option<String>,
 }
@@ -156,7 +156,7 @@ fn open_options(options: &RunOptions) -> OpenOptions {
         counts: options.counts,
         retry_limit: options.retry_limit,
         stop: options.stop.clone().link_limit(options.timeout),
-        ..options.circumstances.draws.into()
+        ..options.provenance.session_ids.into()
     }
 }
 

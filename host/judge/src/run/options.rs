@@ -35,7 +35,7 @@ pub struct RunOptions {
     /// Also return frames that are equal, for pictures of them. The diagnosis has them in any case.
     pub keep_equal: bool,
     /// What the report says about the run besides its findings.
-    pub circumstances: Provenance,
+    pub provenance: Provenance,
 }
 
 impl RunOptions {
@@ -56,7 +56,7 @@ impl Default for RunOptions {
             require_hardware: false,
             evidence_bytes: Self::EVIDENCE_BYTES,
             keep_equal: false,
-            circumstances: Provenance::default(),
+            provenance: Provenance::default(),
         }
     }
 }

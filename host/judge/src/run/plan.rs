@@ -154,7 +154,7 @@ pub struct Plan {
     /// End with the first frame that differs.
     pub fail_fast: bool,
     /// The seed of noise, gaps, the link test, the rules and the frames that the board makes itself. The session's
-    /// numbers do not depend on it: they are [`Provenance::draws`](super::Provenance::draws).
+    /// numbers do not depend on it: they are [`Provenance::session_ids`](super::Provenance::session_ids).
     pub seed: u64,
 }
 

@@ -21,7 +21,8 @@ use crate::tables::{ContentError, TableFile};
 pub struct RecordedRun {
     version: String,
     arguments: Vec<String>,
-    draws: SessionIds,
+    #[serde(rename = "draws")]
+    session_ids: SessionIds,
     tables: String,
     tables_source: String,
     rows_outside_circle: Option<usize>,
@@ -108,8 +109,8 @@ impl RecordedRun {
         let file = TableFile { tables: plan.tables.clone(), kernel: plan.kernel.clone(), about: None };
         Self {
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            arguments: options.circumstances.arguments.clone(),
-            draws: options.circumstances.draws,
+            arguments: options.provenance.arguments.clone(),
+            session_ids: options.provenance.session_ids,
             tables: file.to_json(),
             tables_source: plan.tables_source.clone(),
             rows_outside_circle: plan.rows_outside_circle,
@@ -165,7 +166,11 @@ impl RecordedRun {
             take_over: run.take_over,
             counts: run.counts,
             keep_equal: true,
-            circumstances: Provenance { arguments: run.arguments, draws: run.draws, ..Provenance::default() },
+            provenance: Provenance {
+                arguments: run.arguments,
+                session_ids: run.session_ids,
+                ..Provenance::default()
+            },
             ..RunOptions::default()
         };
         Ok((plan, options))

@@ -13,7 +13,7 @@ use super::in_turn::{InTurn, NotStarted};
 use super::known::{Known, KnownOfLanes};
 use super::news::{LaneState, News};
 use super::unsent;
-use super::{Input, LaneReport, LiveState, in_time};
+use super::{Input, LaneEvent, LiveState, in_time};
 use crate::clock;
 use crate::floor::{Accepted, Effect, Event, Floor, Owes, ScanError, ScanOutcome, Shown, Word};
 use crate::labgrid;
@@ -109,7 +109,7 @@ impl AtWork {
         }
         labgrid::wait_until_left(self.shared.settings.lanes.iter().map(|lane| &lane.board));
         while let Ok(input) = inbox.try_recv() {
-            if let Input::Heard { lane, heard: heard @ LaneReport::Hook { .. } } = input {
+            if let Input::Heard { lane, heard: heard @ LaneEvent::Hook { .. } } = input {
                 self.heard(lane, heard);
             }
         }
@@ -235,20 +235,20 @@ impl AtWork {
         }
     }
 
-    fn heard(&mut self, lane: usize, heard: LaneReport) {
+    fn heard(&mut self, lane: usize, heard: LaneEvent) {
         let name = || self.floor.lanes().get(lane).map_or_else(String::new, |lane| lane.name().to_owned());
         match heard {
-            LaneReport::Happened(event) => {
+            LaneEvent::Happened(event) => {
                 // A verdict is published together with what the lane owes after it.
                 if matches!(event, Event::Ended(_)) {
                     self.check(lane);
                 }
                 self.happened(lane, event);
             }
-            LaneReport::Doing { run, what, rows } => {
+            LaneEvent::Doing { run, what, rows } => {
                 self.tell(&News::Doing { lane: name(), run, what, rows });
             }
-            LaneReport::Hook { run, said } => self.tell(&News::Hook { lane: name(), run, said }),
+            LaneEvent::Hook { run, said } => self.tell(&News::Hook { lane: name(), run, said }),
         }
     }
 
@@ -335,7 +335,7 @@ impl AtWork {
             Err(NotStarted::Behind(verdicts)) => Saying::HooksBehind { verdicts },
             Err(NotStarted::NoThread(error)) => Saying::NoThread { error: error.to_string() },
         };
-        self.heard(lane, LaneReport::Hook { run, said: why.into() });
+        self.heard(lane, LaneEvent::Hook { run, said: why.into() });
     }
 
     fn begin(&mut self, lane: usize, accepted: Accepted) -> std::io::Result<JoinHandle<()>> {

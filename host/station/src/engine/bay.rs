@@ -14,7 +14,7 @@ use halfrow::verdict::StoppedBy;
 use super::figures::Counter;
 use super::hooks;
 use super::logged::LoggedOfLanes;
-use super::{Input, LaneReport};
+use super::{Input, LaneEvent};
 use crate::floor::{Accepted, Event, Shown};
 use crate::guard::guarded;
 use crate::lane::Message;
@@ -56,7 +56,7 @@ impl Shared {
         }
     }
 
-    fn tell(&self, lane: usize, heard: LaneReport) {
+    fn tell(&self, lane: usize, heard: LaneEvent) {
         // An engine that has ended saw all runs end first.
         let _ = self.inbox.send(Input::Heard { lane, heard });
     }
@@ -76,7 +76,7 @@ pub(super) fn begin(
     thread::Builder::new().name(format!("run in lane {lane}")).spawn(move || {
         let run = || carried_out(&shared, lane, &accepted, stop);
         let event = guarded(run).unwrap_or_else(|fault| unsaved(&fault));
-        shared.tell(lane, LaneReport::Happened(event));
+        shared.tell(lane, LaneEvent::Happened(event));
     })
 }
 
@@ -118,7 +118,7 @@ pub(super) fn recover(shared: &Arc<Shared>, lane: usize, run: String) -> std::io
             Ok(saved) => at_plant(&shared, saved, Duration::ZERO),
             Err(error) => unsaved(&error),
         });
-        shared.tell(lane, LaneReport::Happened(event.unwrap_or_else(|fault| unsaved(&fault))));
+        shared.tell(lane, LaneEvent::Happened(event.unwrap_or_else(|fault| unsaved(&fault))));
     })
 }
 
@@ -131,7 +131,7 @@ pub(super) fn hook(shared: &Shared, lane: usize, shown: &Shown) {
             Ok(Err(error)) => Said::of(&error),
             Err(fault) => Said::of(&fault),
         };
-        shared.tell(lane, LaneReport::Hook { run: shown.run.clone(), said });
+        shared.tell(lane, LaneEvent::Hook { run: shown.run.clone(), said });
     }
 }
 
@@ -194,7 +194,7 @@ impl Watch for RunWatch<'_> {
         let heard = match stage {
             Stage::Begun(run) => {
                 self.run.clone_from(&run.id);
-                LaneReport::Happened(Event::Begun { run: run.id.clone() })
+                LaneEvent::Happened(Event::Begun { run: run.id.clone() })
             }
             Stage::Saving { was_killed, is_stuck } => {
                 self.shared.figures.ended(&self.run);
@@ -203,12 +203,12 @@ impl Watch for RunWatch<'_> {
                 }
                 if is_stuck {
                     // Whatever becomes of the result.
-                    self.shared.tell(self.lane, LaneReport::Happened(Event::Stuck));
+                    self.shared.tell(self.lane, LaneEvent::Happened(Event::Stuck));
                 }
-                LaneReport::Happened(Event::Saving)
+                LaneEvent::Happened(Event::Saving)
             }
             Stage::Told(message) => match doing(message) {
-                Some((what, rows)) => LaneReport::Doing { run: self.run.clone(), what, rows },
+                Some((what, rows)) => LaneEvent::Doing { run: self.run.clone(), what, rows },
                 None => return,
             },
         };

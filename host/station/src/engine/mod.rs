@@ -50,13 +50,13 @@ enum Input {
     Scan { number: u64, text: String, operator: String },
     Label { number: u64, lane: Option<usize>, label: String, operator: String, until: Option<Instant> },
     Act { number: u64, lane: usize, act: Act, operator: String, until: Option<Instant> },
-    Heard { lane: usize, heard: LaneReport },
+    Heard { lane: usize, heard: LaneEvent },
     Close(Option<StoppedBy>),
 }
 
 /// What a lane reports.
 #[derive(Debug)]
-enum LaneReport {
+enum LaneEvent {
     Happened(Event),
     Doing { run: String, what: String, rows: Option<(u64, u64)> },
     Hook { run: String, said: Said },

@@ -1,5 +1,5 @@
-//! Copies of a station's folder: the index as of one moment, every piece of evidence that it names, the records that
-//! it does not name, and the plans of the plant.
+//! Copies of a station's folder: the index as of one moment, the evidence that it names, as far as it can be read,
+//! the records that it does not name, and the plans of the plant.
 
 use std::collections::BTreeSet;
 use std::fs::{self, DirBuilder, File, Permissions};
@@ -73,7 +73,7 @@ pub enum CopyError {
 }
 
 /// Copies the station in `from` to the new folder `to`. Runs may go on meanwhile; the copy is of the moment at which
-/// it began. It has whatever faults the station has, which [`faults`] finds; evidence that is damaged is missing in it.
+/// it began. It has whatever faults the station has, which [`faults`] finds; evidence that is damaged, or cannot be read, is missing in it.
 ///
 /// # Errors
 /// [`CopyError`]

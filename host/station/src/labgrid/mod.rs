@@ -53,7 +53,7 @@ pub enum LaneBoard {
 }
 
 impl LaneBoard {
-    /// Whether both are the same board, as far as their names and what is plugged in say.
+    /// Whether both are the same board, as far as names of one kind and what is plugged in say.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         match (self, other) {

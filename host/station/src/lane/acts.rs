@@ -248,7 +248,7 @@ impl RunContext<'_> {
     }
 
     fn run_options(&self, within: Duration) -> RunOptions {
-        let circumstances = Provenance {
+        let provenance = Provenance {
             arguments: std::env::args_os().map(|one| one.to_string_lossy().into_owned()).collect(),
             files: self.plan.files.clone(),
             // The record has the operator.
@@ -258,7 +258,7 @@ impl RunContext<'_> {
             timeout: Some(within),
             stop: self.stop.clone().wall_limit(Some(within)),
             require_hardware: self.plan.production.require_hardware && !self.is_mock,
-            circumstances,
+            provenance,
             ..RunOptions::default()
         }
     }

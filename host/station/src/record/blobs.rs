@@ -182,6 +182,8 @@ fn dated(path: &Path) -> io::Result<()> {
 /// evidence could be saved.
 fn replace(path: &Path, bytes: &[u8]) -> Result<(), BlobError> {
     tracing::warn!("{} was damaged, or is not the station's own; it is written anew", path.display());
+    // What replaces a file gets its mode, which may be why it could not be read.
+    let _ = fs::remove_file(path);
     Ok(Aside::written(path, true, |file| file.write_all(bytes)).and_then(Aside::rename_into_place)?)
 }
 

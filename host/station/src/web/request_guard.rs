@@ -21,7 +21,7 @@ use crate::said::Said;
 
 /// How long an answer may take to begin.
 const PATIENCE: Duration = Duration::from_secs(30);
-/// How long a form may take to arrive, because its connection takes up a place meanwhile.
+/// How long a form may take to arrive, because its connection takes up a slot meanwhile.
 const FORM: Duration = Duration::from_secs(10);
 /// The most bytes of a form.
 const MOST: usize = 64 * 1024;

@@ -9,7 +9,7 @@ use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 use tokio::net::TcpStream;
 use tokio::time::{Sleep, sleep};
 
-/// How long the other end may take nothing. A computer that was switched off holds no place for longer.
+/// How long the other end may take nothing. A computer that was switched off holds no slot for longer.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// A connection that breaks when nothing can be written for [`PATIENCE`].

@@ -173,7 +173,7 @@ impl Scanned {
     /// Whether its lane was chosen too long ago.
     fn is_over(&self) -> bool {
         let is_as_made = self.chosen == self.lane;
-        self.is_over || is_as_made && clock::now_ms() - self.made_ms > CHOSEN.as_millis() as i64
+        self.is_over || is_as_made && clock::now_ms().saturating_sub(self.made_ms) > CHOSEN.as_millis() as i64
     }
 
     fn answer(&self, lane: Option<String>, said: Result<String, String>, armed: Option<String>) -> ScanReply {

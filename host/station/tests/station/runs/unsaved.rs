@@ -1,6 +1,8 @@
 //! A result that cannot be saved does not count.
 
 use std::collections::BTreeMap;
+use std::fs::Permissions;
+use std::os::unix::fs::PermissionsExt as _;
 use std::process::Command;
 
 use super::bench::{Did, PLAN, Station, program};
@@ -137,12 +139,15 @@ fn evidence_that_was_damaged_is_written_anew() {
     let named = station.query("SELECT sha256 FROM attachment WHERE name LIKE '%.png'");
     let path = station.store().blobs().path(&named[0]);
     std::fs::write(&path, "half of it").unwrap();
+    std::fs::set_permissions(&path, Permissions::from_mode(0o000)).unwrap();
     assert_eq!(station.check().code, Some(3));
     let again = fail("CAT00002");
     assert_eq!(again.code, Some(1), "{again:?}");
     let both = format!("SELECT count(*) FROM attachment WHERE sha256 = '{}'", named[0]);
     assert_eq!(station.query(&both), ["2"], "both name it");
     assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+    let mode = std::fs::metadata(&path).unwrap().permissions().mode();
+    assert_ne!(mode & 0o400, 0, "the station can read it");
 }
 
 /// What the lane kept of a FAIL stays in its spool when the system does not say what is there.
