@@ -208,7 +208,7 @@ impl Faults {
 
     /// Whether they were measured with what `plan` streams, on a board of this build.
     #[must_use]
-    pub fn are_of(&self, plan: &Plan, build: &str) -> bool {
+    pub(crate) fn are_of(&self, plan: &Plan, build: &str) -> bool {
         self.build == build && self.given.is_of(plan)
     }
 
@@ -237,7 +237,7 @@ impl Faults {
 
     /// How many of them a whole run finds, including those that no single part is known to find.
     #[must_use]
-    pub fn found_by_whole(&self) -> usize {
+    pub(crate) fn found_by_whole(&self) -> usize {
         self.groups.iter().filter(|(fault, _)| fault.whole).map(|(_, count)| count).sum()
     }
 
