@@ -26,12 +26,7 @@ impl OwnedPacket {
     /// Whether it is the request itself, sent under the header `sent`, and not an answer to it. The header tells: a board's
     /// window is ahead of the host's.
     pub(super) fn is_echo_of(&self, sent: &Header, asking: &Outgoing<'_>) -> bool {
-        let asked = || {
-            let mut payload = Vec::new();
-            asking.write(&mut payload);
-            payload
-        };
-        self.header == *sent && self.payload == asked()
+        self.header == *sent && self.payload == asking.payload()
     }
 }
 

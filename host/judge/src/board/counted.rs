@@ -80,12 +80,6 @@ impl Counted {
 }
 
 impl Conversation {
-    /// Whether every packet sent since the board's counters were cleared reached it whole, and once.
-    pub(super) fn had_each_packet_once(&self, status: &Status) -> bool {
-        let sent = self.tally.packets_out.saturating_sub(self.counted.from.packets_out);
-        u64::from(status.packets) == sent && self.counted.is_calm()
-    }
-
     /// The board's counters; `clear` clears them.
     pub(super) fn status(&mut self, clear: bool, step: Step) -> Result<Status, BoardError> {
         let retries = self.tally.retries;

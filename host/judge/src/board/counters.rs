@@ -57,7 +57,7 @@ impl Board {
     /// Whether every packet sent since the board's counters were cleared reached it whole, and once.
     #[must_use]
     pub(crate) fn had_each_packet_once(&self, status: &Status) -> bool {
-        self.conversation.had_each_packet_once(status)
+        u64::from(status.packets) == self.packets_since_clear() && self.conversation.counted.is_calm()
     }
 
     /// Whether no packet was repeated since the board's counters were cleared.

@@ -33,6 +33,12 @@ impl Outgoing<'_> {
         }
     }
 
+    pub(super) fn payload(&self) -> Vec<u8> {
+        let mut payload = Vec::new();
+        self.write(&mut payload);
+        payload
+    }
+
     /// Whether a second copy, arriving late and after other requests, may change the state of the board.
     fn changes(&self) -> bool {
         match self {

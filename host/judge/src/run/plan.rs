@@ -172,6 +172,11 @@ pub struct Segment {
 }
 
 impl Segment {
+    /// The rows of all its frames.
+    pub(super) fn rows(&self) -> usize {
+        self.frames.len() * self.geometry.height()
+    }
+
     /// Whether its centre or depth is varied.
     pub(super) fn is_varied(&self) -> bool {
         self.commit.is_some_and(|(generation, _)| generation >= VARIED)

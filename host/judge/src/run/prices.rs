@@ -180,7 +180,7 @@ impl<'a> Prices<'a> {
     }
 
     fn segment(&self, segment: &Segment) -> f64 {
-        let rows = segment.frames.len() * segment.geometry.height();
+        let rows = segment.rows();
         let width = segment.geometry.width();
         let between = match segment.timing {
             Timing::Least => self.capabilities.least_blanking.into(),

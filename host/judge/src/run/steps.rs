@@ -63,9 +63,7 @@ pub(super) fn judge_the_judge(findings: &mut Findings) -> Result<(), End> {
 
 /// Nothing of `schedule` was left out if `judged` samples were compared.
 fn all_judged(schedule: &[Segment], judged: usize) -> Result<(), End> {
-    let samples =
-        |segment: &Segment| segment.frames.len() * segment.geometry.width() * segment.geometry.height();
-    let planned = schedule.iter().map(samples).sum();
+    let planned = schedule.iter().map(|segment| segment.rows() * segment.geometry.width()).sum();
     if judged == planned {
         return Ok(());
     }
@@ -115,7 +113,7 @@ impl Run<'_> {
         schedule: &'s [Segment],
         source: &Receiver<Result<Prepared, PrepareError>>,
     ) -> Result<Option<&'s Segment>, End> {
-        let rows = schedule.iter().map(|segment| segment.frames.len() * segment.geometry.height());
+        let rows = schedule.iter().map(Segment::rows);
         self.progress.rows_expected(rows.sum::<usize>() as u64);
         let mut last = None;
         for segment in schedule {

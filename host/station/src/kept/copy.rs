@@ -73,7 +73,8 @@ pub enum CopyError {
 }
 
 /// Copies the station in `from` to the new folder `to`. Runs may go on meanwhile; the copy is of the moment at which
-/// it began. It has whatever faults the station has, which [`faults`] finds; evidence that is damaged, or cannot be read, is missing in it.
+/// it began. It has whatever faults the station has, which [`faults`] finds; evidence that is damaged, or cannot be read, is
+/// missing in it.
 ///
 /// # Errors
 /// [`CopyError`]

@@ -18,11 +18,7 @@ impl Conversation {
             return error;
         }
         match self.leaves_only(asking) {
-            Ok(Some(had)) => {
-                let mut payload = Vec::new();
-                asking.write(&mut payload);
-                BoardError::Unanswered { kind, bytes: payload.len(), attempts, had }
-            }
+            Ok(Some(had)) => BoardError::Unanswered { kind, bytes: asking.payload().len(), attempts, had },
             Err(why @ (BoardError::Stopped(_) | BoardError::Link { .. })) => why,
             Ok(None) | Err(_) => error,
         }
