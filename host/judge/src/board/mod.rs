@@ -41,7 +41,7 @@ pub(crate) use counted::Miscount;
 pub use error::{BoardError, OpenFailed};
 pub(crate) use legal::{LEAST_ENTRIES, MAX_LATENCY, grids, possible};
 pub use received::{Had, Received};
-pub(crate) use response::Response;
+pub(crate) use response::{CameAgain, Response};
 pub(crate) use rows::{Given, Unjudged, Unreturned};
 pub use rows::{NumberedFrame, ReturnedRow, RowTraffic};
 pub(crate) use sent::Sent;

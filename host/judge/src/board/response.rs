@@ -32,7 +32,7 @@ impl Response {
 }
 
 /// A row that came again.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct CameAgain {
     /// How often it was sent before, by the board's count.
     pub(crate) repeats: u16,

@@ -9,7 +9,7 @@ use halfrow_protocol::samples::pack;
 use super::compared::Compared;
 use super::counts::equal;
 use super::{FIRST_FACTOR, Rules, longer, of_board, of_rows, other_row, payload};
-use crate::board::BoardError;
+use crate::board::{BoardError, CameAgain};
 use crate::reference::correct;
 use crate::result::{CheckName, Counter, Finding, Rule};
 use crate::run::Generation;
@@ -277,27 +277,30 @@ impl Rules<'_, '_> {
         self.configure(2)?;
         let made = self.small.made(0, 2, GENERATION);
         let frame = self.small.frame(FRAME, &made.tables).frame;
-        let right = correct(&made.tables, &made.kernel, &frame).ok();
+        let corrected = correct(&made.tables, &made.kernel, &frame).ok();
         let compared = Compared::default().with(&self.small, [FRAME], &made);
         self.give(0);
         self.give(1);
         let (first, second) = (self.place(0), self.place(1));
         let (row, after) = ((&first, frame.row(0)), (&second, frame.row(1)));
         let retries = self.run.board.tally().retries;
-        let mut at_first = None;
+        let mut right = None;
         for repeats in 0..=AGAIN {
-            let came = self
-                .run
-                .board
-                .again(row, Some(after), repeats)
-                .map_err(|error| of_rows(Rule::Again, error))?;
-            let is_right = right.as_ref().is_none_or(|right| right.row(0) == came.samples);
-            let is_counted = came.repeats == repeats || !self.is_calm(retries)?;
-            let beside = (came.clocks, came.entered.filter(|_| self.small.names_entered));
-            let is_same = *at_first.get_or_insert(beside) == beside;
-            if !is_right || !is_counted || !is_same || came.generation != GENERATION {
-                let counted = if is_counted { came.repeats } else { repeats };
-                let differs = compared.differing_again(&came.row(&first), counted);
+            let came = self.run.board.again(row, Some(after), repeats);
+            let mut came = came.map_err(|error| of_rows(Rule::Again, error))?;
+            came.entered = came.entered.filter(|_| self.small.names_entered);
+            // Over a poor link it may have been asked for more often.
+            if came.repeats != repeats && !self.is_calm(retries)? {
+                came.repeats = repeats;
+            }
+            let right = right.get_or_insert_with(|| CameAgain {
+                generation: GENERATION,
+                samples: corrected.as_ref().map_or(&*came.samples, |right| right.row(0)).to_vec(),
+                ..came.clone()
+            });
+            right.repeats = repeats;
+            if came != *right {
+                let differs = compared.differing_again(&came.row(&first), repeats);
                 return Err(other_row(Rule::Again, 0, FRAME, differs));
             }
         }
