@@ -2,6 +2,7 @@
 
 mod answered;
 mod damaged;
+mod retry;
 mod silence;
 mod unclosed;
 

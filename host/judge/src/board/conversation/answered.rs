@@ -6,6 +6,7 @@ use halfrow_protocol::message::{Reply, Request};
 use halfrow_protocol::{Kind, Packet};
 
 use super::Conversation;
+use super::retry::{Next, Retry};
 use crate::board::BoardError;
 use crate::board::answer::{OwnedPacket, take_reply};
 use crate::board::deadlines::Step;
@@ -39,40 +40,56 @@ impl Conversation {
         let (kind, sequence, begun) = (asking.kind(), self.next_sequence(), self.now());
         let attempts = step.deadline().attempts;
         self.session.asked.note_request(asking, sequence, begun);
-        let mut attempt = 0;
-        while attempt < attempts {
-            // While something waits to be taken by the link, the board cannot have the request.
-            let is_sent = attempt == 0 || self.queued() == 0;
-            if is_sent && attempt > 0 {
-                self.note_unclosed()?;
-                tracing::info!("{kind} was not answered; asking again");
-                self.session.repeated_changes += u64::from(self.session.asked.note_repeat());
-                self.count_retry()?;
-            }
-            if is_sent {
-                self.queue_packet(kind, sequence, |payload| asking.write(payload));
-            }
-            // The reply may be as long as the longest packet, or follow one of an earlier session.
-            let bytes = self.outgoing.len() + halfrow_protocol::MAX_PACKET;
-            let mut deadline = self.waited + self.wait_for(step, attempt, bytes);
-            while let Some(wait) = deadline.checked_sub(self.waited).filter(|wait| !wait.is_zero()) {
-                let late = self.tally.late;
-                if let Some(answer) = self.answer_within(wait, asking, sequence, &accept)? {
-                    self.note_duration(attempt, self.since(begun));
-                    if attempt == 0 {
-                        self.unclosed = 0;
+        let (mut retry, mut bytes) = (Retry::new(attempts), 0);
+        loop {
+            match retry.next(self.waited) {
+                Next::Send => {
+                    // While something waits to be taken by the link, the board cannot have the request.
+                    if retry.attempt() == 0 || self.queued() == 0 {
+                        self.send(asking, sequence, retry.attempt())?;
                     }
-                    self.tally.answered += u64::from(answer.header.kind == kind.code());
-                    return Ok(answer);
+                    // The reply may be as long as the longest packet, or follow one of an earlier session.
+                    bytes = self.queued() + halfrow_protocol::MAX_PACKET;
                 }
-                if self.tally.late > late {
-                    // An earlier request is still being answered, and this one waits in the queue after it.
-                    (attempt, deadline) = (0, self.waited + self.wait_for(step, 0, bytes));
+                Next::Wait(wait) => {
+                    let late = self.tally.late;
+                    if let Some(answer) = self.answer_within(wait, asking, sequence, &accept)? {
+                        self.note_answer(&answer, kind, retry.attempt(), begun);
+                        return Ok(answer);
+                    }
+                    if self.tally.late == late {
+                        continue;
+                    }
+                    retry.begin_anew();
+                }
+                Next::GiveUp => {
+                    let (waited, heard) = (self.since(begun), self.heard());
+                    return Err(BoardError::NoAnswer { kind, attempts, waited, heard });
                 }
             }
-            attempt += 1;
+            retry.wait_until(self.waited + self.wait_for(step, retry.attempt(), bytes));
         }
-        Err(BoardError::NoAnswer { kind, attempts, waited: self.since(begun), heard: self.heard() })
+    }
+
+    /// Sends `asking`, which was sent `again` times before.
+    fn send(&mut self, asking: &Outgoing<'_>, sequence: u16, again: u32) -> Result<(), BoardError> {
+        if again > 0 {
+            self.note_unclosed()?;
+            tracing::info!("{} was not answered; asking again", asking.kind());
+            self.session.repeated_changes += u64::from(self.session.asked.note_repeat());
+            self.count_retry()?;
+        }
+        self.queue_packet(asking.kind(), sequence, |payload| asking.write(payload));
+        Ok(())
+    }
+
+    /// Notes the answer to a request of `kind` that was sent at `begun` and tried `again` times more.
+    fn note_answer(&mut self, answer: &OwnedPacket, kind: Kind, again: u32, begun: Duration) {
+        self.note_duration(again, self.since(begun));
+        if again == 0 {
+            self.unclosed = 0;
+        }
+        self.tally.answered += u64::from(answer.header.kind == kind.code());
     }
 
     /// Moves bytes once, and returns the answer if it is among them.
