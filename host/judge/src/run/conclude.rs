@@ -4,7 +4,8 @@ use std::time::Instant;
 
 use jiff::Timestamp;
 
-use super::findings::{End, Findings};
+use super::end::End;
+use super::findings::Findings;
 use super::observations::Observations;
 use super::row_judge::STREET;
 use super::{Finished, Plan, Provenance, RunOptions};
@@ -12,8 +13,8 @@ use crate::board::Tally;
 use crate::coverage::Faults;
 use crate::frames::street;
 use crate::result::{
-    Check, CheckName, CoverageReport, Finding, FrameReport, FrameTotals, LinkReport, Outcome, Problem,
-    Report, RunReport, Schema, SoakReport, StreetReport, Suspect, TablesReport, wording,
+    CheckName, CoverageReport, Finding, FrameReport, FrameTotals, LinkReport, NotExercised, Problem, Report,
+    RunReport, Schema, SoakReport, StreetReport, Suspect, TablesReport, wording,
 };
 use crate::verdict::Cause;
 
@@ -37,32 +38,35 @@ struct Ending {
     cause: Cause,
     finding: Finding,
     suspects: Vec<Suspect>,
+    /// What was not exercised of a board that is right.
+    not_exercised: Vec<NotExercised>,
 }
 
 pub(super) fn conclude(
     plan: &Plan,
     mut findings: Findings,
-    end: Option<End>,
+    seen: Observations,
+    ended: Result<Vec<NotExercised>, End>,
     options: &RunOptions,
     begun: Begun,
 ) -> Finished {
-    let ending = ending(&mut findings, end);
-    skip_the_rest(&mut findings.checks, plan);
-    let street = street(plan, &findings.look.seen);
-    let is_pass = ending.cause == Cause::Equal;
-    let coverage = if is_pass { coverage(plan, &findings) } else { None };
-    let not_exercised = if is_pass { findings.look.not_exercised } else { Vec::new() };
-    let (evidence, evidence_report) = findings.look.seen.evidence.finish();
+    if let Err(end) = &ended {
+        findings.checks.ended(end);
+    }
+    let Ending { cause, finding, suspects, not_exercised } = ending(ended, &findings, &seen);
+    let street = street(plan, &seen);
+    let coverage = if cause == Cause::Equal { coverage(plan, &findings) } else { None };
+    let (evidence, evidence_report) = seen.evidence.finish();
     let report = Report {
         schema: Schema,
-        cause: ending.cause,
+        cause,
         board: findings.board,
-        finding: ending.finding,
-        suspects: ending.suspects,
-        checks: findings.checks,
+        finding,
+        suspects,
+        checks: findings.checks.all(|name| left_out(name, plan)),
         not_exercised,
-        frames: findings.look.seen.frames,
-        latency: findings.look.seen.latency,
+        frames: seen.frames,
+        latency: seen.latency,
         street,
         within: findings.within,
         coverage,
@@ -113,18 +117,23 @@ fn link(known: LinkReport, tally: &Tally) -> LinkReport {
     }
 }
 
-fn ending(findings: &mut Findings, end: Option<End>) -> Ending {
-    if let Some(end) = &end {
-        findings.note_end(end);
-    }
-    match end {
-        None if findings.look.seen.samples() == 0 => {
-            Ending { cause: Cause::NothingJudged, finding: Finding::NothingJudged {}, suspects: Vec::new() }
+fn ending(ended: Result<Vec<NotExercised>, End>, findings: &Findings, seen: &Observations) -> Ending {
+    let nothing = Ending {
+        cause: Cause::NothingJudged,
+        finding: Finding::NothingJudged {},
+        suspects: Vec::new(),
+        not_exercised: Vec::new(),
+    };
+    match ended {
+        Ok(_) if seen.samples() == 0 => nothing,
+        Ok(not_exercised) => {
+            Ending { cause: Cause::Equal, finding: pass(findings, seen), not_exercised, ..nothing }
         }
-        None => Ending { cause: Cause::Equal, finding: pass(findings), suspects: Vec::new() },
-        Some(End::Failed { finding, suspects, .. }) => Ending { cause: Cause::Different, finding, suspects },
-        Some(End::Error { cause, finding, .. }) => {
-            Ending { cause, finding: broken_off(finding, &findings.look.seen), suspects: Vec::new() }
+        Err(End::Failed { finding, suspects, .. }) => {
+            Ending { cause: Cause::Different, finding, suspects, ..nothing }
+        }
+        Err(End::Error { cause, finding, .. }) => {
+            Ending { cause, finding: broken_off(finding, seen), ..nothing }
         }
     }
 }
@@ -141,8 +150,7 @@ fn broken_off(why: Finding, seen: &Observations) -> Finding {
     Finding::Problem(Box::new(Problem { message, ..*problem }))
 }
 
-fn pass(findings: &Findings) -> Finding {
-    let seen = &findings.look.seen;
+fn pass(findings: &Findings, seen: &Observations) -> Finding {
     Finding::AllRight {
         frames: seen.frames.len(),
         samples: seen.samples(),
@@ -152,17 +160,12 @@ fn pass(findings: &Findings) -> Finding {
     }
 }
 
-fn skip_the_rest(checks: &mut Vec<Check>, plan: &Plan) {
-    for name in CheckName::ALL {
-        if !checks.iter().any(|check| check.name == name) {
-            let finding = match name {
-                CheckName::Rules if !plan.tries_rules() => Finding::RulesLeftOut {},
-                _ => Finding::NotReached {},
-            };
-            checks.push(Check { name, outcome: Outcome::Skipped, finding, seconds: 0.0 });
-        }
+/// Why a check was not made.
+fn left_out(name: CheckName, plan: &Plan) -> Finding {
+    match name {
+        CheckName::Rules if !plan.tries_rules() => Finding::RulesLeftOut {},
+        _ => Finding::NotReached {},
     }
-    checks.sort_by_key(|check| check.name);
 }
 
 /// The edges of the built-in street, when it was streamed whole, came back whole, and was kept.

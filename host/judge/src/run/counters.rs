@@ -1,64 +1,67 @@
 //! The board's counters, compared with what the host saw.
 
-use super::findings::End;
+use super::end::End;
+use super::findings::Attempt;
 use super::observations::Observations;
-use super::steps::Run;
-use crate::board::Status;
+use crate::board::{Board, Status};
 use crate::result::{CheckName, Counter, Finding, LatencyReport};
 
 /// What a board counts that a link can have caused as well.
 pub(super) const MOVED_BY_LINKS: [Counter; 4] =
     [Counter::RowsRepeated, Counter::RowsUnneeded, Counter::Refusals, Counter::ForeignPackets];
 
-impl Run<'_> {
-    /// Compares the board's counters with what the host saw. Some must agree over any link, however poor; the others are
-    /// compared only where nothing was lost or late.
-    pub(super) fn counters(&self, status: &Status) -> Result<Finding, End> {
-        let (seen, rows) = (&self.findings.look.seen, self.findings.look.rows_counted);
-        let expected = u32::try_from(rows).unwrap_or(u32::MAX);
-        let generation = seen.frames.last().map_or(0, |frame| frame.generation.into());
-        let next_row = self.board.acknowledged();
-        let repeated = status.rows_repeated.max(self.findings.look.repeats_counted);
-        let is_calm = self.is_calm(status);
-        let over_any_link = [
-            (Counter::RowsIn, expected),
-            (Counter::RowsOut, expected),
-            (Counter::SamplesOver, 0),
-            (Counter::NextRowIn, next_row),
-            (Counter::NextRowOut, next_row),
-            (Counter::Generation, generation),
-            (Counter::RowsRepeated, repeated),
-        ];
-        let if_calm = MOVED_BY_LINKS.map(|counter| (counter, 0)).into_iter().filter(|_| is_calm);
-        let mut counts = over_any_link.into_iter().chain(if_calm);
-        if let Some((counter, right)) = counts.find(|(counter, right)| counter.in_status(status) != *right) {
-            let counted = counter.in_status(status);
-            return Err(miscounted(Finding::CounterWrong { counter, counted, right, rule: None }));
-        }
-        packets_counted(status, self.board.answered_since_clear())?;
-        rows_numbered(status, self.board.packets_numbered())?;
-        latencies_counted(status, seen)?;
-        if let Some(finding) = &seen.wrong_pauses {
-            return Err(miscounted(finding.clone()));
-        }
-        let damaged_unseen = if self.board.tally().retries == 0 { status.damaged() } else { 0 };
-        Ok(Finding::CountersRight { rows, damaged_unseen })
+/// Compares the board's counters with what the host saw and what the `attempt` let it count. Some must agree over any link,
+/// however poor; the others are compared only where nothing was lost or late.
+pub(super) fn counters(
+    board: &Board,
+    status: &Status,
+    seen: &Observations,
+    attempt: &Attempt,
+) -> Result<Finding, End> {
+    let rows = attempt.rows_counted;
+    let expected = u32::try_from(rows).unwrap_or(u32::MAX);
+    let generation = seen.frames.last().map_or(0, |frame| frame.generation.into());
+    let next_row = board.acknowledged();
+    let repeated = status.rows_repeated.max(attempt.repeats_counted);
+    let is_calm = is_calm(board, status);
+    let over_any_link = [
+        (Counter::RowsIn, expected),
+        (Counter::RowsOut, expected),
+        (Counter::SamplesOver, 0),
+        (Counter::NextRowIn, next_row),
+        (Counter::NextRowOut, next_row),
+        (Counter::Generation, generation),
+        (Counter::RowsRepeated, repeated),
+    ];
+    let if_calm = MOVED_BY_LINKS.map(|counter| (counter, 0)).into_iter().filter(|_| is_calm);
+    let mut counts = over_any_link.into_iter().chain(if_calm);
+    if let Some((counter, right)) = counts.find(|(counter, right)| counter.in_status(status) != *right) {
+        let counted = counter.in_status(status);
+        return Err(miscounted(Finding::CounterWrong { counter, counted, right, rule: None }));
     }
+    packets_counted(status, board.answered_since_clear())?;
+    rows_numbered(status, board.packets_numbered())?;
+    latencies_counted(status, seen)?;
+    if let Some(finding) = &seen.wrong_pauses {
+        return Err(miscounted(finding.clone()));
+    }
+    let damaged_unseen = if board.tally().retries == 0 { status.damaged() } else { 0 };
+    Ok(Finding::CountersRight { rows, damaged_unseen })
+}
 
-    /// Whether nothing was lost or late, as seen by the host and by the board.
-    fn is_calm(&self, status: &Status) -> bool {
-        self.saw_no_trouble() && status.damaged() == 0 && self.board.had_each_packet_once(status)
-    }
+/// Whether nothing was lost or late, as seen by the host and by the board.
+fn is_calm(board: &Board, status: &Status) -> bool {
+    saw_no_trouble(board) && status.damaged() == 0 && board.had_each_packet_once(status)
+}
 
-    fn saw_no_trouble(&self) -> bool {
-        let tally = self.board.tally();
-        tally.retries + tally.strays + tally.damaged_in == 0
-    }
+fn saw_no_trouble(board: &Board) -> bool {
+    let tally = board.tally();
+    tally.retries + tally.strays + tally.damaged_in == 0
+}
 
-    /// Whether some counters are not compared only because the board says that its link is poor, while the host saw no trouble.
-    pub(super) fn leaves_counters_out(&self, status: &Status) -> bool {
-        self.saw_no_trouble() && !self.is_calm(status)
-    }
+/// Whether some counters are not compared only because the board says that its link is poor, while the host saw no trouble.
+pub(super) fn leaves_counters_out(board: &Board, status: &Status) -> bool {
+    saw_no_trouble(board) && !is_calm(board, status)
 }
 
 /// Whether a board counts fewer packets than its other counters imply, which no link can cause.

@@ -5,8 +5,13 @@ use std::collections::BTreeSet;
 
 use halfrow_model::{Frame, NODES, RowFactor, Source, TAP_NAMES, TableSet};
 
+use super::findings::Findings;
+use super::observations::Observations;
 use super::plan::Generation;
-use crate::result::{Identity, NotExercised};
+use super::rules::MOST_FILLED;
+use super::steps::Run;
+use crate::board::{BoardNature, grids};
+use crate::result::{CheckName, Identity, NotExercised};
 
 /// The levels that bits have had: `ones` marks each bit that was ever 1, `zeros` each that was ever 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -53,12 +58,58 @@ impl SampleLevels {
     }
 }
 
+/// What bursts exercised of a board, and what they left.
+#[derive(Default)]
+pub(super) struct Exercised {
+    /// What was not exercised at the full pixel clock.
+    pub(super) left: Vec<NotExercised>,
+    /// The tables with which frames were made in corners.
+    pub(super) corners: Vec<Generation>,
+    /// The plan's generations with which whole frames were made.
+    pub(super) whole: Vec<u8>,
+}
+
+impl Run<'_> {
+    /// What the run did not exercise of the board, as far as that is known: it has `seen` frames, and made `bursts`.
+    pub(super) fn not_exercised(&self, seen: &Observations, bursts: Exercised) -> Vec<NotExercised> {
+        let Findings { board, checks, attempt, .. } = &*self.findings;
+        let Exercised { left, corners, whole } = bursts;
+        let used = self.generations.iter().filter_map(|generation| used_of(generation, seen, &whole));
+        let used: Vec<_> = used.collect();
+        let generations: Vec<_> = used.iter().chain(&corners).collect();
+        let identity = board.identity.as_ref();
+        let of_frames =
+            identity.map_or_else(Vec::new, |board| not_exercised(board, &generations, seen.levels));
+        let has_grid = generations.iter().any(|generation| generation.tables.shape().is_some());
+        let no_grid = identity.is_some() && grids(&self.board.capabilities).is_some() && !has_grid;
+        let untried = !checks.has_passed(CheckName::Rules);
+        let records = self.known_bursts().map_or(0, |bursts| u32::from(bursts.records));
+        let are_left = !untried && records > MOST_FILLED;
+        let is_physical = self.board.capabilities.nature == BoardNature::Hardware;
+        let others = [
+            untried.then_some(NotExercised::Rules {}),
+            are_left.then_some(NotExercised::FurtherRecords { filled: MOST_FILLED }),
+            no_grid.then_some(NotExercised::Grids {}),
+            attempt.came_back_unnumbered.then_some(NotExercised::SameBoard {}),
+            is_physical.then_some(NotExercised::CameraPins {}),
+            attempt.leaves_counters_out.then_some(NotExercised::CountersOfPoorLinks {}),
+        ];
+        of_frames.into_iter().chain(left).chain(others.into_iter().flatten()).collect()
+    }
+}
+
+/// The part of `generation` with which frames were made, if any were: whole ones, if it is among the `whole` ones.
+fn used_of(generation: &Generation, seen: &Observations, whole: &[u8]) -> Option<Generation> {
+    let height = generation.tables.geometry().height();
+    if whole.contains(&generation.number) {
+        return generation.upper(height);
+    }
+    let made = seen.frames.iter().filter(|frame| frame.generation == generation.number);
+    generation.upper(made.map(|frame| frame.first_rows.unwrap_or(height)).max()?)
+}
+
 /// What frames that were corrected with `generations` did not exercise of `board`.
-pub(super) fn not_exercised(
-    board: &Identity,
-    generations: &[&Generation],
-    samples: SampleLevels,
-) -> Vec<NotExercised> {
+fn not_exercised(board: &Identity, generations: &[&Generation], samples: SampleLevels) -> Vec<NotExercised> {
     if generations.is_empty() {
         return Vec::new();
     }

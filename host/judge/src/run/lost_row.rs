@@ -10,7 +10,7 @@ use halfrow_model::Geometry;
 use halfrow_protocol::MAX_PAYLOAD;
 use halfrow_protocol::message::RowPlace;
 
-use super::findings::End;
+use super::end::End;
 use super::plan::ScheduledFrame;
 use super::steps::Run;
 use crate::board::{BoardError, NumberedFrame, Status, Tally, Unjudged, Unreturned};
@@ -57,7 +57,7 @@ impl Run<'_> {
                     let swallowed = Finding::RowSwallowed { row: lost, frame: number, again: row };
                     let swallowed = End::failed(CheckName::Frames, swallowed);
                     let Some(late) = late.filter(|_| row == lost) else { return swallowed };
-                    self.findings.note_end(&swallowed);
+                    self.findings.checks.ended(&swallowed);
                     return End::failed(CheckName::Latency, late);
                 }
                 Ok(Replay::Complete) => {

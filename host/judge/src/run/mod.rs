@@ -18,8 +18,10 @@
 //! run within a time, and `conclude` and `finished` make the report.
 
 mod at_speed;
+mod checks;
 mod conclude;
 mod counters;
+mod end;
 mod entry;
 mod exercised;
 mod findings;
@@ -56,12 +58,14 @@ use tracing::error_span;
 use crate::board::OpenOptions;
 use crate::link::{Candidate, Link, kinds};
 use crate::progress::{Progress, Step};
-use crate::result::{CheckName, FileHash, Problem};
+use crate::result::{CheckName, FileHash, NotExercised, Problem};
 use crate::target::{BoardKind, Target};
 use crate::verdict::Cause;
 
 use conclude::Begun;
-use findings::{End, Findings};
+use end::End;
+use findings::Findings;
+use observations::Observations;
 use reconnect::Opener;
 pub(crate) use steps::NotAllJudged;
 use steps::Run;
@@ -127,7 +131,7 @@ pub fn not_begun(
     let kind = kinds::of(target).map_or(BoardKind::Hardware, |kind| kind.board);
     let findings = Findings::new(options, &name, kind, name.clone());
     let end = End::error(CheckName::Identity, cause, problem);
-    conclude::conclude(plan, findings, Some(end), options, Begun::now())
+    conclude::conclude(plan, findings, Observations::default(), Err(end), options, Begun::now())
 }
 
 fn run_to_report(
@@ -142,11 +146,12 @@ fn run_to_report(
     let mut findings = Findings::new(options, &candidate.target, candidate.kind, candidate.link.name());
     let opener =
         Opener { reopen: candidate.reopen, patience: options.reconnect, options: open_options(options) };
-    let end = drive(plan, candidate.link, options, opener, progress, &mut findings).err();
+    let mut seen = Observations::default();
+    let ended = drive(plan, candidate.link, options, opener, progress, &mut findings, &mut seen);
     progress.done();
     match findings.misfit.take() {
         Some(misfit) => Err(misfit),
-        None => Ok(conclude::conclude(plan, findings, end, options, begun)),
+        None => Ok(conclude::conclude(plan, findings, seen, ended, options, begun)),
     }
 }
 
@@ -167,7 +172,8 @@ fn drive(
     mut opener: Opener,
     progress: &dyn Progress,
     findings: &mut Findings,
-) -> Result<(), End> {
+    seen: &mut Observations,
+) -> Result<Vec<NotExercised>, End> {
     progress.step(Step::JudgeTheJudge);
     steps::judge_the_judge(findings)?;
     progress.step(Step::OpenTheBoard);
@@ -182,7 +188,7 @@ fn drive(
         let (board, opener) = (&mut board, &mut opener);
         let mut run =
             Run { plan: &plan, board, generations, sessions: 0, options, opener, progress, findings };
-        run.all_steps()
+        run.all_steps(seen)
     });
     findings.note_link(&board);
     // Whatever happened, the next run must find the board free. A board that is gone need not be asked.

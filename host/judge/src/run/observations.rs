@@ -1,8 +1,8 @@
 //! What the judge has seen of all frames so far.
 
+use super::end::End;
 use super::entry::WrongEntry;
 use super::exercised::SampleLevels;
-use super::findings::End;
 use super::kept::KeptFrames;
 use crate::board::ReturnedRow;
 use crate::result::{Finding, FrameReport, FrameTotals, LateRows, LatencyReport};

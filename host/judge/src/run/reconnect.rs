@@ -4,7 +4,8 @@ use std::error::Error;
 use std::iter;
 use std::time::{Duration, Instant};
 
-use super::findings::{During, End, Findings};
+use super::end::{During, End};
+use super::findings::Findings;
 use super::plan::Segment;
 use super::steps::Run;
 use crate::board::{Board, BoardError, NumberedFrame, OpenFailed, OpenOptions, Unjudged};
@@ -117,6 +118,20 @@ impl Run<'_> {
         Ok(())
     }
 
+    /// Does `step`. Whenever the board went away during it, brings it back to where it was after `last`, and does it again.
+    pub(super) fn persist<T>(
+        &mut self,
+        last: Option<&Segment>,
+        mut step: impl FnMut(&mut Self) -> Result<T, End>,
+    ) -> Result<T, End> {
+        loop {
+            match (step(self), last) {
+                (Err(end), Some(last)) if end.is_outage() => self.return_to(last, last.frames.len(), end)?,
+                (done, _) => return done,
+            }
+        }
+    }
+
     /// Waits for a board that went away with `end`, and brings it to where frame `at` of `segment` is the next to be
     /// sent. Returns any other end as it is.
     pub(super) fn return_to(&mut self, segment: &Segment, at: usize, end: End) -> Result<(), End> {
@@ -148,7 +163,7 @@ impl Run<'_> {
             && board.capabilities == self.board.capabilities;
         *self.board = board;
         // Two boards of the same build without serial numbers look the same.
-        self.findings.look.came_back_unnumbered |= self.board.welcome.serial == 0;
+        self.findings.attempt.came_back_unnumbered |= self.board.welcome.serial == 0;
         if is_same {
             return Ok(());
         }
@@ -179,7 +194,7 @@ impl Run<'_> {
             let rendered = self.plan.render(frame, &segment.geometry);
             let rendered = rendered
                 .map_err(|error| End::error(CheckName::Frames, Cause::Station, Problem::of(&error)))?;
-            self.findings.look.rows_counted += rendered.height();
+            self.findings.attempt.rows_counted += rendered.height();
             let played = NumberedFrame { number: frame.number, frame: rendered };
             self.board.stream(&mut Unjudged(iter::once(played))).during(CheckName::Frames)?;
         }

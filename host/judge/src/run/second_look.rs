@@ -4,7 +4,8 @@
 //! settings. In a new session, copies from earlier sessions have no effect.
 
 use super::counters::{is_contradictory, is_moved_by_links};
-use super::findings::{During, End};
+use super::end::{During, End};
+use super::observations::Observations;
 use super::steps::Run;
 use crate::board::{Board, Miscount};
 use crate::progress::Step;
@@ -18,45 +19,88 @@ const COUNTS: usize = 4;
 /// Keeps the nonces of these sessions apart from those of boards that came back.
 const NONCE: u32 = 1 << 16;
 
+/// What looking again showed.
+#[derive(Debug)]
+enum Again {
+    /// Nothing is wrong.
+    Right,
+    /// Something is wrong, which says no less than what was found before.
+    Wrong(End),
+    /// The board gave an answer that no sound board gives, which says less than the FAIL before it.
+    SaysLess(End),
+    /// The look broke off.
+    BrokenOff(End),
+}
+
+impl Again {
+    /// What a look shows that `ended` after `found` was found.
+    fn of(ended: Result<(), End>, found: &End) -> Self {
+        match ended {
+            Ok(()) => Self::Right,
+            Err(again) if again.is_failed() => Self::Wrong(again),
+            Err(again) if !again.is_answer() => Self::BrokenOff(again),
+            Err(again) if found.is_failed() => Self::SaysLess(again),
+            Err(again) => Self::Wrong(again),
+        }
+    }
+}
+
 impl Run<'_> {
     /// Does everything again if an old copy of a request may have caused `found`, with which the run ended.
-    pub(super) fn look_again(&mut self, found: End) -> Result<(), End> {
+    pub(super) fn look_again(&mut self, found: End, seen: &mut Observations) -> End {
         let mut found = found;
         for look in 1..=LOOKS {
-            let Some(doubt) = self.doubt_of(&found) else { return Err(found) };
+            let Some(doubt) = self.doubt_of(&found) else { return found };
             tracing::info!("{}; looking again, since {}", found.finding().sentence(), doubt.clause());
             self.progress.step(Step::LookAgain);
-            match self.look(look) {
-                Ok(()) => return Err(right_in_another_session(&found, doubt)),
-                // A FAIL says more than an answer that no sound board gives, so only another FAIL replaces it.
-                Err(again) if again.is_failed() || again.is_answer() && !found.is_failed() => found = again,
-                Err(again) if again.is_answer() && self.doubt_of(&again).is_some() => {}
-                Err(again) => return Err(broken_off(again, unasked(&found), doubt)),
+            match Again::of(self.look(look, seen), &found) {
+                Again::Right => return right_in_another_session(&found, doubt),
+                Again::Wrong(again) => found = again,
+                Again::SaysLess(again) if self.doubt_of(&again).is_some() => {}
+                Again::SaysLess(end) | Again::BrokenOff(end) => {
+                    return broken_off(end, unasked(&found), doubt);
+                }
             }
         }
         match self.doubt_of(&found) {
-            None => Err(found),
+            None => found,
             Some(doubt) => {
                 let finding = Finding::WrongOverDoubtfulLink { found: Box::new(unasked(&found)), doubt };
-                Err(End::error(found.name(), Cause::Station, finding))
+                End::error(found.name(), Cause::Station, finding)
             }
         }
     }
 
     /// Does everything in another session, the run's `number`th, from 1. A board that goes away before that and comes
     /// back is in a new session anyway.
-    fn look(&mut self, number: u32) -> Result<(), End> {
+    fn look(&mut self, number: u32, seen: &mut Observations) -> Result<(), End> {
         if let Err(end) = self.open_session(number) {
             self.come_back(end)?;
         }
         self.findings.begin_again();
-        self.all_but_identity()
+        *seen = Observations::default();
+        self.all_but_identity(seen).map(drop)
     }
 
     /// Why the link may have caused `end`. That nothing is known about the link is no reason to doubt an error.
     pub(super) fn doubt_of(&mut self, end: &End) -> Option<Doubt> {
         let doubt = self.doubt(end.name())?;
         (end.is_failed() || doubt != Doubt::PacketsUncounted {}).then_some(doubt)
+    }
+
+    /// Why `check` may have found something although the board is sound: because it is not in the state that the host put
+    /// it into in this session.
+    fn doubt(&mut self, check: CheckName) -> Option<Doubt> {
+        if self.findings.attempt.beyond_links {
+            return None;
+        }
+        if let Some(doubt) = self.findings.attempt.doubt.or(Doubt::of_requests(self.board)) {
+            return Some(doubt);
+        }
+        let counts_once_more = self.options.counts && !self.findings.counters_doubted;
+        let doubt = Counts::asked_of(self.board).doubt(check == CheckName::Counters, counts_once_more);
+        self.findings.counters_doubted |= doubt == Some(Doubt::CountersOfLinks {});
+        doubt
     }
 
     /// Opens a session in which copies of earlier sessions' requests have no effect: the run's `number`th, from 1.
@@ -74,46 +118,61 @@ impl Run<'_> {
         self.sessions += 1;
         self.nonce(LOOKS + self.sessions)
     }
+}
 
-    /// Why `check` may have found something although the board is sound: because it is not in the state that the host put
-    /// it into in this session.
-    pub(super) fn doubt(&mut self, check: CheckName) -> Option<Doubt> {
-        if self.findings.look.beyond_links {
-            return None;
-        }
-        if let Some(doubt) = self.findings.look.doubt.or(Doubt::of_requests(self.board)) {
-            return Some(doubt);
-        }
-        // Without an answer, whatever prevents it, nothing is known about what the link did before.
-        let Ok(status) = self.board.status_although_stopped() else {
-            return Some(Doubt::PacketsUncounted {});
-        };
+/// What a board counts of a session, as far as that tells of its link.
+#[derive(Clone, Copy, Debug)]
+enum Counts {
+    /// It does not say: without an answer, whatever prevents it, nothing is known about what the link did before.
+    Untold,
+    /// No link makes a board count so.
+    Impossible,
+    /// It counted packets at some time in a way that no loss explains.
+    Disturbed(Doubt),
+    /// It counts so many packets of those sent. Some of its counters may be `moved` by what only a link can have caused.
+    Packets { counted: u64, sent: u64, moved: bool },
+}
+
+impl Counts {
+    fn asked_of(board: &mut Board) -> Self {
+        let Ok(status) = board.status_although_stopped() else { return Self::Untold };
         if is_contradictory(&status) {
-            // Such a board is wrong, whatever the link did.
-            return None;
+            return Self::Impossible;
         }
-        if let Some(doubt) = Doubt::of_packets(self.board) {
-            return (!self.loses_count()).then_some(doubt);
+        match Doubt::of_packets(board) {
+            Some(_) if loses_count(board) => Self::Impossible,
+            Some(doubt) => Self::Disturbed(doubt),
+            None => Self::Packets {
+                counted: status.packets.into(),
+                sent: board.packets_since_clear(),
+                moved: is_moved_by_links(&status),
+            },
         }
-        let (counted, sent) = (u64::from(status.packets), self.board.packets_since_clear());
-        let counters_alone = check == CheckName::Counters;
-        if counted > sent || counters_alone && counted != sent {
-            return Some(Doubt::PacketsMiscounted { counted, sent });
+    }
+
+    /// Why the link may have caused something wrong: wrong counters, if `of_counters`. If only counters are wrong that a link
+    /// can change, one more look decides, `once_more`: a board that miscounts will do it again, but a packet will hardly
+    /// come twice again.
+    fn doubt(self, of_counters: bool, once_more: bool) -> Option<Doubt> {
+        match self {
+            Self::Untold => Some(Doubt::PacketsUncounted {}),
+            Self::Impossible => None,
+            Self::Disturbed(doubt) => Some(doubt),
+            Self::Packets { counted, sent, .. } if counted > sent || of_counters && counted != sent => {
+                Some(Doubt::PacketsMiscounted { counted, sent })
+            }
+            Self::Packets { moved, .. } => {
+                (of_counters && once_more && moved).then_some(Doubt::CountersOfLinks {})
+            }
         }
-        // One more look decides: a board that miscounts will do it again, but a packet will hardly come twice again.
-        let is_new = counters_alone && self.options.counts && !self.findings.counters_doubted;
-        self.findings.counters_doubted |= counters_alone;
-        (is_new && is_moved_by_links(&status)).then_some(Doubt::CountersOfLinks {})
     }
 }
 
-impl Run<'_> {
-    /// Whether the board never counts more packets than when it was last asked, although asking is a packet itself. No
-    /// link delivers a late copy of a request that clears the counters every time.
-    fn loses_count(&mut self) -> bool {
-        let counts: Vec<_> = (0..COUNTS).map_while(|_| self.board.status(false).ok()).collect();
-        counts.len() == COUNTS && counts.windows(2).all(|two| two[1].packets <= two[0].packets)
-    }
+/// Whether the board never counts more packets than when it was last asked, although asking is a packet itself. No link
+/// delivers a late copy of a request that clears the counters every time.
+fn loses_count(board: &mut Board) -> bool {
+    let counts: Vec<_> = (0..COUNTS).map_while(|_| board.status(false).ok()).collect();
+    counts.len() == COUNTS && counts.windows(2).all(|two| two[1].packets <= two[0].packets)
 }
 
 impl Doubt {
@@ -153,4 +212,52 @@ pub(super) fn broken_off(mut end: End, found: Finding, doubt: Doubt) -> End {
         *finding = Finding::SecondLookBrokenOff(Box::new(BrokenOff { found, doubt, reason }));
     }
     end
+}
+
+#[cfg(test)]
+mod tests {
+    use halfrow_protocol::Kind;
+
+    use super::*;
+    use crate::board::BoardError;
+
+    const OF_FRAMES: bool = false;
+    const OF_COUNTERS: bool = true;
+
+    #[test]
+    fn what_a_board_counts_says_whether_its_link_may_be_to_blame() {
+        let packets = |counted, moved| Counts::Packets { counted, sent: 9, moved };
+        let miscounted = |counted| Some(Doubt::PacketsMiscounted { counted, sent: 9 });
+        let of_links = Some(Doubt::CountersOfLinks {});
+        for (counts, of_counters, once_more, doubt) in [
+            (Counts::Untold, OF_FRAMES, true, Some(Doubt::PacketsUncounted {})),
+            (Counts::Impossible, OF_COUNTERS, true, None),
+            (Counts::Disturbed(Doubt::AnswerLost {}), OF_FRAMES, false, Some(Doubt::AnswerLost {})),
+            // A packet that came twice may have done anything; one that was lost, only change counters.
+            (packets(10, false), OF_FRAMES, true, miscounted(10)),
+            (packets(8, true), OF_FRAMES, true, None),
+            (packets(8, false), OF_COUNTERS, false, miscounted(8)),
+            (packets(9, true), OF_FRAMES, true, None),
+            (packets(9, false), OF_COUNTERS, true, None),
+            (packets(9, true), OF_COUNTERS, true, of_links),
+            (packets(9, true), OF_COUNTERS, false, None),
+        ] {
+            assert_eq!(counts.doubt(of_counters, once_more), doubt, "{counts:?}, {of_counters}, {once_more}");
+        }
+    }
+
+    #[test]
+    fn only_another_fail_replaces_a_fail() {
+        let failed = || End::failed(CheckName::Link, Finding::EchoWrong {});
+        let answer = || End::board(CheckName::Link, &BoardError::Unexpected { kind: Kind::Echo });
+        let gone = || End::board(CheckName::Link, &BoardError::SessionLost);
+        let again = |ended, found: End| Again::of(ended, &found);
+        assert!(matches!(again(Ok(()), failed()), Again::Right));
+        assert!(matches!(again(Err(failed()), failed()), Again::Wrong(_)));
+        assert!(matches!(again(Err(failed()), answer()), Again::Wrong(_)));
+        assert!(matches!(again(Err(answer()), answer()), Again::Wrong(_)));
+        assert!(matches!(again(Err(answer()), failed()), Again::SaysLess(_)));
+        assert!(matches!(again(Err(gone()), failed()), Again::BrokenOff(_)));
+        assert!(matches!(again(Err(gone()), answer()), Again::BrokenOff(_)));
+    }
 }

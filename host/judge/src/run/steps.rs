@@ -1,23 +1,20 @@
 //! The order of a run's steps, and the first two.
 
-use std::mem;
 use std::sync::mpsc::Receiver;
 use std::thread;
 
-use halfrow_protocol::message::BoardNature;
-
-use super::exercised::not_exercised;
-use super::findings::{During, End, Findings, Look};
+use super::end::{During, End};
+use super::findings::Findings;
 use super::golden::{self, CannotJudge};
 use super::misfit::misfit;
+use super::observations::Observations;
 use super::options::RunOptions;
 use super::patterns::patterns;
 use super::plan::{Generation, Plan, Segment};
 use super::prepared::{self, PrepareError, Prepared};
 use super::reconnect::Opener;
-use super::rules::MOST_FILLED;
 use super::variations::Build;
-use crate::board::{Board, BoardError, UnknownDatapath, grids, possible};
+use crate::board::{Board, BoardError, UnknownDatapath, possible};
 use crate::progress::{Progress, Step};
 use crate::reference;
 use crate::result::{CheckName, Finding, NotExercised, Problem};
@@ -54,7 +51,7 @@ pub(super) fn judge_the_judge(findings: &mut Findings) -> Result<(), End> {
     match golden::judge_the_judge() {
         Ok(samples) => {
             let path = reference::path().to_string();
-            findings.passed(CheckName::Judge, Finding::GoldenSamplesFound { samples, path });
+            findings.checks.passed(CheckName::Judge, Finding::GoldenSamplesFound { samples, path });
             Ok(())
         }
         Err(what) => Err(End::error(CheckName::Judge, Cause::Station, Problem::of(&CannotJudge(what)))),
@@ -71,20 +68,20 @@ fn all_judged(schedule: &[Segment], judged: usize) -> Result<(), End> {
 }
 
 impl Run<'_> {
-    /// All steps that need an open board.
-    pub(super) fn all_steps(&mut self) -> Result<(), End> {
+    /// All steps that need an open board. Returns what a board that is right was not exercised in.
+    pub(super) fn all_steps(&mut self, seen: &mut Observations) -> Result<Vec<NotExercised>, End> {
         self.findings.note_identity(self.board);
         self.identity()?;
-        match self.all_but_identity() {
+        self.all_but_identity(seen).map_err(|found| match found {
             // A soak has already looked into each burst.
-            Err(found) if self.findings.soak.is_some() => Err(found),
-            Err(found) if found.is_failed() || found.is_answer() => self.look_again(found),
-            ended => ended,
-        }
+            found if self.findings.soak.is_some() => found,
+            found if found.is_failed() || found.is_answer() => self.look_again(found, seen),
+            found => found,
+        })
     }
 
     /// All steps from the link on. They do not depend on what the board held before.
-    pub(super) fn all_but_identity(&mut self) -> Result<(), End> {
+    pub(super) fn all_but_identity(&mut self, seen: &mut Observations) -> Result<Vec<NotExercised>, End> {
         let schedule = self.plan.schedule(&Build::of(&self.board.capabilities));
         let (plan, generations) = (self.plan, self.generations.clone());
         let ended = thread::scope(|scope| {
@@ -92,18 +89,28 @@ impl Run<'_> {
             let frames = frames.map_err(|error| error.during(CheckName::Frames))?;
             self.progress.step(Step::TestTheLink);
             self.over_outages(Self::link)?;
-            let last = self.stream_all(&schedule, &frames)?;
-            self.judge_over_outages(last)?;
-            all_judged(&schedule, self.findings.look.seen.samples())?;
-            match self.plan.at_speed.soak() {
+            let last = self.stream_and_judge(&schedule, &frames, seen)?;
+            let bursts = match self.plan.at_speed.soak() {
                 Some(length) => self.soak(length, last)?,
-                None => self.at_speed(last)?,
-            }
+                None => self.at_speed(last, seen)?,
+            };
             self.rules(last)?;
-            self.note_not_exercised();
-            Ok(())
+            Ok(self.not_exercised(seen, bursts))
         });
         ended.map_err(|end| self.told_of_window(end))
+    }
+
+    /// Streams the segments, whose frames come from `source`, and judges them. Returns the last segment.
+    fn stream_and_judge<'s>(
+        &mut self,
+        schedule: &'s [Segment],
+        source: &Receiver<Result<Prepared, PrepareError>>,
+        seen: &mut Observations,
+    ) -> Result<Option<&'s Segment>, End> {
+        let last = self.stream_all(schedule, source, seen)?;
+        self.judge_over_outages(last, seen)?;
+        all_judged(schedule, seen.samples())?;
+        Ok(last)
     }
 
     /// Streams the segments and returns the last one streamed. It ends early where tables have changed or, if the plan
@@ -112,22 +119,24 @@ impl Run<'_> {
         &mut self,
         schedule: &'s [Segment],
         source: &Receiver<Result<Prepared, PrepareError>>,
+        seen: &mut Observations,
     ) -> Result<Option<&'s Segment>, End> {
         let rows = schedule.iter().map(Segment::rows);
         self.progress.rows_expected(rows.sum::<usize>() as u64);
         let mut last = None;
         for segment in schedule {
             // Changed tables are not replaced by the next ones, so that they are judged at the end.
-            let after = if segment.is_varied() { self.tables_after().map(drop) } else { Ok(()) };
+            let after = if segment.is_varied() { self.tables_after(seen).map(drop) } else { Ok(()) };
             if let Err(End::Failed { .. }) = after {
                 return Ok(last);
             }
             last = Some(segment);
             if let Err(end) = after.and_then(|()| self.prepare(segment)) {
+                self.findings.attempt.is_wrong |= !seen.is_right();
                 self.return_to(segment, 0, end)?;
             }
-            self.stream(segment, source)?;
-            if self.plan.fail_fast && self.findings.look.seen.differences() > 0 {
+            self.stream(segment, source, seen)?;
+            if self.plan.fail_fast && seen.differences() > 0 {
                 return Ok(Some(segment));
             }
         }
@@ -135,52 +144,12 @@ impl Run<'_> {
     }
 
     /// Judges what came back. If the board goes away meanwhile, it is first brought back to where it was after `last`.
-    fn judge_over_outages(&mut self, last: Option<&Segment>) -> Result<(), End> {
-        loop {
-            match (self.judge_what_came(), last) {
-                (Err(end), Some(last)) if end.is_outage() => self.return_to(last, last.frames.len(), end)?,
-                (judged, _) => return judged,
-            }
-        }
-    }
-
-    /// Notes what the run did not exercise of the board, as far as that is known.
-    fn note_not_exercised(&mut self) {
-        let at_speed = mem::take(&mut self.findings.look.untested_at_speed);
-        let Findings { board, look, .. } = &*self.findings;
-        let used: Vec<_> =
-            self.generations.iter().filter_map(|generation| self.used_of(generation)).collect();
-        let generations: Vec<_> = used.iter().chain(&look.corners).collect();
-        let identity = board.identity.as_ref();
-        let of_frames =
-            identity.map_or_else(Vec::new, |board| not_exercised(board, &generations, look.seen.levels));
-        let has_grid = generations.iter().any(|generation| generation.tables.shape().is_some());
-        let no_grid = identity.is_some() && grids(&self.board.capabilities).is_some() && !has_grid;
-        let untried = !self.findings.has_passed(CheckName::Rules);
-        let records = self.known_bursts().map_or(0, |bursts| u32::from(bursts.records));
-        let are_left = !untried && records > MOST_FILLED;
-        let is_physical = self.board.capabilities.nature == BoardNature::Hardware;
-        let left = [
-            untried.then_some(NotExercised::Rules {}),
-            are_left.then_some(NotExercised::FurtherRecords { filled: MOST_FILLED }),
-            no_grid.then_some(NotExercised::Grids {}),
-            look.came_back_unnumbered.then_some(NotExercised::SameBoard {}),
-            is_physical.then_some(NotExercised::CameraPins {}),
-            look.leaves_counters_out.then_some(NotExercised::CountersOfPoorLinks {}),
-        ];
-        let left = left.into_iter().flatten();
-        self.findings.look.not_exercised = of_frames.into_iter().chain(at_speed).chain(left).collect();
-    }
-
-    /// The part of `generation` with which frames were made, if any were.
-    fn used_of(&self, generation: &Generation) -> Option<Generation> {
-        let Look { seen, whole_at_speed, .. } = &self.findings.look;
-        let height = generation.tables.geometry().height();
-        if whole_at_speed.contains(&generation.number) {
-            return generation.upper(height);
-        }
-        let made = seen.frames.iter().filter(|frame| frame.generation == generation.number);
-        generation.upper(made.map(|frame| frame.first_rows.unwrap_or(height)).max()?)
+    fn judge_over_outages(&mut self, last: Option<&Segment>, seen: &mut Observations) -> Result<(), End> {
+        self.persist(last, |run| {
+            let judged = run.judge_what_came(seen);
+            run.findings.attempt.is_wrong |= !seen.is_right();
+            judged
+        })
     }
 
     fn identity(&mut self) -> Result<(), End> {
@@ -205,7 +174,7 @@ impl Run<'_> {
         }
         let (name, wire) = (self.board.capabilities.name.clone(), self.board.welcome.version);
         let datapath = datapath_of(&self.plan.tables).id();
-        self.findings.passed(CheckName::Identity, Finding::BoardIdentified { name, wire, datapath });
+        self.findings.checks.passed(CheckName::Identity, Finding::BoardIdentified { name, wire, datapath });
         Ok(())
     }
 
@@ -221,7 +190,9 @@ impl Run<'_> {
             }
         }
         self.start_afresh().during(CheckName::Link)?;
-        self.findings.passed(CheckName::Link, Finding::EchoesReturned { bytes, echoes: patterns.len() });
+        self.findings
+            .checks
+            .passed(CheckName::Link, Finding::EchoesReturned { bytes, echoes: patterns.len() });
         Ok(())
     }
 }

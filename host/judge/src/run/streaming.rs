@@ -4,7 +4,8 @@ use std::sync::mpsc::Receiver;
 
 use halfrow_protocol::message::RowPlace;
 
-use super::findings::{During, End};
+use super::end::{During, End};
+use super::observations::Observations;
 use super::pauses::pauses;
 use super::plan::{SENSOR_BLANKING, Segment, Timing};
 use super::prepared::{PrepareError, Prepared};
@@ -20,19 +21,17 @@ impl Run<'_> {
         &mut self,
         segment: &Segment,
         source: &Receiver<Result<Prepared, PrepareError>>,
+        seen: &mut Observations,
     ) -> Result<(), End> {
         let (options, timing) = (self.judge_options(segment), self.timing(segment.timing));
-        // While frames are streamed the judge owns what is seen, and the run keeps the board and its link.
-        let mut seen = std::mem::take(&mut self.findings.look.seen);
         let frames = source.iter().take(segment.frames.len());
-        let mut judge = RowJudge::new(frames, &mut seen, options, timing, self.progress);
+        let mut judge = RowJudge::new(frames, seen, options, timing, self.progress);
         let streamed = self.stream_to_the_end(segment, &mut judge);
         let prepared = judge.finish();
-        self.findings.look.seen = seen;
         streamed?;
-        self.findings.begin_lap();
+        self.findings.checks.begin_lap();
         prepared.map_err(|error| End::error(CheckName::Frames, Cause::Station, Problem::of(&error)))?;
-        if self.plan.fail_fast && self.findings.look.seen.differences() > 0 {
+        if self.plan.fail_fast && seen.differences() > 0 {
             self.board.drop_rows().during(CheckName::Frames)?;
         }
         Ok(())
@@ -40,14 +39,15 @@ impl Run<'_> {
 
     fn stream_to_the_end(&mut self, segment: &Segment, judge: &mut RowJudge<'_>) -> Result<(), End> {
         while let Err(error) = self.board.stream(judge) {
-            self.findings.look.found_over_broken_link |= judge.has_found();
+            self.findings.attempt.is_wrong |= judge.has_found();
             let end = self.interrupted(segment, judge, error);
             self.return_to(segment, judge.frames_done(), end)?;
             judge.begin_again();
         }
         self.unless_misconduct(CheckName::Frames, Ok(()))?;
-        self.findings.look.rows_counted += judge.rows;
-        self.findings.look.repeats_counted = self.findings.look.repeats_counted.saturating_add(judge.repeats);
+        let attempt = &mut self.findings.attempt;
+        attempt.rows_counted += judge.rows;
+        attempt.repeats_counted = attempt.repeats_counted.saturating_add(judge.repeats);
         Ok(())
     }
 

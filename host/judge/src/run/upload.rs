@@ -1,6 +1,6 @@
 //! Geometry and tables on their way to the board, and back through the datapath's own ports.
 
-use super::findings::{During, End};
+use super::end::{During, End};
 use super::plan::{Generation, SENSOR_BLANKING, Segment, Timing};
 use super::steps::Run;
 use crate::board::{Bank, BoardError, ReadBack, RefusalCode, RowTiming, Table};
@@ -36,7 +36,7 @@ impl Run<'_> {
         self.board.upload(tables, kernel).during(CheckName::Upload)?;
         let (entries, nodes) = (tables.entries().len(), kernel.nodes().len());
         let uploaded = Finding::TablesUploaded { entries, nodes, generation: *number };
-        self.findings.passed(CheckName::Upload, uploaded);
+        self.findings.checks.passed(CheckName::Upload, uploaded);
         let ports = self.check_read_back(CheckName::ReadBack, Bank::Shadow, generation)?;
         let upper = generation.upper(rows);
         let committed = upper.as_ref().map_or(tables, |upper| &upper.tables);
@@ -46,7 +46,7 @@ impl Run<'_> {
             }
             error => End::board(CheckName::Upload, &error),
         })?;
-        self.findings.passed(CheckName::ReadBack, Finding::TablesReadBack { ports });
+        self.findings.checks.passed(CheckName::ReadBack, Finding::TablesReadBack { ports });
         Ok(())
     }
 

@@ -1,68 +1,68 @@
 //! What is judged when the last row has come back. The counters have a module of their own.
 
+use super::counters::{counters, leaves_counters_out};
+use super::end::{During, End};
 use super::entry::WrongEntry;
-use super::findings::{During, End};
+use super::findings::Findings;
 use super::observations::Observations;
 use super::plan::{DECOY, Generation};
 use super::steps::Run;
 use crate::board::Bank;
 use crate::diagnosis::{self, Case, Uploaded};
-use crate::result::{Account, CheckName, Defect, Finding, Outcome, Suspect};
+use crate::result::{Account, CheckName, Defect, Finding, Suspect};
 
 impl Run<'_> {
     /// Judges what was seen, the tables and the counters. The first fault ends the run; further faults are only listed
     /// among the checks.
-    pub(super) fn judge_what_came(&mut self) -> Result<(), End> {
-        let after = self.tables_after();
-        self.findings.lap(CheckName::TablesAfter);
+    pub(super) fn judge_what_came(&mut self, seen: &mut Observations) -> Result<(), End> {
+        let after = self.tables_after(seen);
+        self.findings.checks.lap(CheckName::TablesAfter);
         let status = self.board.status(false).during(CheckName::Counters)?;
         self.findings.note_status(&status);
-        self.findings.lap(CheckName::Counters);
+        self.findings.checks.lap(CheckName::Counters);
         self.unless_misconduct(CheckName::Frames, Ok(()))?;
-        let frames = self.frames(after.as_ref().err());
-        self.findings.lap(CheckName::Frames);
+        let frames = self.frames(seen, after.as_ref().err());
+        let Findings { checks, attempt, .. } = &mut *self.findings;
+        checks.lap(CheckName::Frames);
         // Counters are only right if all rows came back right: a run that ends early leaves rows inside.
-        let counters = frames.is_ok().then(|| self.counters(&status));
-        self.findings.look.leaves_counters_out = self.leaves_counters_out(&status);
-        let latency = latency(&self.findings.look.seen);
+        let counters = frames.is_ok().then(|| counters(self.board, &status, seen, attempt));
+        attempt.leaves_counters_out = leaves_counters_out(self.board, &status);
         let mut ends = Vec::new();
         let results = [
             (CheckName::Frames, Some(frames)),
-            (CheckName::Latency, Some(latency)),
+            (CheckName::Latency, Some(latency(seen))),
             (CheckName::TablesAfter, Some(after)),
             (CheckName::Counters, counters),
         ];
         for (check, result) in results {
             match result {
-                Some(Ok(unused @ Finding::TablesUnused {})) => {
-                    self.findings.note(check, Outcome::Skipped, unused);
-                }
-                Some(Ok(finding)) => self.findings.passed(check, finding),
+                Some(Ok(unused @ Finding::TablesUnused {})) => checks.skipped(check, unused),
+                Some(Ok(finding)) => checks.passed(check, finding),
                 Some(Err(end)) => ends.push(end),
                 None => {}
             }
         }
         let mut ends = ends.into_iter();
         let first = ends.next();
-        self.findings.also_wrong(ends);
+        ends.for_each(|end| checks.ended(&end));
         first.map_or(Ok(()), Err)
     }
 
     /// The tables of the last frame must still be what was uploaded; a run that ends with its first frame has not used
     /// those to judge with. Tables that once read back wrong stay wrong, even if they read back right later.
-    pub(super) fn tables_after(&mut self) -> Result<Finding, End> {
-        if let Some(changed) = &self.findings.look.seen.changed_tables {
+    pub(super) fn tables_after(&mut self, seen: &mut Observations) -> Result<Finding, End> {
+        if let Some(changed) = &seen.changed_tables {
             return Err(changed.clone());
         }
-        let after = self.read_back_after();
+        let after = self.read_back_after(seen);
         if let Err(changed @ End::Failed { .. }) = &after {
-            self.findings.look.seen.changed_tables = Some(changed.clone());
+            seen.changed_tables = Some(changed.clone());
         }
         after
     }
 
-    fn read_back_after(&mut self) -> Result<Finding, End> {
-        let last = self.findings.look.seen.frames.last().map_or(DECOY, |frame| frame.generation);
+    fn read_back_after(&mut self, seen: &Observations) -> Result<Finding, End> {
+        let last = seen.frames.last().map_or(DECOY, |frame| frame.generation);
         let last = self.generations.iter().find(|generation| generation.number == last).cloned();
         let Some(last) = last.filter(|generation| generation.number != DECOY) else {
             return Ok(Finding::TablesUnused {});
@@ -77,8 +77,7 @@ impl Run<'_> {
         })
     }
 
-    fn frames(&self, tables_after: Option<&End>) -> Result<Finding, End> {
-        let seen = &self.findings.look.seen;
+    fn frames(&self, seen: &Observations, tables_after: Option<&End>) -> Result<Finding, End> {
         if let Some(finding) = &seen.wrong_generation {
             return Err(End::failed(CheckName::Frames, finding.clone()));
         }
@@ -96,7 +95,7 @@ impl Run<'_> {
             let (finding, suspects) = (finding.clone(), suspects.clone());
             return Err(End::Failed { check: CheckName::Frames, finding, suspects });
         }
-        let suspects = self.diagnose();
+        let suspects = self.diagnose(seen);
         let finding = Finding::SamplesDiffer {
             differences: seen.differences(),
             samples,
@@ -109,7 +108,7 @@ impl Run<'_> {
         Err(End::Failed { check: CheckName::Frames, finding, suspects })
     }
 
-    fn diagnose(&self) -> Vec<Suspect> {
+    fn diagnose(&self, seen: &Observations) -> Vec<Suspect> {
         let uploaded: Vec<_> = self
             .generations
             .iter()
@@ -118,8 +117,8 @@ impl Run<'_> {
         diagnosis::diagnose(&Case {
             uploaded: &uploaded,
             ring: usize::from(self.board.capabilities.ring),
-            frames: &self.findings.look.seen.frames,
-            evidence: self.findings.look.seen.evidence.all(),
+            frames: &seen.frames,
+            evidence: seen.evidence.all(),
         })
     }
 }

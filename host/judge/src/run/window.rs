@@ -2,7 +2,7 @@
 
 use halfrow_protocol::Kind;
 
-use super::findings::End;
+use super::end::End;
 use super::steps::Run;
 use crate::result::{Answer, Finding, Rule};
 

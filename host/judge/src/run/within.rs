@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use super::findings::{During, End, Findings};
+use super::end::{During, End};
+use super::findings::Findings;
 use super::parts::{Part, Selection};
 use super::plan::{AtSpeed, Plan};
 use super::prices::{Prices, Rates};

@@ -10,7 +10,7 @@ use super::watched::BurstSeen;
 use crate::board::{BoardNature, Fetched};
 use crate::result::wording::seen_of_clock;
 use crate::result::{CheckName, ClockSeen, Finding, NotExercised};
-use crate::run::findings::End;
+use crate::run::end::End;
 use crate::run::plan::Generation;
 use crate::run::second_look::LOOKS;
 use crate::run::steps::Run;

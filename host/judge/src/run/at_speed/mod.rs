@@ -22,14 +22,16 @@ use std::time::Duration;
 use halfrow_model::Geometry;
 use halfrow_protocol::message::{BurstMode, Capabilities};
 
-use super::findings::{During, End};
+use super::end::{During, End};
+use super::exercised::Exercised;
+use super::observations::Observations;
 use super::parts::Part;
 use super::plan::{AtSpeed, DECOY, Generation, JUDGED, Segment};
 use super::steps::Run;
 use crate::board::{Bank, Bursts, RowTiming};
 use crate::progress::Step;
 use crate::reference::correct;
-use crate::result::{CheckName, ClockSeen, Corner, EqualAtSpeed, Finding, NoBurst, NotExercised, Outcome};
+use crate::result::{CheckName, ClockSeen, Corner, EqualAtSpeed, Finding, NoBurst, NotExercised};
 use burst::BurstPlan;
 pub(super) use burst::{USUAL_CLOCK, content};
 pub(super) use price::{clock_hz, most_frames, price_of_corners, price_of_frames};
@@ -70,25 +72,23 @@ pub(super) fn known_bursts(capabilities: &Capabilities) -> Result<Bursts, NoBurs
 }
 
 impl Run<'_> {
-    /// Judges a burst. If the board goes away meanwhile, it is brought back to where it was after `last`.
-    pub(super) fn at_speed(&mut self, last: Option<&Segment>) -> Result<(), End> {
+    /// Judges a burst, and returns what was exercised. If the board goes away meanwhile, it is brought back to where it was after
+    /// `last`.
+    pub(super) fn at_speed(
+        &mut self,
+        last: Option<&Segment>,
+        seen: &mut Observations,
+    ) -> Result<Exercised, End> {
         let bursts = match self.bursts() {
             Ok(bursts) => bursts,
             Err(reason) => {
-                self.findings.look.untested_at_speed = vec![NotExercised::FullSpeed {}];
-                self.findings.look.untested_at_speed.extend(self.clock_unseen());
-                let finding = Finding::NothingAtSpeed { reason };
-                self.findings.note(CheckName::AtSpeed, Outcome::Skipped, finding);
-                return Ok(());
+                self.findings.checks.skipped(CheckName::AtSpeed, Finding::NothingAtSpeed { reason });
+                let left = [NotExercised::FullSpeed {}].into_iter().chain(self.clock_unseen()).collect();
+                return Ok(Exercised { left, ..Exercised::default() });
             }
         };
         self.progress.step(Step::AtSpeed);
-        loop {
-            match (self.judge_burst(bursts), last) {
-                (Err(end), Some(last)) if end.is_outage() => self.return_to(last, last.frames.len(), end)?,
-                (judged, _) => return judged,
-            }
-        }
+        self.persist(last, |run| run.judge_burst(bursts, seen))
     }
 
     /// The bursts that this run judges, or why it judges none.
@@ -105,23 +105,25 @@ impl Run<'_> {
         known_bursts(&self.board.capabilities)
     }
 
-    fn judge_burst(&mut self, bursts: Bursts) -> Result<(), End> {
+    fn judge_burst(&mut self, bursts: Bursts, seen: &mut Observations) -> Result<Exercised, End> {
         self.set(self.plan.tables.geometry())?;
-        let tables = self.tables_at_speed()?;
+        let tables = self.tables_at_speed(seen)?;
         let plan = self.burst_plan(bursts, &tables);
         let watched = self.judge_frames(&plan, &tables)?;
-        let seen = self.judge_clock(&plan, &tables, &watched)?;
-        let corners = if self.plan.amount(Part::Corners) > 0 { self.judge_corners(bursts)? } else { 0 };
-        if watched.paused == 0 {
-            let made_with = [JUDGED, DECOY].into_iter().take(tables.len());
-            self.findings.look.whole_at_speed = made_with.collect();
-        }
+        let clock = self.judge_clock(&plan, &tables, &watched)?;
         let changes = plan.mode == BurstMode::Alternating;
-        self.findings.look.untested_at_speed = untested(changes, watched.paused > 0);
-        self.findings.look.untested_at_speed.extend(self.clock_not_exercised(seen));
+        let mut exercised = Exercised { left: untested(changes, watched.paused > 0), ..Exercised::default() };
+        exercised.left.extend(self.clock_not_exercised(clock));
+        let corners = match self.plan.amount(Part::Corners) {
+            0 => 0,
+            _ => self.judge_corners(bursts, &mut exercised, seen)?,
+        };
+        if watched.paused == 0 {
+            exercised.whole = [JUDGED, DECOY].into_iter().take(tables.len()).collect();
+        }
         let BurstSeen { frames, paused, held_back, .. } = watched;
-        self.note_right(&plan, paused, EqualAtSpeed { frames, held_back, corners, seen, ..NONE });
-        Ok(())
+        self.note_right(&plan, paused, EqualAtSpeed { frames, held_back, corners, seen: clock, ..NONE });
+        Ok(exercised)
     }
 
     fn set(&mut self, geometry: &Geometry) -> Result<(), End> {
@@ -146,7 +148,12 @@ impl Run<'_> {
     }
 
     /// Judges frames in each corner of the board's settings, and returns the number of corners.
-    fn judge_corners(&mut self, bursts: Bursts) -> Result<u32, End> {
+    fn judge_corners(
+        &mut self,
+        bursts: Bursts,
+        exercised: &mut Exercised,
+        seen: &mut Observations,
+    ) -> Result<u32, End> {
         let capabilities = self.board.capabilities.clone();
         let corners = corners::corners(&capabilities, self.plan.seed);
         for (place, tables) in (0..).zip(&corners) {
@@ -171,21 +178,21 @@ impl Run<'_> {
             plan.frames = 2;
             let watched = self.judge_frames(&plan, tables).map_err(in_corner)?;
             if watched.paused == 0 {
-                self.note_exercised(&plan, tables);
+                self.note_levels(&plan, tables, seen);
+                exercised.corners.extend_from_slice(tables);
             }
         }
         Ok(corners.len() as u32)
     }
 
-    /// Notes what the frames of `plan`, one for each bank, exercised.
-    fn note_exercised(&mut self, plan: &BurstPlan, tables: &[Generation]) {
+    /// Notes the samples of the frames of `plan`, one for each bank.
+    fn note_levels(&self, plan: &BurstPlan, tables: &[Generation], seen: &mut Observations) {
         for (n, generation) in (0..).zip(tables) {
             let input = plan.content(n).frame(generation.tables.geometry(), self.plan.phase);
             if let Ok(expected) = correct(&generation.tables, &generation.kernel, &input) {
-                self.findings.look.seen.levels.note(&input, &expected);
+                seen.levels.note(&input, &expected);
             }
         }
-        self.findings.look.corners.extend_from_slice(tables);
     }
 
     /// Makes the first of `tables` active, and puts the second into the other bank.
@@ -207,8 +214,8 @@ impl Run<'_> {
 
     /// The tables with which frames are made by turns: the active ones, which have the factors and the kernel to judge
     /// with whatever setting was varied, and those of the other bank, which are the decoy's.
-    fn tables_at_speed(&mut self) -> Result<Vec<Generation>, End> {
-        let number = self.findings.look.seen.frames.last().map_or(0, |frame| frame.generation);
+    fn tables_at_speed(&mut self, seen: &Observations) -> Result<Vec<Generation>, End> {
+        let number = seen.frames.last().map_or(0, |frame| frame.generation);
         let active =
             Generation { number, tables: self.plan.tables.clone(), kernel: self.plan.kernel.clone() };
         let decoy = self.generations.iter().find(|generation| generation.number == DECOY).cloned();
@@ -237,11 +244,11 @@ impl Run<'_> {
         let (clock_hz, frames) = (self.board.capabilities.clock_hz, right.frames);
         let is_known = clock_hz > 0 && right.seen.allows(clock_hz);
         let seconds = is_known.then(|| plan.seconds(frames));
-        let (outcome, finding) = match paused {
-            0 => (Outcome::Passed, Finding::EqualAtSpeed(EqualAtSpeed { clock_hz, seconds, ..right })),
-            _ => (Outcome::Skipped, Finding::PausedAtSpeed { frames, paused }),
-        };
-        self.findings.note(CheckName::AtSpeed, outcome, finding);
+        let equal = Finding::EqualAtSpeed(EqualAtSpeed { clock_hz, seconds, ..right });
+        match paused {
+            0 => self.findings.checks.passed(CheckName::AtSpeed, equal),
+            _ => self.findings.checks.skipped(CheckName::AtSpeed, Finding::PausedAtSpeed { frames, paused }),
+        }
     }
 }
 

@@ -22,7 +22,7 @@ use crate::result::{
     Account, CheckName, Defect, Evidence, Finding, FrameReport, FrameTiming, KeptRow, Problem, Repetition,
     Streamed, Suspect,
 };
-use crate::run::findings::{During, End};
+use crate::run::end::{During, End};
 use crate::run::kept::as_found;
 use crate::run::plan::Generation;
 use crate::run::steps::Run;

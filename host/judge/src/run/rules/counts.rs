@@ -10,7 +10,7 @@ use super::{Refusals, Rules, miscounted, of_board, of_rows};
 use crate::board::{Given, Response, Status};
 use crate::result::{Counter, Finding, Rule};
 use crate::run::counters::MOVED_BY_LINKS;
-use crate::run::findings::End;
+use crate::run::end::End;
 
 /// Rows of a frame whose first row is asked for again: the second one pushes it out.
 const ROWS: usize = 2;
@@ -85,7 +85,7 @@ impl Rules<'_, '_> {
                 Finding::CounterWrong { .. } | Finding::RuleBroken { rule: Rule::NewSession, .. }
             )
         };
-        self.run.findings.look.beyond_links |= tried.as_ref().is_err_and(is_of_requests);
+        self.run.findings.attempt.beyond_links |= tried.as_ref().is_err_and(is_of_requests);
         tried
     }
 
@@ -137,7 +137,7 @@ impl Rules<'_, '_> {
     pub(super) fn not_counted(&mut self, rule: Option<Rule>, status: &Status) -> Result<(), End> {
         let of_new_rows = equal(rule, status, &MOVED_BY_NEW_ROWS.map(|counter| (counter, 0)));
         // There was no new row, and no link can make one.
-        self.run.findings.look.beyond_links |= of_new_rows.is_err();
+        self.run.findings.attempt.beyond_links |= of_new_rows.is_err();
         of_new_rows?;
         let board = &self.run.board;
         let is_calm =

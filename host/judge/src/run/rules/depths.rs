@@ -7,7 +7,7 @@ use super::rows::{FRAME, GENERATION};
 use super::{Rules, miscounted, of_board};
 use crate::board::RowTiming;
 use crate::result::{Counter, Rule};
-use crate::run::findings::End;
+use crate::run::end::End;
 use crate::run::variations::Build;
 
 /// The rows of a frame. The first one is not stretched.

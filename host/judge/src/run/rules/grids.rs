@@ -6,7 +6,7 @@ use halfrow_protocol::message::{Commit, Entries, Grids, RefusalCode, Request, Sh
 use super::{FIRST_FACTOR, Rules};
 use crate::board::grids;
 use crate::result::Rule;
-use crate::run::findings::End;
+use crate::run::end::End;
 use crate::run::parts::of_height;
 
 /// The numbers of COMMIT's fields (WIRE.md, 13).

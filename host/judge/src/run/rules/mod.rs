@@ -31,14 +31,14 @@ use halfrow_model::Geometry;
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Bank, Refusal, RefusalCode, Request, Span, Table};
 
-use super::findings::End;
+use super::end::End;
 use super::parts::of_height;
 use super::plan::Segment;
 use super::steps::Run;
 use crate::board::{BoardError, Capabilities, Given, Had, Response, RowTiming, Status};
 use crate::compare::Comparison;
 use crate::progress::Step;
-use crate::result::{Answer, CheckName, Counter, Doubt, Finding, Outcome, RowPart, Rule};
+use crate::result::{Answer, CheckName, Counter, Doubt, Finding, RowPart, Rule};
 use crate::verdict::Cause;
 use compared::{Compared, WrongRow};
 pub(super) use price::price;
@@ -57,24 +57,19 @@ impl Run<'_> {
             return Ok(());
         }
         self.progress.step(Step::Rules);
-        loop {
-            let Some(rules) = Rules::new(self) else {
-                self.findings.note(CheckName::Rules, Outcome::Skipped, Finding::RulesLeftOut {});
+        self.persist(last, |run| {
+            let Some(rules) = Rules::new(run) else {
+                run.findings.checks.skipped(CheckName::Rules, Finding::RulesLeftOut {});
                 return Ok(());
             };
             let tried = match rules.all() {
-                Err(end) if end.is_failed() => return Err(end),
-                tried => self.unless_misconduct(CheckName::Rules, tried),
+                Err(end) if end.is_failed() => Err(end),
+                tried => run.unless_misconduct(CheckName::Rules, tried),
             };
-            match (tried, last) {
-                (Ok(requests), _) => {
-                    self.findings.passed(CheckName::Rules, Finding::RulesKept { requests });
-                    return Ok(());
-                }
-                (Err(end), Some(last)) if end.is_outage() => self.return_to(last, last.frames.len(), end)?,
-                (Err(end), _) => return Err(end),
-            }
-        }
+            let requests = tried?;
+            run.findings.checks.passed(CheckName::Rules, Finding::RulesKept { requests });
+            Ok(())
+        })
     }
 }
 

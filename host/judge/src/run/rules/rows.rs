@@ -14,7 +14,7 @@ use crate::reference::correct;
 use crate::result::{CheckName, Counter, Finding, Rule};
 use crate::run::Generation;
 use crate::run::at_speed::{BY_TURNS, fit};
-use crate::run::findings::End;
+use crate::run::end::End;
 use crate::run::window::window_wrong;
 use crate::verdict::Cause;
 

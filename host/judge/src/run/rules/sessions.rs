@@ -16,7 +16,7 @@ use crate::board::{Board, BoardError, Given, Response, Status};
 use crate::result::{Answer, CheckName, Counter, Doubt, Rule};
 use crate::run::Generation;
 use crate::run::counters::rows_numbered;
-use crate::run::findings::End;
+use crate::run::end::End;
 
 /// How often a board must do what it must not, where a link or the board's supply could cause it too, though not every
 /// time: a late copy of an old HELLO also opens a session.
@@ -61,7 +61,7 @@ impl Rules<'_, '_> {
             if !has_failed || !self.has_lost_power() {
                 return tried;
             }
-            self.run.findings.look.beyond_links = false;
+            self.run.findings.attempt.beyond_links = false;
         }
         scenario(self)
     }
@@ -296,7 +296,7 @@ impl Rules<'_, '_> {
 
     fn greet_by(&mut self, open: fn(&mut Board, u32) -> Result<(), BoardError>) -> Result<(), BoardError> {
         let doubt = Doubt::of_session(self.run.board);
-        let earlier = &mut self.run.findings.look.doubt;
+        let earlier = &mut self.run.findings.attempt.doubt;
         *earlier = earlier.take().or(doubt);
         let nonce = self.run.next_nonce();
         open(self.run.board, nonce)?;

@@ -14,7 +14,7 @@ use crate::reference::correct;
 use crate::result::Rule;
 use crate::run::Generation;
 use crate::run::at_speed::drawn_factors;
-use crate::run::findings::End;
+use crate::run::end::End;
 use crate::run::parts::of_height;
 use crate::run::variations::Build;
 

@@ -10,7 +10,7 @@ use crate::board::RowTiming;
 use crate::result::Rule;
 use crate::run::Generation;
 use crate::run::at_speed::drawn_factors;
-use crate::run::findings::End;
+use crate::run::end::End;
 use crate::run::variations::Build;
 
 /// The generation with which they are made.

@@ -14,7 +14,8 @@ use super::watched::{BurstSeen, EndsEarly};
 use crate::board::{Bank, Bursts, RowTiming};
 use crate::progress::{Event, Step};
 use crate::result::{CheckName, Doubt, EqualAtSpeed, Finding, SoakInterval, SoakLength};
-use crate::run::findings::{During, End};
+use crate::run::end::{During, End};
+use crate::run::exercised::Exercised;
 use crate::run::plan::{DECOY, Generation, JUDGED, Segment};
 use crate::run::second_look::{LOOKS, unasked};
 use crate::run::steps::Run;
@@ -57,9 +58,13 @@ fn wrong_over_doubtful_link((found, doubt): (Finding, Doubt)) -> End {
 }
 
 impl Run<'_> {
-    /// Judges bursts for as long as `length` says. If the board goes away, it is brought back to where it was after
-    /// `last`. Differences do not end it.
-    pub(in crate::run) fn soak(&mut self, length: SoakLength, last: Option<&Segment>) -> Result<(), End> {
+    /// Judges bursts for as long as `length` says, and returns what was exercised. If the board goes away, it is brought back to
+    /// where it was after `last`. Differences do not end it.
+    pub(in crate::run) fn soak(
+        &mut self,
+        length: SoakLength,
+        last: Option<&Segment>,
+    ) -> Result<Exercised, End> {
         let mut account = Account::new(length, self.clock());
         let bursts = match self.bursts() {
             Ok(bursts) => bursts,
@@ -72,25 +77,17 @@ impl Run<'_> {
         self.progress.step(Step::AtSpeed);
         let ended = self.all_bursts(&mut account, bursts, last);
         let ended = account.end(self.clock(), ended);
-        if ended.is_ok() {
-            let capabilities = &self.board.capabilities;
-            let has_decoy = self.generations.iter().any(|generation| generation.number == DECOY);
-            let changes = has_decoy && capabilities.table_banks > 1;
-            let plan = BurstPlan::new(
-                self.plan.tables.geometry(),
-                self.plan.seed,
-                capabilities,
-                bursts,
-                BurstMode::Fresh,
-                0,
-            );
-            let [frames, paused, held_back] =
-                [account.report.frames, account.report.paused, account.report.held_back].map(counted);
-            self.note_right(&plan, paused, EqualAtSpeed { frames, held_back, ..NONE });
-            self.findings.look.untested_at_speed = super::untested(changes, paused > 0);
-        }
-        self.findings.soak = Some(account.report);
-        ended
+        let report = account.report;
+        let [frames, paused, held_back] = [report.frames, report.paused, report.held_back].map(counted);
+        self.findings.soak = Some(report);
+        ended?;
+        let capabilities = &self.board.capabilities;
+        let has_decoy = self.generations.iter().any(|generation| generation.number == DECOY);
+        let changes = has_decoy && capabilities.table_banks > 1;
+        let (geometry, seed) = (self.plan.tables.geometry(), self.plan.seed);
+        let plan = BurstPlan::new(geometry, seed, capabilities, bursts, BurstMode::Fresh, 0);
+        self.note_right(&plan, paused, EqualAtSpeed { frames, held_back, ..NONE });
+        Ok(Exercised { left: super::untested(changes, paused > 0), ..Exercised::default() })
     }
 
     /// The run's clock: the link's, plus the time of earlier links, which broke.

@@ -1,0 +1,119 @@
+//! Why a run ended.
+
+use crate::board::BoardError;
+use crate::result::{CheckName, Finding, Outcome, Problem, Suspect};
+use crate::verdict::Cause;
+
+/// Why a run ended before its last step, or with a wrong board.
+#[derive(Clone, Debug)]
+pub(super) enum End {
+    /// The board is wrong.
+    Failed { check: CheckName, finding: Finding, suspects: Vec<Suspect> },
+    /// It could not be judged.
+    Error { check: CheckName, cause: Cause, finding: Finding, shown: Option<Shown> },
+}
+
+/// What the board's error shows by which a run ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shown {
+    /// The board went away, and may come back.
+    Outage,
+    /// The board cannot be reached, and waiting does not help.
+    Unreachable,
+    /// The board gave an answer that no sound board gives after what the run asked of it.
+    Answer,
+    /// Such an answer: it refused a row of the run because it was beyond the window.
+    NoCredit,
+}
+
+impl Shown {
+    fn by(error: &BoardError) -> Option<Self> {
+        match error {
+            error if error.is_outage() => Some(Self::Outage),
+            BoardError::Link { .. } | BoardError::TurnedAway(_) => Some(Self::Unreachable),
+            error if error.is_without_credit() => Some(Self::NoCredit),
+            error if error.is_answer() => Some(Self::Answer),
+            _ => None,
+        }
+    }
+}
+
+impl End {
+    /// The run could not go on because the board could not be driven.
+    pub(super) fn board(check: CheckName, error: &BoardError) -> Self {
+        let (cause, finding) = (error.cause(), Problem::of(error).into());
+        Self::Error { check, cause, finding, shown: Shown::by(error) }
+    }
+
+    pub(super) fn error(check: CheckName, cause: Cause, finding: impl Into<Finding>) -> Self {
+        Self::Error { check, cause, finding: finding.into(), shown: None }
+    }
+
+    pub(super) fn failed(check: CheckName, finding: Finding) -> Self {
+        Self::Failed { check, finding, suspects: Vec::new() }
+    }
+
+    /// The check that ended the run.
+    pub(super) fn name(&self) -> CheckName {
+        match self {
+            Self::Failed { check, .. } | Self::Error { check, .. } => *check,
+        }
+    }
+
+    /// That check's outcome.
+    pub(super) fn outcome(&self) -> Outcome {
+        match self {
+            Self::Failed { .. } => Outcome::Failed,
+            Self::Error { .. } => Outcome::Error,
+        }
+    }
+
+    /// What it found.
+    pub(super) fn finding(&self) -> &Finding {
+        match self {
+            Self::Failed { finding, .. } | Self::Error { finding, .. } => finding,
+        }
+    }
+
+    pub(super) fn is_failed(&self) -> bool {
+        matches!(self, Self::Failed { .. })
+    }
+
+    fn shown(&self) -> Option<Shown> {
+        match self {
+            Self::Failed { .. } => None,
+            Self::Error { shown, .. } => *shown,
+        }
+    }
+
+    /// Whether the board gave an answer that no sound board gives after what the run asked of it.
+    pub(super) fn is_answer(&self) -> bool {
+        matches!(self.shown(), Some(Shown::Answer | Shown::NoCredit))
+    }
+
+    /// Whether the board refused a row of the run because it was beyond the window.
+    pub(super) fn is_without_credit(&self) -> bool {
+        self.shown() == Some(Shown::NoCredit)
+    }
+
+    pub(super) fn is_unreachable(&self) -> bool {
+        matches!(self.shown(), Some(Shown::Outage | Shown::Unreachable))
+    }
+
+    /// Whether the board went away and may come back.
+    pub(super) fn is_outage(&self) -> bool {
+        self.shown() == Some(Shown::Outage)
+    }
+}
+
+/// The result of asking a board something in a check.
+pub(super) trait During<T> {
+    /// Ends the run in `check` if the board could not be driven.
+    fn during(self, check: CheckName) -> Result<T, End>;
+}
+
+impl<T> During<T> for Result<T, BoardError> {
+    fn during(self, check: CheckName) -> Result<T, End> {
+        self.map_err(|error| End::board(check, &error))
+    }
+}
