@@ -9,12 +9,11 @@ use super::findings::Findings;
 use super::observations::Observations;
 use super::row_judge::STREET;
 use super::{Finished, Plan, Provenance, RunOptions};
-use crate::board::Tally;
 use crate::coverage::Faults;
 use crate::frames::street;
 use crate::result::{
-    CheckName, CoverageReport, Finding, FrameReport, FrameTotals, LinkReport, NotExercised, Problem, Report,
-    RunReport, Schema, SoakReport, StreetReport, Suspect, TablesReport, wording,
+    BoardReport, CheckName, CoverageReport, Finding, FrameReport, FrameTotals, LinkReport, NotExercised,
+    Problem, Report, RunReport, Schema, SoakReport, StreetReport, Suspect, TablesReport, wording,
 };
 use crate::verdict::Cause;
 
@@ -46,6 +45,7 @@ pub(super) fn conclude(
     plan: &Plan,
     mut findings: Findings,
     seen: Observations,
+    link: LinkReport,
     ended: Result<Vec<NotExercised>, End>,
     options: &RunOptions,
     begun: Begun,
@@ -53,7 +53,7 @@ pub(super) fn conclude(
     if let Err(end) = &ended {
         findings.checks.ended(end);
     }
-    let Ending { cause, finding, suspects, not_exercised } = ending(ended, &findings, &seen);
+    let Ending { cause, finding, suspects, not_exercised } = ending(ended, &findings.board, &link, &seen);
     let street = street(plan, &seen);
     let coverage = if cause == Cause::Equal { coverage(plan, &findings) } else { None };
     let (evidence, evidence_report) = seen.evidence.finish();
@@ -73,7 +73,7 @@ pub(super) fn conclude(
         soak: findings.soak.or_else(|| plan.at_speed.soak().map(SoakReport::new)),
         evidence: evidence_report,
         lacks: Vec::new(),
-        link: link(findings.link, &findings.tally),
+        link,
         tables: tables(plan),
         run: run(plan, &options.provenance, begun),
     };
@@ -102,22 +102,12 @@ fn run(plan: &Plan, provenance: &Provenance, Begun { at, since }: Begun) -> RunR
     }
 }
 
-fn link(known: LinkReport, tally: &Tally) -> LinkReport {
-    LinkReport {
-        bytes_out: tally.bytes_out,
-        bytes_in: tally.bytes_in,
-        packets_out: tally.packets_out,
-        packets_in: tally.packets_in,
-        damaged_in: tally.damaged_in,
-        retries: tally.retries,
-        late: tally.late,
-        strays: tally.strays,
-        line_errors: tally.line_errors,
-        ..known
-    }
-}
-
-fn ending(ended: Result<Vec<NotExercised>, End>, findings: &Findings, seen: &Observations) -> Ending {
+fn ending(
+    ended: Result<Vec<NotExercised>, End>,
+    board: &BoardReport,
+    link: &LinkReport,
+    seen: &Observations,
+) -> Ending {
     let nothing = Ending {
         cause: Cause::NothingJudged,
         finding: Finding::NothingJudged {},
@@ -127,7 +117,7 @@ fn ending(ended: Result<Vec<NotExercised>, End>, findings: &Findings, seen: &Obs
     match ended {
         Ok(_) if seen.samples() == 0 => nothing,
         Ok(not_exercised) => {
-            Ending { cause: Cause::Equal, finding: pass(findings, seen), not_exercised, ..nothing }
+            Ending { cause: Cause::Equal, finding: pass(board, link, seen), not_exercised, ..nothing }
         }
         Err(End::Failed { finding, suspects, .. }) => {
             Ending { cause: Cause::Different, finding, suspects, ..nothing }
@@ -150,13 +140,13 @@ fn broken_off(why: Finding, seen: &Observations) -> Finding {
     Finding::Problem(Box::new(Problem { message, ..*problem }))
 }
 
-fn pass(findings: &Findings, seen: &Observations) -> Finding {
+fn pass(board: &BoardReport, link: &LinkReport, seen: &Observations) -> Finding {
     Finding::AllRight {
         frames: seen.frames.len(),
         samples: seen.samples(),
         latency: seen.latency.map_or(0, |latency| latency.claimed),
-        board: findings.board.kind,
-        reconnections: findings.link.reconnections.len(),
+        board: board.kind,
+        reconnections: link.reconnections.len(),
     }
 }
 

@@ -1,20 +1,12 @@
 //! What a run has found so far.
 
 use std::mem;
-use std::time::Duration;
 
+use super::Misfit;
 use super::checks::Checks;
-use super::{Misfit, RunOptions};
-use crate::board::{Board, Status, Tally};
-use crate::result::{BoardReport, Doubt, LinkReport, Problem, Reconnection, SoakReport, WithinReport};
+use crate::board::Board;
+use crate::result::{BoardReport, Doubt, SoakReport, WithinReport};
 use crate::target::BoardKind;
-
-/// What went over earlier links, which broke.
-#[derive(Default)]
-pub(super) struct Earlier {
-    pub(super) tally: Tally,
-    pub(super) seconds: Duration,
-}
 
 /// What was found in one session, besides the checks and what was seen of frames.
 #[derive(Default)]
@@ -39,14 +31,7 @@ pub(super) struct Attempt {
 pub(super) struct Findings {
     pub(super) board: BoardReport,
     pub(super) checks: Checks,
-    pub(super) tally: Tally,
-    pub(super) link: LinkReport,
-    pub(super) earlier: Earlier,
     pub(super) attempt: Attempt,
-    /// Whether the run was made again because counters were wrong that a link can also change.
-    pub(super) counters_doubted: bool,
-    /// How many bursts were begun.
-    pub(super) bursts: u32,
     /// What was taken of a run that must keep within a time; none for any other run.
     pub(super) within: Option<WithinReport>,
     /// The result of a soak; none for any other run.
@@ -55,26 +40,31 @@ pub(super) struct Findings {
     pub(super) misfit: Option<Misfit>,
 }
 
+impl Attempt {
+    /// Notes that the link to `board` broke. If something was seen wrong before, nothing will show later what that link did, so
+    /// a doubt is noted too.
+    pub(super) fn link_broke(&mut self, board: &Board) {
+        if self.is_wrong {
+            let doubt = Doubt::of_session(board).unwrap_or(Doubt::PacketsUncounted {});
+            self.doubt.get_or_insert(doubt);
+        }
+        (self.rows_counted, self.repeats_counted) = (0, 0);
+    }
+}
+
 impl Findings {
-    pub(super) fn new(options: &RunOptions, target: &str, kind: BoardKind, link: String) -> Self {
-        let link = LinkReport { name: link, retry_limit: options.retry_limit.of(0), ..LinkReport::default() };
+    pub(super) fn new(target: String, kind: BoardKind) -> Self {
         Self {
-            board: BoardReport { kind, target: target.to_owned(), identity: None },
+            board: BoardReport { kind, target, identity: None },
             checks: Checks::new(),
-            tally: Tally::default(),
-            link,
-            earlier: Earlier::default(),
             attempt: Attempt::default(),
-            counters_doubted: false,
-            bursts: 0,
             within: None,
             soak: None,
             misfit: None,
         }
     }
 
-    /// Forgets what was found of the open board, for a look in another session. The number of bursts stays, so that none
-    /// gets the name of an earlier one.
+    /// Forgets what was found of the open board, for a look in another session.
     pub(super) fn begin_again(&mut self) {
         self.attempt = Attempt::default();
         self.checks.begin_again();
@@ -83,36 +73,5 @@ impl Findings {
     /// Notes what the board says about itself.
     pub(super) fn note_identity(&mut self, board: &Board) {
         self.board = BoardReport::of(board, self.board.kind, mem::take(&mut self.board.target));
-    }
-
-    /// Notes the link's counts at the end of the run.
-    pub(super) fn note_link(&mut self, board: &Board) {
-        self.tally = self.earlier.tally;
-        self.tally += board.tally();
-        self.link.retry_limit = board.retry_limit();
-        self.link.seconds = (self.earlier.seconds + board.now()).as_secs_f64();
-    }
-
-    /// Notes the counts of a link that broke. If something was seen wrong before, nothing will show later what that link
-    /// did, so a doubt is noted too.
-    pub(super) fn keep_counts(&mut self, board: &Board) {
-        if self.attempt.is_wrong {
-            let doubt = Doubt::of_session(board).unwrap_or(Doubt::PacketsUncounted {});
-            self.attempt.doubt.get_or_insert(doubt);
-        }
-        self.earlier.tally += board.tally();
-        self.earlier.seconds += board.now();
-        (self.attempt.rows_counted, self.attempt.repeats_counted) = (0, 0);
-    }
-
-    /// Notes that the board, which had gone away for this `reason`, came back.
-    pub(super) fn note_return(&mut self, reason: Problem, away: Duration) {
-        self.earlier.seconds += away;
-        let back = Reconnection { reason, seconds_away: away.as_secs_f64(), kept_tables: None };
-        self.link.reconnections.push(back);
-    }
-
-    pub(super) fn note_status(&mut self, status: &Status) {
-        self.link.damaged_out = status.damaged().into();
     }
 }

@@ -44,6 +44,7 @@ mod row_judge;
 mod rules;
 mod schedule;
 mod second_look;
+mod sessions;
 mod steps;
 mod streaming;
 mod threads;
@@ -55,7 +56,6 @@ mod within;
 
 use tracing::error_span;
 
-use crate::board::OpenOptions;
 use crate::link::{Candidate, Link, kinds};
 use crate::progress::{Progress, Step};
 use crate::result::{CheckName, FileHash, NotExercised, Problem};
@@ -66,7 +66,7 @@ use conclude::Begun;
 use end::End;
 use findings::Findings;
 use observations::Observations;
-use reconnect::Opener;
+use sessions::Sessions;
 pub(crate) use steps::NotAllJudged;
 use steps::Run;
 
@@ -129,9 +129,10 @@ pub fn not_begun(
 ) -> Finished {
     let name = target.to_string();
     let kind = kinds::of(target).map_or(BoardKind::Hardware, |kind| kind.board);
-    let findings = Findings::new(options, &name, kind, name.clone());
+    let findings = Findings::new(name.clone(), kind);
+    let link = Sessions::new(options, name, None).report();
     let end = End::error(CheckName::Identity, cause, problem);
-    conclude::conclude(plan, findings, Observations::default(), Err(end), options, Begun::now())
+    conclude::conclude(plan, findings, Observations::default(), link, Err(end), options, Begun::now())
 }
 
 fn run_to_report(
@@ -143,25 +144,15 @@ fn run_to_report(
     plan.check_length()?;
     misfit::check_frames(plan)?;
     let begun = Begun::now();
-    let mut findings = Findings::new(options, &candidate.target, candidate.kind, candidate.link.name());
-    let opener =
-        Opener { reopen: candidate.reopen, patience: options.reconnect, options: open_options(options) };
+    let Candidate { target, kind, link, reopen } = candidate;
+    let mut findings = Findings::new(target, kind);
+    let mut sessions = Sessions::new(options, link.name(), reopen);
     let mut seen = Observations::default();
-    let ended = drive(plan, candidate.link, options, opener, progress, &mut findings, &mut seen);
+    let ended = drive(plan, link, options, &mut sessions, progress, &mut findings, &mut seen);
     progress.done();
     match findings.misfit.take() {
         Some(misfit) => Err(misfit),
-        None => Ok(conclude::conclude(plan, findings, seen, ended, options, begun)),
-    }
-}
-
-fn open_options(options: &RunOptions) -> OpenOptions {
-    OpenOptions {
-        take_over: options.take_over,
-        counts: options.counts,
-        retry_limit: options.retry_limit,
-        stop: options.stop.clone().link_limit(options.timeout),
-        ..options.provenance.session_ids.into()
+        None => Ok(conclude::conclude(plan, findings, seen, sessions.report(), ended, options, begun)),
     }
 }
 
@@ -169,7 +160,7 @@ fn drive(
     plan: &Plan,
     link: Box<dyn Link>,
     options: &RunOptions,
-    mut opener: Opener,
+    sessions: &mut Sessions,
     progress: &dyn Progress,
     findings: &mut Findings,
     seen: &mut Observations,
@@ -177,7 +168,7 @@ fn drive(
     progress.step(Step::JudgeTheJudge);
     steps::judge_the_judge(findings)?;
     progress.step(Step::OpenTheBoard);
-    let mut board = opener.open(link, findings)?;
+    let mut board = sessions.open(link)?;
     tracing::info!("session {} with {}", board.welcome.session, board.capabilities.name);
     let chosen = match plan.within {
         None => Ok(plan.clone()),
@@ -185,12 +176,20 @@ fn drive(
     };
     let end = chosen.and_then(|plan| {
         let generations = plan.generations(&Build::of(&board.capabilities));
-        let (board, opener) = (&mut board, &mut opener);
-        let mut run =
-            Run { plan: &plan, board, generations, sessions: 0, options, opener, progress, findings };
+        let mut run = Run {
+            plan: &plan,
+            board: &mut board,
+            sessions,
+            generations,
+            options,
+            progress,
+            findings,
+            bursts: 0,
+            counters_doubted: false,
+        };
         run.all_steps(seen)
     });
-    findings.note_link(&board);
+    sessions.note_end(&board);
     // Whatever happened, the next run must find the board free. A board that is gone need not be asked.
     let reachable = !matches!(&end, Err(end) if end.is_unreachable());
     if reachable {

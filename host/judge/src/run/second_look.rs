@@ -16,8 +16,6 @@ use crate::verdict::Cause;
 pub(super) const LOOKS: u32 = 3;
 /// How often a board is asked for its counters to see whether it resets them each time.
 const COUNTS: usize = 4;
-/// Keeps the nonces of these sessions apart from those of boards that came back.
-const NONCE: u32 = 1 << 16;
 
 /// What looking again showed.
 #[derive(Debug)]
@@ -97,26 +95,15 @@ impl Run<'_> {
         if let Some(doubt) = self.findings.attempt.doubt.or(Doubt::of_requests(self.board)) {
             return Some(doubt);
         }
-        let counts_once_more = self.options.counts && !self.findings.counters_doubted;
+        let counts_once_more = self.options.counts && !self.counters_doubted;
         let doubt = Counts::asked_of(self.board).doubt(check == CheckName::Counters, counts_once_more);
-        self.findings.counters_doubted |= doubt == Some(Doubt::CountersOfLinks {});
+        self.counters_doubted |= doubt == Some(Doubt::CountersOfLinks {});
         doubt
     }
 
-    /// Opens a session in which copies of earlier sessions' requests have no effect: the run's `number`th, from 1.
-    pub(super) fn open_session(&mut self, number: u32) -> Result<(), End> {
-        let nonce = self.nonce(number);
-        self.board.open_another_session(nonce).during(CheckName::Link)
-    }
-
-    fn nonce(&self, number: u32) -> u32 {
-        self.opener.options.nonce.wrapping_add(NONCE + number)
-    }
-
-    /// The nonce of a further session within the same look.
-    pub(super) fn next_nonce(&mut self) -> u32 {
-        self.sessions += 1;
-        self.nonce(LOOKS + self.sessions)
+    /// Opens the session in which everything is done again, for the `look`th time.
+    fn open_session(&mut self, look: u32) -> Result<(), End> {
+        self.board.open_another_session(self.sessions.nonce_of(look)).during(CheckName::Link)
     }
 }
 

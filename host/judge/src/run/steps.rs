@@ -12,7 +12,7 @@ use super::options::RunOptions;
 use super::patterns::patterns;
 use super::plan::{Generation, Plan, Segment};
 use super::prepared::{self, PrepareError, Prepared};
-use super::reconnect::Opener;
+use super::sessions::Sessions;
 use super::variations::Build;
 use crate::board::{Board, BoardError, UnknownDatapath, possible};
 use crate::progress::{Progress, Step};
@@ -38,13 +38,15 @@ pub(crate) struct NotAllJudged {
 pub(super) struct Run<'a> {
     pub(super) plan: &'a Plan,
     pub(super) board: &'a mut Board,
+    pub(super) sessions: &'a mut Sessions,
     pub(super) generations: Vec<Generation>,
-    /// Sessions opened so far to make copies of old requests harmless.
-    pub(super) sessions: u32,
     pub(super) options: &'a RunOptions,
-    pub(super) opener: &'a mut Opener,
     pub(super) progress: &'a dyn Progress,
     pub(super) findings: &'a mut Findings,
+    /// How many bursts were begun. The count is a name that no other burst of the run has.
+    pub(super) bursts: u32,
+    /// Whether the run was made again because counters were wrong that a link can also change.
+    pub(super) counters_doubted: bool,
 }
 
 pub(super) fn judge_the_judge(findings: &mut Findings) -> Result<(), End> {
@@ -180,7 +182,7 @@ impl Run<'_> {
 
     fn link(&mut self) -> Result<(), End> {
         let (_, round_trip) = self.board.echo(&[]).during(CheckName::Link)?;
-        self.findings.link.round_trip_us = Some(round_trip.as_micros() as u64);
+        self.sessions.note_round_trip(round_trip);
         let patterns = patterns(self.plan.seed);
         let bytes: usize = patterns.iter().map(Vec::len).sum();
         for pattern in &patterns {
@@ -189,7 +191,7 @@ impl Run<'_> {
                 return Err(End::failed(CheckName::Link, Finding::EchoWrong {}));
             }
         }
-        self.start_afresh().during(CheckName::Link)?;
+        self.sessions.start_afresh(self.board).during(CheckName::Link)?;
         self.findings
             .checks
             .passed(CheckName::Link, Finding::EchoesReturned { bytes, echoes: patterns.len() });

@@ -18,7 +18,7 @@ impl Run<'_> {
         let after = self.tables_after(seen);
         self.findings.checks.lap(CheckName::TablesAfter);
         let status = self.board.status(false).during(CheckName::Counters)?;
-        self.findings.note_status(&status);
+        self.sessions.note_damaged(status.damaged());
         self.findings.checks.lap(CheckName::Counters);
         self.unless_misconduct(CheckName::Frames, Ok(()))?;
         let frames = self.frames(seen, after.as_ref().err());

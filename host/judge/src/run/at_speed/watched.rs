@@ -177,9 +177,8 @@ impl Run<'_> {
         ends_early: EndsEarly,
         told: &mut dyn FnMut(&BurstSeen, Duration),
     ) -> (BurstSeen, Result<(), End>) {
-        // The count is a name that no other burst of the run has.
-        self.findings.bursts += 1;
-        let burst = plan.request(self.findings.bursts);
+        self.bursts += 1;
+        let burst = plan.request(self.bursts);
         let mut watched = BurstSeen::default();
         let ended = thread::scope(|scope| {
             let predicted = predicted::ahead(scope, *plan, tables);

@@ -85,7 +85,7 @@ impl Rules<'_, '_> {
     pub(super) fn small_burst(&self, frames: u32) -> Option<Burst> {
         let bursts = self.run.known_bursts().ok()?;
         Some(Burst {
-            burst: self.run.findings.bursts + 1,
+            burst: self.run.bursts + 1,
             frames,
             seed: self.small.seed ^ FAR,
             first_frame: 0xfffe,
@@ -96,7 +96,7 @@ impl Rules<'_, '_> {
 
     /// Starts a burst, and returns it.
     pub(super) fn start(&mut self, burst: Burst) -> Result<Burst, End> {
-        self.run.findings.bursts += 1;
+        self.run.bursts += 1;
         self.replied(Rule::Burst, &Request::Burst(burst), Vec::new())?;
         Ok(burst)
     }
@@ -264,7 +264,7 @@ impl Rules<'_, '_> {
     fn cut(&mut self) -> Result<(), End> {
         for bytes in BYTES_TO_CUT {
             let Some(burst) = self.small_burst(Burst::ENDLESS) else { return Ok(()) };
-            self.run.findings.bursts += 1;
+            self.run.bursts += 1;
             self.run.board.cut(&burst, bytes).map_err(of_board)?;
             // If the request was lost, there is no burst.
             if let Some(came) = self.came_of(&burst)? {

@@ -298,7 +298,7 @@ impl Rules<'_, '_> {
         let doubt = Doubt::of_session(self.run.board);
         let earlier = &mut self.run.findings.attempt.doubt;
         *earlier = earlier.take().or(doubt);
-        let nonce = self.run.next_nonce();
+        let nonce = self.run.sessions.next_nonce();
         open(self.run.board, nonce)?;
         (self.refusals, self.before) = (Refusals::default(), Status::default());
         Ok(())

@@ -92,7 +92,7 @@ impl Run<'_> {
 
     /// The run's clock: the link's, plus the time of earlier links, which broke.
     fn clock(&self) -> Duration {
-        self.findings.earlier.seconds + self.board.now()
+        self.sessions.earlier() + self.board.now()
     }
 
     fn all_bursts(
@@ -176,7 +176,7 @@ impl Run<'_> {
             mode,
             draw,
         );
-        let (now, earlier, progress) = (self.board.now(), self.findings.earlier.seconds, self.progress);
+        let (now, earlier, progress) = (self.board.now(), self.sessions.earlier(), self.progress);
         let time = account.time_of_burst(earlier + now);
         plan.frames = account.frames_of_burst(&plan, time);
         if let Some(active) = tables.first().filter(|_| is_trapped(draw) && plan.has_trap()) {
@@ -210,14 +210,14 @@ impl Run<'_> {
     }
 
     fn open_another_session(&mut self) -> Result<(), End> {
-        let nonce = self.next_nonce();
+        let nonce = self.sessions.next_nonce();
         self.board.open_another_session(nonce).during(CheckName::Link)
     }
 
     /// Diagnoses what differed in a burst.
     fn look_into(&mut self, account: &mut Account, played: &Played) {
         let Played { plan, tables, watched, .. } = played;
-        let at = watched.wrong_frames.first().map(|first| self.findings.earlier.seconds + first.at);
+        let at = watched.wrong_frames.first().map(|first| self.sessions.earlier() + first.at);
         let at = at.unwrap_or_else(|| self.clock());
         let end = match &watched.miscounted {
             _ if !account.wants_more() => return,
@@ -230,7 +230,7 @@ impl Run<'_> {
     /// The tables and the kernel to judge with and the decoy's. Each are active in two bursts out of four; the others are
     /// in the other bank if there is one.
     fn tables_of_burst(&mut self, draw: u32) -> Result<Vec<Generation>, End> {
-        self.start_afresh().during(CheckName::AtSpeed)?;
+        self.sessions.start_afresh(self.board).during(CheckName::AtSpeed)?;
         self.board.configure(self.plan.tables.geometry(), RowTiming::default()).during(CheckName::AtSpeed)?;
         let mut tables: Vec<_> =
             self.generations.iter().filter(|it| [DECOY, JUDGED].contains(&it.number)).cloned().collect();
