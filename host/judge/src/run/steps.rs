@@ -201,12 +201,15 @@ impl Run<'_> {
 
 #[cfg(test)]
 mod tests {
-    use halfrow_model::{BitDepth, Geometry};
+    use std::sync::mpsc::channel;
 
-    use super::{End, all_judged};
+    use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, TableSet};
+
+    use super::*;
     use crate::frames::Builtin;
-    use crate::run::{FrameSource, JUDGED, Part, ScheduledFrame, Segment, Timing};
-    use crate::verdict::Cause;
+    use crate::link::{Candidate, open};
+    use crate::progress::Silent;
+    use crate::run::{FrameSource, JUDGED, Part, ScheduledFrame, Timing};
 
     fn segment(width: usize, frames: u16) -> Segment {
         let geometry = Geometry::new(width, 16, BitDepth::Twelve, 63).unwrap();
@@ -228,5 +231,33 @@ mod tests {
             let end = all_judged(&schedule, judged);
             assert!(matches!(end, Err(End::Error { cause: Cause::Station, .. })), "{judged}");
         }
+    }
+
+    /// Nothing of it is wrong: the board was given no frame, and counts none.
+    #[test]
+    fn a_run_whose_frames_never_came_does_not_pass() {
+        let Candidate { target, kind, link, .. } = open(&"mock".parse().unwrap()).unwrap();
+        let geometry = Geometry::centred(64, 16, BitDepth::Twelve).unwrap();
+        let tables = TableSet::from_lens(geometry, &Equidistant::from_radius(10.0).unwrap(), None).unwrap();
+        let plan = Plan::new(tables, Interpolant::Hermite.into());
+        let options = RunOptions::default();
+        let mut sessions = Sessions::new(&options, target.clone(), None);
+        let mut board = sessions.open(link).unwrap();
+        let build = Build::of(&board.capabilities);
+        let mut run = Run {
+            plan: &plan,
+            board: &mut board,
+            sessions: &mut sessions,
+            generations: plan.generations(&build),
+            options: &options,
+            progress: &Silent,
+            findings: &mut Findings::new(target, kind),
+            bursts: 0,
+            counters_doubted: false,
+        };
+        let (_, no_frames) = channel();
+        let schedule = plan.schedule(&build);
+        let last = run.stream_and_judge(&schedule[..1], &no_frames, &mut Observations::default());
+        assert_eq!(last.unwrap_err().finding().as_problem().code, "samples-not-judged");
     }
 }
