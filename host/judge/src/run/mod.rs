@@ -5,54 +5,30 @@
 //! | check | in |
 //! |---|---|
 //! | `judge` | `golden` |
-//! | `identity` | `steps`, `misfit` |
-//! | `link` | `steps`, with the bytes of `patterns` |
-//! | `upload`, `read-back` | `upload` |
-//! | `frames`, `latency` | prepared in `prepared`, streamed in `streaming`, row by row in `row_judge`, judged in `what_came`; `lost_row` if a row does not come |
-//! | `tables-after` | `what_came` |
-//! | `counters` | `counters` |
+//! | `identity` | `steps`, `plan::misfit` |
+//! | `link` | `steps`, with the bytes of `plan::patterns` |
+//! | `upload`, `read-back` | `frames::upload` |
+//! | `frames`, `latency` | prepared in `frames::prepared`, streamed in `streaming`, row by row in `row_judge`, judged in `what_came`; `lost_row` if a row does not come |
+//! | `tables-after` | `frames::what_came` |
+//! | `counters` | `frames::counters` |
 //! | `at-speed` | `at_speed` |
 //! | `rules` | `rules` |
 //!
-//! In addition: `second_look` does everything once more, `reconnect` waits for a board that goes away, `within` keeps a
-//! run within a time, and `conclude` and `finished` make the report.
+//! In addition: `plan` has what a run does, in what parts and at what price, and keeps it `within` a time; `sessions` waits for a
+//! board that goes away, and does everything once more in a `second_look`; `findings` has the checks, what was `exercised`, and
+//! why a run ended, of which `conclude` makes the report.
 
 mod at_speed;
-mod checks;
-mod conclude;
-mod counters;
-mod end;
-mod entry;
-mod exercised;
 mod findings;
-mod finished;
+mod frames;
 mod golden;
-mod kept;
-mod lost_row;
-mod misfit;
-mod observations;
 mod options;
-mod parts;
-mod patterns;
-mod pauses;
 mod plan;
-mod prepared;
-mod prices;
-mod reconnect;
 mod recorded;
-mod row_judge;
 mod rules;
-mod schedule;
-mod second_look;
 mod sessions;
 mod steps;
-mod streaming;
 mod threads;
-mod upload;
-mod variations;
-mod what_came;
-mod window;
-mod within;
 
 use tracing::error_span;
 
@@ -62,31 +38,31 @@ use crate::result::{CheckName, FileHash, NotExercised, Problem};
 use crate::target::{BoardKind, Target};
 use crate::verdict::Cause;
 
-use conclude::Begun;
-use end::End;
-use findings::Findings;
-use observations::Observations;
+use findings::conclude::{self, Begun};
+use findings::{End, Findings};
+use frames::observations::Observations;
+use plan::{misfit as misfits, within};
 use sessions::Sessions;
 pub(crate) use steps::NotAllJudged;
 use steps::Run;
 
 pub use crate::board::SessionIds;
 pub(crate) use at_speed::FEW as FEW_AT_SPEED;
-pub use finished::{Finished, Lack, RECORDING_LOST, REPORT_LOST};
+pub use findings::finished::{Finished, Lack, RECORDING_LOST, REPORT_LOST};
+pub(crate) use frames::prepared::PrepareError;
 pub(crate) use golden::{CannotJudge, GoldenError};
-pub use misfit::{Misfit, misfit};
 pub use options::RunOptions;
-pub use parts::{Part, Selection};
+pub use plan::misfit::{Misfit, misfit};
+pub use plan::parts::{Part, Selection};
+pub use plan::prices::{Prices, Rates, usual_capabilities};
+pub use plan::variations::{Build, Vary};
+pub use plan::within::WithinError;
 pub use plan::{
     AtSpeed, DECOY, FrameSource, Generation, JUDGED, MOST_FRAMES, Plan, ScheduledFrame, Segment, Timing,
     TooManyFrames,
 };
-pub(crate) use prepared::PrepareError;
-pub use prices::{Prices, Rates, usual_capabilities};
 pub use recorded::{RecordedRun, RestoreError};
 pub(crate) use threads::NoThread;
-pub use variations::{Build, Vary};
-pub use within::WithinError;
 
 /// What the report says about the run besides its findings. The default draws its numbers.
 #[derive(Clone, Debug, Default)]
@@ -142,7 +118,7 @@ fn run_to_report(
     progress: &dyn Progress,
 ) -> Result<Finished, Misfit> {
     plan.check_length()?;
-    misfit::check_frames(plan)?;
+    misfits::check_frames(plan)?;
     let begun = Begun::now();
     let Candidate { target, kind, link, reopen } = candidate;
     let mut findings = Findings::new(target, kind);

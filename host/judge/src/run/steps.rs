@@ -3,17 +3,16 @@
 use std::sync::mpsc::Receiver;
 use std::thread;
 
-use super::end::{During, End};
-use super::findings::Findings;
+use super::findings::{During, End, Findings};
+use super::frames::observations::Observations;
+use super::frames::prepared::{self, PrepareError, Prepared};
 use super::golden::{self, CannotJudge};
-use super::misfit::misfit;
-use super::observations::Observations;
 use super::options::RunOptions;
-use super::patterns::patterns;
+use super::plan::misfit::misfit;
+use super::plan::patterns::patterns;
+use super::plan::variations::Build;
 use super::plan::{Generation, Plan, Segment};
-use super::prepared::{self, PrepareError, Prepared};
 use super::sessions::Sessions;
-use super::variations::Build;
 use crate::board::{Board, BoardError, UnknownDatapath, possible};
 use crate::progress::{Progress, Step};
 use crate::reference;

@@ -3,7 +3,7 @@
 use std::io;
 use std::thread::{Builder, Scope};
 
-use super::end::End;
+use super::findings::End;
 use crate::result::{CheckName, Problem};
 use crate::verdict::Cause;
 

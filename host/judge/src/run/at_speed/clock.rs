@@ -10,9 +10,9 @@ use super::watched::BurstSeen;
 use crate::board::{BoardNature, Fetched};
 use crate::result::wording::seen_of_clock;
 use crate::result::{CheckName, ClockSeen, Finding, NotExercised};
-use crate::run::end::End;
+use crate::run::findings::End;
 use crate::run::plan::Generation;
-use crate::run::second_look::LOOKS;
+use crate::run::sessions::second_look::LOOKS;
 use crate::run::steps::Run;
 
 /// The `clock_source` in WIRE.md of a clock that comes from outside.

@@ -22,10 +22,10 @@ use std::time::Duration;
 use halfrow_model::Geometry;
 use halfrow_protocol::message::{BurstMode, Capabilities};
 
-use super::end::{During, End};
-use super::exercised::Exercised;
-use super::observations::Observations;
-use super::parts::Part;
+use super::findings::exercised::Exercised;
+use super::findings::{During, End};
+use super::frames::observations::Observations;
+use super::plan::parts::Part;
 use super::plan::{AtSpeed, DECOY, Generation, JUDGED, Segment};
 use super::steps::Run;
 use crate::board::{Bank, Bursts, RowTiming};

@@ -8,7 +8,7 @@ use halfrow_protocol::message::{BurstMode, FrameRecord};
 use super::burst::{BurstPlan, USUAL_CLOCK};
 use super::{FEW, USUAL, corners};
 use crate::board::{BoardNature, Bursts, Capabilities};
-use crate::run::prices::Prices;
+use crate::run::plan::prices::Prices;
 use crate::run::{AtSpeed, Generation, Plan};
 
 /// The payload of a request for records, and of its reply without the records.

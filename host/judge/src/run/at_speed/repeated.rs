@@ -1,7 +1,6 @@
 //! Has a frame that was wrong at speed made again and again until the board traps a row of it.
 
-use std::iter;
-use std::slice;
+use std::{iter, slice};
 
 use halfrow_model::{Content, Frame, Phase, row_signature};
 use halfrow_protocol::message::BurstMode;
@@ -22,8 +21,8 @@ use crate::result::{
     Account, CheckName, Defect, Evidence, Finding, FrameReport, FrameTiming, KeptRow, Problem, Repetition,
     Streamed, Suspect,
 };
-use crate::run::end::{During, End};
-use crate::run::kept::as_found;
+use crate::run::findings::{During, End};
+use crate::run::frames::kept::as_found;
 use crate::run::plan::Generation;
 use crate::run::steps::Run;
 use crate::verdict::Cause;

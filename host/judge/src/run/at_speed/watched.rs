@@ -11,7 +11,7 @@ use super::clock::Stopwatch;
 use super::predicted;
 use crate::board::{Board, BoardError};
 use crate::result::{BurstCount, CheckName, ClockSeen, Finding};
-use crate::run::end::{During, End};
+use crate::run::findings::{During, End};
 use crate::run::plan::Generation;
 use crate::run::steps::Run;
 use crate::verdict::Cause;

@@ -9,7 +9,7 @@ use super::rows::{FRAME, GENERATION, TRIES};
 use super::{Rules, answer, broken, miscounted, of_board, of_rows, other_row};
 use crate::board::{BoardError, NumberedFrame, Response, Status};
 use crate::result::{Answer, Counter, Rule};
-use crate::run::end::End;
+use crate::run::findings::End;
 
 /// Rows that wait because all banks are full. The first of them takes the first bank that becomes free.
 const WAITING: u32 = 2;

@@ -14,7 +14,7 @@ use crate::board::{BoardError, Fetched};
 use crate::result::{Answer, Rule};
 use crate::run::Generation;
 use crate::run::at_speed::{clock_hz, content, signer};
-use crate::run::end::End;
+use crate::run::findings::End;
 
 /// Frames of a burst that must be right: every board has records for two.
 const FEW: u32 = 2;

@@ -9,7 +9,7 @@ use super::compared::Compared;
 use super::{FIRST_FACTOR, Rules, payload};
 use crate::result::Rule;
 use crate::run::Generation;
-use crate::run::end::End;
+use crate::run::findings::End;
 
 /// Generations that differ in every bit.
 const FIRST: u8 = 0x55;

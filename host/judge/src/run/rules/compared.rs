@@ -12,7 +12,7 @@ use crate::reference::correct;
 use crate::result::RowPart;
 use crate::run::Generation;
 use crate::run::at_speed::MadeRows;
-use crate::run::pauses::pauses;
+use crate::run::frames::pauses::pauses;
 
 /// How a frame must come back.
 struct Right {

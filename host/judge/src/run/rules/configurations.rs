@@ -8,7 +8,7 @@ use super::compared::Compared;
 use super::rows::{FRAME, GENERATION};
 use super::{Rules, payload};
 use crate::result::Rule;
-use crate::run::end::End;
+use crate::run::findings::End;
 
 /// The numbers of CONFIGURE's fields (WIRE.md, 18).
 const WIDTH: u16 = 0;

@@ -9,8 +9,8 @@ use super::without_effect::others;
 use super::{Refusals, Rules, miscounted, of_board, of_rows};
 use crate::board::{Given, Response, Status};
 use crate::result::{Counter, Finding, Rule};
-use crate::run::counters::MOVED_BY_LINKS;
-use crate::run::end::End;
+use crate::run::findings::End;
+use crate::run::frames::counters::MOVED_BY_LINKS;
 
 /// Rows of a frame whose first row is asked for again: the second one pushes it out.
 const ROWS: usize = 2;

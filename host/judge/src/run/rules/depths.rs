@@ -7,8 +7,8 @@ use super::rows::{FRAME, GENERATION};
 use super::{Rules, miscounted, of_board};
 use crate::board::RowTiming;
 use crate::result::{Counter, Rule};
-use crate::run::end::End;
-use crate::run::variations::Build;
+use crate::run::findings::End;
+use crate::run::plan::variations::Build;
 
 /// The rows of a frame. The first one is not stretched.
 const ROWS: usize = 2;

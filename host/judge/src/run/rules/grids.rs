@@ -6,8 +6,8 @@ use halfrow_protocol::message::{Commit, Entries, Grids, RefusalCode, Request, Sh
 use super::{FIRST_FACTOR, Rules};
 use crate::board::grids;
 use crate::result::Rule;
-use crate::run::end::End;
-use crate::run::parts::of_height;
+use crate::run::findings::End;
+use crate::run::plan::parts::of_height;
 
 /// The numbers of COMMIT's fields (WIRE.md, 13).
 const V: u16 = 1;

@@ -31,9 +31,9 @@ use halfrow_model::Geometry;
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Bank, Refusal, RefusalCode, Request, Span, Table};
 
-use super::end::End;
-use super::parts::of_height;
+use super::findings::End;
 use super::plan::Segment;
+use super::plan::parts::of_height;
 use super::steps::Run;
 use crate::board::{BoardError, Capabilities, Given, Had, Response, RowTiming, Status};
 use crate::compare::Comparison;

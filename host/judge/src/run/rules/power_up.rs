@@ -5,7 +5,7 @@ use halfrow_protocol::message::{Bank, Commit, NODE_BYTES, RefusalCode, Request, 
 
 use super::Rules;
 use crate::result::Rule;
-use crate::run::end::End;
+use crate::run::findings::End;
 
 /// The generation of tables that no frame uses.
 const GENERATION: u8 = 0xff;

@@ -1,7 +1,7 @@
 //! The price of trying the rules. It depends on the board's capabilities, not on the plan.
 
 use crate::run::at_speed::known_bursts;
-use crate::run::prices::Prices;
+use crate::run::plan::prices::Prices;
 
 /// What a group of rules takes.
 struct Cost {

@@ -6,7 +6,7 @@ use super::counts::at_least;
 use super::{Rules, of_board};
 use crate::board::Response;
 use crate::result::Counter;
-use crate::run::end::End;
+use crate::run::findings::End;
 
 /// How many refusals came.
 #[derive(Clone, Copy, Default)]

@@ -8,7 +8,7 @@ use halfrow_protocol::message::{
 use super::{FIRST_FACTOR, Rules, answer, broken, longer, payload};
 use crate::board::Response;
 use crate::result::Rule;
-use crate::run::end::End;
+use crate::run::findings::End;
 
 /// A value that has no meaning in any byte with few values.
 pub(super) const NO_MEANING: u8 = 0x80;

@@ -14,8 +14,8 @@ use crate::reference::correct;
 use crate::result::{CheckName, Counter, Finding, Rule};
 use crate::run::Generation;
 use crate::run::at_speed::{BY_TURNS, fit};
-use crate::run::end::End;
-use crate::run::window::window_wrong;
+use crate::run::findings::End;
+use crate::run::sessions::window::window_wrong;
 use crate::verdict::Cause;
 
 /// The generation with which rows are made.

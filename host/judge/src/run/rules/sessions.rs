@@ -15,8 +15,8 @@ use super::{FIRST_FACTOR, Refusals, Rules, broken, of_board};
 use crate::board::{Board, BoardError, Given, Response, Status};
 use crate::result::{Answer, CheckName, Counter, Doubt, Rule};
 use crate::run::Generation;
-use crate::run::counters::rows_numbered;
-use crate::run::end::End;
+use crate::run::findings::End;
+use crate::run::frames::counters::rows_numbered;
 
 /// How often a board must do what it must not, where a link or the board's supply could cause it too, though not every
 /// time: a late copy of an old HELLO also opens a session.

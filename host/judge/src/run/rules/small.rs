@@ -8,7 +8,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::board::{Capabilities, NumberedFrame};
 use crate::run::Generation;
 use crate::run::at_speed::{CALM, drawn_factors, drawn_kernel};
-use crate::run::variations::Build;
+use crate::run::plan::variations::Build;
 
 /// Rows of a small frame, if the board takes that many.
 const ROWS: usize = 4;

@@ -10,7 +10,7 @@ use super::{FIRST_FACTOR, Rules, of_board, payload};
 use crate::board::{Board, TablePort};
 use crate::result::Rule;
 use crate::run::Generation;
-use crate::run::end::End;
+use crate::run::findings::End;
 
 const NODE_COUNT: u16 = NODES as u16;
 

@@ -14,9 +14,9 @@ use crate::reference::correct;
 use crate::result::Rule;
 use crate::run::Generation;
 use crate::run::at_speed::drawn_factors;
-use crate::run::end::End;
-use crate::run::parts::of_height;
-use crate::run::variations::Build;
+use crate::run::findings::End;
+use crate::run::plan::parts::of_height;
+use crate::run::plan::variations::Build;
 
 /// The reply to TRAP when no row was kept.
 pub(super) const NOTHING_KEPT: [u8; 1] = [0];

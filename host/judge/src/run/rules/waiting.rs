@@ -10,7 +10,7 @@ use super::bursts::{Awaited, LONGEST_IDLE, PATIENCE, looked_at};
 use super::{Rules, of_board};
 use crate::board::Response;
 use crate::result::Rule;
-use crate::run::end::End;
+use crate::run::findings::End;
 
 /// How many records are freed each time that a burst waits for free ones.
 const TAKEN: [u32; 4] = [5, 1, 9, 4];

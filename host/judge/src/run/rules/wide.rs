@@ -10,8 +10,8 @@ use crate::board::RowTiming;
 use crate::result::Rule;
 use crate::run::Generation;
 use crate::run::at_speed::drawn_factors;
-use crate::run::end::End;
-use crate::run::variations::Build;
+use crate::run::findings::End;
+use crate::run::plan::variations::Build;
 
 /// The generation with which they are made.
 const GENERATION: u8 = 0x69;

@@ -7,7 +7,7 @@ use super::sessions::TIMES;
 use super::{FIRST_FACTOR, Rules, answer, broken, miscounted, of_board, payload};
 use crate::board::{BoardError, Response};
 use crate::result::{Answer, Counter, Rule};
-use crate::run::end::End;
+use crate::run::findings::End;
 
 /// The row factor that must stay in its place.
 const KEPT: [u8; 4] = 1_u32.to_le_bytes();

@@ -8,8 +8,8 @@ use crate::result::{
 };
 use crate::run::at_speed::burst::BurstPlan;
 use crate::run::at_speed::watched::BurstSeen;
-use crate::run::end::End;
-use crate::run::second_look::broken_off;
+use crate::run::findings::End;
+use crate::run::sessions::second_look::broken_off;
 use crate::verdict::Cause;
 
 use super::played::Played;

@@ -3,7 +3,7 @@
 use crate::result::{Finding, Repetition};
 use crate::run::at_speed::burst::BurstPlan;
 use crate::run::at_speed::watched::BurstSeen;
-use crate::run::end::End;
+use crate::run::findings::End;
 use crate::run::plan::Generation;
 
 /// A burst that is over or broke off.

@@ -7,7 +7,7 @@ use halfrow_protocol::MAX_PAYLOAD;
 
 /// Payloads that a poor link or packet buffer is likely to damage: every byte value, runs with and without zeros around the
 /// stuffing's block of 254, alternating bits, and random bytes up to the longest packet.
-pub(super) fn patterns(seed: u64) -> Vec<Vec<u8>> {
+pub(crate) fn patterns(seed: u64) -> Vec<Vec<u8>> {
     let mut random = Pcg64Mcg::new(u128::from(seed) | 1 << 64);
     let mut noise = |length| {
         let mut bytes = vec![0; length];

@@ -1,14 +1,18 @@
 //! The sessions of a run: how they are opened, the first and later ones, and what went over their links.
 
+mod reconnect;
+pub(super) mod second_look;
+pub(super) mod window;
+
 use std::error::Error;
 use std::time::{Duration, Instant};
 
-use super::RunOptions;
-use super::end::{During, End};
-use super::second_look::LOOKS;
 use crate::board::{Board, BoardError, OpenFailed, OpenOptions, Tally};
 use crate::link::{Link, OpenError, Reopener};
 use crate::result::{CheckName, Finding, LinkReport, Problem, Reconnection};
+use crate::run::RunOptions;
+use crate::run::findings::{During, End};
+use second_look::LOOKS;
 
 /// The most times that a board may come back. More often than this it is a loose contact, and waiting does not help.
 const MOST: usize = 16;
@@ -25,7 +29,7 @@ struct Went {
 }
 
 /// The sessions of a run.
-pub(super) struct Sessions {
+pub(crate) struct Sessions {
     /// Opens the link again; none if it cannot be.
     reopen: Option<Reopener>,
     /// How long a board may stay away; none if the run ends when it goes away.
@@ -42,7 +46,7 @@ pub(super) struct Sessions {
 
 impl Sessions {
     /// Of a run over the link of this `name`.
-    pub(super) fn new(options: &RunOptions, name: String, reopen: Option<Reopener>) -> Self {
+    pub(crate) fn new(options: &RunOptions, name: String, reopen: Option<Reopener>) -> Self {
         Self {
             reopen,
             patience: options.reconnect,
@@ -62,7 +66,7 @@ impl Sessions {
 
     /// Opens the board at `link`, or at a reopened link if that one breaks. The board is taken over only now: a host that
     /// takes it during the run came later, and is not thrown out.
-    pub(super) fn open(&mut self, link: Box<dyn Link>) -> Result<Board, End> {
+    pub(crate) fn open(&mut self, link: Box<dyn Link>) -> Result<Board, End> {
         let opened = self.open_first(link);
         self.options.take_over = false;
         opened
@@ -82,13 +86,13 @@ impl Sessions {
     }
 
     /// How long to wait for a board that went away with `end`; none if that is no reason to wait, or waiting does not help.
-    pub(super) fn patience_after(&self, end: &End) -> Option<Duration> {
+    pub(crate) fn patience_after(&self, end: &End) -> Option<Duration> {
         let again = end.is_outage() && self.reopen.is_some() && self.report.reconnections.len() < MOST;
         self.patience.filter(|_| again)
     }
 
     /// Waits for the board, which went away with `end`, and opens it in place of `board`. Returns whether it is the same one.
-    pub(super) fn come_back(
+    pub(crate) fn come_back(
         &mut self,
         board: &mut Board,
         patience: Duration,
@@ -155,7 +159,7 @@ impl Sessions {
     }
 
     /// Drops what the board has of an earlier session, and notes whether a board that came back still had its tables.
-    pub(super) fn start_afresh(&mut self, board: &mut Board) -> Result<(), BoardError> {
+    pub(crate) fn start_afresh(&mut self, board: &mut Board) -> Result<(), BoardError> {
         let had_tables = board.start_afresh()?;
         if let Some(last) = self.report.reconnections.last_mut() {
             last.kept_tables.get_or_insert(had_tables);
@@ -165,32 +169,32 @@ impl Sessions {
 
     /// The nonce of the session in which everything is done again, for the `look`th time from 1. In it, copies of earlier
     /// sessions' requests have no effect.
-    pub(super) fn nonce_of(&self, look: u32) -> u32 {
+    pub(crate) fn nonce_of(&self, look: u32) -> u32 {
         self.options.nonce.wrapping_add(NONCE + look)
     }
 
     /// The nonce of a further such session within the same look.
-    pub(super) fn next_nonce(&mut self) -> u32 {
+    pub(crate) fn next_nonce(&mut self) -> u32 {
         self.opened += 1;
         self.nonce_of(LOOKS + self.opened)
     }
 
     /// The time on the clocks of earlier links, and between them.
-    pub(super) fn earlier(&self) -> Duration {
+    pub(crate) fn earlier(&self) -> Duration {
         self.earlier.seconds
     }
 
-    pub(super) fn note_round_trip(&mut self, time: Duration) {
+    pub(crate) fn note_round_trip(&mut self, time: Duration) {
         self.report.round_trip_us = Some(time.as_micros() as u64);
     }
 
     /// Notes how many packets reached the board damaged, by its own count.
-    pub(super) fn note_damaged(&mut self, damaged: u32) {
+    pub(crate) fn note_damaged(&mut self, damaged: u32) {
         self.report.damaged_out = damaged.into();
     }
 
     /// Notes the link's counts at the end of the run.
-    pub(super) fn note_end(&mut self, board: &Board) {
+    pub(crate) fn note_end(&mut self, board: &Board) {
         self.tally = self.earlier.tally;
         self.tally += board.tally();
         self.report.retry_limit = board.retry_limit();
@@ -198,7 +202,7 @@ impl Sessions {
     }
 
     /// What is reported of the link.
-    pub(super) fn report(self) -> LinkReport {
+    pub(crate) fn report(self) -> LinkReport {
         let tally = self.tally;
         LinkReport {
             bytes_out: tally.bytes_out,

@@ -10,11 +10,11 @@ use halfrow_model::Geometry;
 use halfrow_protocol::MAX_PAYLOAD;
 use halfrow_protocol::message::RowPlace;
 
-use super::end::End;
-use super::plan::ScheduledFrame;
-use super::steps::Run;
 use crate::board::{BoardError, NumberedFrame, Status, Tally, Unjudged, Unreturned};
 use crate::result::{CheckName, Finding, MissingRow};
+use crate::run::findings::End;
+use crate::run::plan::ScheduledFrame;
+use crate::run::steps::Run;
 use crate::verdict::Cause;
 
 /// How often a frame is played again until there is no other trouble.
@@ -40,7 +40,7 @@ impl Run<'_> {
     /// Why the run ends when the row at `place` of `frame`, which has `geometry`, did not come back, however often it was
     /// asked for. It is the last of its frame, and all rows before it were `late`, if that is given: where the player stops,
     /// a row that takes longer than claimed cannot come out as a whole.
-    pub(super) fn row_lost(
+    pub(crate) fn row_lost(
         &mut self,
         frame: &ScheduledFrame,
         geometry: &Geometry,

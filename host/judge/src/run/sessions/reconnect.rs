@@ -2,17 +2,17 @@
 
 use std::iter;
 
-use super::end::{During, End};
-use super::plan::Segment;
-use super::steps::Run;
 use crate::board::{NumberedFrame, Unjudged};
 use crate::progress::Step;
 use crate::result::{CheckName, Finding, Problem};
+use crate::run::findings::{During, End};
+use crate::run::plan::Segment;
+use crate::run::steps::Run;
 use crate::verdict::Cause;
 
 impl Run<'_> {
     /// Does `step`, and repeats it whenever the board went away during it and has come back.
-    pub(super) fn over_outages(&mut self, step: impl Fn(&mut Self) -> Result<(), End>) -> Result<(), End> {
+    pub(crate) fn over_outages(&mut self, step: impl Fn(&mut Self) -> Result<(), End>) -> Result<(), End> {
         while let Err(end) = step(self) {
             self.come_back(end)?;
         }
@@ -20,7 +20,7 @@ impl Run<'_> {
     }
 
     /// Does `step`. Whenever the board went away during it, brings it back to where it was after `last`, and does it again.
-    pub(super) fn persist<T>(
+    pub(crate) fn persist<T>(
         &mut self,
         last: Option<&Segment>,
         mut step: impl FnMut(&mut Self) -> Result<T, End>,
@@ -35,7 +35,7 @@ impl Run<'_> {
 
     /// Waits for a board that went away with `end`, and brings it to where frame `at` of `segment` is the next to be
     /// sent. Returns any other end as it is.
-    pub(super) fn return_to(&mut self, segment: &Segment, at: usize, end: End) -> Result<(), End> {
+    pub(crate) fn return_to(&mut self, segment: &Segment, at: usize, end: End) -> Result<(), End> {
         let mut end = end;
         loop {
             self.come_back(end)?;
@@ -48,7 +48,7 @@ impl Run<'_> {
 
     /// Waits for a board that went away with `end`. Returns any other end as it is, and what the board did with rows that no
     /// link can cause, which would be forgotten with its session.
-    pub(super) fn come_back(&mut self, end: End) -> Result<(), End> {
+    pub(crate) fn come_back(&mut self, end: End) -> Result<(), End> {
         self.unless_misconduct(end.name(), Ok(()))?;
         let Some(patience) = self.sessions.patience_after(&end) else { return Err(end) };
         self.progress.step(Step::WaitForTheBoard);

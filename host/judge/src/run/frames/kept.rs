@@ -7,7 +7,7 @@ use crate::result::{Evidence, EvidenceReport};
 
 /// The samples that came back in place of `expected`, as a frame. It has the greatest depth if the frame's own cannot
 /// hold them.
-pub(super) fn as_found(expected: &Frame, samples: Vec<u16>) -> Option<Frame> {
+pub(crate) fn as_found(expected: &Frame, samples: Vec<u16>) -> Option<Frame> {
     let is_held = |&depth: &BitDepth| samples.iter().all(|&sample| sample <= depth.max());
     let depth = [expected.depth(), BitDepth::Twelve].into_iter().find(is_held)?;
     Frame::new(expected.width(), depth, expected.phase(), samples).ok()
@@ -17,15 +17,15 @@ pub(super) fn as_found(expected: &Frame, samples: Vec<u16>) -> Option<Frame> {
 const SHARE_OF_COUNTS: usize = 16;
 
 /// A frame that may be kept.
-pub(super) struct Offered<'a> {
+pub(crate) struct Offered<'a> {
     /// The name of the picture in it.
-    pub(super) name: &'a str,
-    pub(super) differs: bool,
+    pub(crate) name: &'a str,
+    pub(crate) differs: bool,
     /// Whether it is wanted for more than the diagnosis.
-    pub(super) is_wanted: bool,
-    pub(super) is_pinned: bool,
+    pub(crate) is_wanted: bool,
+    pub(crate) is_pinned: bool,
     /// The bytes of what went in, what came back and what should have.
-    pub(super) bytes: usize,
+    pub(crate) bytes: usize,
 }
 
 /// What is known about a frame that is kept.
@@ -37,7 +37,7 @@ struct Label {
 /// The frames that are kept of those that were streamed, in order. They include right frames whether these are wanted or not,
 /// because the diagnosis must not depend on that.
 #[derive(Default)]
-pub(super) struct KeptFrames {
+pub(crate) struct KeptFrames {
     evidence: Vec<Evidence>,
     labels: Vec<Label>,
     bytes: usize,
@@ -52,7 +52,7 @@ impl KeptFrames {
     /// replaces equal ones, the latest first, and then, if its picture is not kept yet, repetitions of other pictures,
     /// but never the pinned frame. The first pinned frame also replaces equal ones. Any other equal frame is kept only if
     /// there is room.
-    pub(super) fn offer(
+    pub(crate) fn offer(
         &mut self,
         offered: &Offered<'_>,
         budget: usize,
@@ -104,7 +104,7 @@ impl KeptFrames {
     /// The comparison of a frame. For a frame that came back whole, the counts by row and column are dropped if they say
     /// nothing, because all is equal, or if `budget` has no room for them. For any other frame they are needed: their
     /// number shows how many rows are missing.
-    pub(super) fn shorten(&mut self, comparison: Comparison, is_whole: bool, budget: usize) -> Comparison {
+    pub(crate) fn shorten(&mut self, comparison: Comparison, is_whole: bool, budget: usize) -> Comparison {
         let bytes = size_of_val(&*comparison.by_row) + size_of_val(&*comparison.by_column);
         let says_nothing = comparison.differences == 0;
         let is_too_much = self.bytes_of_counts + bytes > budget / SHARE_OF_COUNTS;
@@ -116,12 +116,12 @@ impl KeptFrames {
     }
 
     /// All frames that are kept at present, wanted or not.
-    pub(super) fn all(&self) -> &[Evidence] {
+    pub(crate) fn all(&self) -> &[Evidence] {
         &self.evidence
     }
 
     /// The wanted frames, and what the report says about them.
-    pub(super) fn finish(self) -> (Vec<Evidence>, EvidenceReport) {
+    pub(crate) fn finish(self) -> (Vec<Evidence>, EvidenceReport) {
         let wanted = self.evidence.into_iter().zip(self.labels).filter(|(_, label)| label.is_wanted);
         let evidence: Vec<_> = wanted.map(|(evidence, _)| evidence).collect();
         let (kept, bytes) = (evidence.len(), evidence.iter().map(bytes).sum::<usize>() as u64);

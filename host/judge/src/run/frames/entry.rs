@@ -11,19 +11,19 @@ const LAST_BIT: u32 = 0xedb8_8320;
 
 /// Rows that entered the core with other samples than were sent.
 #[derive(Clone, Copy)]
-pub(super) struct WrongEntry {
+pub(crate) struct WrongEntry {
     /// How many.
-    pub(super) rows: usize,
+    pub(crate) rows: usize,
     /// The first of them.
-    pub(super) row: usize,
+    pub(crate) row: usize,
     /// Its frame.
-    pub(super) frame: u16,
+    pub(crate) frame: u16,
     /// The single bit of this row which, if flipped, gives the board's CRC; none if no single bit does.
-    pub(super) flipped: Option<FlippedBit>,
+    pub(crate) flipped: Option<FlippedBit>,
 }
 
 /// The single bit of the row `sent`, of samples of `bits` bits, which gives the CRC `entered` when it is flipped.
-pub(super) fn flipped_bit(sent: &[u16], bits: u32, entered: u32) -> Option<FlippedBit> {
+pub(crate) fn flipped_bit(sent: &[u16], bits: u32, entered: u32) -> Option<FlippedBit> {
     let word = u16::BITS as usize;
     let wanted = row_signature(sent) ^ entered;
     // A CRC is linear: how a flipped bit changes it depends only on the bit's distance from the row's end.

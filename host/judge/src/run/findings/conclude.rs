@@ -5,21 +5,22 @@ use std::time::Instant;
 use jiff::Timestamp;
 
 use super::end::End;
-use super::findings::Findings;
-use super::observations::Observations;
-use super::row_judge::STREET;
-use super::{Finished, Plan, Provenance, RunOptions};
+use super::finished::Finished;
 use crate::coverage::Faults;
 use crate::frames::street;
 use crate::result::{
     BoardReport, CheckName, CoverageReport, Finding, FrameReport, FrameTotals, LinkReport, NotExercised,
     Problem, Report, RunReport, Schema, SoakReport, StreetReport, Suspect, TablesReport, wording,
 };
+use crate::run::Findings;
+use crate::run::frames::observations::Observations;
+use crate::run::frames::row_judge::STREET;
+use crate::run::{Plan, Provenance, RunOptions};
 use crate::verdict::Cause;
 
 /// When a run began.
 #[derive(Clone, Copy)]
-pub(super) struct Begun {
+pub(crate) struct Begun {
     /// By the computer's clock, which may be set during the run.
     at: Timestamp,
     /// By a monotonic clock.
@@ -27,7 +28,7 @@ pub(super) struct Begun {
 }
 
 impl Begun {
-    pub(super) fn now() -> Self {
+    pub(crate) fn now() -> Self {
         Self { at: Timestamp::now(), since: Instant::now() }
     }
 }
@@ -41,7 +42,7 @@ struct Ending {
     not_exercised: Vec<NotExercised>,
 }
 
-pub(super) fn conclude(
+pub(crate) fn conclude(
     plan: &Plan,
     mut findings: Findings,
     seen: Observations,

@@ -3,8 +3,8 @@
 use halfrow_model::{BitDepth, Geometry, TableSet};
 use serde::{Deserialize, Serialize};
 
-use super::at_speed::known_bursts;
 use crate::board::Capabilities;
+use crate::run::at_speed::known_bursts;
 
 /// Which settings of its tables a run varies, in additional frames after all others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -54,7 +54,7 @@ impl Build {
 }
 
 /// The entries of `tables` under the settings that `vary` names, one changed at a time, each legal for `build`.
-pub(super) fn varied(tables: &TableSet, vary: Vary, build: &Build) -> Vec<TableSet> {
+pub(crate) fn varied(tables: &TableSet, vary: Vary, build: &Build) -> Vec<TableSet> {
     let own = tables.geometry();
     let of = |depth, centre2| tables.with_settings(depth, centre2).ok();
     let centre = vary.centre.then(|| {

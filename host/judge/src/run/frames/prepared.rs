@@ -6,21 +6,21 @@ use std::thread::Scope;
 
 use halfrow_model::{CorrectError, Frame, FrameError, Geometry};
 
-use super::plan::{Generation, Plan, ScheduledFrame, Segment};
-use super::threads::{self, NoThread};
 use crate::board::NumberedFrame;
 use crate::reference::correct;
 use crate::result::{little_endian, sha256};
+use crate::run::plan::{Generation, Plan, ScheduledFrame, Segment};
+use crate::run::threads::{self, NoThread};
 
 /// A frame that is ready to be sent, with the frame that must come back.
-pub(super) struct Prepared {
-    pub(super) name: String,
-    pub(super) number: u16,
-    pub(super) generation: u8,
+pub(crate) struct Prepared {
+    pub(crate) name: String,
+    pub(crate) number: u16,
+    pub(crate) generation: u8,
     /// SHA-256 of the input's samples, 16 bits little endian, in hexadecimal.
-    pub(super) sha256: String,
-    pub(super) input: Arc<Frame>,
-    pub(super) expected: Arc<Frame>,
+    pub(crate) sha256: String,
+    pub(crate) input: Arc<Frame>,
+    pub(crate) expected: Arc<Frame>,
 }
 
 /// A frame that could not be made ready.
@@ -39,7 +39,7 @@ pub(crate) enum PrepareError {
 ///
 /// # Errors
 /// [`NoThread`] when the system gives none.
-pub(super) fn ahead<'scope, 'run: 'scope>(
+pub(crate) fn ahead<'scope, 'run: 'scope>(
     scope: &'scope Scope<'scope, '_>,
     plan: &'run Plan,
     schedule: &'run [Segment],
@@ -88,7 +88,7 @@ impl Prepared {
         })
     }
 
-    pub(super) fn numbered(&self) -> NumberedFrame {
+    pub(crate) fn numbered(&self) -> NumberedFrame {
         NumberedFrame { number: self.number, frame: Arc::clone(&self.input) }
     }
 }

@@ -1,5 +1,13 @@
 //! What a run will do. It is decided and checked before any board is opened.
 
+pub(super) mod misfit;
+pub(super) mod parts;
+pub(super) mod patterns;
+pub(super) mod prices;
+mod schedule;
+pub(super) mod variations;
+pub(super) mod within;
+
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -7,11 +15,11 @@ use std::time::Duration;
 use halfrow_model::{Equidistant, Frame, Geometry, Interpolant, Kernel, Phase, TableSet};
 use rand_pcg::Pcg64Mcg;
 
-use super::at_speed::{WILD, drawn_factors, drawn_kernel};
-use super::parts::{Part, Selection};
-use super::variations::{Build, Vary, varied};
 use crate::frames::{Builtin, Scene};
 use crate::result::{SoakLength, Variation};
+use crate::run::at_speed::{WILD, drawn_factors, drawn_kernel};
+use parts::{Part, Selection};
+use variations::{Build, Vary, varied};
 
 /// Pixel clocks between two rows of the paper's sensor (MT9P031) at 1080p.
 pub(crate) const SENSOR_BLANKING: u16 = 900;
@@ -29,7 +37,7 @@ pub struct Generation {
 
 impl Generation {
     /// The same generation for frames of only the first `rows` rows.
-    pub(super) fn upper(&self, rows: usize) -> Option<Self> {
+    pub(crate) fn upper(&self, rows: usize) -> Option<Self> {
         let Self { number, tables, kernel } = self;
         Some(Self { number: *number, tables: tables.upper(rows)?, kernel: kernel.clone() })
     }
@@ -120,7 +128,7 @@ impl From<Option<Duration>> for AtSpeed {
     }
 }
 
-/// What a run will do. How it is done is in [`RunOptions`](super::RunOptions).
+/// What a run will do. How it is done is in [`RunOptions`](crate::run::RunOptions).
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The tables to judge with.
@@ -154,7 +162,7 @@ pub struct Plan {
     /// End with the first frame that differs.
     pub fail_fast: bool,
     /// The seed of noise, gaps, the link test, the rules and the frames that the board makes itself. The session's
-    /// numbers do not depend on it: they are [`Provenance::session_ids`](super::Provenance::session_ids).
+    /// numbers do not depend on it: they are [`Provenance::session_ids`](crate::run::Provenance::session_ids).
     pub seed: u64,
 }
 
@@ -173,12 +181,12 @@ pub struct Segment {
 
 impl Segment {
     /// The rows of all its frames.
-    pub(super) fn rows(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         self.frames.len() * self.geometry.height()
     }
 
     /// Whether its centre or depth is varied.
-    pub(super) fn is_varied(&self) -> bool {
+    pub(crate) fn is_varied(&self) -> bool {
         self.commit.is_some_and(|(generation, _)| generation >= VARIED)
     }
 }
@@ -276,7 +284,7 @@ impl Plan {
     /// In a grid rounding may bring a row that begins or ends at the frame's edge beyond it; then there is no decoy.
     ///
     /// A board without bursts shows the whole range of weights, sums and factors in the decoy alone, which is drawn then.
-    pub(super) fn decoy(&self, build: &Build) -> Option<Generation> {
+    pub(crate) fn decoy(&self, build: &Build) -> Option<Generation> {
         if !build.bursts
             && let Some(drawn) = self.drawn_decoy(build)
         {
@@ -299,7 +307,7 @@ impl Plan {
     }
 
     /// The tables to judge with, with another centre and with other depths.
-    pub(super) fn varied(&self, build: &Build) -> impl Iterator<Item = Generation> {
+    pub(crate) fn varied(&self, build: &Build) -> impl Iterator<Item = Generation> {
         let tables = varied(&self.tables, self.vary, build).into_iter().zip(VARIED..);
         tables.map(|(tables, number)| Generation { number, tables, kernel: self.kernel.clone() })
     }

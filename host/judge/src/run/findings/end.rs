@@ -6,7 +6,7 @@ use crate::verdict::Cause;
 
 /// Why a run ended before its last step, or with a wrong board.
 #[derive(Clone, Debug)]
-pub(super) enum End {
+pub(crate) enum End {
     /// The board is wrong.
     Failed { check: CheckName, finding: Finding, suspects: Vec<Suspect> },
     /// It could not be judged.
@@ -15,7 +15,7 @@ pub(super) enum End {
 
 /// What the board's error shows by which a run ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shown {
+pub(crate) enum Shown {
     /// The board went away, and may come back.
     Outage,
     /// The board cannot be reached, and waiting does not help.
@@ -40,28 +40,28 @@ impl Shown {
 
 impl End {
     /// The run could not go on because the board could not be driven.
-    pub(super) fn board(check: CheckName, error: &BoardError) -> Self {
+    pub(crate) fn board(check: CheckName, error: &BoardError) -> Self {
         let (cause, finding) = (error.cause(), Problem::of(error).into());
         Self::Error { check, cause, finding, shown: Shown::by(error) }
     }
 
-    pub(super) fn error(check: CheckName, cause: Cause, finding: impl Into<Finding>) -> Self {
+    pub(crate) fn error(check: CheckName, cause: Cause, finding: impl Into<Finding>) -> Self {
         Self::Error { check, cause, finding: finding.into(), shown: None }
     }
 
-    pub(super) fn failed(check: CheckName, finding: Finding) -> Self {
+    pub(crate) fn failed(check: CheckName, finding: Finding) -> Self {
         Self::Failed { check, finding, suspects: Vec::new() }
     }
 
     /// The check that ended the run.
-    pub(super) fn name(&self) -> CheckName {
+    pub(crate) fn name(&self) -> CheckName {
         match self {
             Self::Failed { check, .. } | Self::Error { check, .. } => *check,
         }
     }
 
     /// That check's outcome.
-    pub(super) fn outcome(&self) -> Outcome {
+    pub(crate) fn outcome(&self) -> Outcome {
         match self {
             Self::Failed { .. } => Outcome::Failed,
             Self::Error { .. } => Outcome::Error,
@@ -69,13 +69,13 @@ impl End {
     }
 
     /// What it found.
-    pub(super) fn finding(&self) -> &Finding {
+    pub(crate) fn finding(&self) -> &Finding {
         match self {
             Self::Failed { finding, .. } | Self::Error { finding, .. } => finding,
         }
     }
 
-    pub(super) fn is_failed(&self) -> bool {
+    pub(crate) fn is_failed(&self) -> bool {
         matches!(self, Self::Failed { .. })
     }
 
@@ -87,27 +87,27 @@ impl End {
     }
 
     /// Whether the board gave an answer that no sound board gives after what the run asked of it.
-    pub(super) fn is_answer(&self) -> bool {
+    pub(crate) fn is_answer(&self) -> bool {
         matches!(self.shown(), Some(Shown::Answer | Shown::NoCredit))
     }
 
     /// Whether the board refused a row of the run because it was beyond the window.
-    pub(super) fn is_without_credit(&self) -> bool {
+    pub(crate) fn is_without_credit(&self) -> bool {
         self.shown() == Some(Shown::NoCredit)
     }
 
-    pub(super) fn is_unreachable(&self) -> bool {
+    pub(crate) fn is_unreachable(&self) -> bool {
         matches!(self.shown(), Some(Shown::Outage | Shown::Unreachable))
     }
 
     /// Whether the board went away and may come back.
-    pub(super) fn is_outage(&self) -> bool {
+    pub(crate) fn is_outage(&self) -> bool {
         self.shown() == Some(Shown::Outage)
     }
 }
 
 /// The result of asking a board something in a check.
-pub(super) trait During<T> {
+pub(crate) trait During<T> {
     /// Ends the run in `check` if the board could not be driven.
     fn during(self, check: CheckName) -> Result<T, End>;
 }

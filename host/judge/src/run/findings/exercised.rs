@@ -5,13 +5,13 @@ use std::collections::BTreeSet;
 
 use halfrow_model::{Frame, NODES, RowFactor, Source, TAP_NAMES, TableSet};
 
-use super::findings::Findings;
-use super::observations::Observations;
-use super::plan::Generation;
-use super::rules::MOST_FILLED;
-use super::steps::Run;
 use crate::board::{BoardNature, grids};
 use crate::result::{CheckName, Identity, NotExercised};
+use crate::run::Findings;
+use crate::run::frames::observations::Observations;
+use crate::run::plan::Generation;
+use crate::run::rules::MOST_FILLED;
+use crate::run::steps::Run;
 
 /// The levels that bits have had: `ones` marks each bit that was ever 1, `zeros` each that was ever 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,14 +45,14 @@ impl Levels {
 
 /// The levels that the bits of samples have had.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct SampleLevels {
+pub(crate) struct SampleLevels {
     input: Levels,
     output: Levels,
 }
 
 impl SampleLevels {
     /// Adds a frame that went in, and the frame that should have come out.
-    pub(super) fn note(&mut self, input: &Frame, output: &Frame) {
+    pub(crate) fn note(&mut self, input: &Frame, output: &Frame) {
         self.input.note(input);
         self.output.note(output);
     }
@@ -60,18 +60,18 @@ impl SampleLevels {
 
 /// What bursts exercised of a board, and what they left.
 #[derive(Default)]
-pub(super) struct Exercised {
+pub(crate) struct Exercised {
     /// What was not exercised at the full pixel clock.
-    pub(super) left: Vec<NotExercised>,
+    pub(crate) left: Vec<NotExercised>,
     /// The tables with which frames were made in corners.
-    pub(super) corners: Vec<Generation>,
+    pub(crate) corners: Vec<Generation>,
     /// The plan's generations with which whole frames were made.
-    pub(super) whole: Vec<u8>,
+    pub(crate) whole: Vec<u8>,
 }
 
 impl Run<'_> {
     /// What the run did not exercise of the board, as far as that is known: it has `seen` frames, and made `bursts`.
-    pub(super) fn not_exercised(&self, seen: &Observations, bursts: Exercised) -> Vec<NotExercised> {
+    pub(crate) fn not_exercised(&self, seen: &Observations, bursts: Exercised) -> Vec<NotExercised> {
         let Findings { board, checks, attempt, .. } = &*self.findings;
         let Exercised { left, corners, whole } = bursts;
         let used = self.generations.iter().filter_map(|generation| used_of(generation, seen, &whole));

@@ -7,13 +7,12 @@ use halfrow_protocol::message::{Commit, Grids, RowIn, RowOut, Span};
 use halfrow_protocol::{MAX_PAYLOAD, wire_length};
 use serde::{Deserialize, Serialize};
 
-use super::at_speed;
 use super::parts::{Part, Selection, parts_of};
 use super::patterns::patterns;
-use super::plan::{AtSpeed, Plan, SENSOR_BLANKING, Segment, Timing};
-use super::rules;
 use super::variations::Build;
+use super::{AtSpeed, Plan, SENSOR_BLANKING, Segment, Timing};
 use crate::board::{Board, BoardError, BoardNature, Bursts, Capabilities, Table};
+use crate::run::{at_speed, rules};
 
 /// The least payload that a row is priced at: between shorter rows the link stands still while they are acknowledged.
 const SMALL: usize = 300;
@@ -56,7 +55,7 @@ impl Rates {
     }
 
     /// The time in seconds of a request with a payload of `out` bytes and a reply with one of `back`.
-    pub(super) fn request(&self, out: usize, back: usize) -> f64 {
+    pub(crate) fn request(&self, out: usize, back: usize) -> f64 {
         self.round_trip + (wire_length(out) + wire_length(back)) as f64 / self.bytes_per_second
     }
 }
@@ -92,9 +91,9 @@ fn carried(short: f64, long: f64) -> f64 {
 /// The prices of a plan's parts on a board.
 #[derive(Debug)]
 pub struct Prices<'a> {
-    pub(super) plan: &'a Plan,
-    pub(super) capabilities: &'a Capabilities,
-    pub(super) rates: Rates,
+    pub(crate) plan: &'a Plan,
+    pub(crate) capabilities: &'a Capabilities,
+    pub(crate) rates: Rates,
     whole: Vec<Segment>,
     corners: f64,
 }
@@ -145,13 +144,13 @@ impl<'a> Prices<'a> {
     }
 
     /// How long it would take at the usual pixel clock, whatever clock the board names, in seconds.
-    pub(super) fn at_the_usual_clock(&self, selection: &Selection) -> f64 {
+    pub(crate) fn at_the_usual_clock(&self, selection: &Selection) -> f64 {
         let capabilities = Capabilities { clock_hz: at_speed::USUAL_CLOCK, ..self.capabilities.clone() };
         Prices::new(self.plan, &capabilities, self.rates).seconds(selection)
     }
 
     /// The pixel clock that the board names; 0 for none.
-    pub(super) fn named_clock_hz(&self) -> u32 {
+    pub(crate) fn named_clock_hz(&self) -> u32 {
         self.capabilities.clock_hz
     }
 
@@ -196,7 +195,7 @@ impl<'a> Prices<'a> {
     /// `rows` rows that follow each other. The slowest of way out, pixel clock and way back counts or, where answers take
     /// long, how many rows the board's banks hold meanwhile. The first two rows go out before anything comes back,
     /// because a row leaves while the next one enters. After the last one the board is asked what reached it.
-    pub(super) fn rows(&self, rows: usize, width: usize, between: usize) -> f64 {
+    pub(crate) fn rows(&self, rows: usize, width: usize, between: usize) -> f64 {
         let packed = (3 * width).div_ceil(2);
         let back = RowOut::HEAD + packed + RowOut::ENTERED;
         let carried = |payload| wire_length(payload) as f64 / self.rates.bytes_per_second;
@@ -210,12 +209,12 @@ impl<'a> Prices<'a> {
     }
 
     /// Writing the plan's tables and reading them back.
-    pub(super) fn upload(&self) -> f64 {
+    pub(crate) fn upload(&self) -> f64 {
         self.upload_of(self.plan.tables.entries().len())
     }
 
     /// Writing tables of so many row factors or entries of a grid, and reading them back.
-    pub(super) fn upload_of(&self, entries: usize) -> f64 {
+    pub(crate) fn upload_of(&self, entries: usize) -> f64 {
         let written = [(Table::RowFactors, entries), (Table::Kernel, halfrow_model::NODES)];
         let write = |(table, entries): (Table, usize)| {
             let at_once = Board::entries_at_once(table);
@@ -233,11 +232,11 @@ impl<'a> Prices<'a> {
     }
 
     /// A commit, for which the board reads both tables through every port.
-    pub(super) fn commit(&self) -> f64 {
+    pub(crate) fn commit(&self) -> f64 {
         self.rates.request(Commit::BYTES, 1) + self.clocks(COMMIT)
     }
 
-    pub(super) fn short_request(&self) -> f64 {
+    pub(crate) fn short_request(&self) -> f64 {
         self.rates.request(SHORT, SHORT)
     }
 

@@ -1,20 +1,19 @@
 //! What is judged when the last row has come back. The counters have a module of their own.
 
 use super::counters::{counters, leaves_counters_out};
-use super::end::{During, End};
 use super::entry::WrongEntry;
-use super::findings::Findings;
 use super::observations::Observations;
-use super::plan::{DECOY, Generation};
-use super::steps::Run;
 use crate::board::Bank;
 use crate::diagnosis::{self, Case, Uploaded};
 use crate::result::{Account, CheckName, Defect, Finding, Suspect};
+use crate::run::findings::{During, End, Findings};
+use crate::run::plan::{DECOY, Generation};
+use crate::run::steps::Run;
 
 impl Run<'_> {
     /// Judges what was seen, the tables and the counters. The first fault ends the run; further faults are only listed
     /// among the checks.
-    pub(super) fn judge_what_came(&mut self, seen: &mut Observations) -> Result<(), End> {
+    pub(crate) fn judge_what_came(&mut self, seen: &mut Observations) -> Result<(), End> {
         let after = self.tables_after(seen);
         self.findings.checks.lap(CheckName::TablesAfter);
         let status = self.board.status(false).during(CheckName::Counters)?;
@@ -50,7 +49,7 @@ impl Run<'_> {
 
     /// The tables of the last frame must still be what was uploaded; a run that ends with its first frame has not used
     /// those to judge with. Tables that once read back wrong stay wrong, even if they read back right later.
-    pub(super) fn tables_after(&mut self, seen: &mut Observations) -> Result<Finding, End> {
+    pub(crate) fn tables_after(&mut self, seen: &mut Observations) -> Result<Finding, End> {
         if let Some(changed) = &seen.changed_tables {
             return Err(changed.clone());
         }

@@ -1,21 +1,21 @@
 //! Geometry and tables on their way to the board, and back through the datapath's own ports.
 
-use super::end::{During, End};
-use super::plan::{Generation, SENSOR_BLANKING, Segment, Timing};
-use super::steps::Run;
 use crate::board::{Bank, BoardError, ReadBack, RefusalCode, RowTiming, Table};
 use crate::diagnosis::{self, Uploaded};
 use crate::result::{CheckName, Finding, Suspect};
+use crate::run::findings::{During, End};
+use crate::run::plan::{Generation, SENSOR_BLANKING, Segment, Timing};
+use crate::run::steps::Run;
 
 impl Run<'_> {
     /// Sets up the board for a segment, tables included.
-    pub(super) fn prepare(&mut self, segment: &Segment) -> Result<(), End> {
+    pub(crate) fn prepare(&mut self, segment: &Segment) -> Result<(), End> {
         self.configure(segment)?;
         let rows = segment.geometry.height();
         segment.commit.map_or(Ok(()), |(number, first_frame)| self.commit(number, first_frame, rows))
     }
 
-    pub(super) fn configure(&mut self, segment: &Segment) -> Result<(), End> {
+    pub(crate) fn configure(&mut self, segment: &Segment) -> Result<(), End> {
         let timing = match segment.timing {
             Timing::Least => RowTiming::default(),
             Timing::Sensor => RowTiming { blanking: SENSOR_BLANKING, ..RowTiming::default() },
@@ -25,7 +25,7 @@ impl Run<'_> {
     }
 
     /// Uploads and commits a generation, to be used from `first_frame` on, for frames of `rows` rows.
-    pub(super) fn commit(&mut self, number: u8, first_frame: u16, rows: usize) -> Result<(), End> {
+    pub(crate) fn commit(&mut self, number: u8, first_frame: u16, rows: usize) -> Result<(), End> {
         let generation = self.generations.iter().find(|generation| generation.number == number).cloned();
         generation.map_or(Ok(()), |generation| self.upload(&generation, first_frame, rows))
     }
@@ -52,7 +52,7 @@ impl Run<'_> {
 
     /// Compares the CRCs of both tables through every port, and returns the number of ports. A table with another CRC is
     /// read entry by entry, to find which one is wrong.
-    pub(super) fn check_read_back(
+    pub(crate) fn check_read_back(
         &mut self,
         check: CheckName,
         bank: Bank,

@@ -7,28 +7,28 @@ use super::end::End;
 use crate::result::{Check, CheckName, Finding, Outcome};
 
 /// The checks that were made so far.
-pub(super) struct Checks {
+pub(crate) struct Checks {
     made: Vec<Check>,
     spent: BTreeMap<CheckName, Duration>,
     since: Instant,
 }
 
 impl Checks {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { made: Vec::new(), spent: BTreeMap::new(), since: Instant::now() }
     }
 
-    pub(super) fn passed(&mut self, name: CheckName, finding: Finding) {
+    pub(crate) fn passed(&mut self, name: CheckName, finding: Finding) {
         self.note(name, Outcome::Passed, finding);
     }
 
-    pub(super) fn skipped(&mut self, name: CheckName, finding: Finding) {
+    pub(crate) fn skipped(&mut self, name: CheckName, finding: Finding) {
         self.note(name, Outcome::Skipped, finding);
     }
 
     /// Notes the check by which the run ends, or one that is wrong in addition to it. After an upload that failed, what was
     /// read back was of earlier tables.
-    pub(super) fn ended(&mut self, end: &End) {
+    pub(crate) fn ended(&mut self, end: &End) {
         if end.name() == CheckName::Upload {
             self.made.retain(|check| check.name != CheckName::ReadBack);
         }
@@ -44,29 +44,29 @@ impl Checks {
     }
 
     /// Adds the time since the last lap to a check.
-    pub(super) fn lap(&mut self, name: CheckName) {
+    pub(crate) fn lap(&mut self, name: CheckName) {
         let now = Instant::now();
         *self.spent.entry(name).or_default() += now.duration_since(self.since);
         self.since = now;
     }
 
     /// Drops the time since the last lap, which is reported elsewhere.
-    pub(super) fn begin_lap(&mut self) {
+    pub(crate) fn begin_lap(&mut self) {
         self.since = Instant::now();
     }
 
     /// Whether a check was made and passed.
-    pub(super) fn has_passed(&self, name: CheckName) -> bool {
+    pub(crate) fn has_passed(&self, name: CheckName) -> bool {
         self.made.iter().any(|check| check.name == name && check.outcome == Outcome::Passed)
     }
 
     /// Forgets what was found of the open board.
-    pub(super) fn begin_again(&mut self) {
+    pub(crate) fn begin_again(&mut self) {
         self.made.retain(|check| matches!(check.name, CheckName::Judge | CheckName::Identity));
     }
 
     /// All checks in order; those that were not made are skipped with the finding of `left_out`.
-    pub(super) fn all(mut self, left_out: impl Fn(CheckName) -> Finding) -> Vec<Check> {
+    pub(crate) fn all(mut self, left_out: impl Fn(CheckName) -> Finding) -> Vec<Check> {
         for name in CheckName::ALL {
             if !self.made.iter().any(|check| check.name == name) {
                 let finding = left_out(name);

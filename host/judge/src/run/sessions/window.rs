@@ -2,9 +2,9 @@
 
 use halfrow_protocol::Kind;
 
-use super::end::End;
-use super::steps::Run;
 use crate::result::{Answer, Finding, Rule};
+use crate::run::findings::End;
+use crate::run::steps::Run;
 
 /// How often the window must be wrong.
 const TIMES: u32 = 2;
@@ -13,7 +13,7 @@ impl Run<'_> {
     /// What the run ends with that ended with `end`. The refusal of a row for want of credit proves nothing: the host may know a
     /// window from another session, or an old RESET may have taken it down. But no link changes how far ahead a board's own
     /// answer to a RESET sets the window.
-    pub(super) fn told_of_window(&mut self, end: End) -> End {
+    pub(crate) fn told_of_window(&mut self, end: End) -> End {
         if !end.is_without_credit() {
             return end;
         }
@@ -32,7 +32,7 @@ impl Run<'_> {
 }
 
 /// After a RESET the board gives credit for `rows` instead of one for each of its `banks`.
-pub(super) fn window_wrong(banks: u32, rows: u32) -> Finding {
+pub(crate) fn window_wrong(banks: u32, rows: u32) -> Finding {
     let (right, found) = (Answer::Credit { rows: banks }, Answer::Credit { rows });
     Finding::RuleBroken { rule: Rule::Window, request: Kind::Reset.to_string(), right, found }
 }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use halfrow_model::{Frame, FrameError, Geometry};
 
 use super::parts::{Part, of_height};
-use super::plan::{DECOY, FrameSource, JUDGED, Plan, ScheduledFrame, Segment, Timing};
 use super::variations::Build;
+use super::{DECOY, FrameSource, JUDGED, Plan, ScheduledFrame, Segment, Timing};
 use crate::frames::{Builtin, Scene};
 use crate::result::Variation;
 
@@ -30,7 +30,7 @@ impl Plan {
     }
 
     /// The run with all its parts.
-    pub(super) fn whole_schedule(&self, build: &Build) -> Vec<Segment> {
+    pub(crate) fn whole_schedule(&self, build: &Build) -> Vec<Segment> {
         let mut numbers = 0..=u16::MAX;
         let mut frame = |part, source: FrameSource, generation| ScheduledFrame {
             number: numbers.next().unwrap_or_default(),

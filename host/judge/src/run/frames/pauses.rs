@@ -3,7 +3,7 @@
 use halfrow_model::xorshift32;
 
 /// For each row of a frame of `height` rows of `width` samples, the board clocks for which gaps keep the enable off.
-pub(super) fn pauses(gap_seed: u32, width: usize, height: usize) -> Vec<u16> {
+pub(crate) fn pauses(gap_seed: u32, width: usize, height: usize) -> Vec<u16> {
     if gap_seed == 0 {
         return vec![0; height];
     }

@@ -1,18 +1,17 @@
 //! The board's counters, compared with what the host saw.
 
-use super::end::End;
-use super::findings::Attempt;
 use super::observations::Observations;
 use crate::board::{Board, Status};
 use crate::result::{CheckName, Counter, Finding, LatencyReport};
+use crate::run::findings::{Attempt, End};
 
 /// What a board counts that a link can have caused as well.
-pub(super) const MOVED_BY_LINKS: [Counter; 4] =
+pub(crate) const MOVED_BY_LINKS: [Counter; 4] =
     [Counter::RowsRepeated, Counter::RowsUnneeded, Counter::Refusals, Counter::ForeignPackets];
 
 /// Compares the board's counters with what the host saw and what the `attempt` let it count. Some must agree over any link,
 /// however poor; the others are compared only where nothing was lost or late.
-pub(super) fn counters(
+pub(crate) fn counters(
     board: &Board,
     status: &Status,
     seen: &Observations,
@@ -60,17 +59,17 @@ fn saw_no_trouble(board: &Board) -> bool {
 }
 
 /// Whether some counters are not compared only because the board says that its link is poor, while the host saw no trouble.
-pub(super) fn leaves_counters_out(board: &Board, status: &Status) -> bool {
+pub(crate) fn leaves_counters_out(board: &Board, status: &Status) -> bool {
     saw_no_trouble(board) && !is_calm(board, status)
 }
 
 /// Whether a board counts fewer packets than its other counters imply, which no link can cause.
-pub(super) fn is_contradictory(status: &Status) -> bool {
+pub(crate) fn is_contradictory(status: &Status) -> bool {
     packets_counted(status, 1).is_err()
 }
 
 /// Whether it counts what only a link can have caused, since the host gave no reason for it.
-pub(super) fn is_moved_by_links(status: &Status) -> bool {
+pub(crate) fn is_moved_by_links(status: &Status) -> bool {
     MOVED_BY_LINKS.iter().any(|counter| counter.in_status(status) != 0)
 }
 
@@ -89,7 +88,7 @@ fn packets_counted(status: &Status, answered: u64) -> Result<(), End> {
 
 /// Checks the numbers of ROW_OUT packets, of which the host saw `counted`. They begin at 0, no two packets have the same one,
 /// and a later row's packet has a greater one, so over a link that loses nothing they have no gap.
-pub(super) fn rows_numbered(status: &Status, counted: u32) -> Result<(), End> {
+pub(crate) fn rows_numbered(status: &Status, counted: u32) -> Result<(), End> {
     let right = Counter::RowsNumbered.in_status(status);
     if counted <= right {
         return Ok(());

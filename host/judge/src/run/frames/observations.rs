@@ -1,35 +1,35 @@
 //! What the judge has seen of all frames so far.
 
-use super::end::End;
 use super::entry::WrongEntry;
-use super::exercised::SampleLevels;
 use super::kept::KeptFrames;
 use crate::board::ReturnedRow;
 use crate::result::{Finding, FrameReport, FrameTotals, LateRows, LatencyReport};
+use crate::run::findings::End;
+use crate::run::findings::exercised::SampleLevels;
 
 /// What the judge has seen of all frames so far.
 #[derive(Default)]
-pub(super) struct Observations {
-    pub(super) frames: Vec<FrameReport>,
-    pub(super) evidence: KeptFrames,
-    pub(super) levels: SampleLevels,
-    pub(super) latency: Option<LatencyReport>,
+pub(crate) struct Observations {
+    pub(crate) frames: Vec<FrameReport>,
+    pub(crate) evidence: KeptFrames,
+    pub(crate) levels: SampleLevels,
+    pub(crate) latency: Option<LatencyReport>,
     /// The first row that names the wrong generation.
-    pub(super) wrong_generation: Option<Finding>,
+    pub(crate) wrong_generation: Option<Finding>,
     /// The first row with a wrong latency.
-    pub(super) wrong_latency: Option<WrongLatency>,
+    pub(crate) wrong_latency: Option<WrongLatency>,
     /// The first row that entered the core with other samples than were sent, and how many did.
-    pub(super) wrong_entry: Option<WrongEntry>,
+    pub(crate) wrong_entry: Option<WrongEntry>,
     /// How many rows had their CRC of what entered compared.
-    pub(super) rows_with_entry: usize,
+    pub(crate) rows_with_entry: usize,
     /// The first row whose gaps are not those of the seed.
-    pub(super) wrong_pauses: Option<Finding>,
+    pub(crate) wrong_pauses: Option<Finding>,
     /// The end of a run whose tables had changed when they were read back.
-    pub(super) changed_tables: Option<End>,
+    pub(crate) changed_tables: Option<End>,
 }
 
 /// A row whose latency is not the one that the board claims, in pixel clocks.
-pub(super) struct WrongLatency {
+pub(crate) struct WrongLatency {
     row: usize,
     frame: u16,
     first: u32,
@@ -41,7 +41,7 @@ pub(super) struct WrongLatency {
 
 impl WrongLatency {
     /// The finding of which it is the first row: `rows` late rows of `of_rows`.
-    pub(super) fn finding(&self, rows: usize, of_rows: usize) -> Finding {
+    pub(crate) fn finding(&self, rows: usize, of_rows: usize) -> Finding {
         let &Self { row, frame, first, last, claimed, is_one_row } = self;
         Finding::LatencyWrong(LateRows { rows, of_rows, is_one_row, row, frame, first, last, claimed })
     }
@@ -49,38 +49,38 @@ impl WrongLatency {
 
 impl Observations {
     /// Whether nothing that was seen is wrong, judged or not.
-    pub(super) fn is_right(&self) -> bool {
+    pub(crate) fn is_right(&self) -> bool {
         let rows =
             self.wrong_generation.is_none() && self.wrong_latency.is_none() && self.wrong_entry.is_none();
         rows && self.wrong_pauses.is_none() && self.changed_tables.is_none() && self.differences() == 0
     }
 
-    pub(super) fn totals(&self) -> FrameTotals {
+    pub(crate) fn totals(&self) -> FrameTotals {
         FrameTotals::of(&self.frames)
     }
 
-    pub(super) fn differences(&self) -> usize {
+    pub(crate) fn differences(&self) -> usize {
         self.totals().differences
     }
 
-    pub(super) fn differing_frames(&self) -> usize {
+    pub(crate) fn differing_frames(&self) -> usize {
         self.totals().differing_frames
     }
 
-    pub(super) fn samples(&self) -> usize {
+    pub(crate) fn samples(&self) -> usize {
         self.totals().samples
     }
 
     /// The finding that every row took the same latency, longer than the one that the board claims, if so. The last row of
     /// a frame then does not come out where the player stops after as many clocks as the claimed latency needs.
-    pub(super) fn all_late(&self) -> Option<Finding> {
+    pub(crate) fn all_late(&self) -> Option<Finding> {
         let latency = self.latency.filter(|seen| seen.wrong_rows == seen.rows && seen.least == seen.most)?;
         let wrong = self.wrong_latency.as_ref().filter(|_| latency.most > latency.claimed)?;
         Some(wrong.finding(latency.wrong_rows, latency.rows))
     }
 
     /// Notes the latency of a row that came back. The board claims `claimed` pixel clocks, and `limit` are allowed.
-    pub(super) fn note_latency(&mut self, row: &ReturnedRow<'_>, claimed: u32, limit: u32) {
+    pub(crate) fn note_latency(&mut self, row: &ReturnedRow<'_>, claimed: u32, limit: u32) {
         let (first, last) = (u32::from(row.first_latency), u32::from(row.last_latency));
         let seen = self.latency.get_or_insert(LatencyReport {
             claimed,

@@ -2,15 +2,14 @@
 
 use std::time::Duration;
 
-use super::end::{During, End};
-use super::findings::Findings;
+use super::misfit::{Misfit, misfit};
 use super::parts::{Part, Selection};
-use super::plan::{AtSpeed, Plan};
 use super::prices::{Prices, Rates};
-use super::{Misfit, misfit};
+use super::{AtSpeed, Plan};
 use crate::board::Board;
 use crate::coverage::{self, Faults, FaultsError};
 use crate::result::{CheckName, CoveragePoint, Problem, WithinPart, WithinReport};
+use crate::run::findings::{During, End, Findings};
 use crate::verdict::Cause;
 use crate::words::hertz;
 
@@ -66,7 +65,7 @@ pub enum WithinError {
 ///
 /// # Errors
 /// [`End`] when the board does not answer, or the time does not suffice.
-pub(super) fn choose(
+pub(crate) fn choose(
     plan: &Plan,
     limit: Duration,
     board: &mut Board,

@@ -4,20 +4,20 @@ use std::sync::mpsc::Receiver;
 
 use halfrow_protocol::message::RowPlace;
 
-use super::end::{During, End};
 use super::observations::Observations;
 use super::pauses::pauses;
-use super::plan::{SENSOR_BLANKING, Segment, Timing};
 use super::prepared::{PrepareError, Prepared};
 use super::row_judge::{JudgeOptions, RowJudge};
-use super::steps::Run;
 use crate::board::{BoardError, MAX_LATENCY, Misconduct};
 use crate::result::{CheckName, Finding, FrameTiming, NumberedRow, Problem, RepeatedRow};
+use crate::run::findings::{During, End};
+use crate::run::plan::{SENSOR_BLANKING, Segment, Timing};
+use crate::run::steps::Run;
 use crate::verdict::Cause;
 
 impl Run<'_> {
     /// Streams a segment, whose frames are the next ones of `source`, and judges what comes back.
-    pub(super) fn stream(
+    pub(crate) fn stream(
         &mut self,
         segment: &Segment,
         source: &Receiver<Result<Prepared, PrepareError>>,
@@ -98,7 +98,7 @@ impl Run<'_> {
 
     /// What `tried` came to, unless the board did with rows what no link can cause: that counts although the link broke after
     /// it.
-    pub(super) fn unless_misconduct<T>(&self, check: CheckName, tried: Result<T, End>) -> Result<T, End> {
+    pub(crate) fn unless_misconduct<T>(&self, check: CheckName, tried: Result<T, End>) -> Result<T, End> {
         self.misconduct(check).map_or(tried, Err)
     }
 

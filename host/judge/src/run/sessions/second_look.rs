@@ -3,17 +3,17 @@
 //! A link that delivers a copy of an old request after newer ones can leave a sound board with old tables, counters or
 //! settings. In a new session, copies from earlier sessions have no effect.
 
-use super::counters::{is_contradictory, is_moved_by_links};
-use super::end::{During, End};
-use super::observations::Observations;
-use super::steps::Run;
 use crate::board::{Board, Miscount};
 use crate::progress::Step;
 use crate::result::{BrokenOff, CheckName, Doubt, Finding};
+use crate::run::findings::{During, End};
+use crate::run::frames::counters::{is_contradictory, is_moved_by_links};
+use crate::run::frames::observations::Observations;
+use crate::run::steps::Run;
 use crate::verdict::Cause;
 
 /// How often everything is done again until no request reaches the board twice.
-pub(super) const LOOKS: u32 = 3;
+pub(crate) const LOOKS: u32 = 3;
 /// How often a board is asked for its counters to see whether it resets them each time.
 const COUNTS: usize = 4;
 
@@ -45,7 +45,7 @@ impl Again {
 
 impl Run<'_> {
     /// Does everything again if an old copy of a request may have caused `found`, with which the run ended.
-    pub(super) fn look_again(&mut self, found: End, seen: &mut Observations) -> End {
+    pub(crate) fn look_again(&mut self, found: End, seen: &mut Observations) -> End {
         let mut found = found;
         for look in 1..=LOOKS {
             let Some(doubt) = self.doubt_of(&found) else { return found };
@@ -81,7 +81,7 @@ impl Run<'_> {
     }
 
     /// Why the link may have caused `end`. That nothing is known about the link is no reason to doubt an error.
-    pub(super) fn doubt_of(&mut self, end: &End) -> Option<Doubt> {
+    pub(crate) fn doubt_of(&mut self, end: &End) -> Option<Doubt> {
         let doubt = self.doubt(end.name())?;
         (end.is_failed() || doubt != Doubt::PacketsUncounted {}).then_some(doubt)
     }
@@ -164,7 +164,7 @@ fn loses_count(board: &mut Board) -> bool {
 
 impl Doubt {
     /// The doubt that the host has about the open session of `board` without asking it.
-    pub(super) fn of_session(board: &Board) -> Option<Self> {
+    pub(crate) fn of_session(board: &Board) -> Option<Self> {
         Self::of_requests(board).or(Self::of_packets(board))
     }
 
@@ -180,7 +180,7 @@ impl Doubt {
 }
 
 /// What `end` found. From a problem the advice is removed, because it holds only for a board that no link disturbs.
-pub(super) fn unasked(end: &End) -> Finding {
+pub(crate) fn unasked(end: &End) -> Finding {
     match end.finding().clone() {
         Finding::Problem(problem) => problem.unasked().into(),
         found => found,
@@ -193,7 +193,7 @@ fn right_in_another_session(found: &End, doubt: Doubt) -> End {
 }
 
 /// Turns `end`, which broke off a second look, into a finding that also says what the look was to clear up.
-pub(super) fn broken_off(mut end: End, found: Finding, doubt: Doubt) -> End {
+pub(crate) fn broken_off(mut end: End, found: Finding, doubt: Doubt) -> End {
     if let End::Error { finding, .. } = &mut end {
         let reason = finding.clone();
         *finding = Finding::SecondLookBrokenOff(Box::new(BrokenOff { found, doubt, reason }));

@@ -3,8 +3,7 @@
 use std::collections::VecDeque;
 use std::iter::Take;
 use std::ops::ControlFlow;
-use std::sync::Arc;
-use std::sync::mpsc;
+use std::sync::{Arc, mpsc};
 use std::time::Instant;
 
 use halfrow_model::{Frame, row_signature};
@@ -19,25 +18,25 @@ use crate::progress::Progress;
 use crate::result::{Evidence, Finding, FrameReport, FrameTiming, Variation};
 
 /// This frame is kept even if it is equal, because the report measures its façades.
-pub(super) const STREET: &str = "builtin:street";
+pub(crate) const STREET: &str = "builtin:street";
 
 /// How rows are judged, and what is kept.
-pub(super) struct JudgeOptions {
-    pub(super) claimed_latency: u32,
-    pub(super) latency_limit: u32,
-    pub(super) fail_fast: bool,
+pub(crate) struct JudgeOptions {
+    pub(crate) claimed_latency: u32,
+    pub(crate) latency_limit: u32,
+    pub(crate) fail_fast: bool,
     /// Keep equal frames for pictures too, not only for the diagnosis.
-    pub(super) keep_equal: bool,
+    pub(crate) keep_equal: bool,
     /// The most bytes of frames that are kept.
-    pub(super) evidence_bytes: usize,
+    pub(crate) evidence_bytes: usize,
     /// Whether the board signs what entered its core.
-    pub(super) names_entered: bool,
+    pub(crate) names_entered: bool,
     /// The setting that the segment's frames try, if any.
-    pub(super) variation: Option<Variation>,
+    pub(crate) variation: Option<Variation>,
     /// The number of rows of its frames, if these are not whole.
-    pub(super) first_rows: Option<usize>,
+    pub(crate) first_rows: Option<usize>,
     /// The board clocks for which gaps keep the enable off, for each row of a frame.
-    pub(super) pauses: Vec<u16>,
+    pub(crate) pauses: Vec<u16>,
 }
 
 struct InFlight {
@@ -53,7 +52,7 @@ struct InFlight {
 type Source<'a> = Take<mpsc::Iter<'a, Result<Prepared, PrepareError>>>;
 
 /// The judge of one segment.
-pub(super) struct RowJudge<'a> {
+pub(crate) struct RowJudge<'a> {
     source: Source<'a>,
     seen: &'a mut Observations,
     options: JudgeOptions,
@@ -68,13 +67,13 @@ pub(super) struct RowJudge<'a> {
     /// How many frames have come back whole.
     frames_done: usize,
     /// Rows that have come back since the stream last began.
-    pub(super) rows: usize,
+    pub(crate) rows: usize,
     /// How often these rows had been sent before, as they say themselves.
-    pub(super) repeats: u32,
+    pub(crate) repeats: u32,
 }
 
 impl<'a> RowJudge<'a> {
-    pub(super) fn new(
+    pub(crate) fn new(
         source: Source<'a>,
         seen: &'a mut Observations,
         options: JudgeOptions,
@@ -98,23 +97,23 @@ impl<'a> RowJudge<'a> {
     }
 
     /// How many frames of the segment have come back whole: the index of the first that has not.
-    pub(super) fn frames_done(&self) -> usize {
+    pub(crate) fn frames_done(&self) -> usize {
         self.frames_done
     }
 
     /// The finding that every row that came was late by as much, if so.
-    pub(super) fn all_late(&self) -> Option<Finding> {
+    pub(crate) fn all_late(&self) -> Option<Finding> {
         self.seen.all_late()
     }
 
     /// Whether something that came back is wrong.
-    pub(super) fn has_found(&self) -> bool {
+    pub(crate) fn has_found(&self) -> bool {
         !self.seen.is_right() || self.in_flight.iter().any(|frame| frame.comparison.differences > 0)
     }
 
     /// Makes the stream begin again with the frames that have not come back whole. Rows that did come back are not judged
     /// twice.
-    pub(super) fn begin_again(&mut self) {
+    pub(crate) fn begin_again(&mut self) {
         self.again = self.in_flight.iter().map(|frame| frame.prepared.numbered()).collect();
         (self.rows, self.repeats) = (0, 0);
     }
@@ -123,7 +122,7 @@ impl<'a> RowJudge<'a> {
     ///
     /// # Errors
     /// [`PrepareError`] when a frame could not be prepared, so that none after it was sent.
-    pub(super) fn finish(mut self) -> Result<(), PrepareError> {
+    pub(crate) fn finish(mut self) -> Result<(), PrepareError> {
         while let Some(frame) = self.in_flight.pop_front() {
             if frame.rows > 0 {
                 self.frame_done(frame);

@@ -6,9 +6,9 @@ use std::fmt;
 use halfrow_model::Geometry;
 use serde::{Deserialize, Serialize};
 
-use super::at_speed::FEW;
-use super::plan::{FrameSource, Plan, ScheduledFrame, Segment};
 use super::variations::Build;
+use super::{FrameSource, Plan, ScheduledFrame, Segment};
+use crate::run::at_speed::FEW;
 
 /// A part of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -129,7 +129,7 @@ impl Selection {
     }
 
     /// What this selection streams of a whole schedule.
-    pub(super) fn of(&self, schedule: Vec<Segment>) -> Vec<Segment> {
+    pub(crate) fn of(&self, schedule: Vec<Segment>) -> Vec<Segment> {
         let (mut active, mut streamed) = (None, Vec::new());
         for Segment { geometry, timing, frames, .. } in schedule {
             let rows = |frame: &ScheduledFrame| self.amount(frame.part).min(geometry.height());
@@ -163,13 +163,13 @@ fn runs(
 }
 
 /// `geometry` with another number of rows, if frames can have that many.
-pub(super) fn of_height(geometry: &Geometry, rows: usize) -> Geometry {
+pub(crate) fn of_height(geometry: &Geometry, rows: usize) -> Geometry {
     let other = Geometry::new(geometry.width(), rows, geometry.depth(), geometry.centre2());
     other.unwrap_or(*geometry)
 }
 
 /// Every part of a run with this whole schedule, in order.
-pub(super) fn parts_of(schedule: &[Segment]) -> Vec<Part> {
+pub(crate) fn parts_of(schedule: &[Segment]) -> Vec<Part> {
     let frames = schedule.iter().flat_map(|segment| &segment.frames);
     let mut parts: Vec<Part> = Vec::new();
     for part in frames.map(|frame| frame.part).chain([Part::AtSpeed, Part::Corners, Part::Rules]) {
@@ -189,7 +189,7 @@ impl Plan {
 
     /// `selection` as it can be streamed. A grid is uploaded whole, and for frames of fewer rows its entries would be at other
     /// places, so with a grid frames are whole.
-    pub(super) fn streamable(&self, selection: &Selection) -> Selection {
+    pub(crate) fn streamable(&self, selection: &Selection) -> Selection {
         if self.tables.shape().is_some() { selection.of_whole_frames() } else { selection.clone() }
     }
 
@@ -204,12 +204,12 @@ impl Plan {
     }
 
     /// Whether the rules are tried; a soak never does.
-    pub(super) fn tries_rules(&self) -> bool {
+    pub(crate) fn tries_rules(&self) -> bool {
         self.at_speed.soak().is_none() && self.amount(Part::Rules) > 0
     }
 
     /// How much of `part` is to be judged; all of it when the plan has no selection.
-    pub(super) fn amount(&self, part: Part) -> usize {
+    pub(crate) fn amount(&self, part: Part) -> usize {
         self.parts.as_ref().map_or(usize::MAX, |selection| selection.amount(part))
     }
 }

@@ -3,8 +3,8 @@
 use halfrow_model::{CorrectError, Kernel, TableError, TableSet, Taps};
 use halfrow_protocol::message::{BoardNature, UnknownDatapath};
 
-use super::plan::{FrameSource, Plan, TooManyFrames};
 use super::within::WithinError;
+use super::{FrameSource, Plan, TooManyFrames};
 use crate::board::{Capabilities, grids};
 
 /// Why a board cannot have tables, a kernel or frames: the call does not fit the board, or the board not this program, so
@@ -94,7 +94,7 @@ impl Misfit {
 ///
 /// # Errors
 /// [`Misfit::Frame`] for the first frame that they do not fit.
-pub(super) fn check_frames(plan: &Plan) -> Result<(), Misfit> {
+pub(crate) fn check_frames(plan: &Plan) -> Result<(), Misfit> {
     plan.frames.iter().try_for_each(|own| match own {
         FrameSource::Builtin(_) => Ok(()),
         FrameSource::File { frame, .. } => {

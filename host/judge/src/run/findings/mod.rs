@@ -1,49 +1,57 @@
-//! What a run has found so far.
+//! What a run has found so far, and the report made of it.
+
+mod checks;
+pub(super) mod conclude;
+mod end;
+pub(super) mod exercised;
+pub(super) mod finished;
 
 use std::mem;
 
-use super::Misfit;
-use super::checks::Checks;
 use crate::board::Board;
 use crate::result::{BoardReport, Doubt, SoakReport, WithinReport};
+use crate::run::Misfit;
 use crate::target::BoardKind;
+use checks::Checks;
+
+pub(super) use end::{During, End};
 
 /// What was found in one session, besides the checks and what was seen of frames.
 #[derive(Default)]
-pub(super) struct Attempt {
+pub(crate) struct Attempt {
     /// Rows that the board should have counted since HELLO.
-    pub(super) rows_counted: usize,
+    pub(crate) rows_counted: usize,
     /// The least number of rows that it should have counted as sent again.
-    pub(super) repeats_counted: u32,
+    pub(crate) repeats_counted: u32,
     /// Whether something was seen wrong that is not judged yet.
-    pub(super) is_wrong: bool,
+    pub(crate) is_wrong: bool,
     /// Why the link may have caused it.
-    pub(super) doubt: Option<Doubt>,
+    pub(crate) doubt: Option<Doubt>,
     /// Whether some counters were not compared only because the board, unlike the host, says that its link is poor.
-    pub(super) leaves_counters_out: bool,
+    pub(crate) leaves_counters_out: bool,
     /// Whether something was found wrong that no link can cause, whatever else the link did.
-    pub(super) beyond_links: bool,
+    pub(crate) beyond_links: bool,
     /// Whether a board came back that has no serial number to identify it.
-    pub(super) came_back_unnumbered: bool,
+    pub(crate) came_back_unnumbered: bool,
 }
 
 /// What a run has found so far.
-pub(super) struct Findings {
-    pub(super) board: BoardReport,
-    pub(super) checks: Checks,
-    pub(super) attempt: Attempt,
+pub(crate) struct Findings {
+    pub(crate) board: BoardReport,
+    pub(crate) checks: Checks,
+    pub(crate) attempt: Attempt,
     /// What was taken of a run that must keep within a time; none for any other run.
-    pub(super) within: Option<WithinReport>,
+    pub(crate) within: Option<WithinReport>,
     /// The result of a soak; none for any other run.
-    pub(super) soak: Option<SoakReport>,
+    pub(crate) soak: Option<SoakReport>,
     /// Why the board cannot take what the plan uploads, if it cannot.
-    pub(super) misfit: Option<Misfit>,
+    pub(crate) misfit: Option<Misfit>,
 }
 
 impl Attempt {
     /// Notes that the link to `board` broke. If something was seen wrong before, nothing will show later what that link did, so
     /// a doubt is noted too.
-    pub(super) fn link_broke(&mut self, board: &Board) {
+    pub(crate) fn link_broke(&mut self, board: &Board) {
         if self.is_wrong {
             let doubt = Doubt::of_session(board).unwrap_or(Doubt::PacketsUncounted {});
             self.doubt.get_or_insert(doubt);
@@ -53,7 +61,7 @@ impl Attempt {
 }
 
 impl Findings {
-    pub(super) fn new(target: String, kind: BoardKind) -> Self {
+    pub(crate) fn new(target: String, kind: BoardKind) -> Self {
         Self {
             board: BoardReport { kind, target, identity: None },
             checks: Checks::new(),
@@ -65,13 +73,13 @@ impl Findings {
     }
 
     /// Forgets what was found of the open board, for a look in another session.
-    pub(super) fn begin_again(&mut self) {
+    pub(crate) fn begin_again(&mut self) {
         self.attempt = Attempt::default();
         self.checks.begin_again();
     }
 
     /// Notes what the board says about itself.
-    pub(super) fn note_identity(&mut self, board: &Board) {
+    pub(crate) fn note_identity(&mut self, board: &Board) {
         self.board = BoardReport::of(board, self.board.kind, mem::take(&mut self.board.target));
     }
 }
