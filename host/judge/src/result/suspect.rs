@@ -74,7 +74,10 @@ impl Suspect {
             {
                 Some(Shortfall { differing, explained, contradicted })
             }
-            _ => None,
+            Account::Samples { .. }
+            | Account::Words { .. }
+            | Account::Signatures { .. }
+            | Account::Nothing => None,
         }
     }
 

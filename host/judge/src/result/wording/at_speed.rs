@@ -1,7 +1,7 @@
 //! Words for what frames at the full pixel clock have shown, and for samples that change on their way into the core.
 
 use super::places;
-use super::{LOGIC, TIMING, Words, suspicion};
+use super::{LOGIC, TIMING, Words};
 use crate::result::{
     BurstCount, ClockSeen, Corner, EqualAtSpeed, Finding, FlippedBit, NoBurst, Repetition, Streamed,
 };
@@ -85,48 +85,32 @@ fn seen(row: Option<usize>, samples: usize, bits: &[u32]) -> (String, String) {
     )
 }
 
-/// The sentence of a finding on frames at speed, if it is one.
-pub(super) fn sentence(finding: &Finding) -> Option<String> {
-    Some(match finding {
-        Finding::EqualAtSpeed(at_speed) => equal(at_speed) + &elsewhere(at_speed.corners),
-        Finding::ClockNotAsNamed { clock_hz, seen } => {
-            format!("the board names a pixel clock of {}, but {}", hertz(*clock_hz), seen_of_clock(*seen))
-        }
-        Finding::InCorner { corner: Corner { width, height, bits, centre2, grid }, found } => format!(
-            "with frames of {width} x {height}, {bits} bits, centre {:.1}, random {} and kernels: {}",
-            f64::from(*centre2) / 2.0,
-            if *grid { "grids, row factors" } else { "tables" },
-            found.sentence()
-        ),
-        Finding::PausedAtSpeed { frames, paused } => format!(
-            "{}, every sample equal, but not at speed: {paused} of them had pauses",
-            count(*frames, "frame")
-        ),
-        Finding::NothingAtSpeed { reason } => format!("nothing was tested at speed: {}", because(*reason)),
-        Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect, others, short } => {
-            let suspect = suspect.as_deref().map(|suspect| suspicion(Some(suspect), *others, *short));
-            differs((*wrong, *frames), *first, repetition, suspect)
-        }
-        Finding::MiscountedAtSpeed { count: BurstCount::Records, counted, right, .. } => {
-            let (records, frames) = (count(*counted, "record"), count(*right, "frame"));
-            format!("the board gives {records} for {frames} at speed")
-        }
-        Finding::MiscountedAtSpeed { frame, count, counted, right } => {
-            let (counted, right) = (words(*count, *counted), grouped(*right));
-            format!("the board counts {counted} for frame {frame} at speed; the right number is {right}")
-        }
-        Finding::BurstStalled { frame, frames, seconds } => format!(
-            "frame {frame} of {frames} at speed did not come within {seconds:.1} s; check the board's clock, and \
-             run again"
-        ),
-        Finding::BurstEndedEarly { came, frames } => {
-            format!("the board ended its frames at speed after {came} of {frames}; run again")
-        }
-        _ => return None,
-    })
+/// What the board names as its clock, and what was seen of it.
+pub(super) fn clock_not_as_named(clock_hz: u32, seen: ClockSeen) -> String {
+    format!("the board names a pixel clock of {}, but {}", hertz(clock_hz), seen_of_clock(seen))
 }
 
-fn differs(
+/// A finding with the settings with which it was made.
+pub(super) fn in_corner(corner: Corner, found: &Finding) -> String {
+    let Corner { width, height, bits, centre2, grid } = corner;
+    format!(
+        "with frames of {width} x {height}, {bits} bits, centre {:.1}, random {} and kernels: {}",
+        f64::from(centre2) / 2.0,
+        if grid { "grids, row factors" } else { "tables" },
+        found.sentence()
+    )
+}
+
+/// What the board counts otherwise than it should.
+pub(super) fn miscounted(frame: u32, what: BurstCount, counted: u32, right: u32) -> String {
+    if what == BurstCount::Records {
+        return format!("the board gives {} for {} at speed", words(what, counted), count(right, "frame"));
+    }
+    let (counted, right) = (words(what, counted), grouped(right));
+    format!("the board counts {counted} for frame {frame} at speed; the right number is {right}")
+}
+
+pub(super) fn differs(
     (wrong, frames): (u32, u32),
     first: u32,
     repetition: &Repetition,
@@ -143,34 +127,9 @@ fn differs(
     )
 }
 
-/// What to do about such a finding, or about rows that changed before they entered the core.
-pub(super) fn remedy(finding: &Finding) -> Option<String> {
-    let asked = match finding {
-        Finding::RowsEnteredChanged { .. } => {
-            "Check the banks that rows wait in, and the unpacking of samples in front of them."
-        }
-        Finding::EntryMiscounted { .. } => {
-            "Check the board's CRC unit, and the banks that rows wait in where they hold samples that no output reads."
-        }
-        Finding::MiscountedAtSpeed { count: BurstCount::LeastLatency | BurstCount::MostLatency, .. } => {
-            "Check how the board counts latency, and whether the output paused for a clock that it does not count as a \
-             pause: its samples are right."
-        }
-        Finding::MiscountedAtSpeed { .. } => {
-            "Check what the board counts of the frames that it makes: their samples were right."
-        }
-        Finding::ClockNotAsNamed { .. } => {
-            "Check the settings of the board's PLL and its oscillator, and the clock that its capabilities name."
-        }
-        Finding::InCorner { found, .. } => return found.remedy(),
-        _ => return None,
-    };
-    Some(asked.to_owned())
-}
-
 /// "138 frames at 96.0 MHz in 3.0 s, every sample equal"
-fn equal(at_speed: &EqualAtSpeed) -> String {
-    let EqualAtSpeed { frames, clock_hz, seen, seconds, held_back, .. } = *at_speed;
+pub(super) fn equal(at_speed: &EqualAtSpeed) -> String {
+    let EqualAtSpeed { frames, clock_hz, seen, seconds, held_back, corners } = *at_speed;
     let clock = match clock_hz {
         0 => " without a pause".to_owned(),
         known => format!(" at {}", named_clock(known, seen)),
@@ -182,7 +141,8 @@ fn equal(at_speed: &EqualAtSpeed) -> String {
         0 => String::new(),
         some => format!("; {some} of them waited until the records of others were read"),
     };
-    format!("{}{clock}{time}, every sample equal{bounds}{waited}", count(frames, "frame"))
+    let frames = count(frames, "frame");
+    format!("{frames}{clock}{time}, every sample equal{bounds}{waited}{}", elsewhere(corners))
 }
 
 /// `96.0 MHz` if what was `seen` confirms it, otherwise `a claimed 96.0 MHz`.
@@ -214,7 +174,7 @@ fn elsewhere(corners: u32) -> String {
     }
 }
 
-fn because(reason: NoBurst) -> String {
+pub(super) fn because(reason: NoBurst) -> String {
     match reason {
         NoBurst::NotAskedFor {} => "it was not asked for".to_owned(),
         NoBurst::LeftOut {} => "it was left out".to_owned(),

@@ -5,6 +5,7 @@ use crate::result::{BurstCount, Finding};
 
 /// What a technician should do with a board that has this finding; none for findings that are not against the board.
 #[must_use]
+#[expect(clippy::too_many_lines, reason = "one line a finding")]
 pub fn at_the_bench(finding: &Finding) -> Option<String> {
     let asked = match finding {
         Finding::TableReadsWrong { defect, .. } => return Some(technician(defect)),
@@ -34,7 +35,37 @@ pub fn at_the_bench(finding: &Finding) -> Option<String> {
         | Finding::RowRepeatsStand(_)
         | Finding::RowOutOfOrder { .. }
         | Finding::RuleBroken { .. } => LOGIC,
-        _ => return None,
+        Finding::GoldenSamplesFound { .. }
+        | Finding::BoardIdentified { .. }
+        | Finding::EchoesReturned { .. }
+        | Finding::TablesUploaded { .. }
+        | Finding::TablesReadBack { .. }
+        | Finding::FramesEqual { .. }
+        | Finding::LatencyRight { .. }
+        | Finding::TablesUnchanged {}
+        | Finding::TablesUnused {}
+        | Finding::CountersRight { .. }
+        | Finding::EqualAtSpeed(_)
+        | Finding::PausedAtSpeed { .. }
+        | Finding::NothingAtSpeed { .. }
+        | Finding::RulesKept { .. }
+        | Finding::RulesLeftOut {}
+        | Finding::NotReached {}
+        | Finding::AllRight { .. }
+        | Finding::BurstStalled { .. }
+        | Finding::BurstEndedEarly { .. }
+        | Finding::RowLostOnce { .. }
+        | Finding::RowLostAmongOthers { .. }
+        | Finding::RowLostEachTime(_)
+        | Finding::RightInAnotherSession { .. }
+        | Finding::WrongOverDoubtfulLink { .. }
+        | Finding::SecondLookBrokenOff(_)
+        | Finding::NothingJudged {}
+        | Finding::DatapathUnknown { .. }
+        | Finding::HardwareRequired { .. }
+        | Finding::BoardExchanged {}
+        | Finding::BoardStayedAway { .. }
+        | Finding::Problem(_) => return None,
     };
     Some(asked.to_owned())
 }

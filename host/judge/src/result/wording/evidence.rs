@@ -7,16 +7,14 @@ use crate::words::{count, grouped, verb};
 /// The evidence for a defect, in one sentence without a full stop.
 #[must_use]
 pub fn evidence(defect: &Defect, account: &Account) -> String {
-    match defect {
-        Defect::TableLengthWrong { uploaded, read, .. } => {
-            let were = verb(*uploaded, "were");
-            return format!("{} {were} uploaded and {} came back", count(*uploaded, "entry"), grouped(*read));
-        }
-        Defect::TableWordWrong { uploaded, read, wrong, .. }
-        | Defect::GridEntryReadsWrong { uploaded, read, wrong, .. } => {
-            return word(*read, *uploaded, *wrong);
-        }
-        _ => {}
+    if let Defect::TableLengthWrong { uploaded, read, .. } = defect {
+        let were = verb(*uploaded, "were");
+        return format!("{} {were} uploaded and {} came back", count(*uploaded, "entry"), grouped(*read));
+    }
+    if let Defect::TableWordWrong { uploaded, read, wrong, .. }
+    | Defect::GridEntryReadsWrong { uploaded, read, wrong, .. } = defect
+    {
+        return word(*read, *uploaded, *wrong);
     }
     let defect = words(defect).defect;
     match *account {

@@ -1,5 +1,7 @@
 //! The sentences of all findings and defects, made from their codes and parameters here and nowhere else.
 
+#![warn(clippy::wildcard_enum_match_arm, reason = "a new finding or defect needs words of its own")]
+
 mod at_speed;
 mod bench;
 mod content;
@@ -11,6 +13,7 @@ mod logic;
 mod missing;
 mod not_exercised;
 mod places;
+mod remedies;
 mod rules;
 mod tables;
 
@@ -22,8 +25,9 @@ pub use bench::at_the_bench;
 pub use evidence::evidence;
 pub(super) use findings::because;
 pub(crate) use findings::broken_off;
-pub use findings::{remedy, sentence};
+pub use findings::sentence;
 pub use not_exercised::not_exercised;
+pub use remedies::remedy;
 
 /// What there is to say about a defect.
 pub(super) struct Words {
@@ -115,13 +119,24 @@ pub fn technician(defect: &Defect) -> String {
     words(defect).technician.to_owned()
 }
 
+#[expect(clippy::too_many_lines, reason = "one arm a defect")]
 fn words(defect: &Defect) -> Words {
-    tables::as_seen(defect).unwrap_or_else(|| elsewhere(defect))
-}
-
-/// The words of defects that do not lie in a single word of a table.
-fn elsewhere(defect: &Defect) -> Words {
     match defect {
+        Defect::RowFactorBitWrong { row, bit, reading, above_one } => {
+            tables::row_bit(*row, *bit, reading, *above_one)
+        }
+        Defect::RowFactorWrong { row, generation, least, most, uploaded, only } => {
+            tables::row_value(*row, only.then_some(*generation), (*least, *most), *uploaded)
+        }
+        Defect::GridEntryBitWrong { column, row, bit, reading, illegal } => {
+            tables::grid_bit((*column, *row), *bit, reading, *illegal)
+        }
+        Defect::KernelWordBitWrong { node, weight, bit, reading } => {
+            tables::word_bit(*node, weight, *bit, reading)
+        }
+        Defect::KernelWordWrong { node, weight, generation, least, most, uploaded, only } => {
+            tables::word_value((*node, weight), only.then_some(*generation), (*least, *most), *uploaded)
+        }
         Defect::LineMemoryDataStuck { bit, value } => lines::line_memory_data(*bit, *value),
         Defect::OutputDataStuck { bit, value } => lines::output_data(*bit, *value),
         Defect::SampleLinesWrong(wrong) => lines::of_samples(wrong),
@@ -154,7 +169,25 @@ fn elsewhere(defect: &Defect) -> Words {
         Defect::SignatureWrong { row } => content::signature_wrong(*row),
         Defect::OnlyAtSpeed { row, samples, bits } => at_speed::only_at_speed(*row, *samples, bits),
         Defect::SeenAtSpeed { row, samples, bits } => at_speed::seen_at_speed(*row, *samples, bits),
-        other => places::words(other),
+        Defect::StaleTables { rows, frames } => places::stale(rows, frames),
+        Defect::RowsExchanged { source, mostly } => places::exchanged(*source, *mostly),
+        Defect::RowShifted { columns } => places::shifted(*columns),
+        Defect::RowsLost { rows, first } => places::lost(*rows, *first),
+        Defect::NoneKnown { .. } => places::unknown(defect),
+        Defect::TableLengthWrong { table, .. } => tables::length(*table),
+        Defect::TableWordWrong { table, entry, weight, bits, .. } => {
+            tables::word_read(*table, *entry, weight.as_deref(), bits)
+        }
+        Defect::GridEntryReadsWrong { column, row, bits, .. } => {
+            tables::grid_entry_read((*column, *row), bits)
+        }
+        Defect::TableDataStuck { table, weight, bit, value } => {
+            tables::data_stuck(*table, weight.as_deref(), *bit, *value)
+        }
+        Defect::TableAddressStuck { table, bit, value } => tables::address_stuck(*table, *bit, *value),
+        Defect::TableWriteAddressStuck { table, bit } => tables::write_address_stuck(*table, *bit),
+        Defect::TableAddressOff { table, entries } => tables::address_off(*table, *entries),
+        Defect::TableLevelStuck { table, value } => tables::level_stuck(*table, *value),
     }
 }
 

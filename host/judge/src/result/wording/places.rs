@@ -2,24 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use super::{LOGIC, REPORT, TIMING, Words, tables};
+use super::{LOGIC, REPORT, TIMING, Words};
 use crate::result::{Defect, Extent, MadeWith, RowSource, StaleFrames};
 use crate::words::{count, grouped};
 
 /// The most bits that are named when all differences are in them alone.
 const FEW_BITS: usize = 2;
 
-pub(super) fn words(defect: &Defect) -> Words {
-    match defect {
-        Defect::StaleTables { rows, frames } => stale(rows, frames),
-        Defect::RowsExchanged { source, mostly } => exchanged(*source, *mostly),
-        Defect::RowShifted { columns } => shifted(*columns),
-        Defect::RowsLost { rows, first } => lost(*rows, *first),
-        other => tables::read_back(other).unwrap_or_else(|| unknown(other)),
-    }
-}
-
-fn stale(rows: &[usize], frames: &[StaleFrames]) -> Words {
+pub(super) fn stale(rows: &[usize], frames: &[StaleFrames]) -> Words {
     let rows = if rows.is_empty() { String::new() } else { format!("row {} of ", list(rows)) };
     let mut alike: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for StaleFrames { frame, committed, made_with } in frames {
@@ -96,7 +86,7 @@ pub(super) fn named(what: &str, count: usize, names: &str) -> String {
     format!("{what}{ending} {names}")
 }
 
-fn exchanged(source: RowSource, mostly: bool) -> Words {
+pub(super) fn exchanged(source: RowSource, mostly: bool) -> Words {
     let name = |rows: isize| match rows {
         0 => "the same row".to_owned(),
         -1 => "the row above".to_owned(),
@@ -123,7 +113,7 @@ fn exchanged(source: RowSource, mostly: bool) -> Words {
     }
 }
 
-fn shifted(columns: isize) -> Words {
+pub(super) fn shifted(columns: isize) -> Words {
     let side = if columns < 0 { "left" } else { "right" };
     Words {
         part: "row shift",
@@ -137,7 +127,7 @@ fn shifted(columns: isize) -> Words {
     }
 }
 
-fn lost(rows: usize, first: usize) -> Words {
+pub(super) fn lost(rows: usize, first: usize) -> Words {
     Words {
         part: "lost rows",
         place: match rows {
@@ -150,8 +140,7 @@ fn lost(rows: usize, first: usize) -> Words {
     }
 }
 
-fn unknown(defect: &Defect) -> Words {
-    debug_assert!(matches!(defect, Defect::NoneKnown { .. }), "{defect:?} has no words");
+pub(super) fn unknown(defect: &Defect) -> Words {
     let maps = if is_unstreamed(defect) { super::NO_MAPS } else { super::MAPS };
     Words {
         part: "unknown",
@@ -172,7 +161,7 @@ fn hint(defect: &Defect) -> Option<String> {
         Extent::One { at } => Some(format!("what only {name} {at} meets: a beginning, the middle or an end")),
         Extent::Even { .. } => Some(format!("what only even {name}s use, such as one of two lanes or banks")),
         Extent::Odd { .. } => Some(format!("what only odd {name}s use, such as one of two lanes or banks")),
-        _ => None,
+        Extent::Every {} | Extent::From { .. } | Extent::Between { .. } | Extent::Some { .. } => None,
     };
     if let (Some(Extent::One { .. }), Some(Extent::One { .. })) = (rows, columns) {
         return None;

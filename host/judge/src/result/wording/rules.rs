@@ -2,31 +2,23 @@
 
 use halfrow_protocol::message::RefusalCode;
 
-use crate::result::{Answer, Finding, RowPart, Rule};
+use crate::result::{Answer, RowPart, Rule};
 use crate::words::count;
 
 /// What to do about any broken rule.
 pub(super) const REMEDY: &str = "Check how the board decodes requests, and try it with the conformance tests; \
                                  protocol/WIRE.md says what it must refuse.";
 
-/// The sentence of a finding on rules, if it is one.
-pub(super) fn sentence(finding: &Finding) -> Option<String> {
-    Some(match finding {
-        Finding::RulesKept { requests } => {
-            format!("{} answered as the wire's rules say", count(*requests, "request"))
-        }
-        Finding::RulesLeftOut {} => "left out of this run".to_owned(),
-        Finding::RuleBroken { rule, request, right, found } => {
-            let did = match (right, found) {
-                (Answer::Refused { .. }, Answer::Replied { payload }) if !payload.is_empty() => {
-                    format!("accepted it and answered with {payload}")
-                }
-                _ => did(found),
-            };
-            format!("the board must {}, but it {did} (rule: {})", must(right, request), meaning(*rule))
-        }
-        _ => return None,
-    })
+/// What the board must do, and what it did.
+pub(super) fn broken(rule: Rule, request: &str, right: &Answer, found: &Answer) -> String {
+    let did = if let (Answer::Refused { .. }, Answer::Replied { payload }) = (right, found)
+        && !payload.is_empty()
+    {
+        format!("accepted it and answered with {payload}")
+    } else {
+        did(found)
+    };
+    format!("the board must {}, but it {did} (rule: {})", must(right, request), meaning(rule))
 }
 
 fn must(right: &Answer, request: &str) -> String {

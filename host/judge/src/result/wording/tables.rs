@@ -2,29 +2,9 @@
 
 use super::places;
 use super::{LOGIC, MEMORY, Words, memory};
-use crate::result::{Defect, Memory, Reading};
+use crate::result::{Memory, Reading};
 
-/// The words for what samples show about single words of tables.
-pub(super) fn as_seen(defect: &Defect) -> Option<Words> {
-    Some(match defect {
-        Defect::RowFactorBitWrong { row, bit, reading, above_one } => {
-            row_bit(*row, *bit, reading, *above_one)
-        }
-        Defect::RowFactorWrong { row, generation, least, most, uploaded, only } => {
-            row_value(*row, only.then_some(*generation), (*least, *most), *uploaded)
-        }
-        Defect::GridEntryBitWrong { column, row, bit, reading, illegal } => {
-            grid_bit((*column, *row), *bit, reading, *illegal)
-        }
-        Defect::KernelWordBitWrong { node, weight, bit, reading } => word_bit(*node, weight, *bit, reading),
-        Defect::KernelWordWrong { node, weight, generation, least, most, uploaded, only } => {
-            word_value((*node, weight), only.then_some(*generation), (*least, *most), *uploaded)
-        }
-        _ => return None,
-    })
-}
-
-fn row_bit(row: usize, bit: u32, reading: &Reading, above_one: bool) -> Words {
+pub(super) fn row_bit(row: usize, bit: u32, reading: &Reading, above_one: bool) -> Words {
     let illegal = if above_one { " (above 1, so only part of the row can be predicted)" } else { "" };
     row_factor(
         row,
@@ -33,7 +13,7 @@ fn row_bit(row: usize, bit: u32, reading: &Reading, above_one: bool) -> Words {
     )
 }
 
-fn row_value(row: usize, only: Option<u8>, values: (u32, u32), uploaded: u32) -> Words {
+pub(super) fn row_value(row: usize, only: Option<u8>, values: (u32, u32), uploaded: u32) -> Words {
     let values = (i64::from(values.0), i64::from(values.1));
     row_factor(row, format!("row {row}'s factor"), read_value(values, uploaded.into(), only))
 }
@@ -50,7 +30,7 @@ fn row_factor(row: usize, place: String, defect: String) -> Words {
     }
 }
 
-fn grid_bit(entry: (usize, usize), bit: u32, reading: &Reading, illegal: bool) -> Words {
+pub(super) fn grid_bit(entry: (usize, usize), bit: u32, reading: &Reading, illegal: bool) -> Words {
     let illegal =
         if illegal { " (which leads out of the row, so only part of it can be predicted)" } else { "" };
     let (column, row) = entry;
@@ -73,11 +53,11 @@ fn grid_entry((column, row): (usize, usize)) -> String {
     }
 }
 
-fn word_bit(node: usize, weight: &str, bit: u32, reading: &Reading) -> Words {
+pub(super) fn word_bit(node: usize, weight: &str, bit: u32, reading: &Reading) -> Words {
     kernel_word(node, weight, &format!(", {}", bits(bit, reading)), read(reading))
 }
 
-fn word_value(word: (usize, &str), only: Option<u8>, values: (i64, i64), uploaded: i16) -> Words {
+pub(super) fn word_value(word: (usize, &str), only: Option<u8>, values: (i64, i64), uploaded: i16) -> Words {
     kernel_word(word.0, word.1, "", read_value(values, uploaded.into(), only))
 }
 
@@ -124,48 +104,51 @@ fn in_tables(only: Option<u8>) -> String {
     only.map_or_else(String::new, |generation| format!(" in the tables of generation {generation} only"))
 }
 
-/// The words for what was seen when a table was read back.
-pub(super) fn read_back(defect: &Defect) -> Option<Words> {
-    let (table, place, defect) = match defect {
-        Defect::TableLengthWrong { table, .. } => {
-            let words = of_table(*table, "the table's length".to_owned(), String::new());
-            let designer = "Check how the board counts entries when it reads a table back.".to_owned();
-            return Some(Words { designer, technician: LOGIC, ..words });
-        }
-        Defect::TableWordWrong { table, entry, weight, bits, .. } => {
-            (table, word(*entry, weight.as_deref(), bits), String::new())
-        }
-        Defect::GridEntryReadsWrong { column, row, bits, .. } => {
-            let place = format!("{}, {}", grid_entry((*column, *row)), places::bits(bits));
-            return Some(Words { part: "grid entry", ..of_table(Memory::Rows, place, String::new()) });
-        }
-        Defect::TableDataStuck { table, weight, bit, value } => {
-            let weight = weight.as_ref().map_or_else(String::new, |weight| format!(", weight {weight}"));
-            let place = format!("{}{weight}, data bit {bit}", memory(*table));
-            (table, place, format!("this bit stuck at {value}"))
-        }
-        Defect::TableAddressStuck { table, bit, value } => {
-            let stuck = match value {
-                0 => "this bit stuck at 0 for reading",
-                _ => "this bit stuck at 1 for reading, or at 0 or 1 for writing as well",
-            };
-            (table, format!("{}, address bit {bit}", memory(*table)), stuck.to_owned())
-        }
-        Defect::TableWriteAddressStuck { table, bit } => {
-            let place = format!("{}, write address bit {bit}", memory(*table));
-            (table, place, "this bit stuck at 0 for writing but right for reading".to_owned())
-        }
-        Defect::TableAddressOff { table, entries } => {
-            let side = if *entries < 0 { "before" } else { "after" };
-            let place = format!("{}, its address", memory(*table));
-            (table, place, format!("every entry read as the one {side} it"))
-        }
-        Defect::TableLevelStuck { table, value } => {
-            (table, memory(*table).to_owned(), format!("every bit read as {value}"))
-        }
-        _ => return None,
+/// A table that reads back longer or shorter than it was uploaded.
+pub(super) fn length(table: Memory) -> Words {
+    let designer = "Check how the board counts entries when it reads a table back.".to_owned();
+    Words { designer, technician: LOGIC, ..of_table(table, "the table's length".to_owned(), String::new()) }
+}
+
+pub(super) fn word_read(table: Memory, entry: usize, weight: Option<&str>, bits: &[u32]) -> Words {
+    of_table(table, word(entry, weight, bits), String::new())
+}
+
+pub(super) fn grid_entry_read(entry: (usize, usize), bits: &[u32]) -> Words {
+    let place = format!("{}, {}", grid_entry(entry), places::bits(bits));
+    Words { part: "grid entry", ..of_table(Memory::Rows, place, String::new()) }
+}
+
+pub(super) fn data_stuck(table: Memory, weight: Option<&str>, bit: u32, value: u8) -> Words {
+    let weight = weight.map_or_else(String::new, |weight| format!(", weight {weight}"));
+    let place = format!("{}{weight}, data bit {bit}", memory(table));
+    of_table(table, place, format!("this bit stuck at {value}"))
+}
+
+pub(super) fn address_stuck(table: Memory, bit: u32, value: u8) -> Words {
+    let stuck = match value {
+        0 => "this bit stuck at 0 for reading",
+        _ => "this bit stuck at 1 for reading, or at 0 or 1 for writing as well",
     };
-    Some(of_table(*table, place, defect))
+    of_table(table, format!("{}, address bit {bit}", memory(table)), stuck.to_owned())
+}
+
+pub(super) fn write_address_stuck(table: Memory, bit: u32) -> Words {
+    let place = format!("{}, write address bit {bit}", memory(table));
+    of_table(table, place, "this bit stuck at 0 for writing but right for reading".to_owned())
+}
+
+pub(super) fn address_off(table: Memory, entries: isize) -> Words {
+    let side = if entries < 0 { "before" } else { "after" };
+    of_table(
+        table,
+        format!("{}, its address", memory(table)),
+        format!("every entry read as the one {side} it"),
+    )
+}
+
+pub(super) fn level_stuck(table: Memory, value: u8) -> Words {
+    of_table(table, memory(table).to_owned(), format!("every bit read as {value}"))
 }
 
 fn of_table(table: Memory, place: String, defect: String) -> Words {
