@@ -3,7 +3,6 @@
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-use anyhow::bail;
 use clap::builder::{OsStringValueParser, TypedValueParser as _};
 use clap::{Args, ValueEnum};
 use halfrow_model::{BitDepth, Equidistant, Geometry, Kernel, LensError, Phase};
@@ -188,22 +187,20 @@ impl LensArguments {
     }
 
     /// Refuses options that have no effect with this lens or contradict it.
-    fn check(&self) -> anyhow::Result<()> {
+    fn check(&self) -> Result<(), CallError> {
         let scales = self.lens_pitch.is_some();
         let is_exact = self.projection == Some(Projection::Exact);
         if is_exact && self.rows.is_some() {
-            bail!(CallError::RowsOfGrid);
+            return Err(CallError::RowsOfGrid);
         }
         if !is_exact && self.entries.is_some() {
-            bail!(CallError::EntriesOfRows);
+            return Err(CallError::EntriesOfRows);
         }
         match self.lens {
-            Some(LensName::File(_)) if self.pixel_pitch.is_some() && !scales => {
-                bail!(CallError::PitchAlone)
-            }
-            None | Some(LensName::Equidistant(_)) if scales => bail!(CallError::LensPitchWithoutFile),
+            Some(LensName::File(_)) if self.pixel_pitch.is_some() && !scales => Err(CallError::PitchAlone),
+            None | Some(LensName::Equidistant(_)) if scales => Err(CallError::LensPitchWithoutFile),
             Some(LensName::Equidistant(_)) if self.pixel_pitch.is_some() || self.field_of_view.is_some() => {
-                bail!(CallError::RadiusTwice)
+                Err(CallError::RadiusTwice)
             }
             _ => Ok(()),
         }
@@ -246,7 +243,7 @@ impl LensArguments {
         let (file, input) = LensFile::read(path)?;
         let scale = self.lens_pitch.map(|pitch| self.scale_from(pitch)).transpose()?;
         if file.size.is_none() && scale.is_none() && (self.width.is_none() || self.height.is_none()) {
-            bail!(CallError::LensSizeMissing { path: path.to_owned() });
+            return Err(CallError::LensSizeMissing { path: path.to_owned() }.into());
         }
         Ok(Optics::of_lens_file(input, &file, scale, &self.view(), self.by(Rows::Fitted))?)
     }

@@ -102,8 +102,7 @@ fn paths(folders: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
         let unlisted = |source| CallError::FolderUnlisted { path: folder.clone(), source };
         paths.extend(pictures(folder).map_err(unlisted)?);
     }
-    anyhow::ensure!(!paths.is_empty(), CallError::NoPhotograph);
-    Ok(paths)
+    if paths.is_empty() { Err(CallError::NoPhotograph.into()) } else { Ok(paths) }
 }
 
 /// The photographs, none of which may count twice. Those that are higher than wide are turned by a quarter.

@@ -194,7 +194,7 @@ impl Arguments {
                 chosen.map(Item::name).collect::<Vec<_>>().join(" ")
             };
             let needing = names(true).replace(' ', " and ");
-            anyhow::bail!(CallError::PhotographsMissing { needing, others: names(false) });
+            return Err(CallError::PhotographsMissing { needing, others: names(false) }.into());
         };
         Ok(paper::read_photographs(folder)?)
     }

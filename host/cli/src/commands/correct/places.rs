@@ -3,8 +3,6 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use anyhow::{bail, ensure};
-
 use crate::arguments::inputs::FrameName;
 use crate::call_error::CallError;
 use crate::files::{make_folder, refuse_stdout};
@@ -43,7 +41,7 @@ impl Places {
         for path in &places.frames {
             let named = Format::of(path)?;
             if let Some(format) = wanted.format.filter(|&format| format != named) {
-                bail!(CallError::OtherFormat { path: path.clone(), format });
+                return Err(CallError::OtherFormat { path: path.clone(), format }.into());
             }
         }
         places.previews.iter().try_for_each(|path| check_png(path))?;
@@ -62,7 +60,9 @@ impl Places {
         let is_file = place.extension().is_some() && !place.is_dir();
         if is_file {
             let frames = inputs.len();
-            ensure!(frames == 1, CallError::OneFile { path: place.to_owned(), frames, option });
+            if frames != 1 {
+                return Err(CallError::OneFile { path: place.to_owned(), frames, option }.into());
+            }
         } else {
             self.folders.push(place.to_owned());
         }
@@ -74,11 +74,11 @@ impl Places {
     }
 
     /// Refuses to write two frames to the same file.
-    fn check(&self) -> anyhow::Result<()> {
+    fn check(&self) -> Result<(), CallError> {
         let mut seen = HashSet::new();
         for path in self.frames.iter().chain(&self.previews) {
             if !seen.insert(Place::of(path)) {
-                bail!(CallError::FramesShare { path: path.clone() });
+                return Err(CallError::FramesShare { path: path.clone() });
             }
         }
         Ok(())
