@@ -147,9 +147,10 @@ def options():
     for page, program in ("COMMANDS.md", "halfrow"), ("STATION-COMMANDS.md", "halfrow-station"):
         name = program
         for line in (DOCS / page).read_text().split("\n"):
-            name = line[3:] if line.startswith(f"## {program} ") else name
-            known.setdefault(name, {"--help", "--version"} | known.get(program, set()))
-            if row := re.match(r"\| `([^`]*)` \|", line):
+            if line.startswith("## "):
+                name = {"## Every command": program}.get(line, line[3:])
+                known[name] = {"--help", "--version"} | known.get(program, set())
+            if row := re.match(r"\| (`[^`]*`(?:, `[^`]*`)*) \|", line):
                 known[name].update(re.findall(r"--[a-z0-9-]+", row[1]))
     return known
 

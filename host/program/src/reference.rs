@@ -1,24 +1,119 @@
 //! The page of all commands of a program, in Markdown, made from its command line.
 
+use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use clap::{Arg, Command, Id};
 
-/// `head`, then every command of `program` that help shows, with its usage, arguments and options.
+/// The heading of the options that several commands have, and of those among them that help lists under none.
+const SHARED: &str = "Options of several commands";
+
+/// `head`, then every command of `program` that help shows, with its usage, arguments and options. Options that several commands
+/// have with the same help stand before the commands, each of which names those that it has.
 #[must_use]
 pub fn page(head: &str, program: Command) -> String {
     let mut program = program.disable_help_subcommand(true);
     program.build();
-    let mut page = format!("{head}\n## Every command\n\n{}", table(&program, Arg::is_global_set));
-    let shared: Vec<_> = program.get_arguments().map(Arg::get_id).cloned().collect();
+    let of_all: Vec<_> = shown(&program).filter(|argument| argument.is_global_set()).map(row).collect();
+    let shared = Shared::of(&program);
+    let mut page = format!("{head}\n## Every command\n\n{}\n## {SHARED}\n", table(&of_all));
+    for (heading, options) in shared.groups() {
+        if heading != SHARED {
+            let _ = write!(page, "\n### {heading}\n");
+        }
+        let rows: Vec<_> = options.iter().map(|option| option.row.clone()).collect();
+        if !rows.is_empty() {
+            let _ = write!(page, "\n{}", table(&rows));
+        }
+    }
     for command in program.get_subcommands() {
         section(command, program.get_name(), &shared, &mut page);
     }
     page
 }
 
+/// An option that several commands have with the same help.
+struct SharedOption {
+    /// Where it stands.
+    heading: String,
+    /// As in `--output`.
+    name: String,
+    /// Its line of a table.
+    row: String,
+}
+
+/// All of them. No two have the same name: of several helps, the one that most commands have is shared.
+struct Shared {
+    /// Those that every command has.
+    of_all: Vec<Id>,
+    options: Vec<SharedOption>,
+}
+
+impl Shared {
+    fn of(program: &Command) -> Self {
+        let of_all: Vec<_> = program.get_arguments().map(Arg::get_id).cloned().collect();
+        let mut found = Vec::new();
+        program.get_subcommands().for_each(|command| collect(command, &of_all, &mut found));
+        let mut counts = HashMap::<String, usize>::new();
+        found.iter().for_each(|option| *counts.entry(option.row.clone()).or_default() += 1);
+        let mut options = Vec::<SharedOption>::new();
+        for option in found.into_iter().filter(|option| counts[&option.row] > 1) {
+            match options.iter_mut().find(|other| other.name == option.name) {
+                None => options.push(option),
+                Some(other) if counts[&other.row] < counts[&option.row] => *other = option,
+                Some(_) => {}
+            }
+        }
+        Self { of_all, options }
+    }
+
+    fn has(&self, row: &str) -> bool {
+        self.options.iter().any(|option| option.row == row)
+    }
+
+    /// The options under each heading; those that help lists under none come first.
+    fn groups(&self) -> Vec<(&str, Vec<&SharedOption>)> {
+        let mut groups = vec![(SHARED, Vec::new())];
+        for option in &self.options {
+            match groups.iter_mut().find(|(heading, _)| *heading == option.heading) {
+                None => groups.push((option.heading.as_str(), vec![option])),
+                Some((_, options)) => options.push(option),
+            }
+        }
+        groups
+    }
+
+    /// For each group of which a command with these `rows` has options, a line that names them and leads to the group.
+    fn lines(&self, rows: &[String]) -> Vec<String> {
+        let mut lines = Vec::new();
+        for (heading, options) in self.groups() {
+            let had = options.iter().filter(|option| rows.contains(&option.row));
+            let names: Vec<_> = had.map(|option| format!("`{}`", option.name)).collect();
+            if !names.is_empty() {
+                let anchor = heading.to_lowercase().replace(' ', "-");
+                lines.push(format!("| {} | [{heading}](#{anchor}) |", names.join(", ")));
+            }
+        }
+        lines
+    }
+}
+
+/// The options of `command` and of its subcommands.
+fn collect(command: &Command, of_all: &[Id], found: &mut Vec<SharedOption>) {
+    if command.is_hide_set() {
+        return;
+    }
+    for argument in shown(command).filter(|argument| !of_all.contains(argument.get_id())) {
+        if let Some(long) = argument.get_long() {
+            let heading = argument.get_help_heading().unwrap_or(SHARED).to_owned();
+            found.push(SharedOption { heading, name: format!("--{long}"), row: row(argument) });
+        }
+    }
+    command.get_subcommands().for_each(|inner| collect(inner, of_all, found));
+}
+
 /// A command, without the options that all commands share, then its subcommands.
-fn section(command: &Command, before: &str, shared: &[Id], page: &mut String) {
+fn section(command: &Command, before: &str, shared: &Shared, page: &mut String) {
     if command.is_hide_set() {
         return;
     }
@@ -28,23 +123,28 @@ fn section(command: &Command, before: &str, shared: &[Id], page: &mut String) {
     let usage = usage.trim_start_matches("Usage: ");
     // Writing to a string cannot fail.
     let _ = write!(page, "\n## {name}\n\n{about}\n\n```text\n{usage}\n```\n");
-    let table = table(command, |argument| !shared.contains(argument.get_id()));
-    if !table.is_empty() {
-        let _ = write!(page, "\n{table}");
+    let is_of_all = |argument: &&Arg| shared.of_all.contains(argument.get_id());
+    let rows: Vec<_> = shown(command).filter(|argument| !is_of_all(argument)).map(row).collect();
+    let own = rows.iter().filter(|row| !shared.has(row)).cloned();
+    let lines: Vec<_> = own.chain(shared.lines(&rows)).collect();
+    if !lines.is_empty() {
+        let _ = write!(page, "\n{}", table(&lines));
     }
     for inner in command.get_subcommands() {
         section(inner, &name, shared, page);
     }
 }
 
-/// The arguments of a command that `is_wanted` accepts and that the help shows; empty if there are none.
-fn table(command: &Command, is_wanted: impl Fn(&Arg) -> bool) -> String {
+/// The arguments of a command that the help shows.
+fn shown(command: &Command) -> impl Iterator<Item = &Arg> {
     let is_shown = |argument: &&Arg| {
-        let by_clap = ["help", "version"].contains(&argument.get_id().as_str());
-        !by_clap && !argument.is_hide_set() && is_wanted(argument)
+        !["help", "version"].contains(&argument.get_id().as_str()) && !argument.is_hide_set()
     };
-    let rows: Vec<_> = command.get_arguments().filter(is_shown).map(row).collect();
-    if rows.is_empty() { String::new() } else { format!("| | |\n|---|---|\n{}\n", rows.join("\n")) }
+    command.get_arguments().filter(is_shown)
+}
+
+fn table(rows: &[String]) -> String {
+    format!("| | |\n|---|---|\n{}\n", rows.join("\n"))
 }
 
 fn row(argument: &Arg) -> String {
@@ -96,5 +196,39 @@ fn names(argument: &Arg) -> String {
         (true, _) => format!("`{}`", value.trim_start()),
         (false, false) => format!("`{}`", names.join(", ")),
         (false, true) => format!("`{}{value}`", names.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn option(name: &'static str, help: &'static str) -> Arg {
+        Arg::new(name).long(name).value_name("X").help(help)
+    }
+
+    #[test]
+    fn what_several_commands_have_stands_once_and_each_names_it() {
+        let lens = |help| option("lens", help).help_heading("The lens");
+        let program = Command::new("p")
+            .arg(option("log", "All have it").global(true))
+            .subcommand(Command::new("a").arg(option("seed", "Its own")).arg(lens("A lens")))
+            .subcommand(Command::new("b").arg(option("seed", "Of two")).arg(lens("A lens")))
+            .subcommand(Command::new("c").arg(option("seed", "Of two")).arg(option("d", "Of c alone")));
+        let page = page("# P\n", program);
+        let (top, commands) = page.split_once("\n## p a\n").unwrap();
+        assert_eq!(
+            top,
+            "# P\n\n## Every command\n\n| | |\n|---|---|\n| `--log X` | All have it |\n\n## Options of several commands\n\n\
+             | | |\n|---|---|\n| `--seed X` | Of two |\n\n### The lens\n\n| | |\n|---|---|\n| `--lens X` | A lens |\n"
+        );
+        let shared = "[Options of several commands](#options-of-several-commands)";
+        for rows in [
+            "| `--seed X` | Its own |\n| `--lens` | [The lens](#the-lens) |\n".to_owned(),
+            format!("|---|---|\n| `--seed` | {shared} |\n| `--lens` | [The lens](#the-lens) |\n"),
+            format!("| `--d X` | Of c alone |\n| `--seed` | {shared} |\n"),
+        ] {
+            assert!(commands.contains(&rows), "{rows}{commands}");
+        }
     }
 }

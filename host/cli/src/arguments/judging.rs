@@ -33,8 +33,6 @@ const PATIENCE: Duration = Duration::from_secs(30);
 #[derive(Debug, Args)]
 pub(crate) struct RunArguments {
     #[command(flatten)]
-    pub(crate) board: BoardArguments,
-    #[command(flatten)]
     tables: TableArgument,
     #[arg(long, value_name = "NAME|FILE", help = optics::kernel_help(", instead of the table file's"), env = "HALFROW_KERNEL")]
     kernel: Option<OsString>,
@@ -59,6 +57,8 @@ pub(crate) struct RunArguments {
     /// Seed of noise, gaps, link test and the frames that the board makes
     #[arg(long, value_name = "SEED", env = "HALFROW_SEED", value_parser = whole_number())]
     seed: Option<u64>,
+    #[command(flatten)]
+    pub(crate) board: BoardArguments,
     #[command(flatten)]
     pub(crate) lens: LensArguments,
 }

@@ -18,6 +18,7 @@ use crate::serve::ServeError;
 use crate::settings::SettingsError;
 use crate::signals::Unheard;
 use halfrow::result::codes::{self, CodeList, Coded};
+use halfrow::result::wording::AT_THE_BENCH;
 use halfrow::result::{Finding, Problem, examples};
 use halfrow::run::{RECORDING_LOST, REPORT_LOST};
 use halfrow_lab::paper::{FolderError, MarkedError, PaperError, PhotographError};
@@ -259,13 +260,14 @@ fn is_by_suspect(example: &Finding) -> bool {
 /// The page of all codes, in Markdown.
 fn page() -> String {
     let mut text = HEAD.to_owned();
+    AT_THE_BENCH.iter().for_each(|(blamed, asked)| text += &format!("\n### {blamed}\n\n{asked}\n"));
     text += "\n## Findings of checks and runs\n\n";
     for finding in examples::findings() {
         let problem = finding.as_problem();
         text +=
             &format!("* `{}`{}: {}\n", problem.code, parameters(problem.parameters.keys()), problem.message);
         let act = act(&finding).map_or_else(String::new, |remedy| format!("  *Do:* {remedy}\n"));
-        let bench = bench(&finding).map_or_else(String::new, |bench| format!("  *Technician:* {bench}\n"));
+        let bench = bench(&finding).map_or_else(String::new, |bench| technician(&bench));
         text += &(act + &bench);
     }
     text += "\n## Defects that suspects have\n\n";
@@ -273,7 +275,7 @@ fn page() -> String {
         let (code, names) = suspect.defect.tagged();
         let (place, evidence) = (suspect.place(), suspect.evidence());
         text += &format!("* `{code}`{}: {place}: {evidence}\n", parameters(names.keys()));
-        text += &format!("  *Designer:* {}\n  *Technician:* {}\n", suspect.designer(), suspect.technician());
+        text += &format!("  *Designer:* {}\n{}", suspect.designer(), technician(&suspect.technician()));
     }
     text += "\n## What a PASS did not exercise\n\n";
     for part in examples::not_exercised() {
@@ -287,10 +289,23 @@ fn page() -> String {
     text
 }
 
+/// What a technician does about a code, with a link to the sentence instead of the sentence.
+fn technician(bench: &str) -> String {
+    let linked = AT_THE_BENCH.iter().fold(bench.to_owned(), |text, (blamed, asked)| {
+        let blamed = blamed.to_lowercase();
+        text.replace(asked, &format!("as for [{blamed}](#{blamed})"))
+    });
+    format!("  *Technician:* {linked}\n")
+}
+
 const HEAD: &str = "# Codes
 
 Every finding, defect and error in JSON has a code and parameters, and so has what a PASS did not exercise. Codes are
 stable: none changes its meaning or its parameters' names within a schema number, and new ones may come. The sentences
 are made from them and may change.
 `halfrow codes` prints this page; a test holds the two equal. Sentences are those of an example.
+
+## What a technician does
+
+One of these, by what is to blame. Each code that has a *Technician* says which.
 ";

@@ -44,8 +44,6 @@ pub(super) struct Arguments {
     /// Correct with the reference model, whatever board is set
     #[arg(long)]
     model: bool,
-    #[command(flatten)]
-    board: BoardArguments,
     /// Where to: a .pgm, .png, .tif, .dng or .raw file, or a folder for several frames
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
@@ -64,6 +62,8 @@ pub(super) struct Arguments {
     /// Replace files that are there
     #[arg(long)]
     overwrite: bool,
+    #[command(flatten)]
+    board: BoardArguments,
     #[command(flatten)]
     input: InputArguments,
     #[command(flatten)]

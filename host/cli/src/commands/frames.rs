@@ -19,8 +19,6 @@ use halfrow::frames::{self, Builtin};
 #[derive(Debug, Args)]
 #[command(mut_args(without_tables))]
 pub(super) struct Arguments {
-    #[command(flatten)]
-    lens: LensArguments,
     /// Only the frame with this name; may be given several times
     #[arg(long, value_name = "NAME")]
     only: Vec<Builtin>,
@@ -33,6 +31,8 @@ pub(super) struct Arguments {
     /// Replace files that are there
     #[arg(long)]
     overwrite: bool,
+    #[command(flatten)]
+    lens: LensArguments,
 }
 
 /// Hides an option that makes tables, which frames do not have. A call that gives one is refused.

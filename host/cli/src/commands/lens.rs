@@ -20,14 +20,14 @@ use halfrow_lab::{Amounts, Residuals};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    #[command(flatten)]
-    lens: LensArguments,
     /// Write the horizontal error that is left at each sample as a picture, dark for none
     #[arg(long, value_name = "FILE.png")]
     map: Option<PathBuf>,
     /// Replace a picture that is there
     #[arg(long, requires = "map")]
     overwrite: bool,
+    #[command(flatten)]
+    lens: LensArguments,
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {

@@ -19,14 +19,14 @@ use halfrow::words::{count, grouped, verb};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    #[command(flatten)]
-    board: BoardArguments,
     /// How long each of the five parts takes
     #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = seconds(0.001..=86_400.0))]
     seconds: Duration,
     /// Seed of what is sent
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
+    #[command(flatten)]
+    board: BoardArguments,
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {

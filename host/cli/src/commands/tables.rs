@@ -21,8 +21,6 @@ use halfrow_files::written_aside::WriteAsideError;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    #[command(flatten)]
-    lens: LensArguments,
     #[arg(long, help = optics::kernel_help(" [default: hermite]"), value_name = "NAME|FILE", env = "HALFROW_KERNEL")]
     kernel: Option<OsString>,
     /// Where to: FILE.json, or FILE.mem for two files that Verilog's $readmemh reads
@@ -31,6 +29,8 @@ pub(super) struct Arguments {
     /// Replace files that are there
     #[arg(long)]
     overwrite: bool,
+    #[command(flatten)]
+    lens: LensArguments,
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {

@@ -63,6 +63,10 @@ const UNEXPLAINED: &str = "no single known defect explains them";
 const REPORT: &str = "Reload the bitstream and run again with a report. If the fault comes back, set the board aside, and give the \
                       report to the designer.";
 
+/// All that a technician is told to do with a board, by what is to blame.
+pub const AT_THE_BENCH: [(&str, &str); 4] =
+    [("Memory", MEMORY), ("Logic", LOGIC), ("Timing", TIMING), ("Unknown", REPORT)];
+
 /// The kind of part, in lower case.
 #[must_use]
 pub fn part(defect: &Defect) -> &'static str {
