@@ -149,7 +149,7 @@ pub enum Saying {
     Armed { lane: String },
     #[error("lane {lane} starts")]
     Starts { lane: String },
-    #[error("lane {lane} is told to end")]
+    #[error("ending the run in lane {lane}")]
     ToldToEnd { lane: String },
     #[error("lane {lane} is out of service")]
     TakenOut { lane: String },
@@ -167,7 +167,7 @@ pub enum Saying {
     WaitsInstead { serial: String, other: String },
     #[error("{serial} waited for this board, and is not tested: {why}; then scan it again")]
     NotGiven { serial: String, why: Said },
-    #[error("taken out by a person")]
+    #[error("disabled by an operator")]
     OutByPerson,
     #[error("its process cannot be killed; restart the computer")]
     Unkillable,
@@ -217,10 +217,10 @@ pub enum Saying {
          in {seconds:.0} s"
     )]
     StillHeld { seconds: f64 },
-    #[error("the step is not repeated by itself, since something was found wrong with the board")]
+    #[error("not retried automatically: the board showed a fault")]
     NotRepeatedWrong,
     #[error(
-        "the step is not repeated by itself, since the board lost its session: it may be at fault, or be another board now"
+        "not retried automatically: the board lost its session, and may be at fault, or be another board now"
     )]
     NotRepeatedLost,
     #[error("the link was tested: {link}")]
