@@ -41,7 +41,7 @@ pub(crate) const BOARDS: [BitstreamBoard; 2] = [
         links: &["serial", "usb"],
         build: "fpga/boards/ulx3s/build uart|fifo [sensor] [--device 12|25|45|85]",
         bitstream: "target/ulx3s/uart-25/top.bit",
-        target: "serial:PATH,baud=3000000,flow=none",
+        target: "serial:PATH,board=ulx3s",
         loader_name: "ulx3s",
         other_loader: "fujprog",
     },
@@ -56,5 +56,18 @@ impl BitstreamBoard {
     /// All names, for a sentence.
     pub(crate) fn names() -> String {
         BOARDS.map(|board| board.name).join(", ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_board_is_judged_at_a_target_that_can_be_opened() {
+        for board in &BOARDS {
+            let target = board.target.replace("PATH", "/dev/ttyUSB99").parse().unwrap();
+            halfrow_link::check(&target).unwrap_or_else(|error| panic!("{}: {error}", board.name));
+        }
     }
 }

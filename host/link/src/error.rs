@@ -41,6 +41,16 @@ pub enum OpenError {
         /// The options that there are.
         known: &'static str,
     },
+    /// An option of the target contradicts the board that another option names.
+    #[error("`{option}` contradicts `board={board}`, which means {meaning}; leave one of the two out")]
+    OtherBoard {
+        /// The option.
+        option: String,
+        /// The board.
+        board: &'static str,
+        /// The options that the board stands for.
+        meaning: String,
+    },
     /// The target has an option, but boards of this kind take none.
     #[error("`{kind}` takes no option, but got `{option}`; leave it out")]
     NoOption {

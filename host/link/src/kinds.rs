@@ -76,7 +76,10 @@ pub static KINDS: [Kind; 6] = [
     },
     Kind {
         name: "serial",
-        forms: &[Form { target: "serial:PATH", summary: "the board behind a serial port" }],
+        forms: &[Form {
+            target: "serial:PATH",
+            summary: "the board behind a serial port; board=NAME sets the port as that board needs it",
+        }],
         board: BoardKind::Hardware,
         check: SerialLink::check,
         open: |target| Ok(Box::new(SerialLink::open(target)?)),

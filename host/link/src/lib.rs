@@ -38,7 +38,7 @@ pub use line_errors::LineErrors;
 pub use open::{check, fault, open, recording, recording_file, replay};
 pub use recording::{Lost, Recorder, Recording, RecordingError, RecordingFile};
 pub(crate) use replay::ReplayLink;
-pub use serial::{Holder, SerialError, holders};
+pub use serial::{Holder, SerialBoard, SerialError, holders};
 pub(crate) use serial::{SerialLink, how_to_get_access};
 pub use sysfs::UsbDevice;
 pub(crate) use sysfs::usb_device;

@@ -161,6 +161,8 @@ fn a_board_that_can_never_be_greeted_is_refused_before_anything_is_loaded() {
         ("tcp:nope:1,rate=5", "target-option-unknown"),
         ("serial", "target-address-missing"),
         ("serial:/dev/nonesuch,baud=much", "target-option-unknown"),
+        ("serial:/dev/nonesuch,board=ulx4s", "target-option-unknown"),
+        ("serial:/dev/nonesuch,board=ulx3s,flow=rtscts", "target-option-contradicts-board"),
         ("usb,channel=e", "target-option-unknown"),
         ("mock,foo=1", "target-options-wrong"),
         ("replay:run.rec", "recording-corrects-nothing"),

@@ -145,8 +145,11 @@ fn the_list_prices_each_part_at_the_link_that_the_target_names_or_at_usual_ones(
     let [(rate, own)] = &listed_prices("mock,speed=1200000")[..] else { panic!() };
     assert_eq!((*rate, own), (1.2e6, &usual[1].1));
     // 3 Mbaud are 300,000 bytes a second; the port is not opened.
-    let [(rate, _)] = &listed_prices("serial:/dev/no-such-port,baud=3000000")[..] else { panic!() };
-    assert_eq!(*rate, 3e5);
+    for options in ["baud=3000000", "board=ulx3s"] {
+        let prices = listed_prices(&format!("serial:/dev/no-such-port,{options}"));
+        let [(rate, _)] = &prices[..] else { panic!("{options}") };
+        assert_eq!(*rate, 3e5, "{options}");
+    }
     let text = halfrow(["verify", "--list", "--board", "mock,speed=1200000"]).stdout;
     let last = text.lines().last().unwrap_or_default();
     assert!(last.starts_with("the whole run") && last.ends_with(" s"), "{text}");

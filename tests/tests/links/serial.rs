@@ -49,6 +49,18 @@ fn a_port_that_is_not_there_is_an_error_of_the_station() {
 }
 
 #[test]
+fn a_port_is_set_as_the_board_that_is_named_needs_it() {
+    let served = Served::on_a_serial_port("mock");
+    let ended = verify(&format!("{},board=ulx3s", served.target()), &[]);
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    assert!(ended.json()["link"]["name"].as_str().unwrap().contains("(3000000 baud)"), "{}", ended.stdout);
+    let contradicts = verify("serial:/dev/ttyUSB99,board=ulx3s,baud=115200", &[]);
+    ends(&contradicts, 2, "`baud=115200` contradicts `board=ulx3s`, which means baud=3000000,flow=none");
+    let unknown = verify("serial:/dev/ttyUSB99,board=ulx4s", &[]);
+    ends(&unknown, 2, "it takes board=minispartan6plus or board=ulx3s, baud=RATE");
+}
+
+#[test]
 fn a_port_in_use_is_busy_until_it_is_closed() {
     let served = Served::on_a_serial_port("mock");
     let held = link::open(&served.target().parse().unwrap()).unwrap();

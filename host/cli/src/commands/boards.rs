@@ -185,7 +185,7 @@ mod tests {
 
     #[test]
     fn a_board_is_called_by_the_target_that_it_answered_to() {
-        let by = "serial:/dev/ttyUSB99,baud=3000000,flow=none";
+        let by = "serial:/dev/ttyUSB99,board=ulx3s";
         let found = asked(by);
         assert_eq!(text(&Entry::Device(&found)).lines().next(), Some(by));
         assert!(matches!(found.answer, Some(Answer::Board { .. })), "{found:?}");

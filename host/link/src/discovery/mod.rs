@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::ftdi::{self, Speed};
 use crate::kinds::{self, KINDS};
-use crate::{BoardKind, Holder, Target, UsbDevice};
+use crate::{BoardKind, Holder, SerialBoard, Target, UsbDevice};
 
 pub use answer::Answer;
 
@@ -85,14 +85,14 @@ impl Found {
     }
 
     /// A second target to ask if no board answers at [`Self::target`]: behind a chip that cannot make the usual rate of a serial
-    /// port, the fastest rate that it makes, without RTS and CTS, as a ULX3S needs it.
+    /// port, the board that runs at the fastest rate that it makes.
     #[must_use]
     pub fn further_target(&self) -> Option<String> {
         let chip = self.usb.as_ref().filter(|usb| usb.vendor_id == ftdi::VENDOR)?;
         let speed = Speed::of(chip.device_version);
         let is_plain = self.target.starts_with("serial:") && !self.target.contains(',');
-        (is_plain && speed == Speed::Full)
-            .then(|| format!("{},baud={},flow=none", self.target, speed.fastest()))
+        let board = SerialBoard::behind(speed).filter(|_| is_plain && speed == Speed::Full)?;
+        Some(format!("{},board={}", self.target, board.name))
     }
 
     /// Whether it is worth asking.
@@ -125,7 +125,7 @@ mod tests {
         let (ft231x, ft2232h) = (0x1000, 0x0700);
         let asked = |version, target| behind(version, target).further_target();
         let port = "serial:/dev/ttyUSB99";
-        assert_eq!(asked(ft231x, port).unwrap(), "serial:/dev/ttyUSB99,baud=3000000,flow=none");
+        assert_eq!(asked(ft231x, port).unwrap(), "serial:/dev/ttyUSB99,board=ulx3s");
         assert_eq!(asked(ft2232h, port), None);
         // A target that names its own options is asked only as it says.
         assert_eq!(asked(ft231x, "serial:/dev/ttyUSB99,baud=115200"), None);

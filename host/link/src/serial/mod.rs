@@ -1,5 +1,6 @@
 //! A serial port as a link: locked for this program, and never waited for longer than a deadline.
 
+mod boards;
 mod error;
 mod holder;
 mod options;
@@ -21,6 +22,7 @@ use crate::ftdi::{self, Speed};
 use crate::target::Target;
 use options::SerialOptions;
 
+pub use boards::SerialBoard;
 pub use error::SerialError;
 pub use holder::{Holder, holders};
 pub(crate) use holder::{by, keepers};

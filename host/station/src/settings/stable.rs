@@ -18,9 +18,11 @@ pub(crate) fn moving(board: &Target) -> Option<(String, String)> {
         }
         ("serial", Some(path)) if may_move(path) => {
             let what = format!("`{written}` is another board when they are plugged in in another order");
+            // The board is spoken to as before, whatever its port is called.
+            let called = |name: &str| Target { address: Some(name.to_owned()), ..board.clone() }.to_string();
             let stable = Found::named(board).names;
-            let stable = stable.iter().map(|name| format!("serial:{}", name.display()));
-            Some((what, instead(&stable.collect::<Vec<_>>(), "serial:/dev/serial/by-path/…")))
+            let stable: Vec<_> = stable.iter().map(|name| called(&name.to_string_lossy())).collect();
+            Some((what, instead(&stable, &called("/dev/serial/by-path/…"))))
         }
         ("serial", None) => {
             let stable =
@@ -59,6 +61,9 @@ mod tests {
             let (what, remedy) = moving(&name.parse().unwrap()).unwrap();
             assert!(what.starts_with('`') && remedy.starts_with("write "), "{what}; {remedy}");
         }
+        let (_, remedy) = moving(&"serial:/dev/ttyUSB99,board=ulx3s".parse().unwrap()).unwrap();
+        let kept = "write serial:/dev/serial/by-path/…,board=ulx3s; `halfrow boards` lists";
+        assert!(remedy.starts_with(kept), "{remedy}");
         for stays in [
             "usb:1-2.3",
             "usb:FT3XYZ",

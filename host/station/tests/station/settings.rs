@@ -294,6 +294,13 @@ fn two_lanes_have_no_port_in_common_whatever_it_is_called() {
     let said = format!("station.toml:24: lane 1 has the board `{other}` already, as `{one}`; give each lane");
     let error = with(&both).unwrap_err();
     assert!(error.starts_with(&said), "{error}");
+    let spelt = [format!("{one},board=ulx3s"), format!("{one},baud=3000000,flow=none")];
+    let error = with(&spelt).unwrap_err();
+    let said = format!("station.toml:24: lane 1 has the board `{}` already, as `{}`", spelt[1], spelt[0]);
+    assert!(error.starts_with(&said), "{error}");
+    let error = load(&WHOLE.replace("usb:1-2.3", &format!("{},baud=9600", spelt[0]))).unwrap_err();
+    let said = "station.toml:19: the board cannot be used: `baud=9600` contradicts `board=ulx3s`";
+    assert!(error.starts_with(said), "{error}");
     with(&named("/dev/not-plugged-in")).unwrap();
 }
 

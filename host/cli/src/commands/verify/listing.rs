@@ -9,6 +9,7 @@ use halfrow::board::{BoardNature, Capabilities};
 use halfrow::result::Variation;
 use halfrow::run::{self, Build, Part, Plan, Prices, Rates, Selection, Timing, usual_capabilities};
 use halfrow::target::Target;
+use halfrow_link::SerialBoard;
 
 /// Links for which prices are given if the target does not say how fast its link is: two UARTs and a FIFO.
 const USUAL_LINKS: [(&str, f64); 3] =
@@ -114,8 +115,10 @@ fn stated_rate(target: &Target) -> Option<f64> {
         let option = target.options.iter().find(|(name, _)| name == key);
         option.and_then(|(_, value)| value.parse::<f64>().ok()).filter(|rate| rate.is_finite() && *rate > 0.0)
     };
+    let board = target.options.iter().find(|(name, _)| name == "board");
+    let board = board.and_then(|(_, name)| SerialBoard::named(name)).map(|board| f64::from(board.baud));
     // A byte takes ten bits on a UART.
-    number("speed").or_else(|| number("baud").map(|baud| baud / 10.0))
+    number("speed").or_else(|| number("baud").or(board).map(|baud| baud / 10.0))
 }
 
 fn on_link(plan: &Plan, capabilities: &Capabilities, link: String, bytes_per_second: f64) -> OnLink {
